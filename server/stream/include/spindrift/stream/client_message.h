@@ -1,0 +1,65 @@
+// Client messages, server side: bytes from anybody to checked values. No bytes make any of these functions throw.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include <spindrift/core/bytes.h>
+#include <spindrift/core/command.h>
+#include <spindrift/v1/scene.pb.h>
+#include <spindrift/v1/wire.pb.h>
+
+namespace spindrift::stream {
+
+/// Version of the wire spoken here. A client with another major version is refused; minor versions only add.
+inline constexpr std::uint32_t kWireMajor = 1;
+inline constexpr std::uint32_t kWireMinor = 0;
+/// Bytes of Hello.client that are kept.
+inline constexpr std::size_t kClientNameMaxBytes = 64;
+
+struct Hello {
+  std::uint32_t major = 0;
+  std::uint32_t minor = 0;
+  std::string client;  ///< at most kClientNameMaxBytes of UTF-8 without control characters; may be empty
+};
+
+struct Subscribe {
+  v1::Layer layer = v1::LAYER_UNSPECIFIED;  ///< a declared layer, never UNSPECIFIED; the room may still not send it
+  double max_rate_hz = 0.0;                 ///< 0..240; 0 = stop
+};
+
+struct Ping {
+  double client_time_s = 0.0;  ///< finite
+};
+
+/// A command that is not carried out; becomes a Reject.
+struct CommandRejection {
+  std::uint64_t command_id = 0;
+  v1::RejectReason reason = v1::REJECT_REASON_UNSPECIFIED;
+  std::string field;    ///< "splash.radius_m"; empty where the whole command is meant
+  std::string message;  ///< one line for a person
+};
+
+/// Bytes that are no client message at all, or one this server cannot answer; becomes a Refusal and a close.
+struct Malformed {
+  std::string message;  ///< one line for a person
+};
+
+using ClientMessage = std::variant<Hello, Subscribe, core::Command, Ping, CommandRejection, Malformed>;
+
+/// Parses and checks one client message. Numbers in the result are finite and within the ranges of their fields, fields
+/// left out have their defaults, session_id is 0 (the caller knows the session).
+ClientMessage parseClientMessage(core::ByteView bytes);
+
+/// nullopt if this server can talk to the client, otherwise one line for a Refusal.
+std::optional<std::string> checkVersion(const Hello& hello);
+
+/// What the scene at hand forbids although the message is fine in itself: absent parts, splashes deeper or wider than
+/// the water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range. nullopt =
+/// fine. `scene` has its defaults filled in.
+std::optional<CommandRejection> checkAgainstScene(const core::Command& command, const v1::Scene& scene);
+
+}  // namespace spindrift::stream

@@ -1,0 +1,46 @@
+// Server messages of the control plane: facts in, one serialized ServerMessage out, ready to be shared by every outbox.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/core/bytes.h>
+#include <spindrift/core/frame_view.h>
+#include <spindrift/stream/client_message.h>
+#include <spindrift/v1/scene.pb.h>
+#include <spindrift/v1/wire.pb.h>
+
+namespace spindrift::stream {
+
+/// What a session learns first. The scene has its defaults filled in; parameter descriptions and the version of the
+/// wire follow from it and from kWireMajor/kWireMinor.
+struct GreetingFacts {
+  std::string server;  ///< program name and version
+  std::string device;  ///< what the simulation runs on
+  std::string room;
+  std::uint64_t session_id = 0;
+  std::vector<v1::Layer> layers;  ///< what the room can send
+  std::uint32_t message_max_bytes = 0;
+  double commands_per_s = 0.0;
+  double frame_rate_max_hz = 0.0;
+  double server_time_s = 0.0;  ///< monotonic clock
+  bool paused = false;
+  double speed = 1.0;
+};
+
+core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene);
+core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick);
+core::SharedBytes reject(const CommandRejection& rejection);
+core::SharedBytes reject(std::uint64_t command_id, v1::RejectReason reason, std::string_view field,
+                         std::string_view message);
+core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
+core::SharedBytes roomState(bool paused, double speed);
+core::SharedBytes pong(double client_time_s, double server_time_s);
+core::SharedBytes refusal(std::string_view message);
+/// The frame's diagnostics; null where the frame has none. Values pass unchanged, also non-finite ones: they are the
+/// news.
+core::SharedBytes diagnostics(const core::FrameView& frame);
+
+}  // namespace spindrift::stream
