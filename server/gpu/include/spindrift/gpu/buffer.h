@@ -1,0 +1,121 @@
+// Memory on the device: a buffer of fixed size, and a buffer that shaders gather from with texelFetch.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <ranges>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/context.h>
+
+namespace spindrift::gpu {
+
+/// Who writes a buffer.
+enum class BufferUse {
+  kDeviceOnly,  ///< shaders, clear() and copyFrom() only; may live in faster memory
+  kUpdatable,   ///< upload() as well
+};
+
+/// A buffer with immutable storage. Move-only; must not outlive its context. All sizes and offsets in bytes. Reading
+/// what shaders wrote needs `ctx.barrier(Barrier::kBufferUpdate)` first. Offsets out of range are bugs of the caller:
+/// asserted in debug builds, otherwise refused by OpenGL and counted in Context::debugErrorCount().
+class Buffer {
+ public:
+  /// Content is zero. Error kInternal when the device has no memory for it or the size is 0.
+  static core::Result<Buffer> create(Context& ctx, std::string_view name, std::size_t size_bytes,
+                                     BufferUse use = BufferUse::kUpdatable);
+  Buffer() = default;  ///< holds nothing; only to be assigned to
+  ~Buffer();
+  Buffer(Buffer&& other) noexcept;
+  Buffer& operator=(Buffer&& other) noexcept;
+
+  [[nodiscard]] std::size_t sizeBytes() const { return size_bytes_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::uint32_t id() const { return id_; }  ///< the OpenGL name; 0 when it holds nothing
+  explicit operator bool() const { return id_ != 0; }
+
+  /// Copies any contiguous range of plain values (vector, array, span) to `offset_bytes`.
+  template <std::ranges::contiguous_range Range>
+  void upload(const Range& values, std::size_t offset_bytes = 0) {
+    static_assert(std::is_trivially_copyable_v<std::ranges::range_value_t<Range>>);
+    uploadBytes(std::as_bytes(std::span(std::ranges::data(values), std::ranges::size(values))), offset_bytes);
+  }
+  /// Copies one plain value, for example a parameter block, to `offset_bytes`.
+  template <typename T>
+  void uploadValue(const T& value, std::size_t offset_bytes = 0) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    uploadBytes(std::as_bytes(std::span(&value, 1)), offset_bytes);
+  }
+  /// Reads back into `out`. Waits for the device: tests, checkpoints and hashes only.
+  template <typename T>
+  void download(std::span<T> out, std::size_t offset_bytes = 0) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    downloadBytes(std::as_writable_bytes(out), offset_bytes);
+  }
+  /// The first `count` values. Waits, as above.
+  template <typename T>
+  [[nodiscard]] std::vector<T> downloadVector(std::size_t count) const {
+    std::vector<T> out(count);
+    download(std::span<T>(out));
+    return out;
+  }
+
+  /// Every whole 32-bit word becomes `word`; a tail of 1 to 3 bytes takes the low bytes of `word`.
+  void clear(std::uint32_t word = 0);
+  /// The same for a part; offset and size must be multiples of 4.
+  void clearRange(std::uint32_t word, std::size_t offset_bytes, std::size_t size_bytes);
+  /// Copies on the device, without waiting.
+  void copyFrom(const Buffer& source, std::size_t source_offset_bytes, std::size_t size_bytes,
+                std::size_t offset_bytes = 0);
+
+  /// Binds the whole buffer as `layout(binding = …) buffer`.
+  void bindStorage(std::uint32_t binding) const;
+  /// Binds the whole buffer as `layout(binding = …) uniform Block`.
+  void bindUniform(std::uint32_t binding) const;
+
+ protected:
+  void uploadBytes(std::span<const std::byte> bytes, std::size_t offset_bytes);
+  void downloadBytes(std::span<std::byte> bytes, std::size_t offset_bytes) const;
+
+  Context* ctx_ = nullptr;
+  std::uint32_t id_ = 0;
+  std::size_t size_bytes_ = 0;
+  std::string name_;
+};
+
+/// How texelFetch sees the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
+enum class TexelFormat { kR32F, kRG32F, kRGBA32F, kR32UI, kRG32UI, kRGBA32UI, kR32I, kRGBA32I };
+/// 4, 8 or 16.
+std::size_t texelBytes(TexelFormat format);
+
+/// A buffer that is written as shader storage and read with texelFetch: measured on llvmpipe 22.3, storage loads inside
+/// a loop are scalarised and a gather through texelFetch is three to four times faster, so every hot read goes this
+/// way.
+class TexelBuffer : public Buffer {
+ public:
+  /// As Buffer::create(), for `texel_count` texels; also refused beyond `max_texel_buffer_elements`.
+  static core::Result<TexelBuffer> create(Context& ctx, std::string_view name, std::size_t texel_count,
+                                          TexelFormat format, BufferUse use = BufferUse::kUpdatable);
+  TexelBuffer() = default;  ///< holds nothing; only to be assigned to
+  ~TexelBuffer();
+  TexelBuffer(TexelBuffer&& other) noexcept;
+  TexelBuffer& operator=(TexelBuffer&& other) noexcept;
+
+  [[nodiscard]] std::size_t texelCount() const { return texel_count_; }
+  [[nodiscard]] TexelFormat format() const { return format_; }
+
+  /// Binds the view to the texture unit of `layout(binding = …) uniform samplerBuffer`.
+  void bindTexel(std::uint32_t unit) const;
+
+ private:
+  std::uint32_t texture_id_ = 0;
+  std::size_t texel_count_ = 0;
+  TexelFormat format_ = TexelFormat::kR32F;
+};
+
+}  // namespace spindrift::gpu

@@ -1,0 +1,60 @@
+// Which device draws the water: EGL devices that can make an OpenGL 4.5 core context, hardware first, software last.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/core/result.h>
+
+namespace spindrift::gpu {
+
+/// What the user asked for with `--device auto|software|N`.
+struct DeviceChoice {
+  enum class Kind {
+    kAuto,      ///< the first hardware device that works, else software
+    kSoftware,  ///< Mesa's software rasteriser
+    kIndex,     ///< the hardware device with this index in listDevices()
+  };
+  Kind kind = Kind::kAuto;
+  int index = 0;  ///< for kIndex only
+};
+
+/// "auto", "software" or a device index (0…1023). Error kInvalidInput otherwise.
+core::Result<DeviceChoice> parseDeviceChoice(std::string_view text);
+
+/// What the context of a device allows; all zero for a device that does not work.
+struct DeviceLimits {
+  std::int64_t max_ssbo_bytes = 0;             ///< one shader storage block
+  std::int64_t max_texel_buffer_elements = 0;  ///< texels of one buffer texture
+  std::int64_t max_uniform_block_bytes = 0;
+  std::int64_t max_work_group_invocations = 0;  ///< x * y * z of a local size
+  std::int64_t max_work_group_count_x = 0;      ///< groups of one dispatch along x; y and z follow
+  std::int64_t max_work_group_count_y = 0;
+  std::int64_t max_work_group_count_z = 0;
+  std::int64_t max_shared_memory_bytes = 0;
+  std::int64_t max_ssbo_bindings = 0;          ///< binding points in all
+  std::int64_t max_compute_ssbo_blocks = 0;    ///< storage blocks that one compute shader may use
+  std::int64_t max_compute_texture_units = 0;  ///< samplers that one compute shader may use
+};
+
+struct DeviceInfo {
+  int index = -1;            ///< what `--device` takes; -1 for the software rasteriser
+  std::string name;          ///< GL_RENDERER, or what EGL says of a device that does not work
+  std::string vendor;        ///< GL_VENDOR
+  std::string gl_version;    ///< GL_VERSION
+  std::string glsl_version;  ///< GL_SHADING_LANGUAGE_VERSION
+  std::string egl_driver;    ///< EGL_VENDOR and EGL_VERSION of the display, e.g. "Mesa Project 1.5"
+  std::string drm_file;      ///< device file, empty when the device has none
+  bool is_software = false;
+  std::string problem;  ///< empty: it works; otherwise one line why it does not
+  DeviceLimits limits;
+};
+
+/// Every EGL device, tried and described: hardware in EGL's order, then one software rasteriser. Devices that cannot
+/// make an OpenGL 4.5 core context are listed with `problem` set. Leaves the calling thread's current context as it
+/// was.
+std::vector<DeviceInfo> listDevices();
+
+}  // namespace spindrift::gpu

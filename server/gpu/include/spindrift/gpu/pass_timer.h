@@ -1,0 +1,80 @@
+// Time of named passes on the device, without ever waiting for it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/gpu/context.h>
+
+namespace spindrift::gpu {
+
+/// What one name cost since the last take().
+struct PassCost {
+  std::string name;
+  double mean_ms = 0.0;           ///< per scope; times the scopes of a tick gives the time of a tick
+  double total_ms = 0.0;          ///< of the scopes whose result has arrived
+  std::uint64_t scope_count = 0;  ///< scopes whose result has arrived
+};
+
+/// On hardware: pairs of timestamp queries in a bounded ring, read when they are ready. On the software rasteriser:
+/// the wall clock from opening to closing a scope, because there a dispatch returns when it is done.
+/// Must not outlive its context.
+class PassTimers {
+ public:
+  /// `capacity_count`: scopes whose result may be outstanding; beyond it scopes are not measured, and counted.
+  explicit PassTimers(Context& ctx, std::size_t capacity_count = 512);
+  ~PassTimers();
+  PassTimers(const PassTimers&) = delete;
+  PassTimers& operator=(const PassTimers&) = delete;
+
+  /// Open until destroyed. Scopes may nest; the outer then includes the inner.
+  class [[nodiscard]] Scope {
+   public:
+    ~Scope();
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    friend class PassTimers;
+    Scope(PassTimers& timers, std::size_t name_index);
+    PassTimers& timers_;
+    std::size_t name_index_;
+    std::size_t query_index_;
+    std::chrono::steady_clock::time_point start_;
+  };
+
+  /// Measures what is submitted until the scope ends, under `name`.
+  Scope scope(std::string_view name) { return Scope(*this, nameIndex(name)); }
+
+  /// Means since the last take(), in the order in which names first appeared; names without a new result are left out.
+  [[nodiscard]] std::vector<PassCost> take();
+  /// Scopes not measured because the ring was full.
+  [[nodiscard]] std::uint64_t droppedCount() const { return dropped_count_; }
+
+ private:
+  static constexpr std::size_t kNoQuery = static_cast<std::size_t>(-1);
+  struct Query {
+    std::uint32_t begin_id = 0;
+    std::uint32_t end_id = 0;
+    std::size_t name_index = 0;
+    bool in_use = false;
+    bool is_closed = false;
+  };
+
+  std::size_t nameIndex(std::string_view name);
+  std::size_t openQuery(std::size_t name_index);
+  void collect();
+  void add(std::size_t name_index, double ms);
+
+  Context& ctx_;
+  const bool uses_wall_clock_;
+  std::vector<PassCost> costs_;
+  std::vector<Query> queries_;
+  std::size_t next_query_ = 0;
+  std::uint64_t dropped_count_ = 0;
+};
+
+}  // namespace spindrift::gpu

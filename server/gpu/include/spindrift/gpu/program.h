@@ -1,0 +1,76 @@
+// A compute program from an embedded shader.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/context.h>
+
+namespace spindrift::gpu {
+
+/// Preprocessor names and values put before the shader's first line.
+using Defines = std::vector<std::pair<std::string, std::string>>;
+
+/// A uniform block or a storage block as the linked program lays it out.
+struct BlockLayout {
+  bool is_storage = false;
+  std::uint32_t binding = 0;
+  std::uint32_t size_bytes = 0;                  ///< for a storage block with an unsized array: at least this
+  std::map<std::string, std::uint32_t> offsets;  ///< member -> offset in bytes; arrays as "name[0]"
+};
+
+/// Move-only; must not outlive its context.
+class Program {
+ public:
+  /// Compiles "sph/density.comp" with `defines`. Error kInternal names the shader and, for each complaint of the
+  /// driver, the file and line it was written in; a path that was not embedded is an error too.
+  static core::Result<Program> create(Context& ctx, std::string_view shader_path, const Defines& defines = {});
+  Program() = default;  ///< holds nothing; only to be assigned to
+  ~Program();
+  Program(Program&& other) noexcept;
+  Program& operator=(Program&& other) noexcept;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::uint32_t id() const { return id_; }  ///< the OpenGL name; 0 when it holds nothing
+  explicit operator bool() const { return id_ != 0; }
+
+  /// The local size as the driver linked it: the only place host code takes it from.
+  [[nodiscard]] std::array<std::uint32_t, 3> groupSize() const { return group_size_; }
+
+  /// Runs at least this many invocations: items over the local size, rounded up. Shaders guard the excess. Zero items
+  /// run nothing. False, logged and counted in Context::debugErrorCount(), when more groups would be needed than the
+  /// device allows; then nothing runs.
+  bool dispatch(std::uint32_t x_count, std::uint32_t y_count = 1, std::uint32_t z_count = 1);
+  /// Runs exactly this many groups; bounded likewise.
+  bool dispatchGroups(std::uint32_t x_count, std::uint32_t y_count = 1, std::uint32_t z_count = 1);
+  /// Runs the three group counts that a shader wrote at `offset_bytes` (a multiple of 4).
+  void dispatchIndirect(const Buffer& arguments, std::size_t offset_bytes = 0);
+
+  /// Sets a plain uniform. A uniform that the compiler dropped is ignored; a name that the shader's text does not
+  /// contain is a bug of the caller: asserted in debug builds, otherwise logged once and counted.
+  void setUniform(std::string_view name, std::uint32_t value);
+  void setUniform(std::string_view name, std::int32_t value);
+  void setUniform(std::string_view name, float value);
+
+  /// Blocks by the name after `uniform` or `buffer`; a block that the shader does not use may be missing. For tests
+  /// that compare shaders/shared with what the driver made of it.
+  [[nodiscard]] std::map<std::string, BlockLayout> blocks() const;
+
+ private:
+  [[nodiscard]] std::int32_t location(std::string_view name);
+
+  Context* ctx_ = nullptr;
+  std::uint32_t id_ = 0;
+  std::string path_;
+  std::array<std::uint32_t, 3> group_size_ = {1, 1, 1};
+  std::map<std::string, std::int32_t, std::less<>> locations_;
+};
+
+}  // namespace spindrift::gpu

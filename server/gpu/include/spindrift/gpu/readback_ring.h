@@ -1,0 +1,104 @@
+// From the device to other threads without waiting: a persistently mapped ring of slots, each guarded by a fence.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/context.h>
+
+namespace spindrift::gpu {
+
+/// begin() and poll() belong to the context's thread; finished slots may be read and dropped on any thread. A slot is
+/// free again once its last reference is gone. Destroying the ring while views are held is safe until the context goes.
+class ReadbackRing {
+  struct State;
+
+ public:
+  /// A finished slot: what was copied, readable as long as a reference lives. Dropping it makes no OpenGL call.
+  class Slot {
+   public:
+    ~Slot();
+    Slot(const Slot&) = delete;
+    Slot& operator=(const Slot&) = delete;
+
+    [[nodiscard]] std::uint64_t tag() const { return tag_; }
+    /// The slot up to the end of the furthest copy.
+    [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+    /// The same as 32-bit words; a tail of 1 to 3 bytes is left out.
+    [[nodiscard]] std::span<const std::uint32_t> words() const;
+
+   private:
+    friend class ReadbackRing;
+    Slot(std::shared_ptr<State> state, std::size_t index, std::uint64_t tag, std::span<const std::byte> bytes);
+    std::shared_ptr<State> state_;
+    std::size_t index_;
+    std::uint64_t tag_;
+    std::span<const std::byte> bytes_;
+  };
+
+  /// A slot being filled. Dropped without submit(), the slot is free again. Must not outlive the ring.
+  class Recording {
+   public:
+    ~Recording();
+    Recording(Recording&& other) noexcept;
+    Recording& operator=(Recording&&) = delete;
+
+    /// Copies on the device; makes shader writes so far visible to the copy itself. False, and nothing is copied, when
+    /// it would not fit the slot or the source.
+    [[nodiscard]] bool copyFrom(const Buffer& source, std::size_t source_offset_bytes, std::size_t size_bytes,
+                                std::size_t offset_bytes);
+    /// Puts the fence and hands the work to the device; poll() returns the slot, with this tag, once it is done.
+    void submit(std::uint64_t tag);
+
+   private:
+    friend class ReadbackRing;
+    Recording(ReadbackRing& ring, std::size_t index) : ring_(&ring), index_(index) {}
+    ReadbackRing* ring_;
+    std::size_t index_;
+    std::size_t used_bytes_ = 0;
+  };
+
+  /// Error kInvalidInput for a slot of 0 bytes or a ring of 0 slots, kInternal when it cannot be mapped.
+  static core::Result<std::unique_ptr<ReadbackRing>> create(Context& ctx, std::string_view name, std::size_t slot_bytes,
+                                                            std::size_t slot_count);
+  ~ReadbackRing();
+  ReadbackRing(const ReadbackRing&) = delete;
+  ReadbackRing& operator=(const ReadbackRing&) = delete;
+
+  /// A free slot, or nothing when every slot is being filled, in flight or read: the caller drops the frame.
+  [[nodiscard]] std::optional<Recording> begin();
+  /// Slots whose fence has been passed, in the order of submit(). Never waits.
+  [[nodiscard]] std::vector<std::shared_ptr<const Slot>> poll();
+
+  [[nodiscard]] std::size_t slotBytes() const;
+  [[nodiscard]] std::size_t slotCount() const;
+  /// Slots not free now.
+  [[nodiscard]] std::size_t usedCount() const;
+  /// How often begin() returned nothing.
+  [[nodiscard]] std::uint64_t refusedCount() const { return refused_count_; }
+
+ private:
+  struct InFlight {
+    std::size_t index;
+    std::uint64_t tag;
+    std::size_t used_bytes;
+    void* fence;
+  };
+  ReadbackRing(Context& ctx, std::shared_ptr<State> state, std::uint32_t buffer_id, std::size_t size_bytes);
+
+  Context& ctx_;
+  std::shared_ptr<State> state_;
+  std::uint32_t buffer_id_;
+  std::size_t size_bytes_;
+  std::vector<InFlight> in_flight_;
+  std::uint64_t refused_count_ = 0;
+};
+
+}  // namespace spindrift::gpu
