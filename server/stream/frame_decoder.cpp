@@ -1,0 +1,161 @@
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <google/protobuf/stubs/logging.h>
+
+#include <spindrift/stream/crc32c.h>
+#include <spindrift/stream/frame_decoder.h>
+
+#include "text.h"
+
+namespace spindrift::stream {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "payload integers are loaded as they lie in memory");
+
+constexpr std::size_t kSampleBytes = 2;
+constexpr std::size_t kParticleBytes = 12;
+/// Far beyond any scene; keeps every decoded value finite as a float.
+constexpr double kMaxMagnitude = 1e6;
+
+core::Error invalid(std::string message) {
+  return {core::ErrorCode::kInvalidInput, std::move(message)};
+}
+
+core::ByteView viewOf(const std::string& bytes) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+template <typename Integer>
+Integer load(const std::uint8_t* at) {
+  Integer value{};
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+/// min <= value <= kMaxMagnitude; NaN is out of range as well.
+std::optional<core::Error> checkRange(const char* name, double value, double min) {
+  if (value >= min && value <= kMaxMagnitude) return std::nullopt;
+  return invalid(std::string(name) + ": " + formatNumber(value) + " is not a finite number from " + formatNumber(min) +
+                 " to " + formatNumber(kMaxMagnitude) + "; the frame is damaged");
+}
+
+/// What every fixed-width frame has to get right: layer, time, being whole, payload size and checksum.
+std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer, std::size_t payload_bytes) {
+  if (frame.layer() != layer) {
+    return invalid("layer: " + std::to_string(frame.layer()) + " is not " + v1::Layer_Name(layer));
+  }
+  if (!frame.keyframe()) return invalid("keyframe: false, but frames of this codec always stand by themselves");
+  if (!std::isfinite(frame.time_s())) return invalid("time_s: " + formatNumber(frame.time_s()) + " is not finite");
+  if (frame.payload().size() != payload_bytes) {
+    return invalid("payload: " + std::to_string(frame.payload().size()) + " bytes, but the header calls for " +
+                   std::to_string(payload_bytes));
+  }
+  if (const std::uint32_t crc = crc32c(viewOf(frame.payload())); crc != frame.crc32c()) {
+    return invalid("crc32c: the frame says " + std::to_string(frame.crc32c()) + ", its payload has " +
+                   std::to_string(crc));
+  }
+  return std::nullopt;
+}
+
+std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
+  if (!frame.has_surface_fixed16()) return invalid("codec: not surface_fixed16, the only surface codec known here");
+  const v1::SurfaceFixed16& header = frame.surface_fixed16();
+  const std::size_t n = header.resolution_count();
+  if (n < 1 || n > kSurfaceMaxResolutionCount) {
+    return invalid("resolution_count: " + std::to_string(n) + " is not from 1 to " +
+                   std::to_string(kSurfaceMaxResolutionCount));
+  }
+  // Bounds of 0 would make every sample lie in one place, or be flat whatever the payload says.
+  if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
+  if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return error;
+  return checkFrame(frame, v1::LAYER_SURFACE, n * n * kSampleBytes);
+}
+
+std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
+  if (!frame.has_particles_fixed12()) {
+    return invalid("codec: not particles_fixed12, the only particle codec known here");
+  }
+  const v1::ParticlesFixed12& header = frame.particles_fixed12();
+  if (header.count() > kParticleMaxCount) {
+    return invalid("count: " + std::to_string(header.count()) + " is above " + std::to_string(kParticleMaxCount));
+  }
+  if (auto error = checkRange("min_x_m", header.min_x_m(), -kMaxMagnitude)) return error;
+  if (auto error = checkRange("min_y_m", header.min_y_m(), -kMaxMagnitude)) return error;
+  if (auto error = checkRange("min_z_m", header.min_z_m(), -kMaxMagnitude)) return error;
+  if (auto error = checkRange("max_x_m", header.max_x_m(), header.min_x_m())) return error;
+  if (auto error = checkRange("max_y_m", header.max_y_m(), header.min_y_m())) return error;
+  if (auto error = checkRange("max_z_m", header.max_z_m(), header.min_z_m())) return error;
+  if (auto error = checkRange("max_speed_mps", header.max_speed_mps(), 0.0)) return error;
+  if (auto error = checkRange("radius_m", header.radius_m(), 0.0)) return error;
+  return checkFrame(frame, v1::LAYER_PARTICLES, header.count() * kParticleBytes);
+}
+
+}  // namespace
+
+core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes) {
+  if (bytes.size() > kServerMessageMaxBytes) {
+    return invalid("message of " + std::to_string(bytes.size()) + " bytes is above " +
+                   std::to_string(kServerMessageMaxBytes));
+  }
+  const google::protobuf::LogSilencer silencer;
+  v1::ServerMessage message;
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return invalid("not a spindrift.v1.ServerMessage: the bytes are damaged or cut short");
+  }
+  if (message.message_case() == v1::ServerMessage::MESSAGE_NOT_SET) {
+    return invalid("server message of a kind that this client does not know");
+  }
+  return message;
+}
+
+core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame) {
+  if (auto error = checkSurface(frame)) return *error;
+  const v1::SurfaceFixed16& header = frame.surface_fixed16();
+  SurfaceSamples out;
+  out.resolution_count = header.resolution_count();
+  out.side_m = header.side_m();
+  out.quantum_m = header.quantum_m();
+  const core::ByteView payload = viewOf(frame.payload());
+  out.elevation_m.resize(payload.size() / kSampleBytes);
+  for (std::size_t i = 0; i < out.elevation_m.size(); ++i) {
+    out.elevation_m[i] = static_cast<float>(load<std::int16_t>(payload.data() + i * kSampleBytes) * header.quantum_m());
+  }
+  return out;
+}
+
+core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame) {
+  if (auto error = checkParticles(frame)) return *error;
+  const v1::ParticlesFixed12& header = frame.particles_fixed12();
+  const std::size_t count = header.count();
+  ParticleSamples out;
+  out.count = header.count();
+  out.radius_m = header.radius_m();
+  out.position_m.resize(3 * count);
+  out.velocity_mps.resize(3 * count);
+  out.tint.resize(count);
+  out.foam.resize(count);
+  const auto position = [](std::uint16_t value, double min_m, double max_m) {
+    return static_cast<float>(min_m + value / 65535.0 * (max_m - min_m));
+  };
+  const auto velocity = [&](std::uint8_t byte) {
+    return static_cast<float>(static_cast<std::int8_t>(byte) / 127.0 * header.max_speed_mps());
+  };
+  const core::ByteView payload = viewOf(frame.payload());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* at = payload.data() + i * kParticleBytes;
+    out.position_m[3 * i + 0] = position(load<std::uint16_t>(at + 0), header.min_x_m(), header.max_x_m());
+    out.position_m[3 * i + 2] = position(load<std::uint16_t>(at + 2), header.min_z_m(), header.max_z_m());
+    out.position_m[3 * i + 1] = position(load<std::uint16_t>(at + 4), header.min_y_m(), header.max_y_m());
+    for (std::size_t axis = 0; axis < 3; ++axis) out.velocity_mps[3 * i + axis] = velocity(at[6 + axis]);
+    out.tint[i] = at[9];
+    out.foam[i] = at[10];
+  }
+  return out;
+}
+
+}  // namespace spindrift::stream

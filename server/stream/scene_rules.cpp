@@ -1,0 +1,194 @@
+#include "scene_rules.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <spindrift/stream/scene_loader.h>
+
+#include "text.h"
+
+namespace spindrift::stream {
+namespace {
+
+/// A depression or crest beyond this share of the depth would bare the ground or leave the wave equation's range.
+constexpr double kMaxEffectDepthRatio = 0.9;
+/// Absorbs the rounding of "shift + scale * side / 2" where a patch ends exactly at the edge.
+constexpr double kEdgeToleranceRatio = 1e-9;
+constexpr std::size_t kNameMaxBytes = 64;
+constexpr std::size_t kTitleMaxBytes = 200;
+constexpr std::size_t kDescriptionMaxBytes = 4000;
+constexpr const char* kNoSurface = "this scene has no wave, so there is no surface to move; choose a scene with a wave";
+
+std::string metres(double value) {
+  return formatQuantity(value, "m");
+}
+
+void addRange(std::vector<FieldIssue>& issues, std::string path, std::string message) {
+  issues.push_back({v1::REJECT_REASON_OUT_OF_RANGE, std::move(path), std::move(message)});
+}
+
+void addAbsent(std::vector<FieldIssue>& issues, std::string path, std::string message) {
+  issues.push_back({v1::REJECT_REASON_ABSENT_PART, std::move(path), std::move(message)});
+}
+
+void checkHeight(double value_m, double depth_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  const double max_m = kMaxEffectDepthRatio * depth_m;
+  if (value_m <= max_m) return;
+  addRange(issues, path,
+           metres(value_m) + " is above " + metres(max_m) + ", 0.9 of the water's depth of " + metres(depth_m) +
+               "; choose at most " + metres(max_m) + " or a deeper water");
+}
+
+void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  if (std::abs(value_m) <= 0.5 * side_m) return;
+  addRange(issues, path,
+           metres(value_m) + " lies outside of the water; choose " + formatNumber(-0.5 * side_m) + " to " +
+               metres(0.5 * side_m));
+}
+
+void checkPatch(double shift_m, double scale, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  const double reach_m = 0.5 * side_m * (1.0 - scale);
+  if (std::abs(shift_m) <= reach_m + kEdgeToleranceRatio * side_m) return;
+  addRange(issues, path,
+           metres(shift_m) + " pushes the particle patch over the edge of the water; choose " +
+               formatNumber(reach_m > 0 ? -reach_m : 0) + " to " + metres(reach_m) + " or a smaller patch_scale");
+}
+
+bool isName(const std::string& name) {
+  const char* const allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  return !name.empty() && name.size() <= kNameMaxBytes && name.find_first_not_of(allowed) == std::string::npos;
+}
+
+void checkText(const std::string& text, std::size_t max_bytes, const std::string& path,
+               std::vector<FieldIssue>& issues) {
+  if (text.size() > max_bytes) {
+    addRange(issues, path,
+             std::to_string(text.size()) + " bytes are more than " + std::to_string(max_bytes) + "; shorten the text");
+  }
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8SequenceLength(text, at);
+    if (length == 0) {
+      addRange(issues, path, "byte " + std::to_string(at) + " is no UTF-8; save the file as UTF-8");
+      return;
+    }
+    at += length;
+  }
+}
+
+void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  if (!scene.has_wave() && !scene.has_particles()) {
+    addAbsent(issues, "wave", "missing, and so is particles; a scene needs at least one of them: add \"wave {}\"");
+  }
+  if (scene.has_coupling() && !scene.has_wave()) {
+    addAbsent(issues, "coupling", "needs a wave; add \"wave {}\" or remove coupling");
+  }
+  if (scene.has_coupling() && !scene.has_particles()) {
+    addAbsent(issues, "coupling", "needs particles; add \"particles {}\" or remove coupling");
+  }
+  if (scene.has_foam() && !scene.has_particles()) {
+    addAbsent(issues, "foam", "needs particles; add \"particles {}\" or remove foam");
+  }
+}
+
+std::string eventPrefix(int index) {
+  return "events[" + std::to_string(index) + "].";
+}
+
+void checkEffectPart(const v1::TimedEvent& event, const v1::Scene& scene, const std::string& prefix,
+                     std::vector<FieldIssue>& issues) {
+  const v1::Effect& effect = event.effect();
+  if (effect.effect_case() == v1::Effect::EFFECT_NOT_SET) {
+    issues.push_back({v1::REJECT_REASON_MALFORMED, prefix + "effect",
+                      "missing; say what happens: \"effect { splash {} }\" or \"effect { breaking_wave {} }\""});
+  } else if (!scene.has_wave()) {
+    addAbsent(issues, prefix + "effect", kNoSurface);
+  }
+}
+
+void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, const std::string& prefix,
+                       std::vector<FieldIssue>& issues) {
+  const double tick_s = 1.0 / scene.tick_rate_hz();
+  if (event.every_s() > 0 && event.every_s() < tick_s) {
+    addRange(issues, prefix + "every_s",
+             formatQuantity(event.every_s(), "s") + " is shorter than a tick of " + formatQuantity(tick_s, "s") +
+                 "; choose 0 (once) or at least a tick");
+  }
+  if (!scene.has_wave() || event.effect().effect_case() == v1::Effect::EFFECT_NOT_SET) return;
+  const core::Effect effect = event.effect().has_splash() ? core::Effect(toCore(event.effect().splash()))
+                                                          : core::Effect(toCore(event.effect().breaking_wave()));
+  for (FieldIssue& issue : checkEffect(effect, scene)) {
+    issue.path = prefix + "effect." + issue.path;
+    issues.push_back(std::move(issue));
+  }
+}
+
+}  // namespace
+
+std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  const bool is_splash = std::holds_alternative<core::Splash>(effect);
+  if (!scene.has_wave()) {
+    addAbsent(issues, is_splash ? "splash" : "breaking_wave", kNoSurface);
+    return issues;
+  }
+  const double side_m = scene.wave().side_m();
+  const double depth_m = scene.wave().depth_m();
+  if (is_splash) {
+    const core::Splash& splash = std::get<core::Splash>(effect);
+    checkPosition(splash.x_m, side_m, "splash.x_m", issues);
+    checkPosition(splash.z_m, side_m, "splash.z_m", issues);
+    if (splash.radius_m > 0.5 * side_m) {
+      addRange(
+          issues, "splash.radius_m",
+          metres(splash.radius_m) + " is more than half the side of the water; choose at most " + metres(0.5 * side_m));
+    }
+    checkHeight(splash.depth_m, depth_m, "splash.depth_m", issues);
+  } else {
+    const core::BreakingWave& wave = std::get<core::BreakingWave>(effect);
+    checkHeight(wave.amplitude_m, depth_m, "breaking_wave.amplitude_m", issues);
+    if (wave.length_m > side_m) {
+      addRange(issues, "breaking_wave.length_m",
+               metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m));
+    }
+  }
+  return issues;
+}
+
+std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  if (!isName(scene.name())) {
+    addRange(
+        issues, "name",
+        "\"" + cleanText(scene.name(), kNameMaxBytes) +
+            "\" is no name; use 1 to 64 letters, digits, '_' and '-' (the file's name counts where it is left out)");
+  }
+  checkText(scene.title(), kTitleMaxBytes, "title", issues);
+  checkText(scene.description(), kDescriptionMaxBytes, "description", issues);
+  checkParts(scene, issues);
+  if (scene.events_size() > kSceneEventMaxCount) {
+    addRange(issues, "events[" + std::to_string(kSceneEventMaxCount) + "]",
+             std::to_string(scene.events_size()) + " events are more than " + std::to_string(kSceneEventMaxCount) +
+                 "; remove some, or repeat one with every_s");
+  }
+  for (int i = 0; i < scene.events_size(); ++i) {
+    checkEffectPart(scene.events(i), scene, eventPrefix(i), issues);
+  }
+  return issues;
+}
+
+std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  // The range is 3 to 5; the lattice needs a point under the particle, so it cannot be even.
+  if (scene.coupling().lattice_count() == 4) addRange(issues, "coupling.lattice_count", "4 is even; choose 3 or 5");
+  if (scene.has_particles()) {
+    const v1::ParticleScene& particles = scene.particles();
+    const double side_m = scene.has_wave() ? scene.wave().side_m() : particles.box_side_m();
+    checkPatch(particles.patch_shift_x_m(), particles.patch_scale(), side_m, "particles.patch_shift_x_m", issues);
+    checkPatch(particles.patch_shift_z_m(), particles.patch_scale(), side_m, "particles.patch_shift_z_m", issues);
+  }
+  for (int i = 0; i < scene.events_size(); ++i) checkEventNumbers(scene.events(i), scene, eventPrefix(i), issues);
+  return issues;
+}
+
+}  // namespace spindrift::stream

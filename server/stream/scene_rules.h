@@ -1,0 +1,26 @@
+// Rules between the fields of a scene, and between an effect and the scene it happens in.
+#pragma once
+
+#include <vector>
+
+#include <spindrift/core/command.h>
+#include <spindrift/v1/scene.pb.h>
+
+#include "fields.h"
+
+namespace spindrift::stream {
+
+/// What the scene forbids about a splash or a breaking wave; paths start with "splash" or "breaking_wave".
+std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene);
+
+/// Rules about texts and about which parts there are; hold whatever the numbers say. Defaults are filled in.
+std::vector<FieldIssue> checkStructure(const v1::Scene& scene);
+
+/// Rules between numbers, for a scene whose defaults are filled in and whose single fields are fine.
+std::vector<FieldIssue> checkNumbers(const v1::Scene& scene);
+
+/// Effects with defaults for what was left out.
+core::Splash toCore(const v1::Splash& splash);
+core::BreakingWave toCore(const v1::BreakingWave& wave);
+
+}  // namespace spindrift::stream
