@@ -1,0 +1,157 @@
+# shellcheck shell=bash
+# A folder that runs on another x86-64 Linux: program, page, scenes, the libraries it needs, and Mesa's software
+# rasteriser for machines without a driver. Sourced by ./dev; the launcher is .ci/bundle/spindrift.
+#
+# bin/spindrift finds lib/ by its RUNPATH. Libraries that a driver of the machine shares with us lie in lib/fallback/NAME/
+# and are used only where the machine has none, because a newer driver must not meet an older library. Mesa's libraries
+# find each other by RUNPATH and are invisible to everything else.
+
+# The C library belongs to the machine.
+readonly glibc_libraries='^(ld-linux-.*|lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|nsl)\.so\..*|libnss_.*|linux-vdso\.so.*)$'
+readonly shared_with_drivers='^(libstdc\+\+\.so\.6|libgcc_s\.so\.1|libz\.so\.1|libEGL\.so\.1|libGLdispatch\.so\.0)$'
+
+# library_closure FILE…: "NAME PATH" of every shared library the files need, directly or not, the C library aside.
+library_closure() {
+  local lines
+  lines="$(ldd "$@")"
+  if [[ "$lines" == *"not found"* ]]; then
+    fail 1 "libraries are missing on this machine: $(grep 'not found' <<<"$lines" | tr -s '\t\n ' ' ')"
+  fi
+  awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' <<<"$lines" | sort -u |
+    while read -r name path; do [[ "$name" =~ $glibc_libraries ]] || printf '%s %s\n' "$name" "$path"; done
+}
+
+# copy_library PATH TARGET: the file behind the links, under the name programs ask for; noted for the licences.
+copy_library() {
+  local path="$1" target="$2"
+  install -D --mode=755 "$(readlink -f -- "$path")" "$target"
+  bundled_files+=("$path")
+}
+
+bundle_program() {
+  local folder="$1" preset="$2" name path real
+  install -D --mode=755 "$(binary_of "$preset")" "$folder/bin/spindrift"
+  strip --strip-debug "$folder/bin/spindrift"
+  while read -r name path; do
+    if [[ "$name" =~ $shared_with_drivers ]]; then
+      # The launcher compares versions by the file's real name.
+      real="$(basename -- "$(readlink -f -- "$path")")"
+      copy_library "$path" "$folder/lib/fallback/$name/$real"
+      [[ "$real" == "$name" ]] || ln -s "$real" "$folder/lib/fallback/$name/$name"
+    else
+      copy_library "$path" "$folder/lib/$name"
+      # shellcheck disable=SC2016  # $ORIGIN is for the loader
+      patchelf --set-rpath '$ORIGIN' "$folder/lib/$name"
+    fi
+  done < <(library_closure "$(binary_of "$preset")")
+  # shellcheck disable=SC2016
+  patchelf --set-rpath '$ORIGIN/../lib' "$folder/bin/spindrift"
+}
+
+# shellcheck disable=SC2016  # $ORIGIN is for the loader
+bundle_mesa() {
+  local folder="$1" vendor driver name path
+  vendor="$(/sbin/ldconfig -p | sed -n 's/^[[:space:]]*libEGL_mesa\.so\.0 (.*x86-64.*) => //p' | head -n 1)"
+  driver="$(dirname -- "${vendor:-/}")/dri/swrast_dri.so"
+  [[ -e "$driver" ]] || fail 1 "Mesa's driver $driver is not there: this bundle is made on Debian 12 (or use --without-mesa)"
+  while read -r name path; do
+    [[ ! "$name" =~ $shared_with_drivers ]] || {
+      [[ -e "$folder/lib/fallback/$name" ]] || copy_library "$path" "$folder/lib/fallback/$name/$name"
+      continue
+    }
+    copy_library "$path" "$folder/lib/mesa/$name"
+    patchelf --set-rpath '$ORIGIN' "$folder/lib/mesa/$name"
+  done < <(library_closure "$vendor" "$driver")
+  copy_library "$vendor" "$folder/lib/mesa/vendor/libEGL_mesa.so.0"
+  copy_library "$driver" "$folder/lib/mesa/dri/swrast_dri.so"
+  patchelf --set-rpath '$ORIGIN/..' "$folder/lib/mesa/vendor/libEGL_mesa.so.0"
+  patchelf --set-rpath '$ORIGIN/..' "$folder/lib/mesa/dri/swrast_dri.so"
+  mkdir -p "$folder/share/glvnd/egl_vendor.d"
+  printf '{"file_format_version": "1.0.0", "ICD": {"library_path": "libEGL_mesa.so.0"}}\n' \
+    >"$folder/share/glvnd/egl_vendor.d/60_spindrift_mesa.json"
+}
+
+# bundle_licences FOLDER: the copyright file of every Debian package a bundled file comes from, and of the page's parts.
+bundle_licences() {
+  local folder="$1/share/licenses" path package
+  mkdir -p "$folder"
+  for path in "${bundled_files[@]}"; do
+    path="$(readlink -f -- "$path")"
+    # Packages may have registered the file below /lib, which is a link to /usr/lib today.
+    package="$( (dpkg-query --search "$path" || dpkg-query --search "${path#/usr}") 2>/dev/null | head -n 1 | cut -d : -f 1)" || true
+    [[ -n "$package" ]] || fail 1 "no Debian package owns $path, so its licence is unknown"
+    cp "/usr/share/doc/$package/copyright" "$folder/$package.txt"
+  done
+  cp web-client/node_modules/three/LICENSE "$folder/three.txt"
+  # @bufbuild/protobuf carries its licence as a word in package.json only; the text is the Apache licence.
+  cp /usr/share/common-licenses/Apache-2.0 "$folder/bufbuild-protobuf.txt"
+}
+
+bundle_readme() {
+  local folder="$1" version="$2" mesa="$3" text system glibc
+  system="$(sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' /etc/os-release)"
+  glibc="$(ldd --version | sed -n '1s/.* \([0-9.]*\)$/\1/p')"
+  if "$mesa"; then
+    text="Mesa's software rasteriser from \`lib/mesa\` is used where the machine has no Mesa of its own."
+  else
+    text="the machine's own Mesa is used (Debian: libegl1 and libgl1-mesa-dri); this bundle was made without."
+  fi
+  sed -e "s|@VERSION@|$version|" -e "s|@GLIBC@|$glibc|" -e "s|@SYSTEM@|$system|" -e "s|@MESA@|$text|" \
+    .ci/bundle/README.md >"$folder/README.md"
+}
+
+command_bundle() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev bundle [--output DIR] [--without-mesa] [--no-archive] [--preset release|debug]
+
+Packs dist/spindrift-<version>-linux-x86_64/ and the same as .tar.gz: program, page, scenes, every library but the
+C library's, and Mesa's software rasteriser for machines without a driver. It runs on another x86-64 Linux with
+nothing installed but (for speed) a GPU driver.
+TEXT
+    return
+  fi
+  local preset rest output=dist mesa=true archive=true version name folder bundled_files=()
+  take_preset "$@"
+  set -- "${rest[@]}"
+  while (($# > 0)); do
+    case "$1" in
+      --output)
+        (($# > 1)) || fail 2 "--output wants a folder"
+        output="$(cd -- "$called_from" && realpath --canonicalize-missing -- "$2")"
+        shift
+        ;;
+      --with-mesa) mesa=true ;;
+      --without-mesa) mesa=false ;;
+      --no-archive) archive=false ;;
+      *) fail 2 "bundle does not know '$1'; see ./dev bundle --help" ;;
+    esac
+    shift
+  done
+  need_packages server driver bundle
+  lock_build
+  need_node
+  build_server "$preset" spindrift
+  build_web
+  unlock_build
+
+  version="$(project_version)"
+  name="spindrift-$version-linux-x86_64"
+  folder="$output/$name"
+  say "packing $folder"
+  rm -rf "$folder" "$folder.tar.gz"
+  mkdir -p "$folder/share/spindrift"
+  bundle_program "$folder" "$preset"
+  ! "$mesa" || bundle_mesa "$folder"
+  cp -r server/scenes "$folder/share/spindrift/scenes"
+  cp -r "$web_dist" "$folder/share/spindrift/web"
+  install --mode=755 .ci/bundle/spindrift "$folder/spindrift"
+  install --mode=644 LICENSE "$folder/LICENSE"
+  bundle_licences "$folder"
+  bundle_readme "$folder" "$version" "$mesa"
+  if "$archive"; then
+    tar --directory "$output" --sort=name --owner=0 --group=0 --numeric-owner -czf "$folder.tar.gz" "$name"
+    say "packed $(du --human-readable --apparent-size "$folder.tar.gz" | cut -f 1) into $folder.tar.gz"
+  fi
+  say "the bundle: $folder ($(du --human-readable --summarize "$folder" | cut -f 1))"
+}

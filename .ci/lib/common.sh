@@ -1,0 +1,99 @@
+# shellcheck shell=bash
+# Messages, quiet steps with a log, and the options that several commands share. Sourced by ./dev.
+
+# Progress goes to standard error: standard output belongs to what was asked for (the address, the totals).
+say() { printf '%s\n' "$*" >&2; }
+
+# fail CODE MESSAGE: one line, then the end.
+fail() {
+  local code="$1"
+  shift
+  printf 'dev: %s\n' "$*" >&2
+  exit "$code"
+}
+
+# True when somebody watches; a build machine gets neither colour nor a moving line.
+is_interactive() { [[ -t 2 && "${CI:-}" != true && "${TERM:-dumb}" != dumb ]]; }
+
+# Tools that colour by themselves follow.
+is_interactive || export NO_COLOR=1 CMAKE_COLOR_DIAGNOSTICS=OFF
+
+# step NAME TEXT COMMAND…: runs a command quietly. Somebody watching sees its own progress; otherwise it goes to a log
+# whose end is shown on failure.
+step() {
+  local name="$1" text="$2" log="build/logs/$1.log" started="$SECONDS" code=0
+  shift 2
+  say "$text"
+  if is_interactive; then
+    "$@" >&2 || code=$?
+  else
+    mkdir -p build/logs
+    "$@" >"$log" 2>&1 || code=$?
+    ((code == 0)) || { tail -n 60 "$log" >&2 && say "the whole log: $log"; }
+  fi
+  ((code == 0)) || fail 1 "step '$name' failed with exit code $code after $((SECONDS - started)) s"
+  ((SECONDS - started < 2)) || say "  done in $((SECONDS - started)) s"
+}
+
+# bounded SECONDS COMMAND…: ends the command and its children when it takes longer (exit code 124) or when ./dev is
+# interrupted.
+bounded() {
+  local limit_s="$1" child code=0
+  shift
+  timeout --kill-after=15 "$limit_s" "$@" &
+  child=$!
+  # shellcheck disable=SC2064  # the id of this child, now
+  trap "kill -TERM $child 2>/dev/null; wait $child; exit 130" INT TERM
+  wait "$child" || code=$?
+  trap - INT TERM
+  return "$code"
+}
+
+# Two people (or a person and a build machine) in one checkout take turns; held until this shell ends or unlocks.
+lock_build() {
+  mkdir -p build
+  exec 9>build/.dev-lock
+  flock --nonblock 9 && return
+  say "another ./dev works in this checkout; waiting for it"
+  flock 9
+}
+
+unlock_build() { exec 9>&-; }
+
+# take_preset "$@": sets `preset` and leaves everything else, in order, in `rest`.
+take_preset() {
+  preset=release
+  rest=()
+  while (($# > 0)); do
+    case "$1" in
+      --preset)
+        (($# > 1)) || fail 2 "--preset wants a value: release, debug, asan or tsan"
+        preset="$2"
+        shift
+        ;;
+      --preset=*) preset="${1#--preset=}" ;;
+      *) rest+=("$1") ;;
+    esac
+    shift
+  done
+  case "$preset" in
+    release | debug | asan | tsan) ;;
+    *) fail 2 "unknown preset '$preset'; there are release, debug, asan and tsan" ;;
+  esac
+}
+
+# has_option NAME ARGUMENTS…: is --NAME among the arguments, alone or with =value?
+has_option() {
+  local name="$1" argument
+  shift
+  for argument in "$@"; do
+    [[ "$argument" != "$name" && "$argument" != "$name="* ]] || return 0
+  done
+  return 1
+}
+
+wants_help() {
+  [[ "${1:-}" == --help || "${1:-}" == -h ]]
+}
+
+project_version() { sed -n 's/^project(spindrift VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt; }

@@ -1,0 +1,39 @@
+# shellcheck shell=bash
+# Node for the web client and the browser test. Vite needs 20.19 or newer and Debian 12 has 18: then Debian's npm fetches
+# a newer node and npm into build/tools/node (pinned by .ci/node/package-lock.json), and nothing outside sees them.
+# Sourced by ./dev.
+
+readonly private_node="build/tools/node"
+
+# node_is_new_enough VERSION ("v20.19.0"): what Vite 8 and Vitest 4 both take.
+node_is_new_enough() {
+  [[ "$1" =~ ^v([0-9]+)\.([0-9]+)\. ]] || return 1
+  local major="${BASH_REMATCH[1]}" minor="${BASH_REMATCH[2]}"
+  case "$major" in
+    20) ((minor >= 19)) ;;
+    22) ((minor >= 12)) ;;
+    *) ((major >= 24)) ;;
+  esac
+}
+
+# need_node: afterwards `node` and `npm` on the PATH are new enough.
+need_node() {
+  if command -v npm >/dev/null && node_is_new_enough "$(node --version 2>/dev/null)"; then return; fi
+  if ! private_node_is_ready; then
+    [[ "$(uname -m)" == x86_64 ]] ||
+      fail 1 "the web client needs Node 20.19 or newer with npm, and this machine ($(uname -m)) has none: install it and start again"
+    command -v npm >/dev/null || need_packages npm
+    say "Node $(node --version 2>/dev/null) is too old for the web client (20.19 or newer)"
+    rm -rf "$private_node"
+    mkdir -p "$private_node"
+    cp .ci/node/package.json .ci/node/package-lock.json .ci/node/.npmrc "$private_node/"
+    step node "fetching a newer Node into $private_node" npm ci --prefix "$private_node" --ignore-scripts
+    cp .ci/node/package-lock.json "$private_node/complete"
+  fi
+  PATH="$root/$private_node/node_modules/.bin:$PATH"
+  export PATH
+  hash -r
+  node_is_new_enough "$(node --version)" || fail 1 "the fetched Node says '$(node --version)', which is too old: remove $private_node and start again"
+}
+
+private_node_is_ready() { cmp --silent .ci/node/package-lock.json "$private_node/complete"; }

@@ -1,0 +1,78 @@
+# shellcheck shell=bash
+# Debian packages: which, why, and how they come in. Sourced by ./dev.
+
+# group:package …; the text of a group says why.
+declare -rA package_groups=(
+  [server]="git ca-certificates g++ cmake ninja-build ccache pkg-config python3 python3-glad libboost1.81-dev
+    libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev glslang-tools libegl-dev googletest libbenchmark-dev"
+  [driver]="libegl1 libegl-mesa0 libgl1-mesa-dri"
+  [browser]="chromium"
+  [format]="clang-format"
+  [tidy]="clang-tidy"
+  [lint]="shellcheck"
+  [bundle]="patchelf binutils"
+  [npm]="nodejs npm"
+)
+declare -rA package_reasons=(
+  [server]="building the server and its tests"
+  [driver]="OpenGL without a GPU (Mesa's software rasteriser)"
+  [browser]="the test in a real browser"
+  [format]="formatting"
+  [tidy]="static analysis"
+  [lint]="checking shell scripts"
+  [bundle]="packing libraries"
+  [npm]="fetching the web client's libraries and a newer Node"
+)
+
+# Once a start is enough.
+lists_are_read=false
+
+# Prints the packages among the arguments that are not installed.
+missing_packages() {
+  dpkg-query --show --showformat='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
+    awk -v wanted="$*" '$2 == "installed" { have[$1] = 1 }
+      END { count = split(wanted, names, /[ \n]+/); for (i = 1; i <= count; ++i) if (!(names[i] in have)) print names[i] }' || true
+}
+
+run_as_root() {
+  if ((EUID == 0)); then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo -- "$@"
+  else
+    return 127
+  fi
+}
+
+# need_packages GROUP…: installs what is missing of the groups, and says what and why. Nothing missing: no apt at all.
+need_packages() {
+  local group missing=() found=()
+  if ! command -v dpkg-query >/dev/null; then
+    say "this is no Debian: trusting that these are installed: $(groups_text "$@")"
+    return
+  fi
+  local all=()
+  for group in "$@"; do
+    read -r -d '' -a found <<<"${package_groups[$group]}" || true
+    all+=("${found[@]}")
+  done
+  mapfile -t missing < <(missing_packages "${all[@]}")
+  ((${#missing[@]} > 0)) || return 0
+
+  for group in "$@"; do
+    read -r -d '' -a found <<<"${package_groups[$group]}" || true
+    mapfile -t found < <(missing_packages "${found[@]}")
+    ((${#found[@]} == 0)) || say "installing for ${package_reasons[$group]}: ${found[*]}"
+  done
+  ((EUID == 0)) || command -v sudo >/dev/null ||
+    fail 1 "not root and no sudo here; as root: apt-get install --no-install-recommends ${missing[*]}"
+  "$lists_are_read" || step apt-update "reading the package lists" run_as_root env DEBIAN_FRONTEND=noninteractive apt-get update --quiet
+  lists_are_read=true
+  step apt-install "installing ${#missing[@]} Debian packages" run_as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get install --yes --quiet --no-install-recommends "${missing[@]}"
+}
+
+groups_text() {
+  local group
+  for group in "$@"; do printf '%s ' "${package_groups[$group]//$'\n'/ }"; done | tr -s ' '
+}

@@ -1,0 +1,104 @@
+# shellcheck shell=bash
+# Every test there is, and the total. Each part writes a JUnit report; tests/tools/summarise.py adds them up.
+# Sourced by ./dev.
+
+# No part may hang: far above what each takes on two cores without a GPU.
+readonly ctest_limit_s=3600 web_limit_s=600 browser_limit_s=1200 tools_limit_s=1800
+
+# run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, remembers its exit code. The command writes
+# build/reports/NAME.xml.
+run_part() {
+  local name="$1" limit_s="$2" code=0 shown
+  shift 2
+  say "== $name"
+  rm -f "build/reports/$name.xml"
+  exec 8> >(exec tee "build/logs/test-$name.log" >&2)
+  shown=$!
+  bounded "$limit_s" "$@" >&8 2>&1 8>&- || code=$?
+  exec 8>&-
+  # The total must be the last line, so the part's own last words come first; a stray process that keeps the pipe open
+  # does not hold us up.
+  timeout 10 tail --pid="$shown" --follow /dev/null || true
+  ((code != 124)) || say "$name took longer than $limit_s s and was ended"
+  reports+=("$name:$code:$root/build/reports/$name.xml")
+}
+
+test_native() {
+  local name="$1" filter=()
+  [[ -z "${2:-}" ]] || filter=(--label-regex "^$2\$")
+  run_part "$name" "$ctest_limit_s" ctest --test-dir "build/$preset" --parallel 2 --output-on-failure --timeout 600 \
+    --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
+}
+
+test_web() {
+  run_part web "$web_limit_s" npm run --silent --prefix web-client test -- \
+    --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/web.xml"
+}
+
+# node_tests NAME SECONDS FILE…
+node_tests() {
+  local name="$1" limit_s="$2"
+  shift 2
+  run_part "$name" "$limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" node --test --test-concurrency=1 \
+    --test-reporter=spec --test-reporter-destination=stdout \
+    --test-reporter=junit "--test-reporter-destination=$root/build/reports/$name.xml" "$@"
+}
+
+command_test() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev test [--preset release|debug|asan|tsan] [PART…]
+
+Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
+native (all of those), web (the client's own tests), browser (the page in Chromium against the real server),
+tools (./dev itself and the bundle). The last line is `N passed, N failed, N skipped`; exit code 1 when
+anything failed. Reports: build/reports/*.xml, logs: build/logs.
+TEXT
+    return
+  fi
+  local preset rest part parts reports=()
+  take_preset "$@"
+  parts=("${rest[@]}")
+  ((${#parts[@]} > 0)) || parts=(native web browser tools)
+  for part in "${parts[@]}"; do
+    case "$part" in
+      native | unit | integration | accuracy | stability | gpu | web | browser | tools) ;;
+      *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
+    esac
+  done
+
+  prepare_tests "${parts[@]}"
+  for part in "${parts[@]}"; do
+    case "$part" in
+      native) test_native native ;;
+      web) test_web ;;
+      browser) node_tests browser "$browser_limit_s" tests/browser/*.test.mjs ;;
+      tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs ;;
+      *) test_native "$part" "$part" ;;
+    esac
+  done
+  python3 tests/tools/summarise.py "${reports[@]}"
+}
+
+# Installs and builds what the parts need.
+prepare_tests() {
+  local groups=(server driver) wanted=" $* " with_native=false with_node=false
+  [[ "$wanted" != *" browser "* ]] || groups+=(browser)
+  [[ "$wanted" != *" tools "* ]] || groups+=(bundle lint)
+  [[ ! "$wanted" =~ \ (native|unit|integration|accuracy|stability|gpu)\  ]] || with_native=true
+  [[ ! "$wanted" =~ \ (web|browser|tools)\  ]] || with_node=true
+
+  need_packages "${groups[@]}"
+  lock_build
+  mkdir -p build/reports build/logs
+  ! "$with_node" || need_node
+  if "$with_native"; then
+    build_server "$preset"
+  elif [[ "$wanted" =~ \ (browser|tools)\  ]]; then
+    build_server "$preset" spindrift
+  fi
+  [[ "$wanted" != *" web "* ]] || npm_install web-client web
+  [[ ! "$wanted" =~ \ (browser|tools)\  ]] || build_web
+  [[ "$wanted" != *" browser "* ]] || npm_install tests/browser browser
+  unlock_build
+}

@@ -1,0 +1,115 @@
+# shellcheck shell=bash
+# bench, study, fmt, lint, clean. Sourced by ./dev.
+
+# Builds the server and becomes `spindrift NAME OPTIONS…`.
+become_server_command() {
+  local name="$1" preset rest
+  shift
+  take_preset "$@"
+  prepare_server "$preset"
+  cd -- "$called_from" || fail 2 "the folder $called_from is gone"
+  exec "$(binary_of "$preset")" "$name" "${rest[@]}"
+}
+
+command_bench() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev bench [--preset release|debug|asan|tsan] [OPTIONS OF spindrift bench]
+
+Timings per pass and per step, codec, fan-out, with the baseline of the same run; --json FILE writes them down.
+TEXT
+    return
+  fi
+  become_server_command bench "$@"
+}
+
+command_study() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift study]
+
+Errors against references, the stability map, the speed-accuracy front: --suite accuracy|stability|trade.
+TEXT
+    return
+  fi
+  become_server_command study "$@"
+}
+
+# The C++ sources of ours, committed or about to be; shaders/shared is compiled by both languages and formatted as C++.
+list_sources() {
+  git ls-files --cached --others --exclude-standard -z -- 'server/*.cpp' 'server/*.h' 'tests/*.cpp' 'tests/*.h' 'shaders/shared/*.h' |
+    while IFS= read -r -d '' file; do [[ ! -f "$file" ]] || printf '%s\0' "$file"; done
+}
+
+command_fmt() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev fmt [--check]
+
+Formats the C++ sources in place; --check changes nothing and fails when a file is not formatted.
+TEXT
+    return
+  fi
+  need_packages format
+  case "${1:-}" in
+    "") list_sources | xargs -0 --no-run-if-empty clang-format -i ;;
+    --check) check_format ;;
+    *) fail 2 "fmt does not know '$1'; see ./dev fmt --help" ;;
+  esac
+}
+
+check_format() { list_sources | xargs -0 --no-run-if-empty clang-format --dry-run --Werror; }
+
+command_lint() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev lint [--tidy]
+
+Checks the formatting, the shell scripts and the types of the web client; --tidy adds clang-tidy over the
+server (minutes). Fails when any of them complains.
+TEXT
+    return
+  fi
+  local code=0 with_tidy=false
+  case "${1:-}" in
+    "") ;;
+    --tidy) with_tidy=true ;;
+    *) fail 2 "lint does not know '$1'; see ./dev lint --help" ;;
+  esac
+  need_packages server driver format lint
+  say "formatting"
+  check_format || code=1
+  say "shell scripts"
+  shellcheck --external-sources --check-sourced dev .ci/run .ci/bundle/spindrift docker/healthcheck || code=1
+  say "web client"
+  lock_build
+  need_node
+  npm_install web-client web
+  npm run --silent --prefix web-client lint || code=1
+  if "$with_tidy"; then
+    need_packages tidy
+    build_server release
+    say "clang-tidy"
+    git ls-files -z -- 'server/*.cpp' | xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" \
+      clang-tidy --quiet -p build/release || code=1
+  fi
+  return "$code"
+}
+
+command_clean() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev clean [--all]
+
+Removes build/ (the fetched Node stays), dist/ and web-client/dist; --all removes the fetched Node and the
+npm libraries as well.
+TEXT
+    return
+  fi
+  case "${1:-}" in
+    "") [[ ! -d build ]] || find build -mindepth 1 -maxdepth 1 -not -name tools -exec rm -rf {} + ;;
+    --all) rm -rf build web-client/node_modules tests/browser/node_modules ;;
+    *) fail 2 "clean does not know '$1'; see ./dev clean --help" ;;
+  esac
+  rm -rf dist "$web_dist" web-client/src/gen
+}
