@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -78,7 +79,7 @@ class Context {
   void countError() { debug_error_count_.fetch_add(1); }
   /// Takes over the storage of a readback ring that was destroyed while views of it were still held; it is deleted once
   /// `in_use` says false, at the latest with the context.
-  void retire(std::uint32_t buffer_id, std::function<bool()> in_use);
+  void retire(std::uint32_t buffer_id, std::size_t size_bytes, std::function<bool()> in_use);
   /// Deletes retired storage that nobody reads any more.
   void collectRetired();
 
@@ -86,10 +87,11 @@ class Context {
   struct Egl;  // the EGL handles, kept out of the header
   struct Retired {
     std::uint32_t buffer_id;
+    std::size_t size_bytes;
     std::function<bool()> in_use;
   };
 
-  explicit Context(std::unique_ptr<Egl> egl);
+  Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why);
 
   std::unique_ptr<Egl> egl_;
   DeviceInfo device_;

@@ -1,0 +1,219 @@
+#include "egl_display.h"
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <string_view>
+
+#include <EGL/eglext.h>
+#include <glad/gl.h>
+
+namespace spindrift::gpu::egl {
+namespace {
+
+std::string text(const char* value) {
+  return value ? value : "";
+}
+std::string text(const GLubyte* value) {
+  return value ? reinterpret_cast<const char*>(value) : "";
+}
+
+bool hasWord(std::string_view words, std::string_view word) {
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find(' '), words.size());
+    if (words.substr(0, end) == word) return true;
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return false;
+}
+
+std::string eglErrorText() {
+  const EGLint code = eglGetError();
+  switch (code) {
+    case EGL_SUCCESS:
+      return "no EGL error";
+    case EGL_NOT_INITIALIZED:
+      return "EGL_NOT_INITIALIZED";
+    case EGL_BAD_ACCESS:
+      return "EGL_BAD_ACCESS";
+    case EGL_BAD_ALLOC:
+      return "EGL_BAD_ALLOC";
+    case EGL_BAD_ATTRIBUTE:
+      return "EGL_BAD_ATTRIBUTE";
+    case EGL_BAD_CONFIG:
+      return "EGL_BAD_CONFIG";
+    case EGL_BAD_DISPLAY:
+      return "EGL_BAD_DISPLAY";
+    case EGL_BAD_MATCH:
+      return "EGL_BAD_MATCH";
+    case EGL_BAD_PARAMETER:
+      return "EGL_BAD_PARAMETER";
+    default:
+      return "EGL error " + std::to_string(code);
+  }
+}
+
+/// The core entry point of EGL 1.5, else the extension's. Both must be asked for before any display exists.
+EGLDisplay platformDisplay(EGLenum platform, void* native) {
+  if (const auto get = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYPROC>(eglGetProcAddress("eglGetPlatformDisplay"))) {
+    if (EGLDisplay display = get(platform, native, nullptr); display != EGL_NO_DISPLAY) return display;
+  }
+  if (const auto get =
+          reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"))) {
+    if (EGLDisplay display = get(platform, native, nullptr); display != EGL_NO_DISPLAY) return display;
+  }
+  return EGL_NO_DISPLAY;
+}
+
+/// The functions are the same for every context of the process, so they are loaded once; a context must be current.
+bool loadOpenGl() {
+  static std::mutex mutex;
+  static bool is_loaded = false;
+  const std::lock_guard lock(mutex);
+  if (!is_loaded) is_loaded = gladLoadGL(eglGetProcAddress) != 0;
+  return is_loaded;
+}
+
+bool isSoftwareRenderer(std::string_view renderer) {
+  constexpr std::array<std::string_view, 4> kSoftware = {"llvmpipe", "softpipe", "swrast", "Software Rasterizer"};
+  return std::any_of(kSoftware.begin(), kSoftware.end(),
+                     [&](std::string_view name) { return renderer.find(name) != std::string_view::npos; });
+}
+
+std::int64_t limit(GLenum name) {
+  GLint64 value = 0;
+  glGetInteger64v(name, &value);
+  return value;
+}
+
+std::int64_t limit(GLenum name, GLuint index) {
+  GLint64 value = 0;
+  glGetInteger64i_v(name, index, &value);
+  return value;
+}
+
+void describeCurrent(DeviceInfo& info) {
+  info.name = text(glGetString(GL_RENDERER));
+  info.vendor = text(glGetString(GL_VENDOR));
+  info.gl_version = text(glGetString(GL_VERSION));
+  info.glsl_version = text(glGetString(GL_SHADING_LANGUAGE_VERSION));
+  DeviceLimits& limits = info.limits;
+  limits.max_ssbo_bytes = limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+  limits.max_texel_buffer_elements = limit(GL_MAX_TEXTURE_BUFFER_SIZE);
+  limits.max_uniform_block_bytes = limit(GL_MAX_UNIFORM_BLOCK_SIZE);
+  limits.max_work_group_invocations = limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
+  limits.max_work_group_count_x = limit(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0);
+  limits.max_work_group_count_y = limit(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 1);
+  limits.max_work_group_count_z = limit(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 2);
+  limits.max_shared_memory_bytes = limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
+  limits.max_ssbo_bindings = limit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
+  limits.max_compute_ssbo_blocks = limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
+  limits.max_compute_texture_units = limit(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS);
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates() {
+  std::vector<Candidate> hardware;
+  std::vector<Candidate> software;
+  const auto query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+  const auto query_string =
+      reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(eglGetProcAddress("eglQueryDeviceStringEXT"));
+  EGLint count = 0;
+  if (query_devices && query_string && query_devices(0, nullptr, &count) && count > 0) {
+    std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
+    if (!query_devices(count, devices.data(), &count)) count = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      const std::string extensions = text(query_string(devices[i], EGL_EXTENSIONS));
+      Candidate candidate;
+      candidate.device = devices[i];
+      candidate.is_software = hasWord(extensions, "EGL_MESA_device_software");
+      if (hasWord(extensions, "EGL_EXT_device_drm")) {
+        candidate.drm_file = text(query_string(devices[i], EGL_DRM_DEVICE_FILE_EXT));
+      }
+      if (!candidate.is_software) candidate.index = static_cast<int>(hardware.size());
+      (candidate.is_software ? software : hardware).push_back(candidate);
+    }
+  }
+  Candidate surfaceless;
+  surfaceless.is_software = true;
+  software.push_back(surfaceless);
+  hardware.insert(hardware.end(), software.begin(), software.end());
+  return hardware;
+}
+
+Attempt open(const Candidate& candidate) {
+  Attempt attempt;
+  DeviceInfo& info = attempt.info;
+  info.index = candidate.index;
+  info.is_software = candidate.is_software;
+  info.drm_file = candidate.drm_file;
+  info.name = candidate.device ? "EGL device " + candidate.drm_file : "Mesa surfaceless platform";
+  const auto fail = [&](const std::string& what) {
+    info.problem = what;
+    return attempt;
+  };
+
+  Handles handles;
+  handles.display = candidate.device ? platformDisplay(EGL_PLATFORM_DEVICE_EXT, candidate.device)
+                                     : platformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr);
+  if (handles.display == EGL_NO_DISPLAY) return fail("EGL has no display for it");
+  if (!eglInitialize(handles.display, nullptr, nullptr)) {
+    return fail("its EGL display does not initialise (" + eglErrorText() + ")");
+  }
+  info.egl_driver =
+      text(eglQueryString(handles.display, EGL_VENDOR)) + " " + text(eglQueryString(handles.display, EGL_VERSION));
+  if (!eglBindAPI(EGL_OPENGL_API)) return fail("its EGL driver knows no desktop OpenGL");
+
+  constexpr EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+#ifndef NDEBUG
+                                    // Drivers may say nothing otherwise; release builds do without what it costs.
+                                    EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE,
+#endif
+                                    EGL_NONE};
+  handles.context = eglCreateContext(handles.display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes);
+  if (handles.context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context (" + eglErrorText() + ")");
+  if (!makeCurrent(handles)) {
+    const std::string error = eglErrorText();
+    close(handles);
+    return fail("its context cannot be used without a window (" + error + ")");
+  }
+  if (!loadOpenGl()) {
+    close(handles);
+    return fail("its OpenGL functions cannot be loaded");
+  }
+  describeCurrent(info);
+  const bool renders_in_software = isSoftwareRenderer(info.name);
+  if (renders_in_software && !candidate.is_software) {
+    close(handles);
+    return fail("it has no driver of its own and would fall back to software");
+  }
+  // The surfaceless platform picks hardware where it can.
+  info.is_software = renders_in_software;
+  attempt.handles = handles;
+  return attempt;
+}
+
+void close(const Handles& handles) {
+  if (eglGetCurrentContext() == handles.context) makeCurrent({handles.display, EGL_NO_CONTEXT});
+  eglDestroyContext(handles.display, handles.context);
+}
+
+bool makeCurrent(const Handles& handles) {
+  // The bound API is a property of the thread.
+  return eglBindAPI(EGL_OPENGL_API) &&
+         eglMakeCurrent(handles.display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles.context) == EGL_TRUE;
+}
+
+CurrentGuard::CurrentGuard()
+    : display_(eglGetCurrentDisplay()),
+      context_(eglGetCurrentContext()),
+      draw_(eglGetCurrentSurface(EGL_DRAW)),
+      read_(eglGetCurrentSurface(EGL_READ)) {}
+
+CurrentGuard::~CurrentGuard() {
+  if (context_ != EGL_NO_CONTEXT) eglMakeCurrent(display_, draw_, read_, context_);
+}
+
+}  // namespace spindrift::gpu::egl

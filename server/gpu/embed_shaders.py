@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""Expands, validates and embeds the compute shaders.
+
+Every *.comp below the root is an entry point. `#include "a/b.h"` is relative to the root, each file goes in once per
+entry point, a cycle is refused. Shaders carry no `#version`: it and the defines are put before the text, here for
+validation and in the program before compiling. A comment `// variants: A=1 B=2 | A=3` among an entry point's leading
+comments lists the sets of defines to validate; without it one empty set is.
+Files in shared/ are C++ headers as well: `#pragma once` and whatever is included under `#ifdef __cplusplus` is left out.
+The result is one C++ source with the expanded texts and, for each, where its lines come from.
+"""
+
+import argparse
+import concurrent.futures
+import pathlib
+import re
+import subprocess
+import sys
+
+VERSION_LINE = "#version 450 core"  # the same as in program.cpp
+INCLUDE = re.compile(r'\s*#\s*include\b\s*(.*)')
+QUOTED = re.compile(r'"([^"]+)"\s*(//.*)?$')
+DELIMITER = "SPINDRIFT_GLSL"
+
+
+class ShaderError(Exception):
+    """One line for a person: file, line, what is wrong."""
+
+
+class Expansion:
+    """The text of one entry point with its includes, and the file and line that each of its lines comes from."""
+
+    def __init__(self, root, entry):
+        self.root = root
+        self.entry = entry
+        self.lines = []
+        self.origins = []
+        self.files = []
+        self._expand(entry, [])
+
+    def _expand(self, name, stack):
+        if name in stack:
+            raise ShaderError("include cycle: " + " -> ".join(stack[stack.index(name):] + [name]))
+        self.files.append(name)
+        try:
+            text = (self.root / name).read_text(encoding="utf-8")
+        except UnicodeDecodeError as error:
+            raise ShaderError(f"{name}: not UTF-8: {error}") from error
+        if DELIMITER in text:
+            raise ShaderError(f"{name}: contains the reserved word {DELIMITER}")
+        conditions = []  # for each open #if: whether its lines are for C++ only
+        for number, line in enumerate(text.splitlines(), start=1):
+            where = f"{name}:{number}"
+            directive = re.sub(r"\s+", "", line)
+            if directive.startswith("#version"):
+                raise ShaderError(f"{where}: remove #version, the program puts it first")
+            if directive.startswith("#if"):
+                conditions.append(directive in ("#ifdef__cplusplus", "#ifdefined(__cplusplus)"))
+            elif directive.startswith("#else") and conditions:
+                # Of a C++-only block the other branch is not; `#ifndef __cplusplus … #else` is not needed anywhere.
+                conditions[-1] = False
+            elif directive.startswith("#endif") and conditions:
+                conditions.pop()
+            if directive.startswith("#pragmaonce"):
+                self._add("", name, number)
+                continue
+            include = INCLUDE.match(line)
+            if not include:
+                self._add(line, name, number)
+            elif any(conditions):
+                self._add("", name, number)
+            else:
+                self._include(include.group(1), where, name, number, stack + [name])
+
+    def _include(self, what, where, name, number, stack):
+        quoted = QUOTED.match(what)
+        if not quoted:
+            raise ShaderError(f'{where}: write #include "file", relative to the shader root, instead of: {what}')
+        included = quoted.group(1)
+        if included in stack or included not in self.files:
+            if ".." in included.split("/") or not (self.root / included).is_file():
+                raise ShaderError(f'{where}: no file "{included}" below the shader root')
+            self._expand(included, stack)
+        else:
+            self._add("", name, number)
+
+    def _add(self, line, name, number):
+        self.lines.append(line)
+        self.origins.append((name, number))
+
+    def text(self):
+        return "\n".join(self.lines) + "\n"
+
+    def ranges(self):
+        """(first line, file, line in file) of each run of lines that follow each other in one file."""
+        runs = []
+        for index, (name, number) in enumerate(self.origins):
+            if index == 0 or self.origins[index - 1] != (name, number - 1):
+                runs.append((index + 1, name, number))
+        return runs
+
+    def position(self, line):
+        if 1 <= line <= len(self.origins):
+            return "{}:{}".format(*self.origins[line - 1])
+        return f"{self.entry}:{line} of the expanded text"
+
+    def variants(self):
+        """Sets of defines to validate, each a list of (name, value)."""
+        for line in (self.root / self.entry).read_text(encoding="utf-8").splitlines():
+            if line.strip() and not line.lstrip().startswith("//"):
+                break
+            match = re.match(r"\s*//\s*variants:(.*)", line)
+            if match:
+                return [self._defines(part) for part in match.group(1).split("|")]
+        return [[]]
+
+    def _defines(self, part):
+        defines = []
+        for word in part.split():
+            match = re.fullmatch(r"([A-Za-z_]\w*)=(\S+)", word)
+            if not match:
+                raise ShaderError(f"{self.entry}: variants: write NAME=VALUE instead of {word}")
+            defines.append(match.groups())
+        return defines
+
+
+def validate(glslang, expansion, defines):
+    """Complaints of the validator, one a line, with file and line as written; empty when the shader is valid."""
+    head = [VERSION_LINE] + [f"#define {name} {value}" for name, value in defines] + ["#line 1"]
+    run = subprocess.run([glslang, "--stdin", "-S", "comp"], input="\n".join(head) + "\n" + expansion.text(),
+                         capture_output=True, text=True, check=False)
+    if run.returncode == 0:
+        return []
+    complaints = []
+    for line in (run.stdout + run.stderr).splitlines():
+        match = re.match(r"(ERROR|WARNING): [^:]*:(\d+): (.*)", line)
+        if match:
+            complaints.append(f"{expansion.position(int(match.group(2)))}: {match.group(1).lower()}: {match.group(3)}")
+        elif line.strip() and line.strip() != "stdin":
+            complaints.append(f"{expansion.entry}: {line.strip()}")
+    variant = " ".join(f"{name}={value}" for name, value in defines) or "no defines"
+    return complaints + [f"{expansion.entry}: not valid with {variant}"]
+
+
+def cpp_source(expansions):
+    parts = ["// Generated by embed_shaders.py.\n#include <array>\n\n#include <spindrift/gpu/embedded_shader.h>\n\n"
+             "namespace spindrift::gpu {\nnamespace {\n\n"]
+    for index, expansion in enumerate(expansions):
+        runs = "".join(f'    LineRange{{{first}, "{name}", {number}}},\n' for first, name, number in expansion.ranges())
+        parts.append(f"constexpr auto kLines{index} = std::to_array<LineRange>({{\n{runs}}});\n")
+        # The newline after the opening parenthesis is not part of the text.
+        parts.append(f"constexpr std::string_view kText{index} =\n"
+                     f'    std::string_view(R"{DELIMITER}(\n{expansion.text()}){DELIMITER}").substr(1);\n\n')
+    parts.append(f"constexpr std::array<EmbeddedShader, {len(expansions)}> kShaders = {{{{\n")
+    for index, expansion in enumerate(expansions):
+        parts.append(f'    EmbeddedShader{{"{expansion.entry}", kText{index}, kLines{index}}},\n')
+    parts.append("}};\n\n}  // namespace\n\n"
+                 "std::span<const EmbeddedShader> embeddedShaders() { return kShaders; }\n\n"
+                 "}  // namespace spindrift::gpu\n")
+    return "".join(parts)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--root", type=pathlib.Path, required=True, help="folder of the shaders")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="C++ source to write")
+    parser.add_argument("--depfile", type=pathlib.Path, help="make-style list of the files read")
+    parser.add_argument("--glslang", default="glslangValidator", help="validator to run")
+    arguments = parser.parse_args()
+
+    root = arguments.root.resolve()
+    entries = sorted(path.relative_to(root).as_posix() for path in root.rglob("*.comp"))
+    expansions, jobs, problems = [], [], []
+    for entry in entries:
+        try:
+            expansion = Expansion(root, entry)
+            jobs += [(expansion, defines) for defines in expansion.variants()]
+            expansions.append(expansion)
+        except ShaderError as error:
+            problems.append(str(error))
+    try:
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            for complaints in pool.map(lambda job: validate(arguments.glslang, *job), jobs):
+                problems += complaints
+    except FileNotFoundError:
+        problems.append(f"{arguments.glslang} not found: install glslang-tools")
+    if problems:
+        print("\n".join(problems), file=sys.stderr)
+        return 1
+
+    arguments.output.write_text(cpp_source(expansions), encoding="utf-8")
+    if arguments.depfile:
+        files = sorted({name for expansion in expansions for name in expansion.files})
+        escaped = [str(root / name).replace(" ", "\\ ") for name in files]
+        arguments.depfile.write_text(f"{arguments.output}: " + " ".join(escaped) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

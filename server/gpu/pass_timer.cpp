@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include <glad/gl.h>
+
+#include <spindrift/gpu/pass_timer.h>
+
+namespace spindrift::gpu {
+
+PassTimers::PassTimers(Context& ctx, std::size_t capacity_count)
+    : ctx_(ctx), uses_wall_clock_(ctx.device().is_software) {
+  assert(ctx.isOwnedHere() && capacity_count > 0);
+  if (uses_wall_clock_) return;
+  queries_.resize(capacity_count);
+  for (Query& query : queries_) {
+    glCreateQueries(GL_TIMESTAMP, 1, &query.begin_id);
+    glCreateQueries(GL_TIMESTAMP, 1, &query.end_id);
+  }
+}
+
+PassTimers::~PassTimers() {
+  assert(ctx_.isOwnedHere());
+  for (const Query& query : queries_) {
+    glDeleteQueries(1, &query.begin_id);
+    glDeleteQueries(1, &query.end_id);
+  }
+}
+
+PassTimers::Scope::Scope(PassTimers& timers, std::size_t name_index)
+    : timers_(timers), name_index_(name_index), query_index_(timers.openQuery(name_index)) {
+  if (timers_.uses_wall_clock_) start_ = std::chrono::steady_clock::now();
+}
+
+PassTimers::Scope::~Scope() {
+  if (timers_.uses_wall_clock_) {
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start_;
+    timers_.add(name_index_, elapsed.count());
+  } else if (query_index_ != kNoQuery) {
+    Query& query = timers_.queries_[query_index_];
+    glQueryCounter(query.end_id, GL_TIMESTAMP);
+    query.is_closed = true;
+  }
+}
+
+std::vector<PassCost> PassTimers::take() {
+  assert(ctx_.isOwnedHere());
+  collect();
+  std::vector<PassCost> out;
+  for (PassCost& cost : costs_) {
+    if (cost.scope_count == 0) continue;
+    cost.mean_ms = cost.total_ms / static_cast<double>(cost.scope_count);
+    out.push_back(cost);
+    cost = PassCost{.name = std::move(cost.name)};
+  }
+  return out;
+}
+
+std::size_t PassTimers::nameIndex(std::string_view name) {
+  // A handful of names: a search is cheaper than a map.
+  const auto found =
+      std::find_if(costs_.begin(), costs_.end(), [&](const PassCost& cost) { return cost.name == name; });
+  if (found != costs_.end()) return static_cast<std::size_t>(found - costs_.begin());
+  costs_.push_back(PassCost{.name = std::string(name)});
+  return costs_.size() - 1;
+}
+
+std::size_t PassTimers::openQuery(std::size_t name_index) {
+  assert(ctx_.isOwnedHere());
+  if (uses_wall_clock_) return kNoQuery;
+  if (queries_[next_query_].in_use) collect();
+  if (queries_[next_query_].in_use) {
+    ++dropped_count_;
+    return kNoQuery;
+  }
+  const std::size_t index = next_query_;
+  next_query_ = (next_query_ + 1) % queries_.size();
+  Query& query = queries_[index];
+  query.name_index = name_index;
+  query.in_use = true;
+  query.is_closed = false;
+  glQueryCounter(query.begin_id, GL_TIMESTAMP);
+  return index;
+}
+
+void PassTimers::collect() {
+  for (Query& query : queries_) {
+    if (!query.in_use || !query.is_closed) continue;
+    GLuint is_ready = GL_FALSE;
+    glGetQueryObjectuiv(query.end_id, GL_QUERY_RESULT_AVAILABLE, &is_ready);
+    if (!is_ready) continue;
+    GLuint64 begin_ns = 0;
+    GLuint64 end_ns = 0;
+    glGetQueryObjectui64v(query.begin_id, GL_QUERY_RESULT, &begin_ns);
+    glGetQueryObjectui64v(query.end_id, GL_QUERY_RESULT, &end_ns);
+    query.in_use = false;
+    add(query.name_index, end_ns > begin_ns ? static_cast<double>(end_ns - begin_ns) * 1e-6 : 0.0);
+  }
+}
+
+void PassTimers::add(std::size_t name_index, double ms) {
+  costs_[name_index].total_ms += ms;
+  ++costs_[name_index].scope_count;
+}
+
+}  // namespace spindrift::gpu

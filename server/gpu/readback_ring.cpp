@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <string>
+#include <utility>
+
+#include <glad/gl.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/gpu/readback_ring.h>
+
+namespace spindrift::gpu {
+
+/// What views share with the ring, and what outlives it.
+struct ReadbackRing::State {
+  State(std::size_t bytes, std::size_t count)
+      : slot_bytes(bytes),
+        stride_bytes((bytes + 63) / 64 * 64),
+        is_used(std::make_unique<std::atomic<bool>[]>(count)),
+        slot_count(count) {}
+
+  [[nodiscard]] std::size_t usedCount() const {
+    std::size_t used = 0;
+    for (std::size_t i = 0; i < slot_count; ++i) used += is_used[i].load(std::memory_order_acquire);
+    return used;
+  }
+  /// A reader is done: its reads happen before the device writes here again.
+  void free(std::size_t index) { is_used[index].store(false, std::memory_order_release); }
+
+  const std::size_t slot_bytes;
+  const std::size_t stride_bytes;
+  const std::unique_ptr<std::atomic<bool>[]> is_used;
+  const std::size_t slot_count;
+  const std::byte* mapped = nullptr;
+};
+
+ReadbackRing::Slot::Slot(std::shared_ptr<State> state, std::size_t index, std::uint64_t tag,
+                         std::span<const std::byte> bytes)
+    : state_(std::move(state)), index_(index), tag_(tag), bytes_(bytes) {}
+
+ReadbackRing::Slot::~Slot() {
+  state_->free(index_);
+}
+
+std::span<const std::uint32_t> ReadbackRing::Slot::words() const {
+  // Slots start on multiples of 64 bytes, so the words are aligned.
+  return {reinterpret_cast<const std::uint32_t*>(bytes_.data()), bytes_.size() / 4};
+}
+
+ReadbackRing::Recording::Recording(Recording&& other) noexcept
+    : ring_(std::exchange(other.ring_, nullptr)), index_(other.index_), used_bytes_(other.used_bytes_) {}
+
+ReadbackRing::Recording::~Recording() {
+  if (ring_) ring_->state_->free(index_);
+}
+
+bool ReadbackRing::Recording::copyFrom(const Buffer& source, std::size_t source_offset_bytes, std::size_t size_bytes,
+                                       std::size_t offset_bytes) {
+  assert(ring_ && ring_->ctx_.isOwnedHere());
+  const State& state = *ring_->state_;
+  const auto fits = [size_bytes](std::size_t offset, std::size_t whole) {
+    return offset <= whole && size_bytes <= whole - offset;
+  };
+  if (!fits(source_offset_bytes, source.sizeBytes()) || !fits(offset_bytes, state.slot_bytes)) return false;
+  if (size_bytes == 0) return true;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glCopyNamedBufferSubData(source.id(), ring_->buffer_id_, static_cast<GLintptr>(source_offset_bytes),
+                           static_cast<GLintptr>(index_ * state.stride_bytes + offset_bytes),
+                           static_cast<GLsizeiptr>(size_bytes));
+  used_bytes_ = std::max(used_bytes_, offset_bytes + size_bytes);
+  return true;
+}
+
+void ReadbackRing::Recording::submit(std::uint64_t tag) {
+  assert(ring_ && ring_->ctx_.isOwnedHere());
+  void* const fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();  // without it a fence may never be passed, because poll() does not wait
+  ring_->in_flight_.push_back({index_, tag, used_bytes_, fence});
+  ring_ = nullptr;
+}
+
+core::Result<std::unique_ptr<ReadbackRing>> ReadbackRing::create(Context& ctx, std::string_view name,
+                                                                 std::size_t slot_bytes, std::size_t slot_count) {
+  assert(ctx.isOwnedHere());
+  ctx.collectRetired();
+  const std::string title = "readback ring \"" + std::string(name) + "\": ";
+  if (slot_bytes == 0 || slot_count == 0) {
+    return core::Error{core::ErrorCode::kInvalidInput, title + "needs at least 1 slot of at least 1 byte, not " +
+                                                           std::to_string(slot_count) + " of " +
+                                                           std::to_string(slot_bytes)};
+  }
+  auto state = std::make_shared<State>(slot_bytes, slot_count);
+  const std::size_t size_bytes = state->stride_bytes * slot_count;
+  while (glGetError() != GL_NO_ERROR) {
+  }  // old errors have been counted by the debug callback; the next one is about this ring
+  GLuint id = 0;
+  glCreateBuffers(1, &id);
+  constexpr GLbitfield kMapping = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  // The processor reads every byte: let the driver keep the storage on its side.
+  glNamedBufferStorage(id, static_cast<GLsizeiptr>(size_bytes), nullptr, kMapping | GL_CLIENT_STORAGE_BIT);
+  state->mapped =
+      static_cast<const std::byte*>(glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(size_bytes), kMapping));
+  if (!state->mapped) {
+    glDeleteBuffers(1, &id);
+    return core::Error{core::ErrorCode::kInternal, title + "the device cannot map " + std::to_string(size_bytes) +
+                                                       " bytes (OpenGL error " + std::to_string(glGetError()) +
+                                                       "); make the scene smaller"};
+  }
+  glObjectLabel(GL_BUFFER, id, static_cast<GLsizei>(std::min<std::size_t>(name.size(), 200)), name.data());
+  return std::unique_ptr<ReadbackRing>(new ReadbackRing(ctx, std::move(state), id, size_bytes));
+}
+
+ReadbackRing::ReadbackRing(Context& ctx, std::shared_ptr<State> state, std::uint32_t buffer_id, std::size_t size_bytes)
+    : ctx_(ctx), state_(std::move(state)), buffer_id_(buffer_id), size_bytes_(size_bytes) {
+  Ledger& ledger = ctx.ledgerEntry();
+  ++ledger.buffer_count;
+  ++ledger.buffers_made_count;
+  ledger.buffer_bytes += size_bytes_;
+}
+
+ReadbackRing::~ReadbackRing() {
+  assert(ctx_.isOwnedHere());
+  for (const InFlight& flight : in_flight_) {
+    glDeleteSync(static_cast<GLsync>(flight.fence));
+    state_->free(flight.index);
+  }
+  // Deleting a mapped buffer unmaps it, so storage that a view still shows must live on until the view is dropped.
+  ctx_.retire(buffer_id_, size_bytes_, [state = state_] { return state->usedCount() > 0; });
+  ctx_.collectRetired();
+}
+
+std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
+  assert(ctx_.isOwnedHere());
+  for (std::size_t i = 0; i < state_->slot_count; ++i) {
+    if (state_->is_used[i].load(std::memory_order_acquire)) continue;
+    state_->is_used[i].store(true, std::memory_order_relaxed);
+    return Recording(*this, i);
+  }
+  ++refused_count_;
+  return std::nullopt;
+}
+
+std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
+  assert(ctx_.isOwnedHere());
+  ctx_.collectRetired();
+  std::vector<std::shared_ptr<const Slot>> out;
+  std::size_t done = 0;
+  for (; done < in_flight_.size(); ++done) {
+    const InFlight& flight = in_flight_[done];
+    const GLenum status = glClientWaitSync(static_cast<GLsync>(flight.fence), 0, 0);
+    // Fences are passed in order: behind one that is not, none is.
+    if (status == GL_TIMEOUT_EXPIRED) break;
+    glDeleteSync(static_cast<GLsync>(flight.fence));
+    if (status == GL_WAIT_FAILED) {
+      spdlog::error("a readback fence failed; frame {} is lost", flight.tag);
+      ctx_.countError();
+      state_->free(flight.index);
+      continue;
+    }
+    const std::byte* const start = state_->mapped + flight.index * state_->stride_bytes;
+    out.push_back(
+        std::shared_ptr<const Slot>(new Slot(state_, flight.index, flight.tag, std::span(start, flight.used_bytes))));
+  }
+  in_flight_.erase(in_flight_.begin(), in_flight_.begin() + static_cast<std::ptrdiff_t>(done));
+  return out;
+}
+
+std::size_t ReadbackRing::slotBytes() const {
+  return state_->slot_bytes;
+}
+std::size_t ReadbackRing::slotCount() const {
+  return state_->slot_count;
+}
+std::size_t ReadbackRing::usedCount() const {
+  return state_->usedCount();
+}
+
+}  // namespace spindrift::gpu
