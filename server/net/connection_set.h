@@ -1,0 +1,48 @@
+// Every open TCP connection, so that a shutdown can reach them all and wait until they are gone.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+namespace spindrift::net {
+
+/// What a shutdown needs of a connection. Thread-safe; both calls return at once.
+class Stoppable {
+ public:
+  virtual ~Stoppable() = default;
+  /// A session says goodbye with 1001; a plain HTTP connection just ends.
+  virtual void shutDown() = 0;
+  /// Closes the socket now.
+  virtual void cut() = 0;
+};
+
+/// Thread-safe.
+class ConnectionSet {
+ public:
+  explicit ConnectionSet(std::size_t max_count) : max_count_(max_count) {}
+
+  /// False, and nothing kept, when the set is full or closed.
+  bool add(std::uint64_t id, std::shared_ptr<Stoppable> connection);
+  void remove(std::uint64_t id);
+
+  /// Lets nobody in any more.
+  void close();
+  /// The connections open now.
+  std::vector<std::shared_ptr<Stoppable>> all() const;
+  /// True when the last one is gone, false if that does not happen by `deadline`.
+  bool waitEmpty(std::chrono::steady_clock::time_point deadline);
+
+ private:
+  const std::size_t max_count_;
+  mutable std::mutex mutex_;
+  std::condition_variable emptied_;
+  bool closed_ = false;
+  std::unordered_map<std::uint64_t, std::shared_ptr<Stoppable>> connections_;
+};
+
+}  // namespace spindrift::net

@@ -1,0 +1,118 @@
+#include "http_routes.h"
+
+#include <array>
+#include <exception>
+#include <optional>
+
+#include <spdlog/spdlog.h>
+
+#include "url.h"
+
+namespace spindrift::net {
+namespace {
+
+bool isApplicationPath(std::string_view path) {
+  return path.starts_with("/api/") || path == "/healthz" || path == "/readyz" || path == "/metrics";
+}
+
+Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
+  Reply reply = textReply(405, "The method " + method + " is not allowed here: use " + std::string(allowed) + ".");
+  reply.headers.emplace_back("Allow", allowed);
+  return reply;
+}
+
+Reply applicationReply(const RequestHead& head, Target target, core::ByteView body, Application& application) {
+  if (head.method == "TRACE" || head.method == "CONNECT") {
+    return methodNotAllowed(head.method, "GET, HEAD, POST, PUT, PATCH, DELETE");
+  }
+  // HEAD is GET without the body, for every path alike; the connection leaves the body out.
+  HttpRequest request{head.method == "HEAD" ? "GET" : head.method, std::move(target.path), std::move(target.query),
+                      body};
+  std::optional<HttpReply> answer;
+  try {
+    answer = application.httpRequest(request);
+  } catch (const std::exception& error) {
+    spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
+    return textReply(500, "The server failed on this request; its log says why.");
+  }
+  if (!answer) return textReply(404, "There is nothing at " + request.path + ".");
+  Reply reply;
+  reply.status = answer->status;
+  reply.content_type = std::move(answer->content_type);
+  reply.body = std::make_shared<const std::string>(std::move(answer->body));
+  reply.headers.emplace_back("Cache-Control", "no-store");
+  return reply;
+}
+
+/// Does the If-None-Match list name this tag? Comparison is the weak one, as RFC 9110 section 13.1.2 asks.
+bool matchesEtag(std::string_view list, std::string_view etag) {
+  while (!list.empty()) {
+    const std::size_t comma = list.find(',');
+    std::string_view tag = list.substr(0, comma);
+    while (tag.starts_with(' ') || tag.starts_with('\t')) tag.remove_prefix(1);
+    while (tag.ends_with(' ') || tag.ends_with('\t')) tag.remove_suffix(1);
+    if (tag.starts_with("W/")) tag.remove_prefix(2);
+    if (tag == "*" || tag == etag) return true;
+    if (comma == std::string_view::npos) return false;
+    list.remove_prefix(comma + 1);
+  }
+  return false;
+}
+
+Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& files) {
+  const std::shared_ptr<const StaticFile> file = files.find(path);
+  if (!file && path == "/") {
+    return textReply(503, "The web client is not built: run ./dev build, then start the server again with --web-root.");
+  }
+  if (!file) return textReply(404, "There is nothing at " + path + ".");
+  Reply reply;
+  reply.headers.emplace_back("ETag", file->etag);
+  reply.headers.emplace_back("Cache-Control", file->immutable ? "public, max-age=31536000, immutable" : "no-cache");
+  if (matchesEtag(head.if_none_match, file->etag)) {
+    reply.status = 304;
+    reply.body = std::make_shared<const std::string>();
+    return reply;
+  }
+  reply.content_type = file->content_type;
+  reply.body = std::shared_ptr<const std::string>(file, &file->content);
+  return reply;
+}
+
+}  // namespace
+
+Reply textReply(unsigned status, std::string line) {
+  Reply reply;
+  reply.status = status;
+  reply.body = std::make_shared<const std::string>(std::move(line) + "\n");
+  reply.headers.emplace_back("Cache-Control", "no-store");
+  return reply;
+}
+
+Reply routeRequest(const RequestHead& head, core::ByteView body, StaticFiles& files, Application& application) {
+  std::optional<Target> target = parseTarget(head.target);
+  if (!target) return textReply(400, "The request's path is not a plain absolute path.");
+  if (isApplicationPath(target->path)) return applicationReply(head, std::move(*target), body, application);
+  if (roomOfPath(target->path)) {
+    Reply reply = textReply(426, "This is a WebSocket address: connect with the subprotocol spindrift.v1.");
+    reply.headers.emplace_back("Upgrade", "websocket");
+    return reply;
+  }
+  if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, "GET, HEAD");
+  return fileReply(head, target->path, files);
+}
+
+std::span<const std::pair<std::string_view, std::string_view>> securityHeaders() {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeaders{{
+      {"Content-Security-Policy",
+       "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+       "worker-src 'self' blob:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action "
+       "'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"X-Frame-Options", "DENY"},
+  }};
+  return kHeaders;
+}
+
+}  // namespace spindrift::net

@@ -1,0 +1,41 @@
+// What a plain HTTP request gets, decided without a socket: the request's parts in, a reply out.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <spindrift/core/bytes.h>
+#include <spindrift/net/server.h>
+
+#include "static_files.h"
+
+namespace spindrift::net {
+
+struct RequestHead {
+  std::string method;
+  std::string target;  ///< as sent
+  std::string if_none_match;
+};
+
+struct Reply {
+  unsigned status = 200;
+  std::string content_type = "text/plain; charset=utf-8";
+  std::shared_ptr<const std::string> body;  ///< never null; empty for 304
+  /// Beyond Content-Type and the security headers.
+  std::vector<std::pair<std::string, std::string>> headers;
+};
+
+/// One plain line of text (the newline is added here), not cached.
+Reply textReply(unsigned status, std::string line);
+
+/// The reply to a whole request: application paths, the web client's files, or an error with one line.
+Reply routeRequest(const RequestHead& head, core::ByteView body, StaticFiles& files, Application& application);
+
+/// Sent with every response, the WebSocket handshake included: what the page may load, and that it may not be framed.
+std::span<const std::pair<std::string_view, std::string_view>> securityHeaders();
+
+}  // namespace spindrift::net

@@ -1,0 +1,94 @@
+#include "outbox.h"
+
+#include <utility>
+
+namespace spindrift::net {
+
+Outbox::Outcome Outbox::pushControl(core::SharedBytes message) {
+  const std::lock_guard lock(mutex_);
+  if (close_ || shut_) return {};
+  if (control_.size() >= control_queue_count_) {
+    close_ = SessionEnd{static_cast<std::uint16_t>(CloseCode::kTryAgainLater),
+                        "more than " + std::to_string(control_queue_count_) + " control messages wait: read faster"};
+    for (Slot& slot : slots_) slot.frame.reset();
+    return {.wake = takeWake(), .overflow = true};
+  }
+  control_.push_back(std::move(message));
+  return {.wake = takeWake()};
+}
+
+Outbox::Outcome Outbox::offerFrame(LayerIndex layer, core::SharedBytes frame, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (close_ || shut_ || layer >= kMaxLayerCount) return {};
+  Slot& slot = slots_[layer];
+  if (!slot.gate || !slot.gate->pass(now)) return {};
+  const bool dropped = slot.frame != nullptr;
+  slot.frame = std::move(frame);
+  return {.wake = takeWake(), .dropped = dropped};
+}
+
+void Outbox::setWatch(LayerIndex layer, std::optional<double> max_rate_hz) {
+  const std::lock_guard lock(mutex_);
+  if (layer >= kMaxLayerCount) return;
+  if (max_rate_hz) {
+    slots_[layer].gate.emplace(*max_rate_hz);
+  } else {
+    slots_[layer] = {};
+  }
+}
+
+void Outbox::clearFrames() {
+  const std::lock_guard lock(mutex_);
+  for (Slot& slot : slots_) slot.frame.reset();
+}
+
+bool Outbox::requestClose(CloseCode code, std::string reason) {
+  const std::lock_guard lock(mutex_);
+  if (close_ || shut_) return false;
+  close_ = SessionEnd{static_cast<std::uint16_t>(code), std::move(reason)};
+  for (Slot& slot : slots_) slot.frame.reset();
+  return true;
+}
+
+void Outbox::shut() {
+  const std::lock_guard lock(mutex_);
+  shut_ = true;
+  control_.clear();
+  for (Slot& slot : slots_) slot = {};
+}
+
+Outbox::Next Outbox::next() {
+  const std::lock_guard lock(mutex_);
+  writer_sleeps_ = false;
+  if (shut_) return {Kind::kShut, nullptr};
+  if (!control_.empty()) {
+    Next out{Kind::kControl, std::move(control_.front())};
+    control_.pop_front();
+    return out;
+  }
+  if (close_) return {Kind::kClose, nullptr};
+  for (std::size_t k = 0; k < slots_.size(); ++k) {
+    const std::size_t layer = (turn_ + k) % slots_.size();
+    if (!slots_[layer].frame) continue;
+    turn_ = (layer + 1) % slots_.size();
+    return {Kind::kFrame, std::exchange(slots_[layer].frame, nullptr)};
+  }
+  writer_sleeps_ = true;
+  return {};
+}
+
+bool Outbox::closing() const {
+  const std::lock_guard lock(mutex_);
+  return close_.has_value();
+}
+
+std::optional<SessionEnd> Outbox::closeRequest() const {
+  const std::lock_guard lock(mutex_);
+  return close_;
+}
+
+bool Outbox::takeWake() {
+  return std::exchange(writer_sleeps_, false);
+}
+
+}  // namespace spindrift::net

@@ -1,0 +1,99 @@
+#include "room_hub.h"
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace spindrift::net {
+
+void RoomHub::add(SessionId session, std::shared_ptr<SessionLink> link) {
+  const std::lock_guard lock(mutex_);
+  members_[session].link = std::move(link);
+}
+
+void RoomHub::remove(SessionId session) {
+  const std::lock_guard lock(mutex_);
+  const auto found = members_.find(session);
+  if (found == members_.end()) return;
+  leaveRoom(session, found->second);
+  members_.erase(found);
+}
+
+void RoomHub::sendControl(SessionId session, core::SharedBytes message) {
+  const std::lock_guard lock(mutex_);
+  const auto found = members_.find(session);
+  if (found != members_.end()) found->second.link->sendControl(std::move(message));
+}
+
+void RoomHub::publish(const std::string& room, LayerIndex layer, core::SharedBytes frame) {
+  assert(layer < kMaxLayerCount && frame);
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room);
+  if (found == rooms_.end() || layer >= kMaxLayerCount) return;
+  for (const Watcher& watcher : found->second.watchers[layer]) watcher.link->offerFrame(layer, frame);
+}
+
+void RoomHub::join(SessionId session, const std::string& room) {
+  const std::lock_guard lock(mutex_);
+  const auto found = members_.find(session);
+  if (found == members_.end() || found->second.room == room) return;
+  leaveRoom(session, found->second);
+  enterRoom(session, found->second, room);
+}
+
+void RoomHub::watch(SessionId session, LayerIndex layer, double max_rate_hz) {
+  assert(layer < kMaxLayerCount);
+  const std::lock_guard lock(mutex_);
+  const auto found = members_.find(session);
+  if (found == members_.end() || layer >= kMaxLayerCount) return;
+  Member& member = found->second;
+  const bool wanted = std::isfinite(max_rate_hz) && max_rate_hz > 0.0;
+  member.link->setWatch(layer, wanted ? std::optional(max_rate_hz) : std::nullopt);
+  if (std::exchange(member.watches[layer], wanted) == wanted || !member.room) return;
+  std::vector<Watcher>& watchers = rooms_[*member.room].watchers[layer];
+  if (wanted) {
+    watchers.push_back({session, member.link.get()});
+  } else {
+    std::erase_if(watchers, [session](const Watcher& watcher) { return watcher.session == session; });
+  }
+}
+
+std::size_t RoomHub::watcherCount(const std::string& room, LayerIndex layer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room);
+  return found == rooms_.end() || layer >= kMaxLayerCount ? 0 : found->second.watchers[layer].size();
+}
+
+void RoomHub::close(SessionId session, CloseCode code, std::string reason) {
+  const std::lock_guard lock(mutex_);
+  const auto found = members_.find(session);
+  if (found != members_.end()) found->second.link->close(code, std::move(reason));
+}
+
+std::size_t RoomHub::roomCount() const {
+  const std::lock_guard lock(mutex_);
+  return rooms_.size();
+}
+
+void RoomHub::enterRoom(SessionId session, Member& member, const std::string& room) {
+  Room& entered = rooms_[room];
+  ++entered.session_count;
+  member.room = room;
+  for (std::size_t layer = 0; layer < kMaxLayerCount; ++layer) {
+    if (member.watches[layer]) entered.watchers[layer].push_back({session, member.link.get()});
+  }
+}
+
+void RoomHub::leaveRoom(SessionId session, Member& member) {
+  if (!member.room) return;
+  const auto left = rooms_.find(*member.room);
+  for (std::vector<Watcher>& watchers : left->second.watchers) {
+    std::erase_if(watchers, [session](const Watcher& watcher) { return watcher.session == session; });
+  }
+  // Rooms are named by the application, but an empty one costs nothing only if it goes.
+  if (--left->second.session_count == 0) rooms_.erase(left);
+  member.room.reset();
+  member.link->clearFrames();
+}
+
+}  // namespace spindrift::net

@@ -1,0 +1,70 @@
+// Who is in which room and watches what. It knows sessions only as links, so it is tested without a network.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <spindrift/net/server.h>
+
+namespace spindrift::net {
+
+/// The sending side of one session. Every call is thread-safe, returns at once and never calls back into the hub.
+class SessionLink {
+ public:
+  virtual ~SessionLink() = default;
+  virtual void sendControl(core::SharedBytes message) = 0;
+  virtual void offerFrame(LayerIndex layer, core::SharedBytes frame) = 0;
+  /// nullopt stops the layer.
+  virtual void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) = 0;
+  virtual void clearFrames() = 0;
+  virtual void close(CloseCode code, std::string reason) = 0;
+};
+
+/// The Hub of a Server. One mutex; publish() walks only the watchers of that room and layer. A session's watches follow
+/// it into the next room.
+class RoomHub final : public Hub {
+ public:
+  void add(SessionId session, std::shared_ptr<SessionLink> link);
+  /// After this no call reaches the link.
+  void remove(SessionId session);
+
+  void sendControl(SessionId session, core::SharedBytes message) override;
+  void publish(const std::string& room, LayerIndex layer, core::SharedBytes frame) override;
+  void join(SessionId session, const std::string& room) override;
+  void watch(SessionId session, LayerIndex layer, double max_rate_hz) override;
+  std::size_t watcherCount(const std::string& room, LayerIndex layer) const override;
+  void close(SessionId session, CloseCode code, std::string reason) override;
+
+  /// Rooms with at least one session.
+  std::size_t roomCount() const;
+
+ private:
+  struct Member {
+    std::shared_ptr<SessionLink> link;
+    std::optional<std::string> room;
+    std::array<bool, kMaxLayerCount> watches{};
+  };
+  struct Watcher {
+    SessionId session = 0;
+    SessionLink* link = nullptr;  ///< owned by the member, which leaves the room before it goes
+  };
+  struct Room {
+    std::size_t session_count = 0;
+    std::array<std::vector<Watcher>, kMaxLayerCount> watchers;
+  };
+
+  void enterRoom(SessionId session, Member& member, const std::string& room);
+  void leaveRoom(SessionId session, Member& member);
+
+  mutable std::mutex mutex_;
+  std::unordered_map<SessionId, Member> members_;
+  std::map<std::string, Room> rooms_;
+};
+
+}  // namespace spindrift::net

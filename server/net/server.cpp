@@ -1,0 +1,187 @@
+// The listener and the I/O threads: start, accept, stop.
+#include <cerrno>
+#include <exception>
+#include <thread>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/net/server.h>
+
+#include "connection.h"
+#include "server_context.h"
+
+namespace spindrift::net {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
+/// Out of file descriptors or memory: accepting again at once would only spin.
+constexpr std::chrono::milliseconds kAcceptPause{100};
+/// stop() gives the peers this much beyond close_timeout.
+constexpr std::chrono::seconds kStopGrace{1};
+
+class ServerImpl final : public Server {
+ public:
+  ServerImpl(const ServerOptions& options, Application& application)
+      : context_(options, application), accept_strand_(asio::make_strand(io_)), acceptor_(accept_strand_) {}
+  ServerImpl(const ServerImpl&) = delete;
+  ServerImpl& operator=(const ServerImpl&) = delete;
+  ~ServerImpl() override { stop(); }
+
+  core::Result<void> listen();
+  void run();
+
+  std::uint16_t port() const override { return port_; }
+  Hub& hub() override { return context_.hub; }
+  ServerStats stats() const override;
+  void stop() override;
+
+ private:
+  asio::awaitable<void> acceptLoop();
+
+  ServerContext context_;
+  asio::io_context io_;
+  asio::any_io_executor accept_strand_;
+  tcp::acceptor acceptor_;
+  asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
+  std::uint16_t port_ = 0;
+  std::uint64_t last_connection_id_ = 0;
+  std::mutex stop_mutex_;
+  bool stopped_ = false;
+  std::vector<std::thread> threads_;
+};
+
+core::Error unavailable(std::string message) {
+  return {core::ErrorCode::kUnavailable, std::move(message)};
+}
+
+core::Result<void> ServerImpl::listen() {
+  const ServerOptions& options = context_.options;
+  const std::string port_text = std::to_string(options.port);
+  boost::system::error_code error;
+  const auto address = asio::ip::make_address(options.address, error);
+  if (error) {
+    return unavailable("the address \"" + options.address + "\" (port " + port_text +
+                       ") is not an IP address: give one such as 127.0.0.1, 0.0.0.0 or ::1 with --address");
+  }
+  const tcp::endpoint endpoint(address, options.port);
+  const auto step = [&error](auto&& action) {
+    if (!error) action();
+  };
+  step([&] { acceptor_.open(endpoint.protocol(), error); });
+  // On Linux this only forgives ports of connections that wait out their end; a second listener is still refused.
+  step([&] { acceptor_.set_option(asio::socket_base::reuse_address(true), error); });
+  step([&] { acceptor_.bind(endpoint, error); });
+  step([&] { acceptor_.listen(asio::socket_base::max_listen_connections, error); });
+  const std::string where = "port " + port_text + " on " + options.address;
+  if (error == boost::system::errc::address_in_use) {
+    return unavailable(where + " is in use: stop the other program or choose another with --port");
+  }
+  if (error == boost::system::errc::address_not_available) {
+    return unavailable(where +
+                       " cannot be had: this machine does not have that address; choose another with --address");
+  }
+  if (error == boost::system::errc::permission_denied) {
+    return unavailable(where + " needs more rights than this user has: choose one above 1023 with --port");
+  }
+  if (error) return unavailable(where + " cannot be listened on (" + error.message() + "): choose another");
+  port_ = acceptor_.local_endpoint().port();
+  return {};
+}
+
+void ServerImpl::run() {
+  asio::co_spawn(accept_strand_, acceptLoop(), [](const std::exception_ptr& failure) {
+    try {
+      if (failure) std::rethrow_exception(failure);
+    } catch (const std::exception& error) {
+      spdlog::critical("the listener failed: {}", error.what());
+    }
+  });
+  const std::size_t thread_count = std::max<std::size_t>(1, context_.options.thread_count);
+  for (std::size_t k = 0; k < thread_count; ++k) {
+    threads_.emplace_back([this] {
+      while (true) {
+        try {
+          io_.run();
+          return;
+        } catch (const std::exception& error) {
+          spdlog::error("an I/O handler failed: {}", error.what());
+        }
+      }
+    });
+  }
+}
+
+asio::awaitable<void> ServerImpl::acceptLoop() {
+  while (acceptor_.is_open()) {
+    auto [error, socket] = co_await acceptor_.async_accept(asio::any_io_executor(asio::make_strand(io_)), kToken);
+    if (error == asio::error::operation_aborted) break;
+    if (error) {
+      spdlog::warn("a connection could not be accepted: {}", error.message());
+      asio::steady_timer pause(accept_strand_, kAcceptPause);
+      (void)co_await pause.async_wait(kToken);
+      continue;
+    }
+    const std::uint64_t id = ++last_connection_id_;
+    auto connection = std::make_shared<Connection>(id, std::move(socket), context_);
+    if (context_.connections.add(id, connection)) {
+      connection->start();
+    } else {
+      spdlog::debug("a connection was closed unheard: too many are open");
+    }
+  }
+}
+
+ServerStats ServerImpl::stats() const {
+  const Counters& counters = context_.counters;
+  return {.open_session_count = counters.open_session_count,
+          .accepted_session_count = counters.accepted_session_count,
+          .sent_bytes_count = counters.sent_bytes_count,
+          .sent_frame_count = counters.sent_frame_count,
+          .dropped_frame_count = counters.dropped_frame_count,
+          .evicted_session_count = counters.evicted_session_count};
+}
+
+void ServerImpl::stop() {
+  const std::lock_guard lock(stop_mutex_);
+  if (std::exchange(stopped_, true) || threads_.empty()) return;
+  const auto deadline = Clock::now() + context_.options.close_timeout + kStopGrace;
+  asio::post(accept_strand_, [this] {
+    boost::system::error_code ignored;
+    acceptor_.close(ignored);
+  });
+  context_.connections.close();
+  for (const auto& connection : context_.connections.all()) connection->shutDown();
+  if (!context_.connections.waitEmpty(deadline)) {
+    for (const auto& connection : context_.connections.all()) connection->cut();
+    // Sockets are closed, so what is left is an application callback still running: the threads wait for it as well.
+    context_.connections.waitEmpty(Clock::time_point::max());
+  }
+  work_.reset();
+  io_.stop();
+  for (std::thread& thread : threads_) thread.join();
+  spdlog::debug("port {} is closed", port_);
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Application& application) {
+  auto server = std::make_unique<ServerImpl>(options, application);
+  const core::Result<void> listening = server->listen();
+  if (!listening) return listening.error();
+  server->run();
+  return std::unique_ptr<Server>(std::move(server));
+}
+
+}  // namespace spindrift::net

@@ -1,0 +1,251 @@
+#include "session.h"
+
+#include <exception>
+#include <utility>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/websocket.hpp>
+#include <spdlog/spdlog.h>
+
+#include "http_routes.h"
+
+namespace spindrift::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+
+constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
+
+/// 1011: our own failure. The peer did nothing wrong.
+constexpr const char* kInternalReason = "the server failed on this session; its log says why";
+
+/// A close reason is at most 123 bytes (RFC 6455 section 5.5).
+websocket::close_reason closeFrame(const SessionEnd& end) {
+  constexpr std::size_t kMaxReasonBytes = 123;
+  websocket::close_reason frame(static_cast<websocket::close_code>(end.code));
+  const std::string text = end.reason.substr(0, kMaxReasonBytes);
+  frame.reason.assign(text.data(), text.size());
+  return frame;
+}
+
+}  // namespace
+
+Session::Session(beast::tcp_stream stream, ServerContext& context)
+    : context_(context),
+      id_(++context.last_session_id),
+      ws_(std::move(stream)),
+      strand_(ws_.get_executor()),
+      outbox_(context.options.control_queue_count),
+      message_tokens_(context.options.messages_per_s, context.options.message_burst_count, Clock::now()),
+      wake_timer_(strand_),
+      stall_timer_(strand_),
+      close_timer_(strand_) {}
+
+asio::awaitable<void> Session::run(const UpgradeRequest& request, std::string room, std::string peer,
+                                   bool echo_subprotocol) {
+  using asio::experimental::awaitable_operators::operator&&;
+  configure(echo_subprotocol);
+  const auto [accept_error] = co_await ws_.async_accept(request, kToken);
+  if (accept_error) {
+    spdlog::debug("{}: the WebSocket handshake failed: {}", peer, accept_error.message());
+    co_return;
+  }
+  // From here Beast's "handshake" timeout is the one for closing.
+  ws_.set_option(websocket::stream_base::timeout{context_.options.close_timeout, context_.options.idle_timeout, true});
+
+  ++context_.counters.accepted_session_count;
+  ++context_.counters.open_session_count;
+  spdlog::debug("session {} opened by {}", id_, peer);
+  context_.hub.add(id_, shared_from_this());
+  callApplication("sessionOpened", [&] { context_.application.sessionOpened(id_, room, peer); });
+
+  co_await (readLoop() && writeLoop());
+
+  context_.hub.remove(id_);
+  wake_timer_.cancel();
+  stall_timer_.cancel();
+  close_timer_.cancel();
+  --context_.counters.open_session_count;
+  const SessionEnd end = end_.value_or(SessionEnd{});
+  spdlog::debug("session {} closed: {} {}", id_, end.code, end.reason);
+  callApplication("sessionClosed", [&] { context_.application.sessionClosed(id_, end); });
+}
+
+void Session::configure(bool echo_subprotocol) {
+  beast::get_lowest_layer(ws_).expires_never();  // the WebSocket layer has its own clock
+  const auto& options = context_.options;
+  ws_.set_option(websocket::stream_base::timeout{options.handshake_timeout, options.idle_timeout, true});
+  ws_.set_option(websocket::stream_base::decorator([echo_subprotocol](websocket::response_type& response) {
+    response.set(beast::http::field::server, "Spindrift");
+    for (const auto& [name, value] : securityHeaders()) response.set(name, value);
+    if (echo_subprotocol) response.set(beast::http::field::sec_websocket_protocol, kSubprotocol);
+  }));
+  // A server does not mask, so an unfragmented message goes to the socket straight from the shared buffer; the write
+  // buffer only serves the fragmented path.
+  ws_.auto_fragment(false);
+  ws_.write_buffer_bytes(64 * 1024);
+  ws_.binary(true);
+  ws_.read_message_max(options.read_message_max_bytes);
+  // Pings cost a pong each, so they count as messages. A peer that says goodbye gets a deadline to hang up as well.
+  ws_.control_callback([this](websocket::frame_type kind, beast::string_view) {
+    if (kind == websocket::frame_type::close) {
+      armCloseDeadline();
+    } else if (!message_tokens_.take(Clock::now())) {
+      close(CloseCode::kPolicy, "too many pings: slow down");
+    }
+  });
+}
+
+asio::awaitable<void> Session::readLoop() {
+  while (true) {
+    const auto [error, bytes_count] = co_await ws_.async_read(read_buffer_, kToken);
+    if (error) {
+      if (error == websocket::error::closed) {
+        noteEnd(ws_.reason().code, ws_.reason().reason.c_str());
+      } else if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow) {
+        noteEnd(static_cast<std::uint16_t>(CloseCode::kTooBig), "a message over the limit");  // Beast has answered 1009
+      } else {
+        noteEnd(0, error.message());
+      }
+      // The stream has failed or is closed already: nothing that the writer could still send would arrive.
+      cut();
+      outbox_.shut();
+      wakeWriter();
+      co_return;
+    }
+    if (outbox_.closing()) co_return;  // the writer's goodbye reads the rest
+    if (ws_.got_text()) {
+      close(CloseCode::kUnsupportedData, "text messages are not understood: send binary ones");
+      co_return;
+    }
+    if (!message_tokens_.take(Clock::now())) {
+      close(CloseCode::kPolicy, "too many messages: slow down");
+      co_return;
+    }
+    const core::ByteView message(static_cast<const std::uint8_t*>(read_buffer_.data().data()), bytes_count);
+    callApplication("sessionMessage", [&] { context_.application.sessionMessage(id_, message); });
+    read_buffer_.consume(read_buffer_.size());
+  }
+}
+
+asio::awaitable<void> Session::writeLoop() {
+  while (true) {
+    Outbox::Next next = outbox_.next();
+    switch (next.kind) {
+      case Outbox::Kind::kShut:
+        co_return;
+      case Outbox::Kind::kClose:
+        co_await sayGoodbye();
+        co_return;
+      case Outbox::Kind::kIdle:
+        // A producer's wake is posted to this strand, so it cannot run between next() and the wait.
+        wake_timer_.expires_at(Clock::time_point::max());
+        (void)co_await wake_timer_.async_wait(kToken);
+        break;
+      case Outbox::Kind::kControl:
+      case Outbox::Kind::kFrame: {
+        const bool sent = co_await write(*next.message);
+        if (!sent) {
+          cut();
+          outbox_.shut();
+          co_return;
+        }
+        context_.counters.sent_bytes_count += next.message->size();
+        if (next.kind == Outbox::Kind::kFrame) ++context_.counters.sent_frame_count;
+        break;
+      }
+    }
+  }
+}
+
+asio::awaitable<bool> Session::write(const core::Bytes& message) {
+  stall_timer_.expires_after(context_.options.write_stall_timeout);
+  stall_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& error) {
+    // A timer that had fired before its cancellation still runs; a later write has moved the expiry on.
+    if (error || self->stall_timer_.expiry() > Clock::now()) return;
+    ++self->context_.counters.evicted_session_count;
+    self->noteEnd(0, "evicted: a write took longer than " +
+                         std::to_string(self->context_.options.write_stall_timeout.count()) + " ms");
+    self->cut();
+  });
+  const auto [error, bytes_count] = co_await ws_.async_write(asio::buffer(message), kToken);
+  stall_timer_.expires_at(Clock::time_point::max());
+  if (error) noteEnd(0, error.message());
+  co_return !error;
+}
+
+asio::awaitable<void> Session::sayGoodbye() {
+  const SessionEnd end = outbox_.closeRequest().value_or(SessionEnd{});
+  noteEnd(end.code, end.reason);
+  const auto [error] = co_await ws_.async_close(closeFrame(end), kToken);
+  if (error) spdlog::debug("session {}: the goodbye did not go through: {}", id_, error.message());
+  cut();
+}
+
+void Session::sendControl(core::SharedBytes message) {
+  const Outbox::Outcome outcome = outbox_.pushControl(std::move(message));
+  if (outcome.overflow) {
+    ++context_.counters.evicted_session_count;
+    asio::post(strand_, [self = shared_from_this()] { self->armCloseDeadline(); });
+  }
+  if (outcome.wake) wakeWriter();
+}
+
+void Session::offerFrame(LayerIndex layer, core::SharedBytes frame) {
+  const Outbox::Outcome outcome = outbox_.offerFrame(layer, std::move(frame), Clock::now());
+  if (outcome.dropped) ++context_.counters.dropped_frame_count;
+  if (outcome.wake) wakeWriter();
+}
+
+void Session::setWatch(LayerIndex layer, std::optional<double> max_rate_hz) {
+  outbox_.setWatch(layer, max_rate_hz);
+}
+
+void Session::clearFrames() {
+  outbox_.clearFrames();
+}
+
+void Session::close(CloseCode code, std::string reason) {
+  if (!outbox_.requestClose(code, std::move(reason))) return;
+  asio::post(strand_, [self = shared_from_this()] { self->armCloseDeadline(); });
+  wakeWriter();
+}
+
+void Session::cut() {
+  beast::get_lowest_layer(ws_).close();
+}
+
+template <typename Callback>
+void Session::callApplication(const char* name, Callback&& callback) {
+  try {
+    callback();
+  } catch (const std::exception& error) {
+    spdlog::error("session {}: {} failed: {}", id_, name, error.what());
+    close(CloseCode::kInternalError, kInternalReason);
+  }
+}
+
+void Session::armCloseDeadline() {
+  if (close_timer_.expiry() != Clock::time_point{}) return;
+  close_timer_.expires_after(context_.options.close_timeout);
+  close_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& error) {
+    if (error) return;
+    if (const auto asked = self->outbox_.closeRequest()) self->noteEnd(asked->code, asked->reason);
+    self->cut();
+  });
+}
+
+void Session::wakeWriter() {
+  asio::post(strand_, [self = shared_from_this()] { self->wake_timer_.cancel(); });
+}
+
+void Session::noteEnd(std::uint16_t code, std::string reason) {
+  if (!end_) end_ = SessionEnd{code, std::move(reason)};
+}
+
+}  // namespace spindrift::net

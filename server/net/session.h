@@ -1,0 +1,74 @@
+// One WebSocket session, from the upgrade to the last byte. Everything but the SessionLink calls runs on the session's
+// strand; a reader and a writer coroutine share it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/websocket/stream.hpp>
+
+#include "outbox.h"
+#include "rate_limit.h"
+#include "room_hub.h"
+#include "server_context.h"
+
+namespace spindrift::net {
+
+using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
+
+class Session final : public SessionLink, public std::enable_shared_from_this<Session> {
+ public:
+  /// Takes the stream over; its executor is the session's strand.
+  Session(boost::beast::tcp_stream stream, ServerContext& context);
+
+  /// Answers the upgrade, serves until the connection is gone, then returns. Calls sessionOpened first and
+  /// sessionClosed last (neither, if the handshake fails). On the strand.
+  boost::asio::awaitable<void> run(const UpgradeRequest& request, std::string room, std::string peer,
+                                   bool echo_subprotocol);
+
+  void sendControl(core::SharedBytes message) override;
+  void offerFrame(LayerIndex layer, core::SharedBytes frame) override;
+  void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) override;
+  void clearFrames() override;
+  void close(CloseCode code, std::string reason) override;
+
+  /// Closes the socket now; every pending operation ends. On the strand.
+  void cut();
+
+ private:
+  void configure(bool echo_subprotocol);
+  boost::asio::awaitable<void> readLoop();
+  boost::asio::awaitable<void> writeLoop();
+  /// One message; false if the connection is gone.
+  boost::asio::awaitable<bool> write(const core::Bytes& message);
+  /// Sends the close frame and waits for the peer's, within the close deadline.
+  boost::asio::awaitable<void> sayGoodbye();
+  /// Runs an application callback; an exception in it ends this session and no other.
+  template <typename Callback>
+  void callApplication(const char* name, Callback&& callback);
+  /// Cuts the connection at the deadline unless it is gone before. On the strand, once.
+  void armCloseDeadline();
+  void wakeWriter();
+  /// Keeps the first account of why the session ended.
+  void noteEnd(std::uint16_t code, std::string reason);
+
+  ServerContext& context_;
+  const SessionId id_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream> ws_;
+  const boost::asio::any_io_executor strand_;
+  Outbox outbox_;
+  TokenBucket message_tokens_;
+  boost::beast::flat_buffer read_buffer_;
+  boost::asio::steady_timer wake_timer_;   ///< the writer sleeps on it
+  boost::asio::steady_timer stall_timer_;  ///< runs while a write is out
+  boost::asio::steady_timer close_timer_;
+  std::optional<SessionEnd> end_;
+};
+
+}  // namespace spindrift::net
