@@ -64,9 +64,9 @@ core::TimedEvent toCore(const v1::TimedEvent& in) {
   out.at_s = in.at_s();
   out.every_s = in.every_s();
   if (in.effect().has_breaking_wave()) {
-    out.effect = toCore(in.effect().breaking_wave());
+    out.effect = stream::toCore(in.effect().breaking_wave());
   } else {
-    out.effect = toCore(in.effect().splash());
+    out.effect = stream::toCore(in.effect().splash());
   }
   return out;
 }
