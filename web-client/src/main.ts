@@ -1,0 +1,246 @@
+// The page's root: puts worker, scene and panels together and runs the display loop.
+import { Vector3, WebGLRenderer } from "three";
+
+import "./style.css";
+import type { GreetingInfo } from "./codec/greeting";
+import type { CommandAction, ConnectionState, LinkStats } from "./net/messages";
+import { socketUrl, WaterClient, type WorkerLike } from "./net/water_client";
+import { CameraViews } from "./scene/camera_views";
+import { FrameGovernor } from "./scene/frame_governor";
+import { elevationRangeM } from "./scene/height_field";
+import { pickWater } from "./scene/pick";
+import { chooseQuality, type ChosenQuality } from "./scene/quality";
+import { WaterScene } from "./scene/water_scene";
+import { byId, setText } from "./ui/dom";
+import { EffectsPanel } from "./ui/effects_panel";
+import { describeState, Hud } from "./ui/hud";
+import { ParametersPanel } from "./ui/parameters_panel";
+import { TapDetector, toDeviceCoordinates } from "./ui/tap";
+import { Toast } from "./ui/toast";
+
+const nowS = (): number => performance.now() / 1000;
+const canvas = byId<HTMLCanvasElement>("view");
+const notice = byId("notice");
+const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+function showNotice(text: string): void {
+  setText(byId("notice-text"), text);
+  notice.hidden = text === "";
+}
+
+/** The renderer and what draws underneath; undefined where this browser cannot. */
+function makeRenderer(): { renderer: WebGLRenderer; quality: ChosenQuality } | undefined {
+  // A scratch context tells what draws before the real one fixes its antialiasing.
+  const scratch = document.createElement("canvas").getContext("webgl2");
+  if (!scratch?.getExtension("EXT_color_buffer_float")) return undefined;
+  const unmasked = scratch.getExtension("WEBGL_debug_renderer_info");
+  const name = String(scratch.getParameter(unmasked ? unmasked.UNMASKED_RENDERER_WEBGL : scratch.RENDERER));
+  scratch.getExtension("WEBGL_lose_context")?.loseContext();
+  const quality = chooseQuality(location.search, name);
+  try {
+    const antialias = quality.samplesCount > 1;
+    return { renderer: new WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" }), quality };
+  } catch {
+    // three has said why on the console; the page says what to do.
+    return undefined;
+  }
+}
+
+function main(): void {
+  const made = makeRenderer();
+  if (!made) {
+    showNotice(
+      "This page needs WebGL 2 with floating-point targets, and this browser offers none. Turn on hardware acceleration, or try a current Firefox, Chrome, Edge or Safari.",
+    );
+    return;
+  }
+  const { renderer, quality } = made;
+  const governor = new FrameGovernor(Math.min(window.devicePixelRatio || 1, quality.maxPixelRatio));
+
+  const hud = new Hud();
+  const toast = new Toast(byId("toast"));
+  let greeting: GreetingInfo | undefined;
+  let state: ConnectionState = { name: "connecting" };
+  let link: LinkStats | undefined;
+  let simTimeS = 0;
+  let lastAck: { commandId: number; appliedTick: number } | null = null;
+  let paused = false;
+  const sentLabels = new Map<number, string>();
+
+  const worker = new Worker(new URL("./net/worker.ts", import.meta.url), { type: "module" });
+  const client = new WaterClient(worker as unknown as WorkerLike, {
+    state: (message) => {
+      state = message.state;
+      hud.connection(state);
+      for (const button of buttons) button.disabled = state.name !== "live" || (needsWave.has(button.id) && !effects.available);
+    },
+    greeting: (message) => enter(message.greeting),
+    frame: ({ frame }) => {
+      simTimeS = frame.timeS;
+      scene.take(frame, nowS());
+    },
+    diagnostics: ({ diagnostics }) => hud.diagnostics(diagnostics),
+    ack: ({ commandId, appliedTick }) => {
+      lastAck = { commandId, appliedTick };
+      hud.acked(commandId, appliedTick);
+      parameters.ack(commandId);
+      toast.show(`${takeLabel(commandId)}: applied at tick ${appliedTick}`, "good");
+    },
+    reject: ({ commandId, message }) => {
+      parameters.reject(commandId, message);
+      toast.show(`${takeLabel(commandId)}: ${message}`, "bad");
+    },
+    parameterChanged: ({ path, value }) => parameters.serverSays(path, value),
+    roomState: (message) => setPaused(message.paused),
+    stats: (message) => {
+      link = message.stats;
+      hud.link(link);
+    },
+  });
+  const scene = new WaterScene(renderer, quality, (frame) => client.release(frame));
+  const views = new CameraViews(scene.camera, canvas, reducedMotion);
+  const effects = new EffectsPanel(byId("effects"));
+  const parameters = new ParametersPanel(byId("parameters"), (action) => send(action, "Parameter"));
+  const buttons = ["splash", "wave", "pause", "reset"].map((id) => byId<HTMLButtonElement>(id));
+  const needsWave = new Set(["splash", "wave"]);
+
+  function send(action: CommandAction | undefined, label: string): number {
+    if (!action) return 0;
+    const commandId = client.command(action);
+    sentLabels.set(commandId, label);
+    return commandId;
+  }
+
+  /** Every command is answered exactly once, so the map empties itself. */
+  function takeLabel(commandId: number): string {
+    const label = sentLabels.get(commandId) ?? `Command ${commandId}`;
+    sentLabels.delete(commandId);
+    return label;
+  }
+
+  function setPaused(now: boolean): void {
+    paused = now;
+    setText(byId("pause"), paused ? "Resume" : "Pause");
+    byId("pause").setAttribute("aria-pressed", String(paused));
+  }
+
+  function enter(entered: GreetingInfo): void {
+    const sameWater = greeting?.sideM === entered.sideM && greeting.room === entered.room;
+    greeting = entered;
+    scene.enter(entered);
+    if (!sameWater) views.enter(entered.sideM);
+    effects.enter(entered);
+    parameters.enter(entered.parameters);
+    byId("parameters-box").hidden = entered.parameters.length === 0;
+    setText(byId("title"), entered.title);
+    setText(byId("description"), entered.description);
+    document.title = `${entered.title} – Spindrift`;
+    hud.deviceIs(entered.device);
+    setPaused(entered.paused);
+    for (const button of buttons) {
+      button.disabled = needsWave.has(button.id) && !effects.available;
+      button.title = button.disabled ? "This scene has no wave" : "";
+    }
+  }
+
+  byId("splash").addEventListener("click", () => send(effects.splashAt(0, 0), "Splash"));
+  byId("wave").addEventListener("click", () => send(effects.breakingWave(), "Breaking wave"));
+  byId("pause").addEventListener("click", () => send({ case: "setPaused", value: { paused: !paused } }, paused ? "Resume" : "Pause"));
+  byId("reset").addEventListener("click", () => send({ case: "reset", value: {} }, "Reset"));
+  byId("view-splash").addEventListener("click", () => views.go("splash", nowS()));
+  byId("view-wave").addEventListener("click", () => views.go("wave", nowS()));
+  byId("retry").addEventListener("click", () => client.retryNow());
+  const panelToggle = byId("panel-toggle");
+  const setPanelOpen = (open: boolean): void => {
+    document.body.classList.toggle("panel-closed", !open);
+    panelToggle.setAttribute("aria-expanded", String(open));
+    panelToggle.setAttribute("aria-label", open ? "Hide controls" : "Show controls");
+  };
+  panelToggle.addEventListener("click", () => setPanelOpen(document.body.classList.contains("panel-closed")));
+  setPanelOpen(window.innerWidth > 760);
+
+  const taps = new TapDetector();
+  const sample = (event: PointerEvent) => ({ id: event.pointerId, xPx: event.clientX, yPx: event.clientY, timeMs: event.timeStamp });
+  canvas.addEventListener("pointerdown", (event) => {
+    if (event.button === 0) taps.pressed(sample(event));
+  });
+  canvas.addEventListener("pointercancel", (event) => taps.cancelled(event.pointerId));
+  canvas.addEventListener("pointerup", (event) => {
+    if (!taps.released(sample(event))) return;
+    const at = toDeviceCoordinates(event.clientX, event.clientY, canvas.getBoundingClientRect());
+    const shape = scene.shape();
+    if (!shape) return;
+    const direction = new Vector3(at.x, at.y, 0.5).unproject(scene.camera).sub(scene.camera.position).normalize();
+    const place = pickWater({ originM: scene.camera.position.toArray(), direction: direction.toArray() }, shape);
+    if (place) send(effects.splashAt(place.xM, place.zM), `Splash at ${place.xM.toFixed(1)}, ${place.zM.toFixed(1)} m`);
+  });
+
+  function resize(): void {
+    renderer.setPixelRatio(governor.pixelRatio);
+    renderer.setSize(window.innerWidth, window.innerHeight, false);
+    scene.resize(window.innerWidth, window.innerHeight);
+  }
+  window.addEventListener("resize", resize);
+  document.addEventListener("visibilitychange", () => client.setVisible(!document.hidden));
+
+  let contextLost = false;
+  canvas.addEventListener("webglcontextlost", () => {
+    contextLost = true;
+    showNotice("The graphics context was lost; the picture comes back as soon as the browser restores it.");
+  });
+  canvas.addEventListener("webglcontextrestored", () => {
+    contextLost = false;
+    scene.contextRestored();
+    showNotice("");
+  });
+
+  let lastFrameMs = performance.now();
+  let framesShown = 0;
+  let fpsSinceMs = lastFrameMs;
+  let displayFps = 0;
+  renderer.setAnimationLoop(() => {
+    if (contextLost) return;
+    const frameMs = performance.now() - lastFrameMs;
+    lastFrameMs += frameMs;
+    if (governor.note(frameMs)) resize();
+    views.update(nowS());
+    scene.render(nowS());
+    ++framesShown;
+    if (lastFrameMs - fpsSinceMs >= 500) {
+      displayFps = (framesShown * 1000) / (lastFrameMs - fpsSinceMs);
+      framesShown = 0;
+      fpsSinceMs = lastFrameMs;
+      hud.display(displayFps, [quality.remark, governor.remark()].filter(Boolean).join("; "));
+    }
+  });
+
+  // For tests and the curious: real values, read-only.
+  const spindrift = {
+    stats: () => {
+      const surface = scene.newestSurface();
+      const range = surface && elevationRangeM(surface);
+      return {
+        framesReceived: { surface: 0, particles: 0, diagnostics: 0, ...link?.receivedCount },
+        malformedCount: link?.malformedCount ?? 0,
+        overtakenCount: link?.overtakenCount ?? 0,
+        latencyMs: link?.latencyMs ?? null,
+        simTime: simTimeS,
+        lastAck,
+        minElevationM: range?.minM ?? null,
+        maxElevationM: range?.maxM ?? null,
+        connectionState: describeState(state),
+        displayFps,
+        pixelRatio: governor.pixelRatio,
+        paused,
+      };
+    },
+  };
+  Object.defineProperty(window, "spindrift", { value: Object.freeze(spindrift) });
+
+  hud.connection(state);
+  views.enter(16);
+  resize();
+  client.start(socketUrl(location));
+}
+
+main();

@@ -1,0 +1,66 @@
+// Counts what arrives and turns it into rates: kB/s, frames/s, latency. Frames of two layers with one tick are one frame.
+import type { LinkStats } from "./messages";
+
+const kRoundTripsKept = 5;
+
+export class LinkMeter {
+  private readonly receivedCount = { surface: 0, particles: 0, diagnostics: 0 };
+  private malformedCount = 0;
+  private lastMalformed = "";
+  private bytesCount = 0;
+  private frameCount = 0;
+  private lastTick = -1;
+  private kilobytesPerS = 0;
+  private framesPerS = 0;
+  private roundTripsMs: number[] = [];
+
+  constructor(private sinceMs: number) {}
+
+  bytes(count: number): void {
+    this.bytesCount += count;
+  }
+
+  frame(layer: "surface" | "particles", tick: number): void {
+    ++this.receivedCount[layer];
+    if (tick !== this.lastTick) ++this.frameCount;
+    this.lastTick = tick;
+  }
+
+  diagnostics(): void {
+    ++this.receivedCount.diagnostics;
+  }
+
+  malformed(reason: string): void {
+    ++this.malformedCount;
+    this.lastMalformed = reason;
+  }
+
+  roundTrip(ms: number): void {
+    if (!Number.isFinite(ms) || ms < 0) return;
+    this.roundTripsMs.push(ms);
+    if (this.roundTripsMs.length > kRoundTripsKept) this.roundTripsMs.shift();
+  }
+
+  forgetRoundTrips(): void {
+    this.roundTripsMs = [];
+  }
+
+  /** Rates since the call before this one; both smoothed over about a second. */
+  measure(nowMs: number): Omit<LinkStats, "overtakenCount"> {
+    const seconds = (nowMs - this.sinceMs) / 1000;
+    if (seconds > 0) {
+      this.kilobytesPerS += (this.bytesCount / 1000 / seconds - this.kilobytesPerS) * 0.6;
+      this.framesPerS += (this.frameCount / seconds - this.framesPerS) * 0.6;
+      this.bytesCount = this.frameCount = 0;
+      this.sinceMs = nowMs;
+    }
+    return {
+      kilobytesPerS: this.kilobytesPerS,
+      framesPerS: this.framesPerS,
+      latencyMs: this.roundTripsMs.length ? Math.min(...this.roundTripsMs) : undefined,
+      receivedCount: { ...this.receivedCount },
+      malformedCount: this.malformedCount,
+      lastMalformed: this.lastMalformed,
+    };
+  }
+}

@@ -1,0 +1,66 @@
+// What the page and the worker say to each other by postMessage. Frames travel as transferred ArrayBuffers; the page
+// gives every one back with "release", which is what bounds the frames under way.
+import type { MessageInitShape } from "@bufbuild/protobuf";
+
+import type { GreetingInfo } from "../codec/greeting";
+import type { DiagnosticsInfo, ParticleHeader, SurfaceHeader } from "../codec/parse";
+import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";
+
+/** A command's action as plain data, one member of the oneof in wire.proto. */
+export type CommandAction = Exclude<
+  NonNullable<MessageInitShape<typeof CommandSchema>["action"]>,
+  { case: undefined }
+>;
+
+export type ConnectionState =
+  | { name: "connecting" }
+  | { name: "live" }
+  | { name: "retrying"; inS: number; why: string }
+  | { name: "refused"; reason: string };
+
+export type FrameLayer = "surface" | "particles";
+
+export interface SurfaceFrame extends SurfaceHeader {
+  layer: "surface";
+  /** resolutionCount^2 little-endian int16. */
+  buffer: ArrayBuffer;
+}
+
+export interface ParticleFrame extends ParticleHeader {
+  layer: "particles";
+  /** 12 bytes a particle, as on the wire. */
+  buffer: ArrayBuffer;
+}
+
+export type Frame = SurfaceFrame | ParticleFrame;
+
+/** Measured over the last half second; counts since the page was opened. */
+export interface LinkStats {
+  kilobytesPerS: number;
+  framesPerS: number;
+  /** Lowest round trip of the last pings, or undefined before the first answer. */
+  latencyMs: number | undefined;
+  receivedCount: Record<FrameLayer | "diagnostics", number>;
+  malformedCount: number;
+  lastMalformed: string;
+  /** Frames that a newer one overtook because the page was busy. */
+  overtakenCount: number;
+}
+
+export type PageToWorker =
+  | { type: "start"; url: string }
+  | { type: "command"; commandId: number; action: CommandAction }
+  | { type: "release"; layer: FrameLayer; buffer: ArrayBuffer }
+  | { type: "visible"; visible: boolean }
+  | { type: "retry" };
+
+export type WorkerToPage =
+  | { type: "state"; state: ConnectionState }
+  | { type: "greeting"; greeting: GreetingInfo }
+  | { type: "frame"; frame: Frame }
+  | { type: "diagnostics"; diagnostics: DiagnosticsInfo }
+  | { type: "ack"; commandId: number; appliedTick: number }
+  | { type: "reject"; commandId: number; reason: string; field: string; message: string }
+  | { type: "parameterChanged"; path: string; value: number }
+  | { type: "roomState"; paused: boolean; speed: number }
+  | { type: "stats"; stats: LinkStats };

@@ -1,0 +1,29 @@
+// Elevations on the CPU, straight from a frame's int16: for clicks and for the extremes, never for drawing.
+import type { SurfaceFrame } from "../net/messages";
+
+/** Bilinear elevation in metres at (x, z); beyond the water's edge the edge's. */
+export function elevationAtM(frame: SurfaceFrame, xM: number, zM: number): number {
+  const n = frame.resolutionCount;
+  const samples = new Int16Array(frame.buffer);
+  const u = Math.min(Math.max((xM / frame.sideM + 0.5) * n - 0.5, 0), n - 1);
+  const v = Math.min(Math.max((zM / frame.sideM + 0.5) * n - 0.5, 0), n - 1);
+  const i = Math.min(Math.floor(u), n - 2);
+  const k = Math.min(Math.floor(v), n - 2);
+  const fu = u - i;
+  const fv = v - k;
+  const at = (di: number, dk: number): number => samples[(k + dk) * n + i + di]!;
+  const low = at(0, 0) * (1 - fu) + at(1, 0) * fu;
+  const high = at(0, 1) * (1 - fu) + at(1, 1) * fu;
+  return (low * (1 - fv) + high * fv) * frame.quantumM;
+}
+
+/** Lowest and highest elevation of the frame, metres. */
+export function elevationRangeM(frame: SurfaceFrame): { minM: number; maxM: number } {
+  let min = 32767;
+  let max = -32768;
+  for (const sample of new Int16Array(frame.buffer)) {
+    if (sample < min) min = sample;
+    if (sample > max) max = sample;
+  }
+  return { minM: min * frame.quantumM, maxM: max * frame.quantumM };
+}

@@ -1,0 +1,55 @@
+// The shader texts with their shared parts put in, and the one way to make a material of them.
+import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
+
+import cellHash from "./shaders/cell_hash.glsl?raw";
+import fieldFrag from "./shaders/field.frag?raw";
+import fullscreenVert from "./shaders/fullscreen.vert?raw";
+import groundFrag from "./shaders/ground.frag?raw";
+import groundVert from "./shaders/ground.vert?raw";
+import particleFrag from "./shaders/particle.frag?raw";
+import particleVert from "./shaders/particle.vert?raw";
+import presentFrag from "./shaders/present.frag?raw";
+import sky from "./shaders/sky.glsl?raw";
+import skyBakeFrag from "./shaders/sky_bake.frag?raw";
+import skyBakeVert from "./shaders/sky_bake.vert?raw";
+import skyDomeFrag from "./shaders/sky_dome.frag?raw";
+import skyDomeVert from "./shaders/sky_dome.vert?raw";
+import waterFrag from "./shaders/water.frag?raw";
+import waterVert from "./shaders/water.vert?raw";
+
+const kPrograms = {
+  field: [fullscreenVert, fieldFrag],
+  ground: [groundVert, groundFrag],
+  particle: [particleVert, particleFrag],
+  present: [fullscreenVert, presentFrag],
+  skyBake: [skyBakeVert, skyBakeFrag],
+  skyDome: [skyDomeVert, skyDomeFrag],
+  water: [waterVert, waterFrag],
+} as const;
+
+// Samplers default to low precision in GLSL ES, which would round elevations on phones.
+const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].map((t) => `precision highp ${t};\n`).join("");
+
+function expand(source: string): string {
+  return kPrecision + source.replace("#include <sky>", sky).replace("#include <cell_hash>", cellHash);
+}
+
+export type Uniforms = Record<string, IUniform>;
+
+/** A GLSL ES 3.00 material; `uniforms` is used as it is, so that materials can share entries. */
+export function makeMaterial(
+  program: keyof typeof kPrograms,
+  uniforms: Uniforms,
+  parameters: ShaderMaterialParameters = {},
+): RawShaderMaterial {
+  const [vertex, fragment] = kPrograms[program];
+  return new RawShaderMaterial({
+    name: program,
+    glslVersion: GLSL3,
+    vertexShader: expand(vertex),
+    fragmentShader: expand(fragment),
+    uniforms,
+    toneMapped: false,
+    ...parameters,
+  });
+}

@@ -1,0 +1,84 @@
+// The water's skin: mirrored sky by Fresnel, and through it what was drawn before, bent by the slope, its colour absorbed
+// along the path in the water (Beer-Lambert, a per channel), and replaced by scattered light.
+#include <sky>
+
+in vec3 v_world;
+in float v_view_z;
+in float v_top_m;
+#ifdef SKIRT
+in vec3 v_side_normal;
+#endif
+
+uniform vec3 u_camera_m;
+uniform mat4 viewMatrix;
+uniform sampler2D u_field;
+uniform sampler2D u_behind;
+uniform sampler2D u_behind_depth;
+uniform vec2 u_resolution;
+uniform vec2 u_near_far_m;
+uniform float u_side_m;
+uniform float u_depth_m;
+layout(location = 0) out vec4 color;
+
+const vec3 kAbsorptionPerM = vec3(0.62, 0.13, 0.085);
+
+float viewZ(float depth) {
+  float near = u_near_far_m.x, far = u_near_far_m.y;
+  return near * far / ((far - near) * depth - far);
+}
+
+// Way from `from` along `direction` to the sides or the floor of the water.
+float wayOut(vec3 from, vec3 direction) {
+  vec3 high = vec3(0.5 * u_side_m, 1e3, 0.5 * u_side_m);
+  vec3 low = vec3(-0.5 * u_side_m, -u_depth_m, -0.5 * u_side_m);
+  vec3 safe = mix(vec3(1e-6), direction, step(vec3(1e-6), abs(direction)));
+  vec3 t = max((high - from) / safe, (low - from) / safe);
+  return max(min(t.x, min(t.y, t.z)), 0.0);
+}
+
+void main() {
+  vec2 uv = gl_FragCoord.xy / u_resolution;
+  if (texture(u_behind_depth, uv).r < gl_FragCoord.z) discard;
+
+  vec3 from_eye = v_world - u_camera_m;
+  float distance_m = length(from_eye);
+  vec3 ray = from_eye / distance_m;
+#ifdef SKIRT
+  vec3 normal = v_side_normal;
+#else
+  vec4 field = texture(u_field, v_world.xz / u_side_m + 0.5);
+  vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
+  if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
+#endif
+
+  // What lies behind, shifted as by refraction; where the shift would catch something in front, look straight instead.
+  vec3 bent = refract(ray, normal, 0.75);
+  float straight_m = distance_m * (viewZ(texture(u_behind_depth, uv).r) / v_view_z - 1.0);
+  float reach_m = clamp(min(straight_m, wayOut(v_world, ray)), 0.0, 0.8);
+  vec3 shift = mat3(viewMatrix) * (bent - ray) * reach_m;
+  vec2 shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
+  if (texture(u_behind_depth, shifted_uv).r < gl_FragCoord.z) shifted_uv = uv;
+  vec3 behind = texture(u_behind, shifted_uv).rgb;
+  float behind_m = distance_m * (viewZ(texture(u_behind_depth, shifted_uv).r) / v_view_z - 1.0);
+  float path_m = clamp(behind_m, 0.0, wayOut(v_world, ray));
+
+  vec3 passed = exp(-kAbsorptionPerM * path_m);
+  float lifted = smoothstep(-0.5, 0.9, v_top_m);
+  vec3 scattered = mix(vec3(0.008, 0.085, 0.15), vec3(0.035, 0.30, 0.36), lifted) * 1.25;
+  float against_sun = pow(max(dot(ray, u_sun_direction), 0.0), 2.0);
+  scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
+  vec3 under = behind * passed + scattered * (1.0 - exp(-0.55 * path_m));
+
+  float facing = clamp(-dot(normal, ray), 0.0, 1.0);
+  float fresnel = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
+  vec3 mirrored = reflect(ray, normal);
+#ifdef SKIRT
+  float rim = smoothstep(0.07, 0.0, v_top_m - v_world.y);
+  vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
+#else
+  mirrored.y = abs(mirrored.y);
+  float glint = pow(max(dot(mirrored, u_sun_direction), 0.0), 420.0) * 9.0 + pow(max(dot(mirrored, u_sun_direction), 0.0), 48.0) * 0.35;
+  vec3 water = mix(under, skyLight(mirrored), fresnel) + kSunColor * glint * (0.15 + fresnel);
+#endif
+  color = vec4(toDisplay(water), 1.0);
+}

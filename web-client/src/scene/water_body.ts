@@ -1,0 +1,104 @@
+// The water as one body: a grid lifted by the field, and a skirt round it down to the floor.
+import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Group, Mesh, Vector2, Vector3, type RawShaderMaterial, type Texture } from "three";
+
+import { makeMaterial, type Uniforms } from "./shaders";
+import type { Sky } from "./sky";
+
+export interface BehindTextures {
+  color: Texture;
+  depth: Texture;
+}
+
+/** Unit grid, x and z in -1/2..1/2, `cellsCount` cells a side, y = 1 ("on the surface" for the shader). */
+function makeGrid(cellsCount: number): BufferGeometry {
+  const pointsCount = cellsCount + 1;
+  const positions = new Float32Array(pointsCount * pointsCount * 3);
+  let at = 0;
+  for (let k = 0; k < pointsCount; ++k)
+    for (let i = 0; i < pointsCount; ++i) {
+      positions[at++] = i / cellsCount - 0.5;
+      positions[at++] = 1;
+      positions[at++] = k / cellsCount - 0.5;
+    }
+  const index = new Uint32Array(cellsCount * cellsCount * 6);
+  at = 0;
+  for (let k = 0; k < cellsCount; ++k)
+    for (let i = 0; i < cellsCount; ++i) {
+      const corner = k * pointsCount + i;
+      for (const vertex of [corner, corner + pointsCount, corner + 1, corner + 1, corner + pointsCount, corner + pointsCount + 1])
+        index[at++] = vertex;
+    }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setIndex(new BufferAttribute(index, 1));
+  return geometry;
+}
+
+/** Four strips, each `cellsCount` quads from the surface (y = 1) to the floor (y = 0), normals outward. */
+function makeSkirt(cellsCount: number): BufferGeometry {
+  const positions: number[] = [];
+  const normals: number[] = [];
+  const index: number[] = [];
+  const sides: [number, number][] = [[0, 1], [1, 0], [0, -1], [-1, 0]];
+  for (const [nx, nz] of sides) {
+    const first = positions.length / 3;
+    for (let i = 0; i <= cellsCount; ++i) {
+      const along = i / cellsCount - 0.5;
+      const x = nx * 0.5 + nz * along;
+      const z = nz * 0.5 - nx * along;
+      positions.push(x, 1, z, x, 0, z);
+      normals.push(nx, 0, nz, nx, 0, nz);
+      if (i === cellsCount) continue;
+      const top = first + 2 * i;
+      index.push(top, top + 1, top + 2, top + 2, top + 1, top + 3);
+    }
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions), 3));
+  geometry.setAttribute("normal", new BufferAttribute(new Float32Array(normals), 3));
+  geometry.setIndex(index);
+  return geometry;
+}
+
+export class WaterBody {
+  readonly group = new Group();
+  private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
+  private readonly uniforms: Uniforms;
+
+  constructor(sky: Sky, field: Texture, behind: BehindTextures, sideM: number, depthM: number, cellsCount: number) {
+    this.uniforms = {
+      ...sky.uniforms,
+      u_field: { value: field },
+      u_behind: { value: behind.color },
+      u_behind_depth: { value: behind.depth },
+      u_camera_m: { value: new Vector3() },
+      u_resolution: { value: new Vector2(1, 1) },
+      u_near_far_m: { value: new Vector2(1, 2) },
+      u_side_m: { value: sideM },
+      u_depth_m: { value: depthM },
+    };
+    this.meshes = [
+      new Mesh(makeGrid(cellsCount), makeMaterial("water", this.uniforms, { side: DoubleSide })),
+      new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { SKIRT: 1 } })),
+    ];
+    for (const mesh of this.meshes) {
+      mesh.frustumCulled = false;
+      this.group.add(mesh);
+    }
+  }
+
+  update(cameraM: Vector3, nearM: number, farM: number, behind: BehindTextures, widthPx: number, heightPx: number): void {
+    (this.uniforms["u_camera_m"]!.value as Vector3).copy(cameraM);
+    (this.uniforms["u_near_far_m"]!.value as Vector2).set(nearM, farM);
+    (this.uniforms["u_resolution"]!.value as Vector2).set(widthPx, heightPx);
+    this.uniforms["u_behind"]!.value = behind.color;
+    this.uniforms["u_behind_depth"]!.value = behind.depth;
+  }
+
+  dispose(): void {
+    for (const mesh of this.meshes) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
+  }
+}

@@ -1,0 +1,95 @@
+// The numbers: what the server measured and what the page measured. Every value is written as it arrives.
+import type { DiagnosticsInfo } from "../codec/parse";
+import type { ConnectionState, LinkStats } from "../net/messages";
+import { byId, make, setText } from "./dom";
+
+export function describeState(state: ConnectionState): string {
+  switch (state.name) {
+    case "connecting":
+      return "connecting";
+    case "live":
+      return "live";
+    case "retrying":
+      return `retrying in ${state.inS < 1 ? state.inS.toFixed(1) : Math.round(state.inS)} s`;
+    case "refused":
+      return `refused: ${state.reason}`;
+  }
+}
+
+export class Hud {
+  private readonly simTime = byId("sim-time");
+  private readonly rtf = byId("rtf");
+  private readonly netFps = byId("net-fps");
+  private readonly displayFps = byId("display-fps");
+  private readonly kbps = byId("kbps");
+  private readonly latency = byId("latency");
+  private readonly particles = byId("particles");
+  private readonly stepMs = byId("step-ms");
+  private readonly substeps = byId("substeps");
+  private readonly device = byId("device");
+  private readonly state = byId("state");
+  private readonly retry = byId("retry");
+  private readonly lastAck = byId("last-ack");
+  private readonly passes = byId("passes");
+  private readonly remark = byId("remark");
+  private readonly health = byId("health");
+
+  diagnostics(d: DiagnosticsInfo): void {
+    setText(this.simTime, `${d.timeS.toFixed(2)} s`);
+    setText(this.rtf, `${d.realTimeFactor.toFixed(2)} ×`);
+    setText(this.particles, d.particleCount.toLocaleString("en"));
+    setText(this.stepMs, `${d.stepMs.toFixed(2)} ms`);
+    setText(this.substeps, String(d.substepsCount));
+    const trouble = [
+      [d.nonfiniteCount, "non-finite values"],
+      [d.escapedCount, "escaped particles"],
+      [d.recoveredCount, "recoveries"],
+    ].filter(([count]) => (count as number) > 0);
+    setText(this.health, trouble.map(([count, what]) => `${count} ${what}`).join(", ") || "healthy");
+    this.health.classList.toggle("trouble", trouble.length > 0);
+    this.writePasses(d);
+  }
+
+  link(stats: LinkStats): void {
+    setText(this.netFps, stats.framesPerS.toFixed(1));
+    setText(this.kbps, stats.kilobytesPerS.toFixed(stats.kilobytesPerS < 10 ? 1 : 0));
+    setText(this.latency, stats.latencyMs === undefined ? "–" : `${stats.latencyMs.toFixed(1)} ms`);
+  }
+
+  display(framesPerS: number, remark: string): void {
+    setText(this.displayFps, framesPerS.toFixed(0));
+    setText(this.remark, remark);
+    this.remark.hidden = remark === "";
+  }
+
+  connection(state: ConnectionState): void {
+    setText(this.state, describeState(state));
+    this.state.dataset["state"] = state.name;
+    this.state.title = state.name === "retrying" ? state.why : "";
+    this.retry.hidden = state.name !== "retrying" && state.name !== "refused";
+  }
+
+  deviceIs(device: string): void {
+    setText(this.device, device);
+    this.device.title = device;
+  }
+
+  acked(commandId: number, appliedTick: number): void {
+    setText(this.lastAck, `command ${commandId} at tick ${appliedTick}`);
+  }
+
+  private writePasses(d: DiagnosticsInfo): void {
+    while (this.passes.children.length > d.passes.length) this.passes.lastElementChild!.remove();
+    d.passes.forEach(({ name, ms }, at) => {
+      let row = this.passes.children[at] as HTMLElement | undefined;
+      if (!row) {
+        row = make("li", {}, [make("span"), make("span", { class: "bar" }), make("span")]);
+        this.passes.append(row);
+      }
+      const [label, bar, value] = [...row.children] as HTMLElement[];
+      setText(label!, name);
+      setText(value!, `${ms.toFixed(2)} ms`);
+      bar!.style.setProperty("--share", `${Math.min((ms / Math.max(d.stepMs, 1e-6)) * 100, 100)}%`);
+    });
+  }
+}

@@ -1,0 +1,44 @@
+// The scene's parameters as sliders, made from the greeting.
+import type { ParameterInfo } from "../codec/greeting";
+import type { CommandAction } from "../net/messages";
+import { SliderModel } from "./slider_model";
+import { SliderRow } from "./slider_row";
+
+export class ParametersPanel {
+  private models = new Map<string, SliderModel>();
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly send: (action: CommandAction) => number,
+  ) {}
+
+  enter(parameters: ParameterInfo[]): void {
+    for (const model of this.models.values()) model.dispose();
+    this.models = new Map();
+    this.root.replaceChildren();
+    for (const info of parameters) {
+      const { path } = info;
+      const row: SliderRow = new SliderRow(path, info, info.value, info.help, (value) => model.input(value));
+      const model: SliderModel = new SliderModel(info.value, {
+        send: (value) => this.send({ case: "setParameter", value: { path, value } }),
+        setTimer: (callback, ms) => window.setTimeout(callback, ms),
+        clearTimer: (timer) => window.clearTimeout(timer),
+        changed: () => row.show(model.shownValue, model.error),
+      });
+      this.models.set(path, model);
+      this.root.append(row.element);
+    }
+  }
+
+  ack(commandId: number): boolean {
+    return [...this.models.values()].some((model) => model.ack(commandId));
+  }
+
+  reject(commandId: number, message: string): boolean {
+    return [...this.models.values()].some((model) => model.reject(commandId, message));
+  }
+
+  serverSays(path: string, value: number): void {
+    this.models.get(path)?.serverSays(value);
+  }
+}

@@ -1,0 +1,19 @@
+// One line that says what became of a command, for a few seconds.
+import { setText } from "./dom";
+
+const kShownMs = 4000;
+
+export class Toast {
+  private timer: number | undefined;
+
+  constructor(private readonly element: HTMLElement) {}
+
+  show(text: string, tone: "good" | "bad"): void {
+    setText(this.element, text);
+    this.element.dataset["tone"] = tone;
+    this.element.classList.add("shown");
+    if (this.timer !== undefined) window.clearTimeout(this.timer);
+    // The text stays for those who read it late (and for screen readers); only its display fades.
+    this.timer = window.setTimeout(() => this.element.classList.remove("shown"), kShownMs);
+  }
+}
