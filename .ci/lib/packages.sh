@@ -38,7 +38,7 @@ run_as_root() {
   if ((EUID == 0)); then
     "$@"
   elif command -v sudo >/dev/null; then
-    sudo -- "$@"
+    if is_interactive; then sudo -- "$@"; else sudo --non-interactive -- "$@"; fi
   else
     return 127
   fi

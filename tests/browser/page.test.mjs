@@ -1,0 +1,211 @@
+// The page in Chromium against the real server: what people see, click and get back. One browser, one server, tests in
+// order; every wait is for something to happen, with a limit generous enough for WebGL in software on two cores.
+import assert from "node:assert/strict";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, describe, it } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+
+import { chromium } from "playwright-core";
+
+import { measure, shootWater } from "./pixels.mjs";
+import { startServer } from "./server.mjs";
+
+const WAIT_MS = 60_000;
+const executable = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
+const slow = { skip, timeout: 4 * WAIT_MS };
+
+let server;
+let profile;
+let context;
+let page;
+/** What the browser complained about, in its words. */
+const complaints = [];
+/** While the server is down on purpose, a refused connection is no complaint. */
+let is_server_down = false;
+
+async function openPage() {
+  const opened = await context.newPage();
+  opened.on("pageerror", (error) => complaints.push(`uncaught: ${error.stack ?? error.message}`));
+  opened.on("console", (message) => {
+    if (message.type() !== "error") return;
+    if (is_server_down && /WebSocket connection|ERR_CONNECTION/.test(message.text())) return;
+    complaints.push(`console: ${message.text()} (${message.location().url})`);
+  });
+  await opened.goto(`${server.url}?quality=low`, { timeout: WAIT_MS });
+  await waitFor(opened, "the page to be live", (stats) => stats.state === "live" && stats.framesReceived.surface > 0);
+  return opened;
+}
+
+const statsOf = (target) => target.evaluate(() => window.spindrift?.stats());
+
+/** Waits until `accept(stats)` holds; fails with the last numbers. */
+async function waitFor(target, what, accept) {
+  const deadline_ms = Date.now() + WAIT_MS;
+  for (;;) {
+    const stats = await statsOf(target);
+    if (stats !== undefined && accept(stats)) return stats;
+    assert.ok(Date.now() < deadline_ms, `waited ${WAIT_MS / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
+    await sleep(100);
+  }
+}
+
+/** The number that a value of the panel shows. */
+async function shown(target, test_id) {
+  const text = (await target.getByTestId(test_id).textContent()) ?? "";
+  const match = /-?\d[\d,. \u202f]*/.exec(text);
+  assert.ok(match, `"${test_id}" shows no number: "${text}"`);
+  return Number(match[0].replace(/[, \u202f]/g, ""));
+}
+
+/** Presses and returns once the server acknowledged a command newer than the last. */
+async function acknowledged(target, press) {
+  const last = (await statsOf(target)).lastAck?.commandId ?? 0;
+  await press();
+  await waitFor(target, "an acknowledgement", (stats) => (stats.lastAck?.commandId ?? 0) > last);
+}
+
+/** Still water to begin with: the elevations of every test start from zero. */
+async function stillWater(target) {
+  await acknowledged(target, () => target.getByTestId("reset").click());
+  await waitFor(target, "still water", (stats) => stats.surfaceMax - stats.surfaceMin < 0.02);
+}
+
+/** A test that needs the first one to have worked. */
+function step(name, body) {
+  it(name, slow, async () => {
+    assert.ok(page, "the page never came up");
+    await body();
+  });
+}
+
+describe("the page in Chromium", { concurrency: 1 }, () => {
+  it("opens the page of a fresh server and goes live", slow, async () => {
+    server = await startServer();
+    profile = mkdtempSync(join(tmpdir(), "spindrift-chromium-"));
+    context = await chromium.launchPersistentContext(profile, {
+      executablePath: executable,
+      headless: true,
+      viewport: { width: 900, height: 600 },
+      args: [
+        "--no-sandbox",
+        "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader",
+        "--disable-quic",
+        "--no-first-run",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+      ],
+    });
+    page = await openPage();
+  });
+
+  after(
+    async () => {
+      await context?.close();
+      await server?.stop("SIGKILL");
+      if (profile) rmSync(profile, { recursive: true, force: true, maxRetries: 10 });
+    },
+    { timeout: WAIT_MS },
+  );
+
+  step("shows a simulation that runs: time, speed, frames, bytes, latency", async () => {
+    const first = await statsOf(page);
+    await waitFor(page, "simulated time to advance by a second", (stats) => stats.simTime > first.simTime + 1);
+    await waitFor(page, "ten more surface frames", (stats) => stats.framesReceived.surface > first.framesReceived.surface + 10);
+    await waitFor(page, "diagnostics", (stats) => stats.framesReceived.diagnostics > 0);
+    await page.waitForFunction(() => /\d/.test(document.querySelector('[data-testid="latency"]')?.textContent ?? ""), undefined, { timeout: WAIT_MS });
+    assert.ok((await shown(page, "sim-time")) > 0);
+    assert.ok((await shown(page, "net-fps")) > 0);
+    assert.ok((await shown(page, "display-fps")) > 0);
+    assert.ok((await shown(page, "kbps")) > 0);
+    const speed = await shown(page, "rtf");
+    assert.ok(speed > 0 && speed < 5, `real-time factor ${speed}`);
+    const latency_ms = await shown(page, "latency");
+    assert.ok(latency_ms >= 0 && latency_ms < WAIT_MS, `latency ${latency_ms} ms`);
+    const particle_count = await shown(page, "particles");
+    assert.ok(particle_count > 500 && particle_count < 2000, `${particle_count} particles in a scene that asks for 1024`);
+    assert.match(await page.getByTestId("passes").innerText(), /\d/);
+    assert.equal((await statsOf(page)).malformedCount, 0);
+  });
+
+  step("draws water, not one colour", async () => {
+    const picture = await measure(page, await shootWater(page));
+    assert.ok(picture.colour_count >= 12, `only ${picture.colour_count} colours`);
+    assert.ok(picture.deviation > 3, `brightness varies by ${picture.deviation.toFixed(2)} of 255 only`);
+  });
+
+  step("turns a click on the water into a splash that moves the surface and the picture", async () => {
+    await stillWater(page);
+    const before_click = await shootWater(page);
+    const box = await page.locator("canvas").first().boundingBox();
+    await acknowledged(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.55));
+    await waitFor(page, "the surface to move", (stats) => stats.surfaceMax - stats.surfaceMin > 0.1);
+    const picture = await measure(page, before_click, await shootWater(page));
+    assert.ok(picture.changed_ratio > 0.005, `${(100 * picture.changed_ratio).toFixed(2)} % of the pixels changed`);
+  });
+
+  step("splashes and rolls a breaking wave at the press of a button", async () => {
+    for (const button of ["splash", "wave"]) {
+      await stillWater(page);
+      await acknowledged(page, () => page.getByTestId(button).click());
+      await waitFor(page, `the surface to move after "${button}"`, (stats) => stats.surfaceMax - stats.surfaceMin > 0.1);
+      assert.match(await page.getByTestId("last-ack").innerText(), /\d/);
+    }
+  });
+
+  step("pauses and resumes for everybody, and a slider moved here moves there", async () => {
+    const other = await openPage();
+    await acknowledged(page, () => page.getByTestId("pause").click());
+    await waitFor(other, "the other page to hear of the pause", (stats) => stats.paused === true);
+    await acknowledged(page, () => page.getByTestId("pause").click());
+    const resumed = await waitFor(other, "the other page to hear of the end of the pause", (stats) => stats.paused === false);
+    await waitFor(other, "time to go on", (stats) => stats.simTime > resumed.simTime);
+
+    const slider = (target) => target.getByRole("slider", { name: /viscosity/i });
+    assert.equal(await slider(other).inputValue(), await slider(page).inputValue());
+    await acknowledged(page, () => slider(page).fill("55"));
+    const deadline_ms = Date.now() + WAIT_MS;
+    while ((await slider(other).inputValue()) !== "55") {
+      assert.ok(Date.now() < deadline_ms, `the other page's slider stands at ${await slider(other).inputValue()}`);
+      await sleep(100);
+    }
+    await other.close();
+  });
+
+  step("comes back by itself after the server was killed and started again", async () => {
+    is_server_down = true;
+    await server.stop("SIGKILL");
+    await waitFor(page, "the page to notice", (stats) => stats.state === "retrying");
+    const last = await statsOf(page);
+    server = await startServer(server.port);
+    await waitFor(page, "the page to be live again", (stats) => stats.state === "live");
+    await waitFor(page, "new frames", (stats) => stats.framesReceived.surface > last.framesReceived.surface);
+    is_server_down = false;
+    await acknowledged(page, () => page.getByTestId("splash").click());
+  });
+
+  step("is told 1001 when the server is asked to end, and the server ends with code 0", async () => {
+    // The page's own socket lives in a worker; a second one in the page sees the close code directly.
+    await page.evaluate(
+      () =>
+        new Promise((resolve, reject) => {
+          const socket = new WebSocket(`ws://${location.host}/ws`, "spindrift.v1");
+          window.__close_code = new Promise((closed) => socket.addEventListener("close", (event) => closed(event.code)));
+          socket.addEventListener("open", () => resolve());
+          socket.addEventListener("error", () => reject(new Error("the second socket was refused")));
+        }),
+    );
+    is_server_down = true;
+    const end = await server.stop("SIGTERM");
+    assert.deepEqual(end, { code: 0, signal: null });
+    assert.equal(await page.evaluate(() => window.__close_code), 1001);
+  });
+
+  step("raised no error and broke no content policy in all of that", () => {
+    assert.deepEqual(complaints, []);
+  });
+});

@@ -1,0 +1,46 @@
+// What a screenshot shows, measured. The browser itself decodes the PNG, so no library is needed.
+
+/** A PNG of the middle of the canvas, where no panel lies over the water. */
+export async function shootWater(page) {
+  const box = await page.locator("canvas").first().boundingBox();
+  const clip = { x: box.x + box.width * 0.3, y: box.y + box.height * 0.25, width: box.width * 0.4, height: box.height * 0.5 };
+  return page.screenshot({ clip, timeout: 120_000 });
+}
+
+/**
+ * Measures one PNG, or one against another of the same size.
+ * @returns {Promise<{colour_count: number, deviation: number, changed_ratio: number}>} different colours (of 4096),
+ *   standard deviation of the brightness (0..128), share of pixels whose brightness differs by more than 6 of 255
+ */
+export async function measure(page, png, other = png) {
+  return page.evaluate(
+    async ([first, second]) => {
+      const decode = async (base64) => {
+        const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+        const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+        const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+        const context = canvas.getContext("2d");
+        context.drawImage(bitmap, 0, 0);
+        return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+      };
+      const a = await decode(first);
+      const b = await decode(second);
+      const brightness = (data, i) => 0.2126 * data[i] + 0.7152 * data[i + 1] + 0.0722 * data[i + 2];
+      const colours = new Set();
+      let sum = 0;
+      let squares = 0;
+      let changed = 0;
+      for (let i = 0; i < a.length; i += 4) {
+        colours.add(((a[i] >> 4) << 8) | ((a[i + 1] >> 4) << 4) | (a[i + 2] >> 4));
+        const value = brightness(a, i);
+        sum += value;
+        squares += value * value;
+        if (Math.abs(value - brightness(b, i)) > 6) changed += 1;
+      }
+      const count = a.length / 4;
+      const mean = sum / count;
+      return { colour_count: colours.size, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)), changed_ratio: changed / count };
+    },
+    [png.toString("base64"), other.toString("base64")],
+  );
+}

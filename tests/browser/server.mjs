@@ -1,0 +1,56 @@
+// The real server as a child process: started on a port, told apart by its own line, stopped by signal.
+import { spawn } from "node:child_process";
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
+
+export const repository = fileURLToPath(new URL("../..", import.meta.url));
+const binary = process.env.SPINDRIFT_BINARY ?? `${repository}/build/release/bin/spindrift`;
+const START_LIMIT_MS = 120_000;
+const STOP_LIMIT_MS = 30_000;
+
+/**
+ * Starts `spindrift serve` with the built page and the scene of this folder.
+ * @param {number} port 0 = any free port
+ * @returns {Promise<{url: string, port: number, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
+ *   rejects with the server's own words when it ends before it is ready, or after 120 s
+ */
+export function startServer(port = 0) {
+  const child = spawn(
+    binary,
+    ["serve", "--port", String(port), "--web-root", `${repository}/web-client/dist`, "--scene", `${repository}/tests/browser/scene.textproto`],
+    { stdio: ["ignore", "pipe", "pipe"] },
+  );
+  let words = "";
+  child.stderr.setEncoding("utf8").on("data", (text) => {
+    words = (words + text).slice(-4000);
+  });
+  const ended = new Promise((resolve) => {
+    child.on("error", (error) => resolve({ code: null, signal: null, error }));
+    child.on("exit", (code, signal) => resolve({ code, signal }));
+  });
+
+  return new Promise((resolve, reject) => {
+    const timer = setTimeout(() => {
+      child.kill("SIGKILL");
+      reject(new Error(`the server was not ready after ${START_LIMIT_MS / 1000} s:\n${words}`));
+    }, START_LIMIT_MS);
+    ended.then(({ code, signal, error }) => {
+      clearTimeout(timer);
+      reject(error ?? new Error(`the server ended before it was ready (code ${code}, signal ${signal}):\n${words}`));
+    });
+    createInterface({ input: child.stdout }).on("line", (line) => {
+      const match = /^Spindrift is ready: (http:\/\/[^/]+:(\d+)\/)/.exec(line);
+      if (!match) return;
+      clearTimeout(timer);
+      resolve({ url: match[1], port: Number(match[2]), stop: (signal) => stop(child, ended, signal) });
+    });
+  });
+}
+
+async function stop(child, ended, signal) {
+  const timer = setTimeout(() => child.kill("SIGKILL"), STOP_LIMIT_MS);
+  child.kill(signal);
+  const { code, signal: last_signal } = await ended;
+  clearTimeout(timer);
+  return { code, signal: last_signal };
+}

@@ -1,0 +1,117 @@
+// The bundle in a root folder that holds nothing but the C library, a shell and five small tools: no driver, no C++
+// runtime, no Spindrift elsewhere. What runs there runs on a bare machine.
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, realpathSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, dirname, join } from "node:path";
+import { createInterface } from "node:readline";
+import { after, before, describe, it } from "node:test";
+
+import { repository } from "./workshop.mjs";
+
+const TOOLS = ["/bin/sh", "/usr/bin/readlink", "/usr/bin/dirname", "/usr/bin/basename", "/usr/bin/sed", "/usr/bin/head"];
+const START_LIMIT_MS = 120_000;
+
+const lines = (text) => text.split("\n").filter((line) => line !== "");
+
+/** Every file that the loader opens for a program, the loader included. */
+function loaded(program) {
+  const { stdout } = spawnSync("ldd", [program], { encoding: "utf8" });
+  return [...stdout.matchAll(/(?:=> )?(\/\S+) \(0x/g)].map((match) => match[1]);
+}
+
+function install(root, path) {
+  mkdirSync(join(root, dirname(path)), { recursive: true });
+  cpSync(realpathSync(path), join(root, path));
+}
+
+describe("the bundle", () => {
+  let folder;
+  let bundle;
+  let root;
+  /** The command line that starts something inside `root`, or undefined where this machine forbids it. */
+  let enter;
+
+  before(
+    () => {
+      folder = mkdtempSync(join(tmpdir(), "spindrift bundle "));
+      const made = spawnSync(join(repository, "dev"), ["bundle", "--no-archive", "--output", folder], { encoding: "utf8" });
+      assert.equal(made.status, 0, made.stderr);
+      bundle = join(folder, readdirSync(folder).find((name) => name.startsWith("spindrift-")));
+
+      root = join(folder, "root");
+      for (const tool of TOOLS) for (const path of [tool, ...loaded(tool)]) install(root, path);
+      // The C library's other halves, which the bundle leaves to the machine.
+      const libc = loaded("/bin/sh").find((path) => basename(path) === "libc.so.6");
+      for (const name of ["libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libresolv.so.2"]) install(root, join(dirname(libc), name));
+      for (const name of ["dev", "tmp"]) mkdirSync(join(root, name));
+      writeFileSync(join(root, "dev/null"), "");
+      cpSync(bundle, join(root, "opt/a bundle"), { recursive: true, verbatimSymlinks: true });
+
+      const ways = [["chroot", root], ["unshare", "--user", "--map-root-user", "chroot", root]];
+      enter = ways.find((way) => spawnSync(way[0], [...way.slice(1), "/bin/sh", "-c", "exit 0"]).status === 0);
+    },
+    { timeout: 600_000 },
+  );
+  after(() => rmSync(folder, { recursive: true, force: true }));
+
+  /** Starts the launcher in the bare root with an empty environment. */
+  const inRoot = (...args) => ["env", "-i", ...enter, "/opt/a bundle/spindrift", ...args];
+
+  it("finds every library, and none of the machine's but the C library's", () => {
+    const { stdout } = spawnSync("ldd", [join(bundle, "bin/spindrift")], { encoding: "utf8" });
+    assert.doesNotMatch(stdout, /not found/);
+    const own = new Set(readdirSync(join(bundle, "lib")).concat(readdirSync(join(bundle, "lib/fallback"))));
+    for (const line of lines(stdout)) {
+      const name = line.trim().split(" ")[0];
+      const is_of_the_system = /^(linux-vdso|\/lib64\/ld-linux|ld-linux|lib(c|m|dl|pthread|rt|resolv)\.so)/.test(name);
+      assert.ok(is_of_the_system || own.has(name), `${name} is not in the bundle`);
+    }
+  });
+
+  it("carries a licence for itself and for what it brings along", () => {
+    assert.ok(existsSync(join(bundle, "LICENSE")));
+    const licences = readdirSync(join(bundle, "share/licenses")).join(" ");
+    for (const part of ["libprotobuf", "libegl-mesa0", "libgl1-mesa-dri", "libllvm", "three"]) assert.ok(licences.includes(part), part);
+  });
+
+  it("runs here with an empty environment", () => {
+    const info = spawnSync("env", ["-i", join(bundle, "spindrift"), "info"], { encoding: "utf8", timeout: START_LIMIT_MS });
+    assert.equal(info.status, 0, info.stderr);
+  });
+
+  it("finds its own software rasteriser on a machine that has no driver", (t) => {
+    if (!enter) return t.skip("this machine allows neither chroot nor user namespaces");
+    const [command, ...args] = inRoot("info", "--json", "-");
+    const info = spawnSync(command, args, { encoding: "utf8", timeout: START_LIMIT_MS });
+    assert.equal(info.status, 0, info.stderr);
+    assert.match(JSON.stringify(JSON.parse(info.stdout)), /llvmpipe/);
+  });
+
+  it("serves its own page and its own default scene there, and ends when asked to", { timeout: 2 * START_LIMIT_MS }, async (t) => {
+    if (!enter) return t.skip("this machine allows neither chroot nor user namespaces");
+    const [command, ...args] = inRoot("serve", "--port", "0");
+    const server = spawn(command, args, { stdio: ["ignore", "pipe", "pipe"] });
+    let words = "";
+    server.stderr.setEncoding("utf8").on("data", (text) => (words += text));
+    const ended = new Promise((resolve) => server.on("exit", (code, signal) => resolve({ code, signal })));
+    const timer = setTimeout(() => server.kill("SIGKILL"), START_LIMIT_MS);
+    try {
+      const url = await new Promise((resolve, reject) => {
+        createInterface({ input: server.stdout }).on("line", (line) => {
+          const match = /^Spindrift is ready: (http:\S+)/.exec(line);
+          if (match) resolve(match[1]);
+        });
+        ended.then((end) => reject(new Error(`the server ended: ${JSON.stringify(end)}\n${words}`)));
+      });
+      const page = await fetch(url);
+      assert.equal(page.status, 200);
+      assert.match(await page.text(), /<script/);
+    } finally {
+      server.kill("SIGTERM");
+    }
+    assert.deepEqual(await ended, { code: 0, signal: null }, words);
+    clearTimeout(timer);
+  });
+});

@@ -1,0 +1,72 @@
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { afterEach, beforeEach, describe, it } from "node:test";
+
+import { repository } from "./workshop.mjs";
+
+const CTEST = `<testsuite name="(empty)" tests="6">
+  <testcase name="unit/Outbox.Keeps" classname="unit/Outbox.Keeps" status="run"><system-out>fine</system-out></testcase>
+  <testcase name="unit/Outbox.Drops" classname="unit/Outbox.Drops" status="fail"><failure message=""/><system-out>expected 1, got 2</system-out></testcase>
+  <testcase name="gpu/Wave.Travels" classname="gpu/Wave.Travels" status="notrun"><skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/><system-out>a.cpp:3: Skipped
+no EGL device
+[  SKIPPED ] Wave.Travels</system-out></testcase>
+  <testcase name="unit_net_NOT_BUILT" classname="unit_net_NOT_BUILT" status="notrun"><skipped message="Unable to find executable"/></testcase>
+  <testcase name="unit/Old.One" classname="unit/Old.One" status="disabled"/>
+</testsuite>`;
+const NODE = `<testsuites><testsuite name="page"><testcase name="opens" classname="test"/><testcase name="clicks" classname="test"><skipped type="skipped" message="Chromium is missing"/></testcase></testsuite></testsuites>`;
+
+describe("the total of ./dev test", () => {
+  let folder;
+  beforeEach(() => {
+    folder = mkdtempSync(join(tmpdir(), "spindrift sum "));
+  });
+  afterEach(() => rmSync(folder, { recursive: true }));
+
+  /** Sums up parts given as [name, exit code, report or undefined for none]. */
+  function summarise(...parts) {
+    const args = parts.map(([name, code, report]) => {
+      const path = join(folder, `${name}.xml`);
+      if (report !== undefined) writeFileSync(path, report);
+      return `${name}:${code}:${path}`;
+    });
+    const result = spawnSync("python3", [join(repository, "tests/tools/summarise.py"), ...args], { encoding: "utf8" });
+    return { code: result.status, text: result.stdout, last: result.stdout.trimEnd().split("\n").at(-1) };
+  }
+
+  it("adds the parts up in the last line and fails when one test failed", () => {
+    const sum = summarise(["native", 8, CTEST], ["browser", 0, NODE]);
+    assert.equal(sum.last, "2 passed, 2 failed, 3 skipped");
+    assert.equal(sum.code, 1);
+    assert.match(sum.text, /FAILED native: unit\/Outbox\.Drops\n {4}expected 1, got 2/);
+  });
+
+  it("takes a test that skipped itself for a skip and one whose program is missing for a failure", () => {
+    const { text } = summarise(["native", 8, CTEST]);
+    assert.match(text, /skipped native: gpu\/Wave\.Travels \(no EGL device\)/);
+    assert.match(text, /FAILED native: unit_net_NOT_BUILT\n {4}did not run: Unable to find executable/);
+  });
+
+  it("is content when nothing failed", () => {
+    const sum = summarise(["browser", 0, NODE]);
+    assert.equal(sum.last, "1 passed, 0 failed, 1 skipped");
+    assert.equal(sum.code, 0);
+    assert.match(sum.text, /skipped browser: clicks \(Chromium is missing\)/);
+  });
+
+  it("counts a part without a report, with a broken one or without a test as failed", () => {
+    for (const report of [undefined, "<testsuite><testcase", "<testsuite/>"]) {
+      const sum = summarise(["browser", 0, NODE], ["web", 0, report]);
+      assert.equal(sum.last, "1 passed, 1 failed, 1 skipped", String(report));
+      assert.equal(sum.code, 1);
+    }
+  });
+
+  it("counts a part that ended badly although every test passed as failed", () => {
+    const sum = summarise(["web", 124, NODE]);
+    assert.equal(sum.last, "1 passed, 1 failed, 1 skipped");
+    assert.match(sum.text, /ended with exit code 124/);
+  });
+});
