@@ -17,14 +17,15 @@ namespace {
 /// NVIDIA's remarks on where a buffer lives, on shader variants and on transfers: said for every buffer or frame.
 constexpr std::array<GLuint, 5> kNoisyIds = {131154, 131169, 131185, 131204, 131218};
 
-void GLAD_API_PTR onDebugMessage(GLenum /*source*/, GLenum type, GLuint id, GLenum severity, GLsizei length,
+void GLAD_API_PTR onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                  const GLchar* message, const void* user) {
   if (std::find(kNoisyIds.begin(), kNoisyIds.end(), id) != kNoisyIds.end()) return;
   const std::string_view text(message, length < 0 ? std::char_traits<char>::length(message) : std::size_t(length));
-  if (type == GL_DEBUG_TYPE_ERROR) {
+  // What the compiler says is in Program::create()'s error, with the file and line; once is enough.
+  if (type == GL_DEBUG_TYPE_ERROR && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
     static_cast<Context*>(const_cast<void*>(user))->countError();
     spdlog::error("OpenGL error {}: {}", id, text);
-  } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
+  } else if (severity == GL_DEBUG_SEVERITY_HIGH && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
     spdlog::warn("OpenGL message {}: {}", id, text);
   } else {
     spdlog::debug("OpenGL message {}: {}", id, text);

@@ -8,11 +8,8 @@
 
 namespace spindrift::gpu {
 
-PassTimers::PassTimers(Context& ctx, std::size_t capacity_count)
-    : ctx_(ctx), uses_wall_clock_(ctx.device().is_software) {
+PassTimers::PassTimers(Context& ctx, std::size_t capacity_count) : ctx_(ctx), queries_(capacity_count) {
   assert(ctx.isOwnedHere() && capacity_count > 0);
-  if (uses_wall_clock_) return;
-  queries_.resize(capacity_count);
   for (Query& query : queries_) {
     glCreateQueries(GL_TIMESTAMP, 1, &query.begin_id);
     glCreateQueries(GL_TIMESTAMP, 1, &query.end_id);
@@ -28,19 +25,13 @@ PassTimers::~PassTimers() {
 }
 
 PassTimers::Scope::Scope(PassTimers& timers, std::size_t name_index)
-    : timers_(timers), name_index_(name_index), query_index_(timers.openQuery(name_index)) {
-  if (timers_.uses_wall_clock_) start_ = std::chrono::steady_clock::now();
-}
+    : timers_(timers), query_index_(timers.openQuery(name_index)) {}
 
 PassTimers::Scope::~Scope() {
-  if (timers_.uses_wall_clock_) {
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start_;
-    timers_.add(name_index_, elapsed.count());
-  } else if (query_index_ != kNoQuery) {
-    Query& query = timers_.queries_[query_index_];
-    glQueryCounter(query.end_id, GL_TIMESTAMP);
-    query.is_closed = true;
-  }
+  if (query_index_ == kNoQuery) return;
+  Query& query = timers_.queries_[query_index_];
+  glQueryCounter(query.end_id, GL_TIMESTAMP);
+  query.is_closed = true;
 }
 
 std::vector<PassCost> PassTimers::take() {
@@ -67,7 +58,6 @@ std::size_t PassTimers::nameIndex(std::string_view name) {
 
 std::size_t PassTimers::openQuery(std::size_t name_index) {
   assert(ctx_.isOwnedHere());
-  if (uses_wall_clock_) return kNoQuery;
   if (queries_[next_query_].in_use) collect();
   if (queries_[next_query_].in_use) {
     ++dropped_count_;
@@ -94,13 +84,10 @@ void PassTimers::collect() {
     glGetQueryObjectui64v(query.begin_id, GL_QUERY_RESULT, &begin_ns);
     glGetQueryObjectui64v(query.end_id, GL_QUERY_RESULT, &end_ns);
     query.in_use = false;
-    add(query.name_index, end_ns > begin_ns ? static_cast<double>(end_ns - begin_ns) * 1e-6 : 0.0);
+    PassCost& cost = costs_[query.name_index];
+    cost.total_ms += end_ns > begin_ns ? static_cast<double>(end_ns - begin_ns) * 1e-6 : 0.0;
+    ++cost.scope_count;
   }
-}
-
-void PassTimers::add(std::size_t name_index, double ms) {
-  costs_[name_index].total_ms += ms;
-  ++costs_[name_index].scope_count;
 }
 
 }  // namespace spindrift::gpu

@@ -1,0 +1,33 @@
+#include <gmock/gmock.h>
+
+#include <spindrift/gpu/device.h>
+
+namespace spindrift::gpu {
+namespace {
+
+using Kind = DeviceChoice::Kind;
+
+TEST(DeviceChoice, ReadsWordsAndIndices) {
+  ASSERT_TRUE(parseDeviceChoice("auto"));
+  EXPECT_EQ(parseDeviceChoice("auto")->kind, Kind::kAuto);
+  ASSERT_TRUE(parseDeviceChoice("software"));
+  EXPECT_EQ(parseDeviceChoice("software")->kind, Kind::kSoftware);
+  for (const int index : {0, 1, 1023}) {
+    const auto choice = parseDeviceChoice(std::to_string(index));
+    ASSERT_TRUE(choice);
+    EXPECT_EQ(choice->kind, Kind::kIndex);
+    EXPECT_EQ(choice->index, index);
+  }
+}
+
+TEST(DeviceChoice, RefusesAnythingElseByName) {
+  for (const char* text : {"", "Auto", "-1", "1024", "1x", " 1", "0x1", "99999999999999999999", "gpu"}) {
+    const auto choice = parseDeviceChoice(text);
+    ASSERT_FALSE(choice) << text;
+    EXPECT_EQ(choice.error().code, core::ErrorCode::kInvalidInput);
+    EXPECT_THAT(choice.error().message, testing::HasSubstr("\"" + std::string(text) + "\""));
+  }
+}
+
+}  // namespace
+}  // namespace spindrift::gpu

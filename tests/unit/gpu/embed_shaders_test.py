@@ -1,0 +1,117 @@
+"""What the shader embedding refuses and what it writes. Run by ctest with EMBED_SHADERS and GLSLANG_VALIDATOR set."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+MAIN = "layout(local_size_x = 8) in;\nvoid main() {}\n"
+
+
+class EmbedShaders(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name) / "shaders"
+        self.root.mkdir()
+        self.output = pathlib.Path(folder.name) / "out.cpp"
+        self.depfile = pathlib.Path(folder.name) / "out.d"
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+    def run_tool(self):
+        return subprocess.run(
+            [sys.executable, os.environ["EMBED_SHADERS"], "--root", self.root, "--output", self.output, "--depfile",
+             self.depfile, "--glslang", os.environ["GLSLANG_VALIDATOR"]], capture_output=True, text=True, check=False)
+
+    def assert_refused(self, *words):
+        run = self.run_tool()
+        self.assertEqual(run.returncode, 1, run.stdout + run.stderr)
+        for word in words:
+            self.assertIn(word, run.stderr)
+        self.assertNotIn("Traceback", run.stderr)
+        self.assertFalse(self.output.exists())
+
+    def assert_embedded(self):
+        run = self.run_tool()
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return self.output.read_text(encoding="utf-8")
+
+    def test_refuses_an_include_cycle(self):
+        self.write("a.comp", '#include "b.glsl"\n' + MAIN)
+        self.write("b.glsl", '#include "c.glsl"\n')
+        self.write("c.glsl", '#include "b.glsl"\n')
+        self.assert_refused("include cycle: b.glsl -> c.glsl -> b.glsl")
+
+    def test_refuses_a_file_that_includes_itself(self):
+        self.write("a.comp", '#include "a.comp"\n' + MAIN)
+        self.assert_refused("include cycle: a.comp -> a.comp")
+
+    def test_refuses_a_missing_include_by_file_and_line(self):
+        self.write("sub/a.comp", MAIN + '#include "none.glsl"\n')
+        self.assert_refused('sub/a.comp:3: no file "none.glsl"')
+
+    def test_refuses_to_leave_the_root(self):
+        (self.root.parent / "secret.glsl").write_text("", encoding="utf-8")
+        self.write("a.comp", '#include "../secret.glsl"\n' + MAIN)
+        self.assert_refused('a.comp:1: no file "../secret.glsl"')
+
+    def test_refuses_a_version_line(self):
+        self.write("a.comp", "#version 450\n" + MAIN)
+        self.assert_refused("a.comp:1: remove #version")
+
+    def test_includes_each_file_once(self):
+        self.write("a.comp", '#include "b.glsl"\n#include "c.glsl"\n' + MAIN)
+        self.write("b.glsl", '#include "c.glsl"\nfloat twice(float x) { return 2.0 * once(x); }\n')
+        self.write("c.glsl", "float once(float x) { return x; }\n")
+        self.assertEqual(self.assert_embedded().count("float once"), 1)
+
+    def test_names_the_line_of_an_included_file_in_a_validation_error(self):
+        self.write("a.comp", '\n#include "b.glsl"\n' + MAIN)
+        self.write("b.glsl", "// one\n// two\nfloat wrong() { return nothing; }\n")
+        self.assert_refused("b.glsl:3: error:", "nothing", "a.comp: not valid with no defines")
+
+    def test_validates_each_variant(self):
+        self.write("a.comp", "// variants: N=1 | N=2\n#if N == 2\n#error two\n#endif\n" + MAIN)
+        self.assert_refused("a.comp:3: error:", "not valid with N=2")
+
+    def test_refuses_a_variant_that_is_no_define(self):
+        self.write("a.comp", "// variants: N\n" + MAIN)
+        self.assert_refused("a.comp: variants: write NAME=VALUE instead of N")
+
+    def test_leaves_out_what_is_for_cpp_only(self):
+        self.write("a.comp", '#include "shared/s.h"\n' + MAIN)
+        self.write("shared/s.h", "#pragma once\n#ifdef __cplusplus\n#include <cstdint>\n#else\nfloat f;\n#endif\n")
+        text = self.assert_embedded()
+        self.assertNotIn("cstdint", text)
+        self.assertNotIn("pragma", text)
+        self.assertIn("float f;", text)
+
+    def test_refuses_an_angle_include_that_is_not_for_cpp_only(self):
+        self.write("a.comp", "#include <shared/s.h>\n" + MAIN)
+        self.assert_refused('a.comp:1: write #include "file"')
+
+    def test_maps_lines_back_to_their_files(self):
+        self.write("a.comp", '// head\n#include "b.glsl"\n' + MAIN)
+        self.write("b.glsl", "float f;\nfloat g;\n")
+        text = self.assert_embedded()
+        for line in ('LineRange{1, "a.comp", 1}', 'LineRange{2, "b.glsl", 1}', 'LineRange{4, "a.comp", 3}'):
+            self.assertIn(line, text)
+
+    def test_lists_every_file_it_read_for_the_build(self):
+        self.write("a.comp", '#include "b.glsl"\n' + MAIN)
+        self.write("b.glsl", "")
+        self.assert_embedded()
+        listed = self.depfile.read_text(encoding="utf-8")
+        self.assertTrue(listed.startswith(str(self.output) + ":"))
+        for name in ("a.comp", "b.glsl"):
+            self.assertIn(str(self.root.resolve() / name), listed)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,40 @@
+// A context for each test: on the software rasteriser, or on the device that SPINDRIFT_TEST_DEVICE names as `--device`
+// would. A machine without it skips, visibly.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/gpu/context.h>
+
+namespace spindrift::gpu {
+
+inline core::Result<DeviceChoice> testDevice() {
+  const char* const wanted = std::getenv("SPINDRIFT_TEST_DEVICE");
+  return parseDeviceChoice(wanted ? wanted : "software");
+}
+
+class GpuTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto choice = testDevice();
+    ASSERT_TRUE(choice) << choice.error().message;
+    auto made = Context::create(*choice);
+    if (!made) GTEST_SKIP() << made.error().message;
+    ctx = std::move(*made);
+  }
+
+  void TearDown() override {
+    if (ctx) {
+      EXPECT_EQ(ctx->debugErrorCount(), expected_error_count) << "OpenGL errors, see the log above";
+    }
+  }
+
+  std::unique_ptr<Context> ctx;
+  std::uint64_t expected_error_count = 0;
+};
+
+}  // namespace spindrift::gpu

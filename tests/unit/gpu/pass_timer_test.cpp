@@ -1,0 +1,125 @@
+#include <chrono>
+
+#include <gmock/gmock.h>
+
+#include <spindrift/gpu/pass_timer.h>
+#include <spindrift/gpu/program.h>
+
+#include "gpu_fixture.h"
+
+namespace spindrift::gpu {
+namespace {
+
+class PassTimersTest : public GpuTest {
+ protected:
+  void SetUp() override {
+    GpuTest::SetUp();
+    if (!ctx) return;
+    auto made = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+    auto v = Buffer::create(*ctx, "values", 4 * kCount);
+    auto c = Buffer::create(*ctx, "counts", 8);
+    ASSERT_TRUE(made && v && c);
+    program = std::move(*made);
+    values = std::move(*v);
+    counts = std::move(*c);
+    values.bindStorage(0);
+    counts.bindStorage(1);
+    program.setUniform("item_count", kCount);
+  }
+  void TearDown() override {
+    program = Program();
+    values = Buffer();
+    counts = Buffer();
+    GpuTest::TearDown();
+  }
+
+  static constexpr std::uint32_t kCount = 1 << 16;
+  Program program;
+  Buffer values;
+  Buffer counts;
+};
+
+TEST_F(PassTimersTest, CountsScopesByNameAndStaysWithinTheWallClock) {
+  PassTimers timers(*ctx);
+  ctx->finish();
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 3; ++i) {
+    const auto grid = timers.scope("grid");
+    ASSERT_TRUE(program.dispatch(kCount));
+  }
+  {
+    const auto sph = timers.scope("sph");
+    ASSERT_TRUE(program.dispatch(kCount));
+  }
+  ctx->finish();
+  const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+  const auto costs = timers.take();
+  ASSERT_EQ(costs.size(), 2u);
+  EXPECT_EQ(costs[0].name, "grid");
+  EXPECT_EQ(costs[0].scope_count, 3u);
+  EXPECT_EQ(costs[1].name, "sph");
+  EXPECT_EQ(costs[1].scope_count, 1u);
+  EXPECT_GT(costs[0].total_ms, 0.0);
+  EXPECT_GT(costs[1].total_ms, 0.0);
+  EXPECT_DOUBLE_EQ(costs[0].mean_ms, costs[0].total_ms / 3);
+  // The device's clock need not tick like ours: a tenth of slack.
+  EXPECT_LE(costs[0].total_ms + costs[1].total_ms, 1.1 * wall.count());
+  EXPECT_EQ(timers.droppedCount(), 0u);
+}
+
+TEST_F(PassTimersTest, TakeStartsAfresh) {
+  PassTimers timers(*ctx);
+  {
+    const auto scope = timers.scope("wave");
+    ASSERT_TRUE(program.dispatch(kCount));
+  }
+  ctx->finish();
+  EXPECT_EQ(timers.take().size(), 1u);
+  EXPECT_TRUE(timers.take().empty());
+}
+
+TEST_F(PassTimersTest, AnOuterScopeIncludesItsInner) {
+  PassTimers timers(*ctx);
+  {
+    const auto outer = timers.scope("step");
+    const auto inner = timers.scope("sph");
+    ASSERT_TRUE(program.dispatch(kCount));
+  }
+  ctx->finish();
+  const auto costs = timers.take();
+  ASSERT_EQ(costs.size(), 2u);
+  EXPECT_EQ(costs[0].name, "step");
+  EXPECT_GE(costs[0].total_ms, costs[1].total_ms);
+}
+
+TEST_F(PassTimersTest, DropsScopesBeyondItsRingAndCountsThem) {
+  PassTimers timers(*ctx, 2);
+  {
+    const auto first = timers.scope("open");
+    const auto second = timers.scope("open");
+    const auto third = timers.scope("open");  // both queries are taken by scopes that are still open
+  }
+  EXPECT_EQ(timers.droppedCount(), 1u);
+  ctx->finish();
+  const auto costs = timers.take();
+  ASSERT_EQ(costs.size(), 1u);
+  EXPECT_EQ(costs[0].scope_count, 2u);
+}
+
+TEST_F(PassTimersTest, ReusesItsRing) {
+  PassTimers timers(*ctx, 4);
+  for (int i = 0; i < 50; ++i) {
+    {
+      const auto scope = timers.scope("pass");
+      ASSERT_TRUE(program.dispatch(64));
+    }
+    ctx->finish();
+  }
+  EXPECT_EQ(timers.droppedCount(), 0u);
+  const auto costs = timers.take();
+  ASSERT_EQ(costs.size(), 1u);
+  EXPECT_EQ(costs[0].scope_count, 50u);
+}
+
+}  // namespace
+}  // namespace spindrift::gpu

@@ -1,0 +1,136 @@
+#include <cstddef>
+
+#include <gmock/gmock.h>
+
+#include <spindrift/gpu/program.h>
+
+#include "gpu_fixture.h"
+
+namespace spindrift::gpu {
+namespace {
+
+using testing::HasSubstr;
+
+using ProgramTest = GpuTest;
+
+TEST_F(ProgramTest, CompileErrorNamesFileAndLineOfTheInclude) {
+  const auto broken = Program::create(*ctx, "check/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
+  ASSERT_FALSE(broken);
+  EXPECT_THAT(broken.error().message, HasSubstr("check/texel_equals_storage.comp does not compile"));
+  EXPECT_THAT(broken.error().message, HasSubstr("check/block.glsl:10"));
+  EXPECT_THAT(broken.error().message, HasSubstr("no_such_name"));
+  EXPECT_EQ(ctx->ledger().program_count, 0u);
+}
+
+TEST_F(ProgramTest, RefusesAShaderThatWasNotEmbedded) {
+  const auto none = Program::create(*ctx, "check/none.comp");
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, HasSubstr("\"check/none.comp\" is not embedded"));
+}
+
+TEST_F(ProgramTest, ReflectsTheGroupSize) {
+  const auto wide = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  const auto odd = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+  const auto flat = Program::create(*ctx, "check/texel_equals_storage.comp");
+  ASSERT_TRUE(wide && odd && flat);
+  EXPECT_EQ(wide->groupSize(), (std::array<std::uint32_t, 3>{64, 1, 1}));
+  EXPECT_EQ(odd->groupSize(), (std::array<std::uint32_t, 3>{24, 1, 1}));
+  EXPECT_EQ(flat->groupSize(), (std::array<std::uint32_t, 3>{32, 2, 1}));
+}
+
+TEST_F(ProgramTest, DispatchCoversSizesThatDivideByNothing) {
+  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+  ASSERT_TRUE(program);
+  for (const std::uint32_t count : {1u, 23u, 24u, 25u, 1009u}) {
+    auto values = Buffer::create(*ctx, "values", 4 * (count + 8));
+    auto counts = Buffer::create(*ctx, "counts", 8);
+    ASSERT_TRUE(values && counts);
+    values->clear(0xFFFFFFFF);
+    values->bindStorage(0);
+    counts->bindStorage(1);
+    program->setUniform("item_count", count);
+    program->setUniform("offset", 5);
+    ASSERT_TRUE(program->dispatch(count));
+    ctx->barrier(Barrier::kBufferUpdate);
+    const auto read = values->downloadVector<std::int32_t>(count + 8);
+    for (std::uint32_t i = 0; i < count; ++i) ASSERT_EQ(read[i], static_cast<std::int32_t>(i) + 5) << count;
+    for (std::uint32_t i = count; i < count + 8; ++i) ASSERT_EQ(read[i], -1) << count;
+    const std::uint32_t whole_count = (count + 23) / 24 * 24;
+    EXPECT_EQ(counts->downloadVector<std::uint32_t>(2), (std::vector<std::uint32_t>{count, whole_count - count}));
+  }
+}
+
+TEST_F(ProgramTest, DispatchOfNothingRunsNothing) {
+  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  ASSERT_TRUE(program);
+  EXPECT_TRUE(program->dispatch(0));
+  EXPECT_TRUE(program->dispatch(10, 0));
+  EXPECT_EQ(ctx->ledger().dispatch_count, 0u);
+}
+
+TEST_F(ProgramTest, DispatchOverTheDeviceLimitIsRefusedAndCounted) {
+  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  ASSERT_TRUE(program);
+  const auto over = ctx->limits().max_work_group_count_y + 1;
+  EXPECT_FALSE(program->dispatchGroups(1, static_cast<std::uint32_t>(over), 1));
+  EXPECT_EQ(ctx->ledger().dispatch_count, 0u);
+  expected_error_count = 1;
+}
+
+TEST_F(ProgramTest, RunsTheGroupCountsInABuffer) {
+  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  auto values = Buffer::create(*ctx, "values", 4 * 192);
+  auto counts = Buffer::create(*ctx, "counts", 8);
+  auto arguments = Buffer::create(*ctx, "arguments", 16);
+  ASSERT_TRUE(program && values && counts && arguments);
+  arguments->upload(std::vector<std::uint32_t>{99, 3, 1, 1});
+  values->bindStorage(0);
+  counts->bindStorage(1);
+  program->setUniform("item_count", 190u);
+  program->dispatchIndirect(*arguments, 4);
+  ctx->barrier(Barrier::kBufferUpdate);
+  EXPECT_EQ(counts->downloadVector<std::uint32_t>(2), (std::vector<std::uint32_t>{190, 2}));
+}
+
+TEST_F(ProgramTest, DescribesBlocksAsTheDriverLaidThemOut) {
+  const auto program = Program::create(*ctx, "check/texel_equals_storage.comp");
+  ASSERT_TRUE(program);
+  const auto blocks = program->blocks();
+  ASSERT_TRUE(blocks.contains("Check"));
+  const BlockLayout& check = blocks.at("Check");
+  EXPECT_FALSE(check.is_storage);
+  EXPECT_EQ(check.binding, 0u);
+  EXPECT_EQ(check.size_bytes, 64u);
+  EXPECT_EQ(check.offsets.at("item_count"), 0u);
+  EXPECT_EQ(check.offsets.at("gain"), 4u);
+  EXPECT_EQ(check.offsets.at("unused_m"), 16u);
+  EXPECT_EQ(check.offsets.at("tail_s[0]"), 32u);
+  ASSERT_TRUE(blocks.contains("Differences"));
+  EXPECT_TRUE(blocks.at("Differences").is_storage);
+  EXPECT_EQ(blocks.at("Differences").binding, 1u);
+  EXPECT_EQ(blocks.at("Differences").offsets.at("difference_count"), 0u);
+}
+
+TEST_F(ProgramTest, LedgerCountsProgramsAndDispatches) {
+  const Ledger& ledger = ctx->ledger();
+  {
+    auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+    auto values = Buffer::create(*ctx, "values", 256);
+    auto counts = Buffer::create(*ctx, "counts", 8);
+    ASSERT_TRUE(program && values && counts);
+    values->bindStorage(0);
+    counts->bindStorage(1);
+    EXPECT_EQ(ledger.program_count, 1u);
+    Program moved = std::move(*program);
+    EXPECT_FALSE(*program);
+    EXPECT_EQ(ledger.program_count, 1u);
+    moved.setUniform("item_count", 64u);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(moved.dispatch(64));
+    EXPECT_EQ(ledger.dispatch_count, 3u);
+  }
+  EXPECT_EQ(ledger.program_count, 0u);
+  EXPECT_EQ(ledger.programs_made_count, 1u);
+}
+
+}  // namespace
+}  // namespace spindrift::gpu
