@@ -1,0 +1,51 @@
+#include "checkpoints.h"
+
+#include "create_all.h"
+
+namespace spindrift::sim {
+
+core::Result<std::unique_ptr<Checkpoints>> Checkpoints::create(gpu::Context& ctx, std::vector<gpu::Buffer*> state) {
+  auto out = std::unique_ptr<Checkpoints>(new Checkpoints(ctx));
+  out->state_ = std::move(state);
+  Creation create;
+  for (Copy& copy : out->copies_) {
+    for (const gpu::Buffer* live : out->state_) {
+      create(copy.buffers.emplace_back(),
+             gpu::Buffer::create(ctx, "checkpoint of " + live->name(), live->sizeBytes(), gpu::BufferUse::kDeviceOnly));
+    }
+  }
+  if (create.error()) return *create.error();
+  return out;
+}
+
+void Checkpoints::save(std::uint64_t tick) {
+  Copy& copy = copies_[1 - good_];
+  ctx_.barrier(gpu::Barrier::kBufferUpdate);
+  for (std::size_t k = 0; k < state_.size(); ++k) copy.buffers[k].copyFrom(*state_[k], 0, state_[k]->sizeBytes());
+  copy.tick = tick;
+  copy.is_filled = true;
+}
+
+void Checkpoints::confirm(std::uint64_t tick) {
+  const Copy& waiting = copies_[1 - good_];
+  if (!waiting.is_filled || waiting.tick > tick) return;
+  good_ = 1 - good_;
+  has_good_ = true;
+  copies_[1 - good_].is_filled = false;
+}
+
+bool Checkpoints::restore() {
+  if (!has_good_) return false;
+  for (std::size_t k = 0; k < state_.size(); ++k)
+    state_[k]->copyFrom(copies_[good_].buffers[k], 0, state_[k]->sizeBytes());
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  copies_[1 - good_].is_filled = false;
+  return true;
+}
+
+void Checkpoints::forget() {
+  has_good_ = false;
+  for (Copy& copy : copies_) copy.is_filled = false;
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,282 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <spindrift/sim/derive.h>
+
+#include "lattice.h"
+
+namespace spindrift::sim {
+namespace {
+
+using core::Boundary;
+using core::Error;
+using core::ErrorCode;
+using std::numbers::pi;
+
+/// Usual values of weakly compressible SPH (Monaghan 1992; PHYSICS section 3); larger than these and runs blow up.
+constexpr double kParticleCourant = 0.4;
+constexpr double kForceFactor = 0.25;
+constexpr double kViscousFactor = 0.125;
+/// Stability limits of the leapfrog on a square grid: 1/sqrt(2), and sqrt(3)/2 for the isotropic 9-point stencil.
+constexpr double kFivePointCourant = 0.70710678;
+constexpr double kNinePointCourant = 0.8660254;
+/// Share of the wave's limit that is used: room for rounding, not for physics.
+constexpr double kWaveSafety = 0.98;
+constexpr std::uint32_t kMaxSubstepsCount = 1000;
+constexpr std::uint32_t kMaxCellCount = 1u << 22;
+/// A floor this share of the spacing below the lowest layer's resting place (s/2) stops particles that the pressure of
+/// the floor did not; larger values lift still water, smaller ones let particles meet the virtual ones.
+constexpr double kFloorGapRatio = 0.1;
+
+Error invalid(std::string message) {
+  return {ErrorCode::kInvalidInput, std::move(message)};
+}
+
+core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
+  const core::ParticleScene& p = *scene.particles;
+  ParticleLayout out;
+  const double side_m = (scene.wave ? scene.wave->side_m : p.box_side_m) * (scene.wave ? p.patch_scale : 1.0);
+  out.layers_count = static_cast<std::uint32_t>(std::lround(p.layers_count));
+  out.columns_count = std::max<std::uint32_t>(
+      1, static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(p.count) / out.layers_count))));
+  out.count = out.columns_count * out.columns_count * out.layers_count;
+  out.spacing_m = side_m / out.columns_count;
+  const double s = out.spacing_m;
+
+  const bool is_periodic = p.boundary_x == Boundary::kPeriodic || p.boundary_z == Boundary::kPeriodic;
+  out.support_radius_m = p.support_ratio * s;
+  if (is_periodic) {
+    // The grid's cells have edge H and must tile a periodic side exactly.
+    const double cells = std::floor(side_m / out.support_radius_m + 1e-9);
+    if (cells < 3) {
+      return invalid(fmt::format(
+          "particles.count: {} particles in {} layers leave {:.0f} cells of the support radius {:.3g} m "
+          "across a periodic side of {:.3g} m, at least 3 are needed: use more particles, fewer layers, or walls",
+          p.count, out.layers_count, cells, out.support_radius_m, side_m));
+    }
+    out.support_radius_m = side_m / cells;
+  }
+  const double H = out.support_radius_m;
+
+  const int floor_points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : kFlatFloorLattice;
+  out.neighbours_count = latticeNeighbours(s, H);
+  out.mass_kg = calibratedMass(s, H, p.rest_density_kgpm3);
+  out.virtual_mass_kg = calibratedVirtualMass(s, H, p.rest_density_kgpm3, out.mass_kg, floor_points);
+  out.layer_heights_m = restingLayers({.spacing_m = s,
+                                       .support_radius_m = H,
+                                       .rest_density_kgpm3 = p.rest_density_kgpm3,
+                                       .stiffness_m2ps2 = p.sound_speed_mps * p.sound_speed_mps,
+                                       .gravity_mps2 = scene.gravity_mps2,
+                                       .mass_kg = out.mass_kg,
+                                       .virtual_mass_kg = out.virtual_mass_kg,
+                                       .floor_points = floor_points},
+                                      static_cast<int>(out.layers_count));
+  out.band_m = out.layer_heights_m.back() + s / 2;
+  const double centre_x = scene.wave ? p.patch_shift_x_m : 0.0;
+  const double centre_z = scene.wave ? p.patch_shift_z_m : 0.0;
+  // Below the band the floor can sink as far as the water is deep.
+  const double lowest_m = -out.band_m - (scene.coupling ? scene.wave->depth_m : 0.0);
+  out.min_m = {centre_x - side_m / 2, lowest_m, centre_z - side_m / 2};
+  out.max_m = {centre_x + side_m / 2, p.headroom_m, centre_z + side_m / 2};
+  if (scene.wave) {
+    const double half_m = scene.wave->side_m / 2 * (1 + 1e-9);
+    if (out.min_m[0] < -half_m || out.max_m[0] > half_m || out.min_m[2] < -half_m || out.max_m[2] > half_m) {
+      return invalid(fmt::format(
+          "particles.patch_shift_x_m, patch_shift_z_m: a patch of {:.3g} m centred at ({:.3g}, {:.3g}) m leaves the "
+          "water of {:.3g} m: move it inside or make patch_scale smaller",
+          side_m, centre_x, centre_z, scene.wave->side_m));
+    }
+  }
+  std::uint64_t cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    out.cells[axis] =
+        static_cast<std::uint32_t>(std::max(1.0, std::ceil((out.max_m[axis] - out.min_m[axis]) / H - 1e-6)));
+    cells *= out.cells[axis];
+  }
+  if (cells > kMaxCellCount) {
+    return invalid(fmt::format(
+        "particles.headroom_m: a domain of {} x {} x {} cells has more than {}: use less headroom or fewer particles",
+        out.cells[0], out.cells[1], out.cells[2], kMaxCellCount));
+  }
+  out.cell_count = static_cast<std::uint32_t>(cells);
+  return out;
+}
+
+void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, std::vector<StepRule>& rules) {
+  const core::ParticleScene& p = *scene.particles;
+  const double H = layout.support_radius_m;
+  rules.push_back({"particle CFL, 0.4 H / (c0 + U_max)", "particles.sound_speed_mps",
+                   kParticleCourant * H / (p.sound_speed_mps + p.max_speed_mps)});
+  const double downforce = scene.coupling ? scene.coupling->downforce_per_m_s2 * p.headroom_m * p.headroom_m : 0.0;
+  const double acceleration = scene.gravity_mps2 + downforce;
+  if (acceleration > 0) {
+    rules.push_back(
+        {"force, 0.25 sqrt(H / a_max)", "coupling.downforce_per_m_s2", kForceFactor * std::sqrt(H / acceleration)});
+  }
+  const double nu = p.viscosity_pas / p.rest_density_kgpm3;
+  if (nu > 0)
+    rules.push_back({"viscous diffusion, 0.125 H^2 / nu", "particles.viscosity_pas", kViscousFactor * H * H / nu});
+}
+
+core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
+  const core::WaveScene& w = *scene.wave;
+  WaveLayout out;
+  out.resolution_count = w.resolution_count;
+  out.side_m = w.side_m;
+  out.cell_m = w.side_m / w.resolution_count;
+  out.speed_mps = std::sqrt(scene.gravity_mps2 * w.depth_m);
+  return out;
+}
+
+double waveMaxStep(const core::WaveScene& wave, const WaveLayout& layout) {
+  const double limit = wave.stencil == core::Stencil::kNinePoint ? kNinePointCourant : kFivePointCourant;
+  return layout.speed_mps > 0 ? kWaveSafety * limit * layout.cell_m / layout.speed_mps : 1e9;
+}
+
+std::uint32_t stepsFor(double interval_s, double max_dt_s) {
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(interval_s / max_dt_s - 1e-9), 1.0, 1e6));
+}
+
+std::uint64_t deviceBytes(const Derived& d, bool coupled) {
+  std::uint64_t bytes = sizeof(shared::SimUniforms);
+  if (d.particles) {
+    bytes += std::uint64_t{d.particles->count} * (7 * 16 + 8 + 4) + std::uint64_t{d.particles->cell_count} * 8 + 4;
+  }
+  if (d.wave)
+    bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * (3 * 4 + (coupled ? 24 : 0));
+  return bytes;
+}
+
+void fillUniforms(const core::Scene& scene, Derived& d) {
+  shared::SimUniforms& u = d.uniforms;
+  const auto f = [](double v) { return static_cast<float>(v); };
+  u.dt_s = f(d.dt_s);
+  u.gravity_mps2 = f(scene.gravity_mps2);
+  if (d.particles) {
+    const ParticleLayout& l = *d.particles;
+    const core::ParticleScene& p = *scene.particles;
+    const double H = l.support_radius_m;
+    u.min_x_m = f(l.min_m[0]);
+    u.min_y_m = f(l.min_m[1]);
+    u.min_z_m = f(l.min_m[2]);
+    u.max_x_m = f(l.max_m[0]);
+    u.max_y_m = f(l.max_m[1]);
+    u.max_z_m = f(l.max_m[2]);
+    u.support_radius_m = f(H);
+    u.spacing_m = f(l.spacing_m);
+    u.particle_count = l.count;
+    u.cells_x = l.cells[0];
+    u.cells_y = l.cells[1];
+    u.cells_z = l.cells[2];
+    u.cell_count = l.cell_count;
+    u.mass_kg = f(l.mass_kg);
+    u.rest_density_kgpm3 = f(p.rest_density_kgpm3);
+    u.stiffness_m2ps2 = f(p.sound_speed_mps * p.sound_speed_mps);
+    u.viscosity_pas = f(p.viscosity_pas);
+    u.max_speed_mps = f(p.max_speed_mps);
+    u.poly6_norm = f(poly6Norm(H));
+    u.spiky_norm = f(spikyNorm(H));
+    u.cubic_norm = f(cubicNorm(H));
+    u.wall_restitution = 0.0f;
+    u.reentry_m = f(0.01 * l.spacing_m);
+    u.band_m = f(l.band_m);
+    u.virtual_mass_kg = f(l.virtual_mass_kg);
+    u.floor_gap_m = f(kFloorGapRatio * l.spacing_m);
+  }
+  if (scene.coupling) u.downforce_per_m_s2 = f(scene.coupling->downforce_per_m_s2);
+  if (scene.foam) {
+    u.foam_deficit_ratio = f(scene.foam->density_deficit_ratio);
+    u.foam_keep_ratio = f(std::exp(-d.dt_s / scene.foam->lifetime_s));
+  }
+  if (d.wave) {
+    const WaveLayout& w = *d.wave;
+    const double a = 0.5 * scene.wave->damping_per_s * w.dt_s;
+    u.wave_n = w.resolution_count;
+    u.wave_side_m = f(w.side_m);
+    u.wave_cell_m = f(w.cell_m);
+    u.wave_dt_s = f(w.dt_s);
+    u.courant2 = f(w.courant * w.courant);
+    u.wave_keep = f((1 - a) / (1 + a));
+    u.wave_gain = f(1 / (1 + a));
+    u.flow_keep = f(std::exp(-scene.wave->damping_per_s * d.dt_s));
+  }
+  u.surface_quantum_m = f(scene.stream.surface_quantum_m);
+}
+
+}  // namespace
+
+core::Result<Derived> derive(const core::Scene& scene) {
+  if (!scene.wave && !scene.particles) return invalid("wave, particles: a scene needs at least one of them");
+  if (scene.coupling && !(scene.wave && scene.particles))
+    return invalid("coupling: needs both wave and particles: add the missing part or remove coupling");
+  if (scene.foam && !scene.particles) return invalid("foam: needs particles: add particles or remove foam");
+
+  Derived d;
+  d.tick_s = 1.0 / scene.tick_rate_hz;
+  if (scene.particles) {
+    auto layout = layOutParticles(scene);
+    if (!layout) return layout.error();
+    d.particles = *layout;
+    addParticleRules(scene, *d.particles, d.rules);
+    std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
+  }
+  if (scene.wave) {
+    auto layout = layOutWave(scene);
+    if (!layout) return layout.error();
+    d.wave = *layout;
+  }
+
+  // Particles set the substep; without them one substep a tick, and the wave divides it further.
+  const std::uint32_t needed = d.rules.empty() ? 1 : stepsFor(d.tick_s, d.rules.front().max_dt_s);
+  d.substeps_count = scene.fixed_substeps_count ? scene.fixed_substeps_count : needed;
+  d.dt_s = d.tick_s / d.substeps_count;
+  if (!scene.allow_unstable && !d.rules.empty() && d.substeps_count < needed) {
+    const StepRule& rule = d.rules.front();
+    return invalid(
+        fmt::format("fixed_substeps_count: {} substeps give a step of {:.4g} ms, above the bound of {:.4g} ms ({}): "
+                    "use at least {}, "
+                    "lower {}, or set allow_unstable",
+                    d.substeps_count, d.dt_s * 1e3, rule.max_dt_s * 1e3, rule.name, needed, rule.field));
+  }
+  if (d.substeps_count > kMaxSubstepsCount) {
+    const StepRule& rule = d.rules.front();
+    return invalid(
+        fmt::format("{}: needs {} substeps a tick, at most {} are allowed ({}, at most {:.4g} ms): lower it, use fewer "
+                    "particles or a "
+                    "higher tick rate",
+                    rule.field, d.substeps_count, kMaxSubstepsCount, rule.name, rule.max_dt_s * 1e3));
+  }
+  if (d.wave) {
+    const double max_dt_s = waveMaxStep(*scene.wave, *d.wave);
+    d.rules.push_back(
+        {scene.wave->stencil == core::Stencil::kNinePoint ? "wave CFL, 0.849 dx / c" : "wave CFL, 0.693 dx / c",
+         "wave.depth_m", max_dt_s});
+    std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
+    d.wave->substeps_count = stepsFor(d.dt_s, max_dt_s);
+    d.wave->dt_s = d.dt_s / d.wave->substeps_count;
+    d.wave->courant = d.wave->speed_mps * d.wave->dt_s / d.wave->cell_m;
+    if (d.wave->substeps_count > kMaxSubstepsCount) {
+      return invalid(
+          fmt::format("wave.depth_m: {:.4g} m needs {} wave steps a substep, at most {} are allowed: use shallower "
+                      "water or a coarser wave",
+                      scene.wave->depth_m, d.wave->substeps_count, kMaxSubstepsCount));
+    }
+  }
+  d.device_bytes = deviceBytes(d, scene.coupling.has_value());
+  fillUniforms(scene, d);
+  return d;
+}
+
+bool needsRestart(const Derived& before, const Derived& after) {
+  if (before.particles.has_value() != after.particles.has_value() || before.wave.has_value() != after.wave.has_value())
+    return true;
+  if (before.particles &&
+      (before.particles->count != after.particles->count || before.particles->cells != after.particles->cells))
+    return true;
+  return before.wave && before.wave->resolution_count != after.wave->resolution_count;
+}
+
+}  // namespace spindrift::sim

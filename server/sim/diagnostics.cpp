@@ -1,0 +1,130 @@
+#include "diagnostics.h"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include <shared/bindings.h>
+#include <shared/groups.h>
+
+#include "create_all.h"
+
+namespace spindrift::sim {
+namespace {
+
+/// An invocation's partial result, as shaders/diagnostics writes it.
+struct Partial {
+  float nonfinite, escaped, max_a, max_b;
+  float sum[4];
+};
+static_assert(sizeof(Partial) == 32);
+constexpr std::size_t kSlotCount = 8;
+
+struct Total {
+  double nonfinite = 0, escaped = 0, max_a = 0, max_b = 0;
+  double sum[4] = {0, 0, 0, 0};
+};
+
+Total total(std::span<const std::byte> bytes) {
+  Total out;
+  for (std::size_t at = 0; at + sizeof(Partial) <= bytes.size(); at += sizeof(Partial)) {
+    Partial p;
+    std::memcpy(&p, bytes.data() + at, sizeof p);
+    out.nonfinite += p.nonfinite;
+    out.escaped += p.escaped;
+    out.max_a = std::max(out.max_a, static_cast<double>(p.max_a));
+    out.max_b = std::max(out.max_b, static_cast<double>(p.max_b));
+    for (int k = 0; k < 4; ++k) out.sum[k] += p.sum[k];
+  }
+  return out;
+}
+
+/// Invocations for this many items, a whole number of groups: as many partial results.
+std::uint32_t sharesFor(std::uint32_t items, const gpu::Program& program) {
+  const std::uint32_t group = program.groupSize()[0];
+  return (items / REDUCE_ITEMS + group) / group * group;
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx, const Derived& derived,
+                                                               const gpu::Defines& defines) {
+  auto out = std::unique_ptr<Diagnostics>(new Diagnostics(ctx));
+  Creation create;
+  if (derived.particles) {
+    out->particles_ = derived.particles->count;
+    create(out->particle_program_, gpu::Program::create(ctx, "diagnostics/particles.comp", defines));
+    if (create.error()) return *create.error();
+    out->particle_shares_ = sharesFor(out->particles_, out->particle_program_);
+    create(out->particle_sums_, gpu::Buffer::create(ctx, "particle sums", out->particle_shares_ * sizeof(Partial)));
+  }
+  if (derived.wave) {
+    out->cells_ = derived.wave->resolution_count * derived.wave->resolution_count;
+    create(out->surface_program_, gpu::Program::create(ctx, "diagnostics/surface.comp", defines));
+    if (create.error()) return *create.error();
+    out->surface_shares_ = sharesFor(out->cells_, out->surface_program_);
+    create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial)));
+  }
+  create(out->ring_,
+         gpu::ReadbackRing::create(ctx, "diagnostics", (out->particle_shares_ + out->surface_shares_) * sizeof(Partial),
+                                   kSlotCount));
+  if (create.error()) return *create.error();
+  return out;
+}
+
+void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, Wave* wave) {
+  auto slot = ring_->begin();
+  if (!slot) return;
+  bool copied = true;
+  if (particles) {
+    particles->position.bindTexel(POSITION);
+    particles->velocity.bindTexel(VELOCITY);
+    particles->acceleration.bindTexel(ACCELERATION);
+    particle_sums_.bindStorage(PARTIAL_SUM);
+    particle_program_.dispatch(particle_shares_);
+    copied = slot->copyFrom(particle_sums_, 0, particle_sums_.sizeBytes(), 0);
+  }
+  if (wave) {
+    wave->elevation().bindTexel(ELEVATION);
+    wave->elevationPrevious().bindTexel(ELEVATION_PREVIOUS);
+    surface_sums_.bindStorage(PARTIAL_SUM);
+    surface_program_.dispatch(surface_shares_);
+    copied = copied && slot->copyFrom(surface_sums_, 0, surface_sums_.sizeBytes(), particle_shares_ * sizeof(Partial));
+  }
+  if (copied) slot->submit(tick);
+}
+
+std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& derived) {
+  std::vector<Health> out;
+  for (const auto& slot : ring_->poll()) {
+    Health h;
+    h.tick = slot->tag();
+    const auto bytes = slot->bytes();
+    const std::size_t split = particle_shares_ * sizeof(Partial);
+    if (particles_) {
+      const Total t = total(bytes.subspan(0, split));
+      const double rho_0 = scene.particles->rest_density_kgpm3;
+      h.nonfinite_count += static_cast<std::uint64_t>(t.nonfinite);
+      h.escaped_count = static_cast<std::uint64_t>(t.escaped);
+      h.max_speed_mps = t.max_a;
+      h.max_density_ratio = t.max_b / rho_0;
+      h.mean_density_ratio = t.sum[0] / particles_ / rho_0;
+      h.kinetic_energy_j = 0.5 * derived.particles->mass_kg * t.sum[1];
+      h.potential_energy_j = derived.particles->mass_kg * scene.gravity_mps2 * t.sum[2];
+    }
+    if (cells_) {
+      const Total t = total(bytes.subspan(split));
+      const double area_m2 = derived.wave->cell_m * derived.wave->cell_m;
+      const double c = derived.wave->speed_mps;
+      const double rho = scene.particles ? scene.particles->rest_density_kgpm3 : 1000.0;
+      h.nonfinite_count += static_cast<std::uint64_t>(t.nonfinite);
+      h.max_elevation_m = t.max_a;
+      h.wave_volume_m3 = t.sum[0] * area_m2;
+      h.wave_energy_j = 0.5 * rho * scene.wave->depth_m * area_m2 * (t.sum[1] + c * c * t.sum[2]);
+    }
+    out.push_back(h);
+  }
+  return out;
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,46 @@
+// One small reduction a tick: is the room healthy, and what are its energies? Results arrive some ticks later; nothing
+// waits for them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/gpu/readback_ring.h>
+#include <spindrift/sim/derive.h>
+#include <spindrift/sim/health.h>
+
+#include "particle_buffers.h"
+#include "wave.h"
+
+namespace spindrift::sim {
+
+class Diagnostics {
+ public:
+  static core::Result<std::unique_ptr<Diagnostics>> create(gpu::Context& ctx, const Derived& derived,
+                                                           const gpu::Defines& defines);
+
+  /// Measures the state after `tick`; either part may be null. Skipped (and retried next tick) while results are
+  /// outstanding in every slot.
+  void measure(std::uint64_t tick, const ParticleBuffers* particles, Wave* wave);
+  /// Results that have arrived, oldest first.
+  std::vector<Health> poll(const core::Scene& scene, const Derived& derived);
+
+ private:
+  explicit Diagnostics(gpu::Context& ctx) : ctx_(ctx) {}
+
+  gpu::Context& ctx_;
+  std::uint32_t particle_shares_ = 0;
+  std::uint32_t surface_shares_ = 0;
+  std::uint32_t cells_ = 0;
+  std::uint32_t particles_ = 0;
+  gpu::Buffer particle_sums_, surface_sums_;
+  gpu::Program particle_program_, surface_program_;
+  std::unique_ptr<gpu::ReadbackRing> ring_;
+};
+
+}  // namespace spindrift::sim

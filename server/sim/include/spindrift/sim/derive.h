@@ -1,0 +1,72 @@
+// derive(): from what users set (core::Scene, SI units) to what the passes run with. The only bridge between the two; a
+// pure function.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <shared/sim_uniforms.h>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+
+namespace spindrift::sim {
+
+/// One step-size rule: the largest step it allows, and where it comes from.
+struct StepRule {
+  std::string name;   ///< "particle CFL: 0.4 H / (c0 + U_max)"
+  std::string field;  ///< the scene field that decides most
+  double max_dt_s = 0.0;
+};
+
+/// The starting lattice and the grid around it.
+struct ParticleLayout {
+  std::uint32_t count = 0;          ///< columns^2 * layers
+  std::uint32_t columns_count = 0;  ///< along x and z
+  std::uint32_t layers_count = 0;
+  double spacing_m = 0.0;               ///< s
+  double support_radius_m = 0.0;        ///< H; on periodic axes a whole number of cells spans the patch
+  double mass_kg = 0.0;                 ///< calibrated: the inside of the lattice has rest density
+  double virtual_mass_kg = 0.0;         ///< of the floor's virtual particles, calibrated likewise
+  std::vector<double> layer_heights_m;  ///< of the resting layers above the floor, from below
+  double band_m = 0.0;                  ///< thickness of the resting band: highest layer + s/2
+  double neighbours_count = 0.0;        ///< inside the lattice, within H, the particle itself not counted
+  std::array<double, 3> min_m{};        ///< domain x, y, z
+  std::array<double, 3> max_m{};
+  std::array<std::uint32_t, 3> cells{};
+  std::uint32_t cell_count = 0;
+};
+
+struct WaveLayout {
+  std::uint32_t resolution_count = 0;  ///< n
+  double side_m = 0.0;
+  double cell_m = 0.0;
+  double speed_mps = 0.0;            ///< sqrt(g d)
+  std::uint32_t substeps_count = 1;  ///< wave steps per substep
+  double dt_s = 0.0;                 ///< of a wave step
+  double courant = 0.0;              ///< c dt / dx
+};
+
+/// Everything that follows from a scene.
+struct Derived {
+  double tick_s = 0.0;
+  std::uint32_t substeps_count = 1;  ///< per tick
+  double dt_s = 0.0;                 ///< tick_s / substeps_count
+  std::optional<ParticleLayout> particles;
+  std::optional<WaveLayout> wave;
+  std::vector<StepRule> rules;     ///< all that apply, tightest first
+  std::uint64_t device_bytes = 0;  ///< buffers of the simulation, as sim allocates them
+  shared::SimUniforms uniforms{};
+};
+
+/// Errors (kInvalidInput) name the field, the value, the bound and what to do; `allow_unstable` waives the step-size
+/// rules only. Ranges are checked where scenes are loaded; derive() checks what needs several fields.
+core::Result<Derived> derive(const core::Scene& scene);
+
+/// Whether going from one scene to another needs new buffers or programs (a restart) instead of new uniforms.
+bool needsRestart(const Derived& before, const Derived& after);
+
+}  // namespace spindrift::sim

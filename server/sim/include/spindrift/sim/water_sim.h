@@ -1,0 +1,117 @@
+// The coupled simulation of one room. step() is the page to read first.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <spindrift/core/command.h>
+#include <spindrift/core/frame_view.h>
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/context.h>
+#include <spindrift/gpu/pass_timer.h>
+#include <spindrift/sim/derive.h>
+#include <spindrift/sim/health.h>
+
+namespace spindrift::sim {
+
+/// Which layers a frame should hold.
+struct FrameRequest {
+  bool surface = false;
+  bool particles = false;
+};
+
+/// The state as plain numbers, for tests, hashes and checkpoints: positions and velocities 4 floats a particle (xyz +
+/// id, xyz + foam), elevations n x n, x fastest [m].
+struct StateCopy {
+  std::vector<float> position, velocity;
+  std::vector<float> density_kgpm3;
+  std::vector<float> elevation_m, elevation_previous_m;
+};
+
+/// All calls on the thread that owns the context. Nothing here waits for the device except copyState(), stateHash() and
+/// setState().
+class WaterSim {
+ public:
+  /// Buffers, programs and the starting state for what the scene names, and nothing else. Errors: derive()'s, and
+  /// kInternal when the device refuses.
+  static core::Result<std::unique_ptr<WaterSim>> create(gpu::Context& ctx, const core::Scene& scene);
+  ~WaterSim();
+  WaterSim(const WaterSim&) = delete;
+  WaterSim& operator=(const WaterSim&) = delete;
+
+  /// Advances by one tick.
+  void step();
+
+  /// Starts an effect now. kInvalidInput without a wave, kUnavailable when too many are active.
+  core::Result<void> start(const core::Effect& effect);
+  /// New parameter values from the next tick on. kInvalidInput when a step rule breaks or the change needs a restart;
+  /// then nothing changes.
+  core::Result<void> setScene(const core::Scene& scene);
+  /// Back to the starting state at time 0; parameters stay as they are now, ticks go on counting.
+  void reset();
+
+  /// Packs a frame of the state now; false when it was dropped because earlier ones are still being read.
+  bool requestFrame(const FrameRequest& request);
+  /// Frames that have arrived, oldest first. `diagnostics` is left empty.
+  std::vector<core::FrameView> takeFrames();
+
+  /// Newest health that has arrived.
+  [[nodiscard]] const Health& health() const { return health_; }
+  /// Sums since creation of what health() reported, and how often the guard put the room back to its last good
+  /// checkpoint.
+  [[nodiscard]] std::uint64_t nonfiniteCount() const { return nonfinite_count_; }
+  [[nodiscard]] std::uint64_t escapedCount() const { return escaped_count_; }
+  [[nodiscard]] std::uint64_t recoveredCount() const { return recovered_count_; }
+  /// Mean cost of each pass since the last call, per scope.
+  std::vector<gpu::PassCost> takePassCosts() { return timers_.take(); }
+
+  [[nodiscard]] std::uint64_t tick() const { return tick_; }
+  /// Simulated time since the start or the last reset().
+  [[nodiscard]] double time_s() const { return static_cast<double>(tick_ - start_tick_) * derived_.tick_s; }
+  [[nodiscard]] const core::Scene& scene() const { return scene_; }
+  [[nodiscard]] const Derived& derived() const { return derived_; }
+
+  /// The state now. Waits.
+  StateCopy copyState();
+  /// Replaces the state (sizes must match). For tests that need a given state.
+  void setState(const StateCopy& state);
+  /// 64-bit FNV-1a of the state's bits: equal hashes for equal runs on the same device.
+  std::uint64_t stateHash();
+
+ private:
+  struct Parts;
+  WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived);
+
+  core::Result<void> build();
+  void uploadStartingState();
+  void startTimedEvents();
+  void advanceWave(double time_s);
+  void sampleSurface();
+  void buildGrid();
+  void advanceParticles();
+  void measure();
+  void watchHealth();
+  void saveCheckpoint();
+  void recover(const Health& breach);
+  void setCareful(bool careful);
+
+  gpu::Context& ctx_;
+  core::Scene scene_;
+  Derived derived_;
+  gpu::PassTimers timers_;
+  std::unique_ptr<Parts> parts_;
+  std::uint64_t tick_ = 0;  ///< never goes back
+  std::uint64_t start_tick_ = 0;
+  Health health_;
+  std::uint64_t nonfinite_count_ = 0;
+  std::uint64_t escaped_count_ = 0;
+  std::uint64_t recovered_count_ = 0;
+  std::uint64_t abandoned_until_tick_ = 0;  ///< health of ticks up to this one belongs to a state that was given up
+  std::uint64_t careful_until_tick_ = 0;    ///< after a recovery: twice the substeps until then
+  bool is_careful_ = false;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,23 @@
+// The particles' state on the device; see shaders/shared/bindings.h for the layout of each.
+#pragma once
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim/derive.h>
+
+namespace spindrift::sim {
+
+/// Between steps only `position` and `velocity` carry meaning, and density in `acceleration.w`; the rest is rebuilt in
+/// each.
+struct ParticleBuffers {
+  gpu::TexelBuffer position, velocity;
+  gpu::TexelBuffer sorted_position, sorted_velocity;
+  gpu::TexelBuffer pressure_point, motion_point, acceleration;
+};
+
+/// The defines that specialise a scene's shaders: only what is present is compiled.
+gpu::Defines shaderDefines(const core::Scene& scene);
+
+}  // namespace spindrift::sim

@@ -1,0 +1,46 @@
+#include "sph.h"
+
+#include <shared/bindings.h>
+
+#include "create_all.h"
+
+namespace spindrift::sim {
+
+core::Result<std::unique_ptr<Sph>> Sph::create(gpu::Context& ctx, const ParticleLayout& layout,
+                                               const gpu::Defines& defines) {
+  auto sph = std::unique_ptr<Sph>(new Sph(ctx, layout));
+  Creation create;
+  create(sph->density_, gpu::Program::create(ctx, "sph/density.comp", defines));
+  create(sph->force_, gpu::Program::create(ctx, "sph/force.comp", defines));
+  create(sph->integrate_, gpu::Program::create(ctx, "sph/integrate.comp", defines));
+  if (create.error()) return *create.error();
+  return sph;
+}
+
+void Sph::density(const ParticleBuffers& particles) {
+  particles.sorted_position.bindTexel(SORTED_POSITION);
+  particles.sorted_velocity.bindTexel(SORTED_VELOCITY);
+  particles.pressure_point.bindStorage(PRESSURE_POINT);
+  particles.motion_point.bindStorage(MOTION_POINT);
+  particles.acceleration.bindStorage(ACCELERATION);
+  density_.dispatch(count_);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+void Sph::forces(const ParticleBuffers& particles) {
+  particles.pressure_point.bindTexel(PRESSURE_POINT);
+  particles.motion_point.bindTexel(MOTION_POINT);
+  particles.acceleration.bindStorage(ACCELERATION);
+  force_.dispatch(count_);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+void Sph::integrate(const ParticleBuffers& particles) {
+  particles.acceleration.bindTexel(ACCELERATION);
+  particles.position.bindStorage(POSITION);
+  particles.velocity.bindStorage(VELOCITY);
+  integrate_.dispatch(count_);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,40 @@
+// Health of the particles: one partial result an invocation, summed on the host in double precision.
+// Reads POSITION, VELOCITY, ACCELERATION.w. Writes PARTIAL_SUM, 8 floats an invocation: non-finite values, escaped particles, max
+// speed, max density, sum of density, sum of v^2, sum of y, 0.
+#include "shared/groups.h"
+#include "shared/sim_uniforms.h"
+
+layout(local_size_x = REDUCE_GROUP) in;
+
+layout(binding = POSITION) uniform samplerBuffer position;
+layout(binding = VELOCITY) uniform samplerBuffer velocity;
+layout(binding = ACCELERATION) uniform samplerBuffer acceleration;
+layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer PartialSum { vec4 partial_sum[]; };
+
+bool finite(float x) { return !isnan(x) && !isinf(x); }
+
+void main() {
+  const uint share = gl_GlobalInvocationID.x;
+  const uint shares = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  const uint count = sim.particle_count;
+  const vec3 low = vec3(sim.min_x_m, sim.min_y_m, sim.min_z_m);
+  const vec3 high = vec3(sim.max_x_m, sim.max_y_m, sim.max_z_m);
+  vec4 worst = vec4(0.0);
+  vec4 sum = vec4(0.0);
+  for (uint i = share; i < count; i += shares) {
+    const vec3 x = texelFetch(position, int(i)).xyz;
+    const vec3 v = texelFetch(velocity, int(i)).xyz;
+    const float rho = texelFetch(acceleration, int(i)).w;
+    const float v2 = dot(v, v);
+    if (finite(x.x + x.y + x.z) && finite(v2) && finite(rho)) {
+      const bool inside = all(greaterThanEqual(x, low)) && all(lessThanEqual(x, high));
+      worst.y += inside ? 0.0 : 1.0;
+      worst.zw = max(worst.zw, vec2(sqrt(v2), rho));
+      sum += vec4(rho, v2, x.y, 0.0);
+    } else {
+      worst.x += 1.0;
+    }
+  }
+  partial_sum[2u * share] = worst;
+  partial_sum[2u * share + 1u] = sum;
+}

@@ -1,0 +1,17 @@
+// Groups particle indices by cell, in arrival order.
+// Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER [particle_count].
+#include "shared/groups.h"
+#include "shared/sim_uniforms.h"
+
+layout(local_size_x = PARTICLE_GROUP) in;
+
+layout(binding = CELL_ARRIVAL) uniform usamplerBuffer arrival;
+layout(binding = CELL_START) uniform usamplerBuffer cell_start;
+layout(std430, binding = CELL_MEMBER) restrict writeonly buffer CellMember { uint cell_member[]; };
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= sim.particle_count) return;
+  const uvec2 a = texelFetch(arrival, int(i)).xy;
+  cell_member[texelFetch(cell_start, int(a.x)).x + a.y] = i;
+}

@@ -1,0 +1,16 @@
+// The neighbour search of density and force passes: ranges of sorted particles around a cell.
+#ifndef SPINDRIFT_CANDIDATES
+#define SPINDRIFT_CANDIDATES
+
+#include "include/grid_hash.glsl"
+
+layout(binding = CELL_START) uniform usamplerBuffer cell_start;
+
+CandidateRange candidateRange(Grid g, ivec3 cell, int row, int segment) {
+  CandidateRange r = rowCells(g, cell, row, segment);
+  r.first = int(texelFetch(cell_start, r.first).x);
+  r.last = int(texelFetch(cell_start, r.last).x);
+  return r;
+}
+
+#endif

@@ -1,0 +1,74 @@
+// Everything that the passes of a step read as numbers, filled by sim from derive()'s result, once per change.
+// Loops copy what they need into locals first: llvmpipe reloads a uniform in every iteration otherwise.
+#ifndef SPINDRIFT_SHARED_SIM_UNIFORMS_H
+#define SPINDRIFT_SHARED_SIM_UNIFORMS_H
+
+#include "shared/bindings.h"
+#include "shared/dual.h"
+
+#ifdef __cplusplus
+namespace spindrift::shared {
+struct SimUniforms {
+#else
+layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
+#endif
+  // Particles' domain and grid; cells have edge support_radius_m, x fastest, then y, then z.
+  float min_x_m;
+  float min_y_m;
+  float min_z_m;
+  float max_x_m;
+  float max_y_m;
+  float max_z_m;
+  float support_radius_m;
+  float spacing_m;
+  uint particle_count;
+  uint cells_x;
+  uint cells_y;
+  uint cells_z;
+  uint cell_count;
+
+  // SPH.
+  float mass_kg;                // of a particle
+  float rest_density_kgpm3;
+  float stiffness_m2ps2;        // k = c0^2 in p = k (rho - rho0)
+  float viscosity_pas;
+  float max_speed_mps;
+  float gravity_mps2;
+  float dt_s;                   // substep
+  float poly6_norm;             // 315 / (64 pi H^9)
+  float spiky_norm;             // 45 / (pi H^6), also the viscosity kernel's
+  float cubic_norm;             // 8 / (pi H^3)
+  float wall_restitution;       // share of the normal speed kept at a wall
+  float reentry_m;              // how far inside a periodic side a particle re-enters
+
+  // Floor of the particles: the water surface lowered by band_m, or the plane y = -band_m.
+  float band_m;                 // thickness of the resting band
+  float virtual_mass_kg;        // of a virtual particle of the floor
+  float floor_gap_m;            // particles are kept this far above the floor
+  float downforce_per_m_s2;
+
+  // Foam.
+  float foam_deficit_ratio;     // 1 - rho/rho0 at which a particle is fully white
+  float foam_keep_ratio;        // exp(-dt / lifetime)
+
+  // Wave; n x n cells, x fastest.
+  uint wave_n;
+  float wave_side_m;
+  float wave_cell_m;
+  float wave_dt_s;              // wave substep
+  float courant2;               // (c dt / dx)^2
+  float wave_keep;              // (1 - kappa dt/2) / (1 + kappa dt/2)
+  float wave_gain;              // 1 / (1 + kappa dt/2)
+  float flow_keep;              // exp(-kappa dt), damping of the horizontal flow per substep
+
+  // Frames.
+  float surface_quantum_m;
+#ifdef __cplusplus
+};
+static_assert(sizeof(SimUniforms) == 40 * 4, "scalars of four bytes only: std140 and C++ must agree");
+}  // namespace spindrift::shared
+#else
+} sim;
+#endif
+
+#endif
