@@ -10,7 +10,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { chromium } from "playwright-core";
 
 import { measure, shootWater } from "./pixels.mjs";
-import { startServer } from "./server.mjs";
+import { repository, startServer } from "./server.mjs";
 
 const WAIT_MS = 60_000;
 const executable = process.env.CHROMIUM ?? "/usr/bin/chromium";
@@ -35,7 +35,7 @@ async function openPage() {
     complaints.push(`console: ${message.text()} (${message.location().url})`);
   });
   await opened.goto(`${server.url}?quality=low`, { timeout: WAIT_MS });
-  await waitFor(opened, "the page to be live", (stats) => stats.state === "live" && stats.framesReceived.surface > 0);
+  await waitFor(opened, "the page to be live", (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 0);
   return opened;
 }
 
@@ -70,7 +70,7 @@ async function acknowledged(target, press) {
 /** Still water to begin with: the elevations of every test start from zero. */
 async function stillWater(target) {
   await acknowledged(target, () => target.getByTestId("reset").click());
-  await waitFor(target, "still water", (stats) => stats.surfaceMax - stats.surfaceMin < 0.02);
+  await waitFor(target, "still water", (stats) => stats.maxElevationM - stats.minElevationM < 0.02);
 }
 
 /** A test that needs the first one to have worked. */
@@ -143,8 +143,10 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     const before_click = await shootWater(page);
     const box = await page.locator("canvas").first().boundingBox();
     await acknowledged(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.55));
-    await waitFor(page, "the surface to move", (stats) => stats.surfaceMax - stats.surfaceMin > 0.1);
+    await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
     const picture = await measure(page, before_click, await shootWater(page));
+    // For people: what the page looked like in this run.
+    await page.screenshot({ path: join(repository, "build/reports/browser-splash.png"), timeout: 2 * WAIT_MS });
     assert.ok(picture.changed_ratio > 0.005, `${(100 * picture.changed_ratio).toFixed(2)} % of the pixels changed`);
   });
 
@@ -152,7 +154,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     for (const button of ["splash", "wave"]) {
       await stillWater(page);
       await acknowledged(page, () => page.getByTestId(button).click());
-      await waitFor(page, `the surface to move after "${button}"`, (stats) => stats.surfaceMax - stats.surfaceMin > 0.1);
+      await waitFor(page, `the surface to move after "${button}"`, (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
       assert.match(await page.getByTestId("last-ack").innerText(), /\d/);
     }
   });
@@ -165,6 +167,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     const resumed = await waitFor(other, "the other page to hear of the end of the pause", (stats) => stats.paused === false);
     await waitFor(other, "time to go on", (stats) => stats.simTime > resumed.simTime);
 
+    for (const target of [page, other]) await target.locator("#parameters-box > summary").click();
     const slider = (target) => target.getByRole("slider", { name: /viscosity/i });
     assert.equal(await slider(other).inputValue(), await slider(page).inputValue());
     await acknowledged(page, () => slider(page).fill("55"));
@@ -179,10 +182,10 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
   step("comes back by itself after the server was killed and started again", async () => {
     is_server_down = true;
     await server.stop("SIGKILL");
-    await waitFor(page, "the page to notice", (stats) => stats.state === "retrying");
+    await waitFor(page, "the page to notice", (stats) => stats.connectionState.startsWith("retrying"));
     const last = await statsOf(page);
     server = await startServer(server.port);
-    await waitFor(page, "the page to be live again", (stats) => stats.state === "live");
+    await waitFor(page, "the page to be live again", (stats) => stats.connectionState === "live");
     await waitFor(page, "new frames", (stats) => stats.framesReceived.surface > last.framesReceived.surface);
     is_server_down = false;
     await acknowledged(page, () => page.getByTestId("splash").click());
