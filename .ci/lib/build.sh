@@ -2,7 +2,7 @@
 # Building the server (CMake, Ninja) and the web client (npm, Vite); a tree that is up to date costs a fraction of a
 # second. Sourced by ./dev.
 
-# What `./dev run` passes to the server so that it finds the page of this checkout.
+# The built page; the server finds it by itself, from its own place in the build tree.
 readonly web_dist="web-client/dist"
 
 # build_server PRESET [TARGET…]: configures once, then builds the targets (everything when none is named).
@@ -98,7 +98,7 @@ Builds what changed and starts the server with the page of this checkout, for ex
 TEXT
     return
   fi
-  local preset rest page=()
+  local preset rest
   take_preset "$@"
   need_packages server driver
   lock_build
@@ -106,8 +106,7 @@ TEXT
   build_server "$preset" spindrift
   build_web
   unlock_build
-  has_option --web-root "${rest[@]}" || page=(--web-root "$root/$web_dist")
   # Paths among the options mean what they meant where the command was typed.
   cd -- "$called_from" || fail 2 "the folder $called_from is gone"
-  exec "$(binary_of "$preset")" serve "${page[@]}" "${rest[@]}"
+  exec "$(binary_of "$preset")" serve "${rest[@]}"
 }

@@ -82,16 +82,6 @@ take_preset() {
   esac
 }
 
-# has_option NAME ARGUMENTS…: is --NAME among the arguments, alone or with =value?
-has_option() {
-  local name="$1" argument
-  shift
-  for argument in "$@"; do
-    [[ "$argument" != "$name" && "$argument" != "$name="* ]] || return 0
-  done
-  return 1
-}
-
 wants_help() {
   [[ "${1:-}" == --help || "${1:-}" == -h ]]
 }
