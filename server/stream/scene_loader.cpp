@@ -26,6 +26,8 @@ using google::protobuf::TextFormat;
 
 /// After this many errors a person has enough to do, and hostile input cannot make the report grow further.
 constexpr std::size_t kMaxReportedErrorCount = 100;
+/// One more shows that there are more; finding the place of an error reads the text from its start.
+constexpr std::size_t kMaxKeptErrorCount = kMaxReportedErrorCount + 1;
 /// Nesting of braces; a scene needs four.
 constexpr int kMaxNestingDepth = 32;
 
@@ -40,22 +42,67 @@ struct LocatedError {
   std::string message;
 };
 
+/// Columns as Protobuf's tokenizer counts them: bytes, a tab reaching to the next multiple of 8.
+int nextColumn(char c, int column) {
+  constexpr int kTabWidth = 8;
+  return c == '\t' ? column + kTabWidth - column % kTabWidth : column + 1;
+}
+
+Location locationOf(std::string_view text, std::size_t offset) {
+  Location at;
+  for (const char c : text.substr(0, offset)) {
+    at = c == '\n' ? Location{at.line + 1, 0} : Location{at.line, nextColumn(c, at.column)};
+  }
+  return at;
+}
+
+std::size_t offsetOf(std::string_view text, Location wanted) {
+  Location at;
+  std::size_t offset = 0;
+  while (offset < text.size() && std::pair(at.line, at.column) < std::pair(wanted.line, wanted.column)) {
+    at = text[offset] == '\n' ? Location{at.line + 1, 0} : Location{at.line, nextColumn(text[offset], at.column)};
+    ++offset;
+  }
+  return offset;
+}
+
+/// Some errors are found only when the parser stands behind the word they complain about, perhaps lines behind. They
+/// quote the word, so the true place is where it last stood before.
+Location placeOf(std::string_view text, Location reported, std::string_view message) {
+  for (const std::string_view phrase :
+       {std::string_view("Unknown enumeration value of \""), std::string_view("has no field named \""),
+        std::string_view("Non-repeated field \""), std::string_view("Value: \"")}) {
+    const std::size_t found = message.rfind(phrase);
+    if (found == std::string_view::npos) continue;
+    std::string_view word = message.substr(found + phrase.size());
+    word = word.substr(0, word.find('"'));
+    const std::size_t offset = offsetOf(text, reported);
+    if (word.empty() || offset == 0) return reported;
+    const std::size_t place = text.rfind(word, offset - 1);
+    return place == std::string_view::npos ? reported : locationOf(text, place);
+  }
+  return reported;
+}
+
 class ErrorCollector : public google::protobuf::io::ErrorCollector {
  public:
-  explicit ErrorCollector(std::vector<LocatedError>& errors) : errors_(errors) {}
+  ErrorCollector(std::string_view text, std::vector<LocatedError>& errors) : text_(text), errors_(errors) {}
   void AddError(int line, int column, const std::string& message) override {
-    failed_line_ = std::max(line, 0);
     add(line, column, message);
+    failed_line_ = errors_.back().location.line;
   }
   /// Unknown fields arrive as warnings because the parser was asked to go on after them.
-  void AddWarning(int line, int column, const std::string& message) override { add(line, column, message); }
+  void AddWarning(int line, int column, const std::string& message) override {
+    if (errors_.size() < kMaxKeptErrorCount) add(line, column, message);
+  }
   int failedLine() const { return failed_line_; }
 
  private:
   void add(int line, int column, const std::string& message) {
-    errors_.push_back({{std::max(line, 0), std::max(column, 0)}, message});
+    errors_.push_back({placeOf(text_, {std::max(line, 0), std::max(column, 0)}, message), message});
   }
 
+  std::string_view text_;
   std::vector<LocatedError>& errors_;
   int failed_line_ = -1;
 };
@@ -93,7 +140,7 @@ std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene
                                                      std::vector<LocatedError>& errors) {
   for (;;) {
     std::vector<LocatedError> found;
-    ErrorCollector collector(found);
+    ErrorCollector collector(text, found);
     auto tree = std::make_unique<TextFormat::ParseInfoTree>();
     TextFormat::Parser parser;
     parser.RecordErrorsTo(&collector);
@@ -149,7 +196,7 @@ std::string report(const std::string& file_label, std::vector<LocatedError> erro
     text += file_label + ':' + std::to_string(errors[i].location.line + 1) + ':' +
             std::to_string(errors[i].location.column + 1) + ": " + errors[i].message;
   }
-  if (errors.size() > shown) text += '\n' + file_label + ": and " + std::to_string(errors.size() - shown) + " more";
+  if (errors.size() > shown) text += '\n' + file_label + ": and more; correct these first";
   return text;
 }
 

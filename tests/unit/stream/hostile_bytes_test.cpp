@@ -1,0 +1,220 @@
+// Bytes from anybody: random ones, and valid messages with damage. Nothing crashes, nothing non-finite comes through.
+// Run under the sanitizer presets, these find what plain runs would forgive.
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/stream/client_message.h>
+#include <spindrift/stream/crc32c.h>
+#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/stream/scene_loader.h>
+
+#include "golden_cases.h"
+
+namespace spindrift::stream {
+namespace {
+
+constexpr int kCaseCount = 20'000;
+
+class Random {
+ public:
+  explicit Random(std::uint32_t seed) : engine_(seed) {}
+  /// 0 <= result < bound; by remainder, so that every standard library gives the same cases.
+  std::size_t below(std::size_t bound) { return engine_() % bound; }
+  std::uint8_t byte() { return static_cast<std::uint8_t>(engine_()); }
+  core::Bytes bytes(std::size_t max_size) {
+    core::Bytes out(below(max_size + 1));
+    for (std::uint8_t& value : out) value = byte();
+    return out;
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// One to four changes: a bit flipped, a byte replaced, the end cut off, bytes put in or taken out.
+core::Bytes mutate(core::Bytes bytes, Random& random) {
+  for (std::size_t left = 1 + random.below(4); left > 0; --left) {
+    if (bytes.empty()) bytes.push_back(random.byte());
+    const auto at = static_cast<std::ptrdiff_t>(random.below(bytes.size()));
+    switch (random.below(5)) {
+      case 0:
+        bytes[static_cast<std::size_t>(at)] ^= static_cast<std::uint8_t>(1u << random.below(8));
+        break;
+      case 1:
+        bytes[static_cast<std::size_t>(at)] = random.byte();
+        break;
+      case 2:
+        bytes.resize(static_cast<std::size_t>(at));
+        break;
+      case 3:
+        bytes.insert(bytes.begin() + at, random.byte());
+        break;
+      default:
+        bytes.erase(bytes.begin() + at);
+        break;
+    }
+  }
+  return bytes;
+}
+
+core::Bytes serialized(const google::protobuf::MessageLite& message) {
+  core::Bytes bytes(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(bytes.data());
+  return bytes;
+}
+
+std::vector<core::Bytes> validClientMessages() {
+  std::vector<v1::ClientMessage> messages(9);
+  messages[0].mutable_hello()->mutable_version()->set_major(1);
+  messages[0].mutable_hello()->set_client("hostile \xC3\xA9");
+  messages[1].mutable_subscribe()->set_layer(v1::LAYER_SURFACE);
+  messages[1].mutable_subscribe()->set_max_rate_hz(30);
+  messages[2].mutable_ping()->set_client_time_s(12.5);
+  for (std::size_t i = 3; i < messages.size(); ++i) messages[i].mutable_command()->set_command_id(i);
+  v1::Splash& splash = *messages[3].mutable_command()->mutable_splash();
+  splash.set_x_m(1);
+  splash.set_radius_m(2);
+  v1::BreakingWave& wave = *messages[4].mutable_command()->mutable_breaking_wave();
+  wave.set_side(v1::SIDE_MINUS_Z);
+  wave.set_amplitude_m(0.5);
+  messages[5].mutable_command()->mutable_set_parameter()->set_path("particles.viscosity_pas");
+  messages[5].mutable_command()->mutable_set_parameter()->set_value(20);
+  messages[6].mutable_command()->mutable_reset();
+  messages[7].mutable_command()->mutable_set_paused()->set_paused(true);
+  messages[8].mutable_command()->mutable_set_speed()->set_speed(2);
+  std::vector<core::Bytes> out;
+  for (const v1::ClientMessage& message : messages) out.push_back(serialized(message));
+  return out;
+}
+
+bool isFinite(const core::Action& action) {
+  if (const auto* splash = std::get_if<core::Splash>(&action)) {
+    return std::isfinite(splash->x_m + splash->z_m + splash->radius_m + splash->depth_m + splash->duration_s);
+  }
+  if (const auto* wave = std::get_if<core::BreakingWave>(&action)) {
+    return std::isfinite(wave->amplitude_m + wave->length_m + wave->duration_s);
+  }
+  if (const auto* set = std::get_if<core::SetParameter>(&action)) return std::isfinite(set->value);
+  if (const auto* speed = std::get_if<core::SetSpeed>(&action)) return std::isfinite(speed->speed);
+  return true;
+}
+
+bool isHarmless(const ClientMessage& message) {
+  if (const auto* hello = std::get_if<Hello>(&message)) return hello->client.size() <= kClientNameMaxBytes;
+  if (const auto* subscribe = std::get_if<Subscribe>(&message)) {
+    return subscribe->max_rate_hz >= 0 && subscribe->max_rate_hz <= 240 && v1::Layer_IsValid(subscribe->layer);
+  }
+  if (const auto* ping = std::get_if<Ping>(&message)) return std::isfinite(ping->client_time_s);
+  if (const auto* command = std::get_if<core::Command>(&message)) return isFinite(command->action);
+  if (const auto* rejection = std::get_if<CommandRejection>(&message)) {
+    return rejection->reason != v1::REJECT_REASON_UNSPECIFIED && !rejection->message.empty();
+  }
+  return !std::get<Malformed>(message).message.empty();
+}
+
+bool allFinite(const std::vector<float>& values) {
+  for (const float value : values) {
+    if (!std::isfinite(value)) return false;
+  }
+  return true;
+}
+
+v1::Scene fullScene() {
+  const auto scene = parseSceneText("wave {} particles {} coupling {} foam {}", "hostile.textproto");
+  EXPECT_TRUE(scene);
+  return *scene;
+}
+
+TEST(HostileBytes, RandomClientMessagesDoNoHarm) {
+  Random random(1);
+  for (int i = 0; i < kCaseCount; ++i) ASSERT_TRUE(isHarmless(parseClientMessage(random.bytes(200)))) << "case " << i;
+}
+
+TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndMeetEveryAnswer) {
+  Random random(2);
+  const std::vector<core::Bytes> valid = validClientMessages();
+  const v1::Scene scene = fullScene();
+  std::vector<int> answer_counts(std::variant_size_v<ClientMessage>, 0);
+  for (int i = 0; i < kCaseCount; ++i) {
+    const ClientMessage message = parseClientMessage(mutate(valid[random.below(valid.size())], random));
+    ASSERT_TRUE(isHarmless(message)) << "case " << i;
+    ++answer_counts[message.index()];
+    if (const auto* command = std::get_if<core::Command>(&message)) {
+      const auto rejection = checkAgainstScene(*command, scene);
+      ASSERT_TRUE(!rejection || !rejection->message.empty()) << "case " << i;
+    }
+  }
+  // Otherwise the damage would be too coarse to test anything behind the parser.
+  for (std::size_t answer = 0; answer < answer_counts.size(); ++answer) EXPECT_GT(answer_counts[answer], 50) << answer;
+}
+
+TEST(HostileBytes, RandomServerMessagesDoNoHarm) {
+  Random random(3);
+  for (int i = 0; i < kCaseCount; ++i) {
+    const auto message = parseServerMessage(random.bytes(200));
+    if (!message) {
+      ASSERT_FALSE(message.error().message.empty());
+    } else {
+      ASSERT_NE(message->message_case(), v1::ServerMessage::MESSAGE_NOT_SET);
+    }
+  }
+}
+
+TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
+  Random random(4);
+  const std::vector<GoldenCase> golden = goldenCases();
+  int decoded_count = 0;
+  int refused_count = 0;
+  for (int i = 0; i < kCaseCount; ++i) {
+    auto message = parseServerMessage(mutate(golden[random.below(golden.size())].bytes, random));
+    if (!message || !message->has_frame()) continue;
+    v1::LayerFrame& frame = *message->mutable_frame();
+    // The checksum would refuse almost every case; half of them carry the right one and meet the checks behind it.
+    if (random.below(2) == 0) {
+      frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+    }
+    if (const auto surface = decodeSurface(frame)) {
+      ++decoded_count;
+      ASSERT_TRUE(allFinite(surface->elevation_m)) << "case " << i;
+      ASSERT_EQ(surface->elevation_m.size(), std::size_t{surface->resolution_count} * surface->resolution_count);
+    } else if (const auto particles = decodeParticles(frame)) {
+      ++decoded_count;
+      ASSERT_TRUE(allFinite(particles->position_m) && allFinite(particles->velocity_mps)) << "case " << i;
+      ASSERT_EQ(particles->position_m.size(), std::size_t{3} * particles->count);
+    } else {
+      ++refused_count;
+    }
+  }
+  EXPECT_GT(decoded_count, 200);
+  EXPECT_GT(refused_count, 200);
+}
+
+TEST(HostileBytes, DamagedScenesLoadCheckedOrNotAtAll) {
+  Random random(5);
+  const std::string valid =
+      "name: 'pool' gravity_mps2: 9.81\nwave { resolution_count: 64 depth_m: 1.5 stencil: STENCIL_NINE_POINT }\n"
+      "particles { count: 100 boundary_x: BOUNDARY_WALL }\ncoupling { lattice_count: 3 }\nfoam { lifetime_s: 1e0 }\n"
+      "events { at_s: 1 effect { splash { x_m: -2 depth_m: 0.4 } } }\n";
+  int loaded_count = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    const core::Bytes bytes = mutate(core::Bytes(valid.begin(), valid.end()), random);
+    const auto scene = parseSceneText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "pool.textproto");
+    if (!scene) {
+      ASSERT_EQ(scene.error().message.find("pool.textproto:"), 0u) << "case " << i;
+      continue;
+    }
+    ++loaded_count;
+    const core::Scene core_scene = toCore(*scene);
+    ASSERT_TRUE(std::isfinite(core_scene.gravity_mps2)) << "case " << i;
+    ASSERT_TRUE(core_scene.wave || core_scene.particles) << "case " << i;
+    ASSERT_TRUE(!core_scene.wave || std::isfinite(core_scene.wave->depth_m)) << "case " << i;
+  }
+  EXPECT_GT(loaded_count, 20);
+}
+
+}  // namespace
+}  // namespace spindrift::stream
