@@ -115,7 +115,7 @@ core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choic
 }
 
 Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why)
-    : egl_(std::move(egl)), device_(std::move(device)), why_(std::move(why)), owner_(std::this_thread::get_id()) {
+    : egl_(std::move(egl)), device_(std::move(device)), why_(std::move(why)) {
   glEnable(GL_DEBUG_OUTPUT);
 #ifndef NDEBUG
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // so that a breakpoint in the callback shows the call
@@ -124,7 +124,10 @@ Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why)
 }
 
 Context::~Context() {
-  if (!isOwnedHere() && !makeCurrent()) {
+  // Another context of this thread stays current afterwards.
+  std::optional<egl::CurrentGuard> guard;
+  if (!isOwnedHere()) guard.emplace();
+  if (!makeCurrent()) {
     spdlog::error("OpenGL context destroyed while another thread uses it; its objects are not freed");
     return;
   }
@@ -139,15 +142,16 @@ Context::~Context() {
 }
 
 bool Context::makeCurrent() {
-  if (!egl::makeCurrent(egl_->handles)) return false;
-  owner_.store(std::this_thread::get_id());
-  return true;
+  return egl::makeCurrent(egl_->handles);
+}
+
+bool Context::isOwnedHere() const {
+  return eglGetCurrentContext() == egl_->handles.context;
 }
 
 void Context::release() {
   assert(isOwnedHere());
   egl::makeCurrent({egl_->handles.display, EGL_NO_CONTEXT});
-  owner_.store(std::thread::id());
 }
 
 void Context::barrier(Barrier readers) {

@@ -84,14 +84,16 @@ core::Result<Program> Program::create(Context& ctx, std::string_view shader_path
                        "shader \"" + std::string(shader_path) + "\" is not embedded; embedded are " +
                            std::to_string(embeddedShaders().size()) + " files shaders/**/*.comp"};
   }
-  std::string head(kVersionLine);
-  for (const auto& [name, value] : defines) head += "#define " + name + " " + value + "\n";
-  head += "#line 1\n";  // so that the driver counts the lines of the expanded text
+  std::string text(kVersionLine);
+  for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
+  // The driver counts the lines of the expanded text, and all of it in one string: each string has its own number.
+  text += "#line 1\n";
+  text += embedded->text;
 
-  const GLchar* const texts[] = {head.data(), embedded->text.data()};
-  const GLint lengths[] = {static_cast<GLint>(head.size()), static_cast<GLint>(embedded->text.size())};
+  const GLchar* const pointer = text.data();
+  const auto length = static_cast<GLint>(text.size());
   const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
-  glShaderSource(shader, 2, texts, lengths);
+  glShaderSource(shader, 1, &pointer, &length);
   glCompileShader(shader);
   GLint is_fine = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &is_fine);

@@ -45,7 +45,22 @@ TEST_F(ContextTest, SoftwareMeansARendererWithoutHardware) {
   if (!software) GTEST_SKIP() << software.error().message;
   EXPECT_TRUE((*software)->device().is_software);
   EXPECT_EQ((*software)->device().index, -1);
-  EXPECT_TRUE(ctx->makeCurrent());
+}
+
+TEST_F(ContextTest, ASecondContextTakesItsPlaceAndLeavesItWhole) {
+  {
+    auto second = Context::create(*testDevice());
+    ASSERT_TRUE(second);
+    EXPECT_FALSE(ctx->isOwnedHere());
+    EXPECT_TRUE((*second)->isOwnedHere());
+    ASSERT_TRUE(ctx->makeCurrent());
+    EXPECT_FALSE((*second)->isOwnedHere());
+    second->reset();
+    EXPECT_TRUE(ctx->isOwnedHere()) << "destroying the second unbound the first";
+  }
+  glEnable(GL_TEXTURE_BUFFER);  // not a capability: the first context's callback must still hear of it
+  ctx->finish();
+  expected_error_count = 1;
 }
 
 TEST_F(ContextTest, DebugCallbackCountsErrors) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 
 #include <spindrift/gpu/context.h>
@@ -25,6 +26,7 @@ class GpuTest : public testing::Test {
     auto made = Context::create(*choice);
     if (!made) GTEST_SKIP() << made.error().message;
     ctx = std::move(*made);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // so that an error has been counted when the test looks
   }
 
   void TearDown() override {

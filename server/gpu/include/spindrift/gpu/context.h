@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <spindrift/core/result.h>
@@ -49,12 +48,12 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   /// Binds the context to the calling thread, which owns it from then on; false when the driver refuses (for example
-  /// because another thread has not released it).
+  /// because another thread has not released it). A thread has one current context: the one before is unbound.
   [[nodiscard]] bool makeCurrent();
   /// Unbinds it, so that another thread can take it with makeCurrent().
   void release();
-  /// Whether the calling thread owns the context.
-  [[nodiscard]] bool isOwnedHere() const { return owner_.load() == std::this_thread::get_id(); }
+  /// Whether the calling thread owns the context and no other context has taken its place there.
+  [[nodiscard]] bool isOwnedHere() const;
 
   [[nodiscard]] const DeviceInfo& device() const { return device_; }
   [[nodiscard]] const DeviceLimits& limits() const { return device_.limits; }
@@ -96,7 +95,6 @@ class Context {
   std::unique_ptr<Egl> egl_;
   DeviceInfo device_;
   std::string why_;
-  std::atomic<std::thread::id> owner_;
   std::atomic<std::uint64_t> debug_error_count_{0};
   Ledger ledger_;
   std::vector<Retired> retired_;
