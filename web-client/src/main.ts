@@ -21,6 +21,8 @@ import { Toast } from "./ui/toast";
 const nowS = (): number => performance.now() / 1000;
 const canvas = byId<HTMLCanvasElement>("view");
 const notice = byId("notice");
+/** As in style.css: below this width the panel is a sheet at the bottom. */
+const kNarrowPx = 760;
 const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 function showNotice(text: string): void {
@@ -55,6 +57,7 @@ function main(): void {
     return;
   }
   const { renderer, quality } = made;
+  document.body.classList.toggle("plain", quality.samplesCount === 1);
   const governor = new FrameGovernor(Math.min(window.devicePixelRatio || 1, quality.maxPixelRatio));
 
   const hud = new Hud();
@@ -155,9 +158,10 @@ function main(): void {
     document.body.classList.toggle("panel-closed", !open);
     panelToggle.setAttribute("aria-expanded", String(open));
     panelToggle.setAttribute("aria-label", open ? "Hide controls" : "Show controls");
+    resize();
   };
   panelToggle.addEventListener("click", () => setPanelOpen(document.body.classList.contains("panel-closed")));
-  setPanelOpen(window.innerWidth > 760);
+  setPanelOpen(window.innerWidth > kNarrowPx);
 
   const taps = new TapDetector();
   const sample = (event: PointerEvent) => ({ id: event.pointerId, xPx: event.clientX, yPx: event.clientY, timeMs: event.timeStamp });
@@ -178,7 +182,8 @@ function main(): void {
   function resize(): void {
     renderer.setPixelRatio(governor.pixelRatio);
     renderer.setSize(window.innerWidth, window.innerHeight, false);
-    scene.resize(window.innerWidth, window.innerHeight);
+    const panelPx = document.body.classList.contains("panel-closed") || window.innerWidth <= kNarrowPx ? 0 : byId("panel").offsetWidth;
+    scene.resize(window.innerWidth, window.innerHeight, panelPx);
   }
   window.addEventListener("resize", resize);
   document.addEventListener("visibilitychange", () => client.setVisible(!document.hidden));

@@ -11,9 +11,11 @@ export const kMaxResolutionCount = 4096;
 export const kMaxParticleCount = 4 * 1024 * 1024;
 export const kParticleBytes = 12;
 
+// 64-bit integers stay bigint: beyond 2^53 a number would round them.
+
 /** What every frame carries: tick, and simulation time in seconds. */
 export interface FrameHeader {
-  tick: number;
+  tick: bigint;
   timeS: number;
 }
 
@@ -34,7 +36,7 @@ export interface ParticleHeader extends FrameHeader {
 }
 
 export interface DiagnosticsInfo {
-  tick: number;
+  tick: bigint;
   timeS: number;
   stepMs: number;
   realTimeFactor: number;
@@ -44,9 +46,12 @@ export interface DiagnosticsInfo {
   maxElevationM: number;
   meanDensityRatio: number;
   maxDensityRatio: number;
-  nonfiniteCount: number;
-  escapedCount: number;
-  recoveredCount: number;
+  kineticEnergyJ: number;
+  potentialEnergyJ: number;
+  waveEnergyJ: number;
+  nonfiniteCount: bigint;
+  escapedCount: bigint;
+  recoveredCount: bigint;
   passes: { name: string; ms: number }[];
 }
 
@@ -55,9 +60,9 @@ export type ParsedMessage =
   | { kind: "surface"; header: SurfaceHeader; payload: Uint8Array }
   | { kind: "particles"; header: ParticleHeader; payload: Uint8Array }
   | { kind: "diagnostics"; diagnostics: DiagnosticsInfo }
-  | { kind: "ack"; commandId: number; appliedTick: number }
-  | { kind: "reject"; commandId: number; reason: string; field: string; message: string }
-  | { kind: "parameterChanged"; path: string; value: number; appliedTick: number }
+  | { kind: "ack"; commandId: bigint; appliedTick: bigint }
+  | { kind: "reject"; commandId: bigint; reason: string; field: string; message: string }
+  | { kind: "parameterChanged"; path: string; value: number; appliedTick: bigint }
   | { kind: "roomState"; paused: boolean; speed: number }
   | { kind: "pong"; clientTimeS: number; serverTimeS: number }
   | { kind: "refusal"; message: string }
@@ -83,8 +88,7 @@ function frameFault(frame: LayerFrame): string | undefined {
 
 function parseFrame(frame: LayerFrame): ParsedMessage {
   const { payload } = frame;
-  const tick = Number(frame.tick);
-  const timeS = frame.timeS;
+  const { tick, timeS } = frame;
   if (frame.codec.case === "surfaceFixed16") {
     const { resolutionCount, sideM, quantumM } = frame.codec.value;
     if (frame.layer !== Layer.SURFACE) return malformed(`layer ${frame.layer} carries a surface`);
@@ -136,33 +140,19 @@ export function parse(buffer: ArrayBuffer): ParsedMessage {
       case "frame":
         return parseFrame(message.value);
       case "diagnostics": {
-        const { $typeName: _, $unknown: __, kineticEnergyJ: ___, potentialEnergyJ: ____, waveEnergyJ: _____, ...d } = message.value;
-        return {
-          kind: "diagnostics",
-          diagnostics: {
-            ...d,
-            tick: Number(d.tick),
-            nonfiniteCount: Number(d.nonfiniteCount),
-            escapedCount: Number(d.escapedCount),
-            recoveredCount: Number(d.recoveredCount),
-            passes: d.passes.map(({ name, ms }) => ({ name, ms })),
-          },
-        };
+        const { $typeName: _, $unknown: __, passes, ...numbers } = message.value;
+        return { kind: "diagnostics", diagnostics: { ...numbers, passes: passes.map(({ name, ms }) => ({ name, ms })) } };
       }
       case "ack":
-        return {
-          kind: "ack",
-          commandId: Number(message.value.commandId),
-          appliedTick: Number(message.value.appliedTick),
-        };
+        return { kind: "ack", commandId: message.value.commandId, appliedTick: message.value.appliedTick };
       case "reject": {
         const { commandId, reason, field, message: text } = message.value;
-        return { kind: "reject", commandId: Number(commandId), reason: RejectReason[reason] ?? `${reason}`, field, message: text };
+        return { kind: "reject", commandId, reason: RejectReason[reason] ?? `${reason}`, field, message: text };
       }
       case "parameterChanged": {
         const { path, value, appliedTick } = message.value;
         if (!Number.isFinite(value)) return malformed(`parameter ${path} is ${value}`);
-        return { kind: "parameterChanged", path, value, appliedTick: Number(appliedTick) };
+        return { kind: "parameterChanged", path, value, appliedTick };
       }
       case "roomState":
         return { kind: "roomState", paused: message.value.paused, speed: message.value.speed };

@@ -164,11 +164,12 @@ export class Connection {
         this.meter.diagnostics();
         return this.events.diagnostics(parsed.diagnostics);
       case "ack":
-        if (this.pendingSinceMs.delete(parsed.commandId)) this.events.ack(parsed.commandId, parsed.appliedTick);
+        if (this.pendingSinceMs.delete(Number(parsed.commandId)))
+          this.events.ack(Number(parsed.commandId), Number(parsed.appliedTick));
         return;
       case "reject":
-        if (this.pendingSinceMs.delete(parsed.commandId))
-          this.events.reject(parsed.commandId, parsed.reason, parsed.field, parsed.message);
+        if (this.pendingSinceMs.delete(Number(parsed.commandId)))
+          this.events.reject(Number(parsed.commandId), parsed.reason, parsed.field, parsed.message);
         return;
       case "parameterChanged":
         return this.events.parameterChanged(parsed.path, parsed.value);

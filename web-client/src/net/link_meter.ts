@@ -9,7 +9,7 @@ export class LinkMeter {
   private lastMalformed = "";
   private bytesCount = 0;
   private frameCount = 0;
-  private lastTick = -1;
+  private lastTick = -1n;
   private kilobytesPerS = 0;
   private framesPerS = 0;
   private roundTripsMs: number[] = [];
@@ -20,7 +20,7 @@ export class LinkMeter {
     this.bytesCount += count;
   }
 
-  frame(layer: "surface" | "particles", tick: number): void {
+  frame(layer: "surface" | "particles", tick: bigint): void {
     ++this.receivedCount[layer];
     if (tick !== this.lastTick) ++this.frameCount;
     this.lastTick = tick;

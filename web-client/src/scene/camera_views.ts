@@ -6,8 +6,8 @@ export type ViewName = "splash" | "wave";
 
 /** In sides of the water; the whole square fits a landscape screen. */
 const kViews: Record<ViewName, { position: Vector3; target: Vector3 }> = {
-  splash: { position: new Vector3(0.34, 0.47, 0.98), target: new Vector3(0, -0.03, 0.04) },
-  wave: { position: new Vector3(0.20, 0.13, 1.02), target: new Vector3(0, 0.0, 0) },
+  splash: { position: new Vector3(0.46, 0.46, 1.22), target: new Vector3(0, 0.02, 0) },
+  wave: { position: new Vector3(0.20, 0.115, 1.16), target: new Vector3(0, 0.045, 0) },
 };
 const kTravelS = 0.9;
 /** Screens narrower than this have the camera further back. */

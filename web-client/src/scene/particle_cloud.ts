@@ -1,14 +1,16 @@
 // Particles as ray-traced spheres. The wire's 12 bytes go to the GPU as they are: six u16 a particle in one interleaved
 // buffer, unpacked by the vertex shader; no JavaScript touches a particle.
 import {
-  BufferAttribute,
-  InstancedBufferGeometry,
-  InstancedInterleavedBuffer,
+  BufferGeometry,
+  InterleavedBuffer,
   InterleavedBufferAttribute,
   Matrix4,
-  Mesh,
+  Points,
+  Vector2,
   Vector3,
+  type PerspectiveCamera,
   type RawShaderMaterial,
+  type Texture,
 } from "three";
 
 import { kParticleBytes } from "../codec/parse";
@@ -19,31 +21,35 @@ import type { Sky } from "./sky";
 const kWordsPerParticle = kParticleBytes / 2;
 
 export class ParticleCloud {
-  readonly mesh: Mesh<InstancedBufferGeometry, RawShaderMaterial>;
+  readonly mesh: Points<BufferGeometry, RawShaderMaterial>;
   private readonly uniforms: Uniforms;
-  private words: InstancedInterleavedBuffer | undefined;
+  private words: InterleavedBuffer | undefined;
   private shown: ParticleFrame | undefined;
 
-  /** `depthM`: how far below y = 0 the light has faded. */
-  constructor(sky: Sky, depthM: number) {
+  /** `field` absent: particles without a surface over them. `depthM`: how far below y = 0 the light has faded. */
+  constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number) {
     this.uniforms = {
       ...sky.uniforms,
       u_camera_world: { value: new Matrix4() },
+      u_inverse_projection: { value: new Matrix4() },
+      u_resolution: { value: new Vector2(1, 1) },
       u_min_m: { value: new Vector3() },
       u_max_m: { value: new Vector3() },
       u_max_speed_mps: { value: 0 },
       u_advance_s: { value: 0 },
       u_radius_m: { value: 1 },
       u_depth_m: { value: depthM },
+      u_field: { value: field ?? null },
+      u_side_m: { value: sideM },
+      u_has_water: { value: field !== undefined },
     };
-    this.mesh = new Mesh(new InstancedBufferGeometry(), makeMaterial("particle", this.uniforms));
+    this.mesh = new Points(new BufferGeometry(), makeMaterial("particle", this.uniforms));
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
   }
 
   /** Shows `frame` moved on by its velocities for `advanceS` seconds. */
-  show(frame: ParticleFrame, advanceS: number, cameraWorld: Matrix4): void {
-    (this.uniforms["u_camera_world"]!.value as Matrix4).copy(cameraWorld);
+  show(frame: ParticleFrame, advanceS: number): void {
     this.uniforms["u_advance_s"]!.value = advanceS;
     if (frame === this.shown) return;
     this.shown = frame;
@@ -63,6 +69,12 @@ export class ParticleCloud {
     this.uniforms["u_radius_m"]!.value = frame.radiusM;
   }
 
+  update(camera: PerspectiveCamera, widthPx: number, heightPx: number): void {
+    (this.uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
+    (this.uniforms["u_inverse_projection"]!.value as Matrix4).copy(camera.projectionMatrixInverse);
+    (this.uniforms["u_resolution"]!.value as Vector2).set(widthPx, heightPx);
+  }
+
   dispose(): void {
     this.mesh.geometry.dispose();
     this.mesh.material.dispose();
@@ -70,13 +82,10 @@ export class ParticleCloud {
 
   private rebuild(words: Uint16Array): void {
     this.mesh.geometry.dispose();
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    this.words = new InstancedInterleavedBuffer(words, kWordsPerParticle, 1);
-    geometry.setAttribute("a_place", new InterleavedBufferAttribute(this.words, 3, 0, true));
+    const geometry = new BufferGeometry();
+    this.words = new InterleavedBuffer(words, kWordsPerParticle);
+    geometry.setAttribute("position", new InterleavedBufferAttribute(this.words, 3, 0, true));
     geometry.setAttribute("a_packed", new InterleavedBufferAttribute(this.words, 3, 3, true));
-    geometry.instanceCount = words.length / kWordsPerParticle;
     this.mesh.geometry = geometry;
   }
 }

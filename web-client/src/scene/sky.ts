@@ -26,15 +26,17 @@ export class Sky {
   /** What every material that mirrors the sky takes in. */
   readonly uniforms: Uniforms;
   readonly dome: Mesh;
-  private readonly cube = new WebGLCubeRenderTarget(kFaceCount, {
-    type: HalfFloatType,
-    generateMipmaps: true,
-    minFilter: LinearMipmapLinearFilter,
-    magFilter: LinearFilter,
-  });
+  private readonly cube: WebGLCubeRenderTarget;
   private readonly domeUniforms: Uniforms;
 
-  constructor() {
+  /** `smooth`: with mip levels, for still reflections far away; software renderers are better off without. */
+  constructor(smooth: boolean) {
+    this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 2, {
+      type: HalfFloatType,
+      generateMipmaps: smooth,
+      minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
+      magFilter: LinearFilter,
+    });
     this.uniforms = { u_sky: { value: this.cube.texture }, u_sun_direction: { value: this.sunDirection } };
     this.domeUniforms = {
       ...this.uniforms,

@@ -38,16 +38,14 @@ export interface Quality {
 }
 
 export class WaterScene {
-  readonly camera = new PerspectiveCamera(42, 1, 0.1, 1000);
+  readonly camera = new PerspectiveCamera(47, 1, 0.1, 1000);
   readonly clock = new PlayoutClock();
-  private readonly sky = new Sky();
+  private readonly sky: Sky;
   private readonly solids = new Scene();
   private readonly waters = new Scene();
   private readonly surfaces: FrameRing<SurfaceFrame>;
   private readonly particleFrames: FrameRing<ParticleFrame>;
-  private readonly present = new FullscreenPass(
-    makeMaterial("present", { ...this.sky.uniforms, u_behind: { value: null } }, { depthTest: false, depthWrite: false }),
-  );
+  private readonly present: FullscreenPass;
   private behind: WebGLRenderTarget;
   private field: FieldPass | undefined;
   private body: WaterBody | undefined;
@@ -63,6 +61,10 @@ export class WaterScene {
   ) {
     this.surfaces = new FrameRing<SurfaceFrame>(kRingCount, release);
     this.particleFrames = new FrameRing<ParticleFrame>(kRingCount, release);
+    this.sky = new Sky(quality.samplesCount > 1);
+    this.present = new FullscreenPass(
+      makeMaterial("present", { ...this.sky.uniforms, u_behind: { value: null } }, { depthTest: false, depthWrite: false }),
+    );
     renderer.autoClear = false;
     this.behind = this.makeBehind(1, 1);
     this.solids.add(this.sky.dome);
@@ -85,7 +87,7 @@ export class WaterScene {
     this.ground = new Ground(this.sky, this.field?.texture, sideM, depthM);
     this.solids.add(this.ground.mesh);
     if (greeting.hasParticles) {
-      this.cloud = new ParticleCloud(this.sky, depthM);
+      this.cloud = new ParticleCloud(this.sky, this.field?.texture, sideM, depthM);
       this.solids.add(this.cloud.mesh);
     }
     this.camera.near = sideM / 160;
@@ -116,9 +118,10 @@ export class WaterScene {
     return { sideM, ...elevationRangeM(frame), elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
   }
 
-  resize(widthPx: number, heightPx: number): void {
+  /** CSS pixels; the rightmost `coveredPx` lie under a panel, so the picture is centred in what is left. */
+  resize(widthPx: number, heightPx: number, coveredPx: number): void {
     this.camera.aspect = widthPx / Math.max(heightPx, 1);
-    this.camera.updateProjectionMatrix();
+    this.camera.setViewOffset(widthPx, heightPx, coveredPx / 2, 0, widthPx, heightPx);
   }
 
   render(nowS: number): void {
@@ -133,6 +136,7 @@ export class WaterScene {
     camera.updateMatrixWorld();
     this.sky.follow(camera);
     this.ground?.update(camera.position);
+    this.cloud?.update(camera, this.size.x, this.size.y);
     this.body?.update(camera.position, camera.near, camera.far, this.behindTextures(), this.size.x, this.size.y);
 
     renderer.setRenderTarget(this.behind);
@@ -166,7 +170,7 @@ export class WaterScene {
     if (!particles || !this.cloud) return;
     const maxAdvanceS = kMaxAdvanceIntervals * this.clock.intervalS();
     const advanceS = Math.min(Math.max(shownS - particles.from.timeS, 0), maxAdvanceS);
-    this.cloud.show(particles.from, advanceS, this.camera.matrixWorld);
+    this.cloud.show(particles.from, advanceS);
   }
 
   private leave(): void {

@@ -21,8 +21,9 @@ export interface EffectLimits {
   waveLengthM: Range;
 }
 
-/** The server's own bounds: a splash as wide as the water, and elevations that leave a tenth of the water in place. */
-const kWidestSides = 0.5;
+/** The server's own bounds: a splash or a crest as wide as the water, elevations that leave a tenth of its depth. */
+const kWidestRadiusSides = 0.5;
+const kLongestWaveSides = 1;
 const kDeepestDepths = 0.9;
 
 function range(field: DescField, largest: number): Range {
@@ -38,10 +39,10 @@ export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
   if (!greeting.wave) return undefined;
   const { sideM, depthM } = greeting.wave;
   return {
-    splashRadiusM: range(SplashSchema.field.radiusM, kWidestSides * sideM),
+    splashRadiusM: range(SplashSchema.field.radiusM, kWidestRadiusSides * sideM),
     splashDepthM: range(SplashSchema.field.depthM, kDeepestDepths * depthM),
     waveAmplitudeM: range(BreakingWaveSchema.field.amplitudeM, kDeepestDepths * depthM),
-    waveLengthM: range(BreakingWaveSchema.field.lengthM, kWidestSides * sideM),
+    waveLengthM: range(BreakingWaveSchema.field.lengthM, kLongestWaveSides * sideM),
   };
 }
 

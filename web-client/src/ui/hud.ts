@@ -40,11 +40,12 @@ export class Hud {
     setText(this.particles, d.particleCount.toLocaleString("en"));
     setText(this.stepMs, `${d.stepMs.toFixed(2)} ms`);
     setText(this.substeps, String(d.substepsCount));
-    const trouble = [
+    const counts: [bigint, string][] = [
       [d.nonfiniteCount, "non-finite values"],
       [d.escapedCount, "escaped particles"],
       [d.recoveredCount, "recoveries"],
-    ].filter(([count]) => (count as number) > 0);
+    ];
+    const trouble = counts.filter(([count]) => count > 0n);
     setText(this.health, trouble.map(([count, what]) => `${count} ${what}`).join(", ") || "healthy");
     this.health.classList.toggle("trouble", trouble.length > 0);
     this.writePasses(d);

@@ -11,7 +11,8 @@ uniform bool u_periodic;
 layout(location = 0) out vec4 field;
 
 float elevation(ivec2 cell, int n) {
-  cell = u_periodic ? (cell + n) % n : clamp(cell, ivec2(0), ivec2(n - 1));
+  ivec2 wrapped = cell + n * (ivec2(lessThan(cell, ivec2(0))) - ivec2(greaterThanEqual(cell, ivec2(n))));
+  cell = u_periodic ? wrapped : clamp(cell, ivec2(0), ivec2(n - 1));
   float from = float(texelFetch(u_from, cell, 0).r) * u_quantum_m.x;
   float to = float(texelFetch(u_to, cell, 0).r) * u_quantum_m.y;
   return mix(from, to, u_mix);

@@ -24,11 +24,11 @@ void main() {
   vec2 outside = max(abs(at) - 0.5 * u_side_m, 0.0);
   float away_m = length(outside);
   vec3 light = kSunColor * 0.85 * u_sun_direction.y + vec3(0.34, 0.42, 0.52);
-  vec3 stone = vec3(0.44, 0.425, 0.40) * (0.92 + 0.16 * cellHash(floor(at / 2.0)));
+  vec3 stone = vec3(0.40, 0.355, 0.30) * (0.92 + 0.16 * cellHash(floor(at / 2.0)));
   stone *= 1.0 - 0.28 * joint(at, 2.0, 0.018);
   vec3 albedo = stone * mix(0.42, 1.0, smoothstep(-0.2, 0.22 * u_side_m, away_m));
   if (u_has_water && away_m <= 0.0) {
-    vec3 tile = vec3(0.50, 0.66, 0.68) * (0.93 + 0.14 * cellHash(floor(at / 0.5)));
+    vec3 tile = vec3(0.15, 0.34, 0.40) * (0.93 + 0.14 * cellHash(floor(at / 0.5)));
     albedo = tile * (1.0 - 0.30 * joint(at, 0.5, 0.012));
     // Sunlight reaching this point crossed the surface further along toward the sun, bent to a steeper path.
     vec2 crossed = at + u_sun_direction.xz / u_sun_direction.y * u_depth_m * 0.62;
@@ -39,7 +39,8 @@ void main() {
   vec3 lit = albedo * light;
   vec3 toward = v_world - u_camera_m;
   float distance_m = length(toward);
-  float haze = 1.0 - exp(-pow(distance_m / (7.0 * u_side_m), 1.6));
+  float far = distance_m / (11.0 * u_side_m);
+  float haze = far * far / (1.0 + far * far);
   vec3 horizon = skyLight(normalize(vec3(toward.x, 0.035 * distance_m, toward.z)));
   color = vec4(mix(lit, horizon, haze), 1.0);
 }

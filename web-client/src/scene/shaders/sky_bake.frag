@@ -28,12 +28,12 @@ void main() {
   vec3 direction = normalize(v_direction);
   float up = max(direction.y, 0.0);
   float toward_sun = max(dot(direction, u_sun_direction), 0.0);
-  vec3 zenith = vec3(0.055, 0.17, 0.43);
-  vec3 middle = vec3(0.20, 0.42, 0.70);
-  vec3 horizon = vec3(0.72, 0.80, 0.86);
+  vec3 zenith = vec3(0.035, 0.13, 0.38);
+  vec3 middle = vec3(0.15, 0.36, 0.68);
+  vec3 horizon = vec3(0.58, 0.72, 0.84);
   vec3 sky = mix(middle, zenith, smoothstep(0.12, 0.75, up));
   sky = mix(horizon, sky, smoothstep(-0.02, 0.30, up));
-  sky += vec3(1.0, 0.75, 0.45) * (0.30 * pow(toward_sun, 6.0) + 0.9 * pow(toward_sun, 64.0));
+  sky += vec3(1.0, 0.75, 0.45) * (0.16 * pow(toward_sun, 5.0) + 0.5 * pow(toward_sun, 90.0));
   vec2 plane = direction.xz / (up + 0.16);
   float cover = cloud(plane * vec2(0.75, 1.05) + vec2(3.1, 1.7));
   cover = smoothstep(0.46, 0.80, cover) * smoothstep(0.02, 0.22, up);

@@ -20,7 +20,7 @@ uniform float u_side_m;
 uniform float u_depth_m;
 layout(location = 0) out vec4 color;
 
-const vec3 kAbsorptionPerM = vec3(0.62, 0.13, 0.085);
+const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
 
 float viewZ(float depth) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
@@ -64,7 +64,7 @@ void main() {
 
   vec3 passed = exp(-kAbsorptionPerM * path_m);
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = mix(vec3(0.008, 0.085, 0.15), vec3(0.035, 0.30, 0.36), lifted) * 1.25;
+  vec3 scattered = mix(vec3(0.006, 0.070, 0.135), vec3(0.030, 0.27, 0.34), lifted) * 1.2;
   float against_sun = pow(max(dot(ray, u_sun_direction), 0.0), 2.0);
   scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
   vec3 under = behind * passed + scattered * (1.0 - exp(-0.55 * path_m));
@@ -77,7 +77,7 @@ void main() {
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
 #else
   mirrored.y = abs(mirrored.y);
-  float glint = pow(max(dot(mirrored, u_sun_direction), 0.0), 420.0) * 9.0 + pow(max(dot(mirrored, u_sun_direction), 0.0), 48.0) * 0.35;
+  float glint = pow(max(dot(mirrored, u_sun_direction), 0.0), 900.0) * 16.0 + pow(max(dot(mirrored, u_sun_direction), 0.0), 120.0) * 0.5;
   vec3 water = mix(under, skyLight(mirrored), fresnel) + kSunColor * glint * (0.15 + fresnel);
 #endif
   color = vec4(toDisplay(water), 1.0);

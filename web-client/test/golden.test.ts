@@ -1,0 +1,122 @@
+// The bytes that the C++ tests freeze, read by this client: both must make the same of them.
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { describe, expect, it } from "vitest";
+
+import { parse } from "../src/codec/parse";
+import { elevationAtM } from "../src/scene/height_field";
+
+interface GoldenCase {
+  file: string;
+  verdict: "ok" | "bad_frame" | "bad_message";
+  kind?: string;
+  [field: string]: unknown;
+}
+
+const kFolder = join(import.meta.dirname, "..", "..", "tests", "golden");
+const cases = JSON.parse(readFileSync(join(kFolder, "golden.json"), "utf8")) as GoldenCase[];
+
+function read(file: string): ArrayBuffer {
+  const bytes = readFileSync(join(kFolder, file));
+  return bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) as ArrayBuffer;
+}
+
+/** snake_case of the proto → the names that protoc-gen-es makes. */
+function camel(name: string): string {
+  return name.replace(/_([a-z0-9])/g, (_, letter: string) => letter.toUpperCase());
+}
+
+describe("golden bytes", () => {
+  it("are there, of every verdict and kind", () => {
+    expect(new Set(cases.map((c) => c.verdict))).toEqual(new Set(["ok", "bad_frame", "bad_message"]));
+    expect(new Set(cases.flatMap((c) => c.kind ?? []))).toEqual(new Set(["frame", "diagnostics", "greeting", "ack", "reject"]));
+  });
+
+  it.each(cases.filter((c) => c.verdict === "bad_frame"))("refuses $file: $why", ({ file }) => {
+    expect(parse(read(file)).kind).toBe("malformed");
+  });
+
+  it.each(cases.filter((c) => c.verdict === "bad_message"))("takes nothing from $file: $why", ({ file }) => {
+    expect(["malformed", "unknown"]).toContain(parse(read(file)).kind);
+  });
+
+  it.each(cases.filter((c) => c["layer"] === "LAYER_SURFACE"))("decodes the surface of $file exactly", (golden) => {
+    const parsed = parse(read(golden.file));
+    if (parsed.kind !== "surface") throw new Error(JSON.stringify(parsed));
+    const { header, payload } = parsed;
+    expect(header).toEqual({
+      tick: BigInt(golden["tick"] as string), timeS: golden["time_s"], resolutionCount: golden["resolution_count"],
+      sideM: golden["side_m"], quantumM: golden["quantum_m"],
+    });
+    const frame = { layer: "surface" as const, ...header, buffer: payload.slice().buffer };
+    const n = header.resolutionCount;
+    (golden["elevation_m"] as number[]).forEach((elevation, at) => {
+      const xM = ((at % n) + 0.5) * (header.sideM / n) - header.sideM / 2;
+      const zM = (Math.floor(at / n) + 0.5) * (header.sideM / n) - header.sideM / 2;
+      expect(Math.fround(elevationAtM(frame, xM, zM))).toBe(Math.fround(elevation));
+    });
+  });
+
+  it.each(cases.filter((c) => c["layer"] === "LAYER_PARTICLES"))("decodes the particles of $file as the shader does", (golden) => {
+    const parsed = parse(read(golden.file));
+    if (parsed.kind !== "particles") throw new Error(JSON.stringify(parsed));
+    const { header, payload } = parsed;
+    expect(header).toMatchObject({ tick: BigInt(golden["tick"] as string), count: golden["count"], radiusM: golden["radius_m"] });
+    // The vertex shader's arithmetic on the six u16 of a particle.
+    const words = new Uint16Array(payload.slice().buffer);
+    const signedByte = (bits: number): number => ((bits << 24) >> 24) / 127;
+    const positions = golden["position_m"] as number[];
+    const velocities = golden["velocity_mps"] as number[];
+    for (let i = 0; i < header.count; ++i) {
+      const [x, z, y, vxy, vzTint, foam] = words.subarray(6 * i, 6 * i + 6) as unknown as [number, number, number, number, number, number];
+      [x, y, z].forEach((word, axis) => {
+        const min = header.minM[axis]!;
+        const max = header.maxM[axis]!;
+        expect(Math.abs(min + (word / 65535) * (max - min) - positions[3 * i + axis]!)).toBeLessThan(1e-6 * (max - min));
+      });
+      [vxy & 255, vxy >> 8, vzTint & 255].forEach((bits, axis) => {
+        expect(Math.abs(signedByte(bits) * header.maxSpeedMps - velocities[3 * i + axis]!)).toBeLessThan(1e-6 * header.maxSpeedMps);
+      });
+      expect(vzTint >> 8).toBe((golden["tint"] as number[])[i]);
+      expect(foam & 255).toBe((golden["foam"] as number[])[i]);
+    }
+  });
+
+  it("reads the diagnostics to the last bit", () => {
+    const golden = cases.find((c) => c.kind === "diagnostics")!;
+    const parsed = parse(read(golden.file));
+    if (parsed.kind !== "diagnostics") throw new Error(JSON.stringify(parsed));
+    const { file: _, verdict: __, kind: ___, ...fields } = golden;
+    const bigints = new Set(["tick", "nonfinite_count", "escaped_count", "recovered_count"]);
+    for (const [name, value] of Object.entries(fields))
+      expect(parsed.diagnostics[camel(name) as keyof typeof parsed.diagnostics], name).toEqual(bigints.has(name) ? BigInt(value as string) : value);
+  });
+
+  it("reads the greeting", () => {
+    const golden = cases.find((c) => c.kind === "greeting")! as unknown as {
+      file: string; version: { major: number; minor: number }; server: string; device: string; room: string; session_id: string;
+      scene: { title: string; wave: { side_m: number; depth_m: number } }; parameters: object[]; room_state: object;
+      limits: { frame_rate_max_hz: number };
+    };
+    expect(parse(read(golden.file))).toMatchObject({
+      kind: "greeting",
+      greeting: {
+        versionMajor: golden.version.major, versionMinor: golden.version.minor, server: golden.server, device: golden.device,
+        room: golden.room, sessionId: golden.session_id, title: golden.scene.title, layers: ["surface", "particles", "diagnostics"],
+        frameRateMaxHz: golden.limits.frame_rate_max_hz, sideM: golden.scene.wave.side_m,
+        wave: { sideM: golden.scene.wave.side_m, depthM: golden.scene.wave.depth_m, periodic: false },
+        parameters: golden.parameters, ...golden.room_state,
+      },
+    });
+  });
+
+  it("reads ack and reject with 64-bit numbers whole", () => {
+    const ack = cases.find((c) => c.kind === "ack")!;
+    expect(parse(read(ack.file))).toEqual({ kind: "ack", commandId: BigInt(ack["command_id"] as string), appliedTick: BigInt(ack["applied_tick"] as string) });
+    const reject = cases.find((c) => c.kind === "reject")!;
+    expect(parse(read(reject.file))).toEqual({
+      kind: "reject", commandId: BigInt(reject["command_id"] as string), reason: (reject["reason"] as string).replace("REJECT_REASON_", ""),
+      field: reject["field"], message: reject["message"],
+    });
+  });
+});

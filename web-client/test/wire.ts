@@ -1,0 +1,62 @@
+// Builds server messages as bytes, the way a server would send them.
+import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
+
+import { crc32c } from "../src/codec/crc32c";
+import { Layer, ServerMessageSchema, type ServerMessage } from "../src/gen/spindrift/v1/wire_pb";
+
+export type ServerBody = Exclude<NonNullable<MessageInitShape<typeof ServerMessageSchema>["message"]>, { case: undefined }>;
+
+export function encode(message: ServerBody): ArrayBuffer {
+  const bytes = toBinary(ServerMessageSchema, create(ServerMessageSchema, { message } as MessageInitShape<typeof ServerMessageSchema>));
+  return bytes.slice().buffer;
+}
+
+type FrameInit = Extract<ServerMessage["message"], { case: "frame" }>["value"];
+
+export function surfaceFrame(values: number[], change: Partial<FrameInit> = {}): ServerBody {
+  const payload = new Uint8Array(Int16Array.from(values).buffer);
+  const resolutionCount = Math.sqrt(values.length);
+  return {
+    case: "frame",
+    value: {
+      layer: Layer.SURFACE, tick: 7n, timeS: 0.25, keyframe: true, crc32c: crc32c(payload), payload,
+      codec: { case: "surfaceFixed16", value: { resolutionCount, sideM: 16, quantumM: 0.001 } },
+      ...change,
+    },
+  } as ServerBody;
+}
+
+export function particleFrame(payload: Uint8Array, change: Partial<FrameInit> = {}, codec: Record<string, number> = {}): ServerBody {
+  return {
+    case: "frame",
+    value: {
+      layer: Layer.PARTICLES, tick: 8n, timeS: 0.5, keyframe: true, crc32c: crc32c(payload), payload,
+      codec: {
+        case: "particlesFixed12",
+        value: {
+          count: payload.length / 12, minXM: -8, minYM: -1.5, minZM: -8, maxXM: 8, maxYM: 5, maxZM: 8, maxSpeedMps: 9, radiusM: 0.15,
+          ...codec,
+        },
+      },
+      ...change,
+    },
+  } as ServerBody;
+}
+
+export function greeting(change: Record<string, unknown> = {}): ServerBody {
+  return {
+    case: "greeting",
+    value: {
+      version: { major: 1, minor: 0 },
+      server: "spindrift 0.1.0", device: "a device", room: "pool", sessionId: 5n,
+      layers: [Layer.SURFACE, Layer.PARTICLES, Layer.DIAGNOSTICS],
+      limits: { messageMaxBytes: 16384, commandsPerS: 100, frameRateMaxHz: 30 },
+      scene: { name: "pool", title: "Splash pool", wave: { resolutionCount: 256, sideM: 16, depthM: 1.5 }, particles: { count: 8192 } },
+      parameters: [
+        { path: "particles.viscosity_pas", label: "Viscosity", unit: "Pa s", min: 0, max: 500, step: 1, default: 40, value: 55, help: "Calms." },
+      ],
+      roomState: { paused: true, speed: 0.5 },
+      ...change,
+    },
+  } as ServerBody;
+}
