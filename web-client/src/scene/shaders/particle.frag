@@ -46,11 +46,14 @@ void main() {
   float buried = clamp(-v_world_y_m / u_depth_m, 0.0, 1.0);
   vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * mix(1.0, 0.6, buried);
 
-  float grazing = pow(1.0 - clamp(dot(normal, toward_eye), 0.0, 1.0), 4.0);
-  vec3 mirrored = reflect(-toward_eye, normal);
   // Water in water does not shine.
   float gloss = (1.0 - 0.8 * foam) * out_of_water;
-  lit += gloss * (0.04 + 0.38 * grazing) * skyLight(mirrored);
-  lit += gloss * kSunColor * 1.6 * pow(max(dot(mirrored, u_sun_direction), 0.0), 60.0);
+  if (gloss > 0.01) {
+    float away = 1.0 - clamp(dot(normal, toward_eye), 0.0, 1.0);
+    float grazing = away * away * away * away;
+    vec3 mirrored = reflect(-toward_eye, normal);
+    lit += gloss * (0.04 + 0.38 * grazing) * skyLight(mirrored);
+    lit += gloss * kSunColor * 1.6 * pow(max(dot(mirrored, u_sun_direction), 0.0), 60.0);
+  }
   color = vec4(lit, 1.0);
 }

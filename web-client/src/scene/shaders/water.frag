@@ -65,20 +65,24 @@ void main() {
   vec3 passed = exp(-kAbsorptionPerM * path_m);
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = mix(vec3(0.006, 0.070, 0.135), vec3(0.030, 0.27, 0.34), lifted) * 1.2;
-  float against_sun = pow(max(dot(ray, u_sun_direction), 0.0), 2.0);
+  float against_sun = max(dot(ray, u_sun_direction), 0.0);
+  against_sun *= against_sun;
   scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
   vec3 under = behind * passed + scattered * (1.0 - exp(-0.55 * path_m));
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
-  float fresnel = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
+  // Schlick's fit of the Fresnel equations for water.
+  float away = (1.0 - facing) * (1.0 - facing);
+  float fresnel = 0.02 + 0.98 * away * away * (1.0 - facing);
   vec3 mirrored = reflect(ray, normal);
 #ifdef SKIRT
   float rim = smoothstep(0.07, 0.0, v_top_m - v_world.y);
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
 #else
   mirrored.y = abs(mirrored.y);
-  float glint = pow(max(dot(mirrored, u_sun_direction), 0.0), 900.0) * 16.0 + pow(max(dot(mirrored, u_sun_direction), 0.0), 120.0) * 0.5;
-  vec3 water = mix(under, skyLight(mirrored), fresnel) + kSunColor * glint * (0.15 + fresnel);
+  vec3 water = mix(under, skyLight(mirrored), fresnel);
+  float at_sun = dot(mirrored, u_sun_direction);
+  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 900.0) * 16.0 + pow(at_sun, 120.0) * 0.5) * (0.15 + fresnel);
 #endif
   color = vec4(toDisplay(water), 1.0);
 }

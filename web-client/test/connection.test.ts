@@ -1,0 +1,224 @@
+import { describe, expect, it } from "vitest";
+
+import { Layer, RejectReason } from "../src/gen/spindrift/v1/wire_pb";
+import { backoffS } from "../src/net/backoff";
+import { socketUrl } from "../src/net/water_client";
+import { Rig } from "./fakes";
+import { encode, greeting, surfaceFrame } from "./wire";
+
+function liveRig(): Rig {
+  const rig = new Rig();
+  rig.socket.open();
+  rig.socket.deliver(greeting());
+  return rig;
+}
+
+const splash = { case: "splash" as const, value: { xM: 1, zM: 2, radiusM: 1, depthM: 0.5 } };
+
+describe("the connection", () => {
+  it("says hello first and subscribes to the offered layers after the greeting", () => {
+    const rig = new Rig();
+    expect(rig.socket).toMatchObject({ url: "ws://host/ws", subprotocol: "spindrift.v1", binaryType: "arraybuffer" });
+    expect(rig.state.name).toBe("connecting");
+    rig.socket.open();
+    expect(rig.socket.sent).toHaveLength(1);
+    expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { version: { major: 1, minor: 0 } } });
+    rig.socket.deliver(greeting());
+    expect(rig.state.name).toBe("live");
+    expect(rig.socket.sentOf("subscribe").map(({ value }) => [value.layer, value.maxRateHz])).toEqual([
+      [Layer.SURFACE, 30], [Layer.PARTICLES, 30], [Layer.DIAGNOSTICS, 10],
+    ]);
+  });
+
+  it("asks for no layer that the room does not offer", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.socket.deliver(greeting({ layers: [Layer.PARTICLES, Layer.BODIES] }));
+    expect(rig.socket.sentOf("subscribe").map(({ value }) => value.layer)).toEqual([Layer.PARTICLES]);
+  });
+
+  it("is refused by a refusal and by another major version, and then waits for a person", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.socket.deliver({ case: "refusal", value: { message: "unknown layer 9" } });
+    expect(rig.state).toEqual({ name: "refused", reason: "unknown layer 9" });
+    expect(rig.socket.closed).toBe(true);
+    rig.time.advance(60_000);
+    expect(rig.sockets).toHaveLength(1);
+    rig.connection.retryNow();
+    rig.socket.open();
+    rig.socket.deliver(greeting({ version: { major: 2, minor: 0 } }));
+    expect(rig.state).toMatchObject({ name: "refused", reason: expect.stringContaining("version 2.0") });
+  });
+
+  it("comes back after ever longer waits, up to eight seconds", () => {
+    const rig = new Rig();
+    const waits: number[] = [];
+    for (let i = 0; i < 7; ++i) {
+      rig.socket.drop();
+      if (rig.state.name !== "retrying") throw new Error(rig.state.name);
+      waits.push(rig.state.inS);
+      const sockets = rig.sockets.length;
+      rig.time.advance(rig.state.inS * 1000 - 1);
+      expect(rig.sockets).toHaveLength(sockets);
+      rig.time.advance(1);
+      expect(rig.sockets).toHaveLength(sockets + 1);
+    }
+    expect(waits).toEqual([0.5, 1, 2, 4, 8, 8, 8]);
+  });
+
+  it("starts with the shortest wait again only after a connection that lasted", () => {
+    const rig = new Rig();
+    for (let i = 0; i < 3; ++i) {
+      rig.socket.open();
+      rig.socket.deliver(greeting());
+      rig.time.advance(100);
+      rig.socket.drop();
+      if (rig.state.name === "retrying") rig.time.advance(rig.state.inS * 1000);
+    }
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    rig.time.advance(5000);
+    rig.socket.drop(1001, "the server ends");
+    expect(rig.state).toEqual({ name: "retrying", inS: 0.5, why: "the server ends" });
+  });
+
+  it("spreads its waits within the bounds", () => {
+    for (let attempt = 1; attempt < 40; ++attempt)
+      for (const random of [0, 0.3, 0.999]) {
+        const s = backoffS(attempt, random);
+        expect(s).toBeGreaterThanOrEqual(0.5);
+        expect(s).toBeLessThanOrEqual(8);
+      }
+    expect(backoffS(3, 0)).toBeLessThan(backoffS(3, 0.999));
+  });
+
+  it("takes a server that falls silent for lost", () => {
+    const rig = liveRig();
+    rig.time.advance(9_000);
+    rig.socket.deliver({ case: "pong", value: { clientTimeS: rig.time.nowMs / 1000, serverTimeS: 0 } });
+    rig.time.advance(9_000);
+    expect(rig.state.name).toBe("live");
+    rig.time.advance(2_000);
+    expect(rig.states.at(-2)).toMatchObject({ name: "retrying", why: expect.stringContaining("no word") });
+    expect(rig.sockets).toHaveLength(2);
+  });
+
+  it("takes a server that never greets for lost", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.time.advance(11_000);
+    expect(rig.states.some((state) => state.name === "retrying")).toBe(true);
+  });
+
+  it("pings every two seconds", () => {
+    const rig = liveRig();
+    const sentAtMs: number[] = [];
+    for (let i = 0; i < 24; ++i) {
+      rig.time.advance(250);
+      rig.socket.deliver({ case: "roomState", value: { paused: false, speed: 1 } });
+    }
+    for (const { value } of rig.socket.sentOf("ping")) sentAtMs.push(value.clientTimeS * 1000);
+    expect(sentAtMs).toEqual([1000, 3000, 5000, 7000]);
+  });
+
+  it("keeps the lowest round trip of the last five", () => {
+    const rig = liveRig();
+    for (const roundTripMs of [12, 80, 33, 250, 90, 60]) {
+      rig.time.advance(500);
+      rig.socket.deliver({ case: "pong", value: { clientTimeS: (rig.time.nowMs - roundTripMs) / 1000, serverTimeS: 0 } });
+    }
+    rig.time.advance(500);
+    expect(rig.lastStats()["latencyMs"]).toBeCloseTo(33, 6);
+  });
+
+  it("matches answers to commands, and passes on no answer twice", () => {
+    const rig = liveRig();
+    rig.connection.command(1, splash);
+    rig.connection.command(2, { case: "reset", value: {} });
+    expect(rig.socket.sentOf("command").map(({ value }) => [value.commandId, value.action.case])).toEqual([[1n, "splash"], [2n, "reset"]]);
+    rig.socket.deliver({ case: "reject", value: { commandId: 2n, reason: RejectReason.BUSY, field: "", message: "try again" } });
+    rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 77n } });
+    rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 78n } });
+    expect(rig.logOf("ack")).toEqual([[1, 77]]);
+    expect(rig.logOf("reject")).toEqual([[2, "BUSY", "", "try again"]]);
+  });
+
+  it("answers for the server when a command cannot be sent, is lost or stays unanswered", () => {
+    const rig = new Rig();
+    rig.connection.command(1, splash);
+    expect(rig.logOf("reject").at(-1)).toMatchObject([1, "NOT_SENT", "", expect.stringContaining("not connected")]);
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    rig.connection.command(2, splash);
+    rig.socket.drop();
+    expect(rig.logOf("reject").at(-1)).toMatchObject([2, "NOT_SENT", "", expect.stringContaining("lost")]);
+    rig.time.advance(500);
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    rig.connection.command(3, splash);
+    for (let i = 0; i < 22; ++i) {
+      rig.time.advance(500);
+      rig.socket.deliver({ case: "roomState", value: { paused: false, speed: 1 } });
+    }
+    expect(rig.logOf("reject").at(-1)).toMatchObject([3, "NOT_SENT", "", expect.stringContaining("no answer")]);
+  });
+
+  it("holds at most 64 unanswered commands, and sends none into a congested socket", () => {
+    const rig = liveRig();
+    for (let id = 1; id <= 65; ++id) rig.connection.command(id, splash);
+    expect(rig.socket.sentOf("command")).toHaveLength(64);
+    expect(rig.logOf("reject")).toMatchObject([[65, "NOT_SENT", "", expect.stringContaining("waiting")]]);
+    rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 1n } });
+    rig.socket.bufferedAmount = 1 << 20;
+    rig.connection.command(66, splash);
+    expect(rig.logOf("reject").at(-1)).toMatchObject([66, "NOT_SENT", "", expect.stringContaining("congested")]);
+  });
+
+  it("counts malformed messages and goes on", () => {
+    const rig = liveRig();
+    rig.socket.onmessage!({ data: "text" });
+    rig.socket.onmessage!({ data: Uint8Array.of(0x12, 0xff).buffer });
+    rig.socket.deliver(surfaceFrame([1, 2, 3, 4], { crc32c: 9 }));
+    rig.socket.deliver(surfaceFrame([1, 2, 3, 4]));
+    rig.time.advance(500);
+    expect(rig.lastStats()).toMatchObject({ malformedCount: 3, receivedCount: { surface: 1, particles: 0, diagnostics: 0 } });
+    expect(rig.logOf("frame")).toHaveLength(1);
+    expect(rig.state.name).toBe("live");
+  });
+
+  it("measures bytes and frames by the clock", () => {
+    const rig = liveRig();
+    const bytesCount = encode(surfaceFrame(new Array<number>(400).fill(1))).byteLength;
+    for (let i = 0; i < 200; ++i) {
+      rig.socket.deliver(surfaceFrame(new Array<number>(400).fill(1), { tick: BigInt(i) }));
+      rig.time.advance(50);
+    }
+    expect(rig.lastStats()["framesPerS"]).toBeCloseTo(20, 1);
+    expect(rig.lastStats()["kilobytesPerS"]).toBeCloseTo((20 * bytesCount) / 1000, 1);
+  });
+
+  it("asks for no frames while the page is hidden", () => {
+    const rig = liveRig();
+    rig.connection.setVisible(false);
+    expect(rig.socket.sentOf("subscribe").slice(3).map(({ value }) => [value.layer, value.maxRateHz])).toEqual([
+      [Layer.SURFACE, 0], [Layer.PARTICLES, 0], [Layer.DIAGNOSTICS, 10],
+    ]);
+    rig.connection.setVisible(true);
+    expect(rig.socket.sentOf("subscribe").slice(6).map(({ value }) => value.maxRateHz)).toEqual([30, 30, 10]);
+  });
+
+  it("leaves no timer and no handler behind when stopped", () => {
+    const rig = liveRig();
+    rig.connection.stop();
+    expect(rig.time.timerCount).toBe(0);
+    expect(rig.socket).toMatchObject({ closed: true, onmessage: null, onclose: null });
+  });
+});
+
+describe("socketUrl", () => {
+  it("takes the room from the address and the scheme from the page", () => {
+    expect(socketUrl({ protocol: "http:", host: "h:8080", search: "" })).toBe("ws://h:8080/ws");
+    expect(socketUrl({ protocol: "https:", host: "h", search: "?quality=low&room=big%20pool" })).toBe("wss://h/ws/big%20pool");
+  });
+});

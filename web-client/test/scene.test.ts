@@ -1,0 +1,195 @@
+import { PerspectiveCamera, Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+
+import { FrameGovernor, kMinPixelRatio } from "../src/scene/frame_governor";
+import { elevationAtM, elevationRangeM } from "../src/scene/height_field";
+import { pickWater, type WaterShape } from "../src/scene/pick";
+import { PlayoutClock } from "../src/scene/playout_clock";
+import { chooseQuality } from "../src/scene/quality";
+import { TapDetector, toDeviceCoordinates } from "../src/ui/tap";
+
+const flat: WaterShape = { sideM: 16, minM: 0, maxM: 0, elevationAtM: () => 0 };
+
+/** From the middle of a pixel of an 800 x 600 canvas to a ray, as the page does it. */
+function clickRay(camera: PerspectiveCamera, xPx: number, yPx: number) {
+  const { x, y } = toDeviceCoordinates(xPx, yPx, { left: 0, top: 0, width: 800, height: 600 });
+  const direction = new Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize();
+  return { originM: camera.position.toArray(), direction: direction.toArray() };
+}
+
+function camera(): PerspectiveCamera {
+  const made = new PerspectiveCamera(47, 800 / 600, 0.1, 700);
+  made.position.set(6, 7, 18);
+  made.lookAt(0, 0, 0);
+  made.updateMatrixWorld();
+  return made;
+}
+
+describe("a click on the water", () => {
+  it("lands where the point under the pixel is", () => {
+    const eye = camera();
+    for (const [xM, zM] of [[0, 0], [3, -2], [-5, 4]] as const) {
+      const seen = new Vector3(xM, 0, zM).project(eye);
+      const place = pickWater(clickRay(eye, (seen.x + 1) * 400, (1 - seen.y) * 300), flat)!;
+      expect(place.xM).toBeCloseTo(xM, 4);
+      expect(place.zM).toBeCloseTo(zM, 4);
+    }
+  });
+
+  it("lands on the crest in front, not on the plane behind it", () => {
+    const crest: WaterShape = { sideM: 16, minM: 0, maxM: 1, elevationAtM: (_, zM) => Math.exp(-((zM - 2) ** 2)) };
+    const eye = camera();
+    const seen = new Vector3(0, Math.exp(-0.04), 2.2).project(eye);
+    const place = pickWater(clickRay(eye, (seen.x + 1) * 400, (1 - seen.y) * 300), crest)!;
+    expect(place.zM).toBeCloseTo(2.2, 2);
+    expect(place.xM).toBeCloseTo(0, 2);
+  });
+
+  it("misses beside the water, above the horizon and behind the eye", () => {
+    expect(pickWater({ originM: [0, 5, 0], direction: [0.98, -0.2, 0] }, flat)).toBeUndefined();
+    expect(pickWater({ originM: [0, 5, 0], direction: [0, 0.6, 0.8] }, flat)).toBeUndefined();
+    expect(pickWater({ originM: [0, -5, 0], direction: [0, -1, 0] }, flat)).toBeUndefined();
+  });
+});
+
+describe("the CPU's view of the surface", () => {
+  const n = 4;
+  const values = Int16Array.from({ length: n * n }, (_, at) => 100 * (at % n) + 10 * Math.floor(at / n));
+  const frame = { layer: "surface" as const, tick: 1n, timeS: 0, resolutionCount: n, sideM: 8, quantumM: 0.01, buffer: values.buffer };
+
+  it("interpolates between samples and holds the edge", () => {
+    expect(elevationAtM(frame, -3, -3)).toBeCloseTo(0, 9);
+    expect(elevationAtM(frame, -2, -3)).toBeCloseTo(0.5, 9);
+    expect(elevationAtM(frame, 1, 1)).toBeCloseTo(2.2, 9);
+    expect(elevationAtM(frame, 0, 0)).toBeCloseTo(1.65, 9);
+    expect(elevationAtM(frame, 100, 100)).toBeCloseTo(3.3, 9);
+    expect(elevationAtM(frame, -100, -100)).toBeCloseTo(0, 9);
+  });
+
+  it("knows its extremes", () => {
+    const range = elevationRangeM(frame);
+    expect(range.minM).toBe(0);
+    expect(range.maxM).toBeCloseTo(3.3, 9);
+  });
+});
+
+describe("the playout clock", () => {
+  it("runs evenly, two frame intervals behind, however uneven the frames come", () => {
+    const clock = new PlayoutClock();
+    const jitter = [0, 0.012, -0.009, 0.004, 0.015, -0.006];
+    let frame = 0;
+    let before = -Infinity;
+    const lags: number[] = [];
+    for (let ms = 0; ms < 4000; ms += 16) {
+      const nowS = ms / 1000;
+      while (frame / 30 + jitter[frame % jitter.length]! <= nowS) {
+        clock.noteFrame(frame / 30, nowS);
+        ++frame;
+      }
+      const shownS = clock.displayTimeS(nowS);
+      if (shownS === undefined) continue;
+      expect(shownS).toBeGreaterThanOrEqual(before);
+      expect(shownS).toBeLessThanOrEqual((frame - 1) / 30 + 1e-9);
+      if (ms > 2000) {
+        expect(shownS - before).toBeGreaterThan(0.008);
+        expect(shownS - before).toBeLessThan(0.024);
+        lags.push(nowS - shownS);
+      }
+      before = shownS;
+    }
+    const meanLagS = lags.reduce((sum, lag) => sum + lag, 0) / lags.length;
+    expect(meanLagS).toBeGreaterThan(1.7 / 30);
+    expect(meanLagS).toBeLessThan(3 / 30);
+  });
+
+  it("follows a simulation at half speed", () => {
+    const clock = new PlayoutClock();
+    for (let frame = 0; frame < 60; ++frame) {
+      clock.noteFrame(frame / 30, frame / 15);
+      clock.displayTimeS(frame / 15);
+    }
+    expect(clock.rate()).toBeCloseTo(0.5, 3);
+    expect(clock.intervalS()).toBeCloseTo(1 / 30, 6);
+    const from = clock.displayTimeS(60 / 15)!;
+    expect(clock.displayTimeS(60 / 15 + 0.02)! - from).toBeCloseTo(0.01, 3);
+  });
+
+  it("comes to rest on the newest frame when the room is paused", () => {
+    const clock = new PlayoutClock();
+    for (let frame = 0; frame < 30; ++frame) clock.noteFrame(frame / 30, frame / 30);
+    for (let ms = 967; ms < 4000; ms += 16) clock.displayTimeS(ms / 1000);
+    expect(clock.displayTimeS(4)).toBeCloseTo(29 / 30, 6);
+  });
+
+  it("starts anew when the simulation does", () => {
+    const clock = new PlayoutClock();
+    for (let frame = 0; frame < 30; ++frame) clock.noteFrame(100 + frame / 30, frame / 30);
+    expect(clock.displayTimeS(1)).toBeGreaterThan(100);
+    clock.noteFrame(0, 1.03);
+    expect(clock.displayTimeS(1.04)).toBeLessThanOrEqual(0);
+  });
+
+  it("has nothing to show before the first frame", () => {
+    expect(new PlayoutClock().displayTimeS(5)).toBeUndefined();
+  });
+});
+
+describe("the frame governor", () => {
+  it("lowers the resolution step by step to a half while frames stay slow", () => {
+    const governor = new FrameGovernor(2);
+    for (let i = 0; i < 400; ++i) governor.note(80);
+    expect(governor.pixelRatio).toBe(kMinPixelRatio);
+    expect(governor.remark()).toContain("25 %");
+  });
+
+  it("forgives single slow frames and pauses", () => {
+    const governor = new FrameGovernor(1);
+    for (let i = 0; i < 400; ++i) governor.note(i % 2 ? 80 : 16);
+    for (let i = 0; i < 10; ++i) governor.note(60_000);
+    expect(governor.pixelRatio).toBe(1);
+    expect(governor.remark()).toBe("");
+  });
+
+  it("raises it again at most twice", () => {
+    const governor = new FrameGovernor(1);
+    let raises = 0;
+    for (let round = 0; round < 6; ++round) {
+      while (governor.pixelRatio > 0.7) governor.note(80);
+      for (let i = 0; i < 1000; ++i) if (governor.note(16)) ++raises;
+    }
+    expect(raises).toBe(2);
+  });
+});
+
+describe("the quality", () => {
+  it("is the address's, or low where software draws", () => {
+    expect(chooseQuality("?quality=high", "SwiftShader").remark).toBe("");
+    expect(chooseQuality("?quality=low", "A GPU").remark).toBe("low quality");
+    expect(chooseQuality("", "ANGLE (Google, Vulkan 1.3 (SwiftShader Device))").remark).toContain("no graphics hardware");
+    expect(chooseQuality("", "ANGLE (NVIDIA, GeForce)").remark).toBe("");
+  });
+});
+
+describe("a tap", () => {
+  const at = (id: number, xPx: number, yPx: number, timeMs: number) => ({ id, xPx, yPx, timeMs });
+
+  it("is a short press without a way", () => {
+    const taps = new TapDetector();
+    taps.pressed(at(1, 10, 10, 0));
+    expect(taps.released(at(1, 13, 12, 200))).toBe(true);
+  });
+
+  it("is not a drag, a long press or a second finger", () => {
+    const taps = new TapDetector();
+    taps.pressed(at(1, 10, 10, 0));
+    expect(taps.released(at(1, 30, 10, 200))).toBe(false);
+    taps.pressed(at(1, 10, 10, 0));
+    expect(taps.released(at(1, 10, 10, 2000))).toBe(false);
+    taps.pressed(at(1, 10, 10, 0));
+    taps.pressed(at(2, 50, 50, 10));
+    expect(taps.released(at(2, 50, 50, 100))).toBe(false);
+    expect(taps.released(at(1, 10, 10, 100))).toBe(false);
+    taps.pressed(at(3, 10, 10, 0));
+    expect(taps.released(at(3, 10, 10, 100))).toBe(true);
+  });
+});

@@ -1,0 +1,117 @@
+import { describe, expect, it } from "vitest";
+
+import { parse } from "../src/codec/parse";
+import { kDebounceMs, SliderModel } from "../src/ui/slider_model";
+import { clampTo, effectLimits } from "../src/ui/effect_limits";
+import { FakeTime } from "./fakes";
+import { encode, greeting } from "./wire";
+
+function rig(serverValue = 40) {
+  const time = new FakeTime();
+  const sent: number[] = [];
+  let changedCount = 0;
+  const model = new SliderModel(serverValue, {
+    send: (value) => sent.push(value),
+    setTimer: (callback, ms) => time.setTimer(callback, ms),
+    clearTimer: (timer) => time.clearTimer(timer),
+    changed: () => ++changedCount,
+  });
+  return { time, sent, model, changedCount: () => changedCount };
+}
+
+describe("a parameter's slider", () => {
+  it("sends only the value at which it rests", () => {
+    const { time, sent, model } = rig();
+    for (const value of [41, 42, 43, 44]) {
+      model.input(value);
+      time.advance(kDebounceMs - 1);
+    }
+    expect(sent).toEqual([]);
+    time.advance(1);
+    expect(sent).toEqual([44]);
+    time.advance(1000);
+    expect(sent).toEqual([44]);
+  });
+
+  it("falls back to the server's value when the server refuses, and says why", () => {
+    const { time, model } = rig(40);
+    model.input(400);
+    time.advance(kDebounceMs);
+    expect(model.shownValue).toBe(400);
+    expect(model.reject(1, "400 Pa s breaks the step rule")).toBe(true);
+    expect(model).toMatchObject({ shownValue: 40, error: "400 Pa s breaks the step rule" });
+    model.input(50);
+    expect(model.error).toBe("");
+  });
+
+  it("falls back to the last value that was accepted", () => {
+    const { time, model } = rig(40);
+    model.input(60);
+    time.advance(kDebounceMs);
+    expect(model.ack(1)).toBe(true);
+    model.input(400);
+    time.advance(kDebounceMs);
+    model.reject(2, "no");
+    expect(model.shownValue).toBe(60);
+  });
+
+  it("is not pulled back by the refusal of a value that the user has left", () => {
+    const { time, model } = rig(40);
+    model.input(400);
+    time.advance(kDebounceMs);
+    model.input(80);
+    model.reject(1, "no");
+    expect(model).toMatchObject({ shownValue: 80, error: "" });
+  });
+
+  it("follows another person's change, but not while it is being moved", () => {
+    const { time, model, changedCount } = rig(40);
+    model.serverSays(70);
+    expect(model.shownValue).toBe(70);
+    expect(changedCount()).toBe(1);
+    model.input(90);
+    model.serverSays(75);
+    expect(model.shownValue).toBe(90);
+    time.advance(kDebounceMs);
+    model.reject(1, "no");
+    expect(model.shownValue).toBe(75);
+  });
+
+  it("leaves other sliders' answers alone and sends nothing after it is gone", () => {
+    const { time, sent, model } = rig();
+    expect(model.ack(5)).toBe(false);
+    expect(model.reject(5, "no")).toBe(false);
+    model.input(41);
+    model.dispose();
+    time.advance(1000);
+    expect(sent).toEqual([]);
+  });
+});
+
+describe("the effect sliders' ranges", () => {
+  const enter = (scene: Record<string, unknown>) => {
+    const parsed = parse(encode(greeting({ scene })));
+    if (parsed.kind !== "greeting") throw new Error(parsed.kind);
+    return effectLimits(parsed.greeting);
+  };
+
+  it("come from the options in the proto, narrowed to the water", () => {
+    const limits = enter({ wave: { resolutionCount: 256, sideM: 16, depthM: 1.5 } })!;
+    expect(limits.splashRadiusM).toEqual({ label: "Splash radius", unit: "m", min: 0.05, max: 8, step: 0.05, default: 1.2 });
+    expect(limits.splashDepthM).toMatchObject({ min: 0.01, max: 1.35, default: 0.9 });
+    expect(limits.waveAmplitudeM).toMatchObject({ max: 1.35, default: 0.6 });
+    expect(limits.waveLengthM).toMatchObject({ max: 16, default: 2 });
+  });
+
+  it("keep the default inside shallow and small water, and the proto's bound in wide water", () => {
+    const small = enter({ wave: { resolutionCount: 64, sideM: 1, depthM: 0.2 } })!;
+    expect(small.splashRadiusM).toMatchObject({ max: 0.5, default: 0.5 });
+    expect(small.splashDepthM).toMatchObject({ max: 0.18, default: 0.18 });
+    expect(enter({ wave: { resolutionCount: 64, sideM: 1000, depthM: 100 } })!.splashRadiusM.max).toBe(100);
+    expect(clampTo(3, small.splashRadiusM)).toBe(0.5);
+  });
+
+  it("are absent without a wave", () => {
+    expect(enter({ particles: { boxSideM: 2.4 } })).toBeUndefined();
+  });
+});
