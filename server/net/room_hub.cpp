@@ -25,6 +25,13 @@ void RoomHub::sendControl(SessionId session, core::SharedBytes message) {
   if (found != members_.end()) found->second.link->sendControl(std::move(message));
 }
 
+void RoomHub::broadcastControl(const std::string& room, core::SharedBytes message) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [session, member] : members_) {
+    if (member.room == room) member.link->sendControl(message);
+  }
+}
+
 void RoomHub::publish(const std::string& room, LayerIndex layer, core::SharedBytes frame) {
   assert(layer < kMaxLayerCount && frame);
   const std::lock_guard lock(mutex_);

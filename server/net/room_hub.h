@@ -35,6 +35,7 @@ class RoomHub final : public Hub {
   void remove(SessionId session);
 
   void sendControl(SessionId session, core::SharedBytes message) override;
+  void broadcastControl(const std::string& room, core::SharedBytes message) override;
   void publish(const std::string& room, LayerIndex layer, core::SharedBytes frame) override;
   void join(SessionId session, const std::string& room) override;
   void watch(SessionId session, LayerIndex layer, double max_rate_hz) override;

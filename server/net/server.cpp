@@ -101,6 +101,7 @@ core::Result<void> ServerImpl::listen() {
 }
 
 void ServerImpl::run() {
+  context_.application.serverStarts(context_.hub);
   asio::co_spawn(accept_strand_, acceptLoop(), [](const std::exception_ptr& failure) {
     try {
       if (failure) std::rethrow_exception(failure);

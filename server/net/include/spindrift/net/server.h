@@ -66,6 +66,9 @@ class Hub {
   /// the session with kTryAgainLater.
   virtual void sendControl(SessionId session, core::SharedBytes message) = 0;
 
+  /// The same to every session of the room.
+  virtual void broadcastControl(const std::string& room, core::SharedBytes message) = 0;
+
   /// Data plane: one write in flight and one newest slot per layer; an unsent older frame in the slot is dropped and
   /// counted. `room` is the group the sessions joined; only sessions that watch `layer` get it, no faster than the rate
   /// they asked for (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted).
@@ -90,6 +93,8 @@ class Application {
  public:
   virtual ~Application() = default;
 
+  /// Once, from Server::start(), before any other call: the hub to send through, valid as long as the Server.
+  virtual void serverStarts(Hub& /*hub*/) {}
   /// A WebSocket handshake on `/ws/{room}` (or `/ws` = the default room, empty name). An Error refuses the upgrade with
   /// HTTP 404 and the error's line as the body.
   virtual core::Result<void> acceptSession(const std::string& room) = 0;
@@ -106,7 +111,7 @@ class Application {
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;  ///< 0 = any free port; read the real one from Server::port()
-  std::string web_root;       ///< folder with the built web client; empty = no page is served
+  std::string web_root{};     ///< folder with the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
   std::size_t read_message_max_bytes = 16 * 1024;  ///< client messages are small

@@ -1,0 +1,193 @@
+// Plain HTTP over loopback, as browsers and strangers send it.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "temporary_folder.h"
+#include "test_application.h"
+
+namespace spindrift::net {
+namespace {
+
+using test::eventually;
+using test::HttpAnswer;
+using test::httpExchange;
+using test::httpRequest;
+using test::parseAnswer;
+using test::RawTcp;
+using test::TestServer;
+using test::WsClient;
+
+struct ConnectionTest : testing::Test {
+  test::TemporaryFolder folder;
+
+  void SetUp() override {
+    folder.write("index.html", "<h1>water</h1>");
+    folder.write("assets/main-abc.js", std::string(3'000'000, ';'));
+  }
+  ServerOptions options() const { return {.web_root = folder.path().string()}; }
+};
+
+TEST_F(ConnectionTest, ServesThePageWithItsHeaders) {
+  const TestServer served(options());
+  const HttpAnswer answer = httpRequest(served.server->port(), "GET", "/");
+  EXPECT_EQ(answer.status, 200U);
+  EXPECT_EQ(answer.body, "<h1>water</h1>");
+  EXPECT_EQ(answer.headers.at("content-type"), "text/html; charset=utf-8");
+  EXPECT_EQ(answer.headers.at("cache-control"), "no-cache");
+  EXPECT_EQ(answer.headers.at("content-security-policy"),
+            "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+            "worker-src 'self' "
+            "blob:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
+  EXPECT_EQ(answer.headers.at("x-content-type-options"), "nosniff");
+  EXPECT_EQ(answer.headers.at("referrer-policy"), "no-referrer");
+  EXPECT_EQ(answer.headers.at("cross-origin-opener-policy"), "same-origin");
+  EXPECT_EQ(answer.headers.at("x-frame-options"), "DENY");
+}
+
+TEST_F(ConnectionTest, ServesALargeFileWhole) {
+  const TestServer served(options());
+  const HttpAnswer answer = httpRequest(served.server->port(), "GET", "/assets/main-abc.js");
+  EXPECT_EQ(answer.headers.at("content-length"), "3000000");
+  EXPECT_EQ(answer.body, std::string(3'000'000, ';'));
+}
+
+TEST_F(ConnectionTest, AnswersHeadWithoutTheBody) {
+  const TestServer served(options());
+  const HttpAnswer answer = httpRequest(served.server->port(), "HEAD", "/");
+  EXPECT_EQ(answer.status, 200U);
+  EXPECT_EQ(answer.headers.at("content-length"), "14");
+  EXPECT_EQ(answer.body, "");
+}
+
+TEST_F(ConnectionTest, AnswersNotModifiedWithoutTheBody) {
+  const TestServer served(options());
+  const std::string etag = httpRequest(served.server->port(), "GET", "/").headers.at("etag");
+  const HttpAnswer answer = httpRequest(served.server->port(), "GET", "/", "If-None-Match: " + etag + "\r\n");
+  EXPECT_EQ(answer.status, 304U);
+  EXPECT_EQ(answer.body, "");
+  EXPECT_EQ(answer.headers.at("x-content-type-options"), "nosniff");
+}
+
+TEST_F(ConnectionTest, KeepsAConnectionForTheNextRequest) {
+  const TestServer served(options());
+  RawTcp tcp;
+  ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+  ASSERT_TRUE(
+      tcp.send("HEAD / HTTP/1.1\r\nHost: a\r\n\r\nGET /healthz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n"));
+  const std::string both = tcp.receiveAll();
+  EXPECT_TRUE(tcp.closed());
+  EXPECT_EQ(parseAnswer(both).status, 200U);
+  EXPECT_EQ(parseAnswer(parseAnswer(both).body).body, "ok\n");
+}
+
+TEST_F(ConnectionTest, HandsTheApplicationItsRequests) {
+  const TestServer served(options());
+  EXPECT_EQ(httpRequest(served.server->port(), "POST", "/api/echo?a=1", "", "body").body, "POST a=1 body");
+  EXPECT_EQ(httpRequest(served.server->port(), "GET", "/api/none").status, 404U);
+  EXPECT_EQ(httpRequest(served.server->port(), "GET", "/api/throw").status, 500U);
+  EXPECT_TRUE(served.serves());
+}
+
+TEST_F(ConnectionTest, FindsNothingOutsideTheWebRoot) {
+  const TestServer served(options());
+  for (const char* target : {"/../../../../../etc/passwd", "/%2e%2e/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd",
+                             "/assets/%2e%2e/index.html"}) {
+    EXPECT_EQ(httpRequest(served.server->port(), "GET", target).status, 404U) << target;
+  }
+  EXPECT_EQ(httpRequest(served.server->port(), "GET", "/index.html%00.js").status, 400U);
+  EXPECT_EQ(httpRequest(served.server->port(), "GET", std::string("/index\0.html", 12)).status, 400U);
+}
+
+TEST_F(ConnectionTest, SaysWhatIsWrongWithARequest) {
+  ServerOptions small = options();
+  small.request_body_max_bytes = 100;
+  const TestServer served(small);
+  const auto port = served.server->port();
+  EXPECT_EQ(httpRequest(port, "DELETE", "/").status, 405U);
+  EXPECT_EQ(httpExchange(port, "hello water\r\n\r\n").status, 400U);
+  const HttpAnswer too_big = httpRequest(port, "POST", "/api/echo", "", std::string(101, 'x'));
+  EXPECT_EQ(too_big.status, 413U);
+  EXPECT_EQ(too_big.body, "The request's body is larger than 100 bytes.\n");
+  const HttpAnswer too_long = httpRequest(port, "GET", "/", "X-Long: " + std::string(20'000, 'x') + "\r\n");
+  EXPECT_EQ(too_long.status, 431U);
+  EXPECT_EQ(too_long.body, "The request's header is larger than 16384 bytes.\n");
+  EXPECT_EQ(httpRequest(port, "GET", "/ws").status, 426U);
+}
+
+TEST_F(ConnectionTest, RefusesAnUpgradeWithoutAKey) {
+  const TestServer served(options());
+  const HttpAnswer answer = httpRequest(served.server->port(), "GET", "/ws");
+  EXPECT_EQ(answer.status, 426U);
+  const HttpAnswer keyless = httpExchange(
+      served.server->port(),
+      "GET /ws HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\r\n");
+  EXPECT_EQ(keyless.status, 400U);
+  EXPECT_TRUE(served.application.opened().empty());
+}
+
+TEST_F(ConnectionTest, RandomBytesHurtNobody) {
+  const TestServer served(options());
+  std::mt19937 random(42);
+  for (int k = 0; k < 200; ++k) {
+    RawTcp tcp;
+    ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+    std::string noise(1 + random() % 2000, '\0');
+    for (char& byte : noise) byte = static_cast<char>(random());
+    (void)tcp.send(noise);
+  }
+  EXPECT_TRUE(served.serves());
+  EXPECT_EQ(httpRequest(served.server->port(), "GET", "/").status, 200U);
+}
+
+TEST_F(ConnectionTest, CutsRequestsThatNeverEnd) {
+  ServerOptions hurried = options();
+  hurried.handshake_timeout = std::chrono::milliseconds(300);
+  const TestServer served(hurried);
+  std::vector<RawTcp> slow(30);
+  for (RawTcp& tcp : slow) {
+    ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+    ASSERT_TRUE(tcp.send("GET / HTTP/1.1\r\nHost: "));
+  }
+  EXPECT_EQ(httpRequest(served.server->port(), "GET", "/").status, 200U) << "others are served meanwhile";
+  for (RawTcp& tcp : slow) {
+    (void)tcp.receiveAll();
+    EXPECT_TRUE(tcp.closed());
+  }
+}
+
+TEST(Listener, SaysWhatToDoWhenThePortIsInUse) {
+  const TestServer first;
+  test::TestApplication application;
+  const auto second = Server::start({.port = first.server->port()}, application);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, core::ErrorCode::kUnavailable);
+  EXPECT_EQ(second.error().message,
+            "port " + std::to_string(first.server->port()) +
+                " on 127.0.0.1 is in use: stop the other program or choose another with --port");
+}
+
+TEST(Listener, NamesABadAddress) {
+  test::TestApplication application;
+  for (const char* address : {"localhost", "", "300.1.1.1"}) {
+    const auto started = Server::start({.address = address, .port = 0}, application);
+    ASSERT_FALSE(started) << address;
+    EXPECT_NE(started.error().message.find("\"" + std::string(address) + "\""), std::string::npos)
+        << started.error().message;
+  }
+  const auto foreign = Server::start({.address = "192.0.2.1", .port = 0}, application);
+  ASSERT_FALSE(foreign);
+  EXPECT_NE(foreign.error().message.find("192.0.2.1"), std::string::npos);
+}
+
+TEST(Listener, TakesAPortAgainRightAfterStop) {
+  auto first = std::make_unique<TestServer>();
+  const auto port = first->server->port();
+  const WsClient client = first->client();
+  first.reset();
+  test::TestApplication application;
+  EXPECT_TRUE(Server::start({.port = port}, application));
+}
+
+}  // namespace
+}  // namespace spindrift::net

@@ -1,0 +1,127 @@
+#include "http_routes.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "temporary_folder.h"
+#include "test_application.h"
+#include "url.h"
+
+namespace spindrift::net {
+namespace {
+
+struct HttpRoutesTest : testing::Test {
+  test::TemporaryFolder folder;
+  test::TestApplication application;
+
+  Reply route(const std::string& method, const std::string& target, const std::string& if_none_match = "") {
+    StaticFiles files(folder.path().string());
+    return routeRequest({method, target, if_none_match}, {}, files, application);
+  }
+  static std::string header(const Reply& reply, const std::string& name) {
+    for (const auto& [known, value] : reply.headers) {
+      if (known == name) return value;
+    }
+    return "(none)";
+  }
+};
+
+TEST_F(HttpRoutesTest, SaysHowToBuildAMissingWebClient) {
+  const Reply reply = route("GET", "/");
+  EXPECT_EQ(reply.status, 503U);
+  EXPECT_TRUE(reply.content_type.starts_with("text/plain"));
+  EXPECT_TRUE(reply.body->starts_with("The web client is not built: run ./dev build"));
+}
+
+TEST_F(HttpRoutesTest, LetsHashedAssetsBeKeptAndAsksAgainForTheRest) {
+  folder.write("index.html", "<h1>water</h1>");
+  folder.write("assets/main-abc.js", "run()");
+  EXPECT_EQ(header(route("GET", "/assets/main-abc.js"), "Cache-Control"), "public, max-age=31536000, immutable");
+  EXPECT_EQ(header(route("GET", "/?room=pool"), "Cache-Control"), "no-cache");
+}
+
+TEST_F(HttpRoutesTest, AnswersNotModifiedForAKnownTag) {
+  folder.write("index.html", "<h1>water</h1>");
+  const Reply first = route("GET", "/");
+  const std::string etag = header(first, "ETag");
+  EXPECT_EQ(first.status, 200U);
+  for (const std::string& known : {etag, "W/" + etag, "\"other\" , " + etag, std::string("*")}) {
+    const Reply second = route("GET", "/", known);
+    EXPECT_EQ(second.status, 304U) << known;
+    EXPECT_TRUE(second.body->empty());
+    EXPECT_EQ(header(second, "ETag"), etag);
+  }
+  EXPECT_EQ(route("GET", "/", "\"other\"").status, 200U);
+}
+
+TEST_F(HttpRoutesTest, RefusesPathsThatAreNotPlain) {
+  for (const char* target : {"", "*", "index.html", "http://localhost/", "/%", "/%2", "/%zz", "/%-1", "/%00", "/a%0Ab",
+                             "/..%5csecret", "/a\\b"}) {
+    EXPECT_EQ(route("GET", target).status, 400U) << target;
+  }
+}
+
+TEST_F(HttpRoutesTest, FindsNothingByTraversal) {
+  folder.write("index.html", "<h1>water</h1>");
+  for (const char* target : {"/../../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/..%2f..%2fetc%2fpasswd",
+                             "//etc/passwd", "/%2fetc/passwd", "/assets/../index.html", "/index.html/"}) {
+    EXPECT_EQ(route("GET", target).status, 404U) << target;
+  }
+}
+
+TEST_F(HttpRoutesTest, AllowsOnlyReadingFiles) {
+  for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "BREW"}) {
+    const Reply reply = route(method, "/");
+    EXPECT_EQ(reply.status, 405U) << method;
+    EXPECT_EQ(header(reply, "Allow"), "GET, HEAD");
+  }
+  EXPECT_EQ(route("TRACE", "/api/echo").status, 405U);
+}
+
+TEST_F(HttpRoutesTest, HandsTheApplicationItsPaths) {
+  const Reply reply = route("POST", "/api/echo?x=1");
+  EXPECT_EQ(reply.status, 200U);
+  EXPECT_EQ(*reply.body, "POST x=1 ");
+  EXPECT_EQ(header(reply, "Cache-Control"), "no-store");
+  EXPECT_EQ(*route("HEAD", "/api/echo").body, "GET  ");
+  EXPECT_EQ(route("GET", "/healthz").status, 200U);
+  EXPECT_EQ(route("GET", "/api/unknown").status, 404U);
+  EXPECT_EQ(route("GET", "/readyz").status, 404U);
+}
+
+TEST_F(HttpRoutesTest, SurvivesAnApplicationThatThrows) {
+  EXPECT_EQ(route("GET", "/api/throw").status, 500U);
+}
+
+TEST_F(HttpRoutesTest, AsksForAnUpgradeOnTheWebSocketPath) {
+  EXPECT_EQ(route("GET", "/ws").status, 426U);
+  EXPECT_EQ(header(route("GET", "/ws/pool"), "Upgrade"), "websocket");
+}
+
+TEST_F(HttpRoutesTest, PutsEveryErrorIntoOnePlainLine) {
+  for (const char* target : {"/", "/missing", "/%00", "/ws", "/api/unknown"}) {
+    const Reply reply = route("GET", target);
+    EXPECT_TRUE(reply.content_type.starts_with("text/plain")) << target;
+    EXPECT_EQ(std::ranges::count(*reply.body, '\n'), 1) << target;
+    EXPECT_TRUE(reply.body->ends_with('\n')) << target;
+  }
+}
+
+TEST(Target, SplitsPathAndQuery) {
+  const auto target = parseTarget("/a%20b/c?x=%20&y");
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->path, "/a b/c");
+  EXPECT_EQ(target->query, "x=%20&y");
+}
+
+TEST(RoomOfPath, ReadsTheRoom) {
+  EXPECT_EQ(roomOfPath("/ws"), "");
+  EXPECT_EQ(roomOfPath("/ws/"), "");
+  EXPECT_EQ(roomOfPath("/ws/pool"), "pool");
+  EXPECT_EQ(roomOfPath("/wsx"), std::nullopt);
+  EXPECT_EQ(roomOfPath("/"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace spindrift::net

@@ -1,0 +1,161 @@
+#include "outbox.h"
+
+#include <gtest/gtest.h>
+
+#include "test_application.h"
+
+namespace spindrift::net {
+namespace {
+
+using test::shared;
+
+constexpr double kAnyRate_hz = 1e9;
+
+/// Each call a second later, so that no rate gets in the way.
+Clock::time_point later() {
+  static Clock::time_point now{};
+  return now += std::chrono::seconds(1);
+}
+
+Outbox::Kind kind(Outbox& outbox) {
+  return outbox.next().kind;
+}
+
+TEST(Outbox, SendsControlMessagesInOrder) {
+  Outbox outbox(8);
+  const auto first = shared("1");
+  const auto second = shared("2");
+  outbox.pushControl(first);
+  outbox.pushControl(second);
+  EXPECT_EQ(outbox.next().message, first);
+  EXPECT_EQ(outbox.next().message, second);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+}
+
+TEST(Outbox, SendsControlBeforeData) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.offerFrame(1, shared("frame"), later());
+  outbox.pushControl(shared("control"));
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
+}
+
+TEST(Outbox, DropsTheOlderFrameOfALayer) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  const auto newest = shared("new");
+  EXPECT_FALSE(outbox.offerFrame(1, shared("old"), later()).dropped);
+  EXPECT_TRUE(outbox.offerFrame(1, newest, later()).dropped);
+  EXPECT_EQ(outbox.next().message, newest);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+}
+
+TEST(Outbox, HoldsOneFrameALayerHoweverManyAreOffered) {
+  Outbox outbox(8);
+  std::vector<std::weak_ptr<const core::Bytes>> frames;
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(2, kAnyRate_hz);
+  for (int k = 0; k < 1000; ++k) {
+    const auto frame = shared("frame");
+    frames.push_back(frame);
+    outbox.offerFrame(1 + k % 2, frame, later());
+  }
+  EXPECT_EQ(std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }), 2);
+}
+
+TEST(Outbox, TakesLayersInTurn) {
+  Outbox outbox(8);
+  std::vector<core::SharedBytes> last(4);
+  for (LayerIndex layer = 0; layer < 4; ++layer) outbox.setWatch(layer, kAnyRate_hz);
+  std::vector<std::size_t> order;
+  // Every layer is refilled after every send: without turns the first layer would be sent alone.
+  for (int k = 0; k < 8; ++k) {
+    for (LayerIndex layer = 0; layer < 4; ++layer) outbox.offerFrame(layer, last[layer] = shared("f"), later());
+    const auto sent = outbox.next().message;
+    order.push_back(static_cast<std::size_t>(std::ranges::find(last, sent) - last.begin()));
+  }
+  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3, 0, 1, 2, 3}));
+}
+
+TEST(Outbox, IgnoresFramesOfLayersThatNobodyWatches) {
+  Outbox outbox(8);
+  outbox.offerFrame(3, shared("frame"), later());
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+}
+
+TEST(Outbox, KeepsToTheRateOfEachWatch) {
+  Outbox outbox(8);
+  outbox.setWatch(1, 30.0);
+  outbox.setWatch(2, 60.0);
+  const Clock::time_point start = later();
+  int sent[3] = {};
+  for (int k = 0; k < 60; ++k) {
+    const auto now = start + std::chrono::microseconds(k * 16'667);
+    for (LayerIndex layer = 1; layer <= 2; ++layer) {
+      outbox.offerFrame(layer, shared("f"), now);
+      if (outbox.next().kind == Outbox::Kind::kFrame) ++sent[layer];
+    }
+  }
+  EXPECT_EQ(sent[1], 30);
+  EXPECT_EQ(sent[2], 60);
+}
+
+TEST(Outbox, ForgetsTheFrameOfALayerThatStops) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.offerFrame(1, shared("frame"), later());
+  outbox.setWatch(1, std::nullopt);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+}
+
+TEST(Outbox, WakesASleepingWriterOnce) {
+  Outbox outbox(8);
+  EXPECT_FALSE(outbox.pushControl(shared("before the writer slept")).wake);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+  EXPECT_TRUE(outbox.pushControl(shared("1")).wake);
+  EXPECT_FALSE(outbox.pushControl(shared("2")).wake);
+}
+
+TEST(Outbox, ClosesWhenTheControlQueueOverflows) {
+  Outbox outbox(2);
+  EXPECT_FALSE(outbox.pushControl(shared("1")).overflow);
+  EXPECT_FALSE(outbox.pushControl(shared("2")).overflow);
+  EXPECT_TRUE(outbox.pushControl(shared("3")).overflow);
+  EXPECT_FALSE(outbox.pushControl(shared("4")).overflow) << "the overflow is told once";
+  ASSERT_TRUE(outbox.closeRequest());
+  EXPECT_EQ(outbox.closeRequest()->code, 1013);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
+}
+
+TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.offerFrame(1, shared("frame"), later());
+  outbox.pushControl(shared("last words"));
+  EXPECT_TRUE(outbox.requestClose(CloseCode::kNormal, "first"));
+  EXPECT_FALSE(outbox.requestClose(CloseCode::kPolicy, "second"));
+  outbox.offerFrame(1, shared("frame"), later());
+  outbox.pushControl(shared("too late"));
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
+  EXPECT_EQ(outbox.closeRequest()->reason, "first");
+}
+
+TEST(Outbox, KeepsNothingOnceShut) {
+  Outbox outbox(8);
+  const auto message = shared("message");
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.pushControl(message);
+  outbox.offerFrame(1, message, later());
+  outbox.shut();
+  outbox.pushControl(message);
+  EXPECT_EQ(message.use_count(), 1);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kShut);
+}
+
+}  // namespace
+}  // namespace spindrift::net

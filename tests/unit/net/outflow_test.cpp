@@ -1,0 +1,136 @@
+// The data plane over loopback: shared buffers, dropping, rates, and clients that do not read.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "test_application.h"
+
+namespace spindrift::net {
+namespace {
+
+using test::bytes;
+using test::eventually;
+using test::shared;
+using test::TestServer;
+using test::text;
+using test::WsClient;
+
+/// More than the kernel buffers of a connection hold, so that a write to a client that does not read cannot end.
+constexpr std::size_t kHugeFrameBytes = 16U << 20U;
+constexpr int kTinyReceiveBuffer = 4096;
+constexpr double kAnyRate_hz = 1e6;
+
+TEST(Outflow, BringsAFrameToEveryWatcherWhole) {
+  TestServer served;
+  WsClient ada = served.watcher(1);
+  WsClient bob = served.watcher(1);
+  WsClient eve = served.watcher(2);
+  core::Bytes frame(300'000);
+  for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<std::uint8_t>(k * 7 + k / 251);
+  served.server->hub().publish("pool", 1, core::share(frame));
+  EXPECT_EQ(ada.receive(), frame);
+  EXPECT_EQ(bob.receive(), frame);
+  ASSERT_TRUE(eve.sendBinary(bytes("echo nothing else")));
+  EXPECT_EQ(text(eve.receive()), "echo nothing else");
+}
+
+TEST(Outflow, SharesOneBufferAmongAllClients) {
+  TestServer served;
+  std::vector<WsClient> clients;
+  for (int k = 0; k < 6; ++k) clients.push_back(served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer));
+  const core::SharedBytes frame = core::share(core::Bytes(kHugeFrameBytes));
+  served.server->hub().publish("pool", 1, frame);
+  // Nobody reads, so every session keeps its one reference, in its slot or in the write that cannot end.
+  EXPECT_EQ(frame.use_count(), 1 + 6);
+  served.server->stop();
+  EXPECT_EQ(frame.use_count(), 1);
+}
+
+TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
+  TestServer served;
+  WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  WsClient lively = served.watcher(1);
+  // The first frame can never be written to the stuck client; it is in flight before the small ones come.
+  std::vector<std::weak_ptr<const core::Bytes>> frames;
+  constexpr int kFrameCount = 100;
+  for (int k = 0; k < kFrameCount; ++k) {
+    const core::SharedBytes frame =
+        core::share(core::Bytes(k == 0 ? kHugeFrameBytes : 1000, static_cast<std::uint8_t>(k)));
+    frames.push_back(frame);
+    served.server->hub().publish("pool", 1, frame);
+    const auto received = lively.receive();
+    ASSERT_TRUE(received) << "frame " << k;
+    ASSERT_EQ(*received, *frame) << "frame " << k;
+  }
+  // Of 100 frames one is in flight, the newest waits, the others are gone and counted.
+  EXPECT_TRUE(eventually([&] { return served.server->stats().sent_frame_count == kFrameCount; }));
+  EXPECT_EQ(served.server->stats().dropped_frame_count, kFrameCount - 2U);
+  EXPECT_TRUE(eventually(
+      [&] { return std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }) == 2; }));
+  // And when it reads at last, it gets the frame in flight and then the newest.
+  EXPECT_EQ(stuck.receive().value_or(core::Bytes{}).size(), kHugeFrameBytes);
+  EXPECT_EQ(stuck.receive(), core::Bytes(1000, kFrameCount - 1));
+}
+
+TEST(Outflow, EvictsAClientWhoseWriteStalls) {
+  TestServer served({.write_stall_timeout = std::chrono::milliseconds(200)});
+  const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  served.server->hub().publish("pool", 1, core::share(core::Bytes(kHugeFrameBytes)));
+  ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
+  EXPECT_EQ(served.application.closed()[0].end.code, 0);
+  EXPECT_EQ(served.application.closed()[0].end.reason, "evicted: a write took longer than 200 ms");
+  EXPECT_EQ(served.server->stats().evicted_session_count, 1U);
+  EXPECT_EQ(served.server->hub().watcherCount("pool", 1), 0U);
+  EXPECT_TRUE(served.serves());
+}
+
+TEST(Outflow, CutsAStuckClientThatIsToClose) {
+  TestServer served({.close_timeout = std::chrono::milliseconds(200)});
+  const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  served.server->hub().publish("pool", 1, core::share(core::Bytes(kHugeFrameBytes)));
+  served.server->hub().close(served.application.opened().at(0), CloseCode::kNormal, "enough");
+  ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
+  EXPECT_EQ(served.application.closed()[0].end.reason, "enough");
+}
+
+TEST(Outflow, KeepsEachWatchToItsOwnRate) {
+  TestServer served;
+  WsClient fast = served.watcher(1, kAnyRate_hz);
+  WsClient slow = served.watcher(1, 1e-3);
+  for (int k = 0; k < 20; ++k) {
+    served.server->hub().publish("pool", 1, shared("frame " + std::to_string(k)));
+    ASSERT_EQ(text(fast.receive()), "frame " + std::to_string(k));
+  }
+  ASSERT_EQ(text(slow.receive()), "frame 0");
+  ASSERT_TRUE(slow.sendBinary(bytes("echo end")));
+  EXPECT_EQ(text(slow.receive()), "echo end") << "no second frame before";
+  EXPECT_TRUE(eventually([&] { return served.server->stats().sent_frame_count == 21; }));
+  EXPECT_EQ(served.server->stats().dropped_frame_count, 0U) << "a skipped frame is not a dropped one";
+}
+
+TEST(Outflow, StopsALayer) {
+  TestServer served;
+  WsClient client = served.watcher(1);
+  EXPECT_EQ(served.server->hub().watcherCount("pool", 1), 1U);
+  ASSERT_TRUE(client.sendBinary(bytes("watch 1 0")));
+  EXPECT_EQ(text(client.receive()), "watching");
+  EXPECT_EQ(served.server->hub().watcherCount("pool", 1), 0U);
+  served.server->hub().publish("pool", 1, shared("frame"));
+  ASSERT_TRUE(client.sendBinary(bytes("echo end")));
+  EXPECT_EQ(text(client.receive()), "echo end");
+}
+
+TEST(Outflow, CountsWhatItSent) {
+  TestServer served;
+  WsClient client = served.watcher(1);
+  const auto before = served.server->stats();
+  served.server->hub().publish("pool", 1, core::share(core::Bytes(5000)));
+  ASSERT_TRUE(client.receive());
+  ASSERT_TRUE(eventually([&] { return served.server->stats().sent_frame_count == before.sent_frame_count + 1; }));
+  EXPECT_EQ(served.server->stats().sent_bytes_count, before.sent_bytes_count + 5000);
+  EXPECT_EQ(served.server->stats().open_session_count, 1U);
+  EXPECT_EQ(served.server->stats().accepted_session_count, 1U);
+}
+
+}  // namespace
+}  // namespace spindrift::net

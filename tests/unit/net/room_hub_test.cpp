@@ -1,0 +1,123 @@
+#include "room_hub.h"
+
+#include <gtest/gtest.h>
+
+#include "test_application.h"
+
+namespace spindrift::net {
+namespace {
+
+using test::shared;
+
+/// Writes down what the hub asks of it.
+struct RecordingLink final : SessionLink {
+  int control_count = 0;
+  int frame_count = 0;
+  int clear_count = 0;
+  std::optional<double> rate_hz;
+  std::optional<CloseCode> closed;
+
+  void sendControl(core::SharedBytes) override { ++control_count; }
+  void offerFrame(LayerIndex, core::SharedBytes) override { ++frame_count; }
+  void setWatch(LayerIndex, std::optional<double> max_rate_hz) override { rate_hz = max_rate_hz; }
+  void clearFrames() override { ++clear_count; }
+  void close(CloseCode code, std::string) override { closed = code; }
+};
+
+struct RoomHubTest : testing::Test {
+  RoomHub hub;
+  std::shared_ptr<RecordingLink> ada = std::make_shared<RecordingLink>();
+  std::shared_ptr<RecordingLink> bob = std::make_shared<RecordingLink>();
+
+  void SetUp() override {
+    hub.add(1, ada);
+    hub.add(2, bob);
+  }
+};
+
+TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
+  hub.join(1, "pool");
+  hub.join(2, "sea");
+  hub.watch(1, 3, 30.0);
+  hub.watch(2, 3, 30.0);
+  hub.publish("pool", 3, shared("frame"));
+  hub.publish("pool", 4, shared("frame"));
+  hub.publish("pond", 3, shared("frame"));
+  EXPECT_EQ(ada->frame_count, 1);
+  EXPECT_EQ(bob->frame_count, 0);
+}
+
+TEST_F(RoomHubTest, CountsWatchers) {
+  hub.join(1, "pool");
+  hub.join(2, "pool");
+  EXPECT_EQ(hub.watcherCount("pool", 3), 0U);
+  hub.watch(1, 3, 30.0);
+  hub.watch(2, 3, 10.0);
+  hub.watch(2, 3, 20.0);
+  EXPECT_EQ(hub.watcherCount("pool", 3), 2U);
+  EXPECT_EQ(bob->rate_hz, 20.0);
+  hub.watch(1, 3, 0.0);
+  EXPECT_EQ(hub.watcherCount("pool", 3), 1U);
+  EXPECT_EQ(ada->rate_hz, std::nullopt);
+  hub.remove(2);
+  EXPECT_EQ(hub.watcherCount("pool", 3), 0U);
+  EXPECT_EQ(hub.watcherCount("nowhere", 3), 0U);
+}
+
+TEST_F(RoomHubTest, TreatsARateThatIsNoRateAsStop) {
+  hub.join(1, "pool");
+  for (const double rate_hz :
+       {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    hub.watch(1, 3, rate_hz);
+    EXPECT_EQ(hub.watcherCount("pool", 3), 0U) << rate_hz;
+  }
+}
+
+TEST_F(RoomHubTest, TakesWatchesAlongIntoTheNextRoomButNoFrames) {
+  hub.watch(1, 3, 30.0);
+  hub.join(1, "pool");
+  EXPECT_EQ(hub.watcherCount("pool", 3), 1U);
+  hub.join(1, "pool");
+  EXPECT_EQ(ada->clear_count, 0);
+  hub.join(1, "sea");
+  EXPECT_EQ(ada->clear_count, 1);
+  EXPECT_EQ(hub.watcherCount("pool", 3), 0U);
+  EXPECT_EQ(hub.watcherCount("sea", 3), 1U);
+}
+
+TEST_F(RoomHubTest, ForgetsEmptyRooms) {
+  for (int k = 0; k < 100; ++k) hub.join(1, "room " + std::to_string(k));
+  hub.join(2, "room 99");
+  EXPECT_EQ(hub.roomCount(), 1U);
+  hub.remove(1);
+  EXPECT_EQ(hub.roomCount(), 1U);
+  hub.remove(2);
+  EXPECT_EQ(hub.roomCount(), 0U);
+}
+
+TEST_F(RoomHubTest, IgnoresSessionsThatAreGone) {
+  hub.join(1, "pool");
+  hub.watch(1, 3, 30.0);
+  hub.remove(1);
+  hub.remove(1);
+  hub.join(1, "pool");
+  hub.watch(1, 3, 30.0);
+  hub.sendControl(1, shared("control"));
+  hub.close(1, CloseCode::kNormal, "");
+  hub.publish("pool", 3, shared("frame"));
+  EXPECT_EQ(ada->control_count + ada->frame_count, 0);
+  EXPECT_EQ(ada->closed, std::nullopt);
+  EXPECT_EQ(ada.use_count(), 1) << "the hub let go of the session";
+}
+
+TEST_F(RoomHubTest, ReachesOneSession) {
+  hub.sendControl(2, shared("control"));
+  hub.close(2, CloseCode::kPolicy, "because");
+  EXPECT_EQ(bob->control_count, 1);
+  EXPECT_EQ(bob->closed, CloseCode::kPolicy);
+  EXPECT_EQ(ada->control_count, 0);
+  EXPECT_EQ(ada->closed, std::nullopt);
+}
+
+}  // namespace
+}  // namespace spindrift::net

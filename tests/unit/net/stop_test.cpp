@@ -1,0 +1,108 @@
+// The end of a server, with every kind of client still there.
+#include <future>
+
+#include <gtest/gtest.h>
+
+#include "test_application.h"
+
+namespace spindrift::net {
+namespace {
+
+using test::bytes;
+using test::eventually;
+using test::RawTcp;
+using test::TestServer;
+using test::WsClient;
+using Clock = std::chrono::steady_clock;
+
+/// What a loaded machine may add to the bound before the claim counts as broken.
+constexpr std::chrono::seconds kMachineSlack{5};
+
+TEST(Stop, SaysGoingAwayToClientsThatListen) {
+  TestServer served({.close_timeout = std::chrono::seconds(60)});
+  std::vector<std::future<std::uint16_t>> codes;
+  for (int k = 0; k < 4; ++k) {
+    codes.push_back(std::async(std::launch::async, [client = served.client()]() mutable {
+      client.waitClosed();
+      return client.closeCode();
+    }));
+  }
+  const auto begin = Clock::now();
+  served.server->stop();
+  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(60)) << "nobody had to be waited for";
+  for (auto& code : codes) EXPECT_EQ(code.get(), 1001);
+  ASSERT_EQ(served.application.closed().size(), 4U);
+  for (const auto& closed : served.application.closed()) {
+    EXPECT_EQ(closed.end.code, 1001);
+    EXPECT_EQ(closed.end.reason, "server is shutting down");
+  }
+}
+
+TEST(Stop, IsHeldUpByNobody) {
+  constexpr std::chrono::milliseconds kCloseTimeout{300};
+  TestServer served({.close_timeout = kCloseTimeout});
+  WsClient idle = served.client();  // never receives, so it does not answer the goodbye either
+  const WsClient stuck = served.watcher(1, 1e6, 4096);
+  served.server->hub().publish("pool", 1, core::share(core::Bytes(16U << 20U)));
+  RawTcp keep_alive;
+  ASSERT_TRUE(keep_alive.connect("127.0.0.1", served.server->port()));
+  ASSERT_TRUE(keep_alive.send("GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n"));
+  ASSERT_FALSE(keep_alive.receive(1).empty());
+  RawTcp half_handshake;
+  ASSERT_TRUE(half_handshake.connect("127.0.0.1", served.server->port()));
+  ASSERT_TRUE(half_handshake.send("GET /ws HTTP/1.1\r\nHost: a\r\nUpgr"));
+  RawTcp silent;
+  ASSERT_TRUE(silent.connect("127.0.0.1", served.server->port()));
+
+  const auto begin = Clock::now();
+  served.server->stop();
+  EXPECT_LT(Clock::now() - begin, kCloseTimeout + std::chrono::seconds(1) + kMachineSlack);
+  EXPECT_EQ(served.application.closed().size(), 2U);
+  EXPECT_TRUE(idle.waitClosed());
+  EXPECT_EQ(idle.closeCode(), 1001);
+  (void)silent.receiveAll();
+  EXPECT_TRUE(silent.closed());
+  RawTcp late;
+  EXPECT_FALSE(late.connect("127.0.0.1", served.server->port())) << "the port is closed";
+}
+
+TEST(Stop, WorksUnderLoad) {
+  TestServer served({.thread_count = 2, .close_timeout = std::chrono::milliseconds(500)});
+  std::atomic<bool> done{false};
+  std::vector<std::thread> crowd;
+  for (int k = 0; k < 3; ++k) {
+    crowd.emplace_back([&served, &done] {
+      while (!done) {
+        WsClient client;
+        if (!client.connect("127.0.0.1", served.server->port(), "/ws/pool")) continue;
+        (void)client.sendBinary(bytes("watch 1 1000000"));
+        for (int message = 0; message < 50 && client.receive(); ++message) (void)client.sendBinary(bytes("echo x"));
+      }
+    });
+  }
+  crowd.emplace_back([&served, &done] {
+    while (!done) served.server->hub().publish("pool", 1, core::share(core::Bytes(100'000)));
+  });
+  EXPECT_TRUE(eventually([&] { return served.server->stats().sent_frame_count > 100; }));
+  served.server->stop();
+  const std::size_t opened_count = served.application.opened().size();
+  EXPECT_EQ(served.application.closed().size(), opened_count) << "every session has ended when stop() returns";
+  done = true;
+  for (std::thread& one : crowd) one.join();
+  EXPECT_EQ(served.application.opened().size(), opened_count) << "nobody came in afterwards";
+  EXPECT_EQ(served.application.overlap_count, 0);
+  EXPECT_EQ(served.application.after_closed_count, 0);
+}
+
+TEST(Stop, MayBeAskedTwiceAndFromSeveralThreads) {
+  TestServer served;
+  const WsClient client = served.client();
+  std::thread other([&] { served.server->stop(); });
+  served.server->stop();
+  other.join();
+  served.server->stop();
+  EXPECT_EQ(served.application.closed().size(), 1U);
+}
+
+}  // namespace
+}  // namespace spindrift::net
