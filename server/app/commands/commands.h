@@ -1,0 +1,47 @@
+// What the program's subcommands do; main() parses their flags. Each returns the exit code: 0 fine, 1 a check failed, 2
+// bad usage or input, 3 no usable device.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+
+namespace spindrift::app {
+
+struct ServeOptions {
+  std::string scene = "default";
+  std::vector<std::string> rooms;  ///< NAME=SCENE
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8080;
+  std::string device = "auto";
+  std::string web_root;  ///< empty: found beside the program
+  std::size_t thread_count = 1;
+};
+int serve(const ServeOptions& options);
+
+struct InfoOptions {
+  std::string json_file;  ///< "-" = standard output
+  bool parameters = false;
+};
+int info(const InfoOptions& options);
+
+struct CheckOptions {
+  std::vector<std::string> scenes;
+};
+int check(const CheckOptions& options);
+
+struct BenchOptions {
+  std::string suite = "all";  ///< step, stream, all
+  std::string scene = "default";
+  std::string device = "auto";
+  std::string json_file;
+  double seconds = 2.0;  ///< measured time per case
+};
+int bench(const BenchOptions& options);
+
+/// Prints the error's line on standard error and returns its exit code.
+int fail(const core::Error& error);
+
+}  // namespace spindrift::app

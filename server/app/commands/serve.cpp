@@ -1,0 +1,110 @@
+#include <csignal>
+#include <cstdio>
+#include <regex>
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/stream/scene_loader.h>
+
+#include "../paths.h"
+#include "../water_server.h"
+#include "commands.h"
+
+namespace spindrift::app {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+core::Result<RoomSetup> loadRoom(const std::string& name, const std::string& scene) {
+  if (!std::regex_match(name, std::regex("[A-Za-z0-9_-]{1,32}"))) {
+    return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
+  }
+  auto file = findScene(scene);
+  if (!file) return file.error();
+  auto loaded = stream::loadSceneFile(*file);
+  if (!loaded) return loaded.error();
+  return RoomSetup{name, *std::move(loaded)};
+}
+
+core::Result<std::vector<RoomSetup>> loadRooms(const ServeOptions& options) {
+  std::vector<RoomSetup> rooms;
+  auto first = loadRoom("main", options.scene);
+  if (!first) return first.error();
+  rooms.push_back(*std::move(first));
+  for (const std::string& text : options.rooms) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos) return Error{ErrorCode::kInvalidInput, "--room '" + text + "': write NAME=SCENE"};
+    auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1));
+    if (!room) return room.error();
+    for (const RoomSetup& known : rooms) {
+      if (known.name == room->name)
+        return Error{ErrorCode::kInvalidInput,
+                     "--room '" + text + "': there is a room of this name already; 'main' is the one of --scene"};
+    }
+    rooms.push_back(*std::move(room));
+  }
+  return rooms;
+}
+
+/// Blocks SIGINT and SIGTERM in this thread and those it starts, so that wait() gets them.
+class StopSignals {
+ public:
+  StopSignals() {
+    sigemptyset(&set_);
+    sigaddset(&set_, SIGINT);
+    sigaddset(&set_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+  }
+  int wait() {
+    int signal = 0;
+    sigwait(&set_, &signal);
+    return signal;
+  }
+
+ private:
+  sigset_t set_{};
+};
+
+std::string forUrl(const std::string& address) {
+  return address.find(':') != std::string::npos ? "[" + address + "]" : address;
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options) {
+  StopSignals signals;
+  auto device = gpu::parseDeviceChoice(options.device);
+  if (!device) return fail(device.error());
+  auto rooms = loadRooms(options);
+  if (!rooms) return fail(rooms.error());
+
+  WaterServerOptions server_options;
+  server_options.device = *device;
+  server_options.rooms = *std::move(rooms);
+  server_options.network.address = options.address;
+  server_options.network.port = options.port;
+  server_options.network.thread_count = options.thread_count;
+  server_options.network.web_root = options.web_root.empty() ? findWebRoot().string() : options.web_root;
+  if (server_options.network.web_root.empty())
+    spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
+  auto server = WaterServer::start(std::move(server_options));
+  if (!server) return fail(server.error());
+
+  spdlog::info("simulation runs on {}", (*server)->deviceLine());
+  std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
+  std::fflush(stdout);
+  const int signal = signals.wait();
+  spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
+  (*server)->stop();
+  const net::ServerStats stats = (*server)->networkStats();
+  for (const std::string& line : (*server)->summary()) spdlog::info("{}", line);
+  spdlog::info("{} sessions, {} frames and {:.1f} MB sent, {} frames dropped for slow clients, {} sessions evicted",
+               stats.accepted_session_count, stats.sent_frame_count, static_cast<double>(stats.sent_bytes_count) / 1e6,
+               stats.dropped_frame_count, stats.evicted_session_count);
+  return 0;
+}
+
+}  // namespace spindrift::app

@@ -1,0 +1,48 @@
+// The encoder's thread: finished frames in, one shared message a layer out, to whoever watches.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <spindrift/core/frame_view.h>
+#include <spindrift/net/server.h>
+#include <spindrift/stream/frame_encoder.h>
+
+namespace spindrift::app {
+
+/// Holds at most one waiting frame a room: a newer one replaces it, and the loss is counted.
+class EncoderThread {
+ public:
+  explicit EncoderThread(net::Hub& hub);
+  ~EncoderThread();
+  EncoderThread(const EncoderThread&) = delete;
+  EncoderThread& operator=(const EncoderThread&) = delete;
+
+  /// Any thread; never blocks on encoding.
+  void submit(const std::string& room, core::FrameView frame);
+  /// Ends the thread; frames still waiting are dropped. Idempotent.
+  void stop();
+
+  [[nodiscard]] std::uint64_t replacedCount() const;
+  /// Messages encoded for a layer of a room so far: one a frame, however many clients watch.
+  [[nodiscard]] std::uint64_t encodeCount(const std::string& room, v1::Layer layer) const;
+
+ private:
+  void loop();
+
+  net::Hub& hub_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::map<std::string, core::FrameView> waiting_;
+  std::uint64_t replaced_count_ = 0;
+  bool stopping_ = false;
+  std::map<std::string, std::unique_ptr<stream::FrameEncoder>> encoders_;  ///< grows under mutex_; used by the thread
+  std::thread thread_;
+};
+
+}  // namespace spindrift::app

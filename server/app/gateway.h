@@ -1,0 +1,48 @@
+// Between the network and the rooms: what the bytes of a session mean. Implements net::Application; runs on I/O
+// threads.
+#pragma once
+
+#include <future>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include <spindrift/net/server.h>
+
+#include "simulation_thread.h"
+
+namespace spindrift::app {
+
+class Gateway final : public net::Application {
+ public:
+  /// `rooms` outlives the gateway.
+  Gateway(const SimulationThread& rooms, std::size_t message_max_bytes, double messages_per_s);
+
+  /// The server is up; sessions that came earlier wait for this.
+  void attach(net::Hub& hub) { hub_promise_.set_value(&hub); }
+
+  core::Result<void> acceptSession(const std::string& room) override;
+  void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
+  void sessionMessage(net::SessionId session, core::ByteView message) override;
+  void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
+  std::optional<net::HttpReply> httpRequest(const net::HttpRequest& request) override;
+
+ private:
+  struct Session {
+    Room* room = nullptr;
+    bool said_hello = false;
+  };
+
+  net::Hub& hub() { return *hub_.get(); }
+  void greet(net::SessionId session, const Room& room);
+
+  const SimulationThread& rooms_;
+  const std::size_t message_max_bytes_;
+  const double messages_per_s_;
+  std::promise<net::Hub*> hub_promise_;
+  std::shared_future<net::Hub*> hub_;
+  std::mutex mutex_;
+  std::map<net::SessionId, Session> sessions_;
+};
+
+}  // namespace spindrift::app

@@ -1,0 +1,106 @@
+// spindrift: the program. Parses flags and hands over to the commands.
+#include <cstdio>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "commands/commands.h"
+
+namespace {
+
+constexpr int kUsageError = 2;
+
+void setUpLogging(const std::string& level) {
+  // Standard output belongs to what was asked for (--json -, the address); everything else goes to standard error.
+  auto logger = spdlog::stderr_color_mt("spindrift");
+  logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
+  logger->set_level(spdlog::level::from_str(level));
+  spdlog::set_default_logger(std::move(logger));
+}
+
+int run(int argc, char** argv) {
+  using namespace spindrift::app;
+  CLI::App cli{
+      "Spindrift: a headless water server. It simulates coupled particles and waves on a GPU and streams them to "
+      "browsers."};
+  cli.name("spindrift");
+  cli.set_version_flag("--version", "spindrift " SPINDRIFT_VERSION);
+  cli.require_subcommand(1);
+  std::string log_level = "info";
+  cli.add_option("--log-level", log_level, "How much is logged on standard error")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  cli.fallthrough();
+
+  ServeOptions serve_options;
+  CLI::App* serve_command = cli.add_subcommand("serve", "Simulate and serve rooms until interrupted");
+  serve_command
+      ->add_option("--scene", serve_options.scene,
+                   "Scene of the room 'main': a .textproto file or the name of a shipped scene")
+      ->capture_default_str();
+  serve_command->add_option("--room", serve_options.rooms, "A further room, NAME=SCENE; may be repeated");
+  serve_command->add_option("--address", serve_options.address, "Address to listen on")->capture_default_str();
+  serve_command->add_option("--port", serve_options.port, "Port to listen on; 0 = any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  serve_command
+      ->add_option("--device", serve_options.device, "auto, software, or the number of a device as `info` lists them")
+      ->capture_default_str();
+  serve_command->add_option("--web-root", serve_options.web_root,
+                            "Folder with the built web client (default: the one beside the program)");
+  serve_command->add_option("--threads", serve_options.thread_count, "I/O threads")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+
+  InfoOptions info_options;
+  CLI::App* info_command =
+      cli.add_subcommand("info", "Devices, OpenGL and driver versions, limits, versions of program and wire");
+  info_command->add_option("--json", info_options.json_file, "Write JSON to this file, - = standard output");
+  info_command->add_flag("--parameters", info_options.parameters,
+                         "Print the reference of all scene parameters instead, as Markdown");
+
+  CheckOptions check_options;
+  CLI::App* check_command = cli.add_subcommand("check", "Check scenes and print what follows from them");
+  check_command->add_option("scene", check_options.scenes, "Scene files or names of shipped scenes")->required();
+
+  BenchOptions bench_options;
+  CLI::App* bench_command = cli.add_subcommand("bench", "Time the passes of a step and the stream's encoder");
+  bench_command->add_option("--suite", bench_options.suite, "What to time")
+      ->check(CLI::IsMember({"all", "step", "stream"}))
+      ->capture_default_str();
+  bench_command->add_option("--scene", bench_options.scene, "Scene file or name of a shipped scene")
+      ->capture_default_str();
+  bench_command->add_option("--device", bench_options.device, "auto, software, or a device's number")
+      ->capture_default_str();
+  bench_command->add_option("--seconds", bench_options.seconds, "Measured time per case")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  bench_command->add_option("--json", bench_options.json_file, "Write JSON to this file, - = standard output");
+
+  try {
+    cli.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
+    std::fprintf(stderr, "spindrift: %s; run 'spindrift --help'\n", error.what());
+    return kUsageError;
+  }
+  setUpLogging(log_level);
+  if (serve_command->parsed()) return serve(serve_options);
+  if (info_command->parsed()) return info(info_options);
+  if (check_command->parsed()) return check(check_options);
+  if (bench_command->parsed()) return bench(bench_options);
+  return kUsageError;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "spindrift: unexpected: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,32 @@
+#include "water_server.h"
+
+namespace spindrift::app {
+
+core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions options) {
+  auto self = std::unique_ptr<WaterServer>(new WaterServer);
+  auto simulation = SimulationThread::start(options.device, std::move(options.rooms));
+  if (!simulation) return simulation.error();
+  self->simulation_ = *std::move(simulation);
+  self->gateway_ = std::make_unique<Gateway>(*self->simulation_, options.network.read_message_max_bytes,
+                                             options.network.messages_per_s);
+  auto network = net::Server::start(options.network, *self->gateway_);
+  if (!network) return network.error();
+  self->network_ = *std::move(network);
+  self->gateway_->attach(self->network_->hub());
+  self->encoder_ = std::make_unique<EncoderThread>(self->network_->hub());
+  self->simulation_->run(self->network_->hub(), *self->encoder_);
+  self->port_ = self->network_->port();
+  return self;
+}
+
+WaterServer::~WaterServer() {
+  stop();
+}
+
+void WaterServer::stop() {
+  if (network_) network_->stop();
+  if (simulation_) simulation_->stop();
+  if (encoder_) encoder_->stop();
+}
+
+}  // namespace spindrift::app

@@ -1,0 +1,52 @@
+// A whole server in one object: simulation, encoder, network, in the order they start and the reverse they stop.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/device.h>
+#include <spindrift/net/server.h>
+
+#include "encoder_thread.h"
+#include "gateway.h"
+#include "simulation_thread.h"
+
+namespace spindrift::app {
+
+struct WaterServerOptions {
+  gpu::DeviceChoice device;
+  net::ServerOptions network;
+  std::vector<RoomSetup> rooms;  ///< at least one; the first is the default room
+};
+
+class WaterServer {
+ public:
+  /// Errors: the device's, the rooms', the port's.
+  static core::Result<std::unique_ptr<WaterServer>> start(WaterServerOptions options);
+  ~WaterServer();
+  WaterServer(const WaterServer&) = delete;
+  WaterServer& operator=(const WaterServer&) = delete;
+
+  /// Sessions are closed with 1001, then the simulation ends. Idempotent.
+  void stop();
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] const std::string& deviceLine() const { return simulation_->deviceLine(); }
+  [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
+  [[nodiscard]] const EncoderThread& encoder() const { return *encoder_; }
+  /// One line a room; filled by stop().
+  [[nodiscard]] const std::vector<std::string>& summary() const { return simulation_->summary(); }
+
+ private:
+  WaterServer() = default;
+
+  std::unique_ptr<SimulationThread> simulation_;
+  std::unique_ptr<Gateway> gateway_;
+  std::unique_ptr<net::Server> network_;
+  std::unique_ptr<EncoderThread> encoder_;
+  std::uint16_t port_ = 0;
+};
+
+}  // namespace spindrift::app

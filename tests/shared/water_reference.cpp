@@ -1,0 +1,209 @@
+#include "water_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spindrift::testing {
+namespace {
+
+using std::numbers::pi;
+
+double poly6(double r, double H) {
+  return r < H ? 315 / (64 * pi * std::pow(H, 9)) * std::pow(H * H - r * r, 3) : 0;
+}
+double spikyGradient(double r, double H) {
+  return r < H ? -45 / (pi * std::pow(H, 6)) * (H - r) * (H - r) : 0;
+}
+double viscosityLaplacian(double r, double H) {
+  return r < H ? 45 / (pi * std::pow(H, 6)) * (H - r) : 0;
+}
+double cubic(double r, double H) {
+  const double q = r / H;
+  if (q >= 1) return 0;
+  return 8 / (pi * H * H * H) * (q <= 0.5 ? 6 * q * q * (q - 1) + 1 : 2 * std::pow(1 - q, 3));
+}
+double cubicGradient(double r, double H) {
+  const double q = r / H;
+  if (q >= 1) return 0;
+  return 8 / (pi * H * H * H) * (q <= 0.5 ? 18 * q * q - 12 * q : -6 * (1 - q) * (1 - q)) / H;
+}
+
+double length(const Vec3& a) {
+  return std::hypot(a[0], a[1], a[2]);
+}
+
+/// x_i - x_j, the shortest way across periodic sides.
+Vec3 between(const core::Scene& scene, const sim::Derived& d, const Vec3& a, const Vec3& b) {
+  Vec3 r = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  for (const int axis : {0, 2}) {
+    const bool periodic =
+        (axis == 0 ? scene.particles->boundary_x : scene.particles->boundary_z) == core::Boundary::kPeriodic;
+    const double side = d.particles->max_m[axis] - d.particles->min_m[axis];
+    if (periodic) r[axis] -= side * std::round(r[axis] / side);
+  }
+  return r;
+}
+
+int wrap(int i, int n, bool periodic) {
+  return periodic ? (i % n + n) % n : std::clamp(i, 0, n - 1);
+}
+
+struct Floor {
+  const core::Scene& scene;
+  const sim::Derived& d;
+  const ReferenceSurface& s;
+
+  bool flat() const { return s.eta_m.empty(); }
+  int n() const { return static_cast<int>(d.wave->resolution_count); }
+  bool periodic() const { return scene.wave->boundary == core::Boundary::kPeriodic; }
+  std::size_t at(int x, int z) const {
+    return static_cast<std::size_t>(wrap(x, n(), periodic()) + n() * wrap(z, n(), periodic()));
+  }
+
+  /// Nearest cell, carried along its gradient.
+  double height(double x, double z) const {
+    if (flat()) return -d.particles->band_m;
+    const double u = (x + d.wave->side_m / 2) / d.wave->cell_m;
+    const double w = (z + d.wave->side_m / 2) / d.wave->cell_m;
+    const std::size_t i = at(static_cast<int>(std::floor(u)), static_cast<int>(std::floor(w)));
+    return s.eta_m[i] + s.slope_x[i] * (u - std::floor(u) - 0.5) * d.wave->cell_m +
+           s.slope_z[i] * (w - std::floor(w) - 0.5) * d.wave->cell_m - d.particles->band_m;
+  }
+
+  double bilinear(const std::vector<double>& field, double x, double z) const {
+    const double u = (x + d.wave->side_m / 2) / d.wave->cell_m - 0.5;
+    const double w = (z + d.wave->side_m / 2) / d.wave->cell_m - 0.5;
+    const int i = static_cast<int>(std::floor(u));
+    const int k = static_cast<int>(std::floor(w));
+    const double a = u - i;
+    const double b = w - k;
+    return (1 - b) * ((1 - a) * field[at(i, k)] + a * field[at(i + 1, k)]) +
+           b * ((1 - a) * field[at(i, k + 1)] + a * field[at(i + 1, k + 1)]);
+  }
+
+  Vec3 velocity(double x, double z) const {
+    if (flat()) return {0, 0, 0};
+    return {bilinear(s.flow_x_mps, x, z), bilinear(s.rate_mps, x, z), bilinear(s.flow_z_mps, x, z)};
+  }
+
+  /// Vectors from each virtual particle to the particle; none for one out of reach.
+  std::vector<Vec3> lattice(const Vec3& x) const {
+    std::vector<Vec3> out;
+    if (x[1] - height(x[0], x[2]) >= d.particles->support_radius_m) return out;
+    const int points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : 5;
+    const double spacing = d.particles->spacing_m;
+    for (int k = -(points / 2); k <= points / 2; ++k) {
+      for (int i = -(points / 2); i <= points / 2; ++i)
+        out.push_back({-i * spacing, x[1] - height(x[0] + i * spacing, x[2] + k * spacing), -k * spacing});
+    }
+    return out;
+  }
+};
+
+double pressureTerm(const core::Scene& scene, double rho) {
+  const double p =
+      scene.particles->sound_speed_mps * scene.particles->sound_speed_mps * (rho - scene.particles->rest_density_kgpm3);
+  return std::max(p, 0.0) / (rho * rho);
+}
+
+}  // namespace
+
+ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& d, const std::vector<float>& eta,
+                             const std::vector<float>& eta_previous) {
+  const int n = static_cast<int>(d.wave->resolution_count);
+  const bool periodic = scene.wave->boundary == core::Boundary::kPeriodic;
+  const auto at = [&](int x, int z) {
+    return static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic));
+  };
+  ReferenceSurface s;
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const std::size_t i = at(x, z);
+      s.eta_m.push_back(eta[i]);
+      s.rate_mps.push_back((static_cast<double>(eta[i]) - eta_previous[i]) / d.wave->dt_s);
+      s.slope_x.push_back((static_cast<double>(eta[at(x + 1, z)]) - eta[at(x - 1, z)]) / (2 * d.wave->cell_m));
+      s.slope_z.push_back((static_cast<double>(eta[at(x, z + 1)]) - eta[at(x, z - 1)]) / (2 * d.wave->cell_m));
+      s.flow_x_mps.push_back(-d.dt_s * scene.gravity_mps2 * s.slope_x.back());
+      s.flow_z_mps.push_back(-d.dt_s * scene.gravity_mps2 * s.slope_z.back());
+    }
+  }
+  return s;
+}
+
+std::vector<double> referenceDensity(const core::Scene& scene, const sim::Derived& d, const ReferenceSurface& surface,
+                                     const std::vector<Vec3>& x) {
+  const double H = d.particles->support_radius_m;
+  const Floor floor{scene, d, surface};
+  std::vector<double> rho(x.size(), 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (const Vec3& other : x) rho[i] += d.particles->mass_kg * poly6(length(between(scene, d, x[i], other)), H);
+    for (const Vec3& r : floor.lattice(x[i])) rho[i] += d.particles->virtual_mass_kg * cubic(length(r), H);
+  }
+  return rho;
+}
+
+std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Derived& d,
+                                        const ReferenceSurface& surface, const std::vector<Vec3>& x,
+                                        const std::vector<Vec3>& v, const std::vector<double>& rho) {
+  const double H = d.particles->support_radius_m;
+  const double m = d.particles->mass_kg;
+  const double mu = scene.particles->viscosity_pas;
+  const double rho_0 = scene.particles->rest_density_kgpm3;
+  const Floor floor{scene, d, surface};
+  std::vector<Vec3> out(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Vec3 a = {0, -scene.gravity_mps2, 0};
+    const double own = pressureTerm(scene, rho[i]);
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      if (j == i) continue;
+      const Vec3 r = between(scene, d, x[i], x[j]);
+      const double distance = length(r);
+      if (distance >= H) continue;
+      const double push = -m * (own + pressureTerm(scene, rho[j])) * spikyGradient(distance, H) / distance;
+      const double drag = mu / rho[i] * m / rho[j] * viscosityLaplacian(distance, H);
+      for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (v[j][axis] - v[i][axis]);
+    }
+    const Vec3 floor_velocity = floor.velocity(x[i][0], x[i][2]);
+    for (const Vec3& r : floor.lattice(x[i])) {
+      const double distance = length(r);
+      const double push = -d.particles->virtual_mass_kg * own * (1 + rho[i] * rho[i] / (rho_0 * rho_0)) *
+                          cubicGradient(distance, H) / distance;
+      const double drag = mu / rho[i] * d.particles->virtual_mass_kg / rho_0 * viscosityLaplacian(distance, H);
+      for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (floor_velocity[axis] - v[i][axis]);
+    }
+    if (scene.coupling) {
+      const double above = std::max(x[i][1] - (floor.height(x[i][0], x[i][2]) + d.particles->band_m), 0.0);
+      a[1] -= scene.coupling->downforce_per_m_s2 * above * above;
+    }
+    out[i] = a;
+  }
+  return out;
+}
+
+std::vector<double> referenceWaveStep(const core::Scene& scene, const sim::Derived& d, const std::vector<double>& eta,
+                                      const std::vector<double>& eta_previous) {
+  const int n = static_cast<int>(d.wave->resolution_count);
+  const bool periodic = scene.wave->boundary == core::Boundary::kPeriodic;
+  const auto at = [&](int x, int z) {
+    return eta[static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic))];
+  };
+  const double s2 = std::pow(d.wave->speed_mps * d.wave->dt_s / d.wave->cell_m, 2);
+  const double damping = 0.5 * scene.wave->damping_per_s * d.wave->dt_s;
+  std::vector<double> next;
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const double centre = at(x, z);
+      const double sides = at(x - 1, z) + at(x + 1, z) + at(x, z - 1) + at(x, z + 1);
+      const double corners = at(x - 1, z - 1) + at(x + 1, z - 1) + at(x - 1, z + 1) + at(x + 1, z + 1);
+      const double laplacian = scene.wave->stencil == core::Stencil::kNinePoint
+                                   ? (4 * sides + corners - 20 * centre) / 6
+                                   : sides - 4 * centre;
+      next.push_back((2 * centre - (1 - damping) * eta_previous[static_cast<std::size_t>(x + n * z)] + s2 * laplacian) /
+                     (1 + damping));
+    }
+  }
+  return next;
+}
+
+}  // namespace spindrift::testing

@@ -1,0 +1,36 @@
+// The double-precision oracle of the solver: the same equations, every pair, no grid, no cleverness.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <spindrift/core/scene.h>
+#include <spindrift/sim/derive.h>
+
+namespace spindrift::testing {
+
+using Vec3 = std::array<double, 3>;
+
+/// The wave's surface as the coupling samples it; n x n, x fastest. Empty = the flat floor.
+struct ReferenceSurface {
+  std::vector<double> eta_m, rate_mps, slope_x, slope_z, flow_x_mps, flow_z_mps;
+};
+
+/// Slopes, vertical speed and the flow after one substep from rest, from two elevation levels.
+ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& derived, const std::vector<float>& eta,
+                             const std::vector<float>& eta_previous);
+
+/// Densities [kg/m^3] of particles at `x`.
+std::vector<double> referenceDensity(const core::Scene& scene, const sim::Derived& derived,
+                                     const ReferenceSurface& surface, const std::vector<Vec3>& x);
+
+/// Accelerations [m/s^2] of particles at `x` with velocities `v` and densities `rho`.
+std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Derived& derived,
+                                        const ReferenceSurface& surface, const std::vector<Vec3>& x,
+                                        const std::vector<Vec3>& v, const std::vector<double>& rho);
+
+/// One leapfrog step of the damped wave equation.
+std::vector<double> referenceWaveStep(const core::Scene& scene, const sim::Derived& derived,
+                                      const std::vector<double>& eta, const std::vector<double>& eta_previous);
+
+}  // namespace spindrift::testing

@@ -1,0 +1,60 @@
+#include "effects.h"
+
+#include <gtest/gtest.h>
+
+#include "sim_fixture.h"
+
+namespace spindrift::sim {
+namespace {
+
+WaveLayout layout() {
+  const auto d = derive(smallScene());
+  return *d->wave;
+}
+
+TEST(Pulse, RisesSmoothlyFromZeroToOne) {
+  EXPECT_EQ(pulse(-1), 0);
+  EXPECT_EQ(pulse(0), 0);
+  EXPECT_EQ(pulse(1), 1);
+  EXPECT_EQ(pulse(5), 1);
+  for (double t = 0; t < 1; t += 0.01) EXPECT_LE(pulse(t), pulse(t + 0.01));
+  EXPECT_LT(pulse(1e-3), 1e-5) << "no jump at the start";
+}
+
+TEST(Effects, SharesOfAPulseSumToItsAmplitude) {
+  const WaveLayout wave = layout();
+  for (const double duration_s : {0.02, 0.2, 0.35}) {
+    Effects effects;
+    ASSERT_TRUE(effects.start(core::Splash{0, 0, 1, 0.5, duration_s}, 1.0));
+    double sum = 0;
+    int steps = 0;
+    for (double t = 1.0; !effects.idle() && steps < 1000; t += wave.dt_s, ++steps) {
+      const auto u = effects.advance(t, wave);
+      for (std::uint32_t k = 0; k < u.event_count; ++k) sum += u.events[k].gain_m;
+    }
+    EXPECT_NEAR(sum, -0.5, 1e-6);
+    EXPECT_TRUE(effects.idle());
+  }
+}
+
+TEST(Effects, RefuseMoreThanTheirBound) {
+  Effects effects;
+  for (int k = 0; k < MAX_EVENTS; ++k) ASSERT_TRUE(effects.start(core::Splash{}, 0));
+  const auto refused = effects.start(core::Splash{}, 0);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::ErrorCode::kUnavailable);
+}
+
+TEST(Effects, ACrestStartsAtItsSideAndTravelsInwards) {
+  const WaveLayout wave = layout();
+  Effects effects;
+  ASSERT_TRUE(effects.start(core::BreakingWave{core::Side::kPlusX, 0.5, 1.0, 1.0}, 0.0));
+  const auto first = effects.advance(0.0, wave).events[0];
+  EXPECT_EQ(first.x_m, -1.0f) << "from +x it travels towards -x";
+  EXPECT_LT(first.offset_m, 0.0f);
+  const auto later = effects.advance(0.5, wave).events[0];
+  EXPECT_NEAR(later.offset_m - first.offset_m, 0.5 * wave.speed_mps, 1e-5);
+}
+
+}  // namespace
+}  // namespace spindrift::sim

@@ -1,0 +1,181 @@
+// The wave equation on the device: against the reference step, and against what is known in closed form.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "sim_fixture.h"
+#include "water_reference.h"
+
+namespace spindrift::sim {
+namespace {
+
+using std::numbers::pi;
+
+core::Scene waveScene(std::uint32_t n = 48) {
+  core::Scene scene;
+  scene.name = "wave";
+  scene.wave.emplace();
+  scene.wave->resolution_count = n;
+  scene.wave->side_m = 12.0;
+  scene.wave->damping_per_s = 0.0;
+  return scene;
+}
+
+class WaveOnDevice : public OnDevice {
+ protected:
+  void set(WaterSim& sim, auto&& now, auto&& before) {
+    StateCopy state = sim.copyState();
+    const auto n = sim.derived().wave->resolution_count;
+    const double dx = sim.derived().wave->cell_m;
+    for (std::uint32_t z = 0; z < n; ++z) {
+      for (std::uint32_t x = 0; x < n; ++x) {
+        state.elevation_m[x + n * z] = static_cast<float>(now((x + 0.5) * dx, (z + 0.5) * dx));
+        state.elevation_previous_m[x + n * z] = static_cast<float>(before((x + 0.5) * dx, (z + 0.5) * dx));
+      }
+    }
+    sim.setState(state);
+  }
+};
+
+TEST_F(WaveOnDevice, AgreesWithTheReferenceStepForEachStencilAndBoundary) {
+  for (const auto stencil : {core::Stencil::kFivePoint, core::Stencil::kNinePoint}) {
+    for (const auto boundary : {core::Boundary::kPeriodic, core::Boundary::kWall}) {
+      core::Scene scene = waveScene();
+      scene.wave->stencil = stencil;
+      scene.wave->boundary = boundary;
+      scene.wave->damping_per_s = 0.7;
+      WaterSim& sim = make(scene);
+      ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
+      const auto bump = [](double x, double z) { return 0.3 * std::sin(1.3 * x) * std::cos(0.7 * z) + 0.1 * x; };
+      set(sim, bump, [&](double x, double z) { return 0.98 * bump(x - 0.02, z); });
+      const StateCopy before = sim.copyState();
+      sim.step();
+      const StateCopy after = sim.copyState();
+      const std::vector<double> now(before.elevation_m.begin(), before.elevation_m.end());
+      const std::vector<double> previous(before.elevation_previous_m.begin(), before.elevation_previous_m.end());
+      const auto expected = testing::referenceWaveStep(scene, sim.derived(), now, previous);
+      double worst = 0;
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        worst = std::max(worst, std::abs(after.elevation_m[i] - expected[i]));
+      EXPECT_LE(worst, 1e-6 * 1.5);
+      EXPECT_EQ(after.elevation_previous_m, before.elevation_m);
+    }
+  }
+}
+
+TEST_F(WaveOnDevice, StandingModeFollowsTheDiscreteDispersionRelation) {
+  core::Scene scene = waveScene();
+  scene.wave->boundary = core::Boundary::kWall;
+  WaterSim& sim = make(scene);
+  const WaveLayout w = *sim.derived().wave;
+  const double kx = 3 * pi / w.side_m;
+  const double kz = 2 * pi / w.side_m;
+  const double s = std::sin(kx * w.cell_m / 2);
+  const double t = std::sin(kz * w.cell_m / 2);
+  const double omega = 2 / w.dt_s * std::asin(w.courant * std::sqrt(s * s + t * t));
+  const auto mode = [&](double time_s) {
+    return [=](double x, double z) { return 0.1 * std::cos(omega * time_s) * std::cos(kx * x) * std::cos(kz * z); };
+  };
+  set(sim, mode(0), mode(-w.dt_s));
+  const int steps = 2000;
+  for (int k = 0; k < steps; ++k) sim.step();
+  const StateCopy after = sim.copyState();
+  double worst = 0;
+  for (std::uint32_t z = 0; z < w.resolution_count; ++z) {
+    for (std::uint32_t x = 0; x < w.resolution_count; ++x) {
+      const double expected = mode(steps * w.dt_s)((x + 0.5) * w.cell_m, (z + 0.5) * w.cell_m);
+      worst = std::max(worst, std::abs(after.elevation_m[x + w.resolution_count * z] - expected));
+    }
+  }
+  EXPECT_LE(worst, 0.1 * 2e-3) << "over " << steps << " steps, phase " << omega * steps * w.dt_s << " rad";
+}
+
+TEST_F(WaveOnDevice, UndampedEnergyNeitherGrowsNorFades) {
+  core::Scene scene = waveScene(32);
+  scene.wave->boundary = core::Boundary::kWall;
+  WaterSim& sim = make(scene);
+  const auto bump = [](double x, double z) { return 0.4 * std::exp(-((x - 5) * (x - 5) + (z - 7) * (z - 7))); };
+  set(sim, bump, bump);
+  double low = 1e300;
+  double high = 0;
+  for (int k = 0; k < 6000; ++k) {
+    sim.step();
+    if (k < 10) continue;
+    low = std::min(low, sim.health().wave_energy_j);
+    high = std::max(high, sim.health().wave_energy_j);
+  }
+  EXPECT_GT(low, 0);
+  EXPECT_LE((high - low) / high, 1e-3);
+}
+
+TEST_F(WaveOnDevice, DampedModeDecaysAtHalfOfKappa) {
+  core::Scene scene = waveScene();
+  scene.wave->damping_per_s = 0.5;
+  WaterSim& sim = make(scene);
+  const double k = 2 * pi / scene.wave->side_m;
+  const auto mode = [&](double x, double) { return 0.1 * std::cos(k * x); };
+  set(sim, mode, mode);
+  // Amplitude envelope from the energy, which decays at kappa.
+  for (int i = 0; i < 60; ++i) sim.step();
+  const double early = sim.health().wave_energy_j;
+  const double early_s = static_cast<double>(sim.health().tick) / scene.tick_rate_hz;
+  for (int i = 0; i < 480; ++i) sim.step();
+  const double late = sim.health().wave_energy_j;
+  const double late_s = static_cast<double>(sim.health().tick) / scene.tick_rate_hz;
+  // The mode rocks a whole number of times to within its own ripple; 5 % covers that ripple over 8 s.
+  EXPECT_NEAR(std::log(early / late) / (late_s - early_s), 0.5, 0.025);
+}
+
+TEST_F(WaveOnDevice, AConstantLevelIsAFixedPointToTheLastBit) {
+  WaterSim& sim = make(waveScene());
+  const auto level = [](double, double) { return 0.3; };
+  set(sim, level, level);
+  const StateCopy before = sim.copyState();
+  for (int i = 0; i < 50; ++i) sim.step();
+  EXPECT_EQ(sim.copyState().elevation_m, before.elevation_m);
+}
+
+TEST_F(WaveOnDevice, ASplashPushesDownByItsDepthThenRingsOutAndKeepsTheVolume) {
+  core::Scene scene = waveScene(96);
+  WaterSim& sim = make(scene);
+  ASSERT_TRUE(sim.start(core::Splash{1.0, -2.0, 1.5, 0.4, 0.05}));
+  double lowest = 0;
+  for (int i = 0; i < 60; ++i) {
+    sim.step();
+    const auto eta = sim.copyState().elevation_m;
+    lowest = std::min(lowest, static_cast<double>(*std::ranges::min_element(eta)));
+  }
+  EXPECT_LT(lowest, -0.3);
+  EXPECT_GT(lowest, -0.45);
+  const auto eta = sim.copyState().elevation_m;
+  EXPECT_GT(*std::ranges::max_element(eta), 0.02) << "rings";
+  const double volume = std::accumulate(eta.begin(), eta.end(), 0.0) * std::pow(sim.derived().wave->cell_m, 2);
+  EXPECT_NEAR(volume, 0.0, 1e-3);
+}
+
+TEST_F(WaveOnDevice, ACrestTravelsOneWayAtTheWaveSpeed) {
+  core::Scene scene = waveScene(96);
+  scene.wave->boundary = core::Boundary::kPeriodic;
+  WaterSim& sim = make(scene);
+  ASSERT_TRUE(sim.start(core::BreakingWave{core::Side::kMinusX, 0.3, 1.5, 0.2}));
+  const auto crestAt = [&] {
+    const auto eta = sim.copyState().elevation_m;
+    const std::uint32_t n = sim.derived().wave->resolution_count;
+    const auto row = eta.begin() + n * (n / 2);
+    return (static_cast<double>(std::max_element(row, row + n) - row) + 0.5) * sim.derived().wave->cell_m;
+  };
+  for (int i = 0; i < 30; ++i) sim.step();
+  const double first = crestAt();
+  for (int i = 0; i < 60; ++i) sim.step();
+  const double second = crestAt();
+  EXPECT_NEAR(second - first, sim.derived().wave->speed_mps * 60 / scene.tick_rate_hz, 2 * sim.derived().wave->cell_m);
+  const auto eta = sim.copyState().elevation_m;
+  EXPECT_NEAR(*std::ranges::max_element(eta), 0.3, 0.05) << "its amplitude above the lowered mean";
+}
+
+}  // namespace
+}  // namespace spindrift::sim
