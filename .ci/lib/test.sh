@@ -67,6 +67,8 @@ TEXT
     esac
   done
 
+  # Whatever stops us from here on, the last line is a total, and it says that something failed.
+  trap 'echo "0 passed, 1 failed, 0 skipped"' EXIT
   prepare_tests "${parts[@]}"
   for part in "${parts[@]}"; do
     case "$part" in
@@ -77,6 +79,7 @@ TEXT
       *) test_native "$part" "$part" ;;
     esac
   done
+  trap - EXIT
   python3 tests/tools/summarise.py "${reports[@]}"
 }
 

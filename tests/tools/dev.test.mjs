@@ -112,6 +112,13 @@ describe("./dev", () => {
     assert.match(failed.stderr, /error: something does not compile\nthe whole log: build\/logs\/build-release\.log\ndev: step 'build-release' failed/);
   });
 
+  it("ends ./dev test with a total that is no success even when nothing could be built", () => {
+    shop.breakCompiler();
+    const failed = shop.dev(["test", "unit"]);
+    assert.equal(failed.code, 1);
+    assert.equal(failed.stdout, "0 passed, 1 failed, 0 skipped\n");
+  });
+
   it("cleans what it built and keeps what it fetched unless told otherwise", () => {
     shop.useNode("v18.20.4");
     shop.dev(["build"]);
