@@ -6,8 +6,8 @@ export type ViewName = "splash" | "wave";
 
 /** In sides of the water; the whole square fits a landscape screen. */
 const kViews: Record<ViewName, { position: Vector3; target: Vector3 }> = {
-  splash: { position: new Vector3(0.46, 0.46, 1.22), target: new Vector3(0, 0.02, 0) },
-  wave: { position: new Vector3(0.20, 0.115, 1.16), target: new Vector3(0, 0.045, 0) },
+  splash: { position: new Vector3(0.43, 0.46, 1.22), target: new Vector3(0, -0.035, 0) },
+  wave: { position: new Vector3(0.20, 0.12, 1.30), target: new Vector3(0, 0.02, 0) },
 };
 const kTravelS = 0.9;
 /** Screens narrower than this have the camera further back. */
@@ -37,7 +37,7 @@ export class CameraViews {
   enter(sideM: number): void {
     this.sideM = sideM;
     this.controls.minDistance = 0.25 * sideM;
-    this.controls.maxDistance = 2.6 * sideM;
+    this.controls.maxDistance = 4 * sideM;
     this.jump("splash");
   }
 
@@ -78,7 +78,7 @@ export class CameraViews {
 
   private placed(name: ViewName): { positionM: Vector3; targetM: Vector3 } {
     const view = kViews[name];
-    const back = Math.min(Math.max(kFullAspect / this.camera.aspect, 1), 2);
+    const back = Math.min(Math.max(kFullAspect / this.camera.aspect, 1), 2.6);
     return {
       positionM: view.position.clone().multiplyScalar(this.sideM * back),
       targetM: view.target.clone().multiplyScalar(this.sideM),

@@ -24,7 +24,7 @@ void main() {
   vec2 outside = max(abs(at) - 0.5 * u_side_m, 0.0);
   float away_m = length(outside);
   vec3 light = kSunColor * 0.85 * u_sun_direction.y + vec3(0.34, 0.42, 0.52);
-  vec3 stone = vec3(0.40, 0.355, 0.30) * (0.92 + 0.16 * cellHash(floor(at / 2.0)));
+  vec3 stone = vec3(0.43, 0.39, 0.335) * (0.92 + 0.16 * cellHash(floor(at / 2.0)));
   stone *= 1.0 - 0.28 * joint(at, 2.0, 0.018);
   vec3 albedo = stone * mix(0.42, 1.0, smoothstep(-0.2, 0.22 * u_side_m, away_m));
   if (u_has_water && away_m <= 0.0) {

@@ -38,13 +38,14 @@ void main() {
   vec3 toward_eye = -world_ray;
   float dense = smoothstep(0.30, 0.92, v_tint_foam.x);
   vec3 water = mix(vec3(0.24, 0.74, 0.86), vec3(0.010, 0.16, 0.38), dense);
-  float foam = smoothstep(0.02, 0.75, v_tint_foam.y);
+  // Bubbles under water are dimmer than foam on it.
+  float foam = smoothstep(0.06, 0.85, v_tint_foam.y) * mix(0.5, 1.0, out_of_water);
   vec3 albedo = mix(water, vec3(0.93, 0.97, 1.0), foam);
 
   float sun = clamp(dot(normal, u_sun_direction) * 0.6 + 0.4, 0.0, 1.0);
   vec3 ambient = mix(vec3(0.16, 0.22, 0.28), vec3(0.52, 0.66, 0.84), normal.y * 0.5 + 0.5);
   float buried = clamp(-v_world_y_m / u_depth_m, 0.0, 1.0);
-  vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * mix(1.0, 0.6, buried);
+  vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * mix(1.0, 0.6, buried) * mix(0.72, 1.0, out_of_water);
 
   // Water in water does not shine.
   float gloss = (1.0 - 0.8 * foam) * out_of_water;

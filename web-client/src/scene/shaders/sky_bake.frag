@@ -33,7 +33,7 @@ void main() {
   vec3 horizon = vec3(0.58, 0.72, 0.84);
   vec3 sky = mix(middle, zenith, smoothstep(0.12, 0.75, up));
   sky = mix(horizon, sky, smoothstep(-0.02, 0.30, up));
-  sky += vec3(1.0, 0.75, 0.45) * (0.16 * pow(toward_sun, 5.0) + 0.5 * pow(toward_sun, 90.0));
+  sky += vec3(1.0, 0.75, 0.45) * (0.07 * pow(toward_sun, 5.0) + 0.28 * pow(toward_sun, 110.0));
   vec2 plane = direction.xz / (up + 0.16);
   float cover = cloud(plane * vec2(0.75, 1.05) + vec2(3.1, 1.7));
   cover = smoothstep(0.46, 0.80, cover) * smoothstep(0.02, 0.22, up);

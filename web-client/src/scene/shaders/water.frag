@@ -51,18 +51,22 @@ void main() {
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
 
-  // What lies behind, shifted as by refraction; where the shift would catch something in front, look straight instead.
+  // What lies behind. Through the surface it is shifted as by refraction; where the shift would catch something in front, look straight instead.
+  vec2 shifted_uv = uv;
+#ifndef SKIRT
   vec3 bent = refract(ray, normal, 0.75);
   float straight_m = distance_m * (viewZ(texture(u_behind_depth, uv).r) / v_view_z - 1.0);
   float reach_m = clamp(min(straight_m, wayOut(v_world, ray)), 0.0, 0.8);
   vec3 shift = mat3(viewMatrix) * (bent - ray) * reach_m;
-  vec2 shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
+  shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
   if (texture(u_behind_depth, shifted_uv).r < gl_FragCoord.z) shifted_uv = uv;
+#endif
   vec3 behind = texture(u_behind, shifted_uv).rgb;
   float behind_m = distance_m * (viewZ(texture(u_behind_depth, shifted_uv).r) / v_view_z - 1.0);
   float path_m = clamp(behind_m, 0.0, wayOut(v_world, ray));
 
-  vec3 passed = exp(-kAbsorptionPerM * path_m);
+  // Light came down to what is seen before it came up to the eye.
+  vec3 passed = exp(-kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = mix(vec3(0.006, 0.070, 0.135), vec3(0.030, 0.27, 0.34), lifted) * 1.2;
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
@@ -82,7 +86,7 @@ void main() {
   mirrored.y = abs(mirrored.y);
   vec3 water = mix(under, skyLight(mirrored), fresnel);
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 900.0) * 16.0 + pow(at_sun, 120.0) * 0.5) * (0.15 + fresnel);
+  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 2200.0) * 11.0 + pow(at_sun, 220.0) * 0.5) * (0.1 + fresnel);
 #endif
   color = vec4(toDisplay(water), 1.0);
 }
