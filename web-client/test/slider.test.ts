@@ -1,8 +1,11 @@
+import { getOption } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
 import { parse } from "../src/codec/parse";
 import { kDebounceMs, SliderModel } from "../src/ui/slider_model";
 import { clampTo, effectLimits } from "../src/ui/effect_limits";
+import { parameter, type ParameterOptions } from "../src/gen/spindrift/v1/options_pb";
+import { BreakingWaveSchema, SplashSchema } from "../src/gen/spindrift/v1/scene_pb";
 import { FakeTime } from "./fakes";
 import { encode, greeting } from "./wire";
 
@@ -97,10 +100,16 @@ describe("the effect sliders' ranges", () => {
 
   it("come from the options in the proto, narrowed to the water", () => {
     const limits = enter({ wave: { resolutionCount: 256, sideM: 16, depthM: 1.5 } })!;
-    expect(limits.splashRadiusM).toEqual({ label: "Splash radius", unit: "m", min: 0.05, max: 8, step: 0.05, default: 1.2 });
-    expect(limits.splashDepthM).toMatchObject({ min: 0.01, max: 1.35, default: 0.9 });
-    expect(limits.waveAmplitudeM).toMatchObject({ max: 1.35, default: 0.6 });
-    expect(limits.waveLengthM).toMatchObject({ max: 16, default: 2 });
+    const optionsOf = ({ label, unit, min, step, default: fallback }: ParameterOptions) => ({ label, unit, min, step, default: fallback });
+    const { field: splash } = SplashSchema;
+    const { field: wave } = BreakingWaveSchema;
+    expect(limits).toEqual({
+      splashRadiusM: { ...optionsOf(getOption(splash.radiusM, parameter)), max: 8 },
+      splashDepthM: { ...optionsOf(getOption(splash.depthM, parameter)), max: 1.35 },
+      waveAmplitudeM: { ...optionsOf(getOption(wave.amplitudeM, parameter)), max: 1.35 },
+      waveLengthM: { ...optionsOf(getOption(wave.lengthM, parameter)), max: 16 },
+    });
+    expect(limits.splashRadiusM.label).toBe("Splash radius");
   });
 
   it("keep the default inside shallow and small water, and the proto's bound in wide water", () => {
