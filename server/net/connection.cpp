@@ -177,6 +177,10 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
 
 std::unique_ptr<Reply> Connection::refuseUpgrade(const UpgradeRequest& request, std::string& room,
                                                  bool& echo_subprotocol) {
+  // RFC 6455 section 4.1: the client waits for the answer. The bytes would get lost between the two protocols.
+  if (buffer_.size() > 0) {
+    return std::make_unique<Reply>(textReply(400, "Nothing may follow an upgrade request before it is answered."));
+  }
   const auto target = parseTarget(std::string_view(request.target().data(), request.target().size()));
   if (!target) return std::make_unique<Reply>(textReply(400, "The request's path is not a plain absolute path."));
   auto named = roomOfPath(target->path);

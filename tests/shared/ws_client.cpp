@@ -225,6 +225,16 @@ std::string RawTcp::receive(std::size_t bytes_count, std::chrono::milliseconds t
   return out;
 }
 
+std::string RawTcp::receiveUntil(std::string_view mark, std::chrono::milliseconds timeout) {
+  std::string out;
+  while (!out.ends_with(mark)) {
+    const std::string byte = receive(1, timeout);
+    if (byte.empty()) break;
+    out += byte;
+  }
+  return out;
+}
+
 std::string RawTcp::receiveAll(std::chrono::milliseconds timeout) {
   return receive(static_cast<std::size_t>(-1), timeout);
 }

@@ -70,6 +70,8 @@ class RawTcp {
   bool send(std::string_view bytes);
   /// Reads until `bytes_count` are there, the peer hangs up (then closed()), or `timeout`.
   std::string receive(std::size_t bytes_count, std::chrono::milliseconds timeout = kPatience);
+  /// Reads up to and with `mark`; less if the peer hangs up or nothing comes for `timeout`.
+  std::string receiveUntil(std::string_view mark, std::chrono::milliseconds timeout = kPatience);
   /// Everything until the peer hangs up; check closed().
   std::string receiveAll(std::chrono::milliseconds timeout = kPatience);
   bool closed() const { return closed_; }

@@ -19,6 +19,15 @@ const std::string kUpgrade =
     "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
     "Sec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3RzIQ==\r\n\r\n";
 
+/// A bare connection after the upgrade and the greeting.
+RawTcp upgraded(const TestServer& served) {
+  RawTcp raw;
+  EXPECT_TRUE(raw.connect("127.0.0.1", served.server->port()));
+  EXPECT_TRUE(raw.send(kUpgrade));
+  EXPECT_TRUE(raw.receiveUntil("hello ").starts_with("HTTP/1.1 101 "));
+  return raw;
+}
+
 TEST(Session, GreetsAndEchoes) {
   const TestServer served;
   WsClient client;
@@ -190,32 +199,48 @@ TEST(Session, ClosesWhenThePeerStaysSilent) {
 
 TEST(Session, CutsAPeerThatSaysGoodbyeAndHoldsOn) {
   TestServer served({.close_timeout = std::chrono::milliseconds(200)});
-  RawTcp raw;
-  ASSERT_TRUE(raw.connect("127.0.0.1", served.server->port()));
-  ASSERT_TRUE(raw.send(kUpgrade));
-  ASSERT_TRUE(eventually([&] { return served.application.opened().size() == 1; }));
+  RawTcp raw = upgraded(served);
   ASSERT_TRUE(raw.send(std::string("\x88\x82\0\0\0\0\x03\xe8", 8)));  // masked close frame, code 1000
   EXPECT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
 }
 
 TEST(Session, EndsOnBrokenFrames) {
-  TestServer served;
+  // The peer holds its end open, so that the server has to give up waiting for it as well.
+  TestServer served({.idle_timeout = std::chrono::milliseconds(2000)});
+  const std::string protocol_error("\x88\x02\x03\xea", 4);  // a close frame with code 1002
   const std::vector<std::string> broken = {
-      std::string("\x82\x01x", 3),                                          // not masked
-      std::string("\x83\x80\0\0\0\0", 6),                                   // reserved opcode
-      std::string("\xf2\x80\0\0\0\0", 6),                                   // reserved bits
-      std::string("\x80\x80\0\0\0\0", 6),                                   // continues nothing
-      std::string("\x82\xff\xff\xff\xff\xff\xff\xff\xff\xff\0\0\0\0", 14),  // 2^64 - 1 bytes
+      std::string("\x82\x01x", 3),         // not masked
+      std::string("\x83\x80\0\0\0\0", 6),  // reserved opcode
+      std::string("\xf2\x80\0\0\0\0", 6),  // reserved bits
+      std::string("\x80\x80\0\0\0\0", 6),  // continues nothing
   };
+  std::vector<RawTcp> peers;
+  for (const std::string& frame : broken) {
+    peers.push_back(upgraded(served));
+    ASSERT_TRUE(peers.back().send(frame));
+  }
   for (std::size_t k = 0; k < broken.size(); ++k) {
-    RawTcp raw;
-    ASSERT_TRUE(raw.connect("127.0.0.1", served.server->port()));
-    ASSERT_TRUE(raw.send(kUpgrade + broken[k]));
-    (void)raw.receiveAll();
-    EXPECT_TRUE(raw.closed()) << "case " << k;
+    EXPECT_EQ(peers[k].receiveAll(), protocol_error) << "case " << k;
+    EXPECT_TRUE(peers[k].closed()) << "case " << k;
   }
   EXPECT_TRUE(eventually([&] { return served.application.closed().size() == broken.size(); }));
   EXPECT_TRUE(served.serves());
+}
+
+TEST(Session, RefusesAFrameThatClaimsToBeImmense) {
+  TestServer served;
+  RawTcp raw = upgraded(served);
+  ASSERT_TRUE(raw.send(std::string("\x82\xff\x7f\xff\xff\xff\xff\xff\xff\xff\0\0\0\0", 14)));  // 2^63 - 1 bytes
+  EXPECT_EQ(raw.receive(4), std::string("\x88\x02\x03\xf1", 4)) << "a close frame with code 1009";
+  raw.close();
+  ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
+  EXPECT_EQ(served.application.closed()[0].end.code, 1009);
+}
+
+TEST(Session, RefusesBytesBehindAnUpgradeThatWasNotAnswered) {
+  const TestServer served;
+  EXPECT_EQ(test::httpExchange(served.server->port(), kUpgrade + "\x82").status, 400U);
+  EXPECT_TRUE(served.application.opened().empty());
 }
 
 TEST(Session, SurvivesUpgradesThatBreakOff) {
@@ -225,10 +250,8 @@ TEST(Session, SurvivesUpgradesThatBreakOff) {
     ASSERT_TRUE(raw.connect("127.0.0.1", served.server->port()));
     ASSERT_TRUE(raw.send(kUpgrade.substr(0, length)));
   }
-  RawTcp half_frame;
-  ASSERT_TRUE(half_frame.connect("127.0.0.1", served.server->port()));
-  ASSERT_TRUE(half_frame.send(kUpgrade + std::string("\x82\x90\0\0", 4)));
-  ASSERT_TRUE(eventually([&] { return served.application.opened().size() == 1; }));
+  RawTcp half_frame = upgraded(served);
+  ASSERT_TRUE(half_frame.send(std::string("\x82\x90\0\0", 4)));
   half_frame.close();
   EXPECT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
   EXPECT_TRUE(served.serves());
@@ -239,11 +262,10 @@ TEST(Session, RandomFramesHurtNobodyElse) {
   WsClient other = served.client();
   std::mt19937 random(7);
   for (int k = 0; k < 50; ++k) {
-    RawTcp raw;
-    ASSERT_TRUE(raw.connect("127.0.0.1", served.server->port()));
+    RawTcp raw = upgraded(served);
     std::string noise(1 + random() % 300, '\0');
     for (char& byte : noise) byte = static_cast<char>(random());
-    (void)raw.send(kUpgrade + noise);
+    (void)raw.send(noise);
   }
   ASSERT_TRUE(other.sendBinary(bytes("echo unharmed")));
   EXPECT_EQ(text(other.receive()), "echo unharmed");
