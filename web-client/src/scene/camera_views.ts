@@ -78,7 +78,7 @@ export class CameraViews {
 
   private placed(name: ViewName): { positionM: Vector3; targetM: Vector3 } {
     const view = kViews[name];
-    const back = Math.min(Math.max(kFullAspect / this.camera.aspect, 1), 2.6);
+    const back = Math.min(Math.max(kFullAspect / this.camera.aspect, 1), 2.1);
     return {
       positionM: view.position.clone().multiplyScalar(this.sideM * back),
       targetM: view.target.clone().multiplyScalar(this.sideM),
