@@ -35,10 +35,7 @@ Overloaded(F...) -> Overloaded<F...>;
 }  // namespace
 
 Gateway::Gateway(const SimulationThread& rooms, std::size_t message_max_bytes, double messages_per_s)
-    : rooms_(rooms),
-      message_max_bytes_(message_max_bytes),
-      messages_per_s_(messages_per_s),
-      hub_(hub_promise_.get_future().share()) {}
+    : rooms_(rooms), message_max_bytes_(message_max_bytes), messages_per_s_(messages_per_s) {}
 
 core::Result<void> Gateway::acceptSession(const std::string& room) {
   if (rooms_.find(room)) return {};

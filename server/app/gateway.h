@@ -2,7 +2,6 @@
 // threads.
 #pragma once
 
-#include <future>
 #include <map>
 #include <mutex>
 #include <string>
@@ -18,9 +17,7 @@ class Gateway final : public net::Application {
   /// `rooms` outlives the gateway.
   Gateway(const SimulationThread& rooms, std::size_t message_max_bytes, double messages_per_s);
 
-  /// The server is up; sessions that came earlier wait for this.
-  void attach(net::Hub& hub) { hub_promise_.set_value(&hub); }
-
+  void serverStarts(net::Hub& hub) override { hub_ = &hub; }
   core::Result<void> acceptSession(const std::string& room) override;
   void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override;
@@ -33,14 +30,13 @@ class Gateway final : public net::Application {
     bool said_hello = false;
   };
 
-  net::Hub& hub() { return *hub_.get(); }
+  net::Hub& hub() { return *hub_; }
   void greet(net::SessionId session, const Room& room);
 
   const SimulationThread& rooms_;
   const std::size_t message_max_bytes_;
   const double messages_per_s_;
-  std::promise<net::Hub*> hub_promise_;
-  std::shared_future<net::Hub*> hub_;
+  net::Hub* hub_ = nullptr;  ///< set before any session exists
   std::mutex mutex_;
   std::map<net::SessionId, Session> sessions_;
 };

@@ -12,7 +12,6 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
   auto network = net::Server::start(options.network, *self->gateway_);
   if (!network) return network.error();
   self->network_ = *std::move(network);
-  self->gateway_->attach(self->network_->hub());
   self->encoder_ = std::make_unique<EncoderThread>(self->network_->hub());
   self->simulation_->run(self->network_->hub(), *self->encoder_);
   self->port_ = self->network_->port();

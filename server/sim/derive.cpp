@@ -27,9 +27,6 @@ constexpr double kNinePointCourant = 0.8660254;
 constexpr double kWaveSafety = 0.98;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
 constexpr std::uint32_t kMaxCellCount = 1u << 22;
-/// A floor this share of the spacing below the lowest layer's resting place (s/2) stops particles that the pressure of
-/// the floor did not; larger values lift still water, smaller ones let particles meet the virtual ones.
-constexpr double kFloorGapRatio = 0.1;
 
 Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
@@ -63,9 +60,10 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
 
   const int floor_points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : kFlatFloorLattice;
   out.neighbours_count = latticeNeighbours(s, H);
-  out.mass_kg = calibratedMass(s, H, p.rest_density_kgpm3);
-  out.virtual_mass_kg = calibratedVirtualMass(s, H, p.rest_density_kgpm3, out.mass_kg, floor_points);
-  out.layer_heights_m = restingLayers({.spacing_m = s,
+  out.mass_kg = calibratedMass(p.kernel_set, s, H, p.rest_density_kgpm3);
+  out.virtual_mass_kg = calibratedVirtualMass(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg, floor_points);
+  out.layer_heights_m = restingLayers({.kernel_set = p.kernel_set,
+                                       .spacing_m = s,
                                        .support_radius_m = H,
                                        .rest_density_kgpm3 = p.rest_density_kgpm3,
                                        .stiffness_m2ps2 = p.sound_speed_mps * p.sound_speed_mps,
@@ -177,8 +175,9 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.stiffness_m2ps2 = f(p.sound_speed_mps * p.sound_speed_mps);
     u.viscosity_pas = f(p.viscosity_pas);
     u.max_speed_mps = f(p.max_speed_mps);
-    u.poly6_norm = f(poly6Norm(H));
-    u.spiky_norm = f(spikyNorm(H));
+    u.density_norm = f(densityNorm(p.kernel_set, H));
+    u.slope_norm = f(slopeNorm(p.kernel_set, H));
+    u.viscosity_norm = f(viscosityNorm(H));
     u.cubic_norm = f(cubicNorm(H));
     u.wall_restitution = 0.0f;
     u.reentry_m = f(0.01 * l.spacing_m);

@@ -1,29 +1,44 @@
-// Sums over the resting lattice in double precision: the kernels' norms, and the masses that give it rest density.
+// Kernels and sums over the resting lattice in double precision: norms, the masses that give the lattice rest density,
+// and the heights at which its layers rest.
 #pragma once
 
 #include <vector>
+
+#include <spindrift/core/scene.h>
 
 namespace spindrift::sim {
 
 /// Virtual lattice under a flat floor, which has no scene parameter of its own.
 inline constexpr int kFlatFloorLattice = 5;
+/// The virtual lattice lies this share of the spacing below the floor: where the next layer would be.
+inline constexpr double kVirtualDepthRatio = 0.5;
+/// Pressure keeps particles about s/2 above the floor; this share of the spacing is the hard limit for what it did not
+/// stop. Larger values lift still water, smaller ones let particles come close to the virtual ones.
+inline constexpr double kFloorGapRatio = 0.1;
 
-double poly6Norm(double H);  ///< 315 / (64 pi H^9)
-double spikyNorm(double H);  ///< 45 / (pi H^6)
-double cubicNorm(double H);  ///< 8 / (pi H^3)
+/// Factors of the shapes in shaders/include/kernels.glsl, from the support radius H [m].
+double densityNorm(core::KernelSet set, double H);
+double slopeNorm(core::KernelSet set, double H);
+double viscosityNorm(double H);  ///< 45 / (pi H^6)
+double cubicNorm(double H);      ///< 8 / (pi H^3)
+
+/// A kernel set's W(r) [1/m^3] and -dW/dr [1/m^4].
+double densityKernel(core::KernelSet set, double r, double H);
+double pressureSlope(core::KernelSet set, double r, double H);
 
 /// Neighbours of a particle inside a cubic lattice of spacing s, within H, itself not counted.
 double latticeNeighbours(double s, double H);
 
-/// Mass with which the inside of a cubic lattice of spacing s has density rho_0 under poly6. [kg]
-double calibratedMass(double s, double H, double rho_0);
+/// Mass with which the inside of a cubic lattice of spacing s has density rho_0. [kg]
+double calibratedMass(core::KernelSet set, double s, double H, double rho_0);
 
-/// Mass of the virtual particles of a `points` x `points` floor lattice at spacing s, half a spacing under the lowest
-/// layer, that replaces what the layers missing below would have given. [kg]
-double calibratedVirtualMass(double s, double H, double rho_0, double mass_kg, int points);
+/// Mass of the virtual particles of a `points` x `points` floor lattice, one spacing under the lowest layer, that
+/// replaces what the layers missing below would have given to its density. [kg]
+double calibratedVirtualMass(core::KernelSet set, double s, double H, double rho_0, double mass_kg, int points);
 
 /// What restingLayers() needs to know of the water.
 struct RestingWater {
+  core::KernelSet kernel_set = core::KernelSet::kWendlandC2;
   double spacing_m = 0.0;
   double support_radius_m = 0.0;
   double rest_density_kgpm3 = 0.0;
@@ -31,7 +46,7 @@ struct RestingWater {
   double gravity_mps2 = 0.0;
   double mass_kg = 0.0;
   double virtual_mass_kg = 0.0;
-  int floor_points = 5;
+  int floor_points = kFlatFloorLattice;
 };
 
 /// Heights above the floor at which the layers of a square lattice rest: pressure, floor and gravity in balance under

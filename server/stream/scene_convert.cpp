@@ -11,6 +11,17 @@ core::Boundary toCore(v1::Boundary boundary) {
   return boundary == v1::BOUNDARY_WALL ? core::Boundary::kWall : core::Boundary::kPeriodic;
 }
 
+core::KernelSet toCore(v1::KernelSet set) {
+  switch (set) {
+    case v1::KERNEL_SET_MULLER:
+      return core::KernelSet::kMuller;
+    case v1::KERNEL_SET_CUBIC_SPLINE:
+      return core::KernelSet::kCubicSpline;
+    default:
+      return core::KernelSet::kWendlandC2;
+  }
+}
+
 core::Stencil toCore(v1::Stencil stencil) {
   return stencil == v1::STENCIL_NINE_POINT ? core::Stencil::kNinePoint : core::Stencil::kFivePoint;
 }
@@ -54,6 +65,7 @@ core::ParticleScene toCore(const v1::ParticleScene& in) {
   out.max_speed_mps = in.max_speed_mps();
   out.viscosity_pas = in.viscosity_pas();
   out.jitter_ratio = in.jitter_ratio();
+  out.kernel_set = toCore(in.kernel_set());
   out.boundary_x = toCore(in.boundary_x());
   out.boundary_z = toCore(in.boundary_z());
   return out;

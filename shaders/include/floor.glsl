@@ -14,6 +14,7 @@ layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 struct Floor {
   float band_m;
   int n;
+  float inverse_cell_pm;
   float cell_m;
   float half_side_m;
 };
@@ -23,6 +24,7 @@ Floor loadFloor() {
   f.band_m = sim.band_m;
   f.n = int(sim.wave_n);
   f.cell_m = sim.wave_cell_m;
+  f.inverse_cell_pm = 1.0 / max(sim.wave_cell_m, 1e-9);
   f.half_side_m = 0.5 * sim.wave_side_m;
   return f;
 }
@@ -39,7 +41,7 @@ int wrapCell(int i, int n) {
 /// (elevation, d eta/dt, d eta/dx, d eta/dz) of the nearest wave cell, the elevation carried to (x, z) along the
 /// gradient: one fetch, second order in the cell size like the bilinear sample.
 vec4 surfaceNear(Floor f, vec2 xz) {
-  const vec2 u = (xz + f.half_side_m) / f.cell_m;
+  const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm;
   const vec2 c = floor(u);
   const ivec2 cell = ivec2(wrapCell(int(c.x), f.n), wrapCell(int(c.y), f.n));
   vec4 s = texelFetch(surface_texels, cell.x + f.n * cell.y);
@@ -49,7 +51,7 @@ vec4 surfaceNear(Floor f, vec2 xz) {
 
 /// The four numbers above and the flow, bilinear between cell centres.
 vec4 surfaceAt(Floor f, vec2 xz, out vec2 flow_mps) {
-  const vec2 u = (xz + f.half_side_m) / f.cell_m - 0.5;
+  const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm - 0.5;
   const vec2 c = floor(u);
   const vec2 t = u - c;
   const int x0 = wrapCell(int(c.x), f.n);

@@ -1,24 +1,27 @@
-// Virtual particles of the floor: a LATTICE x LATTICE grid at spacing s, centred under the particle and snapped to the
-// floor, seen by particles closer to it than H (thesis, algorithm 10). Their mass is calibrated in derive() so that a
-// particle of the resting lattice's lowest layer has rest density.
+// Virtual particles of the floor: a LATTICE x LATTICE grid at spacing s, centred under the particle and snapped to half a
+// spacing below the floor, where the next layer of the water would be, seen by particles closer to it than H (thesis,
+// algorithm 10, cubic kernel). Their mass is calibrated in derive() so that a particle of the resting lattice's lowest layer
+// has rest density. Snapped to the floor itself, as in the thesis, their density hardly changed with the distance, and the
+// lowest layer fell through. Their push is the gradient of the density they give, so that the floor neither adds nor takes
+// energy while it stands still.
 #ifndef SPINDRIFT_FLOOR_LATTICE
 #define SPINDRIFT_FLOOR_LATTICE
 
 #include "include/floor.glsl"
 #include "include/kernels.glsl"
 
-#define LATTICE_POINTS (LATTICE * LATTICE)
+#define LATTICE_REACH (LATTICE / 2)
 
-/// From virtual particle k to the particle. [m]
-vec3 latticeOffset(Floor f, vec3 x_i, float spacing_m, int k) {
-  const vec2 d = vec2(k % LATTICE - LATTICE / 2, k / LATTICE - LATTICE / 2) * spacing_m;
-  return vec3(-d.x, x_i.y - floorHeight(f, x_i.xz + d), -d.y);
+/// From the virtual particle at (ix, iz) spacings to the particle. [m]
+vec3 latticeOffset(Floor f, vec3 x_i, float spacing_m, int ix, int iz) {
+  const vec2 d = vec2(ix, iz) * spacing_m;
+  return vec3(-d.x, x_i.y - floorHeight(f, x_i.xz + d) + 0.5 * spacing_m, -d.y);
 }
 
-/// How many lattice points a particle sees: all or none. A loop bound instead of a branch: llvmpipe runs both sides of a
-/// branch, but leaves a loop that no lane needs.
-int latticePoints(Floor f, vec3 x_i, float H) {
-  return x_i.y - floorHeight(f, x_i.xz) < H ? LATTICE_POINTS : 0;
+/// Rows of the lattice that a particle sees: -LATTICE_REACH to this, all or none. A loop bound instead of a branch: llvmpipe
+/// runs both sides of a branch, but leaves a loop that no lane needs.
+int lastLatticeRow(Floor f, vec3 x_i, float H, float spacing_m) {
+  return x_i.y - floorHeight(f, x_i.xz) + 0.5 * spacing_m < H ? LATTICE_REACH : -LATTICE_REACH - 1;
 }
 
 /// The floor's share of the density at x_i. [kg/m^3]
@@ -26,34 +29,38 @@ float floorDensity(vec3 x_i) {
   const Floor f = loadFloor();
   const float H = sim.support_radius_m;
   const float spacing_m = sim.spacing_m;
-  const int points = latticePoints(f, x_i, H);
+  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
+  const float inverse_H = 1.0 / H;
   float sum = 0.0;
-  for (int k = 0; k < points; ++k) sum += cubicShape(length(latticeOffset(f, x_i, spacing_m, k)) / H);
+  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
+    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) sum += cubicShape(length(latticeOffset(f, x_i, spacing_m, ix, iz)) * inverse_H);
+  }
   return sim.virtual_mass_kg * sim.cubic_norm * sum;
 }
 
-/// The floor's share of the acceleration: pressure (the floor answers with the particle's own pressure, momentum form) and
+/// The floor's share of the acceleration: pressure, -(p_i / rho_i^2) grad of floorDensity (Akinci et al. 2012, eq. 9), and
 /// viscosity against the velocity of the moving surface. `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
 vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
   const Floor f = loadFloor();
   const float H = sim.support_radius_m;
   const float spacing_m = sim.spacing_m;
-  const int points = latticePoints(f, x_i, H);
+  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
+  const float inverse_H = 1.0 / H;
   vec3 push = vec3(0.0);
   float drag = 0.0;
-  for (int k = 0; k < points; ++k) {
-    const vec3 r = latticeOffset(f, x_i, spacing_m, k);
-    const float distance_m = max(length(r), 1e-4 * H);
-    push += cubicSlope(distance_m / H) / (H * distance_m) * r;
-    drag += viscosityLaplacian(distance_m, H);
+  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
+    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) {
+      const vec3 r = latticeOffset(f, x_i, spacing_m, ix, iz);
+      const float distance_m = max(length(r), 1e-4 * H);
+      push += cubicSlope(distance_m * inverse_H) / distance_m * r;
+      drag += viscosityLaplacian(distance_m, H);
+    }
   }
   vec3 normal;
   vec3 floor_velocity_mps;
   floorState(f, x_i.xz, normal, floor_velocity_mps);
-  const float rho_0 = sim.rest_density_kgpm3;
-  const float mirrored = pressure_term * (1.0 + rho_i * rho_i / (rho_0 * rho_0));
-  return sim.virtual_mass_kg * (sim.cubic_norm * mirrored * push +
-                                sim.viscosity_pas * sim.spiky_norm * drag / (rho_i * rho_0) * (floor_velocity_mps - v_i));
+  return sim.virtual_mass_kg * (sim.cubic_norm / H * pressure_term * push +
+                                sim.viscosity_norm * sim.viscosity_pas * drag / (rho_i * sim.rest_density_kgpm3) * (floor_velocity_mps - v_i));
 }
 
 #endif

@@ -6,12 +6,6 @@
 
 #include "shared/sim_uniforms.h"
 
-#if PERIODIC_X
-#define ROW_SEGMENTS 2
-#else
-#define ROW_SEGMENTS 1
-#endif
-
 /// The grid in registers: loops must not touch the uniform block.
 struct Grid {
   vec3 min_m;
@@ -47,12 +41,21 @@ struct CandidateRange {
   vec3 shift_m;
 };
 
-/// Cells that row 0..8 and segment 0..ROW_SEGMENTS-1 covers, as [first_cell, last_cell), before the start lookup.
-CandidateRange rowCells(Grid g, ivec3 cell, int row, int segment) {
+/// How many segments the rows around a cell have: 2 where they wrap around a periodic x side.
+int rowSegments(Grid g, ivec3 cell) {
+#if PERIODIC_X
+  return cell.x == 0 || cell.x == g.cells.x - 1 ? 2 : 1;
+#else
+  return 1;
+#endif
+}
+
+/// Cells of segment 0..rowSegments-1 of the row at (dy, dz) in -1..1, as [first, last), before the start lookup.
+CandidateRange rowCells(Grid g, ivec3 cell, int dy, int dz, int segment) {
   CandidateRange r;
   r.shift_m = vec3(0.0);
-  const int y = cell.y + row % 3 - 1;
-  int z = cell.z + row / 3 - 1;
+  const int y = cell.y + dy;
+  int z = cell.z + dz;
   bool inside = y >= 0 && y < g.cells.y;
 #if PERIODIC_Z
   if (z < 0) { z += g.cells.z; r.shift_m.z = g.side_m.z; }
@@ -65,8 +68,6 @@ CandidateRange rowCells(Grid g, ivec3 cell, int row, int segment) {
 #if PERIODIC_X
   if (segment == 1) {
     const bool left = cell.x == 0;
-    const bool right = cell.x == g.cells.x - 1;
-    inside = inside && (left || right);
     x0 = left ? g.cells.x - 1 : 0;
     x1 = x0;
     r.shift_m.x = left ? g.side_m.x : -g.side_m.x;

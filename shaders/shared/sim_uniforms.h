@@ -35,15 +35,16 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float max_speed_mps;
   float gravity_mps2;
   float dt_s;                   // substep
-  float poly6_norm;             // 315 / (64 pi H^9)
-  float spiky_norm;             // 45 / (pi H^6), also the viscosity kernel's
+  float density_norm;           // of the kernel set's density kernel
+  float slope_norm;             // of its pressure kernel's slope
+  float viscosity_norm;         // 45 / (pi H^6)
   float cubic_norm;             // 8 / (pi H^3)
   float wall_restitution;       // share of the normal speed kept at a wall
   float reentry_m;              // how far inside a periodic side a particle re-enters
 
   // Floor of the particles: the water surface lowered by band_m, or the plane y = -band_m.
   float band_m;                 // thickness of the resting band
-  float virtual_mass_kg;        // of a virtual particle of the floor
+  float virtual_mass_kg;        // of a virtual particle of the floor, for density and viscosity
   float floor_gap_m;            // particles are kept this far above the floor
   float downforce_per_m_s2;
 
@@ -65,7 +66,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float surface_quantum_m;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 40 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 41 * 4, "scalars of four bytes only: std140 and C++ must agree");
 }  // namespace spindrift::shared
 #else
 } sim;

@@ -1,10 +1,10 @@
 // Acceleration of each particle from its neighbours, the floor, gravity and the downward force.
 // Reads PRESSURE_POINT, MOTION_POINT, ACCELERATION.w (rho), CELL_START, the floor. Writes ACCELERATION.
-// Equations: -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W, spiky (momentum-conserving form of thesis 3.17);
+// Equations: -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W (momentum-conserving form of thesis 3.17);
 // mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W, viscosity kernel (thesis 3.18 with the difference its text means); above the
 // water -downforce (y - eta)^2 (thesis 3.6.2).
 // Invariant: the pair terms are antisymmetric up to rounding; the particle itself adds nothing (r = 0).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC=1 LATTICE=5 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 LATTICE=3
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 LATTICE=3 KERNEL_SET=2
 #include "shared/groups.h"
 #include "include/candidates.glsl"
 #include "include/floor_lattice.glsl"
@@ -19,7 +19,7 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= sim.particle_count) return;
   const Grid g = loadGrid();
-  const float H = g.cell_m;
+  const Support support = makeSupport(g.cell_m);
   const vec4 own = texelFetch(pressure_point, int(i));
   const vec3 v_i = texelFetch(motion_point, int(i)).xyz;
   const float rho_i = acceleration[i].w;
@@ -27,24 +27,25 @@ void main() {
 
   vec3 push = vec3(0.0);
   vec3 drag = vec3(0.0);
-  for (int row = 0; row < 9; ++row) {
-    for (int segment = 0; segment < ROW_SEGMENTS; ++segment) {
-      const CandidateRange range = candidateRange(g, cell, row, segment);
-      const vec3 x = own.xyz + range.shift_m;
-      for (int j = range.first; j < range.last; ++j) {
-        const vec4 a = texelFetch(pressure_point, j);
-        const vec4 b = texelFetch(motion_point, j);
-        const vec3 r = x - a.xyz;
-        const float r2 = dot(r, r);
-        const float inverse_r = inversesqrt(max(r2, 1e-12));
-        const float distance_m = r2 * inverse_r;
-        push += ((own.w + a.w) * spikySlope(distance_m, H) * inverse_r) * r;
-        drag += (b.w * viscosityLaplacian(distance_m, H)) * (b.xyz - v_i);
+  const int segments = rowSegments(g, cell);
+  for (int segment = 0; segment < segments; ++segment) {
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const CandidateRange range = candidateRange(g, cell, dy, dz, segment);
+        const vec3 x = own.xyz + range.shift_m;
+        for (int j = range.first; j < range.last; ++j) {
+          const vec4 a = texelFetch(pressure_point, j);
+          const vec4 b = texelFetch(motion_point, j);
+          const vec3 r = x - a.xyz;
+          const float r2 = dot(r, r);
+          push += ((own.w + a.w) * pressurePull(r2, support)) * r;
+          drag += (b.w * viscosityLaplacian(sqrt(r2), support.H)) * (b.xyz - v_i);
+        }
       }
     }
   }
 
-  vec3 a = sim.spiky_norm * (sim.mass_kg * push + sim.viscosity_pas / rho_i * drag);
+  vec3 a = sim.slope_norm * sim.mass_kg * push + sim.viscosity_norm * sim.viscosity_pas / rho_i * drag;
   a += floorAcceleration(own.xyz, v_i, own.w, rho_i);
   a.y -= sim.gravity_mps2;
 #if COUPLED

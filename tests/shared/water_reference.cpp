@@ -9,15 +9,8 @@ namespace {
 
 using std::numbers::pi;
 
-double poly6(double r, double H) {
-  return r < H ? 315 / (64 * pi * std::pow(H, 9)) * std::pow(H * H - r * r, 3) : 0;
-}
-double spikyGradient(double r, double H) {
-  return r < H ? -45 / (pi * std::pow(H, 6)) * (H - r) * (H - r) : 0;
-}
-double viscosityLaplacian(double r, double H) {
-  return r < H ? 45 / (pi * std::pow(H, 6)) * (H - r) : 0;
-}
+using core::KernelSet;
+
 double cubic(double r, double H) {
   const double q = r / H;
   if (q >= 1) return 0;
@@ -29,6 +22,24 @@ double cubicGradient(double r, double H) {
   return 8 / (pi * H * H * H) * (q <= 0.5 ? 18 * q * q - 12 * q : -6 * (1 - q) * (1 - q)) / H;
 }
 
+double densityKernel(KernelSet set, double r, double H) {
+  const double q = r / H;
+  if (q >= 1) return 0;
+  if (set == KernelSet::kMuller) return 315 / (64 * pi * std::pow(H, 9)) * std::pow(H * H - r * r, 3);
+  if (set == KernelSet::kCubicSpline) return cubic(r, H);
+  return 21 / (2 * pi * H * H * H) * std::pow(1 - q, 4) * (4 * q + 1);
+}
+/// dW/dr
+double pressureGradient(KernelSet set, double r, double H) {
+  const double q = r / H;
+  if (q >= 1) return 0;
+  if (set == KernelSet::kMuller) return -45 / (pi * std::pow(H, 6)) * (H - r) * (H - r);
+  if (set == KernelSet::kCubicSpline) return cubicGradient(r, H);
+  return -21 / (2 * pi * H * H * H) * 20 * q * std::pow(1 - q, 3) / H;
+}
+double viscosityLaplacian(double r, double H) {
+  return r < H ? 45 / (pi * std::pow(H, 6)) * (H - r) : 0;
+}
 double length(const Vec3& a) {
   return std::hypot(a[0], a[1], a[2]);
 }
@@ -90,12 +101,13 @@ struct Floor {
   /// Vectors from each virtual particle to the particle; none for one out of reach.
   std::vector<Vec3> lattice(const Vec3& x) const {
     std::vector<Vec3> out;
-    if (x[1] - height(x[0], x[2]) >= d.particles->support_radius_m) return out;
+    if (x[1] - height(x[0], x[2]) + d.particles->spacing_m / 2 >= d.particles->support_radius_m) return out;
     const int points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : 5;
     const double spacing = d.particles->spacing_m;
     for (int k = -(points / 2); k <= points / 2; ++k) {
       for (int i = -(points / 2); i <= points / 2; ++i)
-        out.push_back({-i * spacing, x[1] - height(x[0] + i * spacing, x[2] + k * spacing), -k * spacing});
+        out.push_back(
+            {-i * spacing, x[1] - height(x[0] + i * spacing, x[2] + k * spacing) + spacing / 2, -k * spacing});
     }
     return out;
   }
@@ -137,7 +149,9 @@ std::vector<double> referenceDensity(const core::Scene& scene, const sim::Derive
   const Floor floor{scene, d, surface};
   std::vector<double> rho(x.size(), 0.0);
   for (std::size_t i = 0; i < x.size(); ++i) {
-    for (const Vec3& other : x) rho[i] += d.particles->mass_kg * poly6(length(between(scene, d, x[i], other)), H);
+    for (const Vec3& other : x)
+      rho[i] +=
+          d.particles->mass_kg * densityKernel(scene.particles->kernel_set, length(between(scene, d, x[i], other)), H);
     for (const Vec3& r : floor.lattice(x[i])) rho[i] += d.particles->virtual_mass_kg * cubic(length(r), H);
   }
   return rho;
@@ -160,15 +174,15 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
       const Vec3 r = between(scene, d, x[i], x[j]);
       const double distance = length(r);
       if (distance >= H) continue;
-      const double push = -m * (own + pressureTerm(scene, rho[j])) * spikyGradient(distance, H) / distance;
+      const double push = -m * (own + pressureTerm(scene, rho[j])) *
+                          pressureGradient(scene.particles->kernel_set, distance, H) / distance;
       const double drag = mu / rho[i] * m / rho[j] * viscosityLaplacian(distance, H);
       for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (v[j][axis] - v[i][axis]);
     }
     const Vec3 floor_velocity = floor.velocity(x[i][0], x[i][2]);
     for (const Vec3& r : floor.lattice(x[i])) {
       const double distance = length(r);
-      const double push = -d.particles->virtual_mass_kg * own * (1 + rho[i] * rho[i] / (rho_0 * rho_0)) *
-                          cubicGradient(distance, H) / distance;
+      const double push = -d.particles->virtual_mass_kg * own * cubicGradient(distance, H) / distance;
       const double drag = mu / rho[i] * d.particles->virtual_mass_kg / rho_0 * viscosityLaplacian(distance, H);
       for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (floor_velocity[axis] - v[i][axis]);
     }

@@ -19,7 +19,9 @@ class OnDevice : public ::testing::Test {
   }
   void TearDown() override {
     sim_.reset();
-    if (ctx_) EXPECT_EQ(ctx_->debugErrorCount(), 0u) << "the driver complained; see the log";
+    if (ctx_) {
+      EXPECT_EQ(ctx_->debugErrorCount(), 0u) << "the driver complained; see the log";
+    }
   }
 
   WaterSim& make(const core::Scene& scene) {

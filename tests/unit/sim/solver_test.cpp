@@ -105,6 +105,14 @@ TEST_F(Solver, AgreesWithTheReferenceInACoupledPeriodicPatch) {
   for (const std::uint32_t count : {300u, 1100u}) compare(smallScene(count));
 }
 
+TEST_F(Solver, AgreesWithTheReferenceForEachKernelSet) {
+  for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
+    core::Scene scene = smallScene(500);
+    scene.particles->kernel_set = set;
+    compare(scene);
+  }
+}
+
 TEST_F(Solver, AgreesWithTheReferenceForEachVirtualLattice) {
   for (const std::uint32_t lattice : {3u, 5u}) {
     core::Scene scene = smallScene(450);

@@ -29,7 +29,9 @@ TEST_F(Water, RepeatsBitForBitWithTheSameSeedAndCommands) {
     scene.seed = seed;
     WaterSim& sim = make(scene);
     for (int i = 0; i < 40; ++i) {
-      if (i == 5) EXPECT_TRUE(sim.start(core::Splash{0.5, 0.5, 1.0, 0.5, 0.1}));
+      if (i == 5) {
+        EXPECT_TRUE(sim.start(core::Splash{0.5, 0.5, 1.0, 0.5, 0.1}));
+      }
       sim.step();
     }
     return sim.stateHash();
@@ -66,12 +68,13 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   const Cost all = cost(full);
   const Cost wave = cost(wave_only);
   const Cost particles = cost(particles_only);
-  // A wave alone: inject + evolve + its diagnostics and packing; with one wave step a substep, 2 + 1 dispatches a tick.
+  // A wave alone: inject + evolve + its diagnostics and packing; with one wave step a substep, 2 dispatches a tick, and
+  // one more in every fourth.
   EXPECT_EQ(wave.programs, 4u);
-  EXPECT_EQ(wave.dispatches, 3u);
-  // Particles alone: 6 grid, 3 sph, their diagnostics and packing; 2 x 9 + 1 dispatches a tick.
+  EXPECT_EQ(wave.dispatches, 2u);
+  // Particles alone: 6 grid, 3 sph, their diagnostics and packing; 2 x 9 dispatches a tick.
   EXPECT_EQ(particles.programs, 11u);
-  EXPECT_EQ(particles.dispatches, 19u);
+  EXPECT_EQ(particles.dispatches, 18u);
   // Together: the sum, and the surface sampling once a substep.
   EXPECT_EQ(all.programs, wave.programs + particles.programs + 1);
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 2);
@@ -166,6 +169,15 @@ TEST_F(Water, ASplashThrowsParticlesAndMakesFoam) {
   EXPECT_EQ(sim.escapedCount(), 0u);
 }
 
+TEST_F(Water, StartsInBalance) {
+  core::Scene scene = smallScene(1500);
+  scene.particles->jitter_ratio = 0.0;
+  WaterSim& sim = make(scene);
+  sim.step();
+  const StateCopy after = sim.copyState();
+  for (const float v : after.velocity) ASSERT_LE(std::abs(v), 0.01 * scene.gravity_mps2 * sim.derived().tick_s);
+}
+
 TEST_F(Water, StillWaterStaysStill) {
   core::Scene scene = smallScene(1500);
   WaterSim& sim = make(scene);
@@ -175,8 +187,8 @@ TEST_F(Water, StillWaterStaysStill) {
     worst = std::max(worst, sim.health().kinetic_energy_j);
   }
   const double mass = sim.derived().particles->mass_kg * sim.derived().particles->count;
-  // The starting lattice buckles into a looser order; never faster than 0.2 m/s on average, and calm again after 15 s.
-  EXPECT_LE(worst, 0.5 * mass * 0.2 * 0.2);
+  // The starting lattice buckles into a looser order; never faster than 0.3 m/s on average, and calm again after 15 s.
+  EXPECT_LE(worst, 0.5 * mass * 0.3 * 0.3);
   EXPECT_LE(sim.health().kinetic_energy_j, 0.5 * mass * 0.05 * 0.05);
   EXPECT_EQ(sim.health().max_elevation_m, 0.0);
 }
@@ -208,7 +220,7 @@ TEST_F(Water, ParametersTakeEffectWithoutARestart) {
   core::Scene scene = smallScene();
   WaterSim& sim = make(scene);
   for (int i = 0; i < 10; ++i) sim.step();
-  scene.particles->sound_speed_mps = 40.0;
+  scene.particles->sound_speed_mps = 100.0;
   ASSERT_TRUE(sim.setScene(scene));
   EXPECT_EQ(sim.tick(), 10u);
   EXPECT_GT(sim.derived().substeps_count, 2u) << "a stiffer water takes smaller steps by itself";
@@ -216,7 +228,7 @@ TEST_F(Water, ParametersTakeEffectWithoutARestart) {
   scene.particles->count = 5000;
   const auto refused = sim.setScene(scene);
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("restart"));
+  EXPECT_THAT(refused.error().message, HasSubstr("start the room again"));
 }
 
 TEST_F(Water, AParameterThatBreaksAFixedStepIsRefusedAndChangesNothing) {

@@ -182,7 +182,7 @@ TEST(Parameters, TheReferenceListsEveryNumberWithItsUnitAndRange) {
       table,
       AllOf(HasSubstr(
                 "| `wave.resolution_count` | Wave resolution | cells | 32 to 1024, multiple of 16 | 256 | restart |"),
-            HasSubstr("| `particles.viscosity_pas` | Viscosity | Pa s | 0 to 500 | 40 | live |"),
+            HasSubstr("| `particles.viscosity_pas` | Viscosity | Pa s | 0 to 500 | 60 | live |"),
             HasSubstr("`events[].effect.splash.depth_m`")));
   int number_count = 0;
   forEachNumber(*v1::Scene::descriptor(), [&](const FieldDescriptor& field) {

@@ -106,6 +106,7 @@ TEST(SceneDefaults, FillOnlyWhatWasLeftOutAndTwiceIsTheSame) {
   EXPECT_EQ(scene.wave().damping_per_s(), 0.0);
   EXPECT_EQ(scene.particles().boundary_x(), v1::BOUNDARY_WALL);
   EXPECT_EQ(scene.particles().boundary_z(), v1::BOUNDARY_PERIODIC);
+  EXPECT_EQ(scene.particles().kernel_set(), v1::KERNEL_SET_WENDLAND_C2);
   EXPECT_EQ(scene.wave().stencil(), v1::STENCIL_FIVE_POINT);
   const std::string once = scene.SerializeAsString();
   fillDefaults(scene);

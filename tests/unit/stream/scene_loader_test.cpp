@@ -96,9 +96,9 @@ const BadScene kBadScenes[] = {
      {"3 or 5"}},
     {"FoamWithoutParticles", "wave {}\n\nfoam {}\n", "pool.textproto:3:1: foam: needs particles", {"remove foam"}},
     {"PatchOverTheEdge",
-     "wave {}\nparticles {\n  patch_scale: 0.5\n  patch_shift_z_m: -4.5\n}\n",
-     "pool.textproto:4:3: particles.patch_shift_z_m: -4.5 m",
-     {"-4 to 4 m"}},
+     "wave {}\nparticles {\n  patch_scale: 0.5\n  patch_shift_z_m: -6.5\n}\n",
+     "pool.textproto:4:3: particles.patch_shift_z_m: -6.5 m",
+     {"-6 to 6 m"}},
     {"EventWithoutEffect",
      "wave {}\nevents { at_s: 1 }\n",
      "pool.textproto:2:1: events[0].effect: missing",
@@ -118,7 +118,7 @@ const BadScene kBadScenes[] = {
      {"0.9 m", "depth of 1 m"}},
     {"DefaultSplashDeeperThanTheWater",
      "wave { depth_m: 0.1 }\nevents {\n  effect { splash {} }\n}\n",
-     "pool.textproto:3:12: events[0].effect.splash.depth_m: 0.5 m",
+     "pool.textproto:3:12: events[0].effect.splash.depth_m: 0.8 m",
      {"0.09 m"}},
     {"SplashOutsideTheWater",
      "wave { side_m: 4 }\nevents {\n  effect { splash { x_m: 2.5 } }\n}\n",
@@ -253,7 +253,7 @@ TEST_F(SceneFile, LoadsWithItsNameAndDefaults) {
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->name(), "tank");
   EXPECT_EQ(scene->wave().depth_m(), 2.0);
-  EXPECT_EQ(scene->wave().side_m(), 16.0);
+  EXPECT_EQ(scene->wave().side_m(), 24.0);
 }
 
 TEST_F(SceneFile, ThatIsMissingIsUnavailable) {

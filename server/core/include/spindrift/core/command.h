@@ -11,8 +11,8 @@ namespace spindrift::core {
 struct Splash {
   double x_m = 0.0;
   double z_m = 0.0;
-  double radius_m = 1.0;
-  double depth_m = 0.5;                   ///< depression at the centre
+  double radius_m = 1.5;
+  double depth_m = 0.8;                   ///< depression at the centre
   double duration_s = 0.2;                ///< length of the smooth pulse
 };
 
@@ -22,8 +22,8 @@ enum class Side { kPlusX, kMinusX, kPlusZ, kMinusZ };
 /// A crest released along a side, travelling across the water.
 struct BreakingWave {
   Side side = Side::kPlusX;
-  double amplitude_m = 0.5;
-  double length_m = 2.0;                  ///< full width of the crest at half height
+  double amplitude_m = 0.6;
+  double length_m = 3.0;                  ///< full width of the crest at half height
   double duration_s = 0.5;                ///< length of the smooth pulse
 };
 

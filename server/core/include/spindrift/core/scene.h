@@ -18,10 +18,14 @@ enum class Boundary { kPeriodic, kWall };
 /// 5-point or isotropic 9-point Laplacian of the wave equation.
 enum class Stencil { kFivePoint, kNinePoint };
 
+/// Kernels for density and pressure. kMuller (poly6 and spiky) is the thesis's; its pressure is not the gradient
+/// of its density. The others use one kernel for both, so that pressure neither makes nor takes energy.
+enum class KernelSet { kMuller, kCubicSpline, kWendlandC2 };
+
 /// The heightfield: eta_tt + kappa eta_t = c^2 laplacian(eta), c = sqrt(g d).
 struct WaveScene {
   std::uint32_t resolution_count = 256;   ///< cells along each side (x and z), multiple of 16
-  double side_m = 16.0;                   ///< side of the square domain
+  double side_m = 24.0;                   ///< side of the square domain
   double depth_m = 1.5;                   ///< still-water depth d
   double damping_per_s = 0.1;             ///< kappa, on the velocity term only
   Stencil stencil = Stencil::kFivePoint;
@@ -35,27 +39,28 @@ struct ParticleScene {
   double patch_shift_x_m = 0.0;           ///< patch centre
   double patch_shift_z_m = 0.0;
   double patch_scale = 1.0;               ///< patch side over wave side (over `box_side_m` without a wave), 0..1
-  double box_side_m = 16.0;               ///< side of the horizontal box when the scene has no wave
+  double box_side_m = 24.0;               ///< side of the horizontal box when the scene has no wave
   double headroom_m = 5.0;                ///< the particles' domain reaches this far above y = 0
   double support_ratio = 2.0;             ///< H / s
   double rest_density_kgpm3 = 1000.0;
-  double sound_speed_mps = 18.0;          ///< c0; stiffness k = c0^2 in p = k (rho - rho0)
-  double max_speed_mps = 9.0;             ///< U_max for the step-size rules; also the guard's and the clamp's bound
-  double viscosity_pas = 40.0;            ///< dynamic viscosity mu
+  double sound_speed_mps = 14.0;          ///< c0; stiffness k = c0^2 in p = k (rho - rho0)
+  double max_speed_mps = 8.0;             ///< U_max for the step-size rules; also the guard's and the clamp's bound
+  double viscosity_pas = 60.0;            ///< dynamic viscosity mu
   double jitter_ratio = 0.02;             ///< initial jitter over s, 0..0.05
+  KernelSet kernel_set = KernelSet::kWendlandC2;
   Boundary boundary_x = Boundary::kPeriodic;
   Boundary boundary_z = Boundary::kPeriodic;
 };
 
 /// One-way coupling: the wave carries the particles.
 struct CouplingScene {
-  std::uint32_t lattice_count = 5;        ///< virtual particles along a side of the lattice: 3 or 5
-  double downforce_per_m_s2 = 6.0;        ///< downward acceleration = downforce * (height above the water)^2
+  std::uint32_t lattice_count = 3;        ///< virtual particles along a side of the lattice: 3 or 5
+  double downforce_per_m_s2 = 1.5;        ///< downward acceleration = downforce * (height above the water)^2
 };
 
 /// White water from low pressure.
 struct FoamScene {
-  double density_deficit_ratio = 0.45;    ///< 1 - rho/rho0 at which a particle is fully foam
+  double density_deficit_ratio = 0.25;    ///< 1 - rho/rho0 at which a particle is fully foam
   double lifetime_s = 1.5;                ///< e-folding time of foam once its source is gone
 };
 
