@@ -1,38 +1,20 @@
 # shellcheck shell=bash
-# bench, study, fmt, lint, clean. Sourced by ./dev.
-
-# Builds the server and becomes `spindrift NAME OPTIONS…`.
-become_server_command() {
-  local name="$1" preset rest
-  shift
-  take_preset "$@"
-  prepare_server "$preset"
-  cd -- "$called_from" || fail 2 "the folder $called_from is gone"
-  exec "$(binary_of "$preset")" "$name" "${rest[@]}"
-}
+# bench, fmt, lint, clean. Sourced by ./dev.
 
 command_bench() {
   if wants_help "$@"; then
     cat <<'TEXT'
 usage: ./dev bench [--preset release|debug|asan|tsan] [OPTIONS OF spindrift bench]
 
-Timings per pass and per step, codec, fan-out, with the baseline of the same run; --json FILE writes them down.
+Time per pass and per step at several particle counts, and of the stream's encoder; --json FILE writes them down.
 TEXT
     return
   fi
-  become_server_command bench "$@"
-}
-
-command_study() {
-  if wants_help "$@"; then
-    cat <<'TEXT'
-usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift study]
-
-Errors against references, the stability map, the speed-accuracy front: --suite accuracy|stability|trade.
-TEXT
-    return
-  fi
-  become_server_command study "$@"
+  local preset rest
+  take_preset "$@"
+  prepare_server "$preset"
+  cd -- "$called_from" || fail 2 "the folder $called_from is gone"
+  exec "$(binary_of "$preset")" bench "${rest[@]}"
 }
 
 # The C++ sources of ours, committed or about to be; shaders/shared is compiled by both languages and formatted as C++.

@@ -51,11 +51,13 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
     sessions_[session] = {.room = room};
   }
   spdlog::info("session {} from {} joins room {}", session, peer, room->name());
+  // The greeting comes first; a change that fell between it and joining makes a second one.
+  const auto greeted = greet(session, *room);
   hub().join(session, room->name());
-  greet(session, *room);
+  if (room->snapshot() != greeted) greet(session, *room);
 }
 
-void Gateway::greet(net::SessionId session, const Room& room) {
+std::shared_ptr<const RoomSnapshot> Gateway::greet(net::SessionId session, const Room& room) {
   const auto snapshot = room.snapshot();
   stream::GreetingFacts facts;
   facts.server = "spindrift " SPINDRIFT_VERSION;
@@ -70,6 +72,7 @@ void Gateway::greet(net::SessionId session, const Room& room) {
   facts.paused = snapshot->paused;
   facts.speed = snapshot->speed;
   hub().sendControl(session, stream::greeting(facts, snapshot->scene));
+  return snapshot;
 }
 
 void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 
@@ -31,7 +32,8 @@ class Gateway final : public net::Application {
   };
 
   net::Hub& hub() { return *hub_; }
-  void greet(net::SessionId session, const Room& room);
+  /// Sends a greeting and returns the state that it described.
+  std::shared_ptr<const RoomSnapshot> greet(net::SessionId session, const Room& room);
 
   const SimulationThread& rooms_;
   const std::size_t message_max_bytes_;

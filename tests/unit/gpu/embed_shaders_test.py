@@ -112,6 +112,17 @@ class EmbedShaders(unittest.TestCase):
         for name in ("a.comp", "b.glsl"):
             self.assertIn(str(self.root.resolve() / name), listed)
 
+    def test_escapes_spaces_in_the_list_of_files(self):
+        folder = self.root.parent / "a folder"
+        folder.mkdir()
+        self.root = self.root.rename(folder / "shaders")
+        self.output, self.depfile = folder / "out.cpp", folder / "out.d"
+        self.write("a.comp", MAIN)
+        self.assert_embedded()
+        target, listed = self.depfile.read_text(encoding="utf-8").rstrip("\n").split(": ")
+        self.assertEqual(target, str(self.output).replace(" ", "\\ "))
+        self.assertEqual(listed, str(self.root.resolve() / "a.comp").replace(" ", "\\ "))
+
 
 if __name__ == "__main__":
     unittest.main()

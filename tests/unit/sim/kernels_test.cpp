@@ -83,6 +83,7 @@ TEST_F(KernelsOnDevice, EqualTheDoublePrecisionOnes) {
       const double r = i / (count - 1.0) * 1.25 * H;
       ASSERT_NEAR(v[4 * i] * densityNorm(set, H), densityKernel(set, r, H), 2e-5 * densityKernel(set, 0, H))
           << "r = " << r;
+      if (i == 0) continue;  // at r = 0 a slope has no direction: the device multiplies it by a zero vector
       ASSERT_NEAR(v[4 * i + 1] * slopeNorm(set, H), pressureSlope(set, r, H),
                   2e-5 * slopeNorm(set, H) * (set == KernelSet::kMuller ? H * H : 1.0))
           << "r = " << r;
