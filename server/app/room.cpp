@@ -58,11 +58,10 @@ void Room::publishSnapshot() {
 }
 
 // One tick
-// ----------------------------------------------------------------------------------------------------------------
 
 void Room::start(TimePoint now) {
   clock_.restart(now);
-  started_ = last_run_ = now;
+  last_run_ = now;
 }
 
 Room::TimePoint Room::due(TimePoint now) const {
@@ -93,7 +92,6 @@ void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder) {
 }
 
 // Commands
-// ----------------------------------------------------------------------------------------------------------------
 
 void Room::applyCommands(net::Hub& hub) {
   for (const core::Command& command : commands_.drain()) {
@@ -158,7 +156,6 @@ std::optional<stream::CommandRejection> Room::setParameter(const core::Command& 
 }
 
 // Frames
-// ------------------------------------------------------------------------------------------------------------------
 
 void Room::requestFrame(TimePoint now, net::Hub& hub) {
   const double interval_s = clock_.speed() / scene_.stream().frame_rate_hz();  // frames keep their rate in wall time
@@ -237,8 +234,10 @@ void Room::watchRealTime(TimePoint now) {
       name_, factor, clock_.speed());
 }
 
-double Room::meanRealTimeFactor() const {
-  return unpaused_wall_s_ > 0 ? run_s_ / unpaused_wall_s_ : 0.0;
+double Room::meanRealTimeFactor(TimePoint now) const {
+  const double open_s = paused_ ? 0.0 : duration<double>(now - last_run_).count();
+  const double wall_s = unpaused_wall_s_ + open_s;
+  return wall_s > 0 ? run_s_ / wall_s : 0.0;
 }
 
 }  // namespace spindrift::app

@@ -39,6 +39,8 @@ struct RoomSnapshot {
 
 class Room {
  public:
+  using TimePoint = RealTimeClock::TimePoint;
+
   static core::Result<std::unique_ptr<Room>> create(gpu::Context& ctx, RoomSetup setup);
 
   // Any thread.
@@ -48,7 +50,6 @@ class Room {
   [[nodiscard]] bool submit(core::Command command) { return commands_.tryPush(std::move(command)); }
 
   // Simulation thread.
-  using TimePoint = RealTimeClock::TimePoint;
   void start(TimePoint now);
   /// When the room wants to run again.
   [[nodiscard]] TimePoint due(TimePoint now) const;
@@ -59,7 +60,7 @@ class Room {
   [[nodiscard]] const sim::WaterSim& water() const { return *sim_; }
   /// Ends the simulation while the context still lives; only the any-thread functions may be called afterwards.
   void releaseDevice() { sim_.reset(); }
-  [[nodiscard]] double meanRealTimeFactor() const;
+  [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
   [[nodiscard]] std::uint64_t droppedFrameCount() const { return dropped_frames_; }
 
  private:
@@ -92,7 +93,6 @@ class Room {
   std::uint32_t step_count_ = 0;
   double last_step_ms_ = 0.0;
   std::vector<core::DiagnosticsView::PassTime> last_passes_;
-  TimePoint started_{};
   double run_s_ = 0.0;  ///< simulated seconds since the start, resets not counted back
   double unpaused_wall_s_ = 0.0;
   TimePoint last_run_{};

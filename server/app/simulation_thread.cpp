@@ -89,7 +89,7 @@ void SimulationThread::loop() {
     const sim::WaterSim& water = room->water();
     summary_.push_back(fmt::format(
         "room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, guard stepped in {} times", room->name(),
-        water.tick(), room->meanRealTimeFactor(), room->droppedFrameCount(), water.recoveredCount()));
+        water.tick(), room->meanRealTimeFactor(Clock::now()), room->droppedFrameCount(), water.recoveredCount()));
     room->releaseDevice();
   }
   context_.reset();

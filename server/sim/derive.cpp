@@ -207,7 +207,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
 
 }  // namespace
 
-core::Result<Derived> derive(const core::Scene& scene) {
+core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kept) {
   if (!scene.wave && !scene.particles) return invalid("wave, particles: a scene needs at least one of them");
   if (scene.coupling && !(scene.wave && scene.particles))
     return invalid("coupling: needs both wave and particles: add the missing part or remove coupling");
@@ -216,7 +216,7 @@ core::Result<Derived> derive(const core::Scene& scene) {
   Derived d;
   d.tick_s = 1.0 / scene.tick_rate_hz;
   if (scene.particles) {
-    auto layout = layOutParticles(scene);
+    auto layout = kept ? core::Result<ParticleLayout>(*kept) : layOutParticles(scene);
     if (!layout) return layout.error();
     d.particles = *layout;
     addParticleRules(scene, *d.particles, d.rules);
@@ -272,10 +272,15 @@ core::Result<Derived> derive(const core::Scene& scene) {
 bool needsRestart(const Derived& before, const Derived& after) {
   if (before.particles.has_value() != after.particles.has_value() || before.wave.has_value() != after.wave.has_value())
     return true;
-  if (before.particles &&
-      (before.particles->count != after.particles->count || before.particles->cells != after.particles->cells))
-    return true;
-  return before.wave && before.wave->resolution_count != after.wave->resolution_count;
+  if (before.particles) {
+    const ParticleLayout& a = *before.particles;
+    const ParticleLayout& b = *after.particles;
+    if (a.columns_count != b.columns_count || a.layers_count != b.layers_count ||
+        a.support_radius_m != b.support_radius_m)
+      return true;
+  }
+  return before.wave &&
+         (before.wave->resolution_count != after.wave->resolution_count || before.wave->side_m != after.wave->side_m);
 }
 
 }  // namespace spindrift::sim

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -27,6 +28,8 @@ using core::ErrorCode;
 /// integers, so no client sees it.
 constexpr std::uint64_t kDiagnosticsInterval_ticks = 4;
 constexpr double kCheckpointInterval_s = 1.0;
+/// A splash reaches at most this share of the way to the ground.
+constexpr double kLargestDepthShare = 0.9;
 /// How long a room that was put back runs with half the step.
 constexpr double kCareful_s = 5.0;
 
@@ -74,7 +77,6 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
 }
 
 // The algorithm
-// -----------------------------------------------------------------------------------------------------------
 
 void WaterSim::step() {
   parts_->uniforms.bindUniform(SIM_UNIFORMS);  // rooms share the context
@@ -129,7 +131,6 @@ void WaterSim::measure() {
 }
 
 // Setting up
-// --------------------------------------------------------------------------------------------------------------
 
 WaterSim::WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived)
     : ctx_(ctx),
@@ -211,7 +212,6 @@ void WaterSim::reset() {
 }
 
 // Commands
-// ----------------------------------------------------------------------------------------------------------------
 
 core::Result<void> WaterSim::start(const core::Effect& effect) {
   if (!parts_->wave)
@@ -220,15 +220,13 @@ core::Result<void> WaterSim::start(const core::Effect& effect) {
 }
 
 core::Result<void> WaterSim::setScene(const core::Scene& scene) {
-  auto derived = derive(scene);
-  if (!derived) return derived.error();
-  if (needsRestart(derived_, *derived) || shaderDefines(scene_) != shaderDefines(scene)) {
+  auto fresh = derive(scene);
+  if (!fresh) return fresh.error();
+  if (needsRestart(derived_, *fresh) || shaderDefines(scene_) != shaderDefines(scene)) {
     return Error{ErrorCode::kInvalidInput,
                  "this change needs new buffers or shaders: start the room again with the changed scene"};
   }
-  // The time so far stays, whatever the tick becomes; ticks are fixed at a restart, so nothing to carry over.
   scene_ = scene;
-  derived_ = *std::move(derived);
   setCareful(is_careful_);
   return {};
 }
@@ -241,13 +239,16 @@ void WaterSim::startTimedEvents() {
         event.every_s > 0 ? std::max(0.0, std::ceil((from_s - event.at_s) / event.every_s - 1e-9)) : 0.0;
     const double due_s = event.at_s + repeats * event.every_s;
     if (due_s < from_s - 1e-9 || due_s >= to_s - 1e-9) continue;
-    if (auto started = start(event.effect); !started)
-      spdlog::warn("scene {}: {}", scene_.name, started.error().message);
+    core::Effect effect = event.effect;
+    // The scene was checked with the depth it began with; an effect shrinks with water that was made shallower since.
+    if (auto* splash = std::get_if<core::Splash>(&effect); splash && scene_.wave) {
+      splash->depth_m = std::min(splash->depth_m, kLargestDepthShare * scene_.wave->depth_m);
+    }
+    if (auto started = start(effect); !started) spdlog::warn("scene {}: {}", scene_.name, started.error().message);
   }
 }
 
 // Health
-// ------------------------------------------------------------------------------------------------------------------
 
 void WaterSim::watchHealth() {
   for (const Health& health : parts_->diagnostics->poll(scene_, derived_)) {
@@ -289,18 +290,20 @@ void WaterSim::recover(const Health& breach) {
 
 void WaterSim::setCareful(bool careful) {
   is_careful_ = careful;
-  core::Scene scene = scene_;
-  if (careful) {
-    const auto base = derive(scene_);
-    scene.fixed_substeps_count = 2 * (base ? base->substeps_count : derived_.substeps_count);
+  const std::optional<ParticleLayout> kept = derived_.particles;
+  auto derived = derive(scene_, kept ? &*kept : nullptr);
+  if (derived && careful) {
+    core::Scene halved = scene_;
+    halved.fixed_substeps_count = 2 * derived->substeps_count;
+    derived = derive(halved, kept ? &*kept : nullptr);
   }
-  if (auto derived = derive(scene)) derived_ = *std::move(derived);
+  // scene_ was accepted before and halving a step breaks no rule; at the bound of substeps the step stays as it was.
+  if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
   ctx_.barrier(gpu::Barrier::kUniform);
 }
 
 // Frames
-// ------------------------------------------------------------------------------------------------------------------
 
 bool WaterSim::requestFrame(const FrameRequest& request) {
   Wave* wave = request.surface ? parts_->wave.get() : nullptr;
@@ -316,7 +319,6 @@ std::vector<core::FrameView> WaterSim::takeFrames() {
 }
 
 // State
-// -------------------------------------------------------------------------------------------------------------------
 
 StateCopy WaterSim::copyState() {
   ctx_.barrier(gpu::Barrier::kBufferUpdate);

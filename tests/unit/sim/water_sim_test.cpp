@@ -231,6 +231,24 @@ TEST_F(Water, ParametersTakeEffectWithoutARestart) {
   EXPECT_THAT(refused.error().message, HasSubstr("start the room again"));
 }
 
+TEST_F(Water, TakesEveryLiveParameterOfACoupledScene) {
+  core::Scene scene = smallScene();
+  WaterSim& sim = make(scene);
+  sim.step();
+  const ParticleLayout before = *sim.derived().particles;
+  scene.wave->depth_m = 0.7;
+  scene.particles->sound_speed_mps = 9.0;
+  scene.gravity_mps2 = 3.7;
+  scene.particles->viscosity_pas = 200.0;
+  const auto accepted = sim.setScene(scene);
+  ASSERT_TRUE(accepted) << accepted.error().message;
+  EXPECT_EQ(sim.derived().particles->band_m, before.band_m) << "the running room keeps its floor";
+  EXPECT_EQ(sim.derived().particles->cells, before.cells);
+  EXPECT_NEAR(sim.derived().wave->speed_mps, std::sqrt(3.7 * 0.7), 1e-9);
+  for (int i = 0; i < 60; ++i) sim.step();
+  EXPECT_EQ(sim.recoveredCount(), 0u);
+}
+
 TEST_F(Water, AParameterThatBreaksAFixedStepIsRefusedAndChangesNothing) {
   core::Scene scene = smallScene();
   scene.fixed_substeps_count = 4;

@@ -64,7 +64,9 @@ struct Derived {
 
 /// Errors (kInvalidInput) name the field, the value, the bound and what to do; `allow_unstable` waives the step-size
 /// rules only. Ranges are checked where scenes are loaded; derive() checks what needs several fields.
-core::Result<Derived> derive(const core::Scene& scene);
+/// `kept`: the layout of a room that is running. Parameters may change what a new start would look like (a softer water rests
+/// lower); the running room keeps its domain, grid and floor.
+core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kept = nullptr);
 
 /// Whether going from one scene to another needs new buffers or programs (a restart) instead of new uniforms.
 bool needsRestart(const Derived& before, const Derived& after);
