@@ -6,8 +6,8 @@
 
 layout(binding = CELL_START) uniform usamplerBuffer cell_start;
 
-CandidateRange candidateRange(Grid g, ivec3 cell, int dy, int dz, int segment) {
-  CandidateRange r = rowCells(g, cell, dy, dz, segment);
+CandidateRange candidateRange(Grid g, ivec3 cell, int dx, int dz) {
+  CandidateRange r = columnCells(g, cell, dx, dz);
   r.first = int(texelFetch(cell_start, r.first).x);
   r.last = int(texelFetch(cell_start, r.last).x);
   return r;

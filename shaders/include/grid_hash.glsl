@@ -1,6 +1,6 @@
-// Positions to cells and cells to ranges of the sorted particles. Cells have edge H; a row of three x-neighbours is one
-// contiguous range, so the 27 cells around a particle are nine ranges. A periodic x side adds a second segment to rows
-// that wrap. PERIODIC_X and PERIODIC_Z are 0 or 1.
+// Positions to cells and cells to ranges of the sorted particles. Cells have edge H and are numbered y fastest: y is the one
+// axis that is never periodic, so the three y-neighbours of a column are one contiguous range everywhere, and the 27 cells
+// around a particle are nine ranges without a special case at the sides. PERIODIC_X and PERIODIC_Z are 0 or 1.
 #ifndef SPINDRIFT_GRID_HASH
 #define SPINDRIFT_GRID_HASH
 
@@ -30,7 +30,7 @@ ivec3 cellOf(Grid g, vec3 position_m) {
 }
 
 int flatCell(Grid g, ivec3 cell) {
-  return cell.x + g.cells.x * (cell.y + g.cells.y * cell.z);
+  return cell.y + g.cells.y * (cell.x + g.cells.x * cell.z);
 }
 
 /// A run of sorted particles, and what to add to one's own position so that distances to them are right across a
@@ -41,41 +41,27 @@ struct CandidateRange {
   vec3 shift_m;
 };
 
-/// How many segments the rows around a cell have: 2 where they wrap around a periodic x side.
-int rowSegments(Grid g, ivec3 cell) {
-#if PERIODIC_X
-  return cell.x == 0 || cell.x == g.cells.x - 1 ? 2 : 1;
-#else
-  return 1;
-#endif
+/// One axis of a neighbouring column: wraps on a periodic side and says by how much to shift; false outside of walls.
+bool neighbourColumn(inout int c, int cells, float side_m, bool periodic, out float shift_m) {
+  const bool below = c < 0;
+  const bool above = c >= cells;
+  shift_m = below ? side_m : (above ? -side_m : 0.0);
+  c += below ? cells : (above ? -cells : 0);
+  return periodic || !(below || above);
 }
 
-/// Cells of segment 0..rowSegments-1 of the row at (dy, dz) in -1..1, as [first, last), before the start lookup.
-CandidateRange rowCells(Grid g, ivec3 cell, int dy, int dz, int segment) {
+/// Cells of the column at (dx, dz) in -1..1 that can hold neighbours, as [first, last), before the start lookup.
+CandidateRange columnCells(Grid g, ivec3 cell, int dx, int dz) {
   CandidateRange r;
-  r.shift_m = vec3(0.0);
-  const int y = cell.y + dy;
+  int x = cell.x + dx;
   int z = cell.z + dz;
-  bool inside = y >= 0 && y < g.cells.y;
-#if PERIODIC_Z
-  if (z < 0) { z += g.cells.z; r.shift_m.z = g.side_m.z; }
-  else if (z >= g.cells.z) { z -= g.cells.z; r.shift_m.z = -g.side_m.z; }
-#else
-  inside = inside && z >= 0 && z < g.cells.z;
-#endif
-  int x0 = max(cell.x - 1, 0);
-  int x1 = min(cell.x + 1, g.cells.x - 1);
-#if PERIODIC_X
-  if (segment == 1) {
-    const bool left = cell.x == 0;
-    x0 = left ? g.cells.x - 1 : 0;
-    x1 = x0;
-    r.shift_m.x = left ? g.side_m.x : -g.side_m.x;
-  }
-#endif
-  const int base = g.cells.x * (y + g.cells.y * z);
-  r.first = inside ? base + x0 : 0;
-  r.last = inside ? base + x1 + 1 : 0;
+  r.shift_m = vec3(0.0);
+  const bool inside_x = neighbourColumn(x, g.cells.x, g.side_m.x, PERIODIC_X == 1, r.shift_m.x);
+  const bool inside_z = neighbourColumn(z, g.cells.z, g.side_m.z, PERIODIC_Z == 1, r.shift_m.z);
+  const int base = g.cells.y * (x + g.cells.x * z);
+  const bool inside = inside_x && inside_z;
+  r.first = inside ? base + max(cell.y - 1, 0) : 0;
+  r.last = inside ? base + min(cell.y + 1, g.cells.y - 1) + 1 : 0;
   return r;
 }
 

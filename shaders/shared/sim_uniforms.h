@@ -12,7 +12,7 @@ struct SimUniforms {
 #else
 layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
 #endif
-  // Particles' domain and grid; cells have edge support_radius_m, x fastest, then y, then z.
+  // Particles' domain and grid; cells have edge support_radius_m, y fastest, then x, then z.
   float min_x_m;
   float min_y_m;
   float min_z_m;

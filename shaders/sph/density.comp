@@ -28,16 +28,13 @@ void main() {
   const ivec3 cell = cellOf(g, x_i);
 
   float sum = 0.0;
-  const int segments = rowSegments(g, cell);
-  for (int segment = 0; segment < segments; ++segment) {
-    for (int dz = -1; dz <= 1; ++dz) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        const CandidateRange range = candidateRange(g, cell, dy, dz, segment);
-        const vec3 x = x_i + range.shift_m;
-        for (int j = range.first; j < range.last; ++j) {
-          const vec3 r = x - texelFetch(sorted_position, j).xyz;
-          sum += densityShape(dot(r, r), support);
-        }
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const CandidateRange range = candidateRange(g, cell, dx, dz);
+      const vec3 x = x_i + range.shift_m;
+      for (int j = range.first; j < range.last; ++j) {
+        const vec3 r = x - texelFetch(sorted_position, j).xyz;
+        sum += densityShape(dot(r, r), support);
       }
     }
   }

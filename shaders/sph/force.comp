@@ -27,20 +27,17 @@ void main() {
 
   vec3 push = vec3(0.0);
   vec3 drag = vec3(0.0);
-  const int segments = rowSegments(g, cell);
-  for (int segment = 0; segment < segments; ++segment) {
-    for (int dz = -1; dz <= 1; ++dz) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        const CandidateRange range = candidateRange(g, cell, dy, dz, segment);
-        const vec3 x = own.xyz + range.shift_m;
-        for (int j = range.first; j < range.last; ++j) {
-          const vec4 a = texelFetch(pressure_point, j);
-          const vec4 b = texelFetch(motion_point, j);
-          const vec3 r = x - a.xyz;
-          const float r2 = dot(r, r);
-          push += ((own.w + a.w) * pressurePull(r2, support)) * r;
-          drag += (b.w * viscosityLaplacian(sqrt(r2), support.H)) * (b.xyz - v_i);
-        }
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const CandidateRange range = candidateRange(g, cell, dx, dz);
+      const vec3 x = own.xyz + range.shift_m;
+      for (int j = range.first; j < range.last; ++j) {
+        const vec4 a = texelFetch(pressure_point, j);
+        const vec4 b = texelFetch(motion_point, j);
+        const vec3 r = x - a.xyz;
+        const float r2 = dot(r, r);
+        push += ((own.w + a.w) * pressurePull(r2, support)) * r;
+        drag += (b.w * viscosityLaplacian(sqrt(r2), support.H)) * (b.xyz - v_i);
       }
     }
   }

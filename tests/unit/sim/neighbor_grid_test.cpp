@@ -49,7 +49,7 @@ class Grid : public OnDevice {
           std::floor((x[axis] - static_cast<float>(l.min_m[axis])) / static_cast<float>(l.support_radius_m));
       c[axis] = static_cast<std::uint32_t>(std::clamp(u, 0.0f, static_cast<float>(l.cells[axis] - 1)));
     }
-    return c[0] + l.cells[0] * (c[1] + l.cells[1] * c[2]);
+    return c[1] + l.cells[1] * (c[0] + l.cells[0] * c[2]);
   }
 
   std::vector<float> randomPositions(const Derived& d, std::size_t count) {
