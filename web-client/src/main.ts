@@ -7,6 +7,7 @@ import type { CommandAction, ConnectionState, LinkStats } from "./net/messages";
 import { socketUrl, WaterClient, type WorkerLike } from "./net/water_client";
 import { CameraViews } from "./scene/camera_views";
 import { FrameGovernor } from "./scene/frame_governor";
+import type { PixelRect } from "./scene/framing";
 import { elevationRangeM } from "./scene/height_field";
 import { pickWater } from "./scene/pick";
 import { chooseQuality, type ChosenQuality } from "./scene/quality";
@@ -68,6 +69,8 @@ function main(): void {
   let simTimeS = 0;
   let lastAck: { commandId: number; appliedTick: number } | null = null;
   let paused = false;
+  /** Particles without a wave say how high they stand with their first frame only. */
+  let isExtentKnown = true;
   const sentLabels = new Map<number, string>();
 
   const worker = new Worker(new URL("./net/worker.ts", import.meta.url), { type: "module" });
@@ -81,6 +84,10 @@ function main(): void {
     frame: ({ frame }) => {
       simTimeS = frame.timeS;
       scene.take(frame, nowS());
+      if (isExtentKnown) return;
+      const extent = scene.extent();
+      isExtentKnown = extent !== undefined;
+      if (extent) views.measured(extent);
     },
     diagnostics: ({ diagnostics }) => hud.diagnostics(diagnostics),
     ack: ({ commandId, appliedTick }) => {
@@ -131,7 +138,11 @@ function main(): void {
     const sameWater = greeting?.sideM === entered.sideM && greeting.room === entered.room;
     greeting = entered;
     scene.enter(entered);
-    if (!sameWater) views.enter(entered.sideM);
+    if (!sameWater) {
+      const extent = scene.extent();
+      isExtentKnown = extent !== undefined;
+      views.enter(extent ?? { sideM: entered.sideM, minYM: -0.25 * entered.sideM, maxYM: 0 });
+    }
     effects.enter(entered);
     parameters.enter(entered.parameters);
     byId("parameters-box").hidden = entered.parameters.length === 0;
@@ -144,6 +155,8 @@ function main(): void {
       button.disabled = needsWave.has(button.id) && !effects.available;
       button.title = button.disabled ? "This scene has no wave" : "";
     }
+    // The card has this scene's text now, and its height.
+    resize();
   }
 
   byId("splash").addEventListener("click", () => send(effects.splashAt(0, 0), "Splash"));
@@ -182,8 +195,24 @@ function main(): void {
   function resize(): void {
     renderer.setPixelRatio(governor.pixelRatio);
     renderer.setSize(window.innerWidth, window.innerHeight, false);
-    const panelPx = document.body.classList.contains("panel-closed") || window.innerWidth <= kNarrowPx ? 0 : byId("panel").offsetWidth;
-    scene.resize(window.innerWidth, window.innerHeight, panelPx);
+    views.resize(window.innerWidth, window.innerHeight, freePart());
+  }
+
+  /** What card and panel leave of the canvas: beside and under them, on narrow screens between them. */
+  function freePart(): PixelRect {
+    const widthPx = window.innerWidth;
+    const heightPx = window.innerHeight;
+    const open = !document.body.classList.contains("panel-closed");
+    const narrow = widthPx <= kNarrowPx;
+    const panel = byId("panel").getBoundingClientRect();
+    const card = byId("card").getBoundingClientRect();
+    return {
+      leftPx: 0,
+      // The far side of the water is narrow: the card's corner may hang a little into the free part.
+      topPx: narrow ? card.bottom : 0.7 * card.bottom,
+      rightPx: open && !narrow ? panel.left : widthPx,
+      bottomPx: open && narrow ? panel.top : heightPx,
+    };
   }
   window.addEventListener("resize", resize);
   document.addEventListener("visibilitychange", () => client.setVisible(!document.hidden));
@@ -243,7 +272,6 @@ function main(): void {
   Object.defineProperty(window, "spindrift", { value: Object.freeze(spindrift) });
 
   hud.connection(state);
-  views.enter(16);
   resize();
   client.start(socketUrl(location));
 }

@@ -2,20 +2,27 @@
 import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
+import { frameBox, freeTangents, type PixelRect, type Placement, type WaterExtent } from "./framing";
+
 export type ViewName = "splash" | "wave";
 
-/** In sides of the water; the whole square fits a landscape screen. */
-const kViews: Record<ViewName, { position: Vector3; target: Vector3 }> = {
-  splash: { position: new Vector3(0.43, 0.46, 1.22), target: new Vector3(0, -0.035, 0) },
-  wave: { position: new Vector3(0.20, 0.12, 1.30), target: new Vector3(0, 0.02, 0) },
+/** From the water toward the camera; how far away it stands follows from what has to be seen. */
+const kBackward: Record<ViewName, Vector3> = {
+  splash: new Vector3(0.43, 0.50, 1.22),
+  wave: new Vector3(0.20, 0.13, 1.30),
 };
+/** Free parts less wide than this many heights raise the view from above, up to so many times its height. */
+const kWideTangents = 1.3;
+const kMostRaised = 2.6;
 const kTravelS = 0.9;
-/** Screens narrower than this have the camera further back. */
-const kFullAspect = 1.5;
-
 export class CameraViews {
   readonly controls: OrbitControls;
-  private sideM = 16;
+  private extent: WaterExtent = { sideM: 16, minYM: -1, maxYM: 1 };
+  private free: PixelRect = { leftPx: 0, topPx: 0, rightPx: 1, bottomPx: 1 };
+  private widthPx = 1;
+  private heightPx = 1;
+  /** The view that the camera stands in or travels to; none after somebody turned it by hand. */
+  private framed: ViewName | undefined = "splash";
   private travel: { fromM: Vector3; toM: Vector3; fromTargetM: Vector3; toTargetM: Vector3; startedS: number } | undefined;
 
   constructor(
@@ -31,19 +38,42 @@ export class CameraViews {
     // Just above the level of the still water: the page has no under-water view.
     this.controls.maxPolarAngle = Math.PI / 2 - 0.03;
     this.controls.listenToKeyEvents(canvas);
-    this.controls.addEventListener("start", () => (this.travel = undefined));
+    this.controls.addEventListener("start", () => (this.framed = this.travel = undefined));
   }
 
-  enter(sideM: number): void {
-    this.sideM = sideM;
-    this.controls.minDistance = 0.25 * sideM;
-    this.controls.maxDistance = 4 * sideM;
+  /** Other water: back to the first view. */
+  enter(extent: WaterExtent): void {
+    this.extent = extent;
     this.jump("splash");
+  }
+
+  /** The water turned out to be of another height; a view that nobody has left yet follows. */
+  measured(extent: WaterExtent): void {
+    this.extent = extent;
+    if (this.framed) this.jump(this.framed);
+  }
+
+  /**
+   * A canvas of this size in CSS pixels, of which the panels leave `free`: the picture is centred there, and a view that
+   * nobody has left yet is framed anew.
+   */
+  resize(widthPx: number, heightPx: number, free: PixelRect): void {
+    const { camera } = this;
+    camera.aspect = widthPx / Math.max(heightPx, 1);
+    const rightwardPx = (free.leftPx + free.rightPx - widthPx) / 2;
+    const downwardPx = (free.topPx + free.bottomPx - heightPx) / 2;
+    camera.setViewOffset(widthPx, heightPx, -rightwardPx, -downwardPx, widthPx, heightPx);
+    const same = widthPx === this.widthPx && heightPx === this.heightPx && Object.entries(free).every(([edge, px]) => this.free[edge as keyof PixelRect] === px);
+    this.widthPx = widthPx;
+    this.heightPx = Math.max(heightPx, 1);
+    this.free = free;
+    if (!same && this.framed) this.jump(this.framed);
   }
 
   go(name: ViewName, nowS: number): void {
     if (this.reducedMotion()) return this.jump(name);
     const { positionM, targetM } = this.placed(name);
+    this.framed = name;
     this.travel = {
       fromM: this.camera.position.clone(),
       toM: positionM,
@@ -70,18 +100,23 @@ export class CameraViews {
 
   private jump(name: ViewName): void {
     const { positionM, targetM } = this.placed(name);
+    this.framed = name;
     this.travel = undefined;
     this.camera.position.copy(positionM);
     this.controls.target.copy(targetM);
     this.controls.update();
   }
 
-  private placed(name: ViewName): { positionM: Vector3; targetM: Vector3 } {
-    const view = kViews[name];
-    const back = Math.min(Math.max(kFullAspect / this.camera.aspect, 1), 2.1);
-    return {
-      positionM: view.position.clone().multiplyScalar(this.sideM * back),
-      targetM: view.target.clone().multiplyScalar(this.sideM),
-    };
+  private placed(name: ViewName): Placement {
+    const { extent, camera } = this;
+    const tangents = freeTangents(camera.fov, this.heightPx, this.widthPx, this.free);
+    const backward = kBackward[name].clone();
+    // A tall free part shows the square from further above, which fills more of it.
+    if (name === "splash") backward.y *= Math.min(Math.max((kWideTangents * tangents.up) / tangents.across, 1), kMostRaised);
+    const placement = frameBox(extent, backward, tangents);
+    const distanceM = placement.positionM.distanceTo(placement.targetM);
+    this.controls.minDistance = 0.25 * extent.sideM;
+    this.controls.maxDistance = Math.max(4 * extent.sideM, 1.5 * distanceM);
+    return placement;
   }
 }

@@ -16,6 +16,7 @@ import type { Frame, ParticleFrame, SurfaceFrame } from "../net/messages";
 import { FieldPass } from "./field_pass";
 import { FrameRing } from "./frame_ring";
 import { FullscreenPass } from "./fullscreen";
+import type { WaterExtent } from "./framing";
 import { Ground } from "./ground";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { ParticleCloud } from "./particle_cloud";
@@ -28,6 +29,8 @@ import { WaterBody } from "./water_body";
 const kRingCount = 4;
 /** Particles fly on for at most this many frame intervals; then they wait for news. */
 const kMaxAdvanceIntervals = 1.5;
+/** Height left for waves in a view, in sides of the water. */
+const kWaveRoom = 0.04;
 const kMaxResolutionCount = 4096;
 
 export interface Quality {
@@ -95,6 +98,15 @@ export class WaterScene {
     this.camera.updateProjectionMatrix();
   }
 
+  /** What a view has to show: the water with room for its waves, or the particles of the newest frame. */
+  extent(): WaterExtent | undefined {
+    if (!this.greeting) return undefined;
+    const { sideM, wave } = this.greeting;
+    if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM };
+    const frame = this.particleFrames.newest();
+    return frame && { sideM, minYM: frame.minM[1], maxYM: frame.maxM[1] };
+  }
+
   /** Takes over a frame; `nowS` is the client's clock. */
   take(frame: Frame, nowS: number): void {
     if (frame.layer === "surface") this.surfaces.push(frame);
@@ -116,12 +128,6 @@ export class WaterScene {
     const frame = this.surfaces.newest();
     if (!frame) return { sideM, minM: 0, maxM: 0, elevationAtM: () => 0 };
     return { sideM, ...elevationRangeM(frame), elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
-  }
-
-  /** CSS pixels; the rightmost `coveredPx` lie under a panel, so the picture is centred in what is left. */
-  resize(widthPx: number, heightPx: number, coveredPx: number): void {
-    this.camera.aspect = widthPx / Math.max(heightPx, 1);
-    this.camera.setViewOffset(widthPx, heightPx, coveredPx / 2, 0, widthPx, heightPx);
   }
 
   render(nowS: number): void {

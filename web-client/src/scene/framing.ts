@@ -1,0 +1,89 @@
+// Where a camera has to stand to see a whole box inside a part of the canvas. Pure: no DOM, no renderer.
+import { Vector3 } from "three";
+
+/** A part of the canvas in CSS pixels from its top left corner. */
+export interface PixelRect {
+  leftPx: number;
+  topPx: number;
+  rightPx: number;
+  bottomPx: number;
+}
+
+/** An upright box round the y axis: a square of `sideM`, from `minYM` up to `maxYM`. */
+export interface WaterExtent {
+  sideM: number;
+  minYM: number;
+  maxYM: number;
+}
+
+export interface Placement {
+  positionM: Vector3;
+  /** Straight ahead of the camera, as far away as the box's middle. */
+  targetM: Vector3;
+}
+
+/** Share of the free part that stays empty on each side. */
+const kMargin = 0.035;
+/** No free part is taken to be smaller than this share of the canvas: the picture has to go somewhere. */
+const kMinFreeShare = 0.25;
+
+/** Half the free part's width and height as tangents, under a camera whose picture is centred on that part. */
+export function freeTangents(fovDegrees: number, heightPx: number, widthPx: number, free: PixelRect): { across: number; up: number } {
+  const perPx = Math.tan((fovDegrees * Math.PI) / 360) / heightPx;
+  const share = 1 - 2 * kMargin;
+  return {
+    across: perPx * share * Math.max(free.rightPx - free.leftPx, kMinFreeShare * widthPx),
+    up: perPx * share * Math.max(free.bottomPx - free.topPx, kMinFreeShare * heightPx),
+  };
+}
+
+/** Corners along one axis of the picture: sideways and toward the camera, in the camera's own axes, metres. */
+type AxisCorners = [sidewaysM: number, towardM: number][];
+
+/**
+ * The least distance at which all corners lie within ±`tangent`, and how far sideways the camera then stands.
+ *
+ * A corner (x, z) seen from (c, d) is inside the right edge if x - c <= t (d - z), that is c + t d >= x + t z, and
+ * likewise at the left one: the corner that asks most of each edge decides, and both together give d and c.
+ */
+function fitAxis(corners: AxisCorners, tangent: number): { distanceM: number; sidewaysM: number } {
+  const right = Math.max(...corners.map(([x, z]) => x + tangent * z));
+  const left = Math.max(...corners.map(([x, z]) => -x + tangent * z));
+  return { distanceM: (right + left) / (2 * tangent), sidewaysM: (right - left) / 2 };
+}
+
+/** The sideways place that centres the corners seen from `distanceM`, where they fill less than ±`tangent`. */
+function centreAxis(corners: AxisCorners, tangent: number, distanceM: number): number {
+  // A smaller tangent asks for a greater distance: bisect for the one that asks for exactly this.
+  let low = 0;
+  let high = tangent;
+  for (let i = 0; i < 50; ++i) {
+    const middle = (low + high) / 2;
+    if (fitAxis(corners, middle).distanceM > distanceM) low = middle;
+    else high = middle;
+  }
+  return fitAxis(corners, high).sidewaysM;
+}
+
+/** The nearest place from which a camera that looks along -`backward` sees all eight corners within ±`tangents`, centred. */
+export function frameBox(extent: WaterExtent, backward: Vector3, tangents: { across: number; up: number }): Placement {
+  const back = backward.clone().normalize();
+  const right = new Vector3(0, 1, 0).cross(back).normalize();
+  const up = back.clone().cross(right);
+  const middleM = new Vector3(0, (extent.minYM + extent.maxYM) / 2, 0);
+  const half = extent.sideM / 2;
+  const across: AxisCorners = [];
+  const upward: AxisCorners = [];
+  for (const x of [-half, half])
+    for (const y of [extent.minYM, extent.maxYM])
+      for (const z of [-half, half]) {
+        const corner = new Vector3(x, y, z).sub(middleM);
+        across.push([corner.dot(right), corner.dot(back)]);
+        upward.push([corner.dot(up), corner.dot(back)]);
+      }
+  const distanceM = Math.max(fitAxis(across, tangents.across).distanceM, fitAxis(upward, tangents.up).distanceM);
+  const targetM = middleM
+    .addScaledVector(right, centreAxis(across, tangents.across, distanceM))
+    .addScaledVector(up, centreAxis(upward, tangents.up, distanceM));
+  return { positionM: targetM.clone().addScaledVector(back, distanceM), targetM };
+}

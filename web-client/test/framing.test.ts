@@ -1,0 +1,74 @@
+import { PerspectiveCamera, Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+
+import { frameBox, freeTangents, type PixelRect, type WaterExtent } from "../src/scene/framing";
+
+const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
+const waters: WaterExtent[] = [
+  { sideM: 24, minYM: -1.5, maxYM: 1 },
+  { sideM: 100, minYM: -3, maxYM: 4 },
+  { sideM: 2.4, minYM: 0, maxYM: 1.6 },
+  { sideM: 2.4, minYM: -0.6, maxYM: 0.1 },
+];
+const screens: { widthPx: number; heightPx: number; free: PixelRect }[] = [
+  { widthPx: 1280, heightPx: 800, free: { leftPx: 0, topPx: 115, rightPx: 992, bottomPx: 800 } },
+  { widthPx: 900, heightPx: 600, free: { leftPx: 0, topPx: 110, rightPx: 574, bottomPx: 600 } },
+  { widthPx: 390, heightPx: 844, free: { leftPx: 0, topPx: 90, rightPx: 390, bottomPx: 420 } },
+  { widthPx: 2560, heightPx: 700, free: { leftPx: 0, topPx: 0, rightPx: 2560, bottomPx: 700 } },
+];
+
+/** The eight corners of the water in pixels, as a camera set up like the page's sees them. */
+function cornersPx(water: WaterExtent, backward: Vector3, screen: (typeof screens)[number]): { xPx: number; yPx: number }[] {
+  const { widthPx, heightPx, free } = screen;
+  const camera = new PerspectiveCamera(47, widthPx / heightPx, 0.1, 1000);
+  camera.setViewOffset(widthPx, heightPx, (widthPx - free.leftPx - free.rightPx) / 2, (heightPx - free.topPx - free.bottomPx) / 2, widthPx, heightPx);
+  const { positionM, targetM } = frameBox(water, backward, freeTangents(47, heightPx, widthPx, free));
+  camera.position.copy(positionM);
+  camera.lookAt(targetM);
+  camera.updateMatrixWorld();
+  const corners = [];
+  for (const x of [-0.5, 0.5])
+    for (const z of [-0.5, 0.5])
+      for (const y of [water.minYM, water.maxYM]) {
+        const seen = new Vector3(x * water.sideM, y, z * water.sideM).project(camera);
+        corners.push({ xPx: ((seen.x + 1) / 2) * widthPx, yPx: ((1 - seen.y) / 2) * heightPx });
+      }
+  return corners;
+}
+
+describe("a view of the water", () => {
+  it("holds every corner in the free part and fills it one way, from every side, on every screen", () => {
+    for (const water of waters)
+      for (const backward of backwards)
+        for (const screen of screens) {
+          const { free } = screen;
+          const xs = cornersPx(water, backward, screen).map(({ xPx }) => xPx);
+          const ys = cornersPx(water, backward, screen).map(({ yPx }) => yPx);
+          const slack = {
+            left: Math.min(...xs) - free.leftPx,
+            right: free.rightPx - Math.max(...xs),
+            top: Math.min(...ys) - free.topPx,
+            bottom: free.bottomPx - Math.max(...ys),
+          };
+          for (const px of Object.values(slack)) expect(px).toBeGreaterThan(1);
+          expect(slack.left).toBeCloseTo(slack.right, 3);
+          expect(slack.top).toBeCloseTo(slack.bottom, 3);
+          const used = Math.max(1 - (slack.left + slack.right) / (free.rightPx - free.leftPx), 1 - (slack.top + slack.bottom) / (free.bottomPx - free.topPx));
+          expect(used).toBeCloseTo(0.93, 6);
+        }
+  });
+
+  it("is the same picture of twice the water from twice as far", () => {
+    const tangents = freeTangents(47, 800, 1280, screens[0]!.free);
+    const near = frameBox({ sideM: 10, minYM: -1, maxYM: 1 }, backwards[0]!, tangents);
+    const far = frameBox({ sideM: 20, minYM: -2, maxYM: 2 }, backwards[0]!, tangents);
+    expect(far.positionM.distanceTo(near.positionM.multiplyScalar(2))).toBeCloseTo(0, 9);
+  });
+
+  it("does not ask for an endless distance where the panels leave nothing", () => {
+    const nothing = freeTangents(47, 600, 300, { leftPx: 300, topPx: 600, rightPx: 300, bottomPx: 600 });
+    const { positionM } = frameBox(waters[0]!, backwards[0]!, nothing);
+    expect(positionM.length()).toBeGreaterThan(24);
+    expect(positionM.length()).toBeLessThan(24 * 20);
+  });
+});
