@@ -59,7 +59,7 @@ function main(): void {
   }
   const { renderer, quality } = made;
   document.body.classList.toggle("plain", quality.samplesCount === 1);
-  const governor = new FrameGovernor(Math.min(window.devicePixelRatio || 1, quality.maxPixelRatio));
+  const governor = new FrameGovernor(Math.min(window.devicePixelRatio || 1, quality.maxPixelRatio), quality.adaptive);
 
   const hud = new Hud();
   const toast = new Toast(byId("toast"));

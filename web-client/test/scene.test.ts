@@ -150,6 +150,14 @@ describe("the frame governor", () => {
     expect(governor.remark()).toBe("");
   });
 
+  it("leaves a resolution that was asked for alone", () => {
+    const governor = new FrameGovernor(2, chooseQuality("?quality=high", "SwiftShader").adaptive);
+    for (let i = 0; i < 400; ++i) expect(governor.note(80)).toBe(false);
+    expect(governor.pixelRatio).toBe(2);
+    expect(chooseQuality("", "ANGLE (NVIDIA, GeForce)").adaptive).toBe(true);
+    expect(chooseQuality("?quality=low", "A GPU").adaptive).toBe(true);
+  });
+
   it("raises it again at most twice", () => {
     const governor = new FrameGovernor(1);
     let raises = 0;

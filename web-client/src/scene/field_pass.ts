@@ -31,13 +31,15 @@ export class FieldPass {
   private readonly slots: [Slot, Slot];
   private readonly pass: FullscreenPass;
 
+  /** Surfaces of `resolutionCount` samples a side, drawn into `fieldCount` (at most as many) texels a side. */
   constructor(
     private readonly resolutionCount: number,
+    fieldCount: number,
     sideM: number,
     periodic: boolean,
   ) {
     const wrap = periodic ? RepeatWrapping : ClampToEdgeWrapping;
-    this.target = new WebGLRenderTarget(resolutionCount, resolutionCount, {
+    this.target = new WebGLRenderTarget(fieldCount, fieldCount, {
       format: RGBAFormat,
       type: HalfFloatType,
       minFilter: LinearFilter,
@@ -66,6 +68,7 @@ export class FieldPass {
           u_quantum_m: { value: new Vector2(1, 1) },
           u_mix: { value: 0 },
           u_cell_m: { value: sideM / resolutionCount },
+          u_cells_per_texel: { value: resolutionCount / fieldCount },
           u_periodic: { value: periodic },
         },
         { depthTest: false, depthWrite: false },

@@ -16,13 +16,17 @@ export class FrameGovernor {
   private fastMs = 0;
   private raisesLeft = 2;
 
-  constructor(private readonly wantedPixelRatio: number) {
+  /** `adaptive` false: the pixel ratio stays as it is. */
+  constructor(
+    private readonly wantedPixelRatio: number,
+    private readonly adaptive = true,
+  ) {
     this.pixelRatio = wantedPixelRatio;
   }
 
   /** Notes one frame's time; true when pixelRatio changed. */
   note(frameMs: number): boolean {
-    if (frameMs > kPauseMs) return false;
+    if (!this.adaptive || frameMs > kPauseMs) return false;
     this.slowMs = frameMs > kSlowMs ? this.slowMs + frameMs : 0;
     this.fastMs = frameMs < kFastMs ? this.fastMs + frameMs : 0;
     if (this.slowMs >= kSlowForMs && this.pixelRatio > kMinPixelRatio) {

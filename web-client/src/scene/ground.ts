@@ -9,7 +9,7 @@ export class Ground {
   private readonly uniforms: Uniforms;
 
   /** `field` absent: a floor without water above it. */
-  constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number) {
+  constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number, plain: boolean) {
     this.uniforms = {
       ...sky.uniforms,
       u_camera_m: { value: new Vector3() },
@@ -20,7 +20,7 @@ export class Ground {
     };
     const geometry = new CircleGeometry(40 * sideM, 64);
     geometry.rotateX(-Math.PI / 2);
-    this.mesh = new Mesh(geometry, makeMaterial("ground", this.uniforms));
+    this.mesh = new Mesh(geometry, makeMaterial("ground", this.uniforms, { defines: plain ? { PLAIN: 1 } : {} }));
     this.mesh.frustumCulled = false;
     this.lowerTo(-depthM);
   }

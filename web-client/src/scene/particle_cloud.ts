@@ -27,7 +27,7 @@ export class ParticleCloud {
   private shown: ParticleFrame | undefined;
 
   /** `field` absent: particles without a surface over them. `depthM`: how far below y = 0 the light has faded. */
-  constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number) {
+  constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number, quality: { plain: boolean; samplesCount: number }) {
     this.uniforms = {
       ...sky.uniforms,
       u_camera_world: { value: new Matrix4() },
@@ -43,7 +43,10 @@ export class ParticleCloud {
       u_side_m: { value: sideM },
       u_has_water: { value: field !== undefined },
     };
-    this.mesh = new Points(new BufferGeometry(), makeMaterial("particle", this.uniforms));
+    // The soft edge: by samples where there are several a pixel, blended where there is one. Both write depth.
+    const many = quality.samplesCount > 1;
+    const defines = quality.plain ? { PLAIN: 1 } : {};
+    this.mesh = new Points(new BufferGeometry(), makeMaterial("particle", this.uniforms, { alphaToCoverage: many, transparent: !many, defines }));
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
   }

@@ -65,7 +65,7 @@ export class WaterBody {
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
-  constructor(sky: Sky, field: Texture, behind: BehindTextures, sideM: number, depthM: number, cellsCount: number) {
+  constructor(sky: Sky, field: Texture, behind: BehindTextures, sideM: number, depthM: number, quality: { surfaceCellsCount: number; plain: boolean }) {
     this.uniforms = {
       ...sky.uniforms,
       u_field: { value: field },
@@ -77,9 +77,11 @@ export class WaterBody {
       u_side_m: { value: sideM },
       u_depth_m: { value: depthM },
     };
+    const cellsCount = quality.surfaceCellsCount;
+    const defines = quality.plain ? { PLAIN: 1 } : {};
     this.meshes = [
-      new Mesh(makeGrid(cellsCount), makeMaterial("water", this.uniforms, { side: DoubleSide })),
-      new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { SKIRT: 1 } })),
+      new Mesh(makeGrid(cellsCount), makeMaterial("water", this.uniforms, { side: DoubleSide, defines })),
+      new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })),
     ];
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;

@@ -1,5 +1,5 @@
-// Everything that is drawn of one room. A frame: field pass → sky, floor, particles into a linear target → that target
-// to the canvas → the water over it, reading the target for what shines through.
+// Everything that is drawn of one room. A frame: field pass → sky, floor, particles into a linear target → the water to
+// the canvas, reading the target for what shines through → the target where no water is.
 import {
   DepthTexture,
   HalfFloatType,
@@ -38,6 +38,9 @@ export interface Quality {
   surfaceCellsCount: number;
   /** Samples a pixel for spheres and floor. */
   samplesCount: number;
+  /** As in ChosenQuality. */
+  plain: boolean;
+  fieldCountMax: number;
 }
 
 export class WaterScene {
@@ -66,7 +69,7 @@ export class WaterScene {
     this.particleFrames = new FrameRing<ParticleFrame>(kRingCount, release);
     this.sky = new Sky(quality.samplesCount > 1);
     this.present = new FullscreenPass(
-      makeMaterial("present", { ...this.sky.uniforms, u_behind: { value: null } }, { depthTest: false, depthWrite: false }),
+      makeMaterial("present", { ...this.sky.uniforms, u_behind: { value: null } }, { depthWrite: false }),
     );
     renderer.autoClear = false;
     this.behind = this.makeBehind(1, 1);
@@ -82,15 +85,15 @@ export class WaterScene {
     const depthM = wave?.depthM ?? 1;
     if (wave) {
       const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
-      this.field = new FieldPass(resolutionCount, sideM, wave.periodic);
+      this.field = new FieldPass(resolutionCount, Math.min(resolutionCount, this.quality.fieldCountMax), sideM, wave.periodic);
       this.field.renderStill(this.renderer);
-      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), sideM, depthM, this.quality.surfaceCellsCount);
+      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), sideM, depthM, this.quality);
       this.waters.add(this.body.group);
     }
-    this.ground = new Ground(this.sky, this.field?.texture, sideM, depthM);
+    this.ground = new Ground(this.sky, this.field?.texture, sideM, depthM, this.quality.plain);
     this.solids.add(this.ground.mesh);
     if (greeting.hasParticles) {
-      this.cloud = new ParticleCloud(this.sky, this.field?.texture, sideM, depthM);
+      this.cloud = new ParticleCloud(this.sky, this.field?.texture, sideM, depthM, this.quality);
       this.solids.add(this.cloud.mesh);
     }
     this.camera.near = sideM / 160;
@@ -151,8 +154,9 @@ export class WaterScene {
     this.present.material.uniforms["u_behind"]!.value = this.behind.texture;
     renderer.setRenderTarget(null);
     renderer.clear();
-    this.present.render(renderer, null);
     renderer.render(this.waters, camera);
+    // Last, so that only pixels without water are shaded.
+    this.present.render(renderer, null);
   }
 
   /** What lives only on the GPU is drawn again. */

@@ -6,6 +6,7 @@ uniform isampler2D u_to;
 uniform vec2 u_quantum_m;
 uniform float u_mix;
 uniform float u_cell_m;
+uniform float u_cells_per_texel;  // 1 or more; with more, the neighbourhood below has wider steps
 uniform bool u_periodic;
 
 layout(location = 0) out vec4 field;
@@ -20,13 +21,15 @@ float elevation(ivec2 cell, int n) {
 
 void main() {
   int n = textureSize(u_from, 0).x;
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  float a = elevation(at + ivec2(-1, -1), n), b = elevation(at + ivec2(0, -1), n), c = elevation(at + ivec2(1, -1), n);
-  float d = elevation(at + ivec2(-1, 0), n), e = elevation(at, n), f = elevation(at + ivec2(1, 0), n);
-  float g = elevation(at + ivec2(-1, 1), n), h = elevation(at + ivec2(0, 1), n), i = elevation(at + ivec2(1, 1), n);
-  float slope_x = (c + 2.0 * f + i - a - 2.0 * d - g) / (8.0 * u_cell_m);
-  float slope_z = (g + 2.0 * h + i - a - 2.0 * b - c) / (8.0 * u_cell_m);
-  float curvature = (0.5 * (a + c + g + i) + b + d + f + h - 6.0 * e) / (2.0 * u_cell_m * u_cell_m);
+  ivec2 at = ivec2(gl_FragCoord.xy * u_cells_per_texel);
+  int k = int(u_cells_per_texel + 0.5);
+  float step_m = float(k) * u_cell_m;
+  float a = elevation(at + k * ivec2(-1, -1), n), b = elevation(at + k * ivec2(0, -1), n), c = elevation(at + k * ivec2(1, -1), n);
+  float d = elevation(at + k * ivec2(-1, 0), n), e = elevation(at, n), f = elevation(at + k * ivec2(1, 0), n);
+  float g = elevation(at + k * ivec2(-1, 1), n), h = elevation(at + k * ivec2(0, 1), n), i = elevation(at + k * ivec2(1, 1), n);
+  float slope_x = (c + 2.0 * f + i - a - 2.0 * d - g) / (8.0 * step_m);
+  float slope_z = (g + 2.0 * h + i - a - 2.0 * b - c) / (8.0 * step_m);
+  float curvature = (0.5 * (a + c + g + i) + b + d + f + h - 6.0 * e) / (2.0 * step_m * step_m);
   float smoothed = (4.0 * e + 2.0 * (b + d + f + h) + a + c + g + i) / 16.0;
   field = vec4(smoothed, slope_x, slope_z, curvature);
 }

@@ -1,4 +1,5 @@
-// The floor: pale stone outside, tiles under the water, lit through the surface (crests gather light, troughs spread it).
+// The floor: warm stone outside, tiles under the water, lit through the surface (crests gather light, troughs spread it).
+// PLAIN: without that light.
 #include <sky>
 
 in vec3 v_world;
@@ -9,38 +10,50 @@ uniform float u_depth_m;
 uniform bool u_has_water;
 layout(location = 0) out vec4 color;
 
-float joint(vec2 at, float tile_m, float joint_m) {
-  vec2 inTile = abs(fract(at / tile_m) - 0.5) * tile_m;
-  vec2 edge = 0.5 * tile_m - inTile;
-  float blur = max(fwidth(at.x) + fwidth(at.y), 1e-4);
-  float line = 1.0 - smoothstep(joint_m - blur, joint_m + blur, min(edge.x, edge.y));
-  return line * clamp(joint_m * 6.0 / blur, 0.0, 1.0);
-}
-
 #include <cell_hash>
+
+// Slabs of `tile_m` with darker joints: a factor round 1. Whatever is finer than a pixel fades to its mean, so that far
+// slabs neither flicker nor show as blocks.
+float slabs(vec2 at, float tile_m, float uneven, float joint_dark) {
+  vec2 cell = at / tile_m;
+  vec2 step_cells = fwidth(cell);
+  float blur = max(step_cells.x, step_cells.y);
+  float fine = 1.0 - smoothstep(0.12, 0.45, blur);
+  if (fine <= 0.0) return 1.0;
+  vec2 edge = 0.5 - abs(fract(cell) - 0.5);
+  float joint = 1.0 - smoothstep(0.011 - 0.5 * blur, 0.011 + blur, min(edge.x, edge.y));
+  float seen = fine * min(0.05 / blur, 1.0);
+  return 1.0 + fine * uneven * (cellHash(floor(cell)) - 0.5) - seen * joint_dark * joint;
+}
 
 void main() {
   vec2 at = v_world.xz;
   vec2 outside = max(abs(at) - 0.5 * u_side_m, 0.0);
   float away_m = length(outside);
   vec3 light = kSunColor * 0.85 * u_sun_direction.y + vec3(0.34, 0.42, 0.52);
-  vec3 stone = vec3(0.43, 0.39, 0.335) * (0.92 + 0.16 * cellHash(floor(at / 2.0)));
-  stone *= 1.0 - 0.28 * joint(at, 2.0, 0.018);
-  vec3 albedo = stone * mix(0.42, 1.0, smoothstep(-0.2, 0.22 * u_side_m, away_m));
+  vec3 toward = v_world - u_camera_m;
+  float distance_m = length(toward);
+  vec3 lit;
   if (u_has_water && away_m <= 0.0) {
-    vec3 tile = vec3(0.15, 0.34, 0.40) * (0.93 + 0.14 * cellHash(floor(at / 0.5)));
-    albedo = tile * (1.0 - 0.30 * joint(at, 0.5, 0.012));
+#ifndef PLAIN
     // Sunlight reaching this point crossed the surface further along toward the sun, bent to a steeper path.
     vec2 crossed = at + u_sun_direction.xz / u_sun_direction.y * u_depth_m * 0.62;
     float curvature = texture(u_field, crossed / u_side_m + 0.5).a;
     float gathered = 1.0 / clamp(1.0 + 0.25 * u_depth_m * curvature, 0.35, 4.0);
     light *= mix(0.85, gathered, 0.75);
+#endif
+    lit = vec3(0.20, 0.43, 0.47) * slabs(at, u_side_m / 48.0, 0.14, 0.30) * light;
+  } else {
+    float shade = mix(0.50, 1.0, smoothstep(-0.2, 0.14 * u_side_m, away_m));
+    lit = vec3(0.47, 0.395, 0.305) * shade * slabs(at, u_side_m / 12.0, 0.12, 0.26) * light;
   }
-  vec3 lit = albedo * light;
-  vec3 toward = v_world - u_camera_m;
-  float distance_m = length(toward);
-  float far = distance_m / (11.0 * u_side_m);
+  // Clear near the water, gone before the disc ends: the horizon is the sky's own colour.
+  float far = max(distance_m / u_side_m - 1.2, 0.0) / 4.0;
   float haze = far * far / (1.0 + far * far);
-  vec3 horizon = skyLight(normalize(vec3(toward.x, 0.035 * distance_m, toward.z)));
-  color = vec4(mix(lit, horizon, haze), 1.0);
+  if (haze > 0.01) {
+    haze += (1.0 - haze) * smoothstep(22.0, 38.0, distance_m / u_side_m);
+    vec3 horizon = skyLight(normalize(vec3(toward.x, 0.02 * distance_m, toward.z)));
+    lit = mix(lit, horizon, haze);
+  }
+  color = vec4(lit, 1.0);
 }

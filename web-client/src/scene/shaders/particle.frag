@@ -1,4 +1,5 @@
-// A sphere hit by the pixel's ray: exact normal and depth. Colour: deep blue where dense, light cyan where thin, white foam.
+// A sphere hit by the pixel's ray: exact normal and depth, an edge one pixel soft. Colour: deep blue where dense, light
+// cyan where thin, white foam. PLAIN: without the mirrored sky.
 #include <sky>
 
 flat in vec3 v_center_m;
@@ -19,19 +20,22 @@ void main() {
   vec3 ray = normalize(far.xyz / far.w);
   float along = dot(ray, v_center_m);
   float miss2 = dot(v_center_m, v_center_m) - along * along;
-  float inside2 = u_radius_m * u_radius_m - miss2;
-  if (inside2 < 0.0) discard;
-  vec3 hit = ray * (along - sqrt(inside2));
-  vec3 normal_view = (hit - v_center_m) / u_radius_m;
+  float pixel_m = 2.0 * along / (projectionMatrix[1][1] * u_resolution.y);
+  float covered = (u_radius_m - sqrt(miss2)) / pixel_m + 0.5;
+  if (covered <= 0.0) discard;
+  vec3 hit = ray * (along - sqrt(max(u_radius_m * u_radius_m - miss2, 0.0)));
+  vec3 normal_view = normalize(hit - v_center_m);
   vec3 normal = mat3(u_camera_world) * normal_view;
 
   // A sphere whose centre is in the water does not poke through the surface: its cap is cut just under it, so that
   // the band of particles reads as water. One that has left the water is whole.
-  float out_of_water = smoothstep(0.0, 0.6, v_above_m / u_radius_m);
+  float out_of_water = smoothstep(0.15, 1.0, v_above_m / u_radius_m);
   float highest_m = v_world_y_m - v_above_m - 0.015 + out_of_water * 2.5 * u_radius_m;
   vec3 world_ray = mat3(u_camera_world) * ray;
   float over_m = v_world_y_m + normal.y * u_radius_m - highest_m;
   if (over_m > 0.0 && world_ray.y < -0.02) hit += ray * min(over_m / -world_ray.y, 2.0 * u_radius_m);
+  // A soft edge lets whatever comes later and lies behind it draw over it, rather than leave a rim of the background.
+  if (covered < 1.0) hit += ray * 2.0 * u_radius_m;
   vec4 clip = projectionMatrix * vec4(hit, 1.0);
   gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
 
@@ -39,11 +43,13 @@ void main() {
   float dense = smoothstep(0.30, 0.92, v_tint_foam.x);
   vec3 water = mix(vec3(0.24, 0.74, 0.86), vec3(0.010, 0.16, 0.38), dense);
   // Bubbles under water are dimmer than foam on it.
-  float foam = smoothstep(0.06, 0.85, v_tint_foam.y) * mix(0.5, 1.0, out_of_water);
-  vec3 albedo = mix(water, vec3(0.93, 0.97, 1.0), foam);
+  float foam = smoothstep(0.06, 0.75, v_tint_foam.y) * mix(0.5, 1.0, out_of_water);
+  // In the water the single sphere hardly differs from what is round it.
+  water = mix(mix(water, vec3(0.035, 0.33, 0.46), 0.6), water, out_of_water);
+  vec3 albedo = mix(water, vec3(0.95, 0.98, 1.0), foam);
 
   float sun = clamp(dot(normal, u_sun_direction) * 0.6 + 0.4, 0.0, 1.0);
-  vec3 ambient = mix(vec3(0.16, 0.22, 0.28), vec3(0.52, 0.66, 0.84), normal.y * 0.5 + 0.5);
+  vec3 ambient = mix(vec3(0.20, 0.28, 0.36), vec3(0.52, 0.66, 0.84), normal.y * 0.5 + 0.5);
   float buried = clamp(-v_world_y_m / u_depth_m, 0.0, 1.0);
   vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * mix(1.0, 0.6, buried) * mix(0.72, 1.0, out_of_water);
 
@@ -53,8 +59,12 @@ void main() {
     float away = 1.0 - clamp(dot(normal, toward_eye), 0.0, 1.0);
     float grazing = away * away * away * away;
     vec3 mirrored = reflect(-toward_eye, normal);
+#ifdef PLAIN
+    lit += gloss * (0.04 + 0.38 * grazing) * vec3(0.45, 0.60, 0.78);
+#else
     lit += gloss * (0.04 + 0.38 * grazing) * skyLight(mirrored);
+#endif
     lit += gloss * kSunColor * 1.6 * pow(max(dot(mirrored, u_sun_direction), 0.0), 60.0);
   }
-  color = vec4(lit, 1.0);
+  color = vec4(lit, min(covered, 1.0));
 }

@@ -44,5 +44,5 @@ void main() {
   float off = length(v_center_m.xy) / ahead_m;
   float half_width = u_radius_m / sqrt(distance_m * distance_m - u_radius_m * u_radius_m);
   float reach = half_width * (1.0 + off * off) / max(1.0 - off * half_width, 0.1);
-  gl_PointSize = reach * projectionMatrix[1][1] * u_resolution.y + 1.0;
+  gl_PointSize = reach * projectionMatrix[1][1] * u_resolution.y + 2.0;
 }

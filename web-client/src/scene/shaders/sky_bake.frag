@@ -32,7 +32,7 @@ void main() {
   vec3 middle = vec3(0.15, 0.36, 0.68);
   vec3 horizon = vec3(0.58, 0.72, 0.84);
   vec3 sky = mix(middle, zenith, smoothstep(0.12, 0.75, up));
-  sky = mix(horizon, sky, smoothstep(-0.02, 0.30, up));
+  sky = mix(horizon, sky, smoothstep(-0.02, 0.20, up));
   sky += vec3(1.0, 0.75, 0.45) * (0.07 * pow(toward_sun, 5.0) + 0.28 * pow(toward_sun, 110.0));
   vec2 plane = direction.xz / (up + 0.16);
   float cover = cloud(plane * vec2(0.75, 1.05) + vec2(3.1, 1.7));

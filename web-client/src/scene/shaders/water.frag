@@ -1,5 +1,5 @@
 // The water's skin: mirrored sky by Fresnel, and through it what was drawn before, bent by the slope, its colour absorbed
-// along the path in the water (Beer-Lambert, a per channel), and replaced by scattered light.
+// along the path in the water (Beer-Lambert, a per channel), and replaced by scattered light. PLAIN: unbent.
 #include <sky>
 
 in vec3 v_world;
@@ -38,7 +38,8 @@ float wayOut(vec3 from, vec3 direction) {
 
 void main() {
   vec2 uv = gl_FragCoord.xy / u_resolution;
-  if (texture(u_behind_depth, uv).r < gl_FragCoord.z) discard;
+  float behind_depth = texture(u_behind_depth, uv).r;
+  if (behind_depth < gl_FragCoord.z) discard;
 
   vec3 from_eye = v_world - u_camera_m;
   float distance_m = length(from_eye);
@@ -52,23 +53,26 @@ void main() {
 #endif
 
   // What lies behind. Through the surface it is shifted as by refraction; where the shift would catch something in front, look straight instead.
+  float way_m = wayOut(v_world, ray);
   vec2 shifted_uv = uv;
-#ifndef SKIRT
+#if !defined(SKIRT) && !defined(PLAIN)
   vec3 bent = refract(ray, normal, 0.75);
-  float straight_m = distance_m * (viewZ(texture(u_behind_depth, uv).r) / v_view_z - 1.0);
-  float reach_m = clamp(min(straight_m, wayOut(v_world, ray)), 0.0, 0.8);
+  float straight_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
+  float reach_m = clamp(min(straight_m, way_m), 0.0, 0.8);
   vec3 shift = mat3(viewMatrix) * (bent - ray) * reach_m;
   shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
-  if (texture(u_behind_depth, shifted_uv).r < gl_FragCoord.z) shifted_uv = uv;
+  float shifted_depth = texture(u_behind_depth, shifted_uv).r;
+  if (shifted_depth < gl_FragCoord.z) shifted_uv = uv;
+  else behind_depth = shifted_depth;
 #endif
   vec3 behind = texture(u_behind, shifted_uv).rgb;
-  float behind_m = distance_m * (viewZ(texture(u_behind_depth, shifted_uv).r) / v_view_z - 1.0);
-  float path_m = clamp(behind_m, 0.0, wayOut(v_world, ray));
+  float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
+  float path_m = clamp(behind_m, 0.0, way_m);
 
   // Light came down to what is seen before it came up to the eye.
   vec3 passed = exp(-kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = mix(vec3(0.006, 0.070, 0.135), vec3(0.030, 0.27, 0.34), lifted) * 1.2;
+  vec3 scattered = mix(vec3(0.004, 0.085, 0.155), vec3(0.030, 0.34, 0.40), lifted) * 1.2;
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun;
   scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
@@ -86,7 +90,7 @@ void main() {
   mirrored.y = abs(mirrored.y);
   vec3 water = mix(under, skyLight(mirrored), fresnel);
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 2200.0) * 11.0 + pow(at_sun, 220.0) * 0.5) * (0.1 + fresnel);
+  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel);
 #endif
   color = vec4(toDisplay(water), 1.0);
 }
