@@ -1,6 +1,8 @@
 // spindrift: the program. Parses flags and hands over to the commands.
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -83,7 +85,11 @@ int run(int argc, char** argv) {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
-    std::fprintf(stderr, "spindrift: %s; run 'spindrift --help'\n", error.what());
+    // CLI11 misses the subcommand before it minds what stands in its place.
+    const std::vector<std::string> unknown =
+        cli.get_subcommands().empty() ? cli.remaining() : std::vector<std::string>{};
+    const std::string what = unknown.empty() ? error.what() : "there is no command or flag '" + unknown.front() + "'";
+    std::fprintf(stderr, "spindrift: %s; run 'spindrift --help'\n", what.c_str());
     return kUsageError;
   }
   setUpLogging(log_level);

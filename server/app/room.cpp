@@ -73,17 +73,18 @@ void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder) {
   if (!paused_) unpaused_wall_s_ += duration<double>(now - last_run_).count();
   last_run_ = now;
   handOverFrames(encoder);
+  if (paused_ || now >= clock_.due()) applyCommands(hub);
   if (paused_) {
-    applyCommands(hub);
     if (now >= next_idle_frame_) requestFrame(now, hub);
   } else if (now >= clock_.due()) {
-    applyCommands(hub);
     const auto begin = std::chrono::steady_clock::now();
     sim_->step();
     const auto end = std::chrono::steady_clock::now();
     step_ms_sum_ += duration<double, std::milli>(end - begin).count();
     ++step_count_;
     run_s_ += sim_->derived().tick_s;
+    unpaused_wall_s_ += duration<double>(end - last_run_).count();
+    last_run_ = end;
     clock_.ticked(end);
     if (sim_->time_s() + 1e-9 >= next_frame_s_) requestFrame(end, hub);
     watchRealTime(end);
@@ -159,7 +160,7 @@ std::optional<stream::CommandRejection> Room::setParameter(const core::Command& 
 
 void Room::requestFrame(TimePoint now, net::Hub& hub) {
   const double interval_s = clock_.speed() / scene_.stream().frame_rate_hz();  // frames keep their rate in wall time
-  next_frame_s_ = std::max(next_frame_s_ + interval_s, sim_->time_s());
+  if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, sim_->time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
   wants_diagnostics_ = wants_diagnostics_ || hub.watcherCount(name_, slot(v1::LAYER_DIAGNOSTICS)) > 0;
   const sim::FrameRequest request{

@@ -35,7 +35,8 @@ core::Result<std::vector<RoomSetup>> loadRooms(const ServeOptions& options) {
   rooms.push_back(*std::move(first));
   for (const std::string& text : options.rooms) {
     const auto equals = text.find('=');
-    if (equals == std::string::npos) return Error{ErrorCode::kInvalidInput, "--room '" + text + "': write NAME=SCENE"};
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      return Error{ErrorCode::kInvalidInput, "--room '" + text + "': write NAME=SCENE"};
     auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1));
     if (!room) return room.error();
     for (const RoomSetup& known : rooms) {
@@ -88,12 +89,12 @@ int serve(const ServeOptions& options) {
   server_options.network.port = options.port;
   server_options.network.thread_count = options.thread_count;
   server_options.network.web_root = options.web_root.empty() ? findWebRoot().string() : options.web_root;
-  if (server_options.network.web_root.empty())
-    spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
+  const bool has_page = !server_options.network.web_root.empty();
   auto server = WaterServer::start(std::move(server_options));
   if (!server) return fail(server.error());
 
   spdlog::info("simulation runs on {}", (*server)->deviceLine());
+  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
   std::fflush(stdout);
   const int signal = signals.wait();
