@@ -95,6 +95,7 @@ bool WsClient::connect(const std::string& host, std::uint16_t port, const std::s
   if (impl_->receive_buffer_bytes > 0) {
     tcp.socket().set_option(asio::socket_base::receive_buffer_size(impl_->receive_buffer_bytes), ignored);
   }
+  tcp.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
   if (!impl_->complete([&](auto handler) { tcp.async_connect(endpoint, handler); })) return false;
   ws.set_option(websocket::stream_base::decorator([&subprotocol](websocket::request_type& request) {
     if (!subprotocol.empty()) request.set(beast::http::field::sec_websocket_protocol, subprotocol);

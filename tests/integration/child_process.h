@@ -1,0 +1,46 @@
+// Runs a program and reads what it prints, with a bound on every wait.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "ws_client.h"
+
+namespace spindrift::test {
+
+class ChildProcess {
+ public:
+  /// Starts `program` with `arguments`, this process's environment and `extra_environment` ("NAME=value") on top, and
+  /// nothing on standard input. Throws std::runtime_error if that does not work.
+  ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
+               const std::vector<std::string>& extra_environment = {});
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+  ~ChildProcess();  ///< kills it if it still runs
+
+  /// Reads until standard output holds a whole line that begins with `prefix`; that line, or nullopt after kPatience or
+  /// the end of the output.
+  std::optional<std::string> waitForLine(const std::string& prefix);
+  void signal(int number) const;
+  /// Reads to the end of both outputs; the exit code, 128 + the signal that ended it, or nullopt after `timeout`.
+  std::optional<int> wait(std::chrono::milliseconds timeout = kPatience);
+
+  const std::string& out() const { return out_; }
+  const std::string& err() const { return err_; }
+
+ private:
+  /// Reads what comes before `deadline`; false once both outputs have ended or time is up.
+  bool readSome(std::chrono::steady_clock::time_point deadline);
+
+  pid_t pid_ = -1;
+  int out_pipe_ = -1;
+  int err_pipe_ = -1;
+  std::string out_;
+  std::string err_;
+};
+
+}  // namespace spindrift::test

@@ -1,0 +1,195 @@
+// `spindrift serve` as a process: how it starts, what it refuses, how it ends.
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <spindrift/v1/wire.pb.h>
+
+#include "program_fixture.h"
+#include "scripted_client.h"
+
+namespace spindrift::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Spindrift's own bound: patience for goodbyes plus a second, with room for a loaded machine.
+constexpr std::chrono::milliseconds kStopBound{5'000};
+
+/// A port of the loopback interface that somebody else listens on.
+class TakenPort {
+ public:
+  TakenPort() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size_bytes = sizeof address;
+    const bool is_listening = ::bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 &&
+                              ::listen(socket_, 1) == 0 &&
+                              ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size_bytes) == 0;
+    port_ = is_listening ? ntohs(address.sin_port) : 0;
+  }
+  TakenPort(const TakenPort&) = delete;
+  TakenPort& operator=(const TakenPort&) = delete;
+  ~TakenPort() { ::close(socket_); }
+  std::string text() const { return std::to_string(port_); }
+
+ private:
+  int socket_;
+  unsigned port_ = 0;
+};
+
+class Serve : public ProgramTest {
+ protected:
+  /// `serve` with the small scene on the software device and a free port, unless `more` says otherwise.
+  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all = {"serve", "--scene", smallScene()};
+    const auto setDefault = [&](const std::string& flag, const std::string& value) {
+      if (std::ranges::find(more, flag) == more.end()) all.insert(all.end(), {flag, value});
+    };
+    setDefault("--device", "software");
+    setDefault("--port", "0");
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+/// A server that is ready; the test is skipped where no device is usable.
+class RunningServe : public Serve {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder().path() / "web");
+    child_ = std::make_unique<ChildProcess>(
+        SPINDRIFT_PROGRAM,
+        arguments({"--web-root", (folder().path() / "web").string(), "--room", "b=" + smallScene()}));
+    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
+    if (!line) {
+      const auto exit_code = child_->wait();
+      if (exit_code == 3) GTEST_SKIP() << child_->err();
+      FAIL() << "not ready: " << child_->err();
+    }
+    port_ = static_cast<std::uint16_t>(std::stoul(line->substr(line->rfind(':') + 1)));
+  }
+
+  void expectCleanEndOn(int signal) {
+    ScriptedClient client(port_);
+    ASSERT_TRUE(client.isOpen());
+    client.hello();
+    client.subscribe(v1::LAYER_SURFACE);
+    ASSERT_TRUE(client.nextFrame(v1::LAYER_SURFACE));
+    child_->signal(signal);
+    EXPECT_TRUE(client.ws().waitClosed());
+    EXPECT_EQ(client.ws().closeCode(), 1001);
+    EXPECT_EQ(child_->wait(kStopBound), 0);
+    EXPECT_EQ(lineCount(child_->out()), 1) << child_->out();
+    EXPECT_THAT(child_->err(), HasSubstr("room main: "));
+    EXPECT_THAT(child_->err(), HasSubstr("room b: "));
+    EXPECT_THAT(child_->err(), HasSubstr("1 sessions"));
+  }
+
+  std::unique_ptr<ChildProcess> child_;
+  std::uint16_t port_ = 0;
+};
+
+TEST_F(Serve, PortInUseIsNamedWithTheFlag) {
+  const TakenPort taken;
+  const Outcome outcome = runProgram(arguments({"--port", taken.text()}));
+  if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
+  expectOneErrorLine(outcome, 2, {"port " + taken.text(), "in use", "--port"});
+}
+
+TEST_F(Serve, AddressThatIsNoneIsNamedWithTheFlag) {
+  const Outcome outcome = runProgram(arguments({"--address", "300.1.2.3"}));
+  if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
+  expectOneErrorLine(outcome, 2, {"300.1.2.3", "--address"});
+}
+
+TEST_F(Serve, DeviceThatDoesNotExistIsNamed) {
+  expectOneErrorLine(runProgram(arguments({"--device", "99"})), 3, {"device 99 does not exist", "software"});
+}
+
+TEST_F(Serve, DeviceThatIsNoneIsNamed) {
+  expectOneErrorLine(runProgram(arguments({"--device", "fast"})), 2, {"\"fast\"", "auto, software"});
+}
+
+TEST_F(Serve, WithoutAnyDeviceSaysWhatToInstall) {
+  const Outcome probe = runProgram({"info"}, withoutDevices());
+  if (probe.exit_code == 0) GTEST_SKIP() << "this libEGL is not libglvnd: its drivers cannot be hidden";
+  expectOneErrorLine(runProgram(arguments(), withoutDevices()), 3, {"no usable EGL device", "apt install"});
+}
+
+TEST_F(Serve, MissingSceneIsNamed) {
+  expectOneErrorLine(runProgram({"serve", "--scene", "/nonexistent/lake.textproto"}), 2,
+                     {"'/nonexistent/lake.textproto'", "no such file"});
+}
+
+TEST_F(Serve, BadSceneIsNamedWithFileLineAndColumn) {
+  const std::string file = scene("wave {\n  depht_m: 1\n}\n");
+  expectOneErrorLine(runProgram({"serve", "--scene", file}), 2, {file + ":2:", "depht_m"});
+}
+
+TEST_F(Serve, RoomWithoutASceneIsRefusedWithTheForm) {
+  expectOneErrorLine(runProgram(arguments({"--room", "pond"})), 2, {"--room 'pond'", "NAME=SCENE"});
+  expectOneErrorLine(runProgram(arguments({"--room", "pond="})), 2, {"--room 'pond='", "NAME=SCENE"});
+}
+
+TEST_F(Serve, RoomWithoutANameIsRefusedWithTheForm) {
+  expectOneErrorLine(runProgram(arguments({"--room", "=default"})), 2, {"--room '=default'", "NAME=SCENE"});
+}
+
+TEST_F(Serve, RoomNameThatIsNoneIsNamed) {
+  expectOneErrorLine(runProgram(arguments({"--room", "the pond=" + smallScene()})), 2, {"'the pond'", "letters"});
+}
+
+TEST_F(Serve, RoomGivenTwiceIsNamed) {
+  expectOneErrorLine(runProgram(arguments({"--room", "a=" + smallScene(), "--room", "a=" + smallScene()})), 2,
+                     {"--room 'a=", "of this name already"});
+  expectOneErrorLine(runProgram(arguments({"--room", "main=" + smallScene()})), 2, {"'main' is the one of --scene"});
+}
+
+TEST_F(RunningServe, WithoutTheWebClientSaysWhatToDo) {
+  const HttpAnswer answer = httpRequest(port_, "GET", "/");
+  EXPECT_EQ(answer.status, 503u);
+  EXPECT_THAT(answer.body, HasSubstr("not built"));
+  EXPECT_THAT(answer.body, HasSubstr("./dev build"));
+  EXPECT_EQ(httpRequest(port_, "GET", "/healthz").status, 200u);
+}
+
+TEST_F(RunningServe, ServesTheWebClientOnceItIsThere) {
+  folder().write("web/index.html", "<!doctype html>water\n");
+  const HttpAnswer answer = httpRequest(port_, "GET", "/");
+  EXPECT_EQ(answer.status, 200u);
+  EXPECT_EQ(answer.body, "<!doctype html>water\n");
+}
+
+TEST_F(RunningServe, HasEveryRoomOfItsCommandLine) {
+  EXPECT_EQ(ScriptedClient(port_, "main").greeting().room(), "main");
+  EXPECT_EQ(ScriptedClient(port_, "b").greeting().room(), "b");
+  EXPECT_EQ(ScriptedClient(port_).greeting().room(), "main");
+}
+
+TEST_F(RunningServe, EndsCleanlyOnSigterm) {
+  expectCleanEndOn(SIGTERM);
+}
+
+TEST_F(RunningServe, EndsCleanlyOnSigint) {
+  expectCleanEndOn(SIGINT);
+}
+
+TEST_F(RunningServe, EndsInTimeWithAClientThatDoesNotAnswer) {
+  ScriptedClient deaf(port_);
+  deaf.hello();
+  deaf.subscribe(v1::LAYER_SURFACE);
+  ASSERT_TRUE(deaf.nextFrame(v1::LAYER_SURFACE));
+  child_->signal(SIGTERM);
+  EXPECT_EQ(child_->wait(kStopBound), 0);
+}
+
+}  // namespace
+}  // namespace spindrift::test

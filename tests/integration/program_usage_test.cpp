@@ -1,0 +1,193 @@
+// What the program says and how it ends when it is not serving: usage, `check`, `info`.
+#include <filesystem>
+
+#include <boost/json/parse.hpp>
+
+#include "program_fixture.h"
+
+namespace spindrift::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class Usage : public ProgramTest {};
+class Check : public ProgramTest {};
+class Info : public ProgramTest {};
+class Bundle : public ProgramTest {};
+
+TEST_F(Usage, WithoutACommandIsRefused) {
+  expectOneErrorLine(runProgram({}), 2, {"subcommand is required", "spindrift --help"});
+}
+
+TEST_F(Usage, UnknownCommandIsNamed) {
+  expectOneErrorLine(runProgram({"swim"}), 2, {"'swim'", "spindrift --help"});
+}
+
+TEST_F(Usage, UnknownFlagIsNamed) {
+  expectOneErrorLine(runProgram({"--swim"}), 2, {"'--swim'", "spindrift --help"});
+}
+
+TEST_F(Usage, UnknownFlagOfACommandIsNamed) {
+  expectOneErrorLine(runProgram({"serve", "--swim"}), 2, {"--swim", "spindrift --help"});
+}
+
+TEST_F(Usage, PortOutOfRangeIsRefusedWithTheRange) {
+  expectOneErrorLine(runProgram({"serve", "--port", "65536"}), 2, {"--port", "65536", "65535"});
+}
+
+TEST_F(Usage, PortThatIsNoNumberIsRefused) {
+  expectOneErrorLine(runProgram({"serve", "--port", "http"}), 2, {"--port", "http"});
+}
+
+TEST_F(Usage, UnknownLogLevelIsRefusedWithTheLevels) {
+  expectOneErrorLine(runProgram({"--log-level", "loud", "info"}), 2, {"--log-level", "loud", "debug"});
+}
+
+class Help : public testing::TestWithParam<std::string> {};
+
+TEST_P(Help, GoesToStandardOutputAndIsFine) {
+  std::vector<std::string> arguments = {"--help"};
+  if (!GetParam().empty()) arguments.insert(arguments.begin(), GetParam());
+  const Outcome outcome = runProgram(arguments);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("Usage: spindrift"));
+  EXPECT_EQ(outcome.err, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Help, testing::Values("", "serve", "info", "check", "bench"),
+                         [](const auto& one) { return one.param.empty() ? std::string("program") : one.param; });
+
+TEST_F(Usage, VersionIsOneLine) {
+  const Outcome outcome = runProgram({"--version"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, testing::MatchesRegex("spindrift [0-9.]+\n"));
+}
+
+TEST_F(Check, WithoutASceneIsRefused) {
+  expectOneErrorLine(runProgram({"check"}), 2, {"scene", "required"});
+}
+
+TEST_F(Check, MissingSceneIsNamed) {
+  expectOneErrorLine(runProgram({"check", "/nonexistent/lake.textproto"}), 2,
+                     {"'/nonexistent/lake.textproto'", "no such file", "give the path"});
+}
+
+TEST_F(Check, DirectoryIsNoScene) {
+  expectOneErrorLine(runProgram({"check", folder().path().string()}), 2, {folder().path().string(), "is a directory"});
+}
+
+TEST_F(Check, UnknownFieldIsNamedWithFileLineAndColumn) {
+  const std::string file = scene("wave {\n  depht_m: 1\n}\n");
+  expectOneErrorLine(runProgram({"check", file}), 2, {file + ":2:", "depht_m"});
+}
+
+TEST_F(Check, ValueOutOfRangeIsNamedWithFileLineColumnAndBound) {
+  const std::string file = scene("wave {\n  depth_m: 1000\n}\n");
+  expectOneErrorLine(runProgram({"check", file}), 2, {file + ":2:3: wave.depth_m: 1000 m", "maximum of 100 m"});
+}
+
+TEST_F(Check, UnstableFixedStepIsNamedWithTheRuleAndTheRemedy) {
+  const std::string file = scene(
+      "fixed_substeps_count: 1\nwave { resolution_count: 32 side_m: 8 depth_m: 1 }\n"
+      "particles { count: 512 layers_count: 2 sound_speed_mps: 400 }\n");
+  expectOneErrorLine(runProgram({"check", file}), 2,
+                     {file, "fixed_substeps_count: 1", "above the bound of", "particle CFL", "use at least"});
+}
+
+TEST_F(Check, GoesOnAfterABadSceneAndRemembersIt) {
+  const Outcome outcome = runProgram({"check", "/nonexistent/lake.textproto", smallScene()});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.out, HasSubstr("small.textproto: fine"));
+}
+
+TEST_F(Check, SmallSceneIsFineWithItsDerivedQuantities) {
+  const Outcome outcome = runProgram({"check", smallScene()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  for (const char* word : {"small.textproto: fine", "Courant number", "substeps", "memory"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(word));
+  }
+}
+
+class ShippedScene : public testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedScene, IsFine) {
+  const Outcome outcome = runProgram({"check", shippedScene(GetParam())});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(": fine"));
+}
+
+std::vector<std::string> shippedNames() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(SPINDRIFT_SOURCE_DIR "/server/scenes")) {
+    if (entry.path().extension() == ".textproto") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ShippedScene, testing::ValuesIn(shippedNames()),
+                         [](const auto& one) { return one.param; });
+
+TEST_F(Info, JsonIsAllThatStandardOutputGets) {
+  const Outcome outcome = runProgram({"info", "--json", "-"});
+  if (outcome.exit_code == 3) GTEST_SKIP() << "no usable device";
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  boost::system::error_code error;
+  const boost::json::value json = boost::json::parse(outcome.out, error);
+  ASSERT_FALSE(error) << outcome.out;
+  EXPECT_THAT(std::string(json.at("program").as_string()), StartsWith("spindrift "));
+  EXPECT_TRUE(json.at("chosen").is_object());
+  EXPECT_FALSE(json.at("devices").as_array().empty());
+}
+
+TEST_F(Info, JsonGoesToAFileBesideTheText) {
+  const std::string file = (folder().path() / "info.json").string();
+  const Outcome outcome = runProgram({"info", "--json", file});
+  if (outcome.exit_code == 3) GTEST_SKIP() << "no usable device";
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("program   spindrift"));
+  EXPECT_GT(std::filesystem::file_size(file), 100u);
+}
+
+TEST_F(Info, JsonFileThatCannotBeWrittenIsNamed) {
+  const Outcome outcome = runProgram({"info", "--json", "/nonexistent/info.json"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--json '/nonexistent/info.json': cannot be written"));
+}
+
+TEST_F(Info, WithoutADeviceIsStillPrintedAndEndsWithThree) {
+  const Outcome outcome = runProgram({"info", "--json", "-"}, withoutDevices());
+  if (outcome.exit_code == 0) GTEST_SKIP() << "this libEGL is not libglvnd: its drivers cannot be hidden";
+  EXPECT_EQ(outcome.exit_code, 3);
+  boost::system::error_code error;
+  const boost::json::value json = boost::json::parse(outcome.out, error);
+  ASSERT_FALSE(error) << outcome.out;
+  EXPECT_TRUE(json.at("chosen").is_null());
+  EXPECT_THAT(std::string(json.at("why").as_string()), HasSubstr("apt install"));
+}
+
+TEST_F(Info, ParameterReferenceIsATable) {
+  const Outcome outcome = runProgram({"info", "--parameters"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, StartsWith("| Parameter |"));
+  EXPECT_THAT(outcome.out, HasSubstr("particles.viscosity_pas"));
+}
+
+TEST_F(Bundle, FindsItsScenesBesideItself) {
+  // As ./dev bundle lays it out: the program two folders deep, its data in share/.
+  const auto program = folder().path() / "bin" / "spindrift";
+  std::filesystem::create_directories(program.parent_path());
+  std::filesystem::copy_file(SPINDRIFT_PROGRAM, program);
+  folder().write("share/spindrift/scenes/tiny.textproto", "wave { resolution_count: 32 }\n");
+  const Outcome found = runProgram({"check", "tiny"}, {}, program.string());
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("tiny.textproto: fine"));
+  expectOneErrorLine(runProgram({"check", "huge"}, {}, program.string()), 2,
+                     {"scene 'huge'", "neither a file nor a shipped scene", "shipped are: tiny"});
+}
+
+}  // namespace
+}  // namespace spindrift::test

@@ -1,0 +1,156 @@
+#include "scripted_client.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <spindrift/stream/frame_decoder.h>
+
+namespace spindrift::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+bool isKept(const v1::ServerMessage& message) {
+  return !message.has_frame() && !message.has_diagnostics();
+}
+
+}  // namespace
+
+v1::Command splash(double depth_m, double radius_m) {
+  v1::Command command;
+  command.mutable_splash()->set_depth_m(depth_m);
+  command.mutable_splash()->set_radius_m(radius_m);
+  return command;
+}
+
+v1::Command setParameter(const std::string& path, double value) {
+  v1::Command command;
+  command.mutable_set_parameter()->set_path(path);
+  command.mutable_set_parameter()->set_value(value);
+  return command;
+}
+
+v1::Command setPaused(bool paused) {
+  v1::Command command;
+  command.mutable_set_paused()->set_paused(paused);
+  return command;
+}
+
+v1::Command setSpeed(double speed) {
+  v1::Command command;
+  command.mutable_set_speed()->set_speed(speed);
+  return command;
+}
+
+v1::Command reset() {
+  v1::Command command;
+  command.mutable_reset();
+  return command;
+}
+
+ScriptedClient::ScriptedClient(std::uint16_t port, const std::string& room) {
+  if (!ws_.connect("127.0.0.1", port, room.empty() ? "/ws" : "/ws/" + room)) return;
+  const auto first = ws_.receive();
+  if (!first) return;
+  if (auto message = stream::parseServerMessage(*first)) greeting_ = message->greeting();
+}
+
+void ScriptedClient::hello(std::uint32_t major) {
+  v1::ClientMessage message;
+  message.mutable_hello()->mutable_version()->set_major(major);
+  message.mutable_hello()->set_client("scripted client");
+  send(message);
+}
+
+void ScriptedClient::subscribe(v1::Layer layer, double max_rate_hz) {
+  v1::ClientMessage message;
+  message.mutable_subscribe()->set_layer(layer);
+  message.mutable_subscribe()->set_max_rate_hz(max_rate_hz);
+  send(message);
+}
+
+void ScriptedClient::send(const v1::ClientMessage& message) {
+  const std::string bytes = message.SerializeAsString();
+  (void)ws_.sendBinary({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+std::optional<v1::ServerMessage> ScriptedClient::waitFor(const Wanted& wanted) {
+  if (const auto found = std::ranges::find_if(kept_, wanted); found != kept_.end()) {
+    v1::ServerMessage message = std::move(*found);
+    kept_.erase(found);
+    return message;
+  }
+  const auto deadline = Clock::now() + kPatience;
+  while (Clock::now() < deadline) {
+    const auto bytes = ws_.receive(std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()));
+    if (!bytes) return std::nullopt;
+    auto message = stream::parseServerMessage(*bytes);
+    if (!message) return std::nullopt;
+    if (wanted(*message)) return *std::move(message);
+    if (isKept(*message)) kept_.push_back(*std::move(message));
+  }
+  return std::nullopt;
+}
+
+std::optional<v1::ServerMessage> ScriptedClient::waitFor(v1::ServerMessage::MessageCase kind) {
+  return waitFor([kind](const v1::ServerMessage& message) { return message.message_case() == kind; });
+}
+
+std::optional<v1::LayerFrame> ScriptedClient::nextFrame(v1::Layer layer) {
+  auto message = waitFor([layer](const v1::ServerMessage& candidate) {
+    return candidate.has_frame() && candidate.frame().layer() == layer;
+  });
+  if (!message) return std::nullopt;
+  return message->frame();
+}
+
+v1::ServerMessage ScriptedClient::ask(v1::Command command) {
+  const std::uint64_t id = ++last_command_id_;
+  command.set_command_id(id);
+  v1::ClientMessage message;
+  *message.mutable_command() = std::move(command);
+  send(message);
+  return waitFor([id](const v1::ServerMessage& answer) {
+           return (answer.has_ack() && answer.ack().command_id() == id) ||
+                  (answer.has_reject() && answer.reject().command_id() == id);
+         })
+      .value_or(v1::ServerMessage{});
+}
+
+std::optional<std::uint64_t> ScriptedClient::apply(v1::Command command) {
+  const v1::ServerMessage answer = ask(std::move(command));
+  if (!answer.has_ack()) return std::nullopt;
+  return answer.ack().applied_tick();
+}
+
+v1::Reject ScriptedClient::rejected(v1::Command command) {
+  return ask(std::move(command)).reject();
+}
+
+bool ScriptedClient::barrier() {
+  const double now_s = ++last_ping_s_;
+  v1::ClientMessage message;
+  message.mutable_ping()->set_client_time_s(now_s);
+  send(message);
+  return waitFor([now_s](const v1::ServerMessage& answer) {
+           return answer.has_pong() && answer.pong().client_time_s() == now_s;
+         })
+      .has_value();
+}
+
+bool ScriptedClient::hasReceived(v1::ServerMessage::MessageCase kind) {
+  (void)barrier();
+  return std::ranges::any_of(kept_, [kind](const auto& message) { return message.message_case() == kind; });
+}
+
+bool ScriptedClient::runFor(std::uint64_t ticks_count) {
+  // A command that changes nothing tells the tick at which it was applied.
+  const double speed = greeting_.room_state().speed();
+  const auto begin = apply(setSpeed(speed));
+  const auto deadline = Clock::now() + kPatience;
+  auto now = begin;
+  while (now && *now < *begin + ticks_count && Clock::now() < deadline) now = apply(setSpeed(speed));
+  return now && *now >= *begin + ticks_count;
+}
+
+}  // namespace spindrift::test

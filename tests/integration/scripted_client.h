@@ -1,0 +1,65 @@
+// A client that speaks the wire: says hello, subscribes, sends commands, and waits for what it expects.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <spindrift/v1/wire.pb.h>
+
+#include "ws_client.h"
+
+namespace spindrift::test {
+
+v1::Command splash(double depth_m = 0.5, double radius_m = 1.5);
+v1::Command setParameter(const std::string& path, double value);
+v1::Command setPaused(bool paused);
+v1::Command setSpeed(double speed);
+v1::Command reset();
+
+class ScriptedClient {
+ public:
+  /// Connects to a room ("" = the default one) and reads the greeting; isOpen() tells whether that worked.
+  explicit ScriptedClient(std::uint16_t port, const std::string& room = "");
+
+  bool isOpen() const { return !ws_.closed() && greeting_.session_id() != 0; }
+  const v1::Greeting& greeting() const { return greeting_; }
+  WsClient& ws() { return ws_; }
+
+  void hello(std::uint32_t major = 1);
+  void subscribe(v1::Layer layer, double max_rate_hz = 60.0);
+  void unsubscribe(v1::Layer layer) { subscribe(layer, 0.0); }
+  void send(const v1::ClientMessage& message);
+
+  using Wanted = std::function<bool(const v1::ServerMessage&)>;
+  /// The first message that `wanted` accepts; nullopt once closed or after kPatience. Frames and diagnostics that come
+  /// before it are forgotten, everything else is kept for a later call, which looks through it first.
+  std::optional<v1::ServerMessage> waitFor(const Wanted& wanted);
+  std::optional<v1::ServerMessage> waitFor(v1::ServerMessage::MessageCase kind);
+  std::optional<v1::LayerFrame> nextFrame(v1::Layer layer);
+
+  /// Sends the command under a fresh id and waits for its Ack or Reject; an empty message if none came.
+  v1::ServerMessage ask(v1::Command command);
+  /// ask() for a command that is fine: the tick of its Ack; nullopt if there was none.
+  std::optional<std::uint64_t> apply(v1::Command command);
+  /// ask() for a command that is not: its Reject; empty if there was none.
+  v1::Reject rejected(v1::Command command);
+
+  /// A ping and its pong: whatever the server had queued for this client before has arrived. False if it is gone.
+  bool barrier();
+  /// barrier(), then whether a message of the kind is among those kept.
+  bool hasReceived(v1::ServerMessage::MessageCase kind);
+  /// Lets the room run until its tick has grown by `ticks_count`; false if it does not.
+  bool runFor(std::uint64_t ticks_count);
+
+ private:
+  WsClient ws_;
+  v1::Greeting greeting_;
+  std::deque<v1::ServerMessage> kept_;
+  std::uint64_t last_command_id_ = 0;
+  double last_ping_s_ = 0.0;
+};
+
+}  // namespace spindrift::test

@@ -1,0 +1,86 @@
+// A whole server in this process, with small scenes on the software device and a free port.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/stream/scene_loader.h>
+
+#include "scripted_client.h"
+#include "water_server.h"
+
+namespace spindrift::test {
+
+/// Every part, no event: the surface is exactly flat until somebody does something.
+inline constexpr const char* kStillPool = R"(
+  wave { resolution_count: 32 side_m: 8 depth_m: 1 }
+  particles { count: 512 layers_count: 2 headroom_m: 2 }
+  coupling {}
+  foam {}
+)";
+
+/// The cheapest scene there is: sixty frames a second, a frame a tick.
+inline constexpr const char* kStillWave = R"(
+  wave { resolution_count: 32 side_m: 8 depth_m: 1 }
+  stream { frame_rate_hz: 60 }
+)";
+
+struct RoomText {
+  std::string name;
+  std::string scene;
+};
+
+class ServerTest : public testing::Test {
+ protected:
+  virtual std::vector<RoomText> rooms() const { return {{"main", kStillPool}}; }
+
+  void SetUp() override {
+    app::WaterServerOptions options;
+    options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
+    options.network.port = 0;
+    for (const RoomText& room : rooms()) {
+      auto scene = stream::parseSceneText(room.scene, room.name);
+      ASSERT_TRUE(scene) << scene.error().message;
+      options.rooms.push_back({room.name, *std::move(scene)});
+    }
+    auto started = app::WaterServer::start(std::move(options));
+    if (!started && started.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << started.error().message;
+    ASSERT_TRUE(started) << started.error().message;
+    server_ = *std::move(started);
+  }
+
+  app::WaterServer& server() { return *server_; }
+
+  /// A client that has said hello.
+  ScriptedClient client(const std::string& room = "") {
+    ScriptedClient made(server_->port(), room);
+    EXPECT_TRUE(made.isOpen());
+    made.hello();
+    return made;
+  }
+
+ private:
+  std::unique_ptr<app::WaterServer> server_;
+};
+
+class WaveServerTest : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
+};
+
+/// Largest elevation of a frame; -1 where it does not decode.
+inline double maxElevation_m(const v1::LayerFrame& frame) {
+  const auto surface = stream::decodeSurface(frame);
+  if (!surface) return -1.0;
+  double max_m = 0.0;
+  for (const float eta_m : surface->elevation_m) max_m = std::max(max_m, std::abs(static_cast<double>(eta_m)));
+  return max_m;
+}
+
+}  // namespace spindrift::test

@@ -1,0 +1,197 @@
+// The data plane from end to end: what a subscriber sees, and what costs nothing because nobody looks.
+#include <cmath>
+#include <set>
+
+#include "server_fixture.h"
+
+namespace spindrift::test {
+namespace {
+
+using testing::ElementsAre;
+
+class Frames : public ServerTest {};
+class WaveFrames : public WaveServerTest {};
+
+TEST_F(Frames, GreetingTellsSceneLayersAndParameters) {
+  ScriptedClient one(server().port());
+  ASSERT_TRUE(one.isOpen());
+  const v1::Greeting& greeting = one.greeting();
+  EXPECT_EQ(greeting.version().major(), 1u);
+  EXPECT_EQ(greeting.room(), "main");
+  EXPECT_EQ(greeting.device(), server().deviceLine());
+  EXPECT_THAT(greeting.layers(), ElementsAre(v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS));
+  EXPECT_EQ(greeting.scene().wave().resolution_count(), 32u);
+  EXPECT_EQ(greeting.scene().gravity_mps2(), 9.81) << "a default that the scene leaves out";
+  EXPECT_GT(greeting.limits().message_max_bytes(), 0u);
+  EXPECT_EQ(greeting.room_state().speed(), 1.0);
+  EXPECT_FALSE(greeting.room_state().paused());
+  std::set<std::string> paths;
+  for (const v1::ParameterDescription& parameter : greeting.parameters()) paths.insert(parameter.path());
+  EXPECT_TRUE(paths.contains("particles.viscosity_pas"));
+  EXPECT_TRUE(paths.contains("wave.damping_per_s"));
+  EXPECT_FALSE(paths.contains("wave.resolution_count")) << "needs a restart";
+}
+
+TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValuesWithGrowingTicks) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  one.subscribe(v1::LAYER_PARTICLES);
+  std::uint64_t surface_tick = 0;
+  std::uint64_t particle_tick = 0;
+  for (int i = 0; i < 10; ++i) {
+    const auto message = one.waitFor(v1::ServerMessage::kFrame);
+    ASSERT_TRUE(message);
+    const v1::LayerFrame& frame = message->frame();
+    EXPECT_NEAR(frame.time_s(), static_cast<double>(frame.tick()) / 60.0, 1e-9);
+    if (frame.layer() == v1::LAYER_SURFACE) {
+      EXPECT_GT(frame.tick(), surface_tick);
+      surface_tick = frame.tick();
+      const auto surface = stream::decodeSurface(frame);
+      ASSERT_TRUE(surface) << surface.error().message;
+      EXPECT_EQ(surface->resolution_count, 32u);
+      EXPECT_EQ(surface->side_m, 8.0);
+      for (const float eta_m : surface->elevation_m) ASSERT_TRUE(std::isfinite(eta_m));
+    } else {
+      EXPECT_GT(frame.tick(), particle_tick);
+      particle_tick = frame.tick();
+      const auto particles = stream::decodeParticles(frame);
+      ASSERT_TRUE(particles) << particles.error().message;
+      EXPECT_EQ(particles->count, 512u);
+      for (const float x_m : particles->position_m) ASSERT_TRUE(std::isfinite(x_m));
+      for (const float v_mps : particles->velocity_mps) ASSERT_TRUE(std::isfinite(v_mps));
+    }
+  }
+  EXPECT_GT(surface_tick, 0u);
+  EXPECT_GT(particle_tick, 0u);
+}
+
+TEST_F(Frames, DiagnosticsTellAHealthyRoom) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_DIAGNOSTICS);
+  std::uint64_t tick = 0;
+  for (int i = 0; i < 5; ++i) {
+    const auto message = one.waitFor(v1::ServerMessage::kDiagnostics);
+    ASSERT_TRUE(message);
+    const v1::Diagnostics& health = message->diagnostics();
+    EXPECT_GT(health.tick(), tick);
+    tick = health.tick();
+    EXPECT_EQ(health.particle_count(), 512u);
+    EXPECT_GE(health.substeps_count(), 1u);
+    EXPECT_GT(health.step_ms(), 0.0);
+    EXPECT_TRUE(std::isfinite(health.kinetic_energy_j()));
+    EXPECT_EQ(health.nonfinite_count(), 0u);
+    EXPECT_EQ(health.escaped_count(), 0u);
+    EXPECT_EQ(health.recovered_count(), 0u);
+  }
+}
+
+TEST_F(WaveFrames, AreEncodedOnceForThreeClients) {
+  std::vector<ScriptedClient> clients;
+  for (int i = 0; i < 3; ++i) clients.push_back(client());
+  const auto begin = clients[0].apply(setSpeed(1.0));
+  ASSERT_TRUE(begin);
+  for (ScriptedClient& one : clients) one.subscribe(v1::LAYER_SURFACE);
+
+  std::set<std::uint64_t> ticks;
+  std::uint64_t received_count = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (ScriptedClient& one : clients) {
+      const auto frame = one.nextFrame(v1::LAYER_SURFACE);
+      ASSERT_TRUE(frame);
+      ticks.insert(frame->tick());
+      ++received_count;
+    }
+  }
+  for (ScriptedClient& one : clients) {
+    one.unsubscribe(v1::LAYER_SURFACE);
+    ASSERT_TRUE(one.barrier());
+  }
+  // A frame requested before the last goodbye may still be encoded after this; the bounds below do not mind.
+  const auto end = clients[0].apply(setSpeed(1.0));
+  ASSERT_TRUE(end);
+  const std::uint64_t encoded_count = server().encoder().encodeCount("main", v1::LAYER_SURFACE);
+  EXPECT_EQ(received_count, 60u);
+  EXPECT_GE(encoded_count, ticks.size());
+  EXPECT_LE(encoded_count, *end - *begin + 1) << "more than one message a tick: somebody encodes for each client";
+}
+
+TEST_F(WaveFrames, OfOneTickAreTheSameBytesForEveryClient) {
+  ScriptedClient one = client();
+  ScriptedClient two = client();
+  ASSERT_TRUE(one.apply(splash()));
+  one.subscribe(v1::LAYER_SURFACE);
+  two.subscribe(v1::LAYER_SURFACE);
+  auto left = one.nextFrame(v1::LAYER_SURFACE);
+  auto right = two.nextFrame(v1::LAYER_SURFACE);
+  int compared_count = 0;
+  while (left && right && compared_count < 5) {
+    if (left->tick() == right->tick()) {
+      EXPECT_EQ(left->SerializeAsString(), right->SerializeAsString());
+      ++compared_count;
+    }
+    if (left->tick() <= right->tick()) {
+      left = one.nextFrame(v1::LAYER_SURFACE);
+    } else {
+      right = two.nextFrame(v1::LAYER_SURFACE);
+    }
+  }
+  EXPECT_EQ(compared_count, 5);
+}
+
+TEST_F(Frames, AreNotEncodedWhileNobodySubscribes) {
+  ScriptedClient one = client();
+  ASSERT_TRUE(one.runFor(30));
+  for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS}) {
+    EXPECT_EQ(server().encoder().encodeCount("main", layer), 0u) << v1::Layer_Name(layer);
+  }
+  EXPECT_EQ(server().networkStats().sent_frame_count, 0u);
+}
+
+TEST_F(Frames, OfALayerNobodySubscribedAreNotSent) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  for (int i = 0; i < 10; ++i) {
+    const auto message = one.waitFor([](const v1::ServerMessage& m) { return m.has_frame() || m.has_diagnostics(); });
+    ASSERT_TRUE(message);
+    ASSERT_TRUE(message->has_frame());
+    EXPECT_EQ(message->frame().layer(), v1::LAYER_SURFACE);
+  }
+  EXPECT_EQ(server().encoder().encodeCount("main", v1::LAYER_PARTICLES), 0u);
+  EXPECT_EQ(server().encoder().encodeCount("main", v1::LAYER_DIAGNOSTICS), 0u);
+}
+
+TEST_F(WaveFrames, StopWhenUnsubscribed) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
+  one.unsubscribe(v1::LAYER_SURFACE);
+  ASSERT_TRUE(one.runFor(5));  // whatever was on its way has been sent or dropped
+  const std::uint64_t sent_count = server().networkStats().sent_frame_count;
+  const std::uint64_t encoded_count = server().encoder().encodeCount("main", v1::LAYER_SURFACE);
+  ASSERT_TRUE(one.runFor(30));
+  EXPECT_EQ(server().networkStats().sent_frame_count, sent_count);
+  EXPECT_EQ(server().encoder().encodeCount("main", v1::LAYER_SURFACE), encoded_count);
+}
+
+TEST_F(WaveFrames, GoOnForOthersWhenAClientVanishes) {
+  ScriptedClient stays = client();
+  stays.subscribe(v1::LAYER_SURFACE);
+  {
+    ScriptedClient vanishes = client();
+    vanishes.subscribe(v1::LAYER_SURFACE);
+    ASSERT_TRUE(vanishes.nextFrame(v1::LAYER_SURFACE));
+    vanishes.ws().vanish();
+  }
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(stays.nextFrame(v1::LAYER_SURFACE));
+}
+
+TEST_F(WaveFrames, OfALayerThatTheRoomLacksNeverCome) {
+  ScriptedClient one = client();
+  EXPECT_THAT(one.greeting().layers(), ElementsAre(v1::LAYER_SURFACE, v1::LAYER_DIAGNOSTICS));
+  one.subscribe(v1::LAYER_PARTICLES);
+  ASSERT_TRUE(one.runFor(30));
+  EXPECT_EQ(server().networkStats().sent_frame_count, 0u);
+}
+
+}  // namespace
+}  // namespace spindrift::test
