@@ -23,15 +23,19 @@ const kWordsPerParticle = kParticleBytes / 2;
 export class ParticleCloud {
   readonly mesh: Points<BufferGeometry, RawShaderMaterial>;
   private readonly uniforms: Uniforms;
+  private readonly sunDirection: Vector3;
   private words: InterleavedBuffer | undefined;
   private shown: ParticleFrame | undefined;
 
   /** `field` absent: particles without a surface over them. `depthM`: how far below y = 0 the light has faded. */
   constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number, quality: { plain: boolean; samplesCount: number }) {
+    this.sunDirection = sky.sunDirection;
     this.uniforms = {
       ...sky.uniforms,
       u_camera_world: { value: new Matrix4() },
       u_inverse_projection: { value: new Matrix4() },
+      u_sun_view: { value: new Vector3() },
+      u_up_view: { value: new Vector3() },
       u_resolution: { value: new Vector2(1, 1) },
       u_min_m: { value: new Vector3() },
       u_max_m: { value: new Vector3() },
@@ -45,8 +49,11 @@ export class ParticleCloud {
     };
     // The soft edge: by samples where there are several a pixel, blended where there is one. Both write depth.
     const many = quality.samplesCount > 1;
-    const defines = quality.plain ? { PLAIN: 1 } : {};
-    this.mesh = new Points(new BufferGeometry(), makeMaterial("particle", this.uniforms, { alphaToCoverage: many, transparent: !many, defines }));
+    const soft = { alphaToCoverage: many, transparent: !many };
+    const material = quality.plain
+      ? makeMaterial("particlePlain", this.uniforms, { ...soft, defines: { PLAIN: 1 } })
+      : makeMaterial("particle", this.uniforms, soft);
+    this.mesh = new Points(new BufferGeometry(), material);
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
   }
@@ -75,6 +82,8 @@ export class ParticleCloud {
   update(camera: PerspectiveCamera, widthPx: number, heightPx: number): void {
     (this.uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
     (this.uniforms["u_inverse_projection"]!.value as Matrix4).copy(camera.projectionMatrixInverse);
+    (this.uniforms["u_sun_view"]!.value as Vector3).copy(this.sunDirection).transformDirection(camera.matrixWorldInverse);
+    (this.uniforms["u_up_view"]!.value as Vector3).set(0, 1, 0).transformDirection(camera.matrixWorldInverse);
     (this.uniforms["u_resolution"]!.value as Vector2).set(widthPx, heightPx);
   }
 

@@ -3,7 +3,7 @@
 export interface ChosenQuality {
   surfaceCellsCount: number;
   samplesCount: number;
-  /** Shaders without what a software renderer pays dearly for: refraction, caustics, mirrored sky on spheres. */
+  /** Shaders without what a software renderer pays dearly for: refraction, caustics, exact spheres. */
   plain: boolean;
   /** Texels a side of the field texture at most; a finer surface is sampled. */
   fieldCountMax: number;
@@ -15,7 +15,7 @@ export interface ChosenQuality {
 }
 
 const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, adaptive: true, maxPixelRatio: 2, remark: "" };
-const kLow: ChosenQuality = { surfaceCellsCount: 96, samplesCount: 1, plain: true, fieldCountMax: 128, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
+const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
 
 export function chooseQuality(search: string, rendererName: string): ChosenQuality {
   const wanted = new URLSearchParams(search).get("quality");

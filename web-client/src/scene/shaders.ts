@@ -6,7 +6,9 @@ import fieldFrag from "./shaders/field.frag?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import groundFrag from "./shaders/ground.frag?raw";
 import groundVert from "./shaders/ground.vert?raw";
+import particleColor from "./shaders/particle_color.glsl?raw";
 import particleFrag from "./shaders/particle.frag?raw";
+import particlePlainFrag from "./shaders/particle_plain.frag?raw";
 import particleVert from "./shaders/particle.vert?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import sky from "./shaders/sky.glsl?raw";
@@ -21,6 +23,7 @@ const kPrograms = {
   field: [fullscreenVert, fieldFrag],
   ground: [groundVert, groundFrag],
   particle: [particleVert, particleFrag],
+  particlePlain: [particleVert, particlePlainFrag],
   present: [fullscreenVert, presentFrag],
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
@@ -31,7 +34,7 @@ const kPrograms = {
 const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].map((t) => `precision highp ${t};\n`).join("");
 
 function expand(source: string): string {
-  return kPrecision + source.replace("#include <sky>", sky).replace("#include <cell_hash>", cellHash);
+  return kPrecision + source.replace("#include <sky>", sky).replace("#include <cell_hash>", cellHash).replace("#include <particle_color>", particleColor);
 }
 
 export type Uniforms = Record<string, IUniform>;

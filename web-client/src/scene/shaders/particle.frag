@@ -1,6 +1,6 @@
-// A sphere hit by the pixel's ray: exact normal and depth, an edge one pixel soft. Colour: deep blue where dense, light
-// cyan where thin, white foam. PLAIN: without the mirrored sky.
+// A sphere hit by the pixel's ray: exact normal and depth, an edge one pixel soft, the sky in what is wet.
 #include <sky>
+#include <particle_color>
 
 flat in vec3 v_center_m;
 flat in vec2 v_tint_foam;
@@ -29,7 +29,7 @@ void main() {
 
   // A sphere whose centre is in the water does not poke through the surface: its cap is cut just under it, so that
   // the band of particles reads as water. One that has left the water is whole.
-  float out_of_water = smoothstep(0.15, 1.0, v_above_m / u_radius_m);
+  float out_of_water = outOfWater(v_above_m, u_radius_m);
   float highest_m = v_world_y_m - v_above_m - 0.015 + out_of_water * 2.5 * u_radius_m;
   vec3 world_ray = mat3(u_camera_world) * ray;
   float over_m = v_world_y_m + normal.y * u_radius_m - highest_m;
@@ -40,18 +40,12 @@ void main() {
   gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
 
   vec3 toward_eye = -world_ray;
-  float dense = smoothstep(0.30, 0.92, v_tint_foam.x);
-  vec3 water = mix(vec3(0.24, 0.74, 0.86), vec3(0.010, 0.16, 0.38), dense);
-  // Bubbles under water are dimmer than foam on it.
-  float foam = smoothstep(0.06, 0.75, v_tint_foam.y) * mix(0.5, 1.0, out_of_water);
-  // In the water the single sphere hardly differs from what is round it.
-  water = mix(mix(water, vec3(0.035, 0.33, 0.46), 0.6), water, out_of_water);
-  vec3 albedo = mix(water, vec3(0.95, 0.98, 1.0), foam);
+  float foam = foamShare(v_tint_foam.y, out_of_water);
+  vec3 albedo = particleAlbedo(v_tint_foam.x, foam, out_of_water);
 
   float sun = clamp(dot(normal, u_sun_direction) * 0.6 + 0.4, 0.0, 1.0);
-  vec3 ambient = mix(vec3(0.20, 0.28, 0.36), vec3(0.52, 0.66, 0.84), normal.y * 0.5 + 0.5);
-  float buried = clamp(-v_world_y_m / u_depth_m, 0.0, 1.0);
-  vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * mix(1.0, 0.6, buried) * mix(0.72, 1.0, out_of_water);
+  vec3 ambient = mix(kAmbientBelow, kAmbientAbove, normal.y * 0.5 + 0.5);
+  vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * lightReaching(v_world_y_m, u_depth_m, out_of_water);
 
   // Water in water does not shine.
   float gloss = (1.0 - 0.8 * foam) * out_of_water;
@@ -59,11 +53,7 @@ void main() {
     float away = 1.0 - clamp(dot(normal, toward_eye), 0.0, 1.0);
     float grazing = away * away * away * away;
     vec3 mirrored = reflect(-toward_eye, normal);
-#ifdef PLAIN
-    lit += gloss * (0.04 + 0.38 * grazing) * vec3(0.45, 0.60, 0.78);
-#else
     lit += gloss * (0.04 + 0.38 * grazing) * skyLight(mirrored);
-#endif
     lit += gloss * kSunColor * 1.6 * pow(max(dot(mirrored, u_sun_direction), 0.0), 60.0);
   }
   color = vec4(lit, min(covered, 1.0));

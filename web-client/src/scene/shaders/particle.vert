@@ -1,3 +1,4 @@
+// PLAIN: for particle_plain.frag, with the depth of the whole patch.
 // One point a particle, straight from the 12 bytes of the wire: the buffer is read as six u16, the three last of which
 // hold velocity x | velocity y, velocity z | tint, foam | 0. The point's square covers the sphere's silhouette.
 // Points, not instanced quads: software renderers pay for every instance as for a draw call (measured: 3 times the processor time).
@@ -16,10 +17,20 @@ uniform sampler2D u_field;
 uniform float u_side_m;
 uniform bool u_has_water;
 
+#ifdef PLAIN
+#include <sky>
+#include <particle_color>
+uniform float u_depth_m;
+flat out vec3 v_sunlit;
+flat out vec3 v_ambient_low;
+flat out vec3 v_ambient_high;
+flat out float v_radius_px;
+#else
 flat out vec3 v_center_m;
 flat out vec2 v_tint_foam;
 flat out float v_world_y_m;
 flat out float v_above_m;  // centre over the water's surface; far over it in a scene without one
+#endif
 
 float signedByte(uint bits) { return float(int(bits << 24u) >> 24) / 127.0; }
 
@@ -27,22 +38,42 @@ void main() {
   uvec3 words = uvec3(a_packed * 65535.0 + 0.5);
   vec3 velocity = vec3(signedByte(words.x & 255u), signedByte(words.x >> 8u), signedByte(words.y & 255u)) * u_max_speed_mps;
   vec3 center = mix(u_min_m, u_max_m, position.xzy) + velocity * u_advance_s;
-  v_tint_foam = vec2(float(words.y >> 8u), float(words.z & 255u)) / 255.0;
-  v_world_y_m = center.y;
-  v_above_m = u_has_water ? center.y - texture(u_field, center.xz / u_side_m + 0.5).r : 1e3;
-  v_center_m = (viewMatrix * vec4(center, 1.0)).xyz;
+  vec2 tint_foam = vec2(float(words.y >> 8u), float(words.z & 255u)) / 255.0;
+  float above_m = u_has_water ? center.y - texture(u_field, center.xz / u_side_m + 0.5).r : 1e3;
+  vec3 center_m = (viewMatrix * vec4(center, 1.0)).xyz;
 
-  float distance_m = length(v_center_m);
-  float ahead_m = -v_center_m.z;
+  float distance_m = length(center_m);
+  float ahead_m = -center_m.z;
   if (ahead_m < 1.5 * u_radius_m) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
     gl_PointSize = 1.0;
     return;
   }
-  gl_Position = projectionMatrix * vec4(v_center_m, 1.0);
+  gl_Position = projectionMatrix * vec4(center_m, 1.0);
   // Off the axis a sphere's silhouette is longer than wide: tan(off + half) - tan(off), the far end of it.
-  float off = length(v_center_m.xy) / ahead_m;
+  float off = length(center_m.xy) / ahead_m;
   float half_width = u_radius_m / sqrt(distance_m * distance_m - u_radius_m * u_radius_m);
   float reach = half_width * (1.0 + off * off) / max(1.0 - off * half_width, 0.1);
-  gl_PointSize = reach * projectionMatrix[1][1] * u_resolution.y + 2.0;
+  gl_PointSize = reach * projectionMatrix[1][1] * u_resolution.y;
+
+#ifdef PLAIN
+  v_radius_px = 0.5 * gl_PointSize;
+  gl_PointSize += 2.0;
+  float out_of_water = outOfWater(above_m, u_radius_m);
+  // In the water the patch lies behind the sphere, so that the surface covers it; outside it is the sphere's middle.
+  vec4 pushed = projectionMatrix * vec4(center_m * (1.0 + 1.1 * (1.0 - out_of_water) * u_radius_m / distance_m), 1.0);
+  gl_Position.z = pushed.z / pushed.w * gl_Position.w;
+  float foam = foamShare(tint_foam.y, out_of_water);
+  vec3 lit = particleAlbedo(tint_foam.x, foam, out_of_water) * lightReaching(center.y, u_depth_m, out_of_water);
+  v_sunlit = lit * kSunColor * 1.15;
+  v_ambient_low = lit * kAmbientBelow * (1.0 + 0.35 * foam);
+  v_ambient_high = lit * kAmbientAbove * (1.0 + 0.35 * foam);
+#else
+  // One pixel more all round for the soft edge.
+  gl_PointSize += 2.0;
+  v_center_m = center_m;
+  v_tint_foam = tint_foam;
+  v_world_y_m = center.y;
+  v_above_m = above_m;
+#endif
 }
