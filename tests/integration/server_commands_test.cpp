@@ -164,17 +164,19 @@ TEST_F(WaveCommands, PauseHoldsTheTickOfItsAck) {
 
 TEST_F(WaveCommands, ResumeBringsFramesAtOnceHoweverLongThePause) {
   ScriptedClient one = client();
+  constexpr int kTicksPerFrame = 6;
+  ASSERT_TRUE(one.apply(setParameter("stream.frame_rate_hz", 60.0 / kTicksPerFrame)));
   one.subscribe(v1::LAYER_SURFACE);
   const auto paused = one.apply(setPaused(true));
   ASSERT_TRUE(paused);
   constexpr int kIdleFrameCount = 5;
   for (int i = 0; i < kIdleFrameCount; ++i) ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
-  // At a frame a tick, a room that counted the idle frames would now stay silent for as many ticks.
+  // A room that counted the idle frames would now stay silent for as many frame intervals.
   ASSERT_TRUE(one.apply(setPaused(false)));
   const auto frame = one.waitFor(
       [&](const v1::ServerMessage& message) { return message.has_frame() && message.frame().tick() > *paused; });
   ASSERT_TRUE(frame);
-  EXPECT_LT(frame->frame().tick(), *paused + kIdleFrameCount);
+  EXPECT_LT(frame->frame().tick(), *paused + kIdleFrameCount * kTicksPerFrame);
 }
 
 TEST_F(WaveCommands, SpeedIsAnnouncedToEverybody) {
