@@ -30,7 +30,7 @@ void main() {
   // A sphere whose centre is in the water does not poke through the surface: its cap is cut just under it, so that
   // the band of particles reads as water. One that has left the water is whole.
   float out_of_water = outOfWater(v_above_m, u_radius_m);
-  float highest_m = v_world_y_m - v_above_m - 0.015 + out_of_water * 2.5 * u_radius_m;
+  float highest_m = v_world_y_m - v_above_m - 0.2 * u_radius_m + out_of_water * 2.5 * u_radius_m;
   vec3 world_ray = mat3(u_camera_world) * ray;
   float over_m = v_world_y_m + normal.y * u_radius_m - highest_m;
   if (over_m > 0.0 && world_ray.y < -0.02) hit += ray * min(over_m / -world_ray.y, 2.0 * u_radius_m);

@@ -57,8 +57,8 @@ void main() {
   vec2 shifted_uv = uv;
 #if !defined(SKIRT) && !defined(PLAIN)
   vec3 bent = refract(ray, normal, 0.75);
-  float straight_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
-  float reach_m = clamp(min(straight_m, way_m), 0.0, 0.8);
+  // A reach that does not depend on what stands there: one that did would tear the outlines of what lies near the surface.
+  float reach_m = min(0.5 * way_m, 0.45);
   vec3 shift = mat3(viewMatrix) * (bent - ray) * reach_m;
   shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
   float shifted_depth = texture(u_behind_depth, shifted_uv).r;
