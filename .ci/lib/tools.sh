@@ -17,9 +17,9 @@ TEXT
   exec "$(binary_of "$preset")" bench "${rest[@]}"
 }
 
-# The C++ sources of ours, committed or about to be; shaders/shared is compiled by both languages and formatted as C++.
+# The C++ sources of ours, committed or about to be. Not shaders/shared: its blocks are GLSL to one of their two compilers.
 list_sources() {
-  git ls-files --cached --others --exclude-standard -z -- 'server/*.cpp' 'server/*.h' 'tests/*.cpp' 'tests/*.h' 'shaders/shared/*.h' |
+  git ls-files --cached --others --exclude-standard -z -- 'server/*.cpp' 'server/*.h' 'tests/*.cpp' 'tests/*.h' |
     while IFS= read -r -d '' file; do [[ ! -f "$file" ]] || printf '%s\0' "$file"; done
 }
 

@@ -14,6 +14,8 @@ using ByteView = std::span<const std::uint8_t>;
 /// Never null where it is passed; never written after it was shared.
 using SharedBytes = std::shared_ptr<const Bytes>;
 
-inline SharedBytes share(Bytes bytes) { return std::make_shared<const Bytes>(std::move(bytes)); }
+inline SharedBytes share(Bytes bytes) {
+  return std::make_shared<const Bytes>(std::move(bytes));
+}
 
 }  // namespace spindrift::core

@@ -12,8 +12,8 @@ struct Splash {
   double x_m = 0.0;
   double z_m = 0.0;
   double radius_m = 1.5;
-  double depth_m = 0.8;                   ///< depression at the centre
-  double duration_s = 0.2;                ///< length of the smooth pulse
+  double depth_m = 0.8;     ///< depression at the centre
+  double duration_s = 0.2;  ///< length of the smooth pulse
 };
 
 /// Where a wave comes from.
@@ -23,8 +23,8 @@ enum class Side { kPlusX, kMinusX, kPlusZ, kMinusZ };
 struct BreakingWave {
   Side side = Side::kPlusX;
   double amplitude_m = 0.6;
-  double length_m = 3.0;                  ///< full width of the crest at half height
-  double duration_s = 0.5;                ///< length of the smooth pulse
+  double length_m = 3.0;    ///< full width of the crest at half height
+  double duration_s = 0.5;  ///< length of the smooth pulse
 };
 
 using Effect = std::variant<Splash, BreakingWave>;
@@ -37,16 +37,20 @@ struct SetParameter {
 };
 
 struct Reset {};
-struct SetPaused { bool paused = false; };
+struct SetPaused {
+  bool paused = false;
+};
 /// Simulated seconds per wall second wanted, 0.1..4.
-struct SetSpeed { double speed = 1.0; };
+struct SetSpeed {
+  double speed = 1.0;
+};
 
 using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused, SetSpeed>;
 
 /// A command on its way to a room. `session_id` 0 is the scene itself.
 struct Command {
   std::uint64_t session_id = 0;
-  std::uint64_t command_id = 0;           ///< the client's own number, echoed in Ack and Reject
+  std::uint64_t command_id = 0;  ///< the client's own number, echoed in Ack and Reject
   Action action;
 };
 

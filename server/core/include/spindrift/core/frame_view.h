@@ -13,10 +13,10 @@ namespace spindrift::core {
 /// Elevations on a square grid, row by row (x fastest), two samples in each word, low half first:
 /// int16 = round(eta / quantum_m), saturating. Sample (i, k) sits at x = (i + 1/2) side/n - side/2, z likewise.
 struct SurfaceView {
-  std::uint32_t resolution_count = 0;     ///< n, samples along each side
+  std::uint32_t resolution_count = 0;  ///< n, samples along each side
   double side_m = 0.0;
   double quantum_m = 0.0;
-  std::span<const std::uint32_t> words;   ///< n*n/2 words
+  std::span<const std::uint32_t> words;  ///< n*n/2 words
 };
 
 /// Particles in the simulation's cell order, three words each (little endian bytes):
@@ -30,28 +30,28 @@ struct ParticleView {
   double max_m[3] = {0, 0, 0};
   double max_speed_mps = 0.0;
   double radius_m = 0.0;
-  std::span<const std::uint32_t> words;   ///< 3 * count words
+  std::span<const std::uint32_t> words;  ///< 3 * count words
 };
 
 /// Health and cost of a room, once a frame.
 struct DiagnosticsView {
-  double step_ms = 0.0;                   ///< wall time of one tick's step(), mean since the last frame
-  double real_time_factor = 0.0;          ///< simulated seconds per wall second, mean over the last second, 1 when asked for 1
+  double step_ms = 0.0;           ///< wall time of one tick's step(), mean since the last frame
+  double real_time_factor = 0.0;  ///< simulated seconds per wall second, mean over the last second, 1 when asked for 1
   std::uint32_t substeps_count = 0;
   std::uint32_t particle_count = 0;
   double max_particle_speed_mps = 0.0;
   double max_elevation_m = 0.0;
-  double kinetic_energy_j = 0.0;          ///< of the particles
-  double potential_energy_j = 0.0;        ///< of the particles, against y = 0
+  double kinetic_energy_j = 0.0;    ///< of the particles
+  double potential_energy_j = 0.0;  ///< of the particles, against y = 0
   double wave_energy_j = 0.0;
-  double mean_density_ratio = 0.0;        ///< rho / rho0
+  double mean_density_ratio = 0.0;  ///< rho / rho0
   double max_density_ratio = 0.0;
-  std::uint64_t nonfinite_count = 0;      ///< values found non-finite since the start (0 in a healthy room)
-  std::uint64_t escaped_count = 0;        ///< particles found outside the domain since the start (0 in a healthy room)
-  std::uint64_t recovered_count = 0;      ///< times the guard stepped in since the start
+  std::uint64_t nonfinite_count = 0;  ///< values found non-finite since the start (0 in a healthy room)
+  std::uint64_t escaped_count = 0;    ///< particles found outside the domain since the start (0 in a healthy room)
+  std::uint64_t recovered_count = 0;  ///< times the guard stepped in since the start
   struct PassTime {
-    std::string name;                     ///< equals the shader folder: "grid", "sph", ...
-    double ms = 0.0;                      ///< mean per tick
+    std::string name;  ///< equals the shader folder: "grid", "sph", ...
+    double ms = 0.0;   ///< mean per tick
   };
   std::vector<PassTime> passes;
 };
@@ -59,7 +59,7 @@ struct DiagnosticsView {
 /// One frame of one room. The spans live as long as `lease` does; dropping the last copy frees the readback slot.
 struct FrameView {
   std::uint64_t tick = 0;
-  double time_s = 0.0;                    ///< simulation time
+  double time_s = 0.0;  ///< simulation time
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;
   std::optional<DiagnosticsView> diagnostics;

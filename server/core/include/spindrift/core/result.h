@@ -11,11 +11,11 @@ namespace spindrift::core {
 
 /// Why something failed; app maps each to the program's exit code.
 enum class ErrorCode {
-  kInvalidInput,   ///< bad flag, scene, file, message: exit code 2
-  kUnavailable,    ///< port in use, file missing, web client not built: exit code 2
-  kNoDevice,       ///< no usable EGL device or OpenGL version: exit code 3
-  kCheckFailed,    ///< a check or comparison failed: exit code 1
-  kInternal,       ///< a driver or library refused what should work: exit code 1
+  kInvalidInput,  ///< bad flag, scene, file, message: exit code 2
+  kUnavailable,   ///< port in use, file missing, web client not built: exit code 2
+  kNoDevice,      ///< no usable EGL device or OpenGL version: exit code 3
+  kCheckFailed,   ///< a check or comparison failed: exit code 1
+  kInternal,      ///< a driver or library refused what should work: exit code 1
 };
 
 /// One clear line for a person: the thing, the value, the bound, what to do. No trailing newline.
@@ -31,8 +31,8 @@ int exitCode(ErrorCode code);
 template <typename T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}           // NOLINT: implicit on purpose
-  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}       // NOLINT: implicit on purpose
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}      // NOLINT: implicit on purpose
+  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}  // NOLINT: implicit on purpose
 
   explicit operator bool() const { return state_.index() == 0; }
   T& operator*() & { return std::get<0>(state_); }
@@ -51,7 +51,7 @@ template <>
 class [[nodiscard]] Result<void> {
  public:
   Result() = default;
-  Result(Error error) : error_(std::move(error)) {}                                // NOLINT: implicit on purpose
+  Result(Error error) : error_(std::move(error)) {}  // NOLINT: implicit on purpose
 
   explicit operator bool() const { return !error_; }
   const Error& error() const { return *error_; }

@@ -64,8 +64,8 @@ struct Derived {
 
 /// Errors (kInvalidInput) name the field, the value, the bound and what to do; `allow_unstable` waives the step-size
 /// rules only. Ranges are checked where scenes are loaded; derive() checks what needs several fields.
-/// `kept`: the layout of a room that is running. Parameters may change what a new start would look like (a softer water rests
-/// lower); the running room keeps its domain, grid and floor.
+/// `kept`: the layout of a room that is running. Parameters may change what a new start would look like (a softer water
+/// rests lower); the running room keeps its domain, grid and floor.
 core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kept = nullptr);
 
 /// Whether going from one scene to another needs new buffers or programs (a restart) instead of new uniforms.
