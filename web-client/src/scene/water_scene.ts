@@ -107,14 +107,14 @@ export class WaterScene {
     const { sideM, wave } = this.greeting;
     if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM };
     const frame = this.particleFrames.newest();
-    return frame && { sideM, minYM: frame.minM[1], maxYM: frame.maxM[1] };
+    return frame && { sideM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
   }
 
   /** Takes over a frame; `nowS` is the client's clock. */
   take(frame: Frame, nowS: number): void {
     if (frame.layer === "surface") this.surfaces.push(frame);
     else {
-      if (!this.greeting?.wave) this.ground?.lowerTo(frame.minM[1]);
+      if (!this.greeting?.wave) this.ground?.lowerTo(frame.minM[1] - frame.radiusM);
       this.particleFrames.push(frame);
     }
     this.clock.noteFrame(frame.timeS, nowS);

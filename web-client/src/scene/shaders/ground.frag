@@ -47,8 +47,9 @@ void main() {
     float shade = mix(0.50, 1.0, smoothstep(-0.2, 0.14 * u_side_m, away_m));
     lit = vec3(0.47, 0.395, 0.305) * shade * slabs(at, u_side_m / 12.0, 0.12, 0.26) * light;
   }
-  // Clear near the water, gone before the disc ends: the horizon is the sky's own colour.
-  float far = max(distance_m / u_side_m - 1.2, 0.0) / 4.0;
+  // Clear as far as the water, however far away the eye, and gone before the disc ends: the horizon is the sky's own colour.
+  float clear_m = max(1.2 * u_side_m, length(u_camera_m));
+  float far = max(distance_m - clear_m, 0.0) / (3.3 * clear_m);
   float haze = far * far / (1.0 + far * far);
   if (haze > 0.01) {
     haze += (1.0 - haze) * smoothstep(22.0, 38.0, distance_m / u_side_m);

@@ -60,8 +60,10 @@ void main() {
   v_radius_px = 0.5 * gl_PointSize;
   gl_PointSize += 2.0;
   float out_of_water = outOfWater(above_m, u_radius_m);
-  // In the water the patch lies behind the sphere, so that the surface covers it; outside it is the sphere's middle.
-  vec4 pushed = projectionMatrix * vec4(center_m * (1.0 + 1.1 * (1.0 - out_of_water) * u_radius_m / distance_m), 1.0);
+  // Just under the surface the patch lies behind its sphere, so that the surface covers it; elsewhere in front, so that
+  // the floor does not.
+  float under_skin = (1.0 - out_of_water) * smoothstep(-2.5, -1.2, above_m / u_radius_m);
+  vec4 pushed = projectionMatrix * vec4(center_m * (1.0 + mix(-0.8, 1.1, under_skin) * u_radius_m / distance_m), 1.0);
   gl_Position.z = pushed.z / pushed.w * gl_Position.w;
   float foam = foamShare(tint_foam.y, out_of_water);
   vec3 lit = particleAlbedo(tint_foam.x, foam, out_of_water) * lightReaching(center.y, u_depth_m, out_of_water);
