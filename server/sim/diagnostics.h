@@ -1,5 +1,5 @@
-// One small reduction a tick: is the room healthy, and what are its energies? Results arrive some ticks later; nothing
-// waits for them.
+// One small reduction every fourth tick: is the room healthy, and what are its energies? Results arrive some ticks
+// later; nothing waits for them.
 #pragma once
 
 #include <memory>

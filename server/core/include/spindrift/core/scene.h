@@ -66,7 +66,7 @@ struct FoamScene {
 
 /// What a client is sent.
 struct StreamScene {
-  double frame_rate_hz = 30.0;       ///< frames per simulated second at speed 1
+  double frame_rate_hz = 30.0;       ///< frames per wall second, whatever the speed
   double surface_quantum_m = 0.001;  ///< elevation quantum
 };
 
