@@ -73,7 +73,7 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"FOAM", flag(scene.foam.has_value())},
           {"LATTICE", std::to_string(scene.coupling ? scene.coupling->lattice_count : 5)},
           {"STENCIL", scene.wave && scene.wave->stencil == core::Stencil::kNinePoint ? "9" : "5"},
-          {"WAVE_PERIODIC", flag(scene.wave && scene.wave->boundary == core::Boundary::kPeriodic)}};
+          {"WAVE_PERIODIC", flag(scene.wave && scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic)}};
 }
 
 // The algorithm

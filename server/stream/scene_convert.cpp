@@ -11,6 +11,17 @@ core::Boundary toCore(v1::Boundary boundary) {
   return boundary == v1::BOUNDARY_WALL ? core::Boundary::kWall : core::Boundary::kPeriodic;
 }
 
+core::WaveBoundary toCore(v1::WaveBoundary boundary) {
+  switch (boundary) {
+    case v1::WAVE_BOUNDARY_REFLECT:
+      return core::WaveBoundary::kReflect;
+    case v1::WAVE_BOUNDARY_ABSORB:
+      return core::WaveBoundary::kAbsorb;
+    default:
+      return core::WaveBoundary::kPeriodic;
+  }
+}
+
 core::KernelSet toCore(v1::KernelSet set) {
   switch (set) {
     case v1::KERNEL_SET_MULLER:
@@ -46,7 +57,10 @@ core::WaveScene toCore(const v1::WaveScene& in) {
   out.depth_m = in.depth_m();
   out.damping_per_s = in.damping_per_s();
   out.stencil = toCore(in.stencil());
-  out.boundary = toCore(in.boundary());
+  out.boundary_minus_x = toCore(in.boundary_minus_x());
+  out.boundary_plus_x = toCore(in.boundary_plus_x());
+  out.boundary_minus_z = toCore(in.boundary_minus_z());
+  out.boundary_plus_z = toCore(in.boundary_plus_z());
   return out;
 }
 

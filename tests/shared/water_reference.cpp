@@ -67,7 +67,7 @@ struct Floor {
 
   bool flat() const { return s.eta_m.empty(); }
   int n() const { return static_cast<int>(d.wave->resolution_count); }
-  bool periodic() const { return scene.wave->boundary == core::Boundary::kPeriodic; }
+  bool periodic() const { return scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic; }
   std::size_t at(int x, int z) const {
     return static_cast<std::size_t>(wrap(x, n(), periodic()) + n() * wrap(z, n(), periodic()));
   }
@@ -124,7 +124,7 @@ double pressureTerm(const core::Scene& scene, double rho) {
 ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& d, const std::vector<float>& eta,
                              const std::vector<float>& eta_previous) {
   const int n = static_cast<int>(d.wave->resolution_count);
-  const bool periodic = scene.wave->boundary == core::Boundary::kPeriodic;
+  const bool periodic = scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic;
   const auto at = [&](int x, int z) {
     return static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic));
   };
@@ -198,7 +198,7 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
 std::vector<double> referenceWaveStep(const core::Scene& scene, const sim::Derived& d, const std::vector<double>& eta,
                                       const std::vector<double>& eta_previous) {
   const int n = static_cast<int>(d.wave->resolution_count);
-  const bool periodic = scene.wave->boundary == core::Boundary::kPeriodic;
+  const bool periodic = scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic;
   const auto at = [&](int x, int z) {
     return eta[static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic))];
   };

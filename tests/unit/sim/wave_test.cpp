@@ -43,10 +43,10 @@ class WaveOnDevice : public OnDevice {
 
 TEST_F(WaveOnDevice, AgreesWithTheReferenceStepForEachStencilAndBoundary) {
   for (const auto stencil : {core::Stencil::kFivePoint, core::Stencil::kNinePoint}) {
-    for (const auto boundary : {core::Boundary::kPeriodic, core::Boundary::kWall}) {
+    for (const auto boundary : {core::WaveBoundary::kPeriodic, core::WaveBoundary::kReflect}) {
       core::Scene scene = waveScene();
       scene.wave->stencil = stencil;
-      scene.wave->boundary = boundary;
+      scene.wave->setBoundaries(boundary);
       scene.wave->damping_per_s = 0.7;
       WaterSim& sim = make(scene);
       ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
@@ -69,7 +69,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepForEachStencilAndBoundary) {
 
 TEST_F(WaveOnDevice, StandingModeFollowsTheDiscreteDispersionRelation) {
   core::Scene scene = waveScene();
-  scene.wave->boundary = core::Boundary::kWall;
+  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
   WaterSim& sim = make(scene);
   const WaveLayout w = *sim.derived().wave;
   const double kx = 3 * pi / w.side_m;
@@ -96,7 +96,7 @@ TEST_F(WaveOnDevice, StandingModeFollowsTheDiscreteDispersionRelation) {
 
 TEST_F(WaveOnDevice, UndampedEnergyNeitherGrowsNorFades) {
   core::Scene scene = waveScene(32);
-  scene.wave->boundary = core::Boundary::kWall;
+  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
   WaterSim& sim = make(scene);
   const auto bump = [](double x, double z) { return 0.4 * std::exp(-((x - 5) * (x - 5) + (z - 7) * (z - 7))); };
   set(sim, bump, bump);
@@ -159,7 +159,7 @@ TEST_F(WaveOnDevice, ASplashPushesDownByItsDepthThenRingsOutAndKeepsTheVolume) {
 
 TEST_F(WaveOnDevice, ACrestTravelsOneWayAtTheWaveSpeed) {
   core::Scene scene = waveScene(96);
-  scene.wave->boundary = core::Boundary::kPeriodic;
+  scene.wave->setBoundaries(core::WaveBoundary::kPeriodic);
   WaterSim& sim = make(scene);
   ASSERT_TRUE(sim.start(core::BreakingWave{core::Side::kMinusX, 0.3, 1.5, 0.2}));
   const auto crestAt = [&] {

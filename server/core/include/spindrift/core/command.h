@@ -16,15 +16,49 @@ struct Splash {
   double duration_s = 0.2;  ///< length of the smooth pulse
 };
 
-/// Where a wave comes from.
-enum class Side { kPlusX, kMinusX, kPlusZ, kMinusZ };
+/// Where a wave comes from; kDirection: as `direction_deg` says.
+enum class Side { kPlusX, kMinusX, kPlusZ, kMinusZ, kDirection };
 
-/// A crest released along a side, travelling across the water.
+/// kBreaking has a front steep enough to break, kSwell is symmetric.
+enum class WaveShape { kBreaking, kSwell };
+
+/// A crest released along a side or in a direction, travelling across the water.
 struct BreakingWave {
   Side side = Side::kPlusX;
   double amplitude_m = 0.6;
   double length_m = 3.0;    ///< full width of the crest at half height
   double duration_s = 0.5;  ///< length of the smooth pulse
+  WaveShape shape = WaveShape::kBreaking;
+  double direction_deg = 0.0;  ///< with Side::kDirection: where it travels to; 0 is +x, 90 is +z
+};
+
+/// A boat as it comes to the water. Heading 0 points along +x and turns from +x toward +z.
+struct Boat {
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double heading_deg = 0.0;
+  double length_m = 2.4;
+  double beam_m = 0.9;
+  double height_m = 0.6;       ///< keel to deck
+  double density_ratio = 0.4;  ///< over the water's
+  double max_speed_mps = 5.0;  ///< at full throttle in calm water
+  double throttle_ratio = 0.0;
+  double rudder_ratio = 0.0;
+};
+
+inline constexpr std::uint32_t kMaxBoats = 16;
+
+struct SpawnBoat {
+  Boat boat;
+};
+/// -1..1 each; stays until the next one.
+struct ControlBoat {
+  std::uint32_t boat_id = 0;
+  double throttle_ratio = 0.0;
+  double rudder_ratio = 0.0;
+};
+struct RemoveBoat {
+  std::uint32_t boat_id = 0;
 };
 
 using Effect = std::variant<Splash, BreakingWave>;
@@ -45,7 +79,17 @@ struct SetSpeed {
   double speed = 1.0;
 };
 
-using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused, SetSpeed>;
+/// Ticks that a paused room advances.
+struct Step {
+  std::uint32_t tick_count = 1;
+};
+/// By the name that the greeting lists.
+struct ChangeScene {
+  std::string name;
+};
+
+using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused, SetSpeed, SpawnBoat, ControlBoat,
+                            RemoveBoat, Step, ChangeScene>;
 
 /// A command on its way to a room. `session_id` 0 is the scene itself.
 struct Command {

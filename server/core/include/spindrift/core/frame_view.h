@@ -33,6 +33,20 @@ struct ParticleView {
   std::span<const std::uint32_t> words;  ///< 3 * count words
 };
 
+/// Foam on the surface, one byte a sample, four samples in each word, low byte first: 0 none .. 255 white. Samples lie
+/// as the surface's do.
+struct FoamView {
+  std::uint32_t resolution_count = 0;
+  double side_m = 0.0;
+  std::span<const std::uint32_t> words;  ///< n*n/4 words
+};
+
+/// Boats, seven words each: BodiesFixed28 in proto, little endian.
+struct BodiesView {
+  std::uint32_t count = 0;
+  std::span<const std::uint32_t> words;  ///< 7 * count words
+};
+
 /// Health and cost of a room, once a frame.
 struct DiagnosticsView {
   double step_ms = 0.0;           ///< wall time of one tick's step(), mean since the last frame
@@ -49,6 +63,11 @@ struct DiagnosticsView {
   std::uint64_t nonfinite_count = 0;  ///< values found non-finite since the start (0 in a healthy room)
   std::uint64_t escaped_count = 0;    ///< particles found outside the domain since the start (0 in a healthy room)
   std::uint64_t recovered_count = 0;  ///< times the guard stepped in since the start
+  std::uint32_t boat_count = 0;
+  std::int64_t volume_error_units = 0;  ///< of the ledger of surface and particles; 0 in a healthy room
+  double emitted_m3 = 0.0;              ///< water turned into particles since the start
+  double absorbed_m3 = 0.0;             ///< particles turned back into water
+  double breaking_ratio = 0.0;          ///< share of the surface that breaks
   struct PassTime {
     std::string name;  ///< equals the shader folder: "grid", "sph", ...
     double ms = 0.0;   ///< mean per tick
@@ -62,6 +81,8 @@ struct FrameView {
   double time_s = 0.0;  ///< simulation time
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;
+  std::optional<FoamView> foam;
+  std::optional<BodiesView> bodies;
   std::optional<DiagnosticsView> diagnostics;
   std::shared_ptr<const void> lease;
 };

@@ -6,14 +6,18 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <spindrift/core/command.h>
 
 namespace spindrift::core {
 
-/// What happens at a pair of opposite sides.
+/// What happens to particles at a pair of opposite sides.
 enum class Boundary { kPeriodic, kWall };
+
+/// What happens to waves at a side. Periodic sides come in pairs.
+enum class WaveBoundary { kPeriodic, kReflect, kAbsorb };
 
 /// 5-point or isotropic 9-point Laplacian of the wave equation.
 enum class Stencil { kFivePoint, kNinePoint };
@@ -22,14 +26,60 @@ enum class Stencil { kFivePoint, kNinePoint };
 /// of its density. The others use one kernel for both, so that pressure neither makes nor takes energy.
 enum class KernelSet { kMuller, kCubicSpline, kWendlandC2 };
 
-/// The heightfield: eta_tt + kappa eta_t = c^2 laplacian(eta), c = sqrt(g d).
+/// kWeaklyCompressible: pressure from density through an equation of state, steps bound by the speed of sound.
+/// kPositionBased: positions are moved until the density is right (Macklin & Mueller 2013); large steps.
+enum class PressureSolver { kWeaklyCompressible, kPositionBased };
+
+/// kLinear: p = c0^2 (rho - rho0). kTait: p = rho0 c0^2/7 ((rho/rho0)^7 - 1).
+enum class EquationOfState { kLinear, kTait };
+
+/// kConserving: p_i/rho_i^2 + p_j/rho_j^2, antisymmetric. kMean: (p_i + p_j)/(2 rho_i rho_j), thesis 3.17.
+enum class PressureForce { kConserving, kMean };
+
+/// The heightfield: eta_tt + kappa eta_t = div(g d grad eta).
 struct WaveScene {
   std::uint32_t resolution_count = 256;  ///< cells along each side (x and z), multiple of 16
   double side_m = 24.0;                  ///< side of the square domain
   double depth_m = 1.5;                  ///< still-water depth d
   double damping_per_s = 0.1;            ///< kappa, on the velocity term only
   Stencil stencil = Stencil::kFivePoint;
-  Boundary boundary = Boundary::kPeriodic;  ///< all four sides
+  WaveBoundary boundary_minus_x = WaveBoundary::kPeriodic;
+  WaveBoundary boundary_plus_x = WaveBoundary::kPeriodic;
+  WaveBoundary boundary_minus_z = WaveBoundary::kPeriodic;
+  WaveBoundary boundary_plus_z = WaveBoundary::kPeriodic;
+  /// All four sides.
+  void setBoundaries(WaveBoundary all) {
+    boundary_minus_x = boundary_plus_x = boundary_minus_z = boundary_plus_z = all;
+  }
+  double sponge_width_m = 4.0;    ///< of the layer along an absorbing side
+  double steepening_ratio = 0.0;  ///< 0: linear; 1: waves travel at the speed of shallow water of their own height
+};
+
+/// A round rock that stands out of the water.
+struct Rock {
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double radius_m = 1.0;
+  double height_m = 0.8;  ///< above the still water
+};
+
+/// A straight wall from the bed to above the water; heading 0 runs along x and turns from +x toward +z.
+struct Breakwater {
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double length_m = 8.0;
+  double width_m = 1.0;
+  double heading_deg = 0.0;
+  double height_m = 0.8;
+};
+
+using Obstacle = std::variant<Rock, Breakwater>;
+
+/// The bed rises over width_m toward a side, linearly from the scene's depth to shore_depth_m at the side itself.
+struct Beach {
+  Side side = Side::kPlusX;
+  double width_m = 6.0;
+  double shore_depth_m = 0.0;
 };
 
 /// The SPH particles of a patch: a band of water, `layers` spacings thick, over part of the surface or all of it.
@@ -50,10 +100,27 @@ struct ParticleScene {
   KernelSet kernel_set = KernelSet::kWendlandC2;
   Boundary boundary_x = Boundary::kPeriodic;
   Boundary boundary_z = Boundary::kPeriodic;
+  PressureSolver solver = PressureSolver::kWeaklyCompressible;
+  EquationOfState equation_of_state = EquationOfState::kLinear;
+  PressureForce pressure_force = PressureForce::kConserving;
+  std::uint32_t iterations_count = 4;  ///< of the position-based solver, a substep
+  bool cohesion = false;               ///< pressure may be negative
+  double fill_x_ratio = 1.0;           ///< share of the domain along x that the lattice fills, from the -x side
+  double fill_z_ratio = 1.0;
+  double box_width_m = 0.0;  ///< side along z of the box when the scene has no wave; 0 = box_side_m
 };
 
-/// One-way coupling: the wave carries the particles.
+/// kOneWay: the wave carries a band of particles. kTwoWay: there are particles only where water broke; they return.
+enum class CouplingMode { kOneWay, kTwoWay };
+
+/// What the particle patch follows.
+enum class PatchFollow { kNothing, kEvent, kBoat };
+
 struct CouplingScene {
+  CouplingMode mode = CouplingMode::kOneWay;
+  PatchFollow patch_follow = PatchFollow::kNothing;
+  double emission_ratio = 1.0;      ///< two-way: factor on what breaking water emits
+  double droplet_spacing_m = 0.1;   ///< two-way: a particle holds its cube of water
   std::uint32_t lattice_count = 3;  ///< virtual particles along a side of the lattice: 3 or 5
   double downforce_per_m_s2 = 1.5;  ///< downward acceleration = downforce * (height above the water)^2
 };
@@ -61,7 +128,27 @@ struct CouplingScene {
 /// White water from low pressure.
 struct FoamScene {
   double density_deficit_ratio = 0.25;  ///< 1 - rho/rho0 at which a particle is fully foam
-  double lifetime_s = 1.5;              ///< e-folding time of foam once its source is gone
+  double lifetime_s = 1.5;              ///< e-folding time of a particle's foam once its source is gone
+  std::uint32_t neighbours_count = 6;   ///< fewer neighbours than this and a particle is foam; 0 = off
+  bool surface = false;                 ///< a foam field on the surface; e-folding times of its sources:
+  double breaking_lifetime_s = 6.0;
+  double wake_lifetime_s = 8.0;
+  double landing_lifetime_s = 3.0;
+};
+
+/// Boats on the wave.
+struct BoatsScene {
+  std::uint32_t capacity_count = 8;  ///< at most kMaxBoats
+  std::vector<Boat> boats;           ///< there from the start; ids 1, 2, ...
+};
+
+/// Rain drops and wind waves.
+struct StormScene {
+  double level_ratio = 0.0;  ///< 0 calm .. 1 storm
+  double drops_per_m2_s = 0.08;
+  double drop_depth_m = 0.06;
+  double wave_height_m = 0.3;
+  double wind_direction_deg = 180.0;
 };
 
 /// What a client is sent.
@@ -89,7 +176,11 @@ struct Scene {
   std::optional<WaveScene> wave;           ///< absent parts cost nothing
   std::optional<ParticleScene> particles;
   std::optional<CouplingScene> coupling;  ///< needs wave and particles
-  std::optional<FoamScene> foam;          ///< needs particles
+  std::optional<FoamScene> foam;          ///< needs particles, or a wave when it has a surface field
+  std::vector<Obstacle> obstacles;        ///< need a wave, like all that follows
+  std::vector<Beach> beaches;
+  std::optional<BoatsScene> boats;
+  std::optional<StormScene> storm;
   StreamScene stream;
   std::vector<TimedEvent> events;
 };
