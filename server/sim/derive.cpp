@@ -3,9 +3,11 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <shared/fixed_point.h>
 
 #include <spindrift/sim/derive.h>
 
+#include "basin.h"
 #include "lattice.h"
 
 namespace spindrift::sim {
@@ -25,6 +27,8 @@ constexpr double kFivePointCourant = 0.70710678;
 constexpr double kNinePointCourant = 0.8660254;
 /// Share of the wave's limit that is used: room for rounding, not for physics.
 constexpr double kWaveSafety = 0.98;
+/// Share of its flow that fully breaking water loses in the time sqrt(d/g): a bore is gone within a few depths' travel.
+constexpr double kBreakingLoss = 0.6;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
 constexpr std::uint32_t kMaxCellCount = 1u << 22;
 
@@ -131,20 +135,30 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
 
 double waveMaxStep(const core::WaveScene& wave, const WaveLayout& layout) {
   const double limit = wave.stencil == core::Stencil::kNinePoint ? kNinePointCourant : kFivePointCourant;
-  return layout.speed_mps > 0 ? kWaveSafety * limit * layout.cell_m / layout.speed_mps : 1e9;
+  // Crests of a steepening wave are faster: shaders/wave/momentum.comp bounds d (1 + 3 s eta/d) by d (1 + s).
+  const double fastest_mps = layout.speed_mps * std::sqrt(1.0 + wave.steepening_ratio);
+  return fastest_mps > 0 ? kWaveSafety * limit * layout.cell_m / fastest_mps : 1e9;
 }
 
 std::uint32_t stepsFor(double interval_s, double max_dt_s) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(interval_s / max_dt_s - 1e-9), 1.0, 1e6));
 }
 
-std::uint64_t deviceBytes(const Derived& d, bool coupled) {
+/// Bytes a wave cell: elevation, flow, tables of a varied basin, what particles and boats read.
+std::uint64_t waveCellBytes(const core::Scene& scene) {
+  std::uint64_t bytes = 4 + (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8);
+  if (isVaried(scene)) bytes += 16 + 8;
+  if (isOpen(scene)) bytes += 4;
+  if (isSampled(scene)) bytes += 24;
+  return bytes;
+}
+
+std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   std::uint64_t bytes = sizeof(shared::SimUniforms);
   if (d.particles) {
     bytes += std::uint64_t{d.particles->count} * (7 * 16 + 8 + 4) + std::uint64_t{d.particles->cell_count} * 8 + 4;
   }
-  if (d.wave)
-    bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * (3 * 4 + (coupled ? 24 : 0));
+  if (d.wave) bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * waveCellBytes(scene);
   return bytes;
 }
 
@@ -192,15 +206,16 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
   }
   if (d.wave) {
     const WaveLayout& w = *d.wave;
-    const double a = 0.5 * scene.wave->damping_per_s * w.dt_s;
     u.wave_n = w.resolution_count;
     u.wave_side_m = f(w.side_m);
     u.wave_cell_m = f(w.cell_m);
     u.wave_dt_s = f(w.dt_s);
-    u.courant2 = f(w.courant * w.courant);
-    u.wave_keep = f((1 - a) / (1 + a));
-    u.wave_gain = f(1 / (1 + a));
-    u.flow_keep = f(std::exp(-scene.wave->damping_per_s * d.dt_s));
+    u.wave_depth_m = f(scene.wave->depth_m);
+    u.wave_damping_per_s = f(scene.wave->damping_per_s);
+    u.wave_pull = f(scene.gravity_mps2 * w.dt_s / w.cell_m * ELEVATION_UNIT_M);
+    u.wave_transfer = f(w.dt_s / w.cell_m * ELEVATION_UNITS_PER_M);
+    u.steepening_ratio = f(scene.wave->steepening_ratio);
+    u.breaking_loss_per_s = f(kBreakingLoss * std::sqrt(scene.gravity_mps2 / scene.wave->depth_m));
   }
   u.surface_quantum_m = f(scene.stream.surface_quantum_m);
 }
@@ -264,7 +279,7 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
                       scene.wave->depth_m, d.wave->substeps_count, kMaxSubstepsCount));
     }
   }
-  d.device_bytes = deviceBytes(d, scene.coupling.has_value());
+  d.device_bytes = deviceBytes(scene, d);
   fillUniforms(scene, d);
   return d;
 }

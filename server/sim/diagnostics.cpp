@@ -5,6 +5,7 @@
 #include <span>
 
 #include <shared/bindings.h>
+#include <shared/fixed_point.h>
 #include <shared/groups.h>
 
 #include "create_all.h"
@@ -12,17 +13,24 @@
 namespace spindrift::sim {
 namespace {
 
-/// An invocation's partial result, as shaders/diagnostics writes it.
+/// An invocation's partial result, as shaders/diagnostics writes it. The integers are sums of the upper and lower
+/// halves of 32-bit numbers.
 struct Partial {
   float nonfinite, escaped, max_a, max_b;
   float sum[4];
+  std::int32_t elevation_high;
+  std::uint32_t elevation_low;
+  std::int32_t outflow_high;
+  std::uint32_t outflow_low;
 };
-static_assert(sizeof(Partial) == 32);
+static_assert(sizeof(Partial) == 48);
 constexpr std::size_t kSlotCount = 8;
 
 struct Total {
-  double nonfinite = 0, escaped = 0, max_a = 0, max_b = 0;
+  double nonfinite = 0, escaped = 0, max_a = 0, max_b = 0, count_b = 0;
   double sum[4] = {0, 0, 0, 0};
+  std::int64_t elevation_units = 0;
+  std::int64_t outflow_units = 0;
 };
 
 Total total(std::span<const std::byte> bytes) {
@@ -34,6 +42,9 @@ Total total(std::span<const std::byte> bytes) {
     out.escaped += p.escaped;
     out.max_a = std::max(out.max_a, static_cast<double>(p.max_a));
     out.max_b = std::max(out.max_b, static_cast<double>(p.max_b));
+    out.count_b += p.max_b;
+    out.elevation_units += std::int64_t{p.elevation_high} * 65536 + p.elevation_low;
+    out.outflow_units += std::int64_t{p.outflow_high} * 65536 + p.outflow_low;
     for (int k = 0; k < 4; ++k) out.sum[k] += p.sum[k];
   }
   return out;
@@ -86,7 +97,9 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
   }
   if (wave) {
     wave->elevation().bindTexel(ELEVATION);
-    wave->elevationPrevious().bindTexel(ELEVATION_PREVIOUS);
+    wave->flow().bindTexel(FLOW);
+    wave->bindBasin();
+    if (auto* outflow = wave->outflow()) outflow->bindTexel(OUTFLOW);
     surface_sums_.bindStorage(PARTIAL_SUM);
     surface_program_.dispatch(surface_shares_);
     copied = copied && slot->copyFrom(surface_sums_, 0, surface_sums_.sizeBytes(), particle_shares_ * sizeof(Partial));
@@ -115,12 +128,14 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
     if (cells_) {
       const Total t = total(bytes.subspan(split));
       const double area_m2 = derived.wave->cell_m * derived.wave->cell_m;
-      const double c = derived.wave->speed_mps;
       const double rho = scene.particles ? scene.particles->rest_density_kgpm3 : 1000.0;
       h.nonfinite_count += static_cast<std::uint64_t>(t.nonfinite);
       h.max_elevation_m = t.max_a;
-      h.wave_volume_m3 = t.sum[0] * area_m2;
-      h.wave_energy_j = 0.5 * rho * scene.wave->depth_m * area_m2 * (t.sum[1] + c * c * t.sum[2]);
+      h.breaking_ratio = t.count_b / cells_;
+      h.surface_units = t.elevation_units;
+      h.outflow_units = t.outflow_units;
+      h.wave_volume_m3 = static_cast<double>(t.elevation_units) * ELEVATION_UNIT_M * area_m2;
+      h.wave_energy_j = 0.5 * rho * area_m2 * (scene.gravity_mps2 * t.sum[0] + t.sum[1]);
     }
     out.push_back(h);
   }

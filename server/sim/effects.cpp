@@ -9,18 +9,26 @@
 namespace spindrift::sim {
 namespace {
 
-/// Half width at half height to the e-folding length of a Gaussian: 1 / (2 sqrt(ln 2)).
-constexpr double kEFoldPerFullWidth = 0.6005612;
-/// A crest starts this many e-folding lengths inside its side, so that its tail does not reach across a periodic one.
-constexpr double kCrestInset = 2.0;
+/// Full width at half height of sech^2(s/w): 2 arcosh(sqrt 2) w.
+constexpr double kWidthOfHalfHeight = 1.7627472;
+/// A crest starts this many widths inside its side, so that its tail does not reach across a periodic one.
+constexpr double kCrestInset = 3.0;
+/// A breaking crest leans forward: its front takes this share of the width, its back the rest. sech^2 of width w is
+/// steepest at 0.77 A/w; at Kennedy's onset of 0.65 (eta_t = 0.65 sqrt(g d), so slope 0.65) w = 1.18 A.
+constexpr double kBreakingFrontShare = 0.5;
+/// Half the extent along the crest of a group sent in a direction, over the side of the water.
+constexpr double kGroupLateralShare = 0.3;
 
 double duration(const core::Effect& effect) {
   return std::visit([](const auto& e) { return e.duration_s; }, effect);
 }
 
+bool isSplash(const core::Effect& effect) {
+  return std::holds_alternative<core::Splash>(effect);
+}
+
 shared::EventUniform uniformOf(const core::Splash& splash, double gain) {
   shared::EventUniform u{};
-  u.kind = EVENT_SPLASH;
   u.gain_m = static_cast<float>(-splash.depth_m * gain);
   u.x_m = static_cast<float>(splash.x_m);
   u.z_m = static_cast<float>(splash.z_m);
@@ -28,19 +36,44 @@ shared::EventUniform uniformOf(const core::Splash& splash, double gain) {
   return u;
 }
 
+/// Where a wave travels to.
+std::pair<double, double> directionOf(const core::BreakingWave& wave) {
+  switch (wave.side) {
+    case core::Side::kPlusX:
+      return {-1, 0};
+    case core::Side::kMinusX:
+      return {1, 0};
+    case core::Side::kPlusZ:
+      return {0, -1};
+    case core::Side::kMinusZ:
+      return {0, 1};
+    case core::Side::kDirection:
+      break;
+  }
+  const double angle = wave.direction_deg * std::numbers::pi / 180.0;
+  return {std::cos(angle), std::sin(angle)};
+}
+
 shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, double age_s, const WaveLayout& layout) {
   shared::EventUniform u{};
-  const double radius_m = wave.length_m * kEFoldPerFullWidth;
-  const bool along_x = wave.side == core::Side::kPlusX || wave.side == core::Side::kMinusX;
-  const float direction = wave.side == core::Side::kPlusX || wave.side == core::Side::kPlusZ ? -1.0f : 1.0f;
-  u.kind = EVENT_CREST;
+  const double width_m = wave.length_m / kWidthOfHalfHeight;
+  const bool breaking = wave.shape == core::WaveShape::kBreaking;
+  const double front_m = std::max((breaking ? kBreakingFrontShare : 1.0) * width_m, 1.5 * layout.cell_m);
+  const double back_m = std::max(2 * width_m - front_m, front_m);
+  const auto [dx, dz] = directionOf(wave);
   u.gain_m = static_cast<float>(wave.amplitude_m * gain);
-  u.x_m = along_x ? direction : 0.0f;
-  u.z_m = along_x ? 0.0f : direction;
-  u.radius_m = static_cast<float>(radius_m);
-  u.offset_m = static_cast<float>(-layout.side_m / 2 + kCrestInset * radius_m + layout.speed_mps * age_s);
-  u.step_m = static_cast<float>(layout.speed_mps * layout.dt_s);
-  u.mean_ratio = static_cast<float>(radius_m * std::sqrt(std::numbers::pi) / layout.side_m);
+  u.direction_x = static_cast<float>(dx);
+  u.direction_z = static_cast<float>(dz);
+  u.front_m = static_cast<float>(front_m);
+  u.back_m = static_cast<float>(back_m);
+  const bool group = wave.side == core::Side::kDirection;
+  u.lateral_m = group ? static_cast<float>(kGroupLateralShare * layout.side_m) : 0.0f;
+  // A group needs room for the trough behind it, too.
+  const double inset_m = kCrestInset * (group ? 1.5 * (front_m + back_m) : back_m);
+  u.offset_m =
+      static_cast<float>(-layout.side_m / 2 + std::min(inset_m, 0.4 * layout.side_m) + layout.speed_mps * age_s);
+  u.half_step_m = static_cast<float>(0.5 * layout.speed_mps * layout.dt_s);
+  u.speed_mps = static_cast<float>(layout.speed_mps);
   return u;
 }
 
@@ -51,11 +84,16 @@ double pulse(double phase) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-core::Result<void> Effects::start(const core::Effect& effect, double time_s) {
-  if (active_.size() >= MAX_EVENTS) {
+core::Result<void> Effects::start(const core::Effect& effect, double time_s, std::size_t spare) {
+  const bool splash = isSplash(effect);
+  const auto most = static_cast<std::size_t>(splash ? MAX_SPLASHES : MAX_CRESTS);
+  const auto active = static_cast<std::size_t>(
+      std::ranges::count_if(active_, [&](const Active& a) { return isSplash(a.effect) == splash; }));
+  if (active + spare >= most) {
     return core::Error{
         core::ErrorCode::kUnavailable,
-        fmt::format("effects: {} are active, the most there can be: try again when one has ended", MAX_EVENTS)};
+        fmt::format("effects: {} {} are active, the most there can be is {}: try again when one has ended", active,
+                    splash ? "splashes" : "waves", most)};
   }
   active_.push_back({effect, time_s});
   return {};
@@ -67,9 +105,10 @@ shared::EventUniforms Effects::advance(double time_s, const WaveLayout& wave) {
     const double age_s = time_s - a.start_s;
     const double gain = pulse((age_s + wave.dt_s) / duration(a.effect)) - pulse(age_s / duration(a.effect));
     if (gain <= 0.0) continue;
-    out.events[out.event_count++] = std::holds_alternative<core::Splash>(a.effect)
-                                        ? uniformOf(std::get<core::Splash>(a.effect), gain)
-                                        : uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, wave);
+    if (const auto* splash = std::get_if<core::Splash>(&a.effect))
+      out.splashes[out.splash_count++] = uniformOf(*splash, gain);
+    else
+      out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, wave);
   }
   std::erase_if(active_, [&](const Active& a) { return time_s + wave.dt_s >= a.start_s + duration(a.effect); });
   return out;

@@ -1,6 +1,7 @@
 // Effects in time: which pulses are active, and what each adds to the surface during one wave step.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <shared/event_uniforms.h>
@@ -15,11 +16,12 @@ namespace spindrift::sim {
 /// the start over the duration.
 double pulse(double phase);
 
-/// At most MAX_EVENTS pulses at a time.
+/// At most MAX_SPLASHES splashes and MAX_CRESTS crests at a time.
 class Effects {
  public:
-  /// Starts an effect at time_s. kUnavailable when MAX_EVENTS are active: try again when one has ended.
-  core::Result<void> start(const core::Effect& effect, double time_s);
+  /// Starts an effect at time_s. kUnavailable when as many of its kind are active as can be: try again when one has
+  /// ended. `spare`: places that must stay free, so that weather does not crowd out people.
+  core::Result<void> start(const core::Effect& effect, double time_s, std::size_t spare = 0);
 
   /// What the active effects add during [time_s, time_s + dt_s]; those that have ended are forgotten.
   shared::EventUniforms advance(double time_s, const WaveLayout& wave);

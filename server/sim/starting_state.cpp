@@ -1,27 +1,8 @@
 #include "starting_state.h"
 
+#include "random.h"
+
 namespace spindrift::sim {
-namespace {
-
-/// SplitMix64 (Steele, Lea & Flood 2014): small, seedable, the same everywhere, which <random>'s distributions are not.
-class SplitMix64 {
- public:
-  explicit SplitMix64(std::uint64_t seed) : state_(seed) {}
-  /// Uniform in [-1, 1).
-  double symmetric() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    z ^= z >> 31;
-    return static_cast<double>(z >> 11) * 0x1.0p-52 - 1.0;
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-}  // namespace
-
 std::vector<float> startingPositions(const core::Scene& scene, const ParticleLayout& layout) {
   SplitMix64 random(scene.seed);
   const double s = layout.spacing_m;

@@ -3,10 +3,12 @@
 #include <optional>
 
 #include <shared/bindings.h>
+#include <shared/fixed_point.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/sim/water_sim.h>
 
+#include "basin.h"
 #include "checkpoints.h"
 #include "create_all.h"
 #include "diagnostics.h"
@@ -16,6 +18,7 @@
 #include "particle_buffers.h"
 #include "sph.h"
 #include "starting_state.h"
+#include "storm.h"
 #include "wave.h"
 
 namespace spindrift::sim {
@@ -73,7 +76,13 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"FOAM", flag(scene.foam.has_value())},
           {"LATTICE", std::to_string(scene.coupling ? scene.coupling->lattice_count : 5)},
           {"STENCIL", scene.wave && scene.wave->stencil == core::Stencil::kNinePoint ? "9" : "5"},
-          {"WAVE_PERIODIC", flag(scene.wave && scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic)}};
+          {"WAVE_PERIODIC_X", flag(scene.wave && isPeriodicX(*scene.wave))},
+          {"WAVE_PERIODIC_Z", flag(scene.wave && isPeriodicZ(*scene.wave))},
+          {"VARIED", flag(scene.wave && isVaried(scene))},
+          {"OPEN", flag(scene.wave && isOpen(scene))},
+          {"HEAD", "0"},
+          {"BREAKERS", "0"},
+          {"STEEPEN", flag(scene.wave && scene.wave->steepening_ratio > 0)}};
 }
 
 // The algorithm
@@ -98,13 +107,13 @@ void WaterSim::advanceWave(double time_s) {
   const auto timer = timers_.scope("wave");
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
     if (!parts_->effects.idle())
-      parts_->wave->inject(parts_->effects.advance(time_s + k * derived_.wave->dt_s, *derived_.wave));
-    parts_->wave->evolve();
+      parts_->wave->displace(parts_->effects.advance(time_s + k * derived_.wave->dt_s, *derived_.wave));
+    parts_->wave->advance(nullptr, nullptr);
   }
 }
 
 void WaterSim::sampleSurface() {
-  if (!scene_.coupling) return;
+  if (!isSampled(scene_)) return;
   const auto timer = timers_.scope("coupling");
   parts_->wave->sampleSurface();
   parts_->wave->bindSurface();
@@ -154,7 +163,7 @@ core::Result<void> WaterSim::build() {
   const gpu::Defines defines = shaderDefines(scene_);
   Creation create;
   create(parts_->uniforms, gpu::Buffer::create(ctx_, "sim uniforms", sizeof(shared::SimUniforms)));
-  if (derived_.wave) create(parts_->wave, Wave::create(ctx_, *derived_.wave, defines, scene_.coupling.has_value()));
+  if (derived_.wave) create(parts_->wave, Wave::create(ctx_, scene_, *derived_.wave, defines, isSampled(scene_)));
   if (derived_.particles) {
     const std::size_t n = derived_.particles->count;
     ParticleBuffers& p = parts_->particles.emplace();
@@ -176,8 +185,8 @@ core::Result<void> WaterSim::build() {
   if (create.error()) return *create.error();
   std::vector<gpu::Buffer*> state;
   if (parts_->wave) {
-    state = {&parts_->wave->elevationPrevious(), &parts_->wave->elevation()};
-    if (scene_.coupling) state.push_back(&parts_->wave->flow());
+    state = {&parts_->wave->elevation(), &parts_->wave->flow()};
+    if (auto* outflow = parts_->wave->outflow()) state.push_back(outflow);
   }
   if (parts_->particles) state.insert(state.end(), {&parts_->particles->position, &parts_->particles->velocity});
   create(parts_->checkpoints, Checkpoints::create(ctx_, state));
@@ -186,11 +195,7 @@ core::Result<void> WaterSim::build() {
 }
 
 void WaterSim::uploadStartingState() {
-  if (parts_->wave) {
-    parts_->wave->elevation().clear();
-    parts_->wave->elevationPrevious().clear();
-    if (scene_.coupling) parts_->wave->flow().clear();
-  }
+  if (parts_->wave) parts_->wave->clear();
   if (parts_->particles) {
     parts_->particles->position.upload(startingPositions(scene_, *derived_.particles));
     parts_->particles->velocity.clear();
@@ -232,6 +237,13 @@ core::Result<void> WaterSim::setScene(const core::Scene& scene) {
 }
 
 void WaterSim::startTimedEvents() {
+  if (scene_.storm) {
+    for (const core::Effect& effect : stormEffects(scene_, *derived_.wave, tick_ - start_tick_, derived_.tick_s)) {
+      // Weather gives way to people: a drop that finds no place does not fall.
+      (void)parts_->effects.start(effect, time_s(),
+                                  std::holds_alternative<core::Splash>(effect) ? kSpareSplashes : kSpareCrests);
+    }
+  }
   const double from_s = time_s();
   const double to_s = from_s + derived_.tick_s;
   for (const core::TimedEvent& event : scene_.events) {
@@ -300,7 +312,8 @@ void WaterSim::setCareful(bool careful) {
   // scene_ was accepted before and halving a step breaks no rule; at the bound of substeps the step stays as it was.
   if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
-  ctx_.barrier(gpu::Barrier::kUniform);
+  if (parts_->wave) parts_->wave->uploadBasin(scene_, *derived_.wave);
+  ctx_.barrier(gpu::Barrier::kUniform | gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 // Frames
@@ -332,8 +345,9 @@ StateCopy WaterSim::copyState() {
   }
   if (parts_->wave) {
     const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
-    out.elevation_m = parts_->wave->elevation().downloadVector<float>(n);
-    out.elevation_previous_m = parts_->wave->elevationPrevious().downloadVector<float>(n);
+    for (const std::int32_t units : parts_->wave->elevation().downloadVector<std::int32_t>(n))
+      out.elevation_m.push_back(units * double{ELEVATION_UNIT_M});
+    out.flow_m2ps = parts_->wave->flow().downloadVector<float>(n * parts_->wave->flowComponents());
   }
   return out;
 }
@@ -344,8 +358,11 @@ void WaterSim::setState(const StateCopy& state) {
     parts_->particles->velocity.upload(state.velocity);
   }
   if (parts_->wave) {
-    parts_->wave->elevation().upload(state.elevation_m);
-    parts_->wave->elevationPrevious().upload(state.elevation_previous_m);
+    std::vector<std::int32_t> units;
+    for (const double eta_m : state.elevation_m)
+      units.push_back(static_cast<std::int32_t>(std::lround(eta_m * double{ELEVATION_UNITS_PER_M})));
+    parts_->wave->elevation().upload(units);
+    parts_->wave->flow().upload(state.flow_m2ps);
   }
   ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
@@ -353,11 +370,13 @@ void WaterSim::setState(const StateCopy& state) {
 std::uint64_t WaterSim::stateHash() {
   const StateCopy state = copyState();
   std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const std::vector<float>* part :
-       {&state.position, &state.velocity, &state.elevation_m, &state.elevation_previous_m}) {
-    for (const std::byte b : std::as_bytes(std::span(*part)))
-      hash = (hash ^ static_cast<std::uint64_t>(b)) * 0x100000001b3ull;
-  }
+  const auto add = [&](std::span<const std::byte> bytes) {
+    for (const std::byte b : bytes) hash = (hash ^ static_cast<std::uint64_t>(b)) * 0x100000001b3ull;
+  };
+  add(std::as_bytes(std::span(state.position)));
+  add(std::as_bytes(std::span(state.velocity)));
+  add(std::as_bytes(std::span(state.elevation_m)));
+  add(std::as_bytes(std::span(state.flow_m2ps)));
   return hash;
 }
 

@@ -1,4 +1,6 @@
-// The wave equation on the device: three elevation levels, and the surface as particles see it.
+// The wave equation on the device: integer elevations, the flow through the faces between cells, and the surface as
+// particles and boats see it. A step is momentum, then continuity: eliminating the flow gives the leapfrog on three
+// elevation levels of the thesis (3.4, 3.6.3), to the same dispersion relation, and keeps the volume to the last unit.
 #pragma once
 
 #include <memory>
@@ -6,6 +8,7 @@
 #include <shared/event_uniforms.h>
 
 #include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim/derive.h>
@@ -14,32 +17,47 @@ namespace spindrift::sim {
 
 class Wave {
  public:
-  /// `coupled`: also allocates and compiles what particles need of the surface.
-  static core::Result<std::unique_ptr<Wave>> create(gpu::Context& ctx, const WaveLayout& layout,
-                                                    const gpu::Defines& defines, bool coupled);
+  /// `sampled`: particles or boats look at the surface; also makes what they read. Tables for the basin only where it
+  /// is varied, outflow only where it is open.
+  static core::Result<std::unique_ptr<Wave>> create(gpu::Context& ctx, const core::Scene& scene,
+                                                    const WaveLayout& layout, const gpu::Defines& defines,
+                                                    bool sampled);
 
-  /// Adds one wave step's share of the active effects to the two newest levels.
-  void inject(const shared::EventUniforms& events);
-  /// One leapfrog step: the three levels move up by one.
-  void evolve();
-  /// Slopes, vertical speed and horizontal flow of the surface, for the particles. Coupled scenes only.
+  /// Level and still, nothing has flowed out.
+  void clear();
+  /// Tables for changed parameters (depth, gravity).
+  void uploadBasin(const core::Scene& scene, const WaveLayout& layout);
+
+  /// Adds one wave step's share of the active effects.
+  void displace(const shared::EventUniforms& events);
+  /// One wave step. `pressure_head` (what presses on the surface) and `breaking` may be null.
+  void advance(const gpu::TexelBuffer* pressure_head, const gpu::TexelBuffer* breaking);
+  /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
 
-  [[nodiscard]] gpu::TexelBuffer& elevation() { return level_[1]; }          ///< now, n x n [m]
-  [[nodiscard]] gpu::TexelBuffer& elevationPrevious() { return level_[0]; }  ///< one wave step ago
-  [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }                   ///< coupled scenes only
-  /// Binds SURFACE and SURFACE_FLOW for floor lookups. Coupled scenes only.
+  [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< n x n [units]
+  [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }            ///< n x n x 2 (9-point: 4) [m^2/s]
+  [[nodiscard]] gpu::TexelBuffer* outflow() { return has_outflow_ ? &outflow_ : nullptr; }  ///< n x n [units]
+  /// 2, or 4 with the 9-point stencil.
+  [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
+  /// Binds SURFACE and SURFACE_FLOW for lookups. Sampled scenes only.
   void bindSurface() const;
+  /// Binds BASIN and SPONGE where there are tables.
+  void bindBasin() const;
 
  private:
-  explicit Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count) {}
+  Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count), cell_m_(layout.cell_m) {}
 
   gpu::Context& ctx_;
   std::uint32_t n_;
-  gpu::TexelBuffer level_[3];  ///< previous, now, next
-  gpu::TexelBuffer surface_, flow_;
+  double cell_m_;
+  std::size_t flow_components_ = 2;
+  bool is_varied_ = false;
+  bool has_outflow_ = false;
+  gpu::TexelBuffer elevation_, flow_, basin_, sponge_, outflow_;
+  gpu::TexelBuffer surface_, surface_flow_;
   gpu::Buffer event_uniforms_;
-  gpu::Program inject_, evolve_, sample_surface_;
+  gpu::Program splash_, crest_, momentum_, continuity_, sample_surface_;
 };
 
 }  // namespace spindrift::sim

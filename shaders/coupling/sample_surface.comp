@@ -1,18 +1,19 @@
-// Prepares the surface for the particles: one texel with all that a lookup needs, and the wave's horizontal flow.
-// Reads ELEVATION, ELEVATION_PREVIOUS [n x n, m]. Writes SURFACE (eta, d eta/dt, d eta/dx, d eta/dz); updates SURFACE_FLOW [m/s].
-// Equations: differences in metres (thesis, algorithm 9); long waves accelerate the flow by -g grad(eta) (thesis 3.19).
-// variants: WAVE_PERIODIC=1 | WAVE_PERIODIC=0
+// Prepares the surface for particles and boats: one texel with all that a lookup needs, and the wave's horizontal velocity.
+// Reads ELEVATION [n x n, units], FLOW, BASIN. Writes SURFACE (eta, d eta/dt, d eta/dx, d eta/dz) and SURFACE_FLOW [m/s].
+// Equations: differences in metres (thesis, algorithm 9); d eta/dt = -div q; velocity = q / d, from the faces around a cell.
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
-#include "include/wave_cell.glsl"
+#include "include/transfer.glsl"
+#include "include/wave_faces.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
-layout(binding = ELEVATION) uniform samplerBuffer elevation;
-layout(binding = ELEVATION_PREVIOUS) uniform samplerBuffer elevation_previous;
+layout(binding = ELEVATION) uniform isamplerBuffer elevation;
+layout(binding = FLOW) uniform samplerBuffer flow;
 layout(std430, binding = SURFACE) restrict writeonly buffer Surface { vec4 surface[]; };
-layout(std430, binding = SURFACE_FLOW) restrict buffer SurfaceFlow { vec2 flow_mps[]; };
+layout(std430, binding = SURFACE_FLOW) restrict writeonly buffer SurfaceFlow { vec2 flow_mps[]; };
 
-float at(int x, int row) { return texelFetch(elevation, x + row).x; }
+int at(int x, int row) { return texelFetch(elevation, x + row).x; }
 
 void main() {
   const int n = int(sim.wave_n);
@@ -20,10 +21,37 @@ void main() {
   if (cell.x >= n || cell.y >= n) return;
   const int row = n * cell.y;
   const int i = cell.x + row;
-  const float inverse_2dx = 0.5 / sim.wave_cell_m;
-  const vec2 slope = vec2(at(waveNeighbour(cell.x + 1, n), row) - at(waveNeighbour(cell.x - 1, n), row),
-                          at(cell.x, n * waveNeighbour(cell.y + 1, n)) - at(cell.x, n * waveNeighbour(cell.y - 1, n))) * inverse_2dx;
-  const float eta = at(cell.x, row);
-  surface[i] = vec4(eta, (eta - texelFetch(elevation_previous, i).x) / sim.wave_dt_s, slope);
-  flow_mps[i] = sim.flow_keep * flow_mps[i] - sim.dt_s * sim.gravity_mps2 * slope;
+  const ivec2 left = ivec2(wrapped(cell.x - 1, n), cell.y);
+  const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n));
+
+  const float inverse_dx = 1.0 / sim.wave_cell_m;
+  const int here = at(cell.x, row);
+  int right_eta = at(waveNeighbourX(cell.x + 1, n), row);
+  int left_eta = at(waveNeighbourX(cell.x - 1, n), row);
+  int after_eta = at(cell.x, n * waveNeighbourZ(cell.y + 1, n));
+  int before_eta = at(cell.x, n * waveNeighbourZ(cell.y - 1, n));
+
+  const Flow own_flow = asFlow(texelFetch(flow, i));
+  const Flow left_flow = asFlow(texelFetch(flow, left.x + row));
+  const Flow before_flow = asFlow(texelFetch(flow, cell.x + n * before.y));
+#if VARIED
+  // Behind a closed face stands a wall: the elevation goes on level.
+  const Flow open = conductanceOf(cell, n);
+  const Flow open_left = conductanceOf(left, n);
+  const Flow open_before = conductanceOf(before, n);
+  right_eta = open.x > 0.0 ? right_eta : here;
+  left_eta = open_left.x > 0.0 ? left_eta : here;
+  after_eta = open.y > 0.0 ? after_eta : here;
+  before_eta = open_before.y > 0.0 ? before_eta : here;
+  const vec2 conductance_m = vec2(open.x + open_left.x, open.y + open_before.y);
+#else
+  const vec2 conductance_m = vec2(2.0 * sim.wave_depth_m) * FLOW_WEIGHTS.x;
+#endif
+  float rate_mps = left_flow.x - own_flow.x + before_flow.y - own_flow.y;
+#if STENCIL == 9
+  rate_mps += texelFetch(flow, left.x + n * before.y).z - own_flow.z + before_flow.w - left_flow.w;
+#endif
+  const vec2 slope = ELEVATION_UNIT_M * vec2(right_eta - left_eta, after_eta - before_eta) * (0.5 * inverse_dx);
+  surface[i] = vec4(metres(here), rate_mps * inverse_dx, slope);
+  flow_mps[i] = vec2(own_flow.x + left_flow.x, own_flow.y + before_flow.y) / max(conductance_m, 0.05 * sim.wave_depth_m);
 }

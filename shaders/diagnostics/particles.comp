@@ -1,6 +1,6 @@
 // Health of the particles: one partial result an invocation, summed on the host in double precision.
-// Reads POSITION, VELOCITY, ACCELERATION.w. Writes PARTIAL_SUM, 8 floats an invocation: non-finite values, escaped particles, max
-// speed, max density, sum of density, sum of v^2, sum of y, 0.
+// Reads POSITION, VELOCITY, ACCELERATION.w. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
+// non-finite values, escaped particles, max speed, max density; sum of density, sum of v^2, sum of y, 0; four words 0.
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 
@@ -9,7 +9,7 @@ layout(local_size_x = REDUCE_GROUP) in;
 layout(binding = POSITION) uniform samplerBuffer position;
 layout(binding = VELOCITY) uniform samplerBuffer velocity;
 layout(binding = ACCELERATION) uniform samplerBuffer acceleration;
-layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer PartialSum { vec4 partial_sum[]; };
+layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer PartialSum { uvec4 partial_sum[]; };
 
 bool finite(float x) { return !isnan(x) && !isinf(x); }
 
@@ -35,6 +35,7 @@ void main() {
       worst.x += 1.0;
     }
   }
-  partial_sum[2u * share] = worst;
-  partial_sum[2u * share + 1u] = sum;
+  partial_sum[3u * share] = floatBitsToUint(worst);
+  partial_sum[3u * share + 1u] = floatBitsToUint(sum);
+  partial_sum[3u * share + 2u] = uvec4(0u);
 }

@@ -1,44 +1,66 @@
-// Health of the wave: one partial result an invocation, summed on the host in double precision.
-// Reads ELEVATION, ELEVATION_PREVIOUS [n x n, m]. Writes PARTIAL_SUM, 8 floats an invocation: non-finite values, 0, max |eta|, 0, sum of
-// eta, sum of (d eta/dt)^2, sum of |grad eta|^2 (forward differences, at both times: grad now . grad before), sum of eta^2.
-// sim/diagnostics.cpp assembles the discrete energy from them.
-// variants: WAVE_PERIODIC=1 | WAVE_PERIODIC=0
+// Health of the wave: one partial result an invocation, summed on the host in double and 64-bit integer precision.
+// Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
+// non-finite flows, 0, max |eta|, cells that break; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
+// sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, and both of OUTFLOW (integers: the volume to the last unit).
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1
 #include "shared/groups.h"
-#include "include/wave_cell.glsl"
+#include "include/transfer.glsl"
+#include "include/wave_faces.glsl"
 
 layout(local_size_x = REDUCE_GROUP) in;
 
-layout(binding = ELEVATION) uniform samplerBuffer elevation;
-layout(binding = ELEVATION_PREVIOUS) uniform samplerBuffer elevation_previous;
-layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer PartialSum { vec4 partial_sum[]; };
-
-bool finite(float x) { return !isnan(x) && !isinf(x); }
+layout(binding = ELEVATION) uniform isamplerBuffer elevation;
+layout(binding = FLOW) uniform samplerBuffer flow;
+#if OPEN
+layout(binding = OUTFLOW) uniform isamplerBuffer outflow;
+#endif
+#if BREAKERS
+layout(binding = BREAKING) uniform samplerBuffer breaking;
+#endif
+layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer PartialSum { uvec4 partial_sum[]; };
 
 void main() {
   const uint share = gl_GlobalInvocationID.x;
   const uint shares = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   const int n = int(sim.wave_n);
-  const float inverse_dt = 1.0 / sim.wave_dt_s;
-  const float inverse_dx2 = 1.0 / (sim.wave_cell_m * sim.wave_cell_m);
+  const float dt_over_dx = sim.wave_dt_s / sim.wave_cell_m;
   vec4 worst = vec4(0.0);
   vec4 sum = vec4(0.0);
+  uvec4 volume = uvec4(0u);
   for (uint at = share; at < uint(n * n); at += shares) {
     const int i = int(at);
     const ivec2 cell = ivec2(i % n, i / n);
-    const int right = waveNeighbour(cell.x + 1, n) + n * cell.y;
-    const int after = cell.x + n * waveNeighbour(cell.y + 1, n);
-    const float now = texelFetch(elevation, i).x;
-    const float before = texelFetch(elevation_previous, i).x;
-    const vec2 slope_now = vec2(texelFetch(elevation, right).x, texelFetch(elevation, after).x) - now;
-    const vec2 slope_before = vec2(texelFetch(elevation_previous, right).x, texelFetch(elevation_previous, after).x) - before;
-    const float rate_mps = (now - before) * inverse_dt;
-    if (finite(now) && finite(rate_mps)) {
-      worst.z = max(worst.z, abs(now));
-      sum += vec4(now, rate_mps * rate_mps, dot(slope_now, slope_before) * inverse_dx2, now * now);
-    } else {
+    const int left = wrapped(cell.x - 1, n);
+    const int last_row = n * wrapped(cell.y - 1, n);
+    const int units = texelFetch(elevation, i).x;
+    const Flow own = asFlow(texelFetch(flow, i));
+    const Flow from_left = asFlow(texelFetch(flow, left + n * cell.y));
+    const Flow from_before = asFlow(texelFetch(flow, cell.x + last_row));
+    float inflow = from_left.x - own.x + from_before.y - own.y;
+#if STENCIL == 9
+    inflow += texelFetch(flow, left + last_row).z - own.z + from_before.w - from_left.w;
+#endif
+    const Flow conductance_m = conductanceOf(cell, n);
+    const float motion = dot(own, own / max(conductance_m, Flow(1e-6)));
+    volume.x += uint(units >> 16);
+    volume.y += uint(units & 0xffff);
+#if OPEN
+    const int left_units = texelFetch(outflow, i).x;
+    volume.z += uint(left_units >> 16);
+    volume.w += uint(left_units & 0xffff);
+#endif
+    if (isnan(motion) || isinf(motion)) {
       worst.x += 1.0;
+      continue;
     }
+    const float eta = metres(units);
+    worst.z = max(worst.z, abs(eta));
+    sum += vec4(eta * (eta - dt_over_dx * inflow), motion, 0.0, 0.0);
+#if BREAKERS
+    worst.w += texelFetch(breaking, i).y > 0.0 ? 1.0 : 0.0;
+#endif
   }
-  partial_sum[2u * share] = worst;
-  partial_sum[2u * share + 1u] = sum;
+  partial_sum[3u * share] = floatBitsToUint(worst);
+  partial_sum[3u * share + 1u] = floatBitsToUint(sum);
+  partial_sum[3u * share + 2u] = volume;
 }

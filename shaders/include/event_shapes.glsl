@@ -1,18 +1,60 @@
-// The shapes that effects press into the surface, without amplitude. Both keep the volume of the water.
+// What effects do to the surface, as displacements of water: a vector field V in m^2 whose divergence is the change of
+// elevation. Moving water through faces instead of adding it to cells keeps the volume to the last unit, walls included.
 #ifndef SPINDRIFT_EVENT_SHAPES
 #define SPINDRIFT_EVENT_SHAPES
 
-/// Splash: a disc pushed down and its rim up, (1 - q^2) exp(-q^2), q = r / radius: 1 at the centre, zero at the radius, zero
-/// integral over the plane.
-float splashShape(vec2 offset_m, float radius_m) {
-  const float q2 = dot(offset_m, offset_m) / (radius_m * radius_m);
-  return (1.0 - q2) * exp(-q2);
+#include "shared/event_uniforms.h"
+
+/// Splash: V = r/2 exp(-q^2), q = |r| / radius, zero beyond SPLASH_REACH radii; div V = (1 - q^2) exp(-q^2): 1 in the centre, a rim
+/// beyond the radius.
+vec2 splashDisplacement(vec2 r_m, float radius_m) {
+  const float q2 = dot(r_m, r_m) / (radius_m * radius_m);
+  return q2 < SPLASH_REACH * SPLASH_REACH ? 0.5 * r_m * exp(-q2) : vec2(0.0);
 }
 
-/// Crest: exp(-(s / half_width)^2) across the direction of travel.
-float crestShape(float s_m, float half_width_m) {
-  const float q = s_m / half_width_m;
-  return exp(-q * q);
+/// Crest: sech^2(s / width), with a front and a back of their own width. s runs in the direction of travel.
+float crestShape(float s_m, float front_m, float back_m) {
+  const float u = 1.0 / cosh(clamp(s_m / (s_m > 0.0 ? front_m : back_m), -12.0, 12.0));
+  return u * u;
+}
+
+/// Its integral from the crest. [m]
+float crestIntegral(float s_m, float front_m, float back_m) {
+  const float width_m = s_m > 0.0 ? front_m : back_m;
+  return width_m * tanh(clamp(s_m / width_m, -12.0, 12.0));
+}
+
+/// Displacement of a crest at a place, along its direction. A crest that spans the domain takes its water evenly from all of
+/// it, and moves none across the sides; a group of finite width takes it from a trough behind.
+float crestDisplacement(EventUniform e, vec2 place_m, float half_side_m) {
+  const vec2 d = vec2(e.direction_x, e.direction_z);
+  const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
+  const float own = crestIntegral(s - e.offset_m, e.front_m, e.back_m);
+  if (e.lateral_m == 0.0) {
+    const float low = crestIntegral(-half_side_m - e.offset_m, e.front_m, e.back_m);
+    const float high = crestIntegral(half_side_m - e.offset_m, e.front_m, e.back_m);
+    return own - mix(low, high, (s + half_side_m) / (2.0 * half_side_m));
+  }
+  const float trough_m = e.front_m + e.back_m;
+  const float behind = s - e.offset_m + 1.5 * trough_m;
+  const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;
+  return exp(-l * l * l * l) * (own - 0.5 * crestIntegral(behind, trough_m, trough_m) - 0.5 * (e.front_m - e.back_m));
+}
+
+/// The change of elevation that belongs to it, for the flow that makes the crest travel.
+float crestElevation(EventUniform e, vec2 place_m, float half_side_m) {
+  const vec2 d = vec2(e.direction_x, e.direction_z);
+  const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
+  const float own = crestShape(s - e.offset_m, e.front_m, e.back_m);
+  if (e.lateral_m == 0.0) {
+    const float low = crestIntegral(-half_side_m - e.offset_m, e.front_m, e.back_m);
+    const float high = crestIntegral(half_side_m - e.offset_m, e.front_m, e.back_m);
+    return own - (high - low) / (2.0 * half_side_m);
+  }
+  const float trough_m = e.front_m + e.back_m;
+  const float behind = s - e.offset_m + 1.5 * trough_m;
+  const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;
+  return exp(-l * l * l * l) * (own - 0.5 * crestShape(behind, trough_m, trough_m));
 }
 
 #endif

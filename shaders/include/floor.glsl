@@ -6,6 +6,7 @@
 #include "shared/sim_uniforms.h"
 
 #if COUPLED
+#include "include/wave_cell.glsl"
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 #endif
@@ -30,20 +31,12 @@ Floor loadFloor() {
 }
 
 #if COUPLED
-int wrapCell(int i, int n) {
-#if WAVE_PERIODIC
-  return i < 0 ? i + n : (i >= n ? i - n : i);
-#else
-  return clamp(i, 0, n - 1);
-#endif
-}
-
 /// (elevation, d eta/dt, d eta/dx, d eta/dz) of the nearest wave cell, the elevation carried to (x, z) along the
 /// gradient: one fetch, second order in the cell size like the bilinear sample.
 vec4 surfaceNear(Floor f, vec2 xz) {
   const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm;
   const vec2 c = floor(u);
-  const ivec2 cell = ivec2(wrapCell(int(c.x), f.n), wrapCell(int(c.y), f.n));
+  const ivec2 cell = ivec2(waveNeighbourX(int(c.x), f.n), waveNeighbourZ(int(c.y), f.n));
   vec4 s = texelFetch(surface_texels, cell.x + f.n * cell.y);
   s.x += dot(s.zw, (u - c - 0.5) * f.cell_m);
   return s;
@@ -54,10 +47,10 @@ vec4 surfaceAt(Floor f, vec2 xz, out vec2 flow_mps) {
   const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm - 0.5;
   const vec2 c = floor(u);
   const vec2 t = u - c;
-  const int x0 = wrapCell(int(c.x), f.n);
-  const int x1 = wrapCell(int(c.x) + 1, f.n);
-  const int z0 = f.n * wrapCell(int(c.y), f.n);
-  const int z1 = f.n * wrapCell(int(c.y) + 1, f.n);
+  const int x0 = waveNeighbourX(int(c.x), f.n);
+  const int x1 = waveNeighbourX(int(c.x) + 1, f.n);
+  const int z0 = f.n * waveNeighbourZ(int(c.y), f.n);
+  const int z1 = f.n * waveNeighbourZ(int(c.y) + 1, f.n);
   const vec2 f0 = mix(texelFetch(flow_texels, x0 + z0).xy, texelFetch(flow_texels, x1 + z0).xy, t.x);
   const vec2 f1 = mix(texelFetch(flow_texels, x0 + z1).xy, texelFetch(flow_texels, x1 + z1).xy, t.x);
   flow_mps = mix(f0, f1, t.y);

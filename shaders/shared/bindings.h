@@ -27,10 +27,18 @@
 #define CELL_MEMBER 10
 #define BLOCK_TOTAL 11
 
-// Wave levels: elevation [m] at t - dt, t, t + dt.
-#define ELEVATION_PREVIOUS 12
+// Wave, n x n cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance of those
+// faces [m]; loss of flow and of elevation in sponges and on beaches [1/s]; what left through absorbing sides [units].
+#define FLOW 12
 #define ELEVATION 13
-#define ELEVATION_NEXT 14
+#define BASIN 14
+#define SPONGE 19
+#define OUTFLOW 20
+// What presses on the surface (hulls, falling particles), as a height of water [units].
+#define PRESSURE_HEAD 21
+// Breaking: seconds since a cell began to break, intensity 0..1; and the same one substep ago.
+#define BREAKING 22
+#define BREAKING_BEFORE 23
 // Surface as the particles see it: elevation, d eta/dt, d eta/dx, d eta/dz; horizontal flow of the wave [m/s].
 #define SURFACE 15
 #define SURFACE_FLOW 16

@@ -1,44 +1,50 @@
-// Effects that act on the wave during one wave substep. Each adds gain * shape(x, z) to the elevation now and, for a
-// travelling crest, the matching value one substep ago; the gains of an effect's pulse sum to its full amplitude.
+// Effects that act on the wave during one wave step. Each displaces gain * V(x, z), include/event_shapes.glsl; the gains of an
+// effect's pulse sum to its full amplitude.
 #ifndef SPINDRIFT_SHARED_EVENT_UNIFORMS_H
 #define SPINDRIFT_SHARED_EVENT_UNIFORMS_H
 
 #include "shared/bindings.h"
 #include "shared/dual.h"
 
-#define MAX_EVENTS 32
-// Values of EventUniform.kind.
-#define EVENT_SPLASH 0
-#define EVENT_CREST 1
+// Splashes (rain drops too) and crests that can act together.
+#define MAX_SPLASHES 96
+#define MAX_CRESTS 16
+// A splash reaches this many radii: exp(-3.5^2) is 5e-6.
+#define SPLASH_REACH 3.5f
 
 #ifdef __cplusplus
 namespace spindrift::shared {
-struct EventUniform {
-#else
-struct EventUniform {
 #endif
-  uint kind;
-  float gain_m;        // this substep's share of the amplitude; negative pushes down
-  float x_m;           // splash: centre. crest: direction of travel (x, z), a unit vector along an axis
+struct EventUniform {
+  float gain_m;        // this step's share of the amplitude; negative pushes down
+  float x_m;           // splash: centre. crest: what direction and offset count from
   float z_m;
-  float radius_m;      // splash: radius. crest: half width, the e-folding length of exp(-(s/radius)^2)
-  float offset_m;      // crest: position of the crest along its direction now
-  float step_m;        // crest: how far it travels in one substep
-  float mean_ratio;    // crest: mean of the shape over the domain, subtracted so that the volume stays
+  float radius_m;      // splash
+  float direction_x;   // crest: direction of travel, a unit vector
+  float direction_z;
+  float offset_m;      // crest: where it is along its direction now
+  float front_m;       // crest: width of its front and back
+  float back_m;
+  float lateral_m;     // crest: half its extent along the crest; 0 = across the whole domain
+  float half_step_m;   // crest: how far it travels in half a step
+  float speed_mps;     // crest
+};
 #ifdef __cplusplus
-};
 struct EventUniforms {
-  EventUniform events[MAX_EVENTS];
-  uint event_count;
-  uint padding[3];
+  EventUniform splashes[MAX_SPLASHES];
+  EventUniform crests[MAX_CRESTS];
+  uint splash_count;
+  uint crest_count;
+  uint padding[2];
 };
-static_assert(sizeof(EventUniform) == 32 && sizeof(EventUniforms) == 32 * MAX_EVENTS + 16);
+static_assert(sizeof(EventUniform) == 48 && sizeof(EventUniforms) == 48 * (MAX_SPLASHES + MAX_CRESTS) + 16);
 }  // namespace spindrift::shared
 #else
-};
 layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {
-  EventUniform events[MAX_EVENTS];
-  uint event_count;
+  EventUniform splashes[MAX_SPLASHES];
+  EventUniform crests[MAX_CRESTS];
+  uint splash_count;
+  uint crest_count;
 };
 #endif
 

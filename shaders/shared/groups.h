@@ -8,6 +8,8 @@
 // One invocation a wave cell.
 #define WAVE_GROUP_X 64
 #define WAVE_GROUP_Y 1
+// One invocation a cell of a small square of the wave, z is what lies there (a splash, a boat).
+#define PATCH_GROUP 8
 // The scan: SCAN_GROUP invocations, SCAN_ITEMS cells each.
 #define SCAN_GROUP 256
 #define SCAN_ITEMS 4

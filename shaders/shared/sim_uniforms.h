@@ -57,16 +57,18 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float wave_side_m;
   float wave_cell_m;
   float wave_dt_s;              // wave substep
-  float courant2;               // (c dt / dx)^2
-  float wave_keep;              // (1 - kappa dt/2) / (1 + kappa dt/2)
-  float wave_gain;              // 1 / (1 + kappa dt/2)
-  float flow_keep;              // exp(-kappa dt), damping of the horizontal flow per substep
+  float wave_depth_m;           // still depth away from beaches
+  float wave_damping_per_s;     // kappa
+  float wave_pull;              // gravity dt / dx in metres of elevation a unit: flow gained per metre of conductance and unit of slope
+  float wave_transfer;          // dt / dx in units: elevation moved per flow
+  float steepening_ratio;
+  float breaking_loss_per_s;    // of flow, where the intensity is 1
 
   // Frames.
   float surface_quantum_m;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 41 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 43 * 4, "scalars of four bytes only: std140 and C++ must agree");
 }  // namespace spindrift::shared
 #else
 } sim;

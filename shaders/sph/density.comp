@@ -4,7 +4,7 @@
 // Equations: rho_i = sum_j m W(r_ij) (thesis 3.6), plus the floor's virtual particles, cubic kernel (thesis, algorithm
 // 10); p_i = max(k (rho_i - rho_0), 0) (thesis 3.9, clamped: water does not pull).
 // Invariant: rho_i >= m W(0) > 0, so the divisions are safe.
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 LATTICE=3 KERNEL_SET=2
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
 #include "shared/groups.h"
 #include "include/candidates.glsl"
 #include "include/floor.glsl"

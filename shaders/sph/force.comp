@@ -4,7 +4,7 @@
 // mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W, viscosity kernel (thesis 3.18 with the difference its text means); above the
 // water -downforce (y - eta)^2 (thesis 3.6.2).
 // Invariant: the pair terms are antisymmetric up to rounding; the particle itself adds nothing (r = 0).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 LATTICE=3 KERNEL_SET=2
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
 #include "shared/groups.h"
 #include "include/candidates.glsl"
 #include "include/floor_lattice.glsl"

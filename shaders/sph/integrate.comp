@@ -2,7 +2,7 @@
 // Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, the floor. Writes POSITION, VELOCITY (in sorted order).
 // Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than max_speed_mps plus
 // the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC=1 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 FOAM=0
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0
 #include "shared/groups.h"
 #include "include/floor.glsl"
 #include "include/foam.glsl"

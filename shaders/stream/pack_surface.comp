@@ -1,17 +1,17 @@
-// Quantizes the elevation for the stream: two int16 a word, value = round(eta / quantum), saturating; a NaN becomes 0, so
-// that no client ever sees one (diagnostics count it).
-// Reads ELEVATION [n x n]. Writes PACKED_WORDS [n * n / 2].
+// Quantizes the elevation for the stream: two int16 a word, value = round(eta / quantum), saturating.
+// Reads ELEVATION [n x n, units]. Writes PACKED_WORDS [n * n / 2].
+#include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 
 layout(local_size_x = WAVE_GROUP_X) in;
 
-layout(binding = ELEVATION) uniform samplerBuffer elevation;
+layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(std430, binding = PACKED_WORDS) restrict writeonly buffer PackedWords { uint packed_words[]; };
 
 uint quantized(int i) {
-  const float q = texelFetch(elevation, i).x / sim.surface_quantum_m;
-  return isnan(q) ? 0u : uint(int(round(clamp(q, -32767.0, 32767.0)))) & 0xffffu;
+  const float q = float(texelFetch(elevation, i).x) * (ELEVATION_UNIT_M / sim.surface_quantum_m);
+  return uint(int(round(clamp(q, -32767.0, 32767.0)))) & 0xffffu;
 }
 
 void main() {

@@ -121,23 +121,27 @@ double pressureTerm(const core::Scene& scene, double rho) {
 
 }  // namespace
 
-ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& d, const std::vector<float>& eta,
-                             const std::vector<float>& eta_previous) {
+ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& d, const std::vector<double>& eta,
+                             const std::vector<float>& flow) {
   const int n = static_cast<int>(d.wave->resolution_count);
   const bool periodic = scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic;
   const auto at = [&](int x, int z) {
     return static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic));
   };
+  // Closed faces carry no flow, so wrapping is right for walls too.
+  const auto flowAt = [&](int x, int z, int axis) -> double {
+    return flow[2 * static_cast<std::size_t>(wrap(x, n, true) + n * wrap(z, n, true)) + static_cast<std::size_t>(axis)];
+  };
   ReferenceSurface s;
   for (int z = 0; z < n; ++z) {
     for (int x = 0; x < n; ++x) {
-      const std::size_t i = at(x, z);
-      s.eta_m.push_back(eta[i]);
-      s.rate_mps.push_back((static_cast<double>(eta[i]) - eta_previous[i]) / d.wave->dt_s);
-      s.slope_x.push_back((static_cast<double>(eta[at(x + 1, z)]) - eta[at(x - 1, z)]) / (2 * d.wave->cell_m));
-      s.slope_z.push_back((static_cast<double>(eta[at(x, z + 1)]) - eta[at(x, z - 1)]) / (2 * d.wave->cell_m));
-      s.flow_x_mps.push_back(-d.dt_s * scene.gravity_mps2 * s.slope_x.back());
-      s.flow_z_mps.push_back(-d.dt_s * scene.gravity_mps2 * s.slope_z.back());
+      s.eta_m.push_back(eta[at(x, z)]);
+      s.rate_mps.push_back((flowAt(x - 1, z, 0) - flowAt(x, z, 0) + flowAt(x, z - 1, 1) - flowAt(x, z, 1)) /
+                           d.wave->cell_m);
+      s.slope_x.push_back((eta[at(x + 1, z)] - eta[at(x - 1, z)]) / (2 * d.wave->cell_m));
+      s.slope_z.push_back((eta[at(x, z + 1)] - eta[at(x, z - 1)]) / (2 * d.wave->cell_m));
+      s.flow_x_mps.push_back((flowAt(x - 1, z, 0) + flowAt(x, z, 0)) / (2 * scene.wave->depth_m));
+      s.flow_z_mps.push_back((flowAt(x, z - 1, 1) + flowAt(x, z, 1)) / (2 * scene.wave->depth_m));
     }
   }
   return s;

@@ -16,9 +16,9 @@ struct ReferenceSurface {
   std::vector<double> eta_m, rate_mps, slope_x, slope_z, flow_x_mps, flow_z_mps;
 };
 
-/// Slopes, vertical speed and the flow after one substep from rest, from two elevation levels.
-ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& derived, const std::vector<float>& eta,
-                             const std::vector<float>& eta_previous);
+/// Slopes, vertical speed and horizontal velocity, from elevations and the flow through the faces (5-point stencil).
+ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& derived, const std::vector<double>& eta,
+                             const std::vector<float>& flow);
 
 /// Densities [kg/m^3] of particles at `x`.
 std::vector<double> referenceDensity(const core::Scene& scene, const sim::Derived& derived,

@@ -30,7 +30,7 @@ TEST(Effects, SharesOfAPulseSumToItsAmplitude) {
     int steps = 0;
     for (double t = 1.0; !effects.idle() && steps < 1000; t += wave.dt_s, ++steps) {
       const auto u = effects.advance(t, wave);
-      for (std::uint32_t k = 0; k < u.event_count; ++k) sum += u.events[k].gain_m;
+      for (std::uint32_t k = 0; k < u.splash_count; ++k) sum += u.splashes[k].gain_m;
     }
     EXPECT_NEAR(sum, -0.5, 1e-6);
     EXPECT_TRUE(effects.idle());
@@ -39,20 +39,21 @@ TEST(Effects, SharesOfAPulseSumToItsAmplitude) {
 
 TEST(Effects, RefuseMoreThanTheirBound) {
   Effects effects;
-  for (int k = 0; k < MAX_EVENTS; ++k) ASSERT_TRUE(effects.start(core::Splash{}, 0));
+  for (int k = 0; k < MAX_SPLASHES; ++k) ASSERT_TRUE(effects.start(core::Splash{}, 0));
   const auto refused = effects.start(core::Splash{}, 0);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::ErrorCode::kUnavailable);
+  EXPECT_TRUE(effects.start(core::BreakingWave{}, 0)) << "waves have their own places";
 }
 
 TEST(Effects, ACrestStartsAtItsSideAndTravelsInwards) {
   const WaveLayout wave = layout();
   Effects effects;
   ASSERT_TRUE(effects.start(core::BreakingWave{core::Side::kPlusX, 0.5, 1.0, 1.0}, 0.0));
-  const auto first = effects.advance(0.0, wave).events[0];
-  EXPECT_EQ(first.x_m, -1.0f) << "from +x it travels towards -x";
+  const auto first = effects.advance(0.0, wave).crests[0];
+  EXPECT_EQ(first.direction_x, -1.0f) << "from +x it travels towards -x";
   EXPECT_LT(first.offset_m, 0.0f);
-  const auto later = effects.advance(0.5, wave).events[0];
+  const auto later = effects.advance(0.5, wave).crests[0];
   EXPECT_NEAR(later.offset_m - first.offset_m, 0.5 * wave.speed_mps, 1e-5);
 }
 

@@ -115,8 +115,8 @@ TEST_F(KernelsOnDevice, UniformsLieWhereTheDriverPutsThem) {
       {"floor_gap_m", offsetof(SimUniforms, floor_gap_m)},
       {"foam_keep_ratio", offsetof(SimUniforms, foam_keep_ratio)},
       {"wave_n", offsetof(SimUniforms, wave_n)},
-      {"courant2", offsetof(SimUniforms, courant2)},
-      {"flow_keep", offsetof(SimUniforms, flow_keep)},
+      {"wave_pull", offsetof(SimUniforms, wave_pull)},
+      {"breaking_loss_per_s", offsetof(SimUniforms, breaking_loss_per_s)},
       {"surface_quantum_m", offsetof(SimUniforms, surface_quantum_m)},
   };
   for (const auto& [member, offset] : members) {

@@ -68,10 +68,10 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   const Cost all = cost(full);
   const Cost wave = cost(wave_only);
   const Cost particles = cost(particles_only);
-  // A wave alone: inject + evolve + its diagnostics and packing; with one wave step a substep, 2 dispatches a tick, and
-  // one more in every fourth.
-  EXPECT_EQ(wave.programs, 4u);
-  EXPECT_EQ(wave.dispatches, 2u);
+  // A wave alone: splash, crest, momentum, continuity, its diagnostics and packing; with one wave step a substep, two
+  // dispatches each, and one more in every fourth tick.
+  EXPECT_EQ(wave.programs, 6u);
+  EXPECT_EQ(wave.dispatches, 4u);
   // Particles alone: 6 grid, 3 sph, their diagnostics and packing; 2 x 9 dispatches a tick.
   EXPECT_EQ(particles.programs, 11u);
   EXPECT_EQ(particles.dispatches, 18u);
@@ -199,7 +199,7 @@ TEST_F(Water, GoesBackToTheLastGoodCheckpointWhenAValueIsNotFinite) {
   ASSERT_EQ(sim.recoveredCount(), 0u);
   StateCopy broken = sim.copyState();
   broken.velocity[5] = std::numeric_limits<float>::quiet_NaN();
-  broken.elevation_m[3] = std::numeric_limits<float>::infinity();
+  broken.flow_m2ps[3] = std::numeric_limits<float>::infinity();
   sim.setState(broken);
   sim.step();
   const core::FrameView at_once = frame(sim);  // integers: no client sees the NaN
@@ -208,7 +208,7 @@ TEST_F(Water, GoesBackToTheLastGoodCheckpointWhenAValueIsNotFinite) {
   EXPECT_GE(sim.recoveredCount(), 1u);
   EXPECT_GE(sim.nonfiniteCount(), 1u);
   const StateCopy healed = sim.copyState();
-  for (const auto* part : {&healed.position, &healed.velocity, &healed.elevation_m}) {
+  for (const auto* part : {&healed.position, &healed.velocity, &healed.flow_m2ps}) {
     for (const float value : *part) ASSERT_TRUE(std::isfinite(value));
   }
   const auto recovered = sim.recoveredCount();
@@ -277,9 +277,9 @@ TEST_F(Water, ScenesStartTheirOwnEventsOnTime) {
   scene.events.push_back({.at_s = 0.5, .every_s = 1.0, .effect = core::Splash{0, 0, 1.0, 0.5, 0.1}});
   WaterSim& sim = make(scene);
   for (int i = 0; i < 29; ++i) sim.step();
-  EXPECT_EQ(sim.copyState().elevation_m, std::vector<float>(32 * 32, 0.0f));
+  EXPECT_EQ(sim.copyState().elevation_m, std::vector<double>(32 * 32, 0.0));
   for (int i = 0; i < 6; ++i) sim.step();
-  EXPECT_NE(sim.copyState().elevation_m, std::vector<float>(32 * 32, 0.0f));
+  EXPECT_NE(sim.copyState().elevation_m, std::vector<double>(32 * 32, 0.0));
 }
 
 TEST_F(Water, EffectsNeedAWave) {

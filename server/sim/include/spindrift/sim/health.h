@@ -16,7 +16,13 @@ struct Health {
   double potential_energy_j = 0.0;  ///< of the particles, against y = 0
   double max_elevation_m = 0.0;
   double wave_volume_m3 = 0.0;  ///< integral of eta
-  double wave_energy_j = 0.0;   ///< rho d/2 integral (eta_t^2 + c^2 |grad eta|^2): conserved by the undamped leapfrog
+  double wave_energy_j = 0.0;   ///< rho/2 integral (g eta^2 + q^2/d): conserved by the undamped linear leapfrog
+  double breaking_ratio = 0.0;  ///< share of the cells that break
+
+  // The volume ledger, in units of shaders/shared/fixed_point.h times a cell's area.
+  std::int64_t surface_units = 0;       ///< sum of the elevations
+  std::int64_t outflow_units = 0;       ///< gone through absorbing sides since the start
+  std::int64_t volume_error_units = 0;  ///< surface + outflow + particles of a two-way scene - at the start: always 0
 
   [[nodiscard]] bool isGood() const { return nonfinite_count == 0 && escaped_count == 0; }
 };

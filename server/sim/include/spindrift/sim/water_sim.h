@@ -28,7 +28,8 @@ struct FrameRequest {
 struct StateCopy {
   std::vector<float> position, velocity;
   std::vector<float> density_kgpm3;
-  std::vector<float> elevation_m, elevation_previous_m;
+  std::vector<double> elevation_m;  ///< whole units of shaders/shared/fixed_point.h, which a double holds exactly
+  std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) a cell, the faces that it owns
 };
 
 /// All calls on the thread that owns the context. Nothing here waits for the device except copyState(), stateHash() and

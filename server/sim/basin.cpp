@@ -1,0 +1,182 @@
+#include "basin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace spindrift::sim {
+namespace {
+
+using core::WaveBoundary;
+
+/// Water shallower than this share of the scene's depth is dry ground to the wave.
+constexpr double kDryShare = 0.03;
+/// On a beach the wave loses its flow from this share of the depth on; its own breaking is not modelled there.
+constexpr double kFadeShare = 0.4;
+/// A cubic sponge that lets exp(-2 integral(sigma)/c) = 1e-4 of a normal wave come back.
+constexpr double kSpongeReturn = 1e-4;
+constexpr double kSpongePower = 3.0;
+
+/// How far a place lies from a side. [m]
+double distanceTo(core::Side side, double half_m, double x_m, double z_m) {
+  switch (side) {
+    case core::Side::kMinusX:
+      return x_m + half_m;
+    case core::Side::kPlusZ:
+      return half_m - z_m;
+    case core::Side::kMinusZ:
+      return z_m + half_m;
+    default:
+      return half_m - x_m;
+  }
+}
+
+double distance(const core::Rock& rock, double x_m, double z_m) {
+  return std::hypot(x_m - rock.x_m, z_m - rock.z_m) - rock.radius_m;
+}
+
+double distance(const core::Breakwater& wall, double x_m, double z_m) {
+  const double heading = wall.heading_deg * std::numbers::pi / 180.0;
+  const double dx = x_m - wall.x_m;
+  const double dz = z_m - wall.z_m;
+  const double along = std::abs(dx * std::cos(heading) + dz * std::sin(heading)) - wall.length_m / 2;
+  const double across = std::abs(dz * std::cos(heading) - dx * std::sin(heading)) - wall.width_m / 2;
+  return std::hypot(std::max(along, 0.0), std::max(across, 0.0)) + std::min(std::max(along, across), 0.0);
+}
+
+/// Series of two half cells: what flows through both. 0 when either is dry.
+double faceDepth(double a_m, double b_m) {
+  return a_m > 0 && b_m > 0 ? 2 * a_m * b_m / (a_m + b_m) : 0.0;
+}
+
+}  // namespace
+
+bool isPeriodicX(const core::WaveScene& wave) {
+  return wave.boundary_minus_x == WaveBoundary::kPeriodic;
+}
+bool isPeriodicZ(const core::WaveScene& wave) {
+  return wave.boundary_minus_z == WaveBoundary::kPeriodic;
+}
+
+bool isOpen(const core::Scene& scene) {
+  const core::WaveScene& w = *scene.wave;
+  for (const WaveBoundary side : {w.boundary_minus_x, w.boundary_plus_x, w.boundary_minus_z, w.boundary_plus_z}) {
+    if (side == WaveBoundary::kAbsorb) return true;
+  }
+  return false;
+}
+
+bool isSampled(const core::Scene& scene) {
+  return scene.wave && (scene.coupling || scene.boats || (scene.foam && scene.foam->surface));
+}
+
+bool isVaried(const core::Scene& scene) {
+  const core::WaveScene& w = *scene.wave;
+  const bool has_walls = !isPeriodicX(w) || !isPeriodicZ(w);
+  return isOpen(scene) || !scene.obstacles.empty() || !scene.beaches.empty() ||
+         (has_walls && w.stencil == core::Stencil::kNinePoint);
+}
+
+double bedDepth(const core::Scene& scene, double x_m, double z_m) {
+  double depth_m = scene.wave->depth_m;
+  for (const core::Beach& beach : scene.beaches) {
+    const double from_side_m = distanceTo(beach.side, scene.wave->side_m / 2, x_m, z_m);
+    const double share = std::clamp(from_side_m / beach.width_m, 0.0, 1.0);
+    depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, scene.wave->depth_m, share));
+  }
+  return depth_m;
+}
+
+double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const core::Obstacle& obstacle : scene.obstacles) {
+    nearest_m = std::min(nearest_m, std::visit([&](const auto& o) { return distance(o, x_m, z_m); }, obstacle));
+  }
+  return nearest_m;
+}
+
+Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
+  const core::WaveScene& w = *scene.wave;
+  const auto n = static_cast<int>(layout.resolution_count);
+  const auto cells = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+  const double half_m = w.side_m / 2;
+  const auto place = [&](int i) { return (i + 0.5) * layout.cell_m - half_m; };
+  const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); };
+
+  Basin out;
+  out.depth_m.resize(cells);
+  out.conductance_m.resize(cells);
+  out.loss_per_s.resize(cells);
+  const double sponge_m = w.sponge_width_m;
+  const double sigma_max = (kSpongePower + 1) * layout.speed_mps * std::log(1 / kSpongeReturn) / (2 * sponge_m);
+  const std::pair<core::Side, WaveBoundary> sides[] = {{core::Side::kMinusX, w.boundary_minus_x},
+                                                       {core::Side::kPlusX, w.boundary_plus_x},
+                                                       {core::Side::kMinusZ, w.boundary_minus_z},
+                                                       {core::Side::kPlusZ, w.boundary_plus_z}};
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const std::size_t i = index(x, z);
+      double depth_m = bedDepth(scene, place(x), place(z));
+      if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, place(x), place(z)) < 0) depth_m = 0.0;
+      out.depth_m[i] = static_cast<float>(depth_m);
+      double sigma = 0.0;
+      for (const auto& [side, boundary] : sides) {
+        if (boundary != WaveBoundary::kAbsorb) continue;
+        const double inside = 1 - distanceTo(side, half_m, place(x), place(z)) / sponge_m;
+        if (inside > 0) sigma = std::max(sigma, sigma_max * std::pow(inside, kSpongePower));
+      }
+      // Shoaling water on a beach that runs dry: rubs within the time that a long wave takes over the shallow part.
+      double fade = 0.0;
+      for (const core::Beach& beach : scene.beaches) {
+        if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
+        const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
+        if (shallow > 0) fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
+      }
+      out.loss_per_s[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma)};
+    }
+  }
+
+  const bool nine = w.stencil == core::Stencil::kNinePoint;
+  const auto depthAt = [&](int x, int z) { return static_cast<double>(out.depth_m[index(x, z)]); };
+  const auto isInside = [&](int x, int z) {
+    return (isPeriodicX(w) || (x >= 0 && x < n)) && (isPeriodicZ(w) || (z >= 0 && z < n)) && depthAt(x, z) > 0;
+  };
+  // The square that (x, z) spans with its neighbours carries diagonals only where none of its four cells is dry.
+  const auto isSquareOpen = [&](int x, int z) {
+    return isInside(x, z) && isInside(x + 1, z) && isInside(x, z + 1) && isInside(x + 1, z + 1);
+  };
+  // Where a square is closed its diagonals fold back, as in the mirror image beyond a wall: the face beside it gets
+  // their weight.
+  const auto axisWeight = [&](bool one_open, bool other_open) {
+    return nine ? 2.0 / 3.0 + (one_open ? 0.0 : 1.0 / 6.0) + (other_open ? 0.0 : 1.0 / 6.0) : 1.0;
+  };
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      std::array<float, 4>& c = out.conductance_m[index(x, z)];
+      c = {0, 0, 0, 0};
+      if (!isInside(x, z)) continue;
+      const double here = depthAt(x, z);
+      if (isInside(x + 1, z)) {
+        const double weight = axisWeight(isSquareOpen(x, z), isSquareOpen(x, z - 1));
+        c[0] = static_cast<float>(weight * faceDepth(here, depthAt(x + 1, z)));
+      }
+      if (isInside(x, z + 1)) {
+        const double weight = axisWeight(isSquareOpen(x, z), isSquareOpen(x - 1, z));
+        c[1] = static_cast<float>(weight * faceDepth(here, depthAt(x, z + 1)));
+      }
+    }
+  }
+  if (!nine) return out;
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      if (!isSquareOpen(x, z)) continue;
+      std::array<float, 4>& c = out.conductance_m[index(x, z)];
+      c[2] = static_cast<float>(faceDepth(depthAt(x, z), depthAt(x + 1, z + 1)) / 6);
+      c[3] = static_cast<float>(faceDepth(depthAt(x + 1, z), depthAt(x, z + 1)) / 6);
+    }
+  }
+  return out;
+}
+
+}  // namespace spindrift::sim

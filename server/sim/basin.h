@@ -1,0 +1,42 @@
+// The water's bed and sides as the wave sees them: depths, faces between cells, sponges. Pure functions of the scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <spindrift/core/scene.h>
+#include <spindrift/sim/derive.h>
+
+namespace spindrift::sim {
+
+/// n x n cells, x fastest.
+struct Basin {
+  std::vector<float> depth_m;  ///< still depth at cell centres; 0 inside obstacles and on dry beaches
+  /// Conductance [m] of the faces that a cell owns, in the order of shaders/include/wave_faces.glsl: toward +x, toward
+  /// +z, and the two diagonals of the 9-point stencil. Depth at the face (harmonic mean, so that a dry cell closes it)
+  /// times the stencil's weight; 0 across reflecting and absorbing sides.
+  std::vector<std::array<float, 4>> conductance_m;
+  /// Rates at which flow and elevation are lost [1/s]: equal in a sponge; flow alone where a beach runs dry.
+  std::vector<std::array<float, 2>> loss_per_s;
+};
+
+/// Whether shaders need tables: the bed or the sides differ from a flat basin with periodic sides, or with walls under
+/// the 5-point stencil.
+bool isVaried(const core::Scene& scene);
+/// Whether water can leave: a side absorbs.
+bool isOpen(const core::Scene& scene);
+/// Whether particles or boats look at the surface.
+bool isSampled(const core::Scene& scene);
+bool isPeriodicX(const core::WaveScene& wave);
+bool isPeriodicZ(const core::WaveScene& wave);
+
+/// Still depth at a place, obstacles not considered. [m]
+double bedDepth(const core::Scene& scene, double x_m, double z_m);
+
+/// Signed distance in the plane to the nearest obstacle: negative inside; +infinity without obstacles. [m]
+double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
+
+Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);
+
+}  // namespace spindrift::sim

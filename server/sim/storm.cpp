@@ -1,0 +1,61 @@
+#include "storm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <shared/event_uniforms.h>
+
+#include "random.h"
+
+namespace spindrift::sim {
+namespace {
+
+/// A drop's dent is as wide as the wave grid can show without ringing.
+constexpr double kDropRadius_cells = 2.5;
+constexpr double kDropDuration_s = 0.08;
+constexpr double kDropDepthShare = 0.1;  ///< of the water's depth, at most
+/// Wind waves: one group each so many seconds at full storm, this long, spread about the wind.
+constexpr double kGroupInterval_s = 1.6;
+constexpr double kGroupLengthShare = 0.09;  ///< of the side of the water
+constexpr double kGroupSpread_deg = 25.0;
+constexpr double kWaveDepthShare = 0.5;  ///< of the water's depth, at most
+
+}  // namespace
+
+std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayout& wave, std::uint64_t tick,
+                                       double tick_s) {
+  std::vector<core::Effect> out;
+  if (!scene.storm || scene.storm->level_ratio <= 0) return out;
+  const core::StormScene& storm = *scene.storm;
+  SplitMix64 random(scene.seed * 0x2545f4914f6cdd1dull + tick);
+
+  const double drops = storm.level_ratio * storm.drops_per_m2_s * wave.side_m * wave.side_m * tick_s;
+  auto count = static_cast<std::size_t>(drops);
+  if (random.unit() < drops - static_cast<double>(count)) ++count;
+  count = std::min(count, static_cast<std::size_t>(MAX_SPLASHES) - kSpareSplashes);
+  const double depth_m = std::min(storm.drop_depth_m, kDropDepthShare * scene.wave->depth_m);
+  for (std::size_t k = 0; k < count; ++k) {
+    core::Splash drop;
+    drop.x_m = 0.5 * wave.side_m * random.symmetric();
+    drop.z_m = 0.5 * wave.side_m * random.symmetric();
+    drop.radius_m = kDropRadius_cells * wave.cell_m;
+    drop.depth_m = depth_m * (0.5 + 0.5 * random.unit());
+    drop.duration_s = kDropDuration_s;
+    out.emplace_back(drop);
+  }
+
+  if (random.unit() < storm.level_ratio * tick_s / kGroupInterval_s) {
+    core::BreakingWave gust;
+    gust.side = core::Side::kDirection;
+    gust.shape = core::WaveShape::kSwell;
+    gust.direction_deg = storm.wind_direction_deg + kGroupSpread_deg * random.symmetric();
+    gust.amplitude_m = storm.level_ratio * std::min(storm.wave_height_m, kWaveDepthShare * scene.wave->depth_m) *
+                       (0.4 + 0.6 * random.unit());
+    gust.length_m = kGroupLengthShare * wave.side_m * (0.7 + 0.6 * random.unit());
+    gust.duration_s = 0.4;
+    out.emplace_back(gust);
+  }
+  return out;
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,23 @@
+// Rain and wind as effects: which drops fall and which wind waves start during a tick. A pure function of scene, seed
+// and tick, so that a storm repeats with the run.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <spindrift/core/command.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/sim/derive.h>
+
+namespace spindrift::sim {
+
+/// Places among the splashes and waves that rain and wind leave free for people.
+inline constexpr std::size_t kSpareSplashes = 32;
+inline constexpr std::size_t kSpareCrests = 8;
+
+/// Effects that start in tick `tick` (counted from the scene's start), drops first. At most as many as there are
+/// places.
+std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayout& wave, std::uint64_t tick,
+                                       double tick_s);
+
+}  // namespace spindrift::sim

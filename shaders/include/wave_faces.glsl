@@ -1,0 +1,44 @@
+// The faces of wave cells. Cell (i, k) owns the faces toward (i+1, k) and (i, k+1); with the 9-point stencil also the two
+// diagonals of the square that it spans with its neighbours: (i, k) to (i+1, k+1), and (i+1, k) to (i, k+1).
+// A face carries flow [m^2/s] and has a conductance: still depth times the stencil's weight, 0 where it is closed.
+// The weights make the isotropic Laplacian (4 sides + corners - 20 centre)/6 = 2/3 (5-point) + 1/6 (corners - 4 centre); beside
+// closed squares they differ, and come from the table (sim/basin.cpp).
+#ifndef SPINDRIFT_WAVE_FACES
+#define SPINDRIFT_WAVE_FACES
+
+#include "include/wave_cell.glsl"
+
+#if STENCIL == 9
+#define Flow vec4
+#define FLOW_WEIGHTS vec4(2.0 / 3.0, 2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0)
+#define asFlow(v) (v)
+#else
+#define Flow vec2
+#define FLOW_WEIGHTS vec2(1.0)
+#define asFlow(v) ((v).xy)
+#endif
+
+#if VARIED
+layout(binding = BASIN) uniform samplerBuffer basin;
+#endif
+
+/// Conductance of the faces that a cell owns. [m]
+Flow conductanceOf(ivec2 cell, int n) {
+#if VARIED
+  return asFlow(texelFetch(basin, cell.x + n * cell.y));
+#else
+#if WAVE_PERIODIC_X
+  const float open_x = 1.0;
+#else
+  const float open_x = cell.x < n - 1 ? 1.0 : 0.0;
+#endif
+#if WAVE_PERIODIC_Z
+  const float open_z = 1.0;
+#else
+  const float open_z = cell.y < n - 1 ? 1.0 : 0.0;
+#endif
+  return sim.wave_depth_m * FLOW_WEIGHTS * asFlow(vec4(open_x, open_z, open_x * open_z, open_x * open_z));
+#endif
+}
+
+#endif

@@ -1,0 +1,11 @@
+// The elevation is an integer: what leaves one cell enters its neighbour to the last unit, so that the volume of water is
+// exact for ever. 2^-24 m is 60 nm; the range is +-128 m.
+#ifndef SPINDRIFT_SHARED_FIXED_POINT_H
+#define SPINDRIFT_SHARED_FIXED_POINT_H
+
+#define ELEVATION_UNITS_PER_M 16777216.0f
+#define ELEVATION_UNIT_M 5.9604644775390625e-8f
+// A transfer or a pressure head beyond this many units (16 m) is an error of the simulation; it counts as none.
+#define TRANSFER_MAX_UNITS 268435456.0f
+
+#endif

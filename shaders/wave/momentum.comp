@@ -1,0 +1,88 @@
+// First half of a wave step: the slope of the surface accelerates the flow through each face.
+// Reads ELEVATION [n x n, units], PRESSURE_HEAD (boats, falling water), BASIN, SPONGE, BREAKING where the scene has them.
+// Updates FLOW [n x n, m^2/s per metre of face].
+// Equation: q_t = -g d grad(eta + head) - (kappa + sigma) q, centred in time; with wave/continuity.comp this is the leapfrog of
+// eta_tt + kappa eta_t = div(g d grad eta) (thesis 3.21), the damping on the velocity term alone:
+//   q+ = keep q - gain g dt d_face (eta_there - eta_here)/dx,  keep = (1 - a)/(1 + a), gain = 1/(1 + a), a = (kappa + sigma) dt/2
+// STEEPEN: d grows with the elevation, d (1 + 3 s eta/d): to first order the speed of simple waves in shallow water (Whitham 1974,
+// 13.10), so that crests overtake troughs. Breaking water loses its flow at intensity * 2 sqrt(g/d).
+// Invariant: a level surface without flow stays so to the last bit; closed faces carry nothing.
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=0 BREAKERS=0 STEEPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 HEAD=1 BREAKERS=1 STEEPEN=1 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=1 BREAKERS=0 STEEPEN=1
+#include "shared/fixed_point.h"
+#include "shared/groups.h"
+#include "include/wave_faces.glsl"
+
+layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
+
+layout(binding = ELEVATION) uniform isamplerBuffer elevation;
+#if HEAD
+layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
+#endif
+#if VARIED
+layout(binding = SPONGE) uniform samplerBuffer sponge;
+#endif
+#if BREAKERS
+layout(binding = BREAKING) uniform samplerBuffer breaking;
+#endif
+layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
+
+int levelAt(int i) {
+#if HEAD
+  return texelFetch(elevation, i).x + texelFetch(pressure_head, i).x;
+#else
+  return texelFetch(elevation, i).x;
+#endif
+}
+
+/// Rate at which flow is lost at a cell besides kappa. [1/s]
+float lossAt(int i) {
+  float loss_per_s = 0.0;
+#if VARIED
+  loss_per_s += texelFetch(sponge, i).x;
+#endif
+#if BREAKERS
+  loss_per_s += sim.breaking_loss_per_s * texelFetch(breaking, i).y;
+#endif
+  return loss_per_s;
+}
+
+void main() {
+  const int n = int(sim.wave_n);
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (cell.x >= n || cell.y >= n) return;
+  const int right = wrapped(cell.x + 1, n);
+  const int row = n * cell.y;
+  const int next_row = n * wrapped(cell.y + 1, n);
+  const int i = cell.x + row;
+
+  const int here = levelAt(i);
+  const int there_x = levelAt(right + row);
+  const int there_z = levelAt(cell.x + next_row);
+#if STENCIL == 9
+  const int there_d = levelAt(right + next_row);
+  const Flow slope = vec4(there_x - here, there_z - here, there_d - here, there_z - there_x);
+#else
+  const Flow slope = vec2(there_x - here, there_z - here);
+#endif
+
+  Flow conductance_m = conductanceOf(cell, n);
+#if STEEPEN
+  // The elevation at a face: the mean of its two cells; a diagonal's likewise.
+#if STENCIL == 9
+  const Flow doubled = vec4(here + there_x, here + there_z, here + there_d, there_x + there_z);
+#else
+  const Flow doubled = vec2(here + there_x, here + there_z);
+#endif
+  const float share = 1.5 * sim.steepening_ratio * ELEVATION_UNIT_M / sim.wave_depth_m;
+  conductance_m *= clamp(1.0 + share * doubled, 1.0 - 0.75 * sim.steepening_ratio, 1.0 + sim.steepening_ratio);
+#endif
+
+#if VARIED || BREAKERS
+  const float own_loss_per_s = lossAt(i);
+  const Flow loss_per_s = 0.5 * (own_loss_per_s + asFlow(vec4(lossAt(right + row), lossAt(cell.x + next_row), own_loss_per_s, own_loss_per_s)));
+  const Flow a = 0.5 * sim.wave_dt_s * (sim.wave_damping_per_s + loss_per_s);
+#else
+  const float a = 0.5 * sim.wave_dt_s * sim.wave_damping_per_s;
+#endif
+  flow_m2ps[i] = ((1.0 - a) * flow_m2ps[i] - sim.wave_pull * conductance_m * slope) / (1.0 + a);
+}

@@ -1,0 +1,54 @@
+// Splashes displace water: invocations (x, y) cover the square that a splash can reach, z is the splash.
+// Reads EventUniforms, BASIN. Adds to ELEVATION [n x n, units]; integers, so that overlapping splashes add up in any order to
+// the same bits.
+// Invariant: the sum of ELEVATION does not change; nothing passes a closed face.
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
+#include "shared/groups.h"
+#include "include/event_shapes.glsl"
+#include "include/transfer.glsl"
+#include "include/wave_faces.glsl"
+
+layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
+
+layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
+
+/// Units that leave a cell through its own faces toward +x and +z.
+ivec2 outward(EventUniform e, ivec2 cell, int n, float units) {
+  const float cell_m = sim.wave_cell_m;
+  const vec2 centre = vec2(e.x_m, e.z_m);
+  const vec2 p = waveCellCentre(cell);
+  const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
+  const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
+  const Flow open = conductanceOf(cell, n);
+  return ivec2(open.x > 0.0 ? transferUnits(-splashDisplacement(at_x, e.radius_m).x, units) : 0,
+               open.y > 0.0 ? transferUnits(-splashDisplacement(at_z, e.radius_m).y, units) : 0);
+}
+
+void main() {
+  const EventUniform e = splashes[gl_GlobalInvocationID.z];
+  const int n = int(sim.wave_n);
+  const float cell_m = sim.wave_cell_m;
+  // The square's cells: as many as the splash needs; along a periodic axis at most the whole domain once.
+  ivec2 across = ivec2(min(2 * int(ceil(SPLASH_REACH * e.radius_m / cell_m)) + 4, 2 * n));
+#if WAVE_PERIODIC_X
+  across.x = min(across.x, n);
+#endif
+#if WAVE_PERIODIC_Z
+  across.y = min(across.y, n);
+#endif
+  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), across))) return;
+  ivec2 cell = ivec2(floor((vec2(e.x_m, e.z_m) + 0.5 * sim.wave_side_m) / cell_m)) - across / 2 + ivec2(gl_GlobalInvocationID.xy);
+#if WAVE_PERIODIC_X
+  cell.x = wrapped(cell.x, n);
+#endif
+#if WAVE_PERIODIC_Z
+  cell.y = wrapped(cell.y, n);
+#endif
+  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return;
+  const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
+  const ivec2 out_here = outward(e, cell, n, units);
+  const int out_left = outward(e, ivec2(wrapped(cell.x - 1, n), cell.y), n, units).x;
+  const int out_before = outward(e, ivec2(cell.x, wrapped(cell.y - 1, n)), n, units).y;
+  const int gain = out_left - out_here.x + out_before - out_here.y;
+  if (gain != 0) atomicAdd(elevation[cell.x + n * cell.y], gain);
+}
