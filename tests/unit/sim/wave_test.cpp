@@ -187,5 +187,97 @@ TEST_F(WaveOnDevice, ACrestTravelsOneWayAtTheWaveSpeed) {
   EXPECT_NEAR(*std::ranges::max_element(eta), 0.3, 0.05) << "its amplitude above the lowered mean";
 }
 
+/// What is left of a packet's energy after it met the absorbing sides at +-x, as a reflection coefficient of amplitude.
+/// `kz_count`: waves across the periodic z axis; the packet travels at the angle that kx = kz 2 pi / side gives.
+class AbsorbingSide : public WaveOnDevice {
+ protected:
+  double reflection(int kx_count, int kz_count, double seconds) {
+    core::Scene scene = waveScene(192);
+    scene.wave->side_m = 24.0;
+    scene.wave->damping_per_s = 0.0;
+    scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = core::WaveBoundary::kAbsorb;
+    scene.wave->sponge_width_m = 4.0;
+    WaterSim& sim = make(scene);
+    const double k = 2 * pi / scene.wave->side_m;
+    set(sim, [&](double x, double z) {
+      const double s = (x - 12.0) / 3.0;
+      return 0.1 * std::exp(-s * s) * std::cos(k * kx_count * (x - 12.0)) * std::cos(k * kz_count * z);
+    });
+    for (int i = 0; i < 8; ++i) sim.step();
+    const double before = sim.health().wave_energy_j;
+    const auto steps = static_cast<int>(seconds * scene.tick_rate_hz);
+    for (int i = 0; i < steps; ++i) sim.step();
+    EXPECT_GT(before, 0.0);
+    return std::sqrt(sim.health().wave_energy_j / before);
+  }
+};
+
+TEST_F(AbsorbingSide, ReturnsLessThanOnePercentOfANormalWave) {
+  EXPECT_LE(reflection(8, 0, 10.0), 0.01);
+}
+
+TEST_F(AbsorbingSide, ReturnsLessThanFivePercentAt45Degrees) {
+  EXPECT_LE(reflection(8, 8, 14.0), 0.05);
+}
+
+TEST_F(WaveOnDevice, VolumeIsExactWithEveryKindOfSideBedAndEffect) {
+  for (const auto stencil : {core::Stencil::kFivePoint, core::Stencil::kNinePoint}) {
+    core::Scene scene = waveScene(96);
+    scene.wave->stencil = stencil;
+    scene.wave->boundary_minus_x = core::WaveBoundary::kAbsorb;
+    scene.wave->boundary_plus_x = core::WaveBoundary::kReflect;
+    scene.wave->sponge_width_m = 1.5;
+    scene.wave->steepening_ratio = 0.5;
+    scene.obstacles = {core::Rock{1.0, 1.0, 0.7, 0.5}, core::Breakwater{-1.0, -2.0, 3.0, 0.5, 30.0, 0.5}};
+    scene.beaches = {core::Beach{core::Side::kPlusX, 2.0, 0.0}};
+    scene.storm.emplace();
+    scene.storm->level_ratio = 1.0;
+    scene.storm->drops_per_m2_s = 1.0;
+    WaterSim& sim = make(scene);
+    ASSERT_TRUE(sim.start(core::Splash{1.5, 1.0, 2.0, 0.8, 0.2}));
+    ASSERT_TRUE(sim.start(core::BreakingWave{core::Side::kMinusX, 0.4, 1.5, 0.3}));
+    ASSERT_TRUE(sim.start(core::BreakingWave{core::Side::kDirection, 0.4, 1.5, 0.3, core::WaveShape::kSwell, 50.0}));
+    double highest = 0;
+    for (int i = 0; i < 300; ++i) {
+      sim.step();
+      ASSERT_EQ(sim.health().surface_units + sim.health().outflow_units, 0) << "tick " << sim.health().tick;
+      highest = std::max(highest, sim.health().max_elevation_m);
+    }
+    EXPECT_NE(sim.health().outflow_units, 0) << "some water crossed the open side";
+    EXPECT_GT(highest, 0.3);
+    EXPECT_LT(highest, 3.0);
+    EXPECT_EQ(sim.health().nonfinite_count, 0u);
+  }
+}
+
+TEST_F(WaveOnDevice, ACrestOnASlopeFollowsGreensLaw) {
+  core::Scene scene = waveScene(384);
+  scene.wave->side_m = 96.0;
+  scene.wave->depth_m = 2.0;
+  scene.wave->damping_per_s = 0.0;
+  scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = core::WaveBoundary::kReflect;
+  scene.beaches = {core::Beach{core::Side::kPlusX, 70.0, 0.25}};
+  WaterSim& sim = make(scene);
+  const auto bump = [](double x, double) {
+    const double u = 1.0 / std::cosh((x - 14.0) / 1.5);
+    return 0.2 * u * u;
+  };
+  set(sim, bump);  // at rest: half of it travels toward the slope
+  const auto crest = [&] {
+    const auto eta = sim.copyState().elevation_m;
+    const auto n = static_cast<std::ptrdiff_t>(sim.derived().wave->resolution_count);
+    const auto at = std::max_element(eta.begin() + n / 4, eta.begin() + n);
+    const double x_m = (static_cast<double>(at - eta.begin()) + 0.5) * sim.derived().wave->cell_m;
+    return std::pair{x_m, *at};
+  };
+  const auto depth = [](double x_m) { return std::min(2.0, 0.25 + 1.75 * (96.0 - x_m) / 70.0); };
+  for (int i = 0; i < 180; ++i) sim.step();
+  const auto [first_x, first] = crest();
+  for (int i = 0; i < 600; ++i) sim.step();
+  const auto [last_x, last] = crest();
+  ASSERT_LT(depth(last_x), 0.6 * depth(first_x)) << "it climbed";
+  EXPECT_NEAR(last / first, std::pow(depth(first_x) / depth(last_x), 0.25), 0.05 * last / first);
+}
+
 }  // namespace
 }  // namespace spindrift::sim
