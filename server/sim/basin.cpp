@@ -50,6 +50,10 @@ double faceDepth(double a_m, double b_m) {
   return a_m > 0 && b_m > 0 ? 2 * a_m * b_m / (a_m + b_m) : 0.0;
 }
 
+double heightOf(const core::Obstacle& obstacle) {
+  return std::visit([](const auto& o) { return o.height_m; }, obstacle);
+}
+
 }  // namespace
 
 bool isPeriodicX(const core::WaveScene& wave) {
@@ -67,8 +71,20 @@ bool isOpen(const core::Scene& scene) {
   return false;
 }
 
+bool isTwoWay(const core::Scene& scene) {
+  return scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
+}
+bool hasSurfaceFoam(const core::Scene& scene) {
+  return scene.wave && scene.foam && scene.foam->surface;
+}
+bool hasPressureHead(const core::Scene& scene) {
+  return scene.wave && (scene.boats || isTwoWay(scene));
+}
+bool hasBreakers(const core::Scene& scene) {
+  return scene.wave && (isTwoWay(scene) || hasSurfaceFoam(scene) || scene.wave->steepening_ratio > 0);
+}
 bool isSampled(const core::Scene& scene) {
-  return scene.wave && (scene.coupling || scene.boats || (scene.foam && scene.foam->surface));
+  return scene.wave && (scene.coupling || scene.boats || hasBreakers(scene));
 }
 
 bool isVaried(const core::Scene& scene) {
@@ -175,6 +191,65 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       c[2] = static_cast<float>(faceDepth(depthAt(x, z), depthAt(x + 1, z + 1)) / 6);
       c[3] = static_cast<float>(faceDepth(depthAt(x + 1, z), depthAt(x, z + 1)) / 6);
     }
+  }
+  return out;
+}
+
+bool hasTerrain(const core::Scene& scene) {
+  return scene.wave && (!scene.obstacles.empty() || !scene.beaches.empty());
+}
+
+Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const Basin& basin) {
+  const auto n = static_cast<int>(layout.resolution_count);
+  const double half_m = layout.side_m / 2;
+  const double step_m = 0.25 * layout.cell_m;
+  /// Farther than anything looks; stands for "no obstacle", which infinity would turn into NaN in interpolation.
+  const double far_m = 4 * layout.side_m;
+  const auto place = [&](int i) { return (i + 0.5) * layout.cell_m - half_m; };
+  const auto distanceAt = [&](double x, double z) { return std::min(obstacleDistance(scene, x, z), far_m); };
+  Terrain out;
+  out.ground.reserve(basin.depth_m.size());
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const double d = distanceAt(place(x), place(z));
+      const double dx = (distanceAt(place(x) + step_m, place(z)) - distanceAt(place(x) - step_m, place(z)));
+      const double dz = (distanceAt(place(x), place(z) + step_m) - distanceAt(place(x), place(z) - step_m));
+      const double size = std::max(std::hypot(dx, dz), 1e-12);
+      double depth_m = basin.depth_m[static_cast<std::size_t>(x + n * z)];
+      if (d < 0) {
+        for (const core::Obstacle& obstacle : scene.obstacles) {
+          const double here = std::visit([&](const auto& o) { return distance(o, place(x), place(z)); }, obstacle);
+          if (here < 0) depth_m = std::min(depth_m, -heightOf(obstacle));
+        }
+      }
+      out.ground.push_back({static_cast<float>(d), static_cast<float>(dx / size), static_cast<float>(dz / size),
+                            static_cast<float>(depth_m)});
+    }
+  }
+
+  // Nearest wet cell by growing from all wet cells at once, a ring at a time.
+  out.landing.assign(basin.depth_m.size(), -1);
+  std::vector<std::int32_t> front;
+  for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {
+    if (basin.depth_m[i] <= 0) continue;
+    out.landing[i] = static_cast<std::int32_t>(i);
+    front.push_back(static_cast<std::int32_t>(i));
+  }
+  while (!front.empty()) {
+    std::vector<std::int32_t> next;
+    for (const std::int32_t from : front) {
+      const int x = from % n;
+      const int z = from / n;
+      for (const auto& [nx, nz] :
+           {std::pair{x - 1, z}, std::pair{x + 1, z}, std::pair{x, z - 1}, std::pair{x, z + 1}}) {
+        if (nx < 0 || nz < 0 || nx >= n || nz >= n) continue;
+        const auto to = static_cast<std::size_t>(nx + n * nz);
+        if (out.landing[to] >= 0) continue;
+        out.landing[to] = out.landing[static_cast<std::size_t>(from)];
+        next.push_back(static_cast<std::int32_t>(to));
+      }
+    }
+    front = std::move(next);
   }
   return out;
 }

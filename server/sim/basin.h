@@ -28,6 +28,12 @@ bool isVaried(const core::Scene& scene);
 bool isOpen(const core::Scene& scene);
 /// Whether particles or boats look at the surface.
 bool isSampled(const core::Scene& scene);
+bool isTwoWay(const core::Scene& scene);
+/// Whether anything presses on the surface: hulls or falling particles.
+bool hasPressureHead(const core::Scene& scene);
+/// Whether anybody needs to know where the wave breaks.
+bool hasBreakers(const core::Scene& scene);
+bool hasSurfaceFoam(const core::Scene& scene);
 bool isPeriodicX(const core::WaveScene& wave);
 bool isPeriodicZ(const core::WaveScene& wave);
 
@@ -38,5 +44,18 @@ double bedDepth(const core::Scene& scene, double x_m, double z_m);
 double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
 
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);
+
+/// The ground as particles and boats see it, n x n, for shaders/include/terrain_texels.glsl.
+struct Terrain {
+  /// Signed distance to the nearest obstacle, its gradient (x, z), still depth (0 on dry ground, minus the obstacle's
+  /// height inside one).
+  std::vector<std::array<float, 4>> ground;
+  /// Index of the wet cell that takes water falling on a cell: itself, or the nearest.
+  std::vector<std::int32_t> landing;
+};
+
+Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const Basin& basin);
+/// Whether there is ground to see: obstacles or beaches.
+bool hasTerrain(const core::Scene& scene);
 
 }  // namespace spindrift::sim

@@ -31,12 +31,72 @@ constexpr double kWaveSafety = 0.98;
 constexpr double kBreakingLoss = 0.6;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
 constexpr std::uint32_t kMaxCellCount = 1u << 22;
+/// A droplet is spread over 25 cells, at most 14 % on one; more than this and a single one would bare the ground.
+constexpr double kMaxDropletHeight = 2.0;
 
 Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
 }
 
+/// Edge of the grid's cells: `ratio` spacings, stretched so that whole cells span a periodic side.
+core::Result<double> supportRadius(double wanted_m, double side_m, bool is_periodic, const std::string& what) {
+  if (!is_periodic) return wanted_m;
+  const double cells = std::floor(side_m / wanted_m + 1e-9);
+  if (cells < 3) {
+    return invalid(
+        fmt::format("{} leave {:.0f} cells of the support radius {:.3g} m across a periodic side of {:.3g} m, at "
+                    "least 3 are needed: use more particles, fewer layers, or walls",
+                    what, cells, wanted_m, side_m));
+  }
+  return side_m / cells;
+}
+
+core::Result<void> countCells(ParticleLayout& out) {
+  std::uint64_t cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    out.cells[axis] = static_cast<std::uint32_t>(
+        std::max(1.0, std::ceil((out.max_m[axis] - out.min_m[axis]) / out.support_radius_m - 1e-6)));
+    cells *= out.cells[axis];
+  }
+  if (cells > kMaxCellCount) {
+    return invalid(fmt::format(
+        "particles.headroom_m: a domain of {} x {} x {} cells has more than {}: use less headroom or fewer particles",
+        out.cells[0], out.cells[1], out.cells[2], kMaxCellCount));
+  }
+  out.cell_count = static_cast<std::uint32_t>(cells);
+  return {};
+}
+
+/// Two-way: particles of a given volume anywhere over the water, none at the start. Sides are the wave's.
+core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
+  const core::ParticleScene& p = *scene.particles;
+  ParticleLayout out;
+  const double side_m = scene.wave->side_m;
+  out.count = p.count;
+  out.spacing_m = scene.coupling->droplet_spacing_m;
+  const bool is_periodic = isPeriodicX(*scene.wave) || isPeriodicZ(*scene.wave);
+  auto support =
+      supportRadius(p.support_ratio * out.spacing_m, side_m, is_periodic, "coupling.droplet_spacing_m: droplets");
+  if (!support) return support.error();
+  out.support_radius_m = *support;
+  out.neighbours_count = latticeNeighbours(out.spacing_m, out.support_radius_m);
+  out.mass_kg = calibratedMass(p.kernel_set, out.spacing_m, out.support_radius_m, p.rest_density_kgpm3);
+  const double cell_m = side_m / scene.wave->resolution_count;
+  const double droplet_height_m = out.spacing_m * out.spacing_m * out.spacing_m / (cell_m * cell_m);
+  if (droplet_height_m > kMaxDropletHeight * scene.wave->depth_m) {
+    return invalid(
+        fmt::format("coupling.droplet_spacing_m: a droplet of {:.3g} m holds {:.3g} m of one wave cell's water, more "
+                    "than {:.3g} of the depth of {:.3g} m: use smaller droplets or a coarser wave",
+                    out.spacing_m, droplet_height_m, kMaxDropletHeight, scene.wave->depth_m));
+  }
+  out.min_m = {-side_m / 2, -scene.wave->depth_m, -side_m / 2};
+  out.max_m = {side_m / 2, p.headroom_m, side_m / 2};
+  if (auto counted = countCells(out); !counted) return counted.error();
+  return out;
+}
+
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
+  if (isTwoWay(scene)) return layOutPool(scene);
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
   const double side_m = (scene.wave ? scene.wave->side_m : p.box_side_m) * (scene.wave ? p.patch_scale : 1.0);
@@ -48,18 +108,10 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
   const double s = out.spacing_m;
 
   const bool is_periodic = p.boundary_x == Boundary::kPeriodic || p.boundary_z == Boundary::kPeriodic;
-  out.support_radius_m = p.support_ratio * s;
-  if (is_periodic) {
-    // The grid's cells have edge H and must tile a periodic side exactly.
-    const double cells = std::floor(side_m / out.support_radius_m + 1e-9);
-    if (cells < 3) {
-      return invalid(fmt::format(
-          "particles.count: {} particles in {} layers leave {:.0f} cells of the support radius {:.3g} m "
-          "across a periodic side of {:.3g} m, at least 3 are needed: use more particles, fewer layers, or walls",
-          p.count, out.layers_count, cells, out.support_radius_m, side_m));
-    }
-    out.support_radius_m = side_m / cells;
-  }
+  auto support = supportRadius(p.support_ratio * s, side_m, is_periodic,
+                               fmt::format("particles.count: {} particles in {} layers", p.count, out.layers_count));
+  if (!support) return support.error();
+  out.support_radius_m = *support;
   const double H = out.support_radius_m;
 
   const int floor_points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : kFlatFloorLattice;
@@ -92,18 +144,7 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
           side_m, centre_x, centre_z, scene.wave->side_m));
     }
   }
-  std::uint64_t cells = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    out.cells[axis] =
-        static_cast<std::uint32_t>(std::max(1.0, std::ceil((out.max_m[axis] - out.min_m[axis]) / H - 1e-6)));
-    cells *= out.cells[axis];
-  }
-  if (cells > kMaxCellCount) {
-    return invalid(fmt::format(
-        "particles.headroom_m: a domain of {} x {} x {} cells has more than {}: use less headroom or fewer particles",
-        out.cells[0], out.cells[1], out.cells[2], kMaxCellCount));
-  }
-  out.cell_count = static_cast<std::uint32_t>(cells);
+  if (auto counted = countCells(out); !counted) return counted.error();
   return out;
 }
 
@@ -149,7 +190,10 @@ std::uint64_t waveCellBytes(const core::Scene& scene) {
   std::uint64_t bytes = 4 + (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8);
   if (isVaried(scene)) bytes += 16 + 8;
   if (isOpen(scene)) bytes += 4;
-  if (isSampled(scene)) bytes += 24;
+  if (isSampled(scene)) bytes += 24 + (isVaried(scene) ? 20 : 0);
+  if (hasPressureHead(scene)) bytes += 4;
+  if (hasBreakers(scene)) bytes += 32;
+  if (hasSurfaceFoam(scene)) bytes += isTwoWay(scene) ? 9 : 8;
   return bytes;
 }
 
@@ -166,6 +210,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
   shared::SimUniforms& u = d.uniforms;
   const auto f = [](double v) { return static_cast<float>(v); };
   u.dt_s = f(d.dt_s);
+  u.tick_s = f(d.tick_s);
   u.gravity_mps2 = f(scene.gravity_mps2);
   if (d.particles) {
     const ParticleLayout& l = *d.particles;
@@ -199,10 +244,21 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.virtual_mass_kg = f(l.virtual_mass_kg);
     u.floor_gap_m = f(kFloorGapRatio * l.spacing_m);
   }
+  if (isTwoWay(scene)) {
+    const double s = d.particles->spacing_m;
+    u.pool_capacity_count = d.particles->count;
+    u.droplet_units =
+        static_cast<std::uint32_t>(std::lround(s * s * s / (d.wave->cell_m * d.wave->cell_m) * ELEVATION_UNITS_PER_M));
+    u.emission_ratio = f(scene.coupling->emission_ratio);
+    u.seed = static_cast<std::uint32_t>(scene.seed);
+  }
   if (scene.coupling) u.downforce_per_m_s2 = f(scene.coupling->downforce_per_m_s2);
   if (scene.foam) {
     u.foam_deficit_ratio = f(scene.foam->density_deficit_ratio);
     u.foam_keep_ratio = f(std::exp(-d.dt_s / scene.foam->lifetime_s));
+    u.breaking_foam_keep_ratio = f(std::exp(-d.tick_s / scene.foam->breaking_lifetime_s));
+    u.wake_foam_keep_ratio = f(std::exp(-d.tick_s / scene.foam->wake_lifetime_s));
+    u.landing_foam_keep_ratio = f(std::exp(-d.tick_s / scene.foam->landing_lifetime_s));
   }
   if (d.wave) {
     const WaveLayout& w = *d.wave;
@@ -226,7 +282,10 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
   if (!scene.wave && !scene.particles) return invalid("wave, particles: a scene needs at least one of them");
   if (scene.coupling && !(scene.wave && scene.particles))
     return invalid("coupling: needs both wave and particles: add the missing part or remove coupling");
-  if (scene.foam && !scene.particles) return invalid("foam: needs particles: add particles or remove foam");
+  if (scene.foam && !scene.particles && !hasSurfaceFoam(scene))
+    return invalid("foam: needs particles, or a wave and surface: true: add what is missing or remove foam");
+  if (!scene.wave && (scene.boats || scene.storm || !scene.obstacles.empty() || !scene.beaches.empty()))
+    return invalid("boats, storm, obstacles, beaches: need a wave: add one or remove them");
 
   Derived d;
   d.tick_s = 1.0 / scene.tick_rate_hz;

@@ -1,12 +1,14 @@
 #include "diagnostics.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <span>
 
 #include <shared/bindings.h>
 #include <shared/fixed_point.h>
 #include <shared/groups.h>
+#include <shared/pool.h>
 
 #include "create_all.h"
 
@@ -64,6 +66,7 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
   Creation create;
   if (derived.particles) {
     out->particles_ = derived.particles->count;
+    out->is_pooled_ = derived.uniforms.pool_capacity_count > 0;
     create(out->particle_program_, gpu::Program::create(ctx, "diagnostics/particles.comp", defines));
     if (create.error()) return *create.error();
     out->particle_shares_ = sharesFor(out->particles_, out->particle_program_);
@@ -76,18 +79,21 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
     out->surface_shares_ = sharesFor(out->cells_, out->surface_program_);
     create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial)));
   }
-  create(out->ring_,
-         gpu::ReadbackRing::create(ctx, "diagnostics", (out->particle_shares_ + out->surface_shares_) * sizeof(Partial),
-                                   kSlotCount));
+  create(out->ring_, gpu::ReadbackRing::create(ctx, "diagnostics",
+                                               (out->particle_shares_ + out->surface_shares_) * sizeof(Partial) +
+                                                   (out->is_pooled_ ? POOL_WORDS * 4 : 0),
+                                               kSlotCount));
   if (create.error()) return *create.error();
   return out;
 }
 
-void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, Wave* wave) {
+void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population,
+                          Wave* wave, Breakers* breakers, const Boats* boats) {
   auto slot = ring_->begin();
   if (!slot) return;
   bool copied = true;
   if (particles) {
+    population->bind();
     particles->position.bindTexel(POSITION);
     particles->velocity.bindTexel(VELOCITY);
     particles->acceleration.bindTexel(ACCELERATION);
@@ -99,10 +105,16 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
     wave->elevation().bindTexel(ELEVATION);
     wave->flow().bindTexel(FLOW);
     wave->bindBasin();
+    if (breakers) breakers->state().bindTexel(BREAKING);
+    if (boats) boats->bind();
     if (auto* outflow = wave->outflow()) outflow->bindTexel(OUTFLOW);
     surface_sums_.bindStorage(PARTIAL_SUM);
     surface_program_.dispatch(surface_shares_);
     copied = copied && slot->copyFrom(surface_sums_, 0, surface_sums_.sizeBytes(), particle_shares_ * sizeof(Partial));
+  }
+  if (is_pooled_) {
+    copied = copied && slot->copyFrom(population->pool()->words(), 0, POOL_WORDS * 4,
+                                      (particle_shares_ + surface_shares_) * sizeof(Partial));
   }
   if (copied) slot->submit(tick);
 }
@@ -121,12 +133,22 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
       h.escaped_count = static_cast<std::uint64_t>(t.escaped);
       h.max_speed_mps = t.max_a;
       h.max_density_ratio = t.max_b / rho_0;
-      h.mean_density_ratio = t.sum[0] / particles_ / rho_0;
+      h.particle_count = particles_;
+      if (is_pooled_) {
+        const std::size_t at = (particle_shares_ + surface_shares_) * sizeof(Partial);
+        std::array<std::uint32_t, POOL_WORDS> pool;
+        std::memcpy(pool.data(), bytes.data() + at, sizeof pool);
+        h.particle_count = pool[POOL_EMITTED] - pool[POOL_ABSORBED];
+        h.emitted_count = pool[POOL_EMITTED];
+        h.absorbed_count = pool[POOL_ABSORBED];
+        h.pool_refused_count = pool[POOL_REFUSED];
+      }
+      h.mean_density_ratio = h.particle_count > 0 ? t.sum[0] / h.particle_count / rho_0 : 0.0;
       h.kinetic_energy_j = 0.5 * derived.particles->mass_kg * t.sum[1];
       h.potential_energy_j = derived.particles->mass_kg * scene.gravity_mps2 * t.sum[2];
     }
     if (cells_) {
-      const Total t = total(bytes.subspan(split));
+      const Total t = total(bytes.subspan(split, surface_shares_ * sizeof(Partial)));
       const double area_m2 = derived.wave->cell_m * derived.wave->cell_m;
       const double rho = scene.particles ? scene.particles->rest_density_kgpm3 : 1000.0;
       h.nonfinite_count += static_cast<std::uint64_t>(t.nonfinite);
@@ -134,6 +156,8 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
       h.breaking_ratio = t.count_b / cells_;
       h.surface_units = t.elevation_units;
       h.outflow_units = t.outflow_units;
+      h.volume_error_units = t.elevation_units + t.outflow_units;
+      if (is_pooled_) h.volume_error_units += std::int64_t{h.particle_count} * derived.uniforms.droplet_units;
       h.wave_volume_m3 = static_cast<double>(t.elevation_units) * ELEVATION_UNIT_M * area_m2;
       h.wave_energy_j = 0.5 * rho * area_m2 * (scene.gravity_mps2 * t.sum[0] + t.sum[1]);
     }

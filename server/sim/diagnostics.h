@@ -14,7 +14,10 @@
 #include <spindrift/sim/derive.h>
 #include <spindrift/sim/health.h>
 
+#include "boats.h"
+#include "breakers.h"
 #include "particle_buffers.h"
+#include "particle_pool.h"
 #include "wave.h"
 
 namespace spindrift::sim {
@@ -24,9 +27,10 @@ class Diagnostics {
   static core::Result<std::unique_ptr<Diagnostics>> create(gpu::Context& ctx, const Derived& derived,
                                                            const gpu::Defines& defines);
 
-  /// Measures the state after `tick`; either part may be null. Skipped (and retried next tick) while results are
+  /// Measures the state after `tick`; parts may be null. Skipped (and retried next tick) while results are
   /// outstanding in every slot.
-  void measure(std::uint64_t tick, const ParticleBuffers* particles, Wave* wave);
+  void measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population, Wave* wave,
+               Breakers* breakers, const Boats* boats);
   /// Results that have arrived, oldest first.
   std::vector<Health> poll(const core::Scene& scene, const Derived& derived);
 
@@ -38,6 +42,7 @@ class Diagnostics {
   std::uint32_t surface_shares_ = 0;
   std::uint32_t cells_ = 0;
   std::uint32_t particles_ = 0;
+  bool is_pooled_ = false;
   gpu::Buffer particle_sums_, surface_sums_;
   gpu::Program particle_program_, surface_program_;
   std::unique_ptr<gpu::ReadbackRing> ring_;

@@ -9,6 +9,7 @@
 namespace spindrift::sim {
 namespace {
 
+constexpr double kStandardGravity_mps2 = 9.80665;
 /// Full width at half height of sech^2(s/w): 2 arcosh(sqrt 2) w.
 constexpr double kWidthOfHalfHeight = 1.7627472;
 /// A crest starts this many widths inside its side, so that its tail does not reach across a periodic one.
@@ -27,12 +28,20 @@ bool isSplash(const core::Effect& effect) {
   return std::holds_alternative<core::Splash>(effect);
 }
 
-shared::EventUniform uniformOf(const core::Splash& splash, double gain) {
+/// A crown leaves with the speed of a fall through so many times the splash's depth, where the pulse is at its
+/// strongest.
+constexpr double kCrownFall = 1.1;
+/// A splash smaller than this many wave cells is a drop; it throws no crown.
+constexpr double kCrownRadius_cells = 4.0;
+
+shared::EventUniform uniformOf(const core::Splash& splash, double gain, double strength, const WaveLayout& wave) {
   shared::EventUniform u{};
   u.gain_m = static_cast<float>(-splash.depth_m * gain);
   u.x_m = static_cast<float>(splash.x_m);
   u.z_m = static_cast<float>(splash.z_m);
   u.radius_m = static_cast<float>(splash.radius_m);
+  if (splash.radius_m > kCrownRadius_cells * wave.cell_m)
+    u.speed_mps = static_cast<float>(strength * std::sqrt(2 * kCrownFall * kStandardGravity_mps2 * splash.depth_m));
   return u;
 }
 
@@ -106,7 +115,7 @@ shared::EventUniforms Effects::advance(double time_s, const WaveLayout& wave) {
     const double gain = pulse((age_s + wave.dt_s) / duration(a.effect)) - pulse(age_s / duration(a.effect));
     if (gain <= 0.0) continue;
     if (const auto* splash = std::get_if<core::Splash>(&a.effect))
-      out.splashes[out.splash_count++] = uniformOf(*splash, gain);
+      out.splashes[out.splash_count++] = uniformOf(*splash, gain, gain * duration(a.effect) / (1.5 * wave.dt_s), wave);
     else
       out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, wave);
   }

@@ -10,29 +10,28 @@
 #include <spindrift/sim/derive.h>
 
 #include "particle_buffers.h"
+#include "particle_pool.h"
 
 namespace spindrift::sim {
 
 class NeighborGrid {
  public:
   static core::Result<std::unique_ptr<NeighborGrid>> create(gpu::Context& ctx, const ParticleLayout& layout,
-                                                            const gpu::Defines& defines);
+                                                            const gpu::Defines& defines, bool pooled);
 
-  /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their order before.
-  void build(const ParticleBuffers& particles);
+  /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their order before (in a
+  /// pool by where they are); particles that were absorbed leave.
+  void build(const ParticleBuffers& particles, const Population& population);
 
   /// First particle of each cell, cell_count + 1 entries.
   [[nodiscard]] const gpu::TexelBuffer& cellStart() const { return cell_start_; }
 
  private:
-  NeighborGrid(gpu::Context& ctx, const ParticleLayout& layout)
-      : ctx_(ctx), count_(layout.count), cell_count_(layout.cell_count) {}
+  explicit NeighborGrid(gpu::Context& ctx) : ctx_(ctx) {}
 
   gpu::Context& ctx_;
-  std::uint32_t count_;
-  std::uint32_t cell_count_;
   gpu::TexelBuffer cell_count_of_, cell_start_, cell_arrival_, cell_member_, block_total_;
-  gpu::Program count_program_, scan_blocks_, scan_totals_, scan_add_, scatter_, reorder_;
+  gpu::Program clear_, count_program_, scan_blocks_, scan_totals_, scan_add_, scatter_, reorder_;
 };
 
 }  // namespace spindrift::sim

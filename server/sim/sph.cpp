@@ -6,9 +6,8 @@
 
 namespace spindrift::sim {
 
-core::Result<std::unique_ptr<Sph>> Sph::create(gpu::Context& ctx, const ParticleLayout& layout,
-                                               const gpu::Defines& defines) {
-  auto sph = std::unique_ptr<Sph>(new Sph(ctx, layout));
+core::Result<std::unique_ptr<Sph>> Sph::create(gpu::Context& ctx, const gpu::Defines& defines) {
+  auto sph = std::unique_ptr<Sph>(new Sph(ctx));
   Creation create;
   create(sph->density_, gpu::Program::create(ctx, "sph/density.comp", defines));
   create(sph->force_, gpu::Program::create(ctx, "sph/force.comp", defines));
@@ -17,29 +16,32 @@ core::Result<std::unique_ptr<Sph>> Sph::create(gpu::Context& ctx, const Particle
   return sph;
 }
 
-void Sph::density(const ParticleBuffers& particles) {
+void Sph::density(const ParticleBuffers& particles, const Population& population) {
+  population.bind();
   particles.sorted_position.bindTexel(SORTED_POSITION);
   particles.sorted_velocity.bindTexel(SORTED_VELOCITY);
   particles.pressure_point.bindStorage(PRESSURE_POINT);
   particles.motion_point.bindStorage(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
-  density_.dispatch(count_);
+  population.forParticles(density_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
-void Sph::forces(const ParticleBuffers& particles) {
+void Sph::forces(const ParticleBuffers& particles, const Population& population) {
+  population.bind();
   particles.pressure_point.bindTexel(PRESSURE_POINT);
   particles.motion_point.bindTexel(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
-  force_.dispatch(count_);
+  population.forParticles(force_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
-void Sph::integrate(const ParticleBuffers& particles) {
+void Sph::integrate(const ParticleBuffers& particles, const Population& population) {
+  population.bind();
   particles.acceleration.bindTexel(ACCELERATION);
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
-  integrate_.dispatch(count_);
+  population.forParticles(integrate_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

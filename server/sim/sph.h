@@ -8,24 +8,23 @@
 #include <spindrift/sim/derive.h>
 
 #include "particle_buffers.h"
+#include "particle_pool.h"
 
 namespace spindrift::sim {
 
 class Sph {
  public:
-  static core::Result<std::unique_ptr<Sph>> create(gpu::Context& ctx, const ParticleLayout& layout,
-                                                   const gpu::Defines& defines);
+  static core::Result<std::unique_ptr<Sph>> create(gpu::Context& ctx, const gpu::Defines& defines);
 
   // In this order, after NeighborGrid::build(), with CELL_START and (in coupled scenes) the surface bound.
-  void density(const ParticleBuffers& particles);
-  void forces(const ParticleBuffers& particles);
-  void integrate(const ParticleBuffers& particles);
+  void density(const ParticleBuffers& particles, const Population& population);
+  void forces(const ParticleBuffers& particles, const Population& population);
+  void integrate(const ParticleBuffers& particles, const Population& population);
 
  private:
-  Sph(gpu::Context& ctx, const ParticleLayout& layout) : ctx_(ctx), count_(layout.count) {}
+  explicit Sph(gpu::Context& ctx) : ctx_(ctx) {}
 
   gpu::Context& ctx_;
-  std::uint32_t count_;
   gpu::Program density_, force_, integrate_;
 };
 

@@ -4,11 +4,14 @@
 
 #include <shared/bindings.h>
 #include <shared/fixed_point.h>
+#include <shared/pool.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/sim/water_sim.h>
 
 #include "basin.h"
+#include "boats.h"
+#include "breakers.h"
 #include "checkpoints.h"
 #include "create_all.h"
 #include "diagnostics.h"
@@ -16,9 +19,11 @@
 #include "frame_packer.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
+#include "particle_pool.h"
 #include "sph.h"
 #include "starting_state.h"
 #include "storm.h"
+#include "surface_foam.h"
 #include "wave.h"
 
 namespace spindrift::sim {
@@ -59,18 +64,31 @@ struct WaterSim::Parts {
   std::unique_ptr<Sph> sph;
   std::unique_ptr<Wave> wave;
   Effects effects;
+  std::unique_ptr<Breakers> breakers;
+  std::unique_ptr<ParticlePool> pool;
+  std::unique_ptr<Boats> boats;
+  std::unique_ptr<SurfaceFoam> foam;
   std::unique_ptr<FramePacker> frames;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
 
+  /// Whom the passes over particles are for.
+  [[nodiscard]] Population population(const Derived& derived) const {
+    return {derived.particles->count, derived.particles->cell_count, pool.get()};
+  }
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
 };
 
 gpu::Defines shaderDefines(const core::Scene& scene) {
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
   const bool has_particles = scene.particles.has_value();
-  return {{"PERIODIC_X", flag(has_particles && scene.particles->boundary_x == core::Boundary::kPeriodic)},
-          {"PERIODIC_Z", flag(has_particles && scene.particles->boundary_z == core::Boundary::kPeriodic)},
+  // The particles of a two-way scene are all over the water, and its sides are theirs.
+  const bool periodic_x = isTwoWay(scene) ? isPeriodicX(*scene.wave)
+                                          : has_particles && scene.particles->boundary_x == core::Boundary::kPeriodic;
+  const bool periodic_z = isTwoWay(scene) ? isPeriodicZ(*scene.wave)
+                                          : has_particles && scene.particles->boundary_z == core::Boundary::kPeriodic;
+  return {{"PERIODIC_X", flag(periodic_x)},
+          {"PERIODIC_Z", flag(periodic_z)},
           {"COUPLED", flag(scene.coupling.has_value())},
           {"KERNEL_SET", std::to_string(has_particles ? kernelSetNumber(scene.particles->kernel_set) : 3)},
           {"FOAM", flag(scene.foam.has_value())},
@@ -80,8 +98,12 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"WAVE_PERIODIC_Z", flag(scene.wave && isPeriodicZ(*scene.wave))},
           {"VARIED", flag(scene.wave && isVaried(scene))},
           {"OPEN", flag(scene.wave && isOpen(scene))},
-          {"HEAD", "0"},
-          {"BREAKERS", "0"},
+          {"HEAD", flag(hasPressureHead(scene))},
+          {"BREAKERS", flag(hasBreakers(scene))},
+          {"POOL_PARTICLES", flag(isTwoWay(scene))},
+          {"HULLS", flag(scene.boats.has_value())},
+          {"SURFACE_FOAM", flag(hasSurfaceFoam(scene))},
+          {"LANDINGS", flag(hasSurfaceFoam(scene) && isTwoWay(scene))},
           {"STEEPEN", flag(scene.wave && scene.wave->steepening_ratio > 0)}};
 }
 
@@ -94,9 +116,14 @@ void WaterSim::step() {
   for (std::uint32_t substep = 0; substep < derived_.substeps_count; ++substep) {
     advanceWave(time_s() + substep * derived_.dt_s);
     sampleSurface();
+    breakWaves();
+    moveBoats();
+    emitParticles();
     buildGrid();
     advanceParticles();
+    ++substep_;
   }
+  fadeFoam();
   ++tick_;
   measure();
   saveCheckpoint();
@@ -106,10 +133,10 @@ void WaterSim::advanceWave(double time_s) {
   if (!parts_->wave) return;
   const auto timer = timers_.scope("wave");
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
-    if (!parts_->effects.idle())
-      parts_->wave->displace(parts_->effects.advance(time_s + k * derived_.wave->dt_s, *derived_.wave));
-    parts_->wave->advance(nullptr, nullptr);
+    parts_->wave->displace(parts_->effects.advance(time_s + k * derived_.wave->dt_s, *derived_.wave));
+    parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr);
   }
+  parts_->wave->clearPressure();  // hulls and falling particles press anew for the next substep
 }
 
 void WaterSim::sampleSurface() {
@@ -119,24 +146,64 @@ void WaterSim::sampleSurface() {
   parts_->wave->bindSurface();
 }
 
+void WaterSim::breakWaves() {
+  if (!parts_->breakers) return;
+  const auto timer = timers_.scope("breaking");
+  parts_->breakers->update(*parts_->wave, parts_->pool ? &parts_->pool->words() : nullptr, substep_);
+}
+
+void WaterSim::moveBoats() {
+  if (!parts_->boats) return;
+  const auto timer = timers_.scope("bodies");
+  parts_->boats->move(*parts_->wave);
+  parts_->boats->press(parts_->wave->pressureHead());
+}
+
+void WaterSim::emitParticles() {
+  if (!parts_->pool) return;
+  const auto timer = timers_.scope("coupling");
+  parts_->pool->emit(*parts_->particles, *parts_->wave, *parts_->breakers, substep_);
+}
+
+void WaterSim::fadeFoam() {
+  if (!parts_->foam) return;
+  const auto timer = timers_.scope("foam");
+  parts_->foam->advance(*parts_->wave, *parts_->breakers, parts_->boats.get());
+}
+
 void WaterSim::buildGrid() {
   if (!parts_->particles) return;
   const auto timer = timers_.scope("grid");
-  parts_->grid->build(*parts_->particles);
+  parts_->grid->build(*parts_->particles, parts_->population(derived_));
 }
 
 void WaterSim::advanceParticles() {
   if (!parts_->particles) return;
   const auto timer = timers_.scope("sph");
-  parts_->sph->density(*parts_->particles);
-  parts_->sph->forces(*parts_->particles);
-  parts_->sph->integrate(*parts_->particles);
+  const Population population = parts_->population(derived_);
+  if (parts_->wave) bindSurroundings();
+  parts_->sph->density(*parts_->particles, population);
+  parts_->sph->forces(*parts_->particles, population);
+  parts_->sph->integrate(*parts_->particles, population);
+}
+
+void WaterSim::bindSurroundings() {
+  if (scene_.coupling) parts_->wave->bindSurface();
+  parts_->wave->bindTerrain();
+  if (parts_->boats) parts_->boats->bind();
+  if (!parts_->pool) return;
+  parts_->wave->elevation().bindStorage(ELEVATION);
+  parts_->wave->pressureHead().bindStorage(PRESSURE_HEAD);
+  if (parts_->foam) parts_->foam->landed()->bindStorage(LANDED);
 }
 
 void WaterSim::measure() {
   if (tick_ % kDiagnosticsInterval_ticks != 0) return;
   const auto timer = timers_.scope("diagnostics");
-  parts_->diagnostics->measure(tick_, parts_->particlesOrNull(), parts_->wave.get());
+  std::optional<Population> population;
+  if (parts_->particles) population = parts_->population(derived_);
+  parts_->diagnostics->measure(tick_, parts_->particlesOrNull(), population ? &*population : nullptr,
+                               parts_->wave.get(), parts_->breakers.get(), parts_->boats.get());
 }
 
 // Setting up
@@ -177,10 +244,14 @@ core::Result<void> WaterSim::build() {
     make(p.pressure_point, "pressure point");
     make(p.motion_point, "motion point");
     make(p.acceleration, "acceleration");
-    create(parts_->grid, NeighborGrid::create(ctx_, *derived_.particles, defines));
-    create(parts_->sph, Sph::create(ctx_, *derived_.particles, defines));
+    create(parts_->grid, NeighborGrid::create(ctx_, *derived_.particles, defines, isTwoWay(scene_)));
+    create(parts_->sph, Sph::create(ctx_, defines));
   }
-  create(parts_->frames, FramePacker::create(ctx_, derived_, defines));
+  if (hasBreakers(scene_)) create(parts_->breakers, Breakers::create(ctx_, *derived_.wave, defines));
+  if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, defines));
+  if (scene_.boats) create(parts_->boats, Boats::create(ctx_, scene_, *derived_.wave, defines));
+  if (hasSurfaceFoam(scene_)) create(parts_->foam, SurfaceFoam::create(ctx_, scene_, *derived_.wave, defines));
+  create(parts_->frames, FramePacker::create(ctx_, scene_, derived_, defines));
   create(parts_->diagnostics, Diagnostics::create(ctx_, derived_, defines));
   if (create.error()) return *create.error();
   std::vector<gpu::Buffer*> state;
@@ -189,6 +260,9 @@ core::Result<void> WaterSim::build() {
     if (auto* outflow = parts_->wave->outflow()) state.push_back(outflow);
   }
   if (parts_->particles) state.insert(state.end(), {&parts_->particles->position, &parts_->particles->velocity});
+  if (parts_->pool) state.push_back(&parts_->pool->words());
+  if (parts_->breakers) state.push_back(&parts_->breakers->state());
+  if (parts_->foam) state.push_back(&parts_->foam->field());
   create(parts_->checkpoints, Checkpoints::create(ctx_, state));
   if (create.error()) return *create.error();
   return {};
@@ -196,7 +270,12 @@ core::Result<void> WaterSim::build() {
 
 void WaterSim::uploadStartingState() {
   if (parts_->wave) parts_->wave->clear();
-  if (parts_->particles) {
+  if (parts_->breakers) parts_->breakers->clear();
+  if (parts_->foam) parts_->foam->clear();
+  if (parts_->boats) parts_->boats->reset(scene_);
+  if (parts_->pool) {
+    parts_->pool->clear();
+  } else if (parts_->particles) {
     parts_->particles->position.upload(startingPositions(scene_, *derived_.particles));
     parts_->particles->velocity.clear();
     // Density is known before the first step, so that a first frame can be packed.
@@ -209,6 +288,7 @@ void WaterSim::uploadStartingState() {
 void WaterSim::reset() {
   parts_->effects.clear();
   start_tick_ = tick_;
+  substep_ = 0;
   abandoned_until_tick_ = tick_;
   health_ = {};
   setCareful(false);
@@ -222,6 +302,31 @@ core::Result<void> WaterSim::start(const core::Effect& effect) {
   if (!parts_->wave)
     return Error{ErrorCode::kInvalidInput, "effects act on the wave, and this scene has none: use a scene with a wave"};
   return parts_->effects.start(effect, time_s());
+}
+
+core::Result<std::uint32_t> WaterSim::spawnBoat(const core::Boat& boat) {
+  if (!parts_->boats)
+    return Error{ErrorCode::kInvalidInput, "this scene has no boats: choose one whose file has \"boats {}\""};
+  return parts_->boats->spawn(boat);
+}
+
+core::Result<void> WaterSim::controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {
+  if (!parts_->boats) return Error{ErrorCode::kInvalidInput, "this scene has no boats"};
+  return parts_->boats->control(boat_id, throttle_ratio, rudder_ratio);
+}
+
+core::Result<void> WaterSim::removeBoat(std::uint32_t boat_id) {
+  if (!parts_->boats) return Error{ErrorCode::kInvalidInput, "this scene has no boats"};
+  return parts_->boats->remove(boat_id);
+}
+
+std::vector<BoatRecord> WaterSim::boats() const {
+  return parts_->boats ? parts_->boats->records() : std::vector<BoatRecord>{};
+}
+
+std::uint32_t WaterSim::particleCount() const {
+  if (!derived_.particles) return 0;
+  return parts_->pool ? health_.particle_count : derived_.particles->count;
 }
 
 core::Result<void> WaterSim::setScene(const core::Scene& scene) {
@@ -287,6 +392,7 @@ void WaterSim::recover(const Health& breach) {
   ++recovered_count_;
   const bool restored = parts_->checkpoints->restore();
   if (!restored) uploadStartingState();
+  if (parts_->boats) parts_->boats->mend();
   parts_->effects.clear();
   abandoned_until_tick_ = tick_;
   careful_until_tick_ = tick_ + static_cast<std::uint64_t>(kCareful_s / derived_.tick_s);
@@ -319,12 +425,17 @@ void WaterSim::setCareful(bool careful) {
 // Frames
 
 bool WaterSim::requestFrame(const FrameRequest& request) {
-  Wave* wave = request.surface ? parts_->wave.get() : nullptr;
-  ParticleBuffers* particles = request.particles ? parts_->particlesOrNull() : nullptr;
-  if (!wave && !particles) return true;
+  std::optional<Population> population;
+  if (parts_->particles) population = parts_->population(derived_);
+  const FramePacker::Parts wanted{.wave = request.surface ? parts_->wave.get() : nullptr,
+                                  .particles = request.particles ? parts_->particlesOrNull() : nullptr,
+                                  .population = population ? &*population : nullptr,
+                                  .foam = request.foam ? parts_->foam.get() : nullptr,
+                                  .boats = request.bodies ? parts_->boats.get() : nullptr};
+  if (!wanted.wave && !wanted.particles && !wanted.foam && !wanted.boats) return true;
   const auto timer = timers_.scope("stream");
   parts_->uniforms.bindUniform(SIM_UNIFORMS);
-  return parts_->frames->pack(tick_, time_s(), particles, wave);
+  return parts_->frames->pack(tick_, time_s(), wanted);
 }
 
 std::vector<core::FrameView> WaterSim::takeFrames() {
@@ -337,7 +448,12 @@ StateCopy WaterSim::copyState() {
   ctx_.barrier(gpu::Barrier::kBufferUpdate);
   StateCopy out;
   if (parts_->particles) {
-    const std::size_t n = std::size_t{derived_.particles->count} * 4;
+    std::size_t count = derived_.particles->count;
+    if (parts_->pool) {
+      out.pool = parts_->pool->words().downloadVector<std::uint32_t>(POOL_WORDS);
+      count = out.pool[POOL_LIVE];
+    }
+    const std::size_t n = count * 4;
     out.position = parts_->particles->position.downloadVector<float>(n);
     out.velocity = parts_->particles->velocity.downloadVector<float>(n);
     const auto acceleration = parts_->particles->acceleration.downloadVector<float>(n);
@@ -347,6 +463,8 @@ StateCopy WaterSim::copyState() {
     const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
     for (const std::int32_t units : parts_->wave->elevation().downloadVector<std::int32_t>(n))
       out.elevation_m.push_back(units * double{ELEVATION_UNIT_M});
+    if (parts_->boats)
+      out.boats = parts_->boats->state().downloadVector<float>(std::size_t{MAX_BOATS} * BOAT_TEXELS * 4);
     out.flow_m2ps = parts_->wave->flow().downloadVector<float>(n * parts_->wave->flowComponents());
   }
   return out;
@@ -377,6 +495,8 @@ std::uint64_t WaterSim::stateHash() {
   add(std::as_bytes(std::span(state.velocity)));
   add(std::as_bytes(std::span(state.elevation_m)));
   add(std::as_bytes(std::span(state.flow_m2ps)));
+  add(std::as_bytes(std::span(state.boats)));
+  add(std::as_bytes(std::span(state.pool)));
   return hash;
 }
 

@@ -29,6 +29,14 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->sponge_, TexelBuffer::create(ctx, "sponge", cells, TexelFormat::kRG32F));
   }
   if (wave->has_outflow_) create(wave->outflow_, TexelBuffer::create(ctx, "outflow", cells, TexelFormat::kR32I));
+  wave->has_head_ = hasPressureHead(scene);
+  wave->has_terrain_ = sampled && isVaried(scene);
+  if (wave->has_head_)
+    create(wave->pressure_head_, TexelBuffer::create(ctx, "pressure head", cells, TexelFormat::kR32I));
+  if (wave->has_terrain_) {
+    create(wave->terrain_, TexelBuffer::create(ctx, "terrain", cells, TexelFormat::kRGBA32F));
+    create(wave->landing_, TexelBuffer::create(ctx, "landing", cells, TexelFormat::kR32I));
+  }
   create(wave->event_uniforms_, gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms)));
   create(wave->splash_, Program::create(ctx, "wave/splash.comp", defines));
   create(wave->crest_, Program::create(ctx, "wave/crest.comp", defines));
@@ -48,6 +56,17 @@ void Wave::clear() {
   elevation_.clear();
   flow_.clear();
   if (has_outflow_) outflow_.clear();
+  clearPressure();
+}
+
+void Wave::bindEvents() const {
+  event_uniforms_.bindUniform(EVENT_UNIFORMS);
+}
+
+void Wave::clearPressure() {
+  if (!has_head_) return;
+  pressure_head_.clear();
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
 void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
@@ -55,6 +74,16 @@ void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
   const Basin basin = layOutBasin(scene, layout);
   basin_.upload(basin.conductance_m);
   sponge_.upload(basin.loss_per_s);
+  if (!has_terrain_) return;
+  const Terrain terrain = layOutTerrain(scene, layout, basin);
+  terrain_.upload(terrain.ground);
+  landing_.upload(terrain.landing);
+}
+
+void Wave::bindTerrain() const {
+  if (!has_terrain_) return;
+  terrain_.bindTexel(TERRAIN);
+  landing_.bindTexel(LANDING);
 }
 
 void Wave::bindBasin() const {
@@ -64,7 +93,11 @@ void Wave::bindBasin() const {
 }
 
 void Wave::displace(const shared::EventUniforms& events) {
+  const bool any = events.splash_count + events.crest_count > 0;
+  if (!any && !had_events_) return;
+  had_events_ = any;
   event_uniforms_.uploadValue(events);
+  ctx_.barrier(gpu::Barrier::kUniform);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   bindBasin();
   elevation_.bindStorage(ELEVATION);
@@ -83,10 +116,10 @@ void Wave::displace(const shared::EventUniforms& events) {
   }
 }
 
-void Wave::advance(const gpu::TexelBuffer* pressure_head, const gpu::TexelBuffer* breaking) {
+void Wave::advance(const gpu::TexelBuffer* breaking) {
   bindBasin();
   elevation_.bindTexel(ELEVATION);
-  if (pressure_head) pressure_head->bindTexel(PRESSURE_HEAD);
+  if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
   if (breaking) breaking->bindTexel(BREAKING);
   flow_.bindStorage(FLOW);
   momentum_.dispatch(n_, n_);

@@ -25,13 +25,15 @@ class Wave {
 
   /// Level and still, nothing has flowed out.
   void clear();
+  /// Nothing presses on the surface until somebody adds to pressureHead().
+  void clearPressure();
   /// Tables for changed parameters (depth, gravity).
   void uploadBasin(const core::Scene& scene, const WaveLayout& layout);
 
-  /// Adds one wave step's share of the active effects.
+  /// Adds one wave step's share of the active effects. An empty one says that no effect acts now.
   void displace(const shared::EventUniforms& events);
-  /// One wave step. `pressure_head` (what presses on the surface) and `breaking` may be null.
-  void advance(const gpu::TexelBuffer* pressure_head, const gpu::TexelBuffer* breaking);
+  /// One wave step. `breaking` may be null.
+  void advance(const gpu::TexelBuffer* breaking);
   /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
 
@@ -42,8 +44,14 @@ class Wave {
   [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
   /// Binds SURFACE and SURFACE_FLOW for lookups. Sampled scenes only.
   void bindSurface() const;
+  /// Binds the effects of the last wave step.
+  void bindEvents() const;
   /// Binds BASIN and SPONGE where there are tables.
   void bindBasin() const;
+  /// Binds TERRAIN and LANDING where there is ground to see.
+  void bindTerrain() const;
+  /// n x n [units]: hulls and falling particles. Scenes with boats or two-way coupling only.
+  [[nodiscard]] gpu::TexelBuffer& pressureHead() { return pressure_head_; }
 
  private:
   Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count), cell_m_(layout.cell_m) {}
@@ -54,7 +62,11 @@ class Wave {
   std::size_t flow_components_ = 2;
   bool is_varied_ = false;
   bool has_outflow_ = false;
+  bool had_events_ = false;
+  bool has_head_ = false;
+  bool has_terrain_ = false;
   gpu::TexelBuffer elevation_, flow_, basin_, sponge_, outflow_;
+  gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;
   gpu::Buffer event_uniforms_;
   gpu::Program splash_, crest_, momentum_, continuity_, sample_surface_;

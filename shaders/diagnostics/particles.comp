@@ -1,8 +1,10 @@
 // Health of the particles: one partial result an invocation, summed on the host in double precision.
 // Reads POSITION, VELOCITY, ACCELERATION.w. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
 // non-finite values, escaped particles, max speed, max density; sum of density, sum of v^2, sum of y, 0; four words 0.
+// Particles that were absorbed in the last substep are left out.
+// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "shared/sim_uniforms.h"
+#include "include/population.glsl"
 
 layout(local_size_x = REDUCE_GROUP) in;
 
@@ -16,13 +18,17 @@ bool finite(float x) { return !isnan(x) && !isinf(x); }
 void main() {
   const uint share = gl_GlobalInvocationID.x;
   const uint shares = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  const uint count = sim.particle_count;
+  const uint count = particleCount();
   const vec3 low = vec3(sim.min_x_m, sim.min_y_m, sim.min_z_m);
   const vec3 high = vec3(sim.max_x_m, sim.max_y_m, sim.max_z_m);
   vec4 worst = vec4(0.0);
   vec4 sum = vec4(0.0);
   for (uint i = share; i < count; i += shares) {
-    const vec3 x = texelFetch(position, int(i)).xyz;
+    const vec4 place = texelFetch(position, int(i));
+#if POOL_PARTICLES
+    if (place.w == DEAD_ID) continue;
+#endif
+    const vec3 x = place.xyz;
     const vec3 v = texelFetch(velocity, int(i)).xyz;
     const float rho = texelFetch(acceleration, int(i)).w;
     const float v2 = dot(v, v);

@@ -1,8 +1,8 @@
 // Health of the wave: one partial result an invocation, summed on the host in double and 64-bit integer precision.
 // Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
-// non-finite flows, 0, max |eta|, cells that break; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
+// non-finite flows and boats, 0, max |eta|, cells that break; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
 // sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, and both of OUTFLOW (integers: the volume to the last unit).
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 HULLS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1 HULLS=1
 #include "shared/groups.h"
 #include "include/transfer.glsl"
 #include "include/wave_faces.glsl"
@@ -13,6 +13,10 @@ layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
 #if OPEN
 layout(binding = OUTFLOW) uniform isamplerBuffer outflow;
+#endif
+#if HULLS
+#include "include/boat.glsl"
+layout(binding = BOATS) uniform samplerBuffer boats;
 #endif
 #if BREAKERS
 layout(binding = BREAKING) uniform samplerBuffer breaking;
@@ -60,6 +64,14 @@ void main() {
     worst.w += texelFetch(breaking, i).y > 0.0 ? 1.0 : 0.0;
 #endif
   }
+#if HULLS
+  if (share == 0u) {
+    for (int at = 0; at < int(boat_place_count) * BOAT_TEXELS; ++at) {
+      const vec4 t = texelFetch(boats, at);
+      worst.x += isnan(t.x + t.y + t.z + t.w) || isinf(t.x + t.y + t.z + t.w) ? 1.0 : 0.0;
+    }
+  }
+#endif
   partial_sum[3u * share] = floatBitsToUint(worst);
   partial_sum[3u * share + 1u] = floatBitsToUint(sum);
   partial_sum[3u * share + 2u] = volume;

@@ -1,9 +1,10 @@
 // Counts the particles of each cell and notes each particle's cell and arrival number.
-// Reads POSITION [particle_count]. Adds to CELL_COUNT [cell_count] (cleared before). Writes CELL_ARRIVAL
-// [particle_count] = (cell, arrival). The arrival order is not repeatable; grid/reorder.comp makes the final order so.
-// variants: PERIODIC_X=1 PERIODIC_Z=1
+// Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last stays 0). Writes CELL_ARRIVAL
+// = (cell, arrival); particles that were absorbed have NO_CELL and leave here. The arrival order is not repeatable; grid/reorder.comp makes the final order so.
+// variants: PERIODIC_X=1 PERIODIC_Z=1 POOL_PARTICLES=0 | PERIODIC_X=0 PERIODIC_Z=1 POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "include/grid_hash.glsl"
+#include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -13,8 +14,15 @@ layout(std430, binding = CELL_ARRIVAL) restrict writeonly buffer CellArrival { u
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= sim.particle_count) return;
+  if (i >= unsortedCount()) return;
   const Grid g = loadGrid();
-  const uint cell = uint(flatCell(g, cellOf(g, texelFetch(position, int(i)).xyz)));
+  const vec4 x = texelFetch(position, int(i));
+#if POOL_PARTICLES
+  if (x.w == DEAD_ID) {
+    arrival[i] = uvec2(NO_CELL, 0u);
+    return;
+  }
+#endif
+  const uint cell = uint(flatCell(g, cellOf(g, x.xyz)));
   arrival[i] = uvec2(cell, atomicAdd(cell_count_of[cell], 1u));
 }

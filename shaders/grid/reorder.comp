@@ -1,9 +1,10 @@
 // Moves particles into cell order, inside a cell by their previous index: neighbours become contiguous, and a run repeats
 // bit for bit because the order no longer depends on which invocation came first.
 // Reads POSITION, VELOCITY, CELL_ARRIVAL, CELL_START, CELL_MEMBER. Writes SORTED_POSITION, SORTED_VELOCITY.
+// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 // Cost: a particle counts the smaller indices in its cell, so n particles in one cell cost n^2, as their forces do.
 #include "shared/groups.h"
-#include "shared/sim_uniforms.h"
+#include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -15,14 +16,33 @@ layout(binding = CELL_MEMBER) uniform usamplerBuffer cell_member;
 layout(std430, binding = SORTED_POSITION) restrict writeonly buffer SortedPosition { vec4 sorted_position[]; };
 layout(std430, binding = SORTED_VELOCITY) restrict writeonly buffer SortedVelocity { vec4 sorted_velocity[]; };
 
+#if POOL_PARTICLES
+/// In a pool a particle's index depends on the order of invocations, where it is does not.
+bool isBefore(vec3 a, uint i, vec3 b, uint j) {
+  return a.x < b.x || (a.x == b.x && (a.z < b.z || (a.z == b.z && (a.y < b.y || (a.y == b.y && i < j)))));
+}
+#endif
+
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= sim.particle_count) return;
-  const int cell = int(texelFetch(arrival, int(i)).x);
+  if (i >= unsortedCount()) return;
+  const uint own_cell = texelFetch(arrival, int(i)).x;
+#if POOL_PARTICLES
+  if (own_cell == 0xffffffffu) return;
+#endif
+  const int cell = int(own_cell);
   const int first = int(texelFetch(cell_start, cell).x);
   const int last = int(texelFetch(cell_start, cell + 1).x);
   uint slot = uint(first);
-  for (int k = first; k < last; ++k) slot += texelFetch(cell_member, k).x < i ? 1u : 0u;
-  sorted_position[slot] = texelFetch(position, int(i));
+  const vec4 own = texelFetch(position, int(i));
+  for (int k = first; k < last; ++k) {
+    const uint other = texelFetch(cell_member, k).x;
+#if POOL_PARTICLES
+    slot += isBefore(texelFetch(position, int(other)).xyz, other, own.xyz, i) ? 1u : 0u;
+#else
+    slot += other < i ? 1u : 0u;
+#endif
+  }
+  sorted_position[slot] = own;
   sorted_velocity[slot] = texelFetch(velocity, int(i));
 }

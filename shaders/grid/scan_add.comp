@@ -1,5 +1,6 @@
-// Exclusive prefix sum, last of three: adds the sum of the blocks before, and closes the array with the particle count.
-// Reads BLOCK_TOTAL. Adds to CELL_START [cell_count + 1].
+// Exclusive prefix sum, last of three: adds the sum of the blocks before. The last entry is the number of particles.
+// Reads BLOCK_TOTAL. Adds to CELL_START [cell_count + 1]; in a pool writes POOL_LIVE.
+// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 
@@ -7,9 +8,17 @@ layout(local_size_x = SCAN_GROUP) in;
 
 layout(binding = BLOCK_TOTAL) uniform usamplerBuffer block_total;
 layout(std430, binding = CELL_START) restrict buffer CellStart { uint cell_start[]; };
+#if POOL_PARTICLES
+#include "shared/pool.h"
+layout(std430, binding = POOL) restrict buffer Pool { uint pool[]; };
+#endif
 
 void main() {
   const uint cell = gl_GlobalInvocationID.x;
-  if (cell < sim.cell_count) cell_start[cell] += texelFetch(block_total, int(cell / SCAN_BLOCK)).x;
-  if (cell == sim.cell_count) cell_start[cell] = sim.particle_count;
+  if (cell > sim.cell_count) return;
+  const uint start = cell_start[cell] + texelFetch(block_total, int(cell / SCAN_BLOCK)).x;
+  cell_start[cell] = start;
+#if POOL_PARTICLES
+  if (cell == sim.cell_count) pool[POOL_LIVE] = start;
+#endif
 }

@@ -1,5 +1,5 @@
 // Exclusive prefix sum, first of three: each group scans one block of SCAN_BLOCK cells and notes the block's total.
-// Reads CELL_COUNT [cell_count]. Writes CELL_START (sum of the cells before it in its block), BLOCK_TOTAL.
+// Reads CELL_COUNT [cell_count + 1]. Writes CELL_START (sum of the cells before it in its block), BLOCK_TOTAL.
 // Work: Blelloch's idea with a serial run of SCAN_ITEMS per invocation, then Hillis & Steele over the group in shared memory.
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
@@ -19,7 +19,7 @@ void main() {
   uint total = 0u;
   for (uint k = 0u; k < SCAN_ITEMS; ++k) {
     before[k] = total;
-    total += first + k < sim.cell_count ? texelFetch(cell_count_of, int(first + k)).x : 0u;
+    total += first + k <= sim.cell_count ? texelFetch(cell_count_of, int(first + k)).x : 0u;
   }
   sums[lane] = total;
   barrier();
@@ -31,7 +31,7 @@ void main() {
   }
   const uint base = sums[lane] - total;
   for (uint k = 0u; k < SCAN_ITEMS; ++k) {
-    if (first + k < sim.cell_count) cell_start[first + k] = base + before[k];
+    if (first + k <= sim.cell_count) cell_start[first + k] = base + before[k];
   }
   if (lane == SCAN_GROUP - 1u) block_total[gl_WorkGroupID.x] = sums[lane];
 }

@@ -1,6 +1,6 @@
 // Exclusive prefix sum, second of three: one group turns the block totals into sums of the blocks before, any number of
 // blocks, SCAN_GROUP at a time.
-// Reads and writes BLOCK_TOTAL [ceil(cell_count / SCAN_BLOCK)].
+// Reads and writes BLOCK_TOTAL [ceil((cell_count + 1) / SCAN_BLOCK)].
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 
@@ -12,7 +12,7 @@ shared uint sums[SCAN_GROUP];
 
 void main() {
   const uint lane = gl_LocalInvocationID.x;
-  const uint block_count = (sim.cell_count + SCAN_BLOCK - 1u) / SCAN_BLOCK;
+  const uint block_count = sim.cell_count / SCAN_BLOCK + 1u;
   uint carried = 0u;
   for (uint chunk = 0u; chunk < block_count; chunk += SCAN_GROUP) {
     const uint i = chunk + lane;

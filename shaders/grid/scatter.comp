@@ -1,7 +1,8 @@
 // Groups particle indices by cell, in arrival order.
-// Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER [particle_count].
+// Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER.
+// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "shared/sim_uniforms.h"
+#include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -11,7 +12,10 @@ layout(std430, binding = CELL_MEMBER) restrict writeonly buffer CellMember { uin
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= sim.particle_count) return;
+  if (i >= unsortedCount()) return;
   const uvec2 a = texelFetch(arrival, int(i)).xy;
+#if POOL_PARTICLES
+  if (a.x == 0xffffffffu) return;
+#endif
   cell_member[texelFetch(cell_start, int(a.x)).x + a.y] = i;
 }

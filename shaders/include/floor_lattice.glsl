@@ -24,6 +24,11 @@ int lastLatticeRow(Floor f, vec3 x_i, float H, float spacing_m) {
   return x_i.y - floorHeight(f, x_i.xz) + 0.5 * spacing_m < H ? LATTICE_REACH : -LATTICE_REACH - 1;
 }
 
+#if POOL_PARTICLES
+// In two-way scenes the surface takes particles in instead of carrying them.
+float floorDensity(vec3 x_i) { return 0.0; }
+vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) { return vec3(0.0); }
+#else
 /// The floor's share of the density at x_i. [kg/m^3]
 float floorDensity(vec3 x_i) {
   const Floor f = loadFloor();
@@ -62,5 +67,7 @@ vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
   return sim.virtual_mass_kg * (sim.cubic_norm / H * pressure_term * push +
                                 sim.viscosity_norm * sim.viscosity_pas * drag / (rho_i * sim.rest_density_kgpm3) * (floor_velocity_mps - v_i));
 }
+
+#endif
 
 #endif

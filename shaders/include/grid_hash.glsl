@@ -6,6 +6,9 @@
 
 #include "shared/sim_uniforms.h"
 
+/// Cell of a particle that has left.
+#define NO_CELL 0xffffffffu
+
 /// The grid in registers: loops must not touch the uniform block.
 struct Grid {
   vec3 min_m;

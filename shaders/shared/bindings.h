@@ -47,4 +47,19 @@
 #define PACKED_WORDS 17
 #define PARTIAL_SUM 18
 
+// Ground as particles and boats see it, one texel a wave cell: signed distance to the nearest obstacle [m], its gradient (x, z),
+// still depth [m]. Where water that falls on a cell goes: the cell itself, or the nearest wet one.
+#define TERRAIN 24
+#define LANDING 25
+// Pool of a two-way scene; shared/pool.h.
+#define POOL 26
+// Boats; shared/boats.h. Their controls are a uniform block.
+#define BOATS 27
+#define BOAT_CONTROLS 2
+// Foam on the surface, (n/2)^2 cells: share of white by source (breaking, wakes, landings); one tick ago; particles that landed
+// since the last tick.
+#define FOAM_FIELD 28
+#define FOAM_BEFORE 29
+#define LANDED 30
+
 #endif

@@ -27,7 +27,7 @@ struct EventUniform {
   float back_m;
   float lateral_m;     // crest: half its extent along the crest; 0 = across the whole domain
   float half_step_m;   // crest: how far it travels in half a step
-  float speed_mps;     // crest
+  float speed_mps;     // crest: of the wave. splash: of the crown that it throws now; 0 for rain drops
 };
 #ifdef __cplusplus
 struct EventUniforms {

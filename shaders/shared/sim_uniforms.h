@@ -48,9 +48,19 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float floor_gap_m;            // particles are kept this far above the floor
   float downforce_per_m_s2;
 
+  // Two-way coupling.
+  uint pool_capacity_count;
+  uint droplet_units;           // elevation units that a particle's volume is in one wave cell
+  float emission_ratio;         // factor on the scene's emission
+  uint seed;
+
   // Foam.
   float foam_deficit_ratio;     // 1 - rho/rho0 at which a particle is fully white
-  float foam_keep_ratio;        // exp(-dt / lifetime)
+  float foam_keep_ratio;        // exp(-dt / lifetime), of particles
+  float tick_s;
+  float breaking_foam_keep_ratio;  // of the surface's foam, a tick
+  float wake_foam_keep_ratio;
+  float landing_foam_keep_ratio;
 
   // Wave; n x n cells, x fastest.
   uint wave_n;
@@ -68,7 +78,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float surface_quantum_m;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 43 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 51 * 4, "scalars of four bytes only: std140 and C++ must agree");
 }  // namespace spindrift::shared
 #else
 } sim;

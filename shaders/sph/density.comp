@@ -4,9 +4,10 @@
 // Equations: rho_i = sum_j m W(r_ij) (thesis 3.6), plus the floor's virtual particles, cubic kernel (thesis, algorithm
 // 10); p_i = max(k (rho_i - rho_0), 0) (thesis 3.9, clamped: water does not pull).
 // Invariant: rho_i >= m W(0) > 0, so the divisions are safe.
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
 #include "shared/groups.h"
 #include "include/candidates.glsl"
+#include "include/population.glsl"
 #include "include/floor.glsl"
 #include "include/kernels.glsl"
 #include "include/floor_lattice.glsl"
@@ -21,7 +22,7 @@ layout(std430, binding = ACCELERATION) restrict writeonly buffer Acceleration { 
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= sim.particle_count) return;
+  if (i >= particleCount()) return;
   const Grid g = loadGrid();
   const Support support = makeSupport(g.cell_m);
   const vec3 x_i = texelFetch(sorted_position, int(i)).xyz;

@@ -4,9 +4,10 @@
 // mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W, viscosity kernel (thesis 3.18 with the difference its text means); above the
 // water -downforce (y - eta)^2 (thesis 3.6.2).
 // Invariant: the pair terms are antisymmetric up to rounding; the particle itself adds nothing (r = 0).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
 #include "shared/groups.h"
 #include "include/candidates.glsl"
+#include "include/population.glsl"
 #include "include/floor_lattice.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
@@ -17,7 +18,7 @@ layout(std430, binding = ACCELERATION) restrict buffer Acceleration { vec4 accel
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= sim.particle_count) return;
+  if (i >= particleCount()) return;
   const Grid g = loadGrid();
   const Support support = makeSupport(g.cell_m);
   const vec4 own = texelFetch(pressure_point, int(i));

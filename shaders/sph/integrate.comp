@@ -2,10 +2,20 @@
 // Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, the floor. Writes POSITION, VELOCITY (in sorted order).
 // Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than max_speed_mps plus
 // the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0
 #include "shared/groups.h"
 #include "include/floor.glsl"
 #include "include/foam.glsl"
+#include "include/population.glsl"
+#if POOL_PARTICLES
+#include "include/absorption.glsl"
+#endif
+#if COUPLED && VARIED
+#include "include/terrain.glsl"
+#endif
+#if HULLS
+#include "include/hull.glsl"
+#endif
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -29,7 +39,7 @@ void wrapAround(inout float x, float low, float high) {
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= sim.particle_count) return;
+  if (i >= particleCount()) return;
   const vec4 old_position = texelFetch(sorted_position, int(i));
   const vec4 old_velocity = texelFetch(sorted_velocity, int(i));
   const vec4 a = texelFetch(acceleration, int(i));
@@ -49,16 +59,36 @@ void main() {
   keepBetweenWalls(x.z, v.z, sim.min_z_m, sim.max_z_m);
 #endif
 
+#if HULLS
+  pushOutOfHulls(x, v);
+#endif
+#if COUPLED && VARIED
+  pushOutOfRocks(x, v);
+#endif
+
   const Floor f = loadFloor();
   vec3 normal;
   vec3 floor_velocity_mps;
   const float gap_m = x.y - floorState(f, x.xz, normal, floor_velocity_mps);
+#if POOL_PARTICLES
+  if (gap_m < 0.0) {
+    const float approach_mps = floor_velocity_mps.y - v.y;
+    if (approach_mps > 0.0 || gap_m < -sim.spacing_m) {
+      absorb(x.xz, max(approach_mps, 0.0));
+      position[i] = vec4(x, DEAD_ID);
+      velocity[i] = vec4(0.0);
+      return;
+    }
+    x.y -= gap_m;  // thrown out by the water below it
+  }
+#else
   if (gap_m < sim.floor_gap_m) {
     // Lift to the floor in the column, so that a slope cannot push the particle across a side; the velocity loses what
     // points into the floor along its normal.
     x.y += sim.floor_gap_m - gap_m;
     v -= normal * min(dot(v - floor_velocity_mps, normal), 0.0);
   }
+#endif
   keepBetweenWalls(x.y, v.y, sim.min_y_m, sim.max_y_m);
 
 #if FOAM

@@ -1,7 +1,8 @@
 // Quantizes particles for the stream: three words each, the layout of core::ParticleView.
-// Reads POSITION, VELOCITY, ACCELERATION.w (density) in cell order. Writes PACKED_WORDS [3 * particle_count].
+// Reads POSITION, VELOCITY, ACCELERATION.w (density) in cell order. Writes PACKED_WORDS, 3 a particle.
+// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "shared/sim_uniforms.h"
+#include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -22,7 +23,7 @@ uint quantizedSigned(float unit) {
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= sim.particle_count) return;
+  if (i >= particleCount()) return;
   const vec3 low = vec3(sim.min_x_m, sim.min_y_m, sim.min_z_m);
   const vec3 high = vec3(sim.max_x_m, sim.max_y_m, sim.max_z_m);
   const vec3 u = (texelFetch(position, int(i)).xyz - low) / (high - low);

@@ -9,6 +9,7 @@ struct Health {
   std::uint64_t tick = 0;
   std::uint64_t nonfinite_count = 0;  ///< particles and wave cells with a value that is NaN or infinite
   std::uint64_t escaped_count = 0;    ///< particles outside their domain
+  std::uint32_t particle_count = 0;   ///< alive
   double max_speed_mps = 0.0;
   double max_density_ratio = 0.0;  ///< rho / rho0
   double mean_density_ratio = 0.0;
@@ -23,6 +24,11 @@ struct Health {
   std::int64_t surface_units = 0;       ///< sum of the elevations
   std::int64_t outflow_units = 0;       ///< gone through absorbing sides since the start
   std::int64_t volume_error_units = 0;  ///< surface + outflow + particles of a two-way scene - at the start: always 0
+
+  // Two-way scenes, since the start.
+  std::uint32_t emitted_count = 0;       ///< particles that breaking water became
+  std::uint32_t absorbed_count = 0;      ///< particles that fell back
+  std::uint32_t pool_refused_count = 0;  ///< substeps in which the pool had no room
 
   [[nodiscard]] bool isGood() const { return nonfinite_count == 0 && escaped_count == 0; }
 };

@@ -12,6 +12,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
+#include <spindrift/sim/boat_record.h>
 #include <spindrift/sim/derive.h>
 #include <spindrift/sim/health.h>
 
@@ -21,6 +22,8 @@ namespace spindrift::sim {
 struct FrameRequest {
   bool surface = false;
   bool particles = false;
+  bool foam = false;
+  bool bodies = false;
 };
 
 /// The state as plain numbers, for tests, hashes and checkpoints: positions and velocities 4 floats a particle (xyz +
@@ -29,6 +32,8 @@ struct StateCopy {
   std::vector<float> position, velocity;
   std::vector<float> density_kgpm3;
   std::vector<double> elevation_m;  ///< whole units of shaders/shared/fixed_point.h, which a double holds exactly
+  std::vector<float> boats;         ///< shaders/shared/boats.h, every place
+  std::vector<std::uint32_t> pool;  ///< shaders/shared/pool.h; two-way scenes
   std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) a cell, the faces that it owns
 };
 
@@ -48,6 +53,16 @@ class WaterSim {
 
   /// Starts an effect now. kInvalidInput without a wave, kUnavailable when too many are active.
   core::Result<void> start(const core::Effect& effect);
+  /// A boat comes to the water; its id. kInvalidInput in a scene without boats, kUnavailable when there is no place.
+  core::Result<std::uint32_t> spawnBoat(const core::Boat& boat);
+  /// kInvalidInput for a boat that is not on the water.
+  core::Result<void> controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
+  core::Result<void> removeBoat(std::uint32_t boat_id);
+  [[nodiscard]] std::vector<BoatRecord> boats() const;
+  [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats().size()); }
+  /// Particles now; in two-way scenes as of the newest health().
+  [[nodiscard]] std::uint32_t particleCount() const;
+
   /// New parameter values from the next tick on. kInvalidInput when a step rule breaks or the change needs a restart;
   /// then nothing changes.
   core::Result<void> setScene(const core::Scene& scene);
@@ -91,6 +106,11 @@ class WaterSim {
   void startTimedEvents();
   void advanceWave(double time_s);
   void sampleSurface();
+  void breakWaves();
+  void moveBoats();
+  void emitParticles();
+  void bindSurroundings();
+  void fadeFoam();
   void buildGrid();
   void advanceParticles();
   void measure();
@@ -106,6 +126,7 @@ class WaterSim {
   std::unique_ptr<Parts> parts_;
   std::uint64_t tick_ = 0;  ///< never goes back
   std::uint64_t start_tick_ = 0;
+  std::uint32_t substep_ = 0;  ///< since the start or the last reset; seeds emission
   Health health_;
   std::uint64_t nonfinite_count_ = 0;
   std::uint64_t escaped_count_ = 0;

@@ -1,0 +1,187 @@
+#include "boats.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include <fmt/format.h>
+#include <shared/bindings.h>
+
+#include "create_all.h"
+
+namespace spindrift::sim {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+constexpr float kNobody = -1.0f;
+
+using State = std::array<float, std::size_t{BOAT_TEXELS} * 4>;
+
+State startingState(const core::Boat& boat, std::uint32_t boat_id) {
+  const auto f = [](double v) { return static_cast<float>(v); };
+  const double draught_m = boat.density_ratio * boat.height_m;
+  State s{};
+  s[0] = f(boat.x_m);
+  s[1] = f(boat.height_m / 2 - draught_m);
+  s[2] = f(boat.z_m);
+  s[3] = f(boat.heading_deg * std::numbers::pi / 180.0);
+  s[7] = f(boat_id);
+  s[14] = f(boat.throttle_ratio);
+  s[15] = f(boat.rudder_ratio);
+  s[16] = f(boat.length_m);
+  s[17] = f(boat.beam_m);
+  s[18] = f(boat.height_m);
+  s[19] = f(draught_m);
+  s[20] = f(boat.max_speed_mps);
+  return s;
+}
+
+Error unknownBoat(std::uint32_t boat_id) {
+  return {ErrorCode::kInvalidInput,
+          fmt::format("boat_id: {} is not on the water; the boat list tells who is", boat_id)};
+}
+
+}  // namespace
+
+Boats::Boats(gpu::Context& ctx, const core::Scene& scene, const WaveLayout& layout)
+    : ctx_(ctx), cell_m_(layout.cell_m), places_(std::min<std::size_t>(scene.boats->capacity_count, MAX_BOATS)) {}
+
+core::Result<std::unique_ptr<Boats>> Boats::create(gpu::Context& ctx, const core::Scene& scene,
+                                                   const WaveLayout& layout, const gpu::Defines& defines) {
+  static_assert(core::kMaxBoats == MAX_BOATS);
+  if (scene.boats->boats.size() > scene.boats->capacity_count) {
+    return Error{ErrorCode::kInvalidInput,
+                 fmt::format("boats.boats: {} boats are more than boats.capacity_count = {}: remove some or raise it",
+                             scene.boats->boats.size(), scene.boats->capacity_count)};
+  }
+  auto out = std::unique_ptr<Boats>(new Boats(ctx, scene, layout));
+  Creation create;
+  create(out->state_,
+         gpu::TexelBuffer::create(ctx, "boats", std::size_t{MAX_BOATS} * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F));
+  create(out->control_uniforms_, gpu::Buffer::create(ctx, "boat controls", sizeof(shared::BoatControls)));
+  create(out->move_, gpu::Program::create(ctx, "bodies/move.comp", defines));
+  create(out->press_, gpu::Program::create(ctx, "bodies/press.comp", defines));
+  if (create.error()) return *create.error();
+  return out;
+}
+
+void Boats::reset(const core::Scene& scene) {
+  State nobody{};
+  nobody[6] = kNobody;
+  for (std::size_t at = 0; at < MAX_BOATS; ++at) state_.upload(nobody, at * sizeof(State));
+  std::ranges::fill(places_, Place{});
+  next_id_ = 1;
+  for (const core::Boat& boat : scene.boats->boats) (void)spawn(boat);  // create() saw that there are places
+  uploadControls();
+}
+
+std::optional<std::size_t> Boats::find(std::uint32_t boat_id) const {
+  const auto it = std::ranges::find(places_, boat_id, &Place::boat_id);
+  if (boat_id == 0 || it == places_.end()) return std::nullopt;
+  return static_cast<std::size_t>(it - places_.begin());
+}
+
+core::Result<std::uint32_t> Boats::spawn(const core::Boat& boat) {
+  const auto free = std::ranges::find(places_, 0u, &Place::boat_id);
+  if (free == places_.end()) {
+    return Error{ErrorCode::kUnavailable,
+                 fmt::format("boats: all {} places are taken; remove a boat first", places_.size())};
+  }
+  *free = {next_id_++, boat};
+  state_.upload(startingState(boat, free->boat_id), static_cast<std::size_t>(free - places_.begin()) * sizeof(State));
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  uploadControls();
+  return free->boat_id;
+}
+
+core::Result<void> Boats::control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {
+  const auto at = find(boat_id);
+  if (!at) return unknownBoat(boat_id);
+  places_[*at].boat.throttle_ratio = std::clamp(throttle_ratio, -1.0, 1.0);
+  places_[*at].boat.rudder_ratio = std::clamp(rudder_ratio, -1.0, 1.0);
+  uploadControls();
+  return {};
+}
+
+core::Result<void> Boats::remove(std::uint32_t boat_id) {
+  const auto at = find(boat_id);
+  if (!at) return unknownBoat(boat_id);
+  places_[*at] = {};
+  state_.uploadValue(kNobody, *at * sizeof(State) + 6 * sizeof(float));
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  uploadControls();
+  return {};
+}
+
+void Boats::uploadControls() {
+  controls_ = {};
+  for (std::size_t at = 0; at < places_.size(); ++at) {
+    if (places_[at].boat_id == 0) continue;
+    controls_.control[at].throttle_ratio = static_cast<float>(places_[at].boat.throttle_ratio);
+    controls_.control[at].rudder_ratio = static_cast<float>(places_[at].boat.rudder_ratio);
+    controls_.place_count = static_cast<std::uint32_t>(at + 1);
+  }
+  control_uniforms_.uploadValue(controls_);
+  ctx_.barrier(gpu::Barrier::kUniform);
+}
+
+void Boats::mend() {
+  const auto states = state_.downloadVector<float>(std::size_t{MAX_BOATS} * BOAT_TEXELS * 4);
+  for (std::size_t at = 0; at < places_.size(); ++at) {
+    if (places_[at].boat_id == 0) continue;
+    const auto own = std::span(states).subspan(at * BOAT_TEXELS * 4, BOAT_TEXELS * 4);
+    if (std::ranges::all_of(own, [](float x) { return std::isfinite(x); })) continue;
+    state_.upload(startingState(places_[at].boat, places_[at].boat_id), at * sizeof(State));
+  }
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+void Boats::bind() const {
+  state_.bindTexel(BOATS);
+  control_uniforms_.bindUniform(BOAT_CONTROLS);
+}
+
+void Boats::move(const Wave& wave) {
+  if (controls_.place_count == 0) return;
+  wave.bindSurface();
+  wave.bindTerrain();
+  bind();
+  state_.bindStorage(BOATS);
+  move_.dispatchGroups(1);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+void Boats::press(const gpu::TexelBuffer& pressure_head) {
+  if (controls_.place_count == 0) return;
+  double reach_m = 0.0;
+  for (const Place& place : places_) {
+    if (place.boat_id == 0) continue;
+    reach_m = std::max(
+        reach_m, HULL_REACH * 0.5 *
+                     std::hypot(std::max(place.boat.length_m, 3 * cell_m_), std::max(place.boat.beam_m, 3 * cell_m_)));
+  }
+  const auto across = static_cast<std::uint32_t>(2 * std::ceil(reach_m / cell_m_)) + 3;
+  bind();
+  pressure_head.bindStorage(PRESSURE_HEAD);
+  press_.dispatch(across, across, controls_.place_count);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+std::vector<BoatRecord> Boats::records() const {
+  std::vector<BoatRecord> out;
+  for (const Place& place : places_) {
+    if (place.boat_id == 0) continue;
+    const core::Boat& b = place.boat;
+    out.push_back({place.boat_id, b.length_m, b.beam_m, b.height_m, b.density_ratio * b.height_m});
+  }
+  return out;
+}
+
+std::uint32_t Boats::count() const {
+  return static_cast<std::uint32_t>(std::ranges::count_if(places_, [](const Place& p) { return p.boat_id != 0; }));
+}
+
+}  // namespace spindrift::sim

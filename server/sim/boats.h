@@ -1,0 +1,72 @@
+// Boats: who is on the water (host), where they are (device). See shaders/shared/boats.h and shaders/bodies.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <shared/boats.h>
+
+#include <spindrift/core/command.h>
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim/boat_record.h>
+#include <spindrift/sim/derive.h>
+
+#include "wave.h"
+
+namespace spindrift::sim {
+
+class Boats {
+ public:
+  static core::Result<std::unique_ptr<Boats>> create(gpu::Context& ctx, const core::Scene& scene,
+                                                     const WaveLayout& layout, const gpu::Defines& defines);
+
+  /// Only the scene's own boats, where they start; ids start again.
+  void reset(const core::Scene& scene);
+  /// The new boat's id. kUnavailable when every place is taken.
+  core::Result<std::uint32_t> spawn(const core::Boat& boat);
+  /// kInvalidInput for an id that is not on the water.
+  core::Result<void> control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
+  core::Result<void> remove(std::uint32_t boat_id);
+
+  /// After a breach: boats whose state is not finite start again where they first came to the water. Waits for the
+  /// device.
+  void mend();
+
+  /// One substep, after Wave::sampleSurface().
+  void move(const Wave& wave);
+  /// Adds what the hulls press to the pressure head.
+  void press(const gpu::TexelBuffer& pressure_head);
+  /// Binds BOATS and their controls for passes that look at hulls.
+  void bind() const;
+
+  [[nodiscard]] std::vector<BoatRecord> records() const;
+  [[nodiscard]] std::uint32_t count() const;
+  [[nodiscard]] gpu::TexelBuffer& state() { return state_; }
+
+ private:
+  Boats(gpu::Context& ctx, const core::Scene& scene, const WaveLayout& layout);
+
+  struct Place {
+    std::uint32_t boat_id = 0;  ///< 0 = free
+    core::Boat boat;
+  };
+  std::optional<std::size_t> find(std::uint32_t boat_id) const;
+  void uploadControls();
+
+  gpu::Context& ctx_;
+  double cell_m_;
+  std::vector<Place> places_;
+  std::uint32_t next_id_ = 1;
+  shared::BoatControls controls_{};
+  gpu::TexelBuffer state_;
+  gpu::Buffer control_uniforms_;
+  gpu::Program move_, press_;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,43 @@
+#include "breakers.h"
+
+#include <shared/bindings.h>
+
+#include "create_all.h"
+
+namespace spindrift::sim {
+
+core::Result<std::unique_ptr<Breakers>> Breakers::create(gpu::Context& ctx, const WaveLayout& layout,
+                                                         const gpu::Defines& defines) {
+  auto out = std::unique_ptr<Breakers>(new Breakers(ctx, layout));
+  const std::size_t cells = std::size_t{layout.resolution_count} * layout.resolution_count;
+  Creation create;
+  create(out->now_, gpu::TexelBuffer::create(ctx, "breaking", cells, gpu::TexelFormat::kRGBA32F));
+  create(out->before_, gpu::TexelBuffer::create(ctx, "breaking before", cells, gpu::TexelFormat::kRGBA32F));
+  create(out->program_, gpu::Program::create(ctx, "wave/breaking.comp", defines));
+  if (create.error()) return *create.error();
+  return out;
+}
+
+void Breakers::clear() {
+  now_.clear();
+  before_.clear();
+}
+
+void Breakers::update(const Wave& wave, const gpu::TexelBuffer* pool, std::uint32_t substep) {
+  // The state's buffer keeps its place, so that checkpoints and readers need not know which of the two is newer.
+  before_.copyFrom(now_, 0, now_.sizeBytes());
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  wave.bindSurface();
+  wave.bindBasin();
+  wave.bindEvents();
+  before_.bindTexel(BREAKING_BEFORE);
+  now_.bindStorage(BREAKING);
+  if (pool) {
+    pool->bindStorage(POOL);
+    program_.setUniform("substep", substep);
+  }
+  program_.dispatch(n_, n_);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,37 @@
+// Where the wave breaks (Kennedy et al. 2000), once a substep: the wave loses flow there, spray and foam come from it.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim/derive.h>
+
+#include "wave.h"
+
+namespace spindrift::sim {
+
+class Breakers {
+ public:
+  static core::Result<std::unique_ptr<Breakers>> create(gpu::Context& ctx, const WaveLayout& layout,
+                                                        const gpu::Defines& defines);
+
+  void clear();
+  /// After Wave::sampleSurface(). `pool`: where cells that emit are counted; null outside two-way scenes.
+  void update(const Wave& wave, const gpu::TexelBuffer* pool, std::uint32_t substep);
+
+  /// n x n: seconds since the event began, intensity 0..1, velocity of a splash's crown (x, z) [m/s].
+  [[nodiscard]] gpu::TexelBuffer& state() { return now_; }
+
+ private:
+  Breakers(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count) {}
+
+  gpu::Context& ctx_;
+  std::uint32_t n_;
+  gpu::TexelBuffer now_, before_;
+  gpu::Program program_;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,60 @@
+// The particles of a two-way scene: water that broke. Emission, and how many there are; they return to the water in
+// sph/integrate.comp. All counts live on the device, passes over the particles are dispatched from there, and calm
+// water dispatches nothing but one invocation.
+#pragma once
+
+#include <memory>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim/derive.h>
+
+#include "breakers.h"
+#include "particle_buffers.h"
+#include "wave.h"
+
+namespace spindrift::sim {
+
+class ParticlePool {
+ public:
+  static core::Result<std::unique_ptr<ParticlePool>> create(gpu::Context& ctx, const gpu::Defines& defines);
+
+  void clear() { words_.clear(); }
+  /// Plans the substep's dispatches and emits what Breakers::update() counted.
+  void emit(const ParticleBuffers& particles, Wave& wave, Breakers& breakers, std::uint32_t substep);
+
+  /// POOL_WORDS words, shaders/shared/pool.h.
+  [[nodiscard]] gpu::TexelBuffer& words() { return words_; }
+  [[nodiscard]] const gpu::TexelBuffer& words() const { return words_; }
+
+ private:
+  explicit ParticlePool(gpu::Context& ctx) : ctx_(ctx) {}
+
+  gpu::Context& ctx_;
+  gpu::TexelBuffer words_;
+  gpu::Program plan_, emit_;
+};
+
+/// Whom a pass over particles, grid cells or scan blocks is for: a fixed number, or what the pool says.
+class Population {
+ public:
+  Population(std::uint32_t count, std::uint32_t cell_count, const ParticlePool* pool)
+      : count_(count), cell_count_(cell_count), pool_(pool) {}
+
+  void forParticles(gpu::Program& program) const;
+  void forCells(gpu::Program& program) const;       ///< cell_count + 1
+  void forScanBlocks(gpu::Program& program) const;  ///< groups that cover cell_count + 1
+  void forOneGroup(gpu::Program& program) const;
+  /// Makes the counts visible to the passes. Nothing without a pool.
+  void bind() const;
+  [[nodiscard]] const ParticlePool* pool() const { return pool_; }
+
+ private:
+  std::uint32_t count_;
+  std::uint32_t cell_count_;
+  const ParticlePool* pool_;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,41 @@
+// White water on the surface: (n/2)^2 samples, once a tick. See shaders/foam/advance.comp.
+#pragma once
+
+#include <memory>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim/derive.h>
+
+#include "boats.h"
+#include "breakers.h"
+#include "wave.h"
+
+namespace spindrift::sim {
+
+class SurfaceFoam {
+ public:
+  static core::Result<std::unique_ptr<SurfaceFoam>> create(gpu::Context& ctx, const core::Scene& scene,
+                                                           const WaveLayout& layout, const gpu::Defines& defines);
+
+  void clear();
+  /// `boats` may be null.
+  void advance(const Wave& wave, Breakers& breakers, const Boats* boats);
+  /// Where absorbed particles are counted; null outside two-way scenes.
+  [[nodiscard]] const gpu::TexelBuffer* landed() const { return has_landings_ ? &landed_ : nullptr; }
+  /// Shares of white by source: breaking, wake, landing, 0.
+  [[nodiscard]] gpu::TexelBuffer& field() { return now_; }
+
+ private:
+  SurfaceFoam(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count / 2) {}
+
+  gpu::Context& ctx_;
+  std::uint32_t n_;
+  bool has_landings_ = false;
+  gpu::TexelBuffer now_, before_, landed_;
+  gpu::Program advance_;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,37 @@
+// Hulls press on the water: invocations (x, y) cover the square around a boat, z is its place.
+// Reads BOATS. Adds to PRESSURE_HEAD [n x n, units] (cleared before).
+// A moving pressure disc of the hull's size (PHYSICS: boat wake; thesis 3.6.4 uses a point). The wave equation has no dispersion:
+// a boat slower than the waves carries a dent, one faster than them drags a Mach wedge of half angle asin(c/U).
+// variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0
+#include "shared/fixed_point.h"
+#include "shared/groups.h"
+#include "include/boat.glsl"
+#include "include/wave_cell.glsl"
+
+layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
+
+layout(binding = BOATS) uniform samplerBuffer boats;
+layout(std430, binding = PRESSURE_HEAD) restrict buffer PressureHead { int pressure_head[]; };
+
+void main() {
+  vec4 t[BOAT_TEXELS];
+  for (int k = 0; k < BOAT_TEXELS; ++k) t[k] = texelFetch(boats, int(gl_GlobalInvocationID.z) * BOAT_TEXELS + k);
+  const BoatState b = unpackBoat(t);
+  if (b.age_s < 0.0) return;
+  const int n = int(sim.wave_n);
+  const float cell_m = sim.wave_cell_m;
+  const int across = min(2 * int(ceil(HULL_REACH * 0.5 * length(max(b.hull_m.xy, vec2(3.0 * cell_m))) / cell_m)) + 3, n);
+  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), ivec2(across)))) return;
+  ivec2 cell = ivec2(floor((b.centre_m.xz + 0.5 * sim.wave_side_m) / cell_m)) - across / 2 + ivec2(gl_GlobalInvocationID.xy);
+  const vec2 d = waveCellCentre(cell) - b.centre_m.xz;
+#if WAVE_PERIODIC_X
+  cell.x = wrapped(cell.x, n);
+#endif
+#if WAVE_PERIODIC_Z
+  cell.y = wrapped(cell.y, n);
+#endif
+  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return;
+  const float head_m = hullHead(b, vec2(dot(d, forwardOf(b.heading)), dot(d, starboardOf(b.heading))));
+  const int units = int(round(head_m * ELEVATION_UNITS_PER_M));
+  if (units != 0) atomicAdd(pressure_head[cell.x + n * cell.y], units);
+}

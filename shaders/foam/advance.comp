@@ -1,0 +1,81 @@
+// White water on the surface, once a tick: carried by the water, fading by source, fed by breakers, wakes and landings.
+// Reads FOAM_BEFORE [(n/2)^2: breaking, wake, landing, 0], SURFACE_FLOW, BREAKING, BOATS, LANDED. Writes FOAM_FIELD; clears LANDED.
+// Equation: semi-Lagrangian transport, f(x, t + dt) = f(x - u dt, t) exp(-dt/lifetime) + source; each share of white is at most 1.
+// variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 HULLS=0 LANDINGS=0 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 HULLS=1 LANDINGS=1
+#include "shared/groups.h"
+#include "include/wave_cell.glsl"
+#if HULLS
+#include "include/boat.glsl"
+layout(binding = BOATS) uniform samplerBuffer boats;
+#endif
+
+layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
+
+layout(binding = FOAM_BEFORE) uniform samplerBuffer foam_before;
+layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
+layout(binding = BREAKING) uniform samplerBuffer breaking;
+layout(std430, binding = FOAM_FIELD) restrict writeonly buffer FoamField { vec4 foam[]; };
+#if LANDINGS
+layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
+#endif
+
+/// White that a second of full breaking makes, and one particle that falls back.
+const float kBreakingGain_per_s = 8.0;
+const float kLandingGain = 0.12;
+const float kWakeGain_per_s = 5.0;
+
+vec4 before(ivec2 cell, int n) {
+  return texelFetch(foam_before, waveNeighbourX(cell.x, n) + n * waveNeighbourZ(cell.y, n));
+}
+
+#if HULLS
+/// Stern and sides of the boats, by their speed.
+float wakeAt(vec2 p) {
+  float wake = 0.0;
+  for (int place = 0; place < int(boat_place_count); ++place) {
+    const vec4 pose = texelFetch(boats, place * BOAT_TEXELS);
+    const float age_s = texelFetch(boats, place * BOAT_TEXELS + 1).z;
+    const float speed_mps = texelFetch(boats, place * BOAT_TEXELS + 2).x;
+    const vec4 hull_m = texelFetch(boats, place * BOAT_TEXELS + 4);
+    const float full_mps = texelFetch(boats, place * BOAT_TEXELS + 5).x;
+    const vec2 d = acrossSides(p - pose.xz);
+    const float a = dot(d, forwardOf(pose.w)) / hull_m.x;
+    const float b = dot(d, starboardOf(pose.w)) / hull_m.y;
+    const float stern = exp(-40.0 * (a + 0.55) * (a + 0.55) - 4.0 * b * b);
+    const float bow = 0.6 * exp(-60.0 * (a - 0.42) * (a - 0.42) - 5.0 * (abs(b) - 0.45) * (abs(b) - 0.45));
+    wake += age_s >= 0.0 ? (stern + bow) * clamp(abs(speed_mps) / full_mps, 0.0, 1.2) : 0.0;
+  }
+  return wake;
+}
+#endif
+
+void main() {
+  const int n = int(sim.wave_n) / 2;
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (cell.x >= n || cell.y >= n) return;
+  const int wave_row = 2 * cell.x + int(sim.wave_n) * 2 * cell.y;
+  const float cell_m = 2.0 * sim.wave_cell_m;
+
+  const vec2 flow_mps = texelFetch(flow_texels, wave_row).xy;
+  const vec2 from = vec2(cell) - clamp(flow_mps * sim.tick_s / cell_m, vec2(-2.0), vec2(2.0));
+  const vec2 c = floor(from);
+  const vec2 t = from - c;
+  const ivec2 k = ivec2(c);
+  vec4 f = mix(mix(before(k, n), before(k + ivec2(1, 0), n), t.x),
+               mix(before(k + ivec2(0, 1), n), before(k + ivec2(1, 1), n), t.x), t.y);
+  f *= vec4(sim.breaking_foam_keep_ratio, sim.wake_foam_keep_ratio, sim.landing_foam_keep_ratio, 0.0);
+
+  const int below = int(sim.wave_n);
+  const float intensity = max(max(texelFetch(breaking, wave_row).y, texelFetch(breaking, wave_row + 1).y),
+                              max(texelFetch(breaking, wave_row + below).y, texelFetch(breaking, wave_row + below + 1).y));
+  f.x += kBreakingGain_per_s * sim.tick_s * intensity;
+#if HULLS
+  const vec2 p = (vec2(cell) + 0.5) * cell_m - 0.5 * sim.wave_side_m;
+  f.y += kWakeGain_per_s * sim.tick_s * wakeAt(p);
+#endif
+#if LANDINGS
+  f.z += kLandingGain * float(landed[cell.x + n * cell.y]);
+  landed[cell.x + n * cell.y] = 0u;
+#endif
+  foam[cell.x + n * cell.y] = min(f, vec4(1.0));
+}

@@ -1,0 +1,13 @@
+// Forgets the counts of the last build. Pools only: a size that the device decides; elsewhere the host clears.
+// Writes CELL_COUNT [cell_count + 1].
+#include "shared/groups.h"
+#include "shared/sim_uniforms.h"
+
+layout(local_size_x = SCAN_GROUP) in;
+
+layout(std430, binding = CELL_COUNT) restrict writeonly buffer CellCount { uint cell_count_of[]; };
+
+void main() {
+  const uint cell = gl_GlobalInvocationID.x;
+  if (cell <= sim.cell_count) cell_count_of[cell] = 0u;
+}

@@ -1,0 +1,44 @@
+// Particles that fall back become water: volume to the elevation, momentum to the pressure head.
+#ifndef SPINDRIFT_ABSORPTION
+#define SPINDRIFT_ABSORPTION
+
+#include "include/splat.glsl"
+#include "include/transfer.glsl"
+#include "shared/pool.h"
+
+layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
+layout(std430, binding = PRESSURE_HEAD) restrict buffer PressureHead { int pressure_head[]; };
+layout(std430, binding = POOL) restrict buffer PoolWords { uint pool_words[]; };
+#if SURFACE_FOAM
+layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
+#endif
+
+/// A particle at xz with downward speed `impact_mps` ends here. Its momentum acts on the surface during one substep as the height
+/// of water V v / (g dt) over the cell's area: the ring of a falling drop.
+/// Invariant: ELEVATION gains exactly droplet_units.
+void absorb(vec2 xz, float impact_mps) {
+  const int n = int(sim.wave_n);
+  const ivec2 middle = wetCellAt(xz, n);
+  const int i = middle.x + n * middle.y;
+  const int amount = int(sim.droplet_units);
+  const float head = float(amount) * impact_mps / max(sim.gravity_mps2 * sim.dt_s, 1e-6);
+  const int head_units = int(min(head, 0.5 * TRANSFER_MAX_UNITS));
+  int rest = amount;
+  for (int dz = -2; dz <= 2; ++dz) {
+    for (int dx = -2; dx <= 2; ++dx) {
+      const int at = splatTarget(middle, ivec2(dx, dz), n);
+      if (at < 0) continue;
+      const int share = splatShare(amount, ivec2(dx, dz));
+      atomicAdd(elevation[at], share);
+      atomicAdd(pressure_head[at], splatShare(head_units, ivec2(dx, dz)));
+      rest -= share;
+    }
+  }
+  if (rest != 0) atomicAdd(elevation[i], rest);
+  atomicAdd(pool_words[POOL_ABSORBED], 1u);
+#if SURFACE_FOAM
+  atomicAdd(landed[middle.x / 2 + n / 2 * (middle.y / 2)], 1u);
+#endif
+}
+
+#endif

@@ -1,0 +1,25 @@
+// Which breaking cells turn water into a particle in a substep. wave/breaking counts them, coupling/emit makes them: both ask
+// here, and get the same answer.
+#ifndef SPINDRIFT_EMISSION
+#define SPINDRIFT_EMISSION
+
+#include "include/hash.glsl"
+#include "include/transfer.glsl"
+#include "shared/sim_uniforms.h"
+
+#if POOL_PARTICLES
+#include "shared/pool.h"
+
+/// Share of the rising water that a fully breaking cell throws out as spray.
+#define SPRAY_SHARE 0.2
+
+/// Expected particles in the substep: the volume thrown out over a particle's; drawn by the hash of cell and substep.
+bool emits(uint cell, uint substep, float intensity, float rate_mps) {
+  if (intensity <= 0.0) return false;
+  const float thrown_m = sim.emission_ratio * SPRAY_SHARE * intensity * rate_mps * sim.dt_s;
+  const float expected = thrown_m * ELEVATION_UNITS_PER_M / float(sim.droplet_units);
+  return random3(uvec3(cell, substep, sim.seed)).x < expected;
+}
+#endif
+
+#endif

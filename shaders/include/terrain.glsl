@@ -1,0 +1,28 @@
+// Rocks and breakwaters for particles: out of them along the gradient of their signed distance.
+#ifndef SPINDRIFT_TERRAIN
+#define SPINDRIFT_TERRAIN
+
+#include "include/terrain_texels.glsl"
+#include "include/wave_cell.glsl"
+
+/// (signed distance, its gradient, still depth; minus its height above the water inside an obstacle) under a place, the distance
+/// carried from the cell's centre along the gradient.
+vec4 terrainAt(vec2 xz) {
+  const int n = int(sim.wave_n);
+  const vec2 u = (xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m;
+  const vec2 c = floor(u);
+  vec4 t = texelFetch(terrain, waveNeighbourX(int(c.x), n) + n * waveNeighbourZ(int(c.y), n));
+  t.x += dot(t.yz, (u - c - 0.5) * sim.wave_cell_m);
+  return t;
+}
+
+/// A particle inside an obstacle, below its top, moves to its side and loses the speed that points into it.
+void pushOutOfRocks(inout vec3 x, inout vec3 v) {
+  const vec4 t = terrainAt(x.xz);
+  const bool inside = t.x < 0.0 && t.w < 0.0 && x.y < -t.w;
+  const float depth_m = inside ? sim.floor_gap_m - t.x : 0.0;
+  x.xz += depth_m * t.yz;
+  v.xz -= inside ? t.yz * min(dot(v.xz, t.yz), 0.0) : vec2(0.0);
+}
+
+#endif

@@ -1,0 +1,30 @@
+// The particle pool of a two-way scene: how many particles there are is known on the device alone, so counts and the sizes of
+// indirect dispatches stand in one small buffer of words.
+#ifndef SPINDRIFT_SHARED_POOL_H
+#define SPINDRIFT_SHARED_POOL_H
+
+// Particles in POSITION before the grid is built: those of the last substep, dead ones among them, and new ones.
+#define POOL_COUNT 0
+// Particles in the sorted arrays, all alive; after integration in POSITION, some of them dead.
+#define POOL_LIVE 1
+// Particles that breaking cells want to emit in this substep; 0 after coupling/plan.comp where there is no room for all.
+#define POOL_WANTED 2
+// Next free place while coupling/emit.comp runs.
+#define POOL_NEXT 3
+// Since the start: particles emitted, particles absorbed, substeps in which the pool had no room.
+#define POOL_EMITTED 4
+#define POOL_ABSORBED 5
+#define POOL_REFUSED 6
+// Arguments of indirect dispatches (three words each): over wave cells for emission, over particles, over grid cells, over scan
+// blocks, one group. All 0 while there is nothing to do.
+#define POOL_EMIT_ARGS 8
+#define POOL_PARTICLE_ARGS 11
+#define POOL_CELL_ARGS 14
+#define POOL_BLOCK_ARGS 17
+#define POOL_ONE_ARGS 20
+#define POOL_WORDS 24
+
+// position.w of a particle that has been absorbed and leaves with the next sort.
+#define DEAD_ID -1.0f
+
+#endif

@@ -1,0 +1,69 @@
+// Where the wave breaks, and how much.
+// Reads SURFACE (d eta/dt), BASIN, EventUniforms, BREAKING_BEFORE (age [s], intensity, velocity of a splash's crown [m/s]). Writes
+// BREAKING; in two-way scenes counts the cells that
+// emit a particle into POOL_WANTED.
+// Equation: Kennedy et al. 2000, eqs. 5-7: breaking starts where d eta/dt > 0.65 sqrt(g d); the threshold relaxes to
+// 0.15 sqrt(g d) within 5 sqrt(d/g) of the event; the intensity rises from 0 to 1 between one and two thresholds. The event travels
+// with the crest: a cell inherits the age of its oldest neighbour that broke.
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
+#include "shared/groups.h"
+#include "include/wave_faces.glsl"
+#include "include/emission.glsl"
+#include "shared/event_uniforms.h"
+
+layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
+
+layout(binding = SURFACE) uniform samplerBuffer surface_texels;
+layout(binding = BREAKING_BEFORE) uniform samplerBuffer breaking_before;
+layout(std430, binding = BREAKING) restrict writeonly buffer Breaking { vec4 breaking[]; };
+#if POOL_PARTICLES
+layout(std430, binding = POOL) restrict buffer Pool { uint pool[]; };
+uniform uint substep;
+#endif
+
+/// Horizontal velocity of the crown that splashes throw from here: outward, from a ring about the radius.
+vec2 crownAt(vec2 p) {
+  vec2 crown_mps = vec2(0.0);
+  for (uint k = 0u; k < splash_count; ++k) {
+    const EventUniform e = splashes[k];
+    const vec2 r_m = acrossSides(p - vec2(e.x_m, e.z_m));
+    const float distance_m = length(r_m);
+    const float ring = (distance_m / e.radius_m - 1.1) / 0.3;
+    crown_mps += e.speed_mps * max(1.0 - ring * ring, 0.0) / max(distance_m, 1e-3) * r_m;
+  }
+  return crown_mps;
+}
+
+float ageAt(int x, int row) { return texelFetch(breaking_before, x + row).x; }
+
+void main() {
+  const int n = int(sim.wave_n);
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (cell.x >= n || cell.y >= n) return;
+  const int row = n * cell.y;
+  const int i = cell.x + row;
+  const float rate_mps = texelFetch(surface_texels, i).y;
+#if VARIED
+  const Flow open = conductanceOf(cell, n);
+  const float depth_m = max(open.x, open.y) / FLOW_WEIGHTS.x;
+#else
+  const float depth_m = sim.wave_depth_m;
+#endif
+  const float speed_mps = sqrt(sim.gravity_mps2 * depth_m);
+  vec4 state = vec4(0.0);
+  // Nothing breaks below the lowest threshold, and where no water is.
+  if (rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
+    const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - 1, n), row), ageAt(waveNeighbourX(cell.x + 1, n), row))),
+                            max(ageAt(cell.x, n * waveNeighbourZ(cell.y - 1, n)), ageAt(cell.x, n * waveNeighbourZ(cell.y + 1, n))));
+    const float relaxed = clamp(age_s * sqrt(sim.gravity_mps2 / depth_m) / 5.0, 0.0, 1.0);
+    const float threshold_mps = mix(0.65, 0.15, age_s > 0.0 ? relaxed : 0.0) * speed_mps;
+    if (rate_mps > threshold_mps) state.xy = vec2(age_s + sim.dt_s, clamp(rate_mps / threshold_mps - 1.0, 0.0, 1.0));
+  }
+  state.zw = depth_m > 0.02 * sim.wave_depth_m ? crownAt(waveCellCentre(cell)) : vec2(0.0);
+  const float crown_mps = length(state.zw);
+  state.y = max(state.y, clamp(crown_mps / speed_mps, 0.0, 1.0));
+  breaking[i] = state;
+#if POOL_PARTICLES
+  if (emits(uint(i), substep, state.y, max(rate_mps, crown_mps))) atomicAdd(pool[POOL_WANTED], 1u);
+#endif
+}

@@ -1,0 +1,229 @@
+// Boats: floating, driving, meeting things, wakes.
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <shared/boats.h>
+
+#include "sim_fixture.h"
+
+namespace spindrift::sim {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// 20 m of water, nothing but the wave and what a test puts there.
+core::Scene boatScene() {
+  core::Scene scene;
+  scene.name = "boats";
+  scene.wave.emplace();
+  scene.wave->resolution_count = 128;
+  scene.wave->side_m = 20.0;
+  scene.wave->depth_m = 1.5;
+  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  scene.boats.emplace();
+  return scene;
+}
+
+struct BoatPose {
+  double x_m, y_m, z_m, heading, pitch, roll, age_s, forward_mps, yaw_rate;
+};
+
+class BoatsOnDevice : public OnDevice {
+ protected:
+  BoatPose pose(WaterSim& sim, std::size_t place = 0) {
+    const auto s = sim.copyState().boats;
+    const std::size_t at = place * BOAT_TEXELS * 4;
+    return {s[at], s[at + 1], s[at + 2], s[at + 3], s[at + 4], s[at + 5], s[at + 6], s[at + 8], s[at + 11]};
+  }
+};
+
+TEST_F(BoatsOnDevice, FloatsAtTheDraughtOfItsDensity) {
+  for (const double density : {0.2, 0.5, 0.8}) {
+    core::Scene scene = boatScene();
+    scene.wave->damping_per_s = 1.0;
+    scene.boats->boats = {core::Boat{.length_m = 3.0, .beam_m = 1.2, .height_m = 0.8, .density_ratio = density}};
+    WaterSim& sim = make(scene);
+    for (int i = 0; i < 1200; ++i) sim.step();
+    const BoatPose b = pose(sim);
+    const double keel_m = b.y_m - 0.4;
+    // Walls keep the water that the hull displaced: the level away from it stands a little higher.
+    const double level_m = sim.copyState().elevation_m[5 + 128 * 5];
+    EXPECT_NEAR(level_m - keel_m, density * 0.8, 0.03 * density * 0.8) << "density " << density;
+    EXPECT_NEAR(b.pitch, 0.0, 1e-3);
+    EXPECT_NEAR(b.roll, 0.0, 1e-3);
+  }
+}
+
+TEST_F(BoatsOnDevice, PressesADentOfItsOwnVolumeIntoTheWater) {
+  core::Scene scene = boatScene();
+  scene.wave->damping_per_s = 1.0;
+  scene.boats->boats = {core::Boat{.length_m = 3.0, .beam_m = 1.2, .height_m = 0.8, .density_ratio = 0.5}};
+  WaterSim& sim = make(scene);
+  for (int i = 0; i < 1500; ++i) sim.step();
+  const auto eta = sim.copyState().elevation_m;
+  const double level_m = eta[5 + 128 * 5];
+  double dent_m3 = 0;
+  for (const double e : eta) dent_m3 += (level_m - e) * std::pow(20.0 / 128, 2);
+  EXPECT_NEAR(dent_m3, 3.0 * 1.2 * 0.4, 0.03 * 3.0 * 1.2 * 0.4);
+}
+
+TEST_F(BoatsOnDevice, ReachesItsFullSpeedAndTurnsWithItsRudder) {
+  core::Scene scene = boatScene();
+  scene.wave->setBoundaries(core::WaveBoundary::kPeriodic);
+  scene.wave->damping_per_s = 0.5;
+  scene.boats->boats = {core::Boat{.max_speed_mps = 2.0, .throttle_ratio = 1.0}};
+  WaterSim& sim = make(scene);
+  for (int i = 0; i < 600; ++i) sim.step();
+  const BoatPose straight = pose(sim);
+  EXPECT_NEAR(straight.forward_mps, 2.0, 0.2);
+  EXPECT_NEAR(straight.heading, 0.0, 0.02);
+  EXPECT_NEAR(straight.z_m, 0.0, 0.2);
+  ASSERT_TRUE(sim.controlBoat(1, 1.0, 1.0));
+  double turned = 0;
+  double before = straight.heading;
+  for (int i = 0; i < 300; ++i) {
+    sim.step();
+    const double now = pose(sim).heading;
+    turned += std::remainder(now - before, 2 * std::numbers::pi);
+    before = now;
+  }
+  EXPECT_GT(turned, 1.0) << "positive rudder turns from +x toward +z";
+}
+
+TEST_F(BoatsOnDevice, DragsAMachWedgeWhenFasterThanTheWaves) {
+  core::Scene scene = boatScene();
+  scene.wave->resolution_count = 256;
+  scene.wave->side_m = 40.0;
+  scene.wave->depth_m = 0.4;  // c = 1.98 m/s
+  scene.boats->boats = {core::Boat{
+      .x_m = -15.0, .length_m = 1.5, .beam_m = 0.6, .height_m = 0.3, .max_speed_mps = 5.0, .throttle_ratio = 1.0}};
+  WaterSim& sim = make(scene);
+  for (int i = 0; i < 360; ++i) sim.step();
+  const BoatPose b = pose(sim);
+  const double c = sim.derived().wave->speed_mps;
+  ASSERT_GT(b.forward_mps, 1.5 * c);
+  // The crest of the wedge abeam of the track, at two distances behind the boat.
+  const auto eta = sim.copyState().elevation_m;
+  const double cell_m = sim.derived().wave->cell_m;
+  const auto crestAbeam = [&](double behind_m) {
+    const int x = static_cast<int>((b.x_m - behind_m + 20.0) / cell_m);
+    int best = 128;
+    for (int z = 130; z < 250; ++z) {
+      if (std::abs(eta[static_cast<std::size_t>(x + 256 * z)]) >
+          std::abs(eta[static_cast<std::size_t>(x + 256 * best)]))
+        best = z;
+    }
+    return (best - 128) * cell_m;
+  };
+  const double slope = (crestAbeam(9.0) - crestAbeam(5.0)) / 4.0;
+  EXPECT_NEAR(std::atan(slope), std::asin(c / b.forward_mps), 0.12);
+}
+
+TEST_F(BoatsOnDevice, StaysOutOfRocksOtherBoatsAndWalls) {
+  core::Scene scene = boatScene();
+  scene.obstacles = {core::Rock{4.0, 0.0, 1.5, 0.8}, core::Breakwater{-4.0, 5.0, 6.0, 1.0, 30.0, 0.8}};
+  scene.boats->boats = {
+      core::Boat{.x_m = -2.0, .z_m = 0.2, .throttle_ratio = 1.0},
+      core::Boat{.x_m = 0.0, .z_m = -4.0, .heading_deg = 90.0, .throttle_ratio = 1.0},
+      core::Boat{.x_m = -7.0, .z_m = -7.0, .heading_deg = -135.0, .throttle_ratio = 1.0, .rudder_ratio = 0.2},
+      core::Boat{.x_m = -3.0, .z_m = 8.0, .heading_deg = -90.0, .throttle_ratio = 0.8}};
+  WaterSim& sim = make(scene);
+  double deepest_m = 0;
+  for (int i = 0; i < 900; ++i) {
+    sim.step();
+    if (i % 10) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const BoatPose b = pose(sim, k);
+      ASSERT_TRUE(std::isfinite(b.x_m + b.y_m + b.z_m + b.heading));
+      ASSERT_LE(std::abs(b.x_m), 10.0);
+      ASSERT_LE(std::abs(b.z_m), 10.0);
+      deepest_m = std::max(deepest_m, 1.5 - std::hypot(b.x_m - 4.0, b.z_m));
+      for (std::size_t j = 0; j < k; ++j) {
+        const BoatPose o = pose(sim, j);
+        deepest_m = std::max(deepest_m, 0.9 - std::hypot(b.x_m - o.x_m, b.z_m - o.z_m));
+      }
+    }
+  }
+  EXPECT_LE(deepest_m, 0.25) << "centres of hulls never come closer than a beam, or into the rock";
+}
+
+TEST_F(BoatsOnDevice, ComeAndGo) {
+  core::Scene scene = boatScene();
+  scene.boats->capacity_count = 2;
+  scene.boats->boats = {core::Boat{}};
+  WaterSim& sim = make(scene);
+  EXPECT_EQ(sim.boatCount(), 1u);
+  const auto second = sim.spawnBoat(core::Boat{.x_m = 4.0});
+  ASSERT_TRUE(second);
+  EXPECT_EQ(*second, 2u);
+  const auto third = sim.spawnBoat(core::Boat{.x_m = -4.0});
+  ASSERT_FALSE(third);
+  EXPECT_EQ(third.error().code, core::ErrorCode::kUnavailable);
+  ASSERT_TRUE(sim.removeBoat(1));
+  EXPECT_FALSE(sim.removeBoat(1));
+  const auto unknown = sim.controlBoat(9, 1, 0);
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message, HasSubstr("9 is not on the water"));
+  for (int i = 0; i < 10; ++i) sim.step();
+  ASSERT_TRUE(sim.requestFrame({.bodies = true}));
+  ctx_->finish();
+  const auto frames = sim.takeFrames();
+  ASSERT_TRUE(frames.at(0).bodies);
+  ASSERT_EQ(frames[0].bodies->count, 1u);
+  EXPECT_EQ(frames[0].bodies->words[0], 2u) << "its id";
+  EXPECT_NEAR(static_cast<std::int32_t>(frames[0].bodies->words[1]) / 1000.0, 4.0, 0.1);
+  sim.reset();
+  EXPECT_EQ(sim.boats().front().boat_id, 1u);
+}
+
+TEST_F(BoatsOnDevice, LeavesAWakeOfFoamThatFades) {
+  core::Scene scene = boatScene();
+  scene.foam.emplace();
+  scene.foam->surface = true;
+  scene.foam->wake_lifetime_s = 1.0;
+  scene.boats->boats = {core::Boat{.x_m = -6.0, .max_speed_mps = 2.5, .throttle_ratio = 1.0}};
+  WaterSim& sim = make(scene);
+  for (int i = 0; i < 150; ++i) sim.step();
+  const auto white = [&] {
+    EXPECT_TRUE(sim.requestFrame({.foam = true}));
+    ctx_->finish();
+    const auto frames = sim.takeFrames();
+    double sum = 0;
+    for (const std::uint32_t word : frames.at(0).foam->words) {
+      for (int byte = 0; byte < 4; ++byte) sum += word >> (8 * byte) & 0xffu;
+    }
+    return sum;
+  };
+  const double fresh = white();
+  EXPECT_GT(fresh, 2000.0);
+  ASSERT_TRUE(sim.removeBoat(1));
+  for (int i = 0; i < 240; ++i) sim.step();
+  EXPECT_LT(white(), 0.2 * fresh);
+}
+
+TEST_F(BoatsOnDevice, HullsPushParticles) {
+  core::Scene scene = smallScene(2000);
+  scene.boats.emplace();
+  scene.boats->boats = {
+      core::Boat{.length_m = 2.0, .beam_m = 0.9, .height_m = 0.6, .max_speed_mps = 2.0, .throttle_ratio = 0.5}};
+  WaterSim& sim = make(scene);
+  for (int i = 0; i < 240; ++i) sim.step();
+  const BoatPose b = pose(sim);
+  const StateCopy state = sim.copyState();
+  int inside = 0;
+  for (std::size_t k = 0; k < state.position.size(); k += 4) {
+    const double dx = std::remainder(state.position[k] - b.x_m, 8.0);
+    const double dz = std::remainder(state.position[k + 2] - b.z_m, 8.0);
+    const double a = (dx * std::cos(b.heading) + dz * std::sin(b.heading)) / 1.0;
+    const double s = (dz * std::cos(b.heading) - dx * std::sin(b.heading)) / 0.45;
+    const double y = (state.position[k + 1] - b.y_m) / 0.3;
+    if (a * a + s * s + y * y < 0.8 * 0.8) ++inside;
+  }
+  EXPECT_EQ(inside, 0);
+  EXPECT_EQ(sim.escapedCount(), 0u);
+}
+
+}  // namespace
+}  // namespace spindrift::sim
