@@ -234,6 +234,12 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.stiffness_m2ps2 = f(p.sound_speed_mps * p.sound_speed_mps);
     u.viscosity_pas = f(p.viscosity_pas);
     u.max_speed_mps = f(p.max_speed_mps);
+    const bool follows = scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing;
+    const double half_m = follows ? scene.wave->side_m / 2 : 0.0;
+    u.frame_min_x_m = f(follows ? -half_m : l.min_m[0]);
+    u.frame_max_x_m = f(follows ? half_m : l.max_m[0]);
+    u.frame_min_z_m = f(follows ? -half_m : l.min_m[2]);
+    u.frame_max_z_m = f(follows ? half_m : l.max_m[2]);
     u.density_norm = f(densityNorm(p.kernel_set, H));
     u.slope_norm = f(slopeNorm(p.kernel_set, H));
     u.viscosity_norm = f(viscosityNorm(H));
@@ -286,6 +292,17 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     return invalid("foam: needs particles, or a wave and surface: true: add what is missing or remove foam");
   if (!scene.wave && (scene.boats || scene.storm || !scene.obstacles.empty() || !scene.beaches.empty()))
     return invalid("boats, storm, obstacles, beaches: need a wave: add one or remove them");
+
+  if (scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing) {
+    if (isTwoWay(scene))
+      return invalid("coupling.patch_follow: the particles of a two-way scene are all over the water: leave it out");
+    if (scene.particles->boundary_x != Boundary::kPeriodic || scene.particles->boundary_z != Boundary::kPeriodic)
+      return invalid(
+          "coupling.patch_follow: a patch that moves needs periodic sides: make particles.boundary_x and "
+          "boundary_z periodic");
+    if (scene.coupling->patch_follow == core::PatchFollow::kBoat && !scene.boats)
+      return invalid("coupling.patch_follow: BOAT needs boats: add \"boats {}\"");
+  }
 
   Derived d;
   d.tick_s = 1.0 / scene.tick_rate_hz;

@@ -130,10 +130,11 @@ std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const D
       const ParticleLayout& l = *derived.particles;
       core::ParticleView view;
       view.count = is_pooled_ ? std::min(words[at + particle_words_ + POOL_LIVE], particles_) : particles_;
-      for (int axis = 0; axis < 3; ++axis) {
-        view.min_m[axis] = l.min_m[axis];
-        view.max_m[axis] = l.max_m[axis];
-      }
+      const shared::SimUniforms& u = derived.uniforms;
+      const double low[3] = {u.frame_min_x_m, u.min_y_m, u.frame_min_z_m};
+      const double high[3] = {u.frame_max_x_m, u.max_y_m, u.frame_max_z_m};
+      std::ranges::copy(low, view.min_m);
+      std::ranges::copy(high, view.max_m);
       view.max_speed_mps = scene.particles->max_speed_mps;
       view.radius_m = l.spacing_m / 2;
       view.words = words.subspan(at, std::size_t{view.count} * kWordsPerParticle);

@@ -20,6 +20,7 @@
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
+#include "patch_follower.h"
 #include "sph.h"
 #include "starting_state.h"
 #include "storm.h"
@@ -54,6 +55,20 @@ int kernelSetNumber(core::KernelSet set) {
   return 3;
 }
 
+/// As shaders/coupling/follow.comp numbers them; 0 = the patch stays.
+int followNumber(const core::Scene& scene) {
+  if (!scene.coupling || isTwoWay(scene)) return 0;
+  switch (scene.coupling->patch_follow) {
+    case core::PatchFollow::kEvent:
+      return 1;
+    case core::PatchFollow::kBoat:
+      return 2;
+    case core::PatchFollow::kNothing:
+      break;
+  }
+  return 0;
+}
+
 }  // namespace
 
 /// What the scene named, and nothing else.
@@ -68,6 +83,7 @@ struct WaterSim::Parts {
   std::unique_ptr<ParticlePool> pool;
   std::unique_ptr<Boats> boats;
   std::unique_ptr<SurfaceFoam> foam;
+  std::unique_ptr<PatchFollower> follower;
   std::unique_ptr<FramePacker> frames;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
@@ -101,6 +117,7 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"HEAD", flag(hasPressureHead(scene))},
           {"BREAKERS", flag(hasBreakers(scene))},
           {"POOL_PARTICLES", flag(isTwoWay(scene))},
+          {"FOLLOW", std::to_string(followNumber(scene))},
           {"HULLS", flag(scene.boats.has_value())},
           {"SURFACE_FOAM", flag(hasSurfaceFoam(scene))},
           {"LANDINGS", flag(hasSurfaceFoam(scene) && isTwoWay(scene))},
@@ -119,6 +136,7 @@ void WaterSim::step() {
     breakWaves();
     moveBoats();
     emitParticles();
+    movePatch();
     buildGrid();
     advanceParticles();
     ++substep_;
@@ -163,6 +181,10 @@ void WaterSim::emitParticles() {
   if (!parts_->pool) return;
   const auto timer = timers_.scope("coupling");
   parts_->pool->emit(*parts_->particles, *parts_->wave, *parts_->breakers, substep_);
+}
+
+void WaterSim::movePatch() {
+  if (parts_->follower) parts_->follower->move(parts_->uniforms, parts_->boats.get());
 }
 
 void WaterSim::fadeFoam() {
@@ -251,6 +273,7 @@ core::Result<void> WaterSim::build() {
   if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, defines));
   if (scene_.boats) create(parts_->boats, Boats::create(ctx_, scene_, *derived_.wave, defines));
   if (hasSurfaceFoam(scene_)) create(parts_->foam, SurfaceFoam::create(ctx_, scene_, *derived_.wave, defines));
+  if (followNumber(scene_) != 0) create(parts_->follower, PatchFollower::create(ctx_, scene_, defines));
   create(parts_->frames, FramePacker::create(ctx_, scene_, derived_, defines));
   create(parts_->diagnostics, Diagnostics::create(ctx_, derived_, defines));
   if (create.error()) return *create.error();
@@ -301,7 +324,10 @@ void WaterSim::reset() {
 core::Result<void> WaterSim::start(const core::Effect& effect) {
   if (!parts_->wave)
     return Error{ErrorCode::kInvalidInput, "effects act on the wave, and this scene has none: use a scene with a wave"};
-  return parts_->effects.start(effect, time_s());
+  auto started = parts_->effects.start(effect, time_s());
+  const auto* splash = std::get_if<core::Splash>(&effect);
+  if (started && splash && parts_->follower) parts_->follower->goTo(splash->x_m, splash->z_m);
+  return started;
 }
 
 core::Result<std::uint32_t> WaterSim::spawnBoat(const core::Boat& boat) {

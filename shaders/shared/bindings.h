@@ -61,5 +61,7 @@
 #define FOAM_FIELD 28
 #define FOAM_BEFORE 29
 #define LANDED 30
+// The simulation's uniforms as storage, for the one pass that moves the particle patch.
+#define SIM_UNIFORMS_STORAGE 31
 
 #endif

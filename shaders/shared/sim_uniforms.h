@@ -74,11 +74,15 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float steepening_ratio;
   float breaking_loss_per_s;    // of flow, where the intensity is 1
 
-  // Frames.
+  // Frames: positions are quantized between these in x and z, and between min_y_m and max_y_m.
+  float frame_min_x_m;
+  float frame_max_x_m;
+  float frame_min_z_m;
+  float frame_max_z_m;
   float surface_quantum_m;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 51 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 55 * 4, "scalars of four bytes only: std140 and C++ must agree");
 }  // namespace spindrift::shared
 #else
 } sim;

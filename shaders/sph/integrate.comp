@@ -2,7 +2,7 @@
 // Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, the floor. Writes POSITION, VELOCITY (in sorted order).
 // Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than max_speed_mps plus
 // the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 | PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=1 SURFACE_FOAM=0 FOLLOW=2 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0
 #include "shared/groups.h"
 #include "include/floor.glsl"
 #include "include/foam.glsl"
@@ -37,6 +37,21 @@ void wrapAround(inout float x, float low, float high) {
   else if (x >= high) x = low + sim.reentry_m;
 }
 
+#if FOLLOW
+/// The patch moves: particles that it leaves behind enter it at its front, as high above the water as they were, moving with it.
+void carryAlong(inout vec3 x, inout vec3 v) {
+  const vec2 low = vec2(sim.min_x_m, sim.min_z_m);
+  const vec2 side = vec2(sim.max_x_m, sim.max_z_m) - low;
+  const vec2 turns = floor((x.xz - low) / side);
+  if (turns == vec2(0.0)) return;
+  const Floor f = loadFloor();
+  const float gap_m = x.y - floorHeight(f, x.xz);
+  x.xz = clamp(x.xz - turns * side, low, low + side);
+  vec3 normal;
+  x.y = floorState(f, x.xz, normal, v) + gap_m;
+}
+#endif
+
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= particleCount()) return;
@@ -48,12 +63,15 @@ void main() {
   v *= min(1.0, sim.max_speed_mps / max(length(v), 1e-6));
   vec3 x = old_position.xyz + sim.dt_s * v;
 
-#if PERIODIC_X
+#if FOLLOW
+  carryAlong(x, v);
+#elif PERIODIC_X
   wrapAround(x.x, sim.min_x_m, sim.max_x_m);
 #else
   keepBetweenWalls(x.x, v.x, sim.min_x_m, sim.max_x_m);
 #endif
-#if PERIODIC_Z
+#if FOLLOW
+#elif PERIODIC_Z
   wrapAround(x.z, sim.min_z_m, sim.max_z_m);
 #else
   keepBetweenWalls(x.z, v.z, sim.min_z_m, sim.max_z_m);

@@ -24,8 +24,8 @@ uint quantizedSigned(float unit) {
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= particleCount()) return;
-  const vec3 low = vec3(sim.min_x_m, sim.min_y_m, sim.min_z_m);
-  const vec3 high = vec3(sim.max_x_m, sim.max_y_m, sim.max_z_m);
+  const vec3 low = vec3(sim.frame_min_x_m, sim.min_y_m, sim.frame_min_z_m);
+  const vec3 high = vec3(sim.frame_max_x_m, sim.max_y_m, sim.frame_max_z_m);
   const vec3 u = (texelFetch(position, int(i)).xyz - low) / (high - low);
   const vec4 motion = texelFetch(velocity, int(i));
   const vec3 v = motion.xyz / sim.max_speed_mps;

@@ -80,6 +80,26 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 2);
   EXPECT_LT(wave.bytes, all.bytes);
   EXPECT_LT(particles.bytes, all.bytes);
+  // derive() says what will be allocated, to the packing and readback of frames.
+  sim_.reset();
+  EXPECT_EQ(derive(wave_only)->device_bytes, sizeof(shared::SimUniforms) + 32 * 32 * 12);
+
+  // Two-way: a pool and its plan, breaking, emission, a clearing pass in the grid; calm water dispatches the particle
+  // passes with no group.
+  core::Scene two_way = full;
+  two_way.coupling->mode = core::CouplingMode::kTwoWay;
+  two_way.coupling->droplet_spacing_m = 0.25;
+  const Cost both = cost(two_way);
+  EXPECT_EQ(both.programs, all.programs + 4) << "breaking, plan, emit, clear";
+  EXPECT_EQ(both.dispatches, all.dispatches + 2 * 4);
+
+  core::Scene boats = wave_only;
+  boats.boats.emplace();
+  const Cost empty_harbor = cost(boats);
+  EXPECT_EQ(empty_harbor.programs, wave.programs + 4) << "surface sampling, move, press, packing";
+  EXPECT_EQ(empty_harbor.dispatches, wave.dispatches + 2) << "no boat, no pass over boats";
+  boats.boats->boats = {core::Boat{}};
+  EXPECT_EQ(cost(boats).dispatches, empty_harbor.dispatches + 2 * 2);
 }
 
 TEST_F(Water, SteppingAllocatesNothing) {

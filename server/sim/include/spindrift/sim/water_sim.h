@@ -109,6 +109,7 @@ class WaterSim {
   void breakWaves();
   void moveBoats();
   void emitParticles();
+  void movePatch();
   void bindSurroundings();
   void fadeFoam();
   void buildGrid();

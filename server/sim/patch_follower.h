@@ -1,0 +1,37 @@
+// Moves the particle patch of a one-way scene to the newest splash, or along with the first boat (thesis 3.6.4: the
+// patch is placed by shift and scale).
+#pragma once
+
+#include <memory>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim/derive.h>
+
+#include "boats.h"
+
+namespace spindrift::sim {
+
+class PatchFollower {
+ public:
+  static core::Result<std::unique_ptr<PatchFollower>> create(gpu::Context& ctx, const core::Scene& scene,
+                                                             const gpu::Defines& defines);
+
+  /// Where the next event is; the patch goes there with the next move().
+  void goTo(double x_m, double z_m);
+  /// Rewrites the patch in `sim_uniforms`. `boats` may be null.
+  void move(const gpu::Buffer& sim_uniforms, const Boats* boats);
+
+ private:
+  PatchFollower(gpu::Context& ctx, const core::Scene& scene);
+
+  gpu::Context& ctx_;
+  double wave_side_m_;
+  double x_m_;
+  double z_m_;
+  gpu::Program program_;
+};
+
+}  // namespace spindrift::sim
