@@ -23,7 +23,7 @@ void Breakers::clear() {
   before_.clear();
 }
 
-void Breakers::update(const Wave& wave, const gpu::TexelBuffer* pool, std::uint32_t substep) {
+void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick) {
   // The state's buffer keeps its place, so that checkpoints and readers need not know which of the two is newer.
   before_.copyFrom(now_, 0, now_.sizeBytes());
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
@@ -33,8 +33,9 @@ void Breakers::update(const Wave& wave, const gpu::TexelBuffer* pool, std::uint3
   before_.bindTexel(BREAKING_BEFORE);
   now_.bindStorage(BREAKING);
   if (pool) {
-    pool->bindStorage(POOL);
-    program_.setUniform("substep", substep);
+    pool->words().bindStorage(POOL);
+    pool->emitters().bindStorage(EMITTER);
+    program_.setUniform("tick", tick);
   }
   program_.dispatch(n_, n_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);

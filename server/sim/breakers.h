@@ -1,4 +1,4 @@
-// Where the wave breaks (Kennedy et al. 2000), once a substep: the wave loses flow there, spray and foam come from it.
+// Where the wave breaks (Kennedy et al. 2000), once a tick: the wave loses flow there, spray and foam come from it.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim/derive.h>
 
+#include "particle_pool.h"
 #include "wave.h"
 
 namespace spindrift::sim {
@@ -19,8 +20,8 @@ class Breakers {
                                                         const gpu::Defines& defines);
 
   void clear();
-  /// After Wave::sampleSurface(). `pool`: where cells that emit are counted; null outside two-way scenes.
-  void update(const Wave& wave, const gpu::TexelBuffer* pool, std::uint32_t substep);
+  /// After Wave::sampleSurface(). `pool`: where cells that emit are listed; null outside two-way scenes.
+  void update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick);
 
   /// n x n: seconds since the event began, intensity 0..1, velocity of a splash's crown (x, z) [m/s].
   [[nodiscard]] gpu::TexelBuffer& state() { return now_; }

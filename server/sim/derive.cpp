@@ -345,12 +345,12 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
         {scene.wave->stencil == core::Stencil::kNinePoint ? "wave CFL, 0.849 dx / c" : "wave CFL, 0.693 dx / c",
          "wave.depth_m", max_dt_s});
     std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
-    d.wave->substeps_count = stepsFor(d.dt_s, max_dt_s);
-    d.wave->dt_s = d.dt_s / d.wave->substeps_count;
+    d.wave->substeps_count = stepsFor(d.tick_s, max_dt_s);
+    d.wave->dt_s = d.tick_s / d.wave->substeps_count;
     d.wave->courant = d.wave->speed_mps * d.wave->dt_s / d.wave->cell_m;
     if (d.wave->substeps_count > kMaxSubstepsCount) {
       return invalid(
-          fmt::format("wave.depth_m: {:.4g} m needs {} wave steps a substep, at most {} are allowed: use shallower "
+          fmt::format("wave.depth_m: {:.4g} m needs {} wave steps a tick, at most {} are allowed: use shallower "
                       "water or a coarser wave",
                       scene.wave->depth_m, d.wave->substeps_count, kMaxSubstepsCount));
     }

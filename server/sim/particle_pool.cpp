@@ -8,27 +8,35 @@
 
 namespace spindrift::sim {
 
-core::Result<std::unique_ptr<ParticlePool>> ParticlePool::create(gpu::Context& ctx, const gpu::Defines& defines) {
+core::Result<std::unique_ptr<ParticlePool>> ParticlePool::create(gpu::Context& ctx, const ParticleLayout& layout,
+                                                                 const gpu::Defines& defines) {
   auto out = std::unique_ptr<ParticlePool>(new ParticlePool(ctx));
   Creation create;
   create(out->words_, gpu::TexelBuffer::create(ctx, "pool", POOL_WORDS, gpu::TexelFormat::kR32UI));
+  create(out->emitters_, gpu::TexelBuffer::create(ctx, "emitters", layout.count, gpu::TexelFormat::kR32UI));
   create(out->plan_, gpu::Program::create(ctx, "coupling/plan.comp", defines));
   create(out->emit_, gpu::Program::create(ctx, "coupling/emit.comp", defines));
   if (create.error()) return *create.error();
   return out;
 }
 
-void ParticlePool::emit(const ParticleBuffers& particles, Wave& wave, Breakers& breakers, std::uint32_t substep) {
+void ParticlePool::plan() {
   words_.bindStorage(POOL);
   plan_.dispatchGroups(1);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
+}
+
+void ParticlePool::emit(const ParticleBuffers& particles, Wave& wave, const gpu::TexelBuffer& breaking,
+                        std::uint32_t tick) {
+  words_.bindStorage(POOL);
   wave.bindSurface();
   wave.bindTerrain();
-  breakers.state().bindTexel(BREAKING);
+  breaking.bindTexel(BREAKING);
+  emitters_.bindTexel(EMITTER);
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   wave.elevation().bindStorage(ELEVATION);
-  emit_.setUniform("substep", substep);
+  emit_.setUniform("tick", tick);
   emit_.dispatchIndirect(words_, POOL_EMIT_ARGS * 4);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }

@@ -11,7 +11,6 @@
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim/derive.h>
 
-#include "breakers.h"
 #include "particle_buffers.h"
 #include "wave.h"
 
@@ -19,21 +18,27 @@ namespace spindrift::sim {
 
 class ParticlePool {
  public:
-  static core::Result<std::unique_ptr<ParticlePool>> create(gpu::Context& ctx, const gpu::Defines& defines);
+  static core::Result<std::unique_ptr<ParticlePool>> create(gpu::Context& ctx, const ParticleLayout& layout,
+                                                            const gpu::Defines& defines);
 
   void clear() { words_.clear(); }
-  /// Plans the substep's dispatches and emits what Breakers::update() counted.
-  void emit(const ParticleBuffers& particles, Wave& wave, Breakers& breakers, std::uint32_t substep);
+  /// Plans the dispatches of a substep: emission of what Breakers::update() counted, passes over the particles there
+  /// are.
+  void plan();
+  /// Emits, after plan().
+  void emit(const ParticleBuffers& particles, Wave& wave, const gpu::TexelBuffer& breaking, std::uint32_t tick);
 
   /// POOL_WORDS words, shaders/shared/pool.h.
   [[nodiscard]] gpu::TexelBuffer& words() { return words_; }
   [[nodiscard]] const gpu::TexelBuffer& words() const { return words_; }
+  /// Cells that emit in this tick.
+  [[nodiscard]] const gpu::TexelBuffer& emitters() const { return emitters_; }
 
  private:
   explicit ParticlePool(gpu::Context& ctx) : ctx_(ctx) {}
 
   gpu::Context& ctx_;
-  gpu::TexelBuffer words_;
+  gpu::TexelBuffer words_, emitters_;
   gpu::Program plan_, emit_;
 };
 

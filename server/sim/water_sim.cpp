@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include <shared/bindings.h>
@@ -129,17 +130,19 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
 void WaterSim::step() {
   parts_->uniforms.bindUniform(SIM_UNIFORMS);  // rooms share the context
   watchHealth();
-  startTimedEvents();
-  for (std::uint32_t substep = 0; substep < derived_.substeps_count; ++substep) {
-    advanceWave(time_s() + substep * derived_.dt_s);
-    sampleSurface();
-    breakWaves();
-    moveBoats();
-    emitParticles();
-    movePatch();
+  startEvents();
+  // The surface, its breakers and the boats move once a tick; the wave divides it by its own bound.
+  advanceWave();
+  sampleSurface();
+  breakWaves();
+  moveBoats();
+  movePatch();
+  // Particles take as many substeps as their bounds ask for.
+  for (std::uint32_t substep = 0; parts_->particles && substep < derived_.substeps_count; ++substep) {
+    emitParticles(substep);
+    leadSurface(substep);
     buildGrid();
     advanceParticles();
-    ++substep_;
   }
   fadeFoam();
   ++tick_;
@@ -147,14 +150,14 @@ void WaterSim::step() {
   saveCheckpoint();
 }
 
-void WaterSim::advanceWave(double time_s) {
+void WaterSim::advanceWave() {
   if (!parts_->wave) return;
   const auto timer = timers_.scope("wave");
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
-    parts_->wave->displace(parts_->effects.advance(time_s + k * derived_.wave->dt_s, *derived_.wave));
+    parts_->wave->displace(parts_->effects.advance(time_s() + k * derived_.wave->dt_s, *derived_.wave));
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr);
   }
-  parts_->wave->clearPressure();  // hulls and falling particles press anew for the next substep
+  parts_->wave->clearPressure();  // hulls and falling particles press anew for the next tick
 }
 
 void WaterSim::sampleSurface() {
@@ -167,7 +170,7 @@ void WaterSim::sampleSurface() {
 void WaterSim::breakWaves() {
   if (!parts_->breakers) return;
   const auto timer = timers_.scope("breaking");
-  parts_->breakers->update(*parts_->wave, parts_->pool ? &parts_->pool->words() : nullptr, substep_);
+  parts_->breakers->update(*parts_->wave, parts_->pool.get(), runTick());
 }
 
 void WaterSim::moveBoats() {
@@ -177,10 +180,19 @@ void WaterSim::moveBoats() {
   parts_->boats->press(parts_->wave->pressureHead());
 }
 
-void WaterSim::emitParticles() {
+void WaterSim::emitParticles(std::uint32_t substep) {
   if (!parts_->pool) return;
   const auto timer = timers_.scope("coupling");
-  parts_->pool->emit(*parts_->particles, *parts_->wave, *parts_->breakers, substep_);
+  parts_->pool->plan();
+  if (substep == 0) parts_->pool->emit(*parts_->particles, *parts_->wave, parts_->breakers->state(), runTick());
+}
+
+void WaterSim::leadSurface(std::uint32_t substep) {
+  if (!scene_.coupling || derived_.substeps_count == 1) return;
+  const auto left = static_cast<double>(derived_.substeps_count - 1 - substep);
+  parts_->uniforms.uploadValue(static_cast<float>(-left * derived_.dt_s),
+                               offsetof(shared::SimUniforms, surface_lead_s));
+  ctx_.barrier(gpu::Barrier::kUniform);
 }
 
 void WaterSim::movePatch() {
@@ -270,7 +282,7 @@ core::Result<void> WaterSim::build() {
     create(parts_->sph, Sph::create(ctx_, defines));
   }
   if (hasBreakers(scene_)) create(parts_->breakers, Breakers::create(ctx_, *derived_.wave, defines));
-  if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, defines));
+  if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, *derived_.particles, defines));
   if (scene_.boats) create(parts_->boats, Boats::create(ctx_, scene_, *derived_.wave, defines));
   if (hasSurfaceFoam(scene_)) create(parts_->foam, SurfaceFoam::create(ctx_, scene_, *derived_.wave, defines));
   if (followNumber(scene_) != 0) create(parts_->follower, PatchFollower::create(ctx_, scene_, defines));
@@ -311,7 +323,6 @@ void WaterSim::uploadStartingState() {
 void WaterSim::reset() {
   parts_->effects.clear();
   start_tick_ = tick_;
-  substep_ = 0;
   abandoned_until_tick_ = tick_;
   health_ = {};
   setCareful(false);
@@ -367,7 +378,7 @@ core::Result<void> WaterSim::setScene(const core::Scene& scene) {
   return {};
 }
 
-void WaterSim::startTimedEvents() {
+void WaterSim::startEvents() {
   if (scene_.storm) {
     for (const core::Effect& effect : stormEffects(scene_, *derived_.wave, tick_ - start_tick_, derived_.tick_s)) {
       // Weather gives way to people: a drop that finds no place does not fall.

@@ -1,4 +1,4 @@
-// One substep of every boat: one invocation a boat, all in one group.
+// One tick of every boat: one invocation a boat, all in one group.
 // Reads SURFACE, SURFACE_FLOW, TERRAIN, BoatControls. Updates BOATS.
 // Equations: buoyancy from HULL_COLUMNS columns of water under the hull, each submerged to where the surface would be without the
 // hull's own dent (elevation + own head): draught at rest = density ratio * height. Heave, pitch and roll are damped oscillators
@@ -77,7 +77,7 @@ float floatOnWater(inout BoatState b) {
   const float columns = float(kAlong * kAcross);
   const float omega = sqrt(g / draught_m);
   const vec2 inertia = 12.0 / (b.hull_m.xy * b.hull_m.xy + b.hull_m.z * b.hull_m.z);
-  const float dt_s = sim.dt_s;
+  const float dt_s = sim.tick_s;
   b.speed_mps.z += dt_s * g * (lift / (columns * draught_m) - 1.0);
   b.speed_mps.z = mix(rise_mps / columns, b.speed_mps.z, exp(-2.0 * kHeaveDamping * omega * dt_s));
   b.tilt_rate += dt_s * g / (columns * draught_m) * inertia * vec2(lever.x, -lever.y);
@@ -88,7 +88,7 @@ float floatOnWater(inout BoatState b) {
 }
 
 void drive(inout BoatState b, float slope) {
-  const float dt_s = sim.dt_s;
+  const float dt_s = sim.tick_s;
   vec2 flow_mps;
   surfaceUnder(b.centre_m.xz, flow_mps);
   const vec2 f = forwardOf(b.heading);
@@ -110,7 +110,7 @@ void drive(inout BoatState b, float slope) {
   b.centre_m.xz += dt_s * velocity_mps;
 }
 
-/// Boats as they were before this substep: every invocation sees the same.
+/// Boats as they were before this tick: every invocation sees the same.
 void meetBoats(BoatState b, uint own, inout vec2 shift_m, inout vec2 velocity_mps) {
   for (uint other = 0u; other < boat_place_count; ++other) {
     const BoatState o = boatAt(other);
@@ -149,7 +149,7 @@ void meetGround(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
       const vec2 deeper = vec2(terrainAt(p + vec2(step_m, 0.0)).w - terrainAt(p - vec2(step_m, 0.0)).w,
                                terrainAt(p + vec2(0.0, step_m)).w - terrainAt(p - vec2(0.0, step_m)).w);
       const vec2 normal = deeper / max(length(deeper), 1e-6);
-      pushBack(shift_m, velocity_mps, normal, min(missing_m, 0.5 * sim.dt_s * b.hull_m.x), -dot(velocity_mps, normal));
+      pushBack(shift_m, velocity_mps, normal, min(missing_m, 0.5 * sim.tick_s * b.hull_m.x), -dot(velocity_mps, normal));
     }
   }
 }
@@ -175,7 +175,7 @@ void main() {
   const bool is_here = own < boat_place_count && b.age_s >= 0.0;
   if (is_here) {
     b.control = boat_control[own].xy;
-    b.age_s += sim.dt_s;
+    b.age_s += sim.tick_s;
     const float slope = floatOnWater(b);
     drive(b, slope);
     vec2 shift_m = vec2(0.0);

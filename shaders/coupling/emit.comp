@@ -1,34 +1,38 @@
 // Breaking cells turn water into particles.
-// Reads SURFACE, SURFACE_FLOW, BREAKING. Writes POSITION, VELOCITY at free places of the pool; takes droplet_units for each from
+// Reads EMITTER, SURFACE, SURFACE_FLOW, BREAKING. Writes POSITION, VELOCITY at free places of the pool; takes droplet_units for each from
 // ELEVATION. A particle starts on the surface with the crest's speed: the water's own, the wave's along it, and the rise of the
 // surface, each a little at random; or with the crown that a splash throws.
 // Invariant: ELEVATION loses exactly droplet_units a particle. Which place a particle gets depends on the order of invocations;
 // the sort orders particles by where they are.
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "include/emission.glsl"
+#include "include/hash.glsl"
+#include "include/transfer.glsl"
+#include "shared/pool.h"
 #include "include/splat.glsl"
+#include "include/surface_rate.glsl"
 
-layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
+layout(local_size_x = PARTICLE_GROUP) in;
 
-layout(binding = SURFACE) uniform samplerBuffer surface_texels;
+layout(binding = EMITTER) uniform usamplerBuffer emitter;
+
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 layout(binding = BREAKING) uniform samplerBuffer breaking;
 layout(std430, binding = POOL) restrict buffer Pool { uint pool[]; };
 layout(std430, binding = POSITION) restrict writeonly buffer Position { vec4 position[]; };
 layout(std430, binding = VELOCITY) restrict writeonly buffer Velocity { vec4 velocity[]; };
 layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
-uniform uint substep;
+uniform uint tick;
 
 void main() {
   const int n = int(sim.wave_n);
-  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int i = cell.x + n * cell.y;
+  if (gl_GlobalInvocationID.x >= pool[POOL_EMITTING]) return;
+  const int i = int(texelFetch(emitter, int(gl_GlobalInvocationID.x)).x);
+  const ivec2 cell = ivec2(i % n, i / n);
   const vec4 surface = texelFetch(surface_texels, i);
   const vec4 broken = texelFetch(breaking, i);
   const float crown_mps = length(broken.zw);
-  if (!emits(uint(i), substep, broken.y, max(surface.y, crown_mps))) return;
+  const float rate_mps = smoothRate(cell, n);
 
   const int amount = int(sim.droplet_units);
   int rest = amount;
@@ -42,17 +46,17 @@ void main() {
   }
   if (rest != 0) atomicAdd(elevation[i], -rest);
 
-  const vec3 r = random3(uvec3(uint(i), substep, sim.seed ^ 0x9e3779b9u));
-  const vec3 t = random3(uvec3(uint(i), substep, sim.seed ^ 0x85ebca6bu));
+  const vec3 r = random3(uvec3(uint(i), tick, sim.seed ^ 0x9e3779b9u));
+  const vec3 t = random3(uvec3(uint(i), tick, sim.seed ^ 0x85ebca6bu));
   const vec2 flow_mps = texelFetch(flow_texels, i).xy;
   const vec2 ahead = flow_mps / max(length(flow_mps), 1e-3);
   const float speed_mps = sqrt(sim.gravity_mps2 * sim.wave_depth_m);
   const vec2 place_m = waveCellCentre(cell) + (r.xy - 0.5) * sim.wave_cell_m;
   const vec2 across_mps = (t.xy - 0.5) * 0.5 * speed_mps;
   vec3 v = vec3(0.0);
-  const bool is_crown = crown_mps > surface.y;
+  const bool is_crown = crown_mps > rate_mps;
   v.xz = flow_mps + ahead * (0.15 + 0.45 * t.z) * speed_mps + across_mps;
-  v.y = surface.y * (0.5 + 0.9 * r.z) + 0.15 * speed_mps * t.z;
+  v.y = rate_mps * (0.5 + 0.9 * r.z) + 0.15 * speed_mps * t.z;
   // A crown leans outward by 20 to 45 degrees.
   if (is_crown) v = vec3(0.0, crown_mps * (0.6 + 0.5 * r.z), 0.0) + vec3(broken.z, 0.0, broken.w) * (0.35 + 0.4 * t.z) + 0.3 * vec3(across_mps.x, 0.0, across_mps.y);
   v *= min(1.0, 0.9 * sim.max_speed_mps / max(length(v), 1e-3));

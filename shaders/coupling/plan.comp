@@ -28,11 +28,12 @@ void main() {
   const uint count = live + wanted;
   const bool any_wanted = wanted > 0u;
   pool[POOL_WANTED] = 0u;
+  pool[POOL_EMITTING] = wanted;
   pool[POOL_NEXT] = live;
   pool[POOL_COUNT] = count;
   pool[POOL_LIVE] = 0u;  // the sort finds out
   pool[POOL_EMITTED] += wanted;
-  arguments(POOL_EMIT_ARGS, any_wanted ? groupsOf(sim.wave_n, WAVE_GROUP_X) : 0u, any_wanted ? groupsOf(sim.wave_n, WAVE_GROUP_Y) : 0u);
+  arguments(POOL_EMIT_ARGS, groupsOf(wanted, PARTICLE_GROUP), any_wanted ? 1u : 0u);
   const bool any_particle = count > 0u;
   arguments(POOL_PARTICLE_ARGS, groupsOf(count, PARTICLE_GROUP), any_particle ? 1u : 0u);
   arguments(POOL_CELL_ARGS, any_particle ? groupsOf(sim.cell_count + 1u, SCAN_GROUP) : 0u, any_particle ? 1u : 0u);

@@ -13,15 +13,17 @@ layout(std430, binding = POOL) restrict buffer PoolWords { uint pool_words[]; };
 layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
 #endif
 
-/// A particle at xz with downward speed `impact_mps` ends here. Its momentum acts on the surface during one substep as the height
-/// of water V v / (g dt) over the cell's area: the ring of a falling drop.
+/// A particle at xz with downward speed `impact_mps` ends here. Its momentum acts on the surface during the next tick as the height
+/// of water V v / (g dt) over the cell's area: the ring of a falling drop. An impulse as narrow as the splat's two cells moves water
+/// to about that depth, while the shallow-water flow moves the whole column: so much less of it counts.
 /// Invariant: ELEVATION gains exactly droplet_units.
 void absorb(vec2 xz, float impact_mps) {
   const int n = int(sim.wave_n);
   const ivec2 middle = wetCellAt(xz, n);
   const int i = middle.x + n * middle.y;
   const int amount = int(sim.droplet_units);
-  const float head = float(amount) * impact_mps / max(sim.gravity_mps2 * sim.dt_s, 1e-6);
+  const float reached = min(2.0 * sim.wave_cell_m / sim.wave_depth_m, 1.0);
+  const float head = reached * float(amount) * impact_mps / max(sim.gravity_mps2 * sim.tick_s, 1e-6);
   const int head_units = int(min(head, 0.5 * TRANSFER_MAX_UNITS));
   int rest = amount;
   for (int dz = -2; dz <= 2; ++dz) {

@@ -1,5 +1,4 @@
-// Which breaking cells turn water into a particle in a substep. wave/breaking counts them, coupling/emit makes them: both ask
-// here, and get the same answer.
+// Which breaking cells turn water into a particle in a tick.
 #ifndef SPINDRIFT_EMISSION
 #define SPINDRIFT_EMISSION
 
@@ -13,12 +12,12 @@
 /// Share of the rising water that a fully breaking cell throws out as spray.
 #define SPRAY_SHARE 0.2
 
-/// Expected particles in the substep: the volume thrown out over a particle's; drawn by the hash of cell and substep.
-bool emits(uint cell, uint substep, float intensity, float rate_mps) {
+/// Expected particles in the tick: the volume thrown out over a particle's; drawn by the hash of cell and tick.
+bool emits(uint cell, uint tick, float intensity, float rate_mps) {
   if (intensity <= 0.0) return false;
-  const float thrown_m = sim.emission_ratio * SPRAY_SHARE * intensity * rate_mps * sim.dt_s;
+  const float thrown_m = sim.emission_ratio * SPRAY_SHARE * intensity * rate_mps * sim.tick_s;
   const float expected = thrown_m * ELEVATION_UNITS_PER_M / float(sim.droplet_units);
-  return random3(uvec3(cell, substep, sim.seed)).x < expected;
+  return random3(uvec3(cell, tick, sim.seed)).x < expected;
 }
 #endif
 

@@ -18,6 +18,7 @@ struct Floor {
   float inverse_cell_pm;
   float cell_m;
   float half_side_m;
+  float lead_s;
 };
 
 Floor loadFloor() {
@@ -27,6 +28,7 @@ Floor loadFloor() {
   f.cell_m = sim.wave_cell_m;
   f.inverse_cell_pm = 1.0 / max(sim.wave_cell_m, 1e-9);
   f.half_side_m = 0.5 * sim.wave_side_m;
+  f.lead_s = sim.surface_lead_s;
   return f;
 }
 
@@ -38,7 +40,7 @@ vec4 surfaceNear(Floor f, vec2 xz) {
   const vec2 c = floor(u);
   const ivec2 cell = ivec2(waveNeighbourX(int(c.x), f.n), waveNeighbourZ(int(c.y), f.n));
   vec4 s = texelFetch(surface_texels, cell.x + f.n * cell.y);
-  s.x += dot(s.zw, (u - c - 0.5) * f.cell_m);
+  s.x += dot(s.zw, (u - c - 0.5) * f.cell_m) + f.lead_s * s.y;
   return s;
 }
 
@@ -56,7 +58,9 @@ vec4 surfaceAt(Floor f, vec2 xz, out vec2 flow_mps) {
   flow_mps = mix(f0, f1, t.y);
   const vec4 s0 = mix(texelFetch(surface_texels, x0 + z0), texelFetch(surface_texels, x1 + z0), t.x);
   const vec4 s1 = mix(texelFetch(surface_texels, x0 + z1), texelFetch(surface_texels, x1 + z1), t.x);
-  return mix(s0, s1, t.y);
+  vec4 s = mix(s0, s1, t.y);
+  s.x += f.lead_s * s.y;
+  return s;
 }
 #endif
 

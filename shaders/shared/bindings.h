@@ -53,6 +53,8 @@
 #define LANDING 25
 // Pool of a two-way scene; shared/pool.h.
 #define POOL 26
+// Cells that emit a particle in this tick, in any order; the first POOL_WANTED count.
+#define EMITTER 31
 // Boats; shared/boats.h. Their controls are a uniform block.
 #define BOATS 27
 #define BOAT_CONTROLS 2
@@ -61,7 +63,7 @@
 #define FOAM_FIELD 28
 #define FOAM_BEFORE 29
 #define LANDED 30
-// The simulation's uniforms as storage, for the one pass that moves the particle patch.
-#define SIM_UNIFORMS_STORAGE 31
+// The simulation's uniforms as storage (at PARTIAL_SUM's place; no pass has both), for the one pass that moves the particle patch.
+#define SIM_UNIFORMS_STORAGE 18
 
 #endif

@@ -15,7 +15,9 @@
 #define POOL_EMITTED 4
 #define POOL_ABSORBED 5
 #define POOL_REFUSED 6
-// Arguments of indirect dispatches (three words each): over wave cells for emission, over particles, over grid cells, over scan
+// Cells in EMITTER that emit now.
+#define POOL_EMITTING 7
+// Arguments of indirect dispatches (three words each): over emitting cells, over particles, over grid cells, over scan
 // blocks, one group. All 0 while there is nothing to do.
 #define POOL_EMIT_ARGS 8
 #define POOL_PARTICLE_ARGS 11

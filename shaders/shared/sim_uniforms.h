@@ -48,6 +48,9 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float floor_gap_m;            // particles are kept this far above the floor
   float downforce_per_m_s2;
 
+  // Coupling. Until when the substep runs, counted from the end of the tick (0 in the last one): the surface moves with its own speed from
+  // where it was to where the tick leaves it.
+  float surface_lead_s;
   // Two-way coupling.
   uint pool_capacity_count;
   uint droplet_units;           // elevation units that a particle's volume is in one wave cell
@@ -82,7 +85,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float surface_quantum_m;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 55 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 56 * 4, "scalars of four bytes only: std140 and C++ must agree");
 }  // namespace spindrift::shared
 #else
 } sim;

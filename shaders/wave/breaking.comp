@@ -1,7 +1,7 @@
 // Where the wave breaks, and how much.
 // Reads SURFACE (d eta/dt), BASIN, EventUniforms, BREAKING_BEFORE (age [s], intensity, velocity of a splash's crown [m/s]). Writes
-// BREAKING; in two-way scenes counts the cells that
-// emit a particle into POOL_WANTED.
+// BREAKING; in two-way scenes lists the cells that emit a particle
+// in EMITTER, POOL_WANTED of them.
 // Equation: Kennedy et al. 2000, eqs. 5-7: breaking starts where d eta/dt > 0.65 sqrt(g d); the threshold relaxes to
 // 0.15 sqrt(g d) within 5 sqrt(d/g) of the event; the intensity rises from 0 to 1 between one and two thresholds. The event travels
 // with the crest: a cell inherits the age of its oldest neighbour that broke.
@@ -9,17 +9,20 @@
 #include "shared/groups.h"
 #include "include/wave_faces.glsl"
 #include "include/emission.glsl"
+#include "include/surface_rate.glsl"
 #include "shared/event_uniforms.h"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
-layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = BREAKING_BEFORE) uniform samplerBuffer breaking_before;
 layout(std430, binding = BREAKING) restrict writeonly buffer Breaking { vec4 breaking[]; };
 #if POOL_PARTICLES
 layout(std430, binding = POOL) restrict buffer Pool { uint pool[]; };
-uniform uint substep;
+layout(std430, binding = EMITTER) restrict writeonly buffer Emitter { uint emitter[]; };
+uniform uint tick;
 #endif
+
+#define LONGEST_EVENT 2.0
 
 /// Horizontal velocity of the crown that splashes throw from here: outward, from a ring about the radius.
 vec2 crownAt(vec2 p) {
@@ -42,7 +45,7 @@ void main() {
   if (cell.x >= n || cell.y >= n) return;
   const int row = n * cell.y;
   const int i = cell.x + row;
-  const float rate_mps = texelFetch(surface_texels, i).y;
+  const float rate_mps = smoothRate(cell, n);
 #if VARIED
   const Flow open = conductanceOf(cell, n);
   const float depth_m = max(open.x, open.y) / FLOW_WEIGHTS.x;
@@ -55,15 +58,20 @@ void main() {
   if (rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
     const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - 1, n), row), ageAt(waveNeighbourX(cell.x + 1, n), row))),
                             max(ageAt(cell.x, n * waveNeighbourZ(cell.y - 1, n)), ageAt(cell.x, n * waveNeighbourZ(cell.y + 1, n))));
-    const float relaxed = clamp(age_s * sqrt(sim.gravity_mps2 / depth_m) / 5.0, 0.0, 1.0);
-    const float threshold_mps = mix(0.65, 0.15, age_s > 0.0 ? relaxed : 0.0) * speed_mps;
-    if (rate_mps > threshold_mps) state.xy = vec2(age_s + sim.dt_s, clamp(rate_mps / threshold_mps - 1.0, 0.0, 1.0));
+    const float relaxed = age_s * sqrt(sim.gravity_mps2 / depth_m) / 5.0;
+    // An event ends after LONGEST_EVENT relaxation times: by then its front is gone, what is left is chop.
+    const float share = age_s > 0.0 && relaxed < LONGEST_EVENT ? min(relaxed, 1.0) : 0.0;
+    const float threshold_mps = mix(0.65, 0.15, share) * speed_mps;
+    if (rate_mps > threshold_mps) state.xy = vec2(age_s + sim.tick_s, clamp(rate_mps / threshold_mps - 1.0, 0.0, 1.0));
   }
   state.zw = depth_m > 0.02 * sim.wave_depth_m ? crownAt(waveCellCentre(cell)) : vec2(0.0);
   const float crown_mps = length(state.zw);
   state.y = max(state.y, clamp(crown_mps / speed_mps, 0.0, 1.0));
   breaking[i] = state;
 #if POOL_PARTICLES
-  if (emits(uint(i), substep, state.y, max(rate_mps, crown_mps))) atomicAdd(pool[POOL_WANTED], 1u);
+  if (emits(uint(i), tick, state.y, max(rate_mps, crown_mps))) {
+    const uint slot = atomicAdd(pool[POOL_WANTED], 1u);
+    if (slot < sim.pool_capacity_count) emitter[slot] = uint(i);
+  }
 #endif
 }

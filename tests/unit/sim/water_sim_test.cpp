@@ -68,16 +68,16 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   const Cost all = cost(full);
   const Cost wave = cost(wave_only);
   const Cost particles = cost(particles_only);
-  // A wave alone: splash, crest, momentum, continuity, its diagnostics and packing; with one wave step a substep, two
-  // dispatches each, and one more in every fourth tick.
+  // A wave alone: splash, crest, momentum, continuity, its diagnostics and packing; one wave step a tick of two
+  // dispatches, and one more in every fourth tick.
   EXPECT_EQ(wave.programs, 6u);
-  EXPECT_EQ(wave.dispatches, 4u);
+  EXPECT_EQ(wave.dispatches, 2u);
   // Particles alone: 6 grid, 3 sph, their diagnostics and packing; 2 x 9 dispatches a tick.
   EXPECT_EQ(particles.programs, 11u);
   EXPECT_EQ(particles.dispatches, 18u);
-  // Together: the sum, and the surface sampling once a substep.
+  // Together: the sum, and the surface sampling once a tick.
   EXPECT_EQ(all.programs, wave.programs + particles.programs + 1);
-  EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 2);
+  EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 1);
   EXPECT_LT(wave.bytes, all.bytes);
   EXPECT_LT(particles.bytes, all.bytes);
   // derive() says what will be allocated, to the packing and readback of frames.
@@ -91,15 +91,15 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   two_way.coupling->droplet_spacing_m = 0.25;
   const Cost both = cost(two_way);
   EXPECT_EQ(both.programs, all.programs + 4) << "breaking, plan, emit, clear";
-  EXPECT_EQ(both.dispatches, all.dispatches + 2 * 4);
+  EXPECT_EQ(both.dispatches, all.dispatches + 1 + 2 + 1 + 2) << "breaking, 2 plans, emission, 2 clearings";
 
   core::Scene boats = wave_only;
   boats.boats.emplace();
   const Cost empty_harbor = cost(boats);
   EXPECT_EQ(empty_harbor.programs, wave.programs + 4) << "surface sampling, move, press, packing";
-  EXPECT_EQ(empty_harbor.dispatches, wave.dispatches + 2) << "no boat, no pass over boats";
+  EXPECT_EQ(empty_harbor.dispatches, wave.dispatches + 1) << "no boat, no pass over boats";
   boats.boats->boats = {core::Boat{}};
-  EXPECT_EQ(cost(boats).dispatches, empty_harbor.dispatches + 2 * 2);
+  EXPECT_EQ(cost(boats).dispatches, empty_harbor.dispatches + 2);
 }
 
 TEST_F(Water, SteppingAllocatesNothing) {

@@ -103,12 +103,13 @@ class WaterSim {
 
   core::Result<void> build();
   void uploadStartingState();
-  void startTimedEvents();
-  void advanceWave(double time_s);
+  void startEvents();
+  void advanceWave();
   void sampleSurface();
   void breakWaves();
   void moveBoats();
-  void emitParticles();
+  void emitParticles(std::uint32_t substep);
+  void leadSurface(std::uint32_t substep);
   void movePatch();
   void bindSurroundings();
   void fadeFoam();
@@ -120,6 +121,9 @@ class WaterSim {
   void recover(const Health& breach);
   void setCareful(bool careful);
 
+  /// Ticks since the start or the last reset: what chance is drawn by, so that a run repeats.
+  [[nodiscard]] std::uint32_t runTick() const { return static_cast<std::uint32_t>(tick_ - start_tick_); }
+
   gpu::Context& ctx_;
   core::Scene scene_;
   Derived derived_;
@@ -127,7 +131,6 @@ class WaterSim {
   std::unique_ptr<Parts> parts_;
   std::uint64_t tick_ = 0;  ///< never goes back
   std::uint64_t start_tick_ = 0;
-  std::uint32_t substep_ = 0;  ///< since the start or the last reset; seeds emission
   Health health_;
   std::uint64_t nonfinite_count_ = 0;
   std::uint64_t escaped_count_ = 0;
