@@ -16,24 +16,34 @@ core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx
                                                                const gpu::Defines& defines) {
   auto out = std::unique_ptr<FramePacker>(new FramePacker(ctx));
   Creation create;
-  std::size_t bytes = 0;
   if (derived.wave) {
     const std::size_t n = derived.wave->resolution_count;
     out->surface_words_ = n * n / 2;
     create(out->packed_surface_, gpu::Buffer::create(ctx, "packed surface", out->surface_words_ * 4));
     create(out->pack_surface_, gpu::Program::create(ctx, "stream/pack_surface.comp", defines));
-    bytes += out->surface_words_ * 4;
   }
   if (derived.particles) {
-    out->particles_ = derived.particles->count;
-    create(out->packed_particles_,
-           gpu::Buffer::create(ctx, "packed particles", out->particles_ * kWordsPerParticle * 4));
     create(out->pack_particles_, gpu::Program::create(ctx, "stream/pack_particles.comp", defines));
-    bytes += out->particles_ * kWordsPerParticle * 4;
   }
-  create(out->ring_, gpu::ReadbackRing::create(ctx, "frames", bytes, kSlotCount));
   if (create.error()) return *create.error();
+  if (auto sized = out->resize(derived); !sized) return sized.error();
   return out;
+}
+
+core::Result<void> FramePacker::resize(const Derived& derived) {
+  gpu::Buffer packed;
+  std::unique_ptr<gpu::ReadbackRing> ring;
+  const std::size_t particle_bytes =
+      derived.particles ? std::size_t{derived.particles->count} * kWordsPerParticle * 4 : 0;
+  Creation create;
+  if (particle_bytes > 0) create(packed, gpu::Buffer::create(ctx_, "packed particles", particle_bytes));
+  create(ring, gpu::ReadbackRing::create(ctx_, "frames", surface_words_ * 4 + particle_bytes, kSlotCount));
+  if (create.error()) return *create.error();
+  packed_particles_ = std::move(packed);
+  ring_ = std::move(ring);
+  pending_.clear();
+  particles_ = derived.particles ? derived.particles->count : 0;
+  return {};
 }
 
 bool FramePacker::pack(std::uint64_t tick, double time_s, const ParticleBuffers* particles, Wave* wave) {

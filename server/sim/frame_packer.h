@@ -24,6 +24,10 @@ class FramePacker {
   static core::Result<std::unique_ptr<FramePacker>> create(gpu::Context& ctx, const Derived& derived,
                                                            const gpu::Defines& defines);
 
+  /// Buffers for another number of particles, the same programs; frames on their way are lost. An error changes
+  /// nothing.
+  core::Result<void> resize(const Derived& derived);
+
   /// Packs what is not null. False when every slot is still in use: the frame is dropped.
   bool pack(std::uint64_t tick, double time_s, const ParticleBuffers* particles, Wave* wave);
   /// Frames whose copy has finished, oldest first.

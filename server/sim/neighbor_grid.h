@@ -18,6 +18,9 @@ class NeighborGrid {
   static core::Result<std::unique_ptr<NeighborGrid>> create(gpu::Context& ctx, const ParticleLayout& layout,
                                                             const gpu::Defines& defines);
 
+  /// Buffers for another layout, the same programs; an error changes nothing.
+  core::Result<void> resize(const ParticleLayout& layout);
+
   /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their order before.
   void build(const ParticleBuffers& particles);
 

@@ -23,6 +23,7 @@ void Sph::density(const ParticleBuffers& particles) {
   particles.pressure_point.bindStorage(PRESSURE_POINT);
   particles.motion_point.bindStorage(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
+  if (particles.foam_source) particles.foam_source.bindStorage(FOAM_SOURCE);
   density_.dispatch(count_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
@@ -37,6 +38,7 @@ void Sph::forces(const ParticleBuffers& particles) {
 
 void Sph::integrate(const ParticleBuffers& particles) {
   particles.acceleration.bindTexel(ACCELERATION);
+  if (particles.foam_source) particles.foam_source.bindTexel(FOAM_SOURCE);
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   integrate_.dispatch(count_);

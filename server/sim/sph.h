@@ -16,6 +16,9 @@ class Sph {
   static core::Result<std::unique_ptr<Sph>> create(gpu::Context& ctx, const ParticleLayout& layout,
                                                    const gpu::Defines& defines);
 
+  /// Another number of particles, the same programs.
+  void resize(const ParticleLayout& layout) { count_ = layout.count; }
+
   // In this order, after NeighborGrid::build(), with CELL_START and (in coupled scenes) the surface bound.
   void density(const ParticleBuffers& particles);
   void forces(const ParticleBuffers& particles);

@@ -39,4 +39,7 @@
 #define PACKED_WORDS 17
 #define PARTIAL_SUM 18
 
+// Foam from few neighbours, one float a particle [0..1]. Scenes that count neighbours only.
+#define FOAM_SOURCE 26
+
 #endif

@@ -1,31 +1,23 @@
 // Moves the particles: kick, drift (symplectic Euler), foam, floor, sides.
-// Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, the floor. Writes POSITION, VELOCITY (in sorted order).
+// Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, FOAM_SOURCE (with NEIGHBOUR_FOAM), the floor. Writes POSITION, VELOCITY (in sorted order).
 // Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than max_speed_mps plus
 // the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC=1 FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 FOAM=0
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 WAVE_PERIODIC=1 FOAM=1 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 WAVE_PERIODIC=0 FOAM=0 NEIGHBOUR_FOAM=0
 #include "shared/groups.h"
 #include "include/floor.glsl"
 #include "include/foam.glsl"
+#include "include/sides.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
 layout(binding = SORTED_POSITION) uniform samplerBuffer sorted_position;
 layout(binding = SORTED_VELOCITY) uniform samplerBuffer sorted_velocity;
 layout(binding = ACCELERATION) uniform samplerBuffer acceleration;
+#if NEIGHBOUR_FOAM
+layout(binding = FOAM_SOURCE) uniform samplerBuffer foam_source;
+#endif
 layout(std430, binding = POSITION) restrict writeonly buffer Position { vec4 position[]; };
 layout(std430, binding = VELOCITY) restrict writeonly buffer Velocity { vec4 velocity[]; };
-
-/// One axis with walls: stops at the wall and turns the normal speed round.
-void keepBetweenWalls(inout float x, inout float v, float low, float high) {
-  if (x < low) { x = low; v = abs(v) * sim.wall_restitution; }
-  if (x > high) { x = high; v = -abs(v) * sim.wall_restitution; }
-}
-
-/// One periodic axis: leaves on one side, enters slightly inside the other.
-void wrapAround(inout float x, float low, float high) {
-  if (x < low) x = high - sim.reentry_m;
-  else if (x >= high) x = low + sim.reentry_m;
-}
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
@@ -62,7 +54,10 @@ void main() {
   keepBetweenWalls(x.y, v.y, sim.min_y_m, sim.max_y_m);
 
 #if FOAM
-  const float foam = foamStep(old_velocity.w, a.w / sim.rest_density_kgpm3);
+  float foam = foamStep(old_velocity.w, a.w / sim.rest_density_kgpm3);
+#if NEIGHBOUR_FOAM
+  foam = max(foam, texelFetch(foam_source, int(i)).x);
+#endif
 #else
   const float foam = 0.0;
 #endif

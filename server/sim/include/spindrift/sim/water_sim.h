@@ -48,7 +48,8 @@ class WaterSim {
   /// Starts an effect now. kInvalidInput without a wave, kUnavailable when too many are active.
   core::Result<void> start(const core::Effect& effect);
   /// New parameter values from the next tick on. kInvalidInput when a step rule breaks or the change needs a restart;
-  /// then nothing changes.
+  /// then nothing changes. Another `particles.count` lays the same water out anew, in motion as it is (relayParticles);
+  /// that waits for the device once, and frames on their way are lost.
   core::Result<void> setScene(const core::Scene& scene);
   /// Back to the starting state at time 0; parameters stay as they are now, ticks go on counting.
   void reset();
@@ -87,9 +88,11 @@ class WaterSim {
 
   core::Result<void> build();
   void uploadStartingState();
+  core::Result<void> relay(const core::Scene& scene);
   void startTimedEvents();
   void advanceWave(double time_s);
   void sampleSurface();
+  void predictParticles();
   void buildGrid();
   void advanceParticles();
   void measure();
