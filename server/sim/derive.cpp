@@ -29,6 +29,9 @@ constexpr double kNinePointCourant = 0.8660254;
 constexpr double kWaveSafety = 0.98;
 /// Share of its flow that fully breaking water loses in the time sqrt(d/g): a bore is gone within a few depths' travel.
 constexpr double kBreakingLoss = 0.6;
+/// Softness of the position-based constraint over its squared gradient inside the lattice: 0 makes lone pairs jump, 1
+/// halves every correction.
+constexpr double kConstraintSoftness = 0.05;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
 constexpr std::uint32_t kMaxCellCount = 1u << 22;
 /// A droplet is spread over 25 cells, at most 14 % on one; more than this and a single one would bare the ground.
@@ -36,19 +39,6 @@ constexpr double kMaxDropletHeight = 2.0;
 
 Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
-}
-
-/// Edge of the grid's cells: `ratio` spacings, stretched so that whole cells span a periodic side.
-core::Result<double> supportRadius(double wanted_m, double side_m, bool is_periodic, const std::string& what) {
-  if (!is_periodic) return wanted_m;
-  const double cells = std::floor(side_m / wanted_m + 1e-9);
-  if (cells < 3) {
-    return invalid(
-        fmt::format("{} leave {:.0f} cells of the support radius {:.3g} m across a periodic side of {:.3g} m, at "
-                    "least 3 are needed: use more particles, fewer layers, or walls",
-                    what, cells, wanted_m, side_m));
-  }
-  return side_m / cells;
 }
 
 core::Result<void> countCells(ParticleLayout& out) {
@@ -74,13 +64,18 @@ core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   const double side_m = scene.wave->side_m;
   out.count = p.count;
   out.spacing_m = scene.coupling->droplet_spacing_m;
-  const bool is_periodic = isPeriodicX(*scene.wave) || isPeriodicZ(*scene.wave);
-  auto support =
-      supportRadius(p.support_ratio * out.spacing_m, side_m, is_periodic, "coupling.droplet_spacing_m: droplets");
-  if (!support) return support.error();
-  out.support_radius_m = *support;
+  out.support_radius_m = p.support_ratio * out.spacing_m;
+  if (isPeriodicX(*scene.wave) || isPeriodicZ(*scene.wave)) {
+    // The grid's cells have edge H and must tile a periodic side exactly.
+    out.support_radius_m = side_m / std::max(std::floor(side_m / out.support_radius_m + 1e-9), 3.0);
+  }
   out.neighbours_count = latticeNeighbours(out.spacing_m, out.support_radius_m);
   out.mass_kg = calibratedMass(p.kernel_set, out.spacing_m, out.support_radius_m, p.rest_density_kgpm3);
+  // Walls do not support spray: a share of 0 over any reach.
+  out.wall_reach_m = out.support_radius_m;
+  out.constraint_softness_pm2 =
+      kConstraintSoftness *
+      latticeConstraintSlope2(p.kernel_set, out.spacing_m, out.support_radius_m, p.rest_density_kgpm3, out.mass_kg);
   const double cell_m = side_m / scene.wave->resolution_count;
   const double droplet_height_m = out.spacing_m * out.spacing_m * out.spacing_m / (cell_m * cell_m);
   if (droplet_height_m > kMaxDropletHeight * scene.wave->depth_m) {
@@ -95,21 +90,66 @@ core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   return out;
 }
 
-core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
+/// Largest c of Tait's equation: c = c0 (rho/rho0)^3 at the pressure with which water of U_max comes to rest at the
+/// bottom of the band, p = rho0 (U_max^2/2 + g band). Linear water has c0 everywhere.
+double fastestSound(const core::Scene& scene, const ParticleLayout& layout) {
+  const core::ParticleScene& p = *scene.particles;
+  if (p.equation_of_state == core::EquationOfState::kLinear) return p.sound_speed_mps;
+  const double head = 0.5 * p.max_speed_mps * p.max_speed_mps + scene.gravity_mps2 * layout.band_m;
+  return p.sound_speed_mps * std::pow(1 + 7 * head / (p.sound_speed_mps * p.sound_speed_mps), 3.0 / 7.0);
+}
+
+/// The support radius: whole cells of it must tile every periodic side.
+core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, double side_x_m, double side_z_m,
+                                   std::uint32_t layers_count) {
+  const core::ParticleScene& p = *scene.particles;
+  const double wanted_m = p.support_ratio * spacing_m;
+  const bool along_x = p.boundary_x == Boundary::kPeriodic;
+  const bool along_z = p.boundary_z == Boundary::kPeriodic;
+  if (!along_x && !along_z) return wanted_m;
+  const double shorter_m = along_x && along_z ? std::min(side_x_m, side_z_m) : along_x ? side_x_m : side_z_m;
+  const double cells = std::floor(shorter_m / wanted_m + 1e-9);
+  if (cells < 3) {
+    return invalid(fmt::format(
+        "particles.count: {} particles in {} layers leave {:.0f} cells of the support radius {:.3g} m "
+        "across a periodic side of {:.3g} m, at least 3 are needed: use more particles, fewer layers, or walls",
+        p.count, layers_count, cells, wanted_m, shorter_m));
+  }
+  if (!along_x || !along_z || side_x_m == side_z_m) return shorter_m / cells;
+  // Two periodic sides of different length: the coarsest tiling of both that widens the support by at most a fifth.
+  const double ratio = std::max(side_x_m, side_z_m) / shorter_m;
+  for (double k = cells; k >= 3 && shorter_m / k <= 1.2 * wanted_m; --k) {
+    if (std::abs(k * ratio - std::round(k * ratio)) < 1e-6) return shorter_m / k;
+  }
+  return invalid(
+      fmt::format("particles.box_width_m: no support radius between {:.3g} and {:.3g} m tiles periodic sides of {:.4g} "
+                  "and {:.4g} m: "
+                  "use a width in a simple ratio to the length, another count, or walls",
+                  wanted_m, 1.2 * wanted_m, side_x_m, side_z_m));
+}
+
+/// `volume_m3`: of the water, when it is given; else the scene's layers decide.
+core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3 = 0.0) {
   if (isTwoWay(scene)) return layOutPool(scene);
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
-  const double side_m = (scene.wave ? scene.wave->side_m : p.box_side_m) * (scene.wave ? p.patch_scale : 1.0);
-  out.layers_count = static_cast<std::uint32_t>(std::lround(p.layers_count));
-  out.columns_count = std::max<std::uint32_t>(
-      1, static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(p.count) / out.layers_count))));
-  out.count = out.columns_count * out.columns_count * out.layers_count;
-  out.spacing_m = side_m / out.columns_count;
+  const double side_x_m = (scene.wave ? scene.wave->side_m : p.box_side_m) * (scene.wave ? p.patch_scale : 1.0);
+  const double side_z_m = !scene.wave && p.box_width_m > 0 ? p.box_width_m : side_x_m;
+  const double fill_x_m = p.fill_x_ratio * side_x_m;
+  const double fill_z_m = p.fill_z_ratio * side_z_m;
+  const double area_m2 = fill_x_m * fill_z_m;
+  const auto atLeastOne = [](double v) { return static_cast<std::uint32_t>(std::max(std::lround(v), 1L)); };
+  out.layers_count = atLeastOne(volume_m3 > 0 ? volume_m3 / area_m2 / std::cbrt(volume_m3 / p.count) : p.layers_count);
+  out.columns_x_count = atLeastOne(fill_x_m / std::sqrt(area_m2 * out.layers_count / p.count));
+  out.pitch_x_m = fill_x_m / out.columns_x_count;
+  out.columns_z_count = atLeastOne(fill_z_m / out.pitch_x_m);
+  out.pitch_z_m = fill_z_m / out.columns_z_count;
+  out.count = out.columns_x_count * out.columns_z_count * out.layers_count;
+  out.spacing_m = std::sqrt(out.pitch_x_m * out.pitch_z_m);
   const double s = out.spacing_m;
+  out.volume_m3 = volume_m3 > 0 ? volume_m3 : area_m2 * s * out.layers_count;
 
-  const bool is_periodic = p.boundary_x == Boundary::kPeriodic || p.boundary_z == Boundary::kPeriodic;
-  auto support = supportRadius(p.support_ratio * s, side_m, is_periodic,
-                               fmt::format("particles.count: {} particles in {} layers", p.count, out.layers_count));
+  const auto support = supportRadius(scene, s, side_x_m, side_z_m, out.layers_count);
   if (!support) return support.error();
   out.support_radius_m = *support;
   const double H = out.support_radius_m;
@@ -118,30 +158,43 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
   out.neighbours_count = latticeNeighbours(s, H);
   out.mass_kg = calibratedMass(p.kernel_set, s, H, p.rest_density_kgpm3);
   out.virtual_mass_kg = calibratedVirtualMass(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg, floor_points);
-  out.layer_heights_m = restingLayers({.kernel_set = p.kernel_set,
-                                       .spacing_m = s,
-                                       .support_radius_m = H,
-                                       .rest_density_kgpm3 = p.rest_density_kgpm3,
-                                       .stiffness_m2ps2 = p.sound_speed_mps * p.sound_speed_mps,
-                                       .gravity_mps2 = scene.gravity_mps2,
-                                       .mass_kg = out.mass_kg,
-                                       .virtual_mass_kg = out.virtual_mass_kg,
-                                       .floor_points = floor_points},
-                                      static_cast<int>(out.layers_count));
+  const WallSupport wall = calibratedWall(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
+  out.wall_share = wall.share;
+  out.wall_reach_m = wall.reach_m;
+  out.constraint_softness_pm2 =
+      kConstraintSoftness * latticeConstraintSlope2(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
+  // Position-based water has no stiffness; its layers rest as those of a water that gives way by a hundredth.
+  const bool is_position_based = p.solver == core::PressureSolver::kPositionBased;
+  const double stiffness =
+      is_position_based ? 100 * scene.gravity_mps2 * s * out.layers_count : p.sound_speed_mps * p.sound_speed_mps;
+  out.layer_heights_m =
+      restingLayers({.kernel_set = p.kernel_set,
+                     .spacing_m = s,
+                     .support_radius_m = H,
+                     .rest_density_kgpm3 = p.rest_density_kgpm3,
+                     .stiffness_m2ps2 = stiffness,
+                     .gravity_mps2 = scene.gravity_mps2,
+                     .mass_kg = out.mass_kg,
+                     .virtual_mass_kg = out.virtual_mass_kg,
+                     .floor_points = floor_points,
+                     .equation_of_state = is_position_based ? core::EquationOfState::kLinear : p.equation_of_state,
+                     .pressure_force = is_position_based ? core::PressureForce::kConserving : p.pressure_force,
+                     .cohesion = p.cohesion && !is_position_based},
+                    static_cast<int>(out.layers_count));
   out.band_m = out.layer_heights_m.back() + s / 2;
   const double centre_x = scene.wave ? p.patch_shift_x_m : 0.0;
   const double centre_z = scene.wave ? p.patch_shift_z_m : 0.0;
   // Below the band the floor can sink as far as the water is deep.
   const double lowest_m = -out.band_m - (scene.coupling ? scene.wave->depth_m : 0.0);
-  out.min_m = {centre_x - side_m / 2, lowest_m, centre_z - side_m / 2};
-  out.max_m = {centre_x + side_m / 2, p.headroom_m, centre_z + side_m / 2};
+  out.min_m = {centre_x - side_x_m / 2, lowest_m, centre_z - side_z_m / 2};
+  out.max_m = {centre_x + side_x_m / 2, p.headroom_m, centre_z + side_z_m / 2};
   if (scene.wave) {
     const double half_m = scene.wave->side_m / 2 * (1 + 1e-9);
     if (out.min_m[0] < -half_m || out.max_m[0] > half_m || out.min_m[2] < -half_m || out.max_m[2] > half_m) {
       return invalid(fmt::format(
           "particles.patch_shift_x_m, patch_shift_z_m: a patch of {:.3g} m centred at ({:.3g}, {:.3g}) m leaves the "
           "water of {:.3g} m: move it inside or make patch_scale smaller",
-          side_m, centre_x, centre_z, scene.wave->side_m));
+          side_x_m, centre_x, centre_z, scene.wave->side_m));
     }
   }
   if (auto counted = countCells(out); !counted) return counted.error();
@@ -151,17 +204,25 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene) {
 void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, std::vector<StepRule>& rules) {
   const core::ParticleScene& p = *scene.particles;
   const double H = layout.support_radius_m;
-  rules.push_back({"particle CFL, 0.4 H / (c0 + U_max)", "particles.sound_speed_mps",
-                   kParticleCourant * H / (p.sound_speed_mps + p.max_speed_mps)});
+  const double nu = p.viscosity_pas / p.rest_density_kgpm3;
+  if (nu > 0)
+    rules.push_back({"viscous diffusion, 0.125 H^2 / nu", "particles.viscosity_pas", kViscousFactor * H * H / nu});
+  if (p.solver == core::PressureSolver::kPositionBased) {
+    // No sound, and a constraint answers to any force: only particles must not jump past each other.
+    rules.push_back({"particle CFL, 0.4 H / U_max", "particles.max_speed_mps", kParticleCourant * H / p.max_speed_mps});
+    return;
+  }
+  const bool is_tait = p.equation_of_state == core::EquationOfState::kTait;
+  rules.push_back({is_tait ? "particle CFL, 0.4 H / (c + U_max), c = c0 (1 + 7 (U_max^2/2 + g band) / c0^2)^(3/7)"
+                           : "particle CFL, 0.4 H / (c0 + U_max)",
+                   "particles.sound_speed_mps",
+                   kParticleCourant * H / (fastestSound(scene, layout) + p.max_speed_mps)});
   const double downforce = scene.coupling ? scene.coupling->downforce_per_m_s2 * p.headroom_m * p.headroom_m : 0.0;
   const double acceleration = scene.gravity_mps2 + downforce;
   if (acceleration > 0) {
     rules.push_back(
         {"force, 0.25 sqrt(H / a_max)", "coupling.downforce_per_m_s2", kForceFactor * std::sqrt(H / acceleration)});
   }
-  const double nu = p.viscosity_pas / p.rest_density_kgpm3;
-  if (nu > 0)
-    rules.push_back({"viscous diffusion, 0.125 H^2 / nu", "particles.viscosity_pas", kViscousFactor * H * H / nu});
 }
 
 core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
@@ -200,7 +261,8 @@ std::uint64_t waveCellBytes(const core::Scene& scene) {
 std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   std::uint64_t bytes = sizeof(shared::SimUniforms);
   if (d.particles) {
-    bytes += std::uint64_t{d.particles->count} * (7 * 16 + 8 + 4) + std::uint64_t{d.particles->cell_count} * 8 + 4;
+    bytes += std::uint64_t{d.particles->count} * (7 * 16 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0)) +
+             std::uint64_t{d.particles->cell_count} * 8 + 4;
   }
   if (d.wave) bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * waveCellBytes(scene);
   return bytes;
@@ -248,6 +310,9 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.reentry_m = f(0.01 * l.spacing_m);
     u.band_m = f(l.band_m);
     u.virtual_mass_kg = f(l.virtual_mass_kg);
+    u.wall_share = f(l.wall_share);
+    u.wall_reach_m = f(l.wall_reach_m);
+    u.constraint_softness_pm2 = f(l.constraint_softness_pm2);
     u.floor_gap_m = f(kFloorGapRatio * l.spacing_m);
   }
   if (isTwoWay(scene)) {
@@ -261,6 +326,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
   if (scene.coupling) u.downforce_per_m_s2 = f(scene.coupling->downforce_per_m_s2);
   if (scene.foam) {
     u.foam_deficit_ratio = f(scene.foam->density_deficit_ratio);
+    u.foam_neighbours = f(scene.foam->neighbours_count);
     u.foam_keep_ratio = f(std::exp(-d.dt_s / scene.foam->lifetime_s));
     u.breaking_foam_keep_ratio = f(std::exp(-d.tick_s / scene.foam->breaking_lifetime_s));
     u.wake_foam_keep_ratio = f(std::exp(-d.tick_s / scene.foam->wake_lifetime_s));
@@ -360,14 +426,26 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
   return d;
 }
 
+core::Result<ParticleLayout> layOutAgain(const core::Scene& scene, const ParticleLayout& before) {
+  return layOutParticles(scene, before.volume_m3);
+}
+
+bool countsNeighbours(const core::Scene& scene) {
+  return scene.particles && scene.foam && scene.foam->neighbours_count > 0;
+}
+
+bool storesFoamSource(const core::Scene& scene) {
+  return countsNeighbours(scene) && scene.particles->solver == core::PressureSolver::kWeaklyCompressible;
+}
+
 bool needsRestart(const Derived& before, const Derived& after) {
   if (before.particles.has_value() != after.particles.has_value() || before.wave.has_value() != after.wave.has_value())
     return true;
   if (before.particles) {
     const ParticleLayout& a = *before.particles;
     const ParticleLayout& b = *after.particles;
-    if (a.columns_count != b.columns_count || a.layers_count != b.layers_count ||
-        a.support_radius_m != b.support_radius_m)
+    if (a.columns_x_count != b.columns_x_count || a.columns_z_count != b.columns_z_count ||
+        a.layers_count != b.layers_count || a.support_radius_m != b.support_radius_m || a.volume_m3 != b.volume_m3)
       return true;
   }
   return before.wave &&

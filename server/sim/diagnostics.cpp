@@ -65,12 +65,8 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
   auto out = std::unique_ptr<Diagnostics>(new Diagnostics(ctx));
   Creation create;
   if (derived.particles) {
-    out->particles_ = derived.particles->count;
     out->is_pooled_ = derived.uniforms.pool_capacity_count > 0;
     create(out->particle_program_, gpu::Program::create(ctx, "diagnostics/particles.comp", defines));
-    if (create.error()) return *create.error();
-    out->particle_shares_ = sharesFor(out->particles_, out->particle_program_);
-    create(out->particle_sums_, gpu::Buffer::create(ctx, "particle sums", out->particle_shares_ * sizeof(Partial)));
   }
   if (derived.wave) {
     out->cells_ = derived.wave->resolution_count * derived.wave->resolution_count;
@@ -79,12 +75,26 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
     out->surface_shares_ = sharesFor(out->cells_, out->surface_program_);
     create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial)));
   }
-  create(out->ring_, gpu::ReadbackRing::create(ctx, "diagnostics",
-                                               (out->particle_shares_ + out->surface_shares_) * sizeof(Partial) +
-                                                   (out->is_pooled_ ? POOL_WORDS * 4 : 0),
-                                               kSlotCount));
   if (create.error()) return *create.error();
+  if (auto sized = out->resize(derived); !sized) return sized.error();
   return out;
+}
+
+core::Result<void> Diagnostics::resize(const Derived& derived) {
+  gpu::Buffer sums;
+  std::unique_ptr<gpu::ReadbackRing> ring;
+  const std::uint32_t shares = derived.particles ? sharesFor(derived.particles->count, particle_program_) : 0;
+  Creation create;
+  if (shares > 0) create(sums, gpu::Buffer::create(ctx_, "particle sums", shares * sizeof(Partial)));
+  create(ring, gpu::ReadbackRing::create(
+                   ctx_, "diagnostics",
+                   (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0), kSlotCount));
+  if (create.error()) return *create.error();
+  particle_sums_ = std::move(sums);
+  ring_ = std::move(ring);
+  particle_shares_ = shares;
+  particles_ = derived.particles ? derived.particles->count : 0;
+  return {};
 }
 
 void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population,

@@ -27,6 +27,10 @@ class Diagnostics {
   static core::Result<std::unique_ptr<Diagnostics>> create(gpu::Context& ctx, const Derived& derived,
                                                            const gpu::Defines& defines);
 
+  /// Buffers for another number of particles, the same programs; results on their way are lost. An error changes
+  /// nothing.
+  core::Result<void> resize(const Derived& derived);
+
   /// Measures the state after `tick`; parts may be null. Skipped (and retried next tick) while results are
   /// outstanding in every slot.
   void measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population, Wave* wave,

@@ -29,11 +29,7 @@ core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx
     create(out->pack_surface_, gpu::Program::create(ctx, "stream/pack_surface.comp", defines));
   }
   if (derived.particles) {
-    out->particles_ = derived.particles->count;
-    create(out->packed_particles_,
-           gpu::Buffer::create(ctx, "packed particles", out->particles_ * kWordsPerParticle * 4));
     create(out->pack_particles_, gpu::Program::create(ctx, "stream/pack_particles.comp", defines));
-    out->particle_words_ = out->particles_ * kWordsPerParticle;
     out->is_pooled_ = isTwoWay(scene);
     out->pool_words_ = out->is_pooled_ ? POOL_WORDS : 0;
   }
@@ -48,11 +44,26 @@ core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx
     create(out->packed_bodies_, gpu::Buffer::create(ctx, "packed bodies", out->body_words_ * 4));
     create(out->pack_bodies_, gpu::Program::create(ctx, "stream/pack_bodies.comp", defines));
   }
-  const std::size_t bytes =
-      4 * (out->surface_words_ + out->particle_words_ + out->pool_words_ + out->foam_words_ + out->body_words_);
-  create(out->ring_, gpu::ReadbackRing::create(ctx, "frames", bytes, kSlotCount));
   if (create.error()) return *create.error();
+  if (auto sized = out->resize(derived); !sized) return sized.error();
   return out;
+}
+
+core::Result<void> FramePacker::resize(const Derived& derived) {
+  gpu::Buffer packed;
+  std::unique_ptr<gpu::ReadbackRing> ring;
+  const std::size_t particle_words = derived.particles ? std::size_t{derived.particles->count} * kWordsPerParticle : 0;
+  const std::size_t words = surface_words_ + particle_words + pool_words_ + foam_words_ + body_words_;
+  Creation create;
+  if (particle_words > 0) create(packed, gpu::Buffer::create(ctx_, "packed particles", particle_words * 4));
+  create(ring, gpu::ReadbackRing::create(ctx_, "frames", words * 4, kSlotCount));
+  if (create.error()) return *create.error();
+  packed_particles_ = std::move(packed);
+  ring_ = std::move(ring);
+  pending_.clear();
+  particle_words_ = particle_words;
+  particles_ = derived.particles ? derived.particles->count : 0;
+  return {};
 }
 
 bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts) {

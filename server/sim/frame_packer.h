@@ -27,6 +27,10 @@ class FramePacker {
   static core::Result<std::unique_ptr<FramePacker>> create(gpu::Context& ctx, const core::Scene& scene,
                                                            const Derived& derived, const gpu::Defines& defines);
 
+  /// Buffers for another number of particles, the same programs; frames on their way are lost. An error changes
+  /// nothing.
+  core::Result<void> resize(const Derived& derived);
+
   /// What a frame should hold; parts that are null it does not. `population` goes with `particles`.
   struct Parts {
     Wave* wave = nullptr;

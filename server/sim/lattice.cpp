@@ -115,6 +115,34 @@ double calibratedVirtualMass(KernelSet set, double s, double H, double rho_0, do
   return missing / lattice;
 }
 
+WallSupport calibratedWall(KernelSet set, double s, double H, double rho_0, double mass_kg) {
+  const int reach = layersWithin(s, H);
+  double share = 0.0;
+  double slope_pm = 0.0;
+  for (int y = 1; y <= reach; ++y) {
+    for (const double d2 : lateralSquares(s, reach)) {
+      const double r = std::sqrt(d2 + s * s * y * y);
+      share += mass_kg * densityKernel(set, r, H) / rho_0;
+      slope_pm += mass_kg * pressureSlope(set, r, H) * s * y / r / rho_0;
+    }
+  }
+  WallSupport wall;
+  wall.reach_m = s / 2 + share / slope_pm;  // f'/f = -2 / (D - s/2) = -2 slope / share
+  wall.share = share / std::pow(1 - s / 2 / wall.reach_m, 2);
+  return wall;
+}
+
+double latticeConstraintSlope2(KernelSet set, double s, double H, double rho_0, double mass_kg) {
+  const int reach = layersWithin(s, H);
+  return sumLayers(s, H, -reach, reach,
+                   [&](double r) { return r > 0 ? std::pow(mass_kg * pressureSlope(set, r, H) / rho_0, 2) : 0.0; });
+}
+
+double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho) {
+  if (equation == core::EquationOfState::kLinear) return stiffness_m2ps2 * (rho - rho_0);
+  return stiffness_m2ps2 * rho_0 / 7 * (std::pow(rho / rho_0, 7) - 1);
+}
+
 std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
   const double s = water.spacing_m;
   const double H = water.support_radius_m;
@@ -127,7 +155,7 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
   const std::vector<double> lateral = lateralSquares(s, layersWithin(s, H));
   const std::vector<double> floor_lateral = lateralSquares(s, water.floor_points / 2);
 
-  std::vector<double> y(n), v(n, 0.0), pressure_term(n);
+  std::vector<double> y(n), v(n, 0.0), pressure(n), density(n);
   for (std::size_t k = 0; k < n; ++k) y[k] = (static_cast<double>(k) + 0.5) * s;
   // visit(distance, vertical part, mass) of every particle and virtual particle that layer k feels, itself included.
   const auto forOthers = [&](std::size_t k, auto&& particle, auto&& virtual_particle) {
@@ -146,18 +174,24 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
       forOthers(
           k, [&](std::size_t, double r, double) { rho += water.mass_kg * densityKernel(set, r, H); },
           [&](double r, double) { rho += water.virtual_mass_kg * cubicNorm(H) * cubicShape(r / H); });
-      pressure_term[k] = std::max(water.stiffness_m2ps2 * (rho - water.rest_density_kgpm3), 0.0) / (rho * rho);
+      density[k] = rho;
+      pressure[k] = pressureOf(water.equation_of_state, water.stiffness_m2ps2, water.rest_density_kgpm3, rho);
+      if (!water.cohesion) pressure[k] = std::max(pressure[k], 0.0);
     }
     double worst = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
       double a = -water.gravity_mps2;
+      const double own = pressure[k] / (density[k] * density[k]);
       forOthers(
           k,
           [&](std::size_t j, double r, double dy) {
-            if (r > 0) a += water.mass_kg * (pressure_term[k] + pressure_term[j]) * pressureSlope(set, r, H) * dy / r;
+            const double pair = water.pressure_force == core::PressureForce::kMean
+                                    ? (pressure[k] + pressure[j]) / (2 * density[k] * density[j])
+                                    : own + pressure[j] / (density[j] * density[j]);
+            if (r > 0) a += water.mass_kg * pair * pressureSlope(set, r, H) * dy / r;
           },
           [&](double r, double dy) {
-            a += water.virtual_mass_kg * pressure_term[k] * cubicNorm(H) / H * cubicSlope(r / H) * dy / r;
+            a += water.virtual_mass_kg * std::max(own, 0.0) * cubicNorm(H) / H * cubicSlope(r / H) * dy / r;
           });
       worst = std::max(worst, std::abs(a));
       v[k] = kVelocityKeep * v[k] + dt_s * a;

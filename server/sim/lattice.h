@@ -26,6 +26,9 @@ double cubicNorm(double H);      ///< 8 / (pi H^3)
 double densityKernel(core::KernelSet set, double r, double H);
 double pressureSlope(core::KernelSet set, double r, double H);
 
+/// Pressure [Pa] from density; k = c0^2. Not clamped. The same as shaders/include/pressure.glsl.
+double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho);
+
 /// Neighbours of a particle inside a cubic lattice of spacing s, within H, itself not counted.
 double latticeNeighbours(double s, double H);
 
@@ -35,6 +38,19 @@ double calibratedMass(core::KernelSet set, double s, double H, double rho_0);
 /// Mass of the virtual particles of a `points` x `points` floor lattice, one spacing under the lowest layer, that
 /// replaces what the layers missing below would have given to its density. [kg]
 double calibratedVirtualMass(core::KernelSet set, double s, double H, double rho_0, double mass_kg, int points);
+
+/// f(d) = share max(1 - d / reach_m, 0)^2 of the rest density lies beyond a wall at distance d.
+struct WallSupport {
+  double share = 0.0;
+  double reach_m = 0.0;
+};
+
+/// What makes up for the layers missing beyond a wall half a spacing away: their density, and twice their pressure
+/// slope, because a wall has no pressure of its own to add to the particle's.
+WallSupport calibratedWall(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
+
+/// Squared gradient of the density constraint rho/rho_0 - 1, summed over the neighbours inside the lattice. [1/m^2]
+double latticeConstraintSlope2(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
 /// What restingLayers() needs to know of the water.
 struct RestingWater {
@@ -47,6 +63,9 @@ struct RestingWater {
   double mass_kg = 0.0;
   double virtual_mass_kg = 0.0;
   int floor_points = kFlatFloorLattice;
+  core::EquationOfState equation_of_state = core::EquationOfState::kLinear;
+  core::PressureForce pressure_force = core::PressureForce::kConserving;
+  bool cohesion = false;
 };
 
 /// Heights above the floor at which the layers of a square lattice rest: pressure, floor and gravity in balance under

@@ -10,16 +10,9 @@ namespace spindrift::sim {
 core::Result<std::unique_ptr<NeighborGrid>> NeighborGrid::create(gpu::Context& ctx, const ParticleLayout& layout,
                                                                  const gpu::Defines& defines, bool pooled) {
   using gpu::Program;
-  using gpu::TexelBuffer;
-  using gpu::TexelFormat;
   auto grid = std::unique_ptr<NeighborGrid>(new NeighborGrid(ctx));
-  const std::size_t blocks = layout.cell_count / SCAN_BLOCK + 1;
+  if (auto sized = grid->resize(layout); !sized) return sized.error();
   Creation create;
-  create(grid->cell_count_of_, TexelBuffer::create(ctx, "cell count", layout.cell_count + 1, TexelFormat::kR32UI));
-  create(grid->cell_start_, TexelBuffer::create(ctx, "cell start", layout.cell_count + 1, TexelFormat::kR32UI));
-  create(grid->cell_arrival_, TexelBuffer::create(ctx, "cell arrival", layout.count, TexelFormat::kRG32UI));
-  create(grid->cell_member_, TexelBuffer::create(ctx, "cell member", layout.count, TexelFormat::kR32UI));
-  create(grid->block_total_, TexelBuffer::create(ctx, "block total", blocks, TexelFormat::kR32UI));
   if (pooled) create(grid->clear_, Program::create(ctx, "grid/clear.comp", defines));
   create(grid->count_program_, Program::create(ctx, "grid/count.comp", defines));
   create(grid->scan_blocks_, Program::create(ctx, "grid/scan_blocks.comp", defines));
@@ -29,6 +22,26 @@ core::Result<std::unique_ptr<NeighborGrid>> NeighborGrid::create(gpu::Context& c
   create(grid->reorder_, Program::create(ctx, "grid/reorder.comp", defines));
   if (create.error()) return *create.error();
   return grid;
+}
+
+core::Result<void> NeighborGrid::resize(const ParticleLayout& layout) {
+  using gpu::TexelBuffer;
+  using gpu::TexelFormat;
+  const std::size_t blocks = layout.cell_count / SCAN_BLOCK + 1;
+  TexelBuffer counts, start, arrival, member, total;
+  Creation create;
+  create(counts, TexelBuffer::create(ctx_, "cell count", layout.cell_count + 1, TexelFormat::kR32UI));
+  create(start, TexelBuffer::create(ctx_, "cell start", layout.cell_count + 1, TexelFormat::kR32UI));
+  create(arrival, TexelBuffer::create(ctx_, "cell arrival", layout.count, TexelFormat::kRG32UI));
+  create(member, TexelBuffer::create(ctx_, "cell member", layout.count, TexelFormat::kR32UI));
+  create(total, TexelBuffer::create(ctx_, "block total", blocks, TexelFormat::kR32UI));
+  if (create.error()) return *create.error();
+  cell_count_of_ = std::move(counts);
+  cell_start_ = std::move(start);
+  cell_arrival_ = std::move(arrival);
+  cell_member_ = std::move(member);
+  block_total_ = std::move(total);
+  return {};
 }
 
 void NeighborGrid::build(const ParticleBuffers& particles, const Population& population) {

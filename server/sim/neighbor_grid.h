@@ -19,6 +19,9 @@ class NeighborGrid {
   static core::Result<std::unique_ptr<NeighborGrid>> create(gpu::Context& ctx, const ParticleLayout& layout,
                                                             const gpu::Defines& defines, bool pooled);
 
+  /// Buffers for another layout, the same programs; an error changes nothing.
+  core::Result<void> resize(const ParticleLayout& layout);
+
   /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their order before (in a
   /// pool by where they are); particles that were absorbed leave.
   void build(const ParticleBuffers& particles, const Population& population);

@@ -15,6 +15,9 @@ struct ParticleBuffers {
   gpu::TexelBuffer position, velocity;
   gpu::TexelBuffer sorted_position, sorted_velocity;
   gpu::TexelBuffer pressure_point, motion_point, acceleration;
+  gpu::TexelBuffer foam_source;  ///< only where storesFoamSource()
+
+  static core::Result<ParticleBuffers> create(gpu::Context& ctx, std::size_t count, bool stores_foam_source);
 };
 
 /// The defines that specialise a scene's shaders: only what is present is compiled.

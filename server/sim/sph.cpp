@@ -23,6 +23,7 @@ void Sph::density(const ParticleBuffers& particles, const Population& population
   particles.pressure_point.bindStorage(PRESSURE_POINT);
   particles.motion_point.bindStorage(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
+  if (particles.foam_source) particles.foam_source.bindStorage(FOAM_SOURCE);
   population.forParticles(density_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
@@ -39,6 +40,7 @@ void Sph::forces(const ParticleBuffers& particles, const Population& population)
 void Sph::integrate(const ParticleBuffers& particles, const Population& population) {
   population.bind();
   particles.acceleration.bindTexel(ACCELERATION);
+  if (particles.foam_source) particles.foam_source.bindTexel(FOAM_SOURCE);
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   population.forParticles(integrate_);

@@ -22,6 +22,8 @@
 #include "particle_buffers.h"
 #include "particle_pool.h"
 #include "patch_follower.h"
+#include "position_based.h"
+#include "relay_particles.h"
 #include "sph.h"
 #include "starting_state.h"
 #include "storm.h"
@@ -77,7 +79,8 @@ struct WaterSim::Parts {
   gpu::Buffer uniforms;
   std::optional<ParticleBuffers> particles;
   std::unique_ptr<NeighborGrid> grid;
-  std::unique_ptr<Sph> sph;
+  std::unique_ptr<Sph> sph;  ///< one of the two solvers
+  std::unique_ptr<PositionBased> position_based;
   std::unique_ptr<Wave> wave;
   Effects effects;
   std::unique_ptr<Breakers> breakers;
@@ -94,6 +97,8 @@ struct WaterSim::Parts {
     return {derived.particles->count, derived.particles->cell_count, pool.get()};
   }
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
+  core::Result<void> makeCheckpoints(gpu::Context& ctx);
+  core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
 };
 
 gpu::Defines shaderDefines(const core::Scene& scene) {
@@ -109,6 +114,10 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"COUPLED", flag(scene.coupling.has_value())},
           {"KERNEL_SET", std::to_string(has_particles ? kernelSetNumber(scene.particles->kernel_set) : 3)},
           {"FOAM", flag(scene.foam.has_value())},
+          {"NEIGHBOUR_FOAM", flag(countsNeighbours(scene))},
+          {"TAIT", flag(has_particles && scene.particles->equation_of_state == core::EquationOfState::kTait)},
+          {"COHESION", flag(has_particles && scene.particles->cohesion)},
+          {"MEAN_FORCE", flag(has_particles && scene.particles->pressure_force == core::PressureForce::kMean)},
           {"LATTICE", std::to_string(scene.coupling ? scene.coupling->lattice_count : 5)},
           {"STENCIL", scene.wave && scene.wave->stencil == core::Stencil::kNinePoint ? "9" : "5"},
           {"WAVE_PERIODIC_X", flag(scene.wave && isPeriodicX(*scene.wave))},
@@ -141,6 +150,7 @@ void WaterSim::step() {
   for (std::uint32_t substep = 0; parts_->particles && substep < derived_.substeps_count; ++substep) {
     emitParticles(substep);
     leadSurface(substep);
+    predictParticles();
     buildGrid();
     advanceParticles();
   }
@@ -205,6 +215,13 @@ void WaterSim::fadeFoam() {
   parts_->foam->advance(*parts_->wave, *parts_->breakers, parts_->boats.get());
 }
 
+void WaterSim::predictParticles() {
+  if (!parts_->position_based) return;
+  const auto timer = timers_.scope("pbf");
+  bindSurroundings();
+  parts_->position_based->predict(*parts_->particles, parts_->population(derived_));
+}
+
 void WaterSim::buildGrid() {
   if (!parts_->particles) return;
   const auto timer = timers_.scope("grid");
@@ -213,15 +230,22 @@ void WaterSim::buildGrid() {
 
 void WaterSim::advanceParticles() {
   if (!parts_->particles) return;
-  const auto timer = timers_.scope("sph");
+  bindSurroundings();
   const Population population = parts_->population(derived_);
-  if (parts_->wave) bindSurroundings();
+  if (parts_->position_based) {
+    const auto timer = timers_.scope("pbf");
+    parts_->position_based->project(*parts_->particles, population, scene_.particles->iterations_count);
+    parts_->position_based->finish(*parts_->particles, population);
+  }
+  if (!parts_->sph) return;
+  const auto timer = timers_.scope("sph");
   parts_->sph->density(*parts_->particles, population);
   parts_->sph->forces(*parts_->particles, population);
   parts_->sph->integrate(*parts_->particles, population);
 }
 
 void WaterSim::bindSurroundings() {
+  if (!parts_->wave) return;
   if (scene_.coupling) parts_->wave->bindSurface();
   parts_->wave->bindTerrain();
   if (parts_->boats) parts_->boats->bind();
@@ -266,20 +290,13 @@ core::Result<void> WaterSim::build() {
   create(parts_->uniforms, gpu::Buffer::create(ctx_, "sim uniforms", sizeof(shared::SimUniforms)));
   if (derived_.wave) create(parts_->wave, Wave::create(ctx_, scene_, *derived_.wave, defines, isSampled(scene_)));
   if (derived_.particles) {
-    const std::size_t n = derived_.particles->count;
-    ParticleBuffers& p = parts_->particles.emplace();
-    const auto make = [&](gpu::TexelBuffer& buffer, const char* name) {
-      create(buffer, gpu::TexelBuffer::create(ctx_, name, n, gpu::TexelFormat::kRGBA32F));
-    };
-    make(p.position, "position");
-    make(p.velocity, "velocity");
-    make(p.sorted_position, "sorted position");
-    make(p.sorted_velocity, "sorted velocity");
-    make(p.pressure_point, "pressure point");
-    make(p.motion_point, "motion point");
-    make(p.acceleration, "acceleration");
+    create(parts_->particles.emplace(),
+           ParticleBuffers::create(ctx_, derived_.particles->count, storesFoamSource(scene_)));
     create(parts_->grid, NeighborGrid::create(ctx_, *derived_.particles, defines, isTwoWay(scene_)));
-    create(parts_->sph, Sph::create(ctx_, defines));
+    if (scene_.particles->solver == core::PressureSolver::kPositionBased)
+      create(parts_->position_based, PositionBased::create(ctx_, defines));
+    else
+      create(parts_->sph, Sph::create(ctx_, defines));
   }
   if (hasBreakers(scene_)) create(parts_->breakers, Breakers::create(ctx_, *derived_.wave, defines));
   if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, *derived_.particles, defines));
@@ -289,18 +306,35 @@ core::Result<void> WaterSim::build() {
   create(parts_->frames, FramePacker::create(ctx_, scene_, derived_, defines));
   create(parts_->diagnostics, Diagnostics::create(ctx_, derived_, defines));
   if (create.error()) return *create.error();
+  return parts_->makeCheckpoints(ctx_);
+}
+
+core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
   std::vector<gpu::Buffer*> state;
-  if (parts_->wave) {
-    state = {&parts_->wave->elevation(), &parts_->wave->flow()};
-    if (auto* outflow = parts_->wave->outflow()) state.push_back(outflow);
+  if (wave) {
+    state = {&wave->elevation(), &wave->flow()};
+    if (auto* outflow = wave->outflow()) state.push_back(outflow);
   }
-  if (parts_->particles) state.insert(state.end(), {&parts_->particles->position, &parts_->particles->velocity});
-  if (parts_->pool) state.push_back(&parts_->pool->words());
-  if (parts_->breakers) state.push_back(&parts_->breakers->state());
-  if (parts_->foam) state.push_back(&parts_->foam->field());
-  create(parts_->checkpoints, Checkpoints::create(ctx_, state));
-  if (create.error()) return *create.error();
+  if (particles) state.insert(state.end(), {&particles->position, &particles->velocity});
+  if (pool) state.push_back(&pool->words());
+  if (breakers) state.push_back(&breakers->state());
+  if (foam) state.push_back(&foam->field());
+  auto made = Checkpoints::create(ctx, state);
+  if (!made) return made.error();
+  checkpoints = *std::move(made);
   return {};
+}
+
+/// Whatever depends on the number of particles, made anew; programs stay. After an error parts may be of either size:
+/// size them back.
+core::Result<void> WaterSim::Parts::resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived) {
+  auto fresh = ParticleBuffers::create(ctx, derived.particles->count, storesFoamSource(scene));
+  if (!fresh) return fresh.error();
+  if (auto sized = grid->resize(*derived.particles); !sized) return sized.error();
+  if (auto sized = frames->resize(derived); !sized) return sized.error();
+  if (auto sized = diagnostics->resize(derived); !sized) return sized.error();
+  particles = *std::move(fresh);
+  return makeCheckpoints(ctx);
 }
 
 void WaterSim::uploadStartingState() {
@@ -369,12 +403,51 @@ std::uint32_t WaterSim::particleCount() const {
 core::Result<void> WaterSim::setScene(const core::Scene& scene) {
   auto fresh = derive(scene);
   if (!fresh) return fresh.error();
-  if (needsRestart(derived_, *fresh) || shaderDefines(scene_) != shaderDefines(scene)) {
+  const bool relays = scene.particles && scene_.particles && scene.particles->count != scene_.particles->count;
+  // Compared with a fresh start of the scene as it was, but for the number of particles: the running layout may be one
+  // that no fresh start has.
+  // A pool's places are counted on the device and do not move.
+  if (relays && parts_->pool) {
+    return Error{
+        ErrorCode::kInvalidInput,
+        "particles.count: is the size of the pool of this two-way scene: start the room again with the changed scene"};
+  }
+  core::Scene comparable = scene_;
+  if (relays) comparable.particles->count = scene.particles->count;
+  const auto before = derive(comparable);
+  if (!before || needsRestart(*before, *fresh) || shaderDefines(scene_) != shaderDefines(scene) ||
+      (scene.particles && scene.particles->solver != scene_.particles->solver)) {
     return Error{ErrorCode::kInvalidInput,
                  "this change needs new buffers or shaders: start the room again with the changed scene"};
   }
+  if (relays) {
+    if (auto relaid = relay(scene); !relaid) return relaid.error();
+  }
   scene_ = scene;
   setCareful(is_careful_);
+  return {};
+}
+
+core::Result<void> WaterSim::relay(const core::Scene& scene) {
+  const auto layout = layOutAgain(scene, *derived_.particles);
+  if (!layout) return layout.error();
+  auto derived = derive(scene, &*layout);
+  if (!derived) return derived.error();
+  const StateCopy state = copyState();
+  const RelaidParticles particles = relayParticles(scene, derived_, state, *layout);
+  if (auto sized = parts_->resize(ctx_, scene, *derived); !sized) {
+    // The device refused. Back to the old size, which it held a moment ago, and to the old state.
+    if (auto back = parts_->resize(ctx_, scene_, derived_); !back) return back.error();
+    setState(state);
+    return sized.error();
+  }
+  derived_ = *std::move(derived);
+  parts_->particles->position.upload(particles.position);
+  parts_->particles->velocity.upload(particles.velocity);
+  parts_->particles->acceleration.upload(std::vector<float>(std::size_t{derived_.particles->count} * 4,
+                                                            static_cast<float>(scene.particles->rest_density_kgpm3)));
+  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
+  abandoned_until_tick_ = tick_;  // what is still to come is about the old particles
   return {};
 }
 

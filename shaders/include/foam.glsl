@@ -12,4 +12,9 @@ float foamStep(float foam, float density_ratio) {
   return max(source, foam * sim.foam_keep_ratio);
 }
 
+/// Second source, spray: 0 for a particle with foam_neighbours neighbours or more, 1 for one with half of them or fewer.
+float neighbourFoam(float neighbours) {
+  return clamp(2.0 - 2.0 * neighbours / sim.foam_neighbours, 0.0, 1.0);
+}
+
 #endif

@@ -65,6 +65,15 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float wake_foam_keep_ratio;
   float landing_foam_keep_ratio;
 
+  float foam_neighbours;        // fewer neighbours than this and a particle turns white
+
+  // Walls: f(d) = wall_share max(1 - d / wall_reach_m, 0)^2 of the rest density is what lies beyond one.
+  float wall_share;
+  float wall_reach_m;
+
+  // Position-based solver: added to a constraint's squared gradient, so that lone particles stay calm.
+  float constraint_softness_pm2;
+
   // Wave; n x n cells, x fastest.
   uint wave_n;
   float wave_side_m;
@@ -85,7 +94,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float surface_quantum_m;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 56 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 60 * 4, "scalars of four bytes only: std140 and C++ must agree");
 }  // namespace spindrift::shared
 #else
 } sim;

@@ -1,16 +1,18 @@
 // Density and pressure of each particle.
-// Reads SORTED_POSITION, SORTED_VELOCITY, CELL_START, the floor. Writes PRESSURE_POINT (position, p/rho^2), MOTION_POINT
-// (velocity, m/rho) and ACCELERATION.w (rho).
+// Reads SORTED_POSITION, SORTED_VELOCITY, CELL_START, floor and walls. Writes PRESSURE_POINT (position, p/rho^2, with MEAN_FORCE
+// p), MOTION_POINT (velocity, m/rho), ACCELERATION.w (rho) and, with NEIGHBOUR_FOAM, FOAM_SOURCE.
 // Equations: rho_i = sum_j m W(r_ij) (thesis 3.6), plus the floor's virtual particles, cubic kernel (thesis, algorithm
-// 10); p_i = max(k (rho_i - rho_0), 0) (thesis 3.9, clamped: water does not pull).
+// 10), and the walls' shares; p_i from the equation of state (include/pressure.glsl).
 // Invariant: rho_i >= m W(0) > 0, so the divisions are safe.
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
 #include "shared/groups.h"
 #include "include/candidates.glsl"
 #include "include/population.glsl"
 #include "include/floor.glsl"
 #include "include/kernels.glsl"
-#include "include/floor_lattice.glsl"
+#include "include/boundary.glsl"
+#include "include/foam.glsl"
+#include "include/pressure.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -18,6 +20,9 @@ layout(binding = SORTED_POSITION) uniform samplerBuffer sorted_position;
 layout(binding = SORTED_VELOCITY) uniform samplerBuffer sorted_velocity;
 layout(std430, binding = PRESSURE_POINT) restrict writeonly buffer PressurePoint { vec4 pressure_point[]; };
 layout(std430, binding = MOTION_POINT) restrict writeonly buffer MotionPoint { vec4 motion_point[]; };
+#if NEIGHBOUR_FOAM
+layout(std430, binding = FOAM_SOURCE) restrict writeonly buffer FoamSource { float foam_source[]; };
+#endif
 layout(std430, binding = ACCELERATION) restrict writeonly buffer Acceleration { vec4 acceleration[]; };
 
 void main() {
@@ -29,20 +34,35 @@ void main() {
   const ivec3 cell = cellOf(g, x_i);
 
   float sum = 0.0;
+#if NEIGHBOUR_FOAM
+  const float H2 = support.H * support.H;
+  float near = -1.0;  // the particle itself is none of its neighbours
+#endif
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dx = -1; dx <= 1; ++dx) {
       const CandidateRange range = candidateRange(g, cell, dx, dz);
       const vec3 x = x_i + range.shift_m;
       for (int j = range.first; j < range.last; ++j) {
         const vec3 r = x - texelFetch(sorted_position, j).xyz;
-        sum += densityShape(dot(r, r), support);
+        const float r2 = dot(r, r);
+        sum += densityShape(r2, support);
+#if NEIGHBOUR_FOAM
+        near += step(r2, H2);
+#endif
       }
     }
   }
 
-  const float rho = sim.mass_kg * sim.density_norm * sum + floorDensity(x_i);
-  const float pressure = max(sim.stiffness_m2ps2 * (rho - sim.rest_density_kgpm3), 0.0);
+  const float rho = sim.mass_kg * sim.density_norm * sum + boundaryDensity(x_i);
+  const float pressure = pressureOf(rho);
+#if MEAN_FORCE
+  pressure_point[i] = vec4(x_i, pressure);
+#else
   pressure_point[i] = vec4(x_i, pressure / (rho * rho));
+#endif
+#if NEIGHBOUR_FOAM
+  foam_source[i] = neighbourFoam(near);
+#endif
   motion_point[i] = vec4(texelFetch(sorted_velocity, int(i)).xyz, sim.mass_kg / rho);
   acceleration[i] = vec4(0.0, 0.0, 0.0, rho);
 }

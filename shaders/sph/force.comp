@@ -1,14 +1,15 @@
 // Acceleration of each particle from its neighbours, the floor, gravity and the downward force.
-// Reads PRESSURE_POINT, MOTION_POINT, ACCELERATION.w (rho), CELL_START, the floor. Writes ACCELERATION.
-// Equations: -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W (momentum-conserving form of thesis 3.17);
+// Reads PRESSURE_POINT, MOTION_POINT, ACCELERATION.w (rho), CELL_START, floor and walls. Writes ACCELERATION.
+// Equations: -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W (momentum-conserving form of thesis 3.17) or, with MEAN_FORCE,
+// -1/rho_i sum_j m (p_i + p_j)/(2 rho_j) grad W (thesis 3.17 as it stands);
 // mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W, viscosity kernel (thesis 3.18 with the difference its text means); above the
 // water -downforce (y - eta)^2 (thesis 3.6.2).
-// Invariant: the pair terms are antisymmetric up to rounding; the particle itself adds nothing (r = 0).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2
+// Invariant: the pair terms are antisymmetric up to rounding (not with MEAN_FORCE); the particle itself adds nothing (r = 0).
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
 #include "shared/groups.h"
 #include "include/candidates.glsl"
 #include "include/population.glsl"
-#include "include/floor_lattice.glsl"
+#include "include/boundary.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -37,14 +38,25 @@ void main() {
         const vec4 b = texelFetch(motion_point, j);
         const vec3 r = x - a.xyz;
         const float r2 = dot(r, r);
+#if MEAN_FORCE
+        push += ((own.w + a.w) * b.w * pressurePull(r2, support)) * r;
+#else
         push += ((own.w + a.w) * pressurePull(r2, support)) * r;
+#endif
         drag += (b.w * viscosityLaplacian(sqrt(r2), support.H)) * (b.xyz - v_i);
       }
     }
   }
 
-  vec3 a = sim.slope_norm * sim.mass_kg * push + sim.viscosity_norm * sim.viscosity_pas / rho_i * drag;
-  a += floorAcceleration(own.xyz, v_i, own.w, rho_i);
+#if MEAN_FORCE
+  const float push_factor = 0.5 / rho_i;
+  const float pressure_term = own.w / (rho_i * rho_i);
+#else
+  const float push_factor = sim.mass_kg;
+  const float pressure_term = own.w;
+#endif
+  vec3 a = sim.slope_norm * push_factor * push + sim.viscosity_norm * sim.viscosity_pas / rho_i * drag;
+  a += boundaryAcceleration(own.xyz, v_i, pressure_term, rho_i);
   a.y -= sim.gravity_mps2;
 #if COUPLED
   const Floor f = loadFloor();

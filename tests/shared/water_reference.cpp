@@ -113,10 +113,68 @@ struct Floor {
   }
 };
 
-double pressureTerm(const core::Scene& scene, double rho) {
-  const double p =
-      scene.particles->sound_speed_mps * scene.particles->sound_speed_mps * (rho - scene.particles->rest_density_kgpm3);
-  return std::max(p, 0.0) / (rho * rho);
+double pressure(const core::Scene& scene, double rho) {
+  const core::ParticleScene& s = *scene.particles;
+  const double rho_0 = s.rest_density_kgpm3;
+  const double k = s.sound_speed_mps * s.sound_speed_mps;
+  const double p = s.equation_of_state == core::EquationOfState::kTait ? rho_0 * k / 7 * (std::pow(rho / rho_0, 7) - 1)
+                                                                       : k * (rho - rho_0);
+  return s.cohesion ? p : std::max(p, 0.0);
+}
+
+double length2(const Vec3& a) {
+  return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+}
+
+/// Density of what lies beyond floor and walls: their shares combine like independent covers.
+double boundaryDensity(const core::Scene& scene, const sim::Derived& d, const Floor& floor, const Vec3& x) {
+  const double rho_0 = scene.particles->rest_density_kgpm3;
+  double open = 1;
+  for (const std::size_t axis : {0u, 2u}) {
+    const auto side = axis == 0 ? scene.particles->boundary_x : scene.particles->boundary_z;
+    if (side == core::Boundary::kPeriodic) continue;
+    double share = 0;
+    for (const double distance : {x[axis] - d.particles->min_m[axis], d.particles->max_m[axis] - x[axis]}) {
+      const double u = 1 - std::max(distance, 0.0) / d.particles->wall_reach_m;
+      if (u > 0) share += d.particles->wall_share * u * u;
+    }
+    open *= 1 - share;
+  }
+  double floor_density = 0;
+  for (const Vec3& r : floor.lattice(x))
+    floor_density += d.particles->virtual_mass_kg * cubic(length(r), d.particles->support_radius_m);
+  return rho_0 * (1 - open * (1 - floor_density / rho_0));
+}
+
+/// Its gradient: along x and z through walls numerically, the floor's as the sum of its virtual particles' (whose
+/// heights count as fixed).
+Vec3 boundaryGradient(const core::Scene& scene, const sim::Derived& d, const Floor& floor, const Vec3& x) {
+  const double H = d.particles->support_radius_m;
+  const double rho_0 = scene.particles->rest_density_kgpm3;
+  double floor_density = 0;
+  Vec3 gradient = {0, 0, 0};
+  for (const Vec3& r : floor.lattice(x)) {
+    const double distance = length(r);
+    floor_density += d.particles->virtual_mass_kg * cubic(distance, H);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      gradient[axis] += d.particles->virtual_mass_kg * cubicGradient(distance, H) / distance * r[axis];
+  }
+  const double open = (rho_0 - boundaryDensity(scene, d, floor, x)) / (rho_0 - floor_density);
+  for (double& g : gradient) g *= open;
+  for (const std::size_t axis : {0u, 2u}) {
+    const auto side = axis == 0 ? scene.particles->boundary_x : scene.particles->boundary_z;
+    if (side == core::Boundary::kPeriodic) continue;
+    // Far above the floor, where only walls count.
+    const double e = 1e-5 * H;
+    Vec3 low = x;
+    Vec3 high = x;
+    low[1] = high[1] = 1e6;
+    low[axis] -= e;
+    high[axis] += e;
+    gradient[axis] += (1 - floor_density / rho_0) *
+                      (boundaryDensity(scene, d, floor, high) - boundaryDensity(scene, d, floor, low)) / (2 * e);
+  }
+  return gradient;
 }
 
 }  // namespace
@@ -156,7 +214,7 @@ std::vector<double> referenceDensity(const core::Scene& scene, const sim::Derive
     for (const Vec3& other : x)
       rho[i] +=
           d.particles->mass_kg * densityKernel(scene.particles->kernel_set, length(between(scene, d, x[i], other)), H);
-    for (const Vec3& r : floor.lattice(x[i])) rho[i] += d.particles->virtual_mass_kg * cubic(length(r), H);
+    rho[i] += boundaryDensity(scene, d, floor, x[i]);
   }
   return rho;
 }
@@ -172,29 +230,80 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
   std::vector<Vec3> out(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
     Vec3 a = {0, -scene.gravity_mps2, 0};
-    const double own = pressureTerm(scene, rho[i]);
+    const double own = pressure(scene, rho[i]);
+    const double own_term = own / (rho[i] * rho[i]);
     for (std::size_t j = 0; j < x.size(); ++j) {
       if (j == i) continue;
       const Vec3 r = between(scene, d, x[i], x[j]);
       const double distance = length(r);
       if (distance >= H) continue;
-      const double push = -m * (own + pressureTerm(scene, rho[j])) *
-                          pressureGradient(scene.particles->kernel_set, distance, H) / distance;
+      const double other = pressure(scene, rho[j]);
+      const double pair = scene.particles->pressure_force == core::PressureForce::kMean
+                              ? (own + other) / (2 * rho[i] * rho[j])
+                              : own_term + other / (rho[j] * rho[j]);
+      const double push = -m * pair * pressureGradient(scene.particles->kernel_set, distance, H) / distance;
       const double drag = mu / rho[i] * m / rho[j] * viscosityLaplacian(distance, H);
       for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (v[j][axis] - v[i][axis]);
     }
     const Vec3 floor_velocity = floor.velocity(x[i][0], x[i][2]);
     for (const Vec3& r : floor.lattice(x[i])) {
       const double distance = length(r);
-      const double push = -d.particles->virtual_mass_kg * own * cubicGradient(distance, H) / distance;
       const double drag = mu / rho[i] * d.particles->virtual_mass_kg / rho_0 * viscosityLaplacian(distance, H);
-      for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (floor_velocity[axis] - v[i][axis]);
+      for (int axis = 0; axis < 3; ++axis) a[axis] += drag * (floor_velocity[axis] - v[i][axis]);
     }
+    const Vec3 gradient = boundaryGradient(scene, d, floor, x[i]);
+    for (std::size_t axis = 0; axis < 3; ++axis) a[axis] -= std::max(own_term, 0.0) * gradient[axis];
     if (scene.coupling) {
       const double above = std::max(x[i][1] - (floor.height(x[i][0], x[i][2]) + d.particles->band_m), 0.0);
       a[1] -= scene.coupling->downforce_per_m_s2 * above * above;
     }
     out[i] = a;
+  }
+  return out;
+}
+
+ReferenceProjection referenceProjection(const core::Scene& scene, const sim::Derived& d,
+                                        const ReferenceSurface& surface, const std::vector<Vec3>& x) {
+  const double H = d.particles->support_radius_m;
+  const double rho_0 = scene.particles->rest_density_kgpm3;
+  const double volume = d.particles->mass_kg / rho_0;
+  const Floor floor{scene, d, surface};
+  ReferenceProjection out;
+  out.rho = referenceDensity(scene, d, surface, x);
+  // grad W of a pair, [1/m^4]
+  const auto gradient = [&](std::size_t i, std::size_t j) {
+    Vec3 r = between(scene, d, x[i], x[j]);
+    const double distance = length(r);
+    for (double& c : r) c *= distance < H ? pressureGradient(scene.particles->kernel_set, distance, H) / distance : 0;
+    return r;
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Vec3 own = boundaryGradient(scene, d, floor, x[i]);
+    for (double& c : own) c /= rho_0;
+    double squares = 0;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      if (j == i) continue;
+      const Vec3 g = gradient(i, j);
+      for (std::size_t axis = 0; axis < 3; ++axis) own[axis] += volume * g[axis];
+      squares += volume * volume * length2(g);
+    }
+    double constraint = out.rho[i] / rho_0 - 1;
+    if (!scene.particles->cohesion) constraint = std::max(constraint, 0.0);
+    out.lambda_m2.push_back(-constraint / (length2(own) + squares + d.particles->constraint_softness_pm2));
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Vec3 move = boundaryGradient(scene, d, floor, x[i]);
+    for (double& c : move) c *= std::min(out.lambda_m2[i], 0.0) / rho_0;
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      if (j == i) continue;
+      const Vec3 g = gradient(i, j);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        move[axis] += volume * (out.lambda_m2[i] + out.lambda_m2[j]) * g[axis];
+    }
+    const double longest = d.particles->spacing_m / 4;
+    const double scale = std::min(1.0, longest / std::max(length(move), 1e-12));
+    for (double& c : move) c *= scale;
+    out.move_m.push_back(move);
   }
   return out;
 }

@@ -29,6 +29,15 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
                                         const ReferenceSurface& surface, const std::vector<Vec3>& x,
                                         const std::vector<Vec3>& v, const std::vector<double>& rho);
 
+/// One iteration of the position-based solver at predicted positions `x`: density, multiplier, and what the constraints
+/// ask for before walls and floor have their say.
+struct ReferenceProjection {
+  std::vector<double> rho, lambda_m2;
+  std::vector<Vec3> move_m;
+};
+ReferenceProjection referenceProjection(const core::Scene& scene, const sim::Derived& derived,
+                                        const ReferenceSurface& surface, const std::vector<Vec3>& x);
+
 /// One leapfrog step of the damped wave equation.
 std::vector<double> referenceWaveStep(const core::Scene& scene, const sim::Derived& derived,
                                       const std::vector<double>& eta, const std::vector<double>& eta_previous);

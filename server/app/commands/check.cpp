@@ -24,8 +24,8 @@ void print(const std::string& file, const v1::Scene& scene, const sim::Derived& 
     fmt::print(
         "  particles  {} ({} x {} x {}), spacing {:.3f} m, support radius {:.3f} m, {:.0f} neighbours, mass {:.3f} "
         "kg\n",
-        p.count, p.columns_count, p.layers_count, p.columns_count, p.spacing_m, p.support_radius_m, p.neighbours_count,
-        p.mass_kg);
+        p.count, p.columns_x_count, p.layers_count, p.columns_z_count, p.spacing_m, p.support_radius_m,
+        p.neighbours_count, p.mass_kg);
     fmt::print("  grid       {} x {} x {} cells\n", p.cells[0], p.cells[1], p.cells[2]);
   }
   for (const sim::StepRule& rule : d.rules)

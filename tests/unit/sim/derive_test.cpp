@@ -25,7 +25,7 @@ TEST(Derive, KeepsEveryStepRule) {
     }
     EXPECT_LE(d->dt_s, 0.4 * d->particles->support_radius_m / (c0 + scene.particles->max_speed_mps) * (1 + 1e-9));
     EXPECT_NEAR(d->dt_s * d->substeps_count, d->tick_s, 1e-12);
-    EXPECT_NEAR(d->wave->dt_s * d->wave->substeps_count, d->dt_s, 1e-12);
+    EXPECT_NEAR(d->wave->dt_s * d->wave->substeps_count, d->tick_s, 1e-12);
   }
 }
 
@@ -39,7 +39,7 @@ TEST(Derive, TilesAPeriodicPatchWithWholeCells) {
       const ParticleLayout& p = *d->particles;
       EXPECT_NEAR(p.cells[0] * p.support_radius_m, p.max_m[0] - p.min_m[0], 1e-9);
       EXPECT_GE(p.support_radius_m, ratio * p.spacing_m - 1e-9) << "never fewer neighbours than asked for";
-      EXPECT_EQ(p.count, p.columns_count * p.columns_count * p.layers_count);
+      EXPECT_EQ(p.count, p.columns_x_count * p.columns_z_count * p.layers_count);
       EXPECT_NEAR(p.count, count, 0.25 * count);
     }
   }

@@ -141,6 +141,96 @@ TEST_F(Solver, AgreesWithTheReferenceWithOnePeriodicAxisAndAWiderSupport) {
   compare(scene);
 }
 
+TEST_F(Solver, AgreesWithTheReferenceForEachEquationOfStateAndForceForm) {
+  std::uint32_t count = 310;  // another size each time, none of them a multiple of the work group
+  for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
+    for (const auto equation : {core::EquationOfState::kLinear, core::EquationOfState::kTait}) {
+      for (const auto force : {core::PressureForce::kConserving, core::PressureForce::kMean}) {
+        core::Scene scene = smallScene(count += 37);
+        scene.particles->kernel_set = set;
+        scene.particles->equation_of_state = equation;
+        scene.particles->pressure_force = force;
+        scene.particles->cohesion = count % 2 == 0;
+        scene.particles->boundary_x = count % 3 == 0 ? core::Boundary::kWall : core::Boundary::kPeriodic;
+        SCOPED_TRACE(count);
+        compare(scene);
+      }
+    }
+  }
+}
+
+TEST_F(Solver, AgreesWithTheReferenceInAnOblongBoxThatIsPartlyFilled) {
+  core::Scene scene = smallScene(600);
+  scene.wave.reset();
+  scene.coupling.reset();
+  scene.particles->box_side_m = 6.0;
+  scene.particles->box_width_m = 2.5;
+  scene.particles->fill_x_ratio = 0.4;
+  scene.particles->layers_count = 7;
+  scene.particles->boundary_x = core::Boundary::kWall;
+  scene.particles->boundary_z = core::Boundary::kWall;
+  compare(scene);
+}
+
+TEST_F(Solver, OneIterationOfPositionsAgreesWithTheReference) {
+  for (const bool walls : {false, true}) {
+    for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
+      core::Scene scene = smallScene(450);
+      scene.wave.reset();
+      scene.coupling.reset();
+      scene.particles->box_side_m = 4.0;
+      scene.particles->kernel_set = set;
+      scene.particles->solver = core::PressureSolver::kPositionBased;
+      scene.particles->iterations_count = 1;
+      scene.particles->cohesion = walls;
+      scene.particles->viscosity_pas = 0.0;
+      if (walls) scene.particles->boundary_x = scene.particles->boundary_z = core::Boundary::kWall;
+      scene.fixed_substeps_count = 1;
+      scene.tick_rate_hz = 240;
+      WaterSim& sim = make(scene);
+      const StateCopy before = stirred(sim);
+      sim.setState(before);
+      sim.step();
+      const StateCopy after = sim.copyState();
+      const Derived& d = sim.derived();
+      const std::size_t n = d.particles->count;
+      std::vector<Vec3> predicted(n);
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const float gravity = axis == 1 ? static_cast<float>(d.dt_s * scene.gravity_mps2) : 0.0f;
+          predicted[i][axis] =
+              before.position[4 * i + axis] + static_cast<float>(d.dt_s) * (before.velocity[4 * i + axis] - gravity);
+        }
+      }
+      const auto reference = testing::referenceProjection(scene, d, {}, predicted);
+      double rho_error = 0.0;
+      double error = 0.0;
+      double scale = 0.0;
+      std::size_t compared = 0;
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto i = static_cast<std::size_t>(after.position[4 * k + 3]);
+        bool inside = predicted[i][1] + reference.move_m[i][1] > d.particles->min_m[1] + 0.11 * d.particles->spacing_m;
+        for (const std::size_t axis : {0u, 2u}) {
+          for (const double at : {predicted[i][axis], predicted[i][axis] + reference.move_m[i][axis]})
+            inside = inside && at > d.particles->min_m[axis] + 1e-3 && at < d.particles->max_m[axis] - 1e-3;
+        }
+        if (!inside) continue;
+        rho_error = std::max(rho_error, std::abs(after.density_kgpm3[k] - reference.rho[i]) / reference.rho[i]);
+        ++compared;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double moved = after.position[4 * k + axis] - predicted[i][axis];
+          error = std::max(error, std::abs(moved - reference.move_m[i][axis]));
+          scale += std::abs(reference.move_m[i][axis]);
+        }
+      }
+      ASSERT_GT(compared, n / 2);
+      scale /= static_cast<double>(compared);
+      EXPECT_LE(rho_error, 1e-5);
+      EXPECT_LE(error / scale, 1e-4) << "largest error of a correction over their mean of " << scale << " m";
+    }
+  }
+}
+
 TEST_F(Solver, PairForcesCancel) {
   core::Scene scene = smallScene(900);
   scene.wave.reset();

@@ -24,17 +24,24 @@ struct StepRule {
 
 /// The starting lattice and the grid around it.
 struct ParticleLayout {
-  std::uint32_t count = 0;          ///< columns^2 * layers
-  std::uint32_t columns_count = 0;  ///< along x and z
+  std::uint32_t count = 0;  ///< columns_x * columns_z * layers
+  std::uint32_t columns_x_count = 0;
+  std::uint32_t columns_z_count = 0;
   std::uint32_t layers_count = 0;
-  double spacing_m = 0.0;               ///< s
-  double support_radius_m = 0.0;        ///< H; on periodic axes a whole number of cells spans the patch
-  double mass_kg = 0.0;                 ///< calibrated: the inside of the lattice has rest density
-  double virtual_mass_kg = 0.0;         ///< of the floor's virtual particles, calibrated likewise
-  std::vector<double> layer_heights_m;  ///< of the resting layers above the floor, from below
-  double band_m = 0.0;                  ///< thickness of the resting band: highest layer + s/2
-  double neighbours_count = 0.0;        ///< inside the lattice, within H, the particle itself not counted
-  std::array<double, 3> min_m{};        ///< domain x, y, z
+  double spacing_m = 0.0;  ///< s: s^3 is a particle's share of the filled volume
+  double pitch_x_m = 0.0;  ///< of the lattice along x, s but for rounding to whole columns
+  double pitch_z_m = 0.0;
+  double volume_m3 = 0.0;         ///< of the water: a running room keeps it when its count changes
+  double support_radius_m = 0.0;  ///< H; on periodic axes a whole number of cells spans the patch
+  double mass_kg = 0.0;           ///< calibrated: the inside of the lattice has rest density
+  double virtual_mass_kg = 0.0;   ///< of the floor's virtual particles, calibrated likewise
+  double wall_share = 0.0;        ///< calibrated support of walls, see lattice.h
+  double wall_reach_m = 0.0;
+  double constraint_softness_pm2 = 0.0;  ///< of the position-based solver
+  std::vector<double> layer_heights_m;   ///< of the resting layers above the floor, from below
+  double band_m = 0.0;                   ///< thickness of the resting band: highest layer + s/2
+  double neighbours_count = 0.0;         ///< inside the lattice, within H, the particle itself not counted
+  std::array<double, 3> min_m{};         ///< domain x, y, z
   std::array<double, 3> max_m{};
   std::array<std::uint32_t, 3> cells{};
   std::uint32_t cell_count = 0;
@@ -67,6 +74,15 @@ struct Derived {
 /// `kept`: the layout of a room that is running. Parameters may change what a new start would look like (a softer water
 /// rests lower); the running room keeps its domain, grid and floor.
 core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kept = nullptr);
+
+/// The layout of a running room whose scene asks for another number of particles: the same water in the same place, so
+/// the spacing is (volume / count)^(1/3) and the layers follow from it. Errors as derive()'s.
+core::Result<ParticleLayout> layOutAgain(const core::Scene& scene, const ParticleLayout& before);
+
+/// Whether few neighbours make foam in this scene; the weakly compressible solver then keeps what its density pass
+/// counted in one more buffer.
+bool countsNeighbours(const core::Scene& scene);
+bool storesFoamSource(const core::Scene& scene);
 
 /// Whether going from one scene to another needs new buffers or programs (a restart) instead of new uniforms.
 bool needsRestart(const Derived& before, const Derived& after);

@@ -64,7 +64,8 @@ class WaterSim {
   [[nodiscard]] std::uint32_t particleCount() const;
 
   /// New parameter values from the next tick on. kInvalidInput when a step rule breaks or the change needs a restart;
-  /// then nothing changes.
+  /// then nothing changes. Another `particles.count` lays the same water out anew, in motion as it is (relayParticles);
+  /// that waits for the device once, and frames on their way are lost.
   core::Result<void> setScene(const core::Scene& scene);
   /// Back to the starting state at time 0; parameters stay as they are now, ticks go on counting.
   void reset();
@@ -103,6 +104,7 @@ class WaterSim {
 
   core::Result<void> build();
   void uploadStartingState();
+  core::Result<void> relay(const core::Scene& scene);
   void startEvents();
   void advanceWave();
   void sampleSurface();
@@ -113,6 +115,7 @@ class WaterSim {
   void movePatch();
   void bindSurroundings();
   void fadeFoam();
+  void predictParticles();
   void buildGrid();
   void advanceParticles();
   void measure();

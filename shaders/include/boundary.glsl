@@ -1,0 +1,87 @@
+// What the particles miss beyond floor and walls. The floor has its virtual lattice (include/floor_lattice.glsl); a wall has a
+// share of the rest density that depends on the distance d alone, f(d) = C max(1 - d/D, 0)^2, with C and D from derive(): a
+// particle half a spacing from the wall gets exactly the density of the layers that are missing beyond it, and the gradient is
+// twice theirs, because a wall particle pushes with its own pressure only while a missing neighbour would have brought its
+// own. So the column at a wall rests where the lattice has it, at the pressure of its depth. Shares of several boundaries
+// combine as 1 - (1 - f_x)(1 - f_z)(1 - f_floor), so that corners are not counted twice. Without walls nothing of it is compiled.
+#ifndef SPINDRIFT_BOUNDARY
+#define SPINDRIFT_BOUNDARY
+
+#include "include/floor_lattice.glsl"
+
+#define HAS_WALLS (PERIODIC_X == 0 || PERIODIC_Z == 0)
+
+/// One pair of walls: the share f at x, and df/dx [1/m].
+vec2 wallPair(float x, float low, float high) {
+  const float inverse_reach_pm = 1.0 / sim.wall_reach_m;
+  const float a = max(1.0 - max(x - low, 0.0) * inverse_reach_pm, 0.0);
+  const float b = max(1.0 - max(high - x, 0.0) * inverse_reach_pm, 0.0);
+  return sim.wall_share * vec2(a * a + b * b, 2.0 * inverse_reach_pm * (b - a));
+}
+
+/// (f_x, df_x/dx, f_z, df_z/dz)
+vec4 wallShares(vec3 x_i) {
+  vec4 w = vec4(0.0);
+#if PERIODIC_X == 0
+  w.xy = wallPair(x_i.x, sim.min_x_m, sim.max_x_m);
+#endif
+#if PERIODIC_Z == 0
+  w.zw = wallPair(x_i.z, sim.min_z_m, sim.max_z_m);
+#endif
+  return w;
+}
+
+/// The share of floor and walls of the density at x_i. [kg/m^3]
+float boundaryDensity(vec3 x_i) {
+  const float floor_density = floorDensity(x_i);
+#if HAS_WALLS
+  const vec4 w = wallShares(x_i);
+  const float open = (1.0 - w.x) * (1.0 - w.z);
+  return floor_density * open + sim.rest_density_kgpm3 * (1.0 - open);
+#else
+  return floor_density;
+#endif
+}
+
+/// Acceleration from floor and walls: -(p_i / rho_i^2) grad of boundaryDensity, and the floor's viscosity.
+vec3 boundaryAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
+  const float own = max(pressure_term, 0.0);  // with cohesion, too, neither floor nor walls pull
+#if HAS_WALLS
+  const vec4 w = wallShares(x_i);
+  const float covered = sim.rest_density_kgpm3 - floorDensity(x_i);
+  vec3 a = floorAcceleration(x_i, v_i, own * (1.0 - w.x) * (1.0 - w.z), rho_i);
+  a.x -= own * covered * w.y * (1.0 - w.z);
+  a.z -= own * covered * w.w * (1.0 - w.x);
+  return a;
+#else
+  return floorAcceleration(x_i, v_i, own, rho_i);
+#endif
+}
+
+/// Gradient of boundaryDensity. [kg/m^4]
+vec3 boundaryGradient(vec3 x_i) {
+  const Floor f = loadFloor();
+  const float H = sim.support_radius_m;
+  const float spacing_m = sim.spacing_m;
+  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
+  const float inverse_H = 1.0 / H;
+  vec3 push = vec3(0.0);
+  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
+    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) {
+      const vec3 r = latticeOffset(f, x_i, spacing_m, ix, iz);
+      const float distance_m = max(length(r), 1e-4 * H);
+      push += cubicSlope(distance_m * inverse_H) / distance_m * r;
+    }
+  }
+  vec3 gradient = -sim.virtual_mass_kg * sim.cubic_norm * inverse_H * push;
+#if HAS_WALLS
+  const vec4 w = wallShares(x_i);
+  const float covered = sim.rest_density_kgpm3 - floorDensity(x_i);
+  gradient *= (1.0 - w.x) * (1.0 - w.z);
+  gradient.x += covered * w.y * (1.0 - w.z);
+  gradient.z += covered * w.w * (1.0 - w.x);
+#endif
+  return gradient;
+}
+
+#endif

@@ -1,0 +1,53 @@
+// What happens to a particle at the sides of its domain.
+#ifndef SPINDRIFT_SIDES
+#define SPINDRIFT_SIDES
+
+#include "include/floor.glsl"
+#include "shared/sim_uniforms.h"
+
+/// One axis with walls: stops at the wall and turns the normal speed round.
+void keepBetweenWalls(inout float x, inout float v, float low, float high) {
+  if (x < low) { x = low; v = abs(v) * sim.wall_restitution; }
+  if (x > high) { x = high; v = -abs(v) * sim.wall_restitution; }
+}
+
+/// One periodic axis: leaves on one side, enters slightly inside the other.
+void wrapAround(inout float x, float low, float high) {
+  if (x < low) x = high - sim.reentry_m;
+  else if (x >= high) x = low + sim.reentry_m;
+}
+
+#if FOLLOW
+/// The patch moves: particles that it leaves behind enter it at its front, as high above the water as they were, moving with it.
+void carryAlong(inout vec3 x, inout vec3 v) {
+  const vec2 low = vec2(sim.min_x_m, sim.min_z_m);
+  const vec2 side = vec2(sim.max_x_m, sim.max_z_m) - low;
+  const vec2 turns = floor((x.xz - low) / side);
+  if (turns == vec2(0.0)) return;
+  const Floor f = loadFloor();
+  const float gap_m = x.y - floorHeight(f, x.xz);
+  x.xz = clamp(x.xz - turns * side, low, low + side);
+  vec3 normal;
+  x.y = floorState(f, x.xz, normal, v) + gap_m;
+}
+#endif
+
+/// Both horizontal axes.
+void keepInside(inout vec3 x, inout vec3 v) {
+#if FOLLOW
+  carryAlong(x, v);
+#else
+#if PERIODIC_X
+  wrapAround(x.x, sim.min_x_m, sim.max_x_m);
+#else
+  keepBetweenWalls(x.x, v.x, sim.min_x_m, sim.max_x_m);
+#endif
+#if PERIODIC_Z
+  wrapAround(x.z, sim.min_z_m, sim.max_z_m);
+#else
+  keepBetweenWalls(x.z, v.z, sim.min_z_m, sim.max_z_m);
+#endif
+#endif
+}
+
+#endif

@@ -1,0 +1,53 @@
+// What a particle meets at the end of its way: the sides of its domain, hulls, rocks, the floor; in two-way scenes the surface,
+// which takes it in.
+#ifndef SPINDRIFT_SURROUNDINGS
+#define SPINDRIFT_SURROUNDINGS
+
+#include "include/floor.glsl"
+#include "include/sides.glsl"
+#if POOL_PARTICLES
+#include "include/absorption.glsl"
+#endif
+#if COUPLED && VARIED
+#include "include/terrain.glsl"
+#endif
+#if HULLS && COUPLED
+#include "include/hull.glsl"
+#endif
+
+/// Moves x and v to where they may be. False: the particle has become water.
+bool meetSurroundings(inout vec3 x, inout vec3 v) {
+  keepInside(x, v);
+#if HULLS && COUPLED
+  pushOutOfHulls(x, v);
+#endif
+#if COUPLED && VARIED
+  pushOutOfRocks(x, v);
+#endif
+
+  const Floor f = loadFloor();
+  vec3 normal;
+  vec3 floor_velocity_mps;
+  const float gap_m = x.y - floorState(f, x.xz, normal, floor_velocity_mps);
+#if POOL_PARTICLES
+  if (gap_m < 0.0) {
+    const float approach_mps = floor_velocity_mps.y - v.y;
+    if (approach_mps > 0.0 || gap_m < -sim.spacing_m) {
+      absorb(x.xz, max(approach_mps, 0.0));
+      return false;
+    }
+    x.y -= gap_m;  // thrown out by the water below it
+  }
+#else
+  if (gap_m < sim.floor_gap_m) {
+    // Lift to the floor in the column, so that a slope cannot push the particle across a side; the velocity loses what
+    // points into the floor along its normal.
+    x.y += sim.floor_gap_m - gap_m;
+    v -= normal * min(dot(v - floor_velocity_mps, normal), 0.0);
+  }
+#endif
+  keepBetweenWalls(x.y, v.y, sim.min_y_m, sim.max_y_m);
+  return true;
+}
+
+#endif

@@ -1,0 +1,50 @@
+// Moves each particle by what the constraints around it ask for, then out of walls and floor.
+// Reads PRESSURE_POINT (position, lambda), CELL_START, floor and walls. Writes MOTION_POINT (position of the next iteration).
+// Equation: dx_i = sum_j (lambda_i + lambda_j) m/rho_0 grad W (Macklin & Mueller 2013, eq. 12) + lambda_i/rho_0 grad rho_boundary.
+// Invariant: one iteration moves a particle by at most a quarter of the spacing, but for the lift to the floor.
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 COHESION=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 COHESION=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0
+#include "shared/groups.h"
+#include "include/population.glsl"
+#include "include/candidates.glsl"
+#include "include/boundary.glsl"
+
+layout(local_size_x = PARTICLE_GROUP) in;
+
+layout(binding = PRESSURE_POINT) uniform samplerBuffer pressure_point;
+layout(std430, binding = MOTION_POINT) restrict writeonly buffer MotionPoint { vec4 motion_point[]; };
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= particleCount()) return;
+  const Grid g = loadGrid();
+  const Support support = makeSupport(g.cell_m);
+  const vec4 own = texelFetch(pressure_point, int(i));
+  const ivec3 cell = cellOf(g, own.xyz);
+
+  vec3 sum = vec3(0.0);
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const CandidateRange range = candidateRange(g, cell, dx, dz);
+      const vec3 x = own.xyz + range.shift_m;
+      for (int j = range.first; j < range.last; ++j) {
+        const vec4 a = texelFetch(pressure_point, j);
+        const vec3 r = x - a.xyz;
+        sum -= ((own.w + a.w) * pressurePull(dot(r, r), support)) * r;
+      }
+    }
+  }
+
+  vec3 move = sim.mass_kg * sim.slope_norm / sim.rest_density_kgpm3 * sum;
+  move += min(own.w, 0.0) / sim.rest_density_kgpm3 * boundaryGradient(own.xyz);
+  move *= min(1.0, 0.25 * sim.spacing_m / max(length(move), 1e-9));
+  vec3 x = own.xyz + move;
+#if PERIODIC_X == 0
+  x.x = clamp(x.x, sim.min_x_m, sim.max_x_m);
+#endif
+#if PERIODIC_Z == 0
+  x.z = clamp(x.z, sim.min_z_m, sim.max_z_m);
+#endif
+  x.y = max(x.y, floorHeight(loadFloor(), x.xz) + sim.floor_gap_m);
+  x.y = clamp(x.y, sim.min_y_m, sim.max_y_m);
+  motion_point[i] = vec4(x, 0.0);
+}

@@ -1,0 +1,72 @@
+// Viscosity between the particles and against the floor, foam, and the sides; ends the step.
+// Reads PRESSURE_POINT (position, m/rho), ACCELERATION (velocity, rho), SORTED_POSITION.w (id), SORTED_VELOCITY.w (foam), CELL_START, the
+// floor. Writes POSITION, VELOCITY (in sorted order).
+// Equation: the weakly compressible solver's viscosity, mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W (thesis 3.18), over one step.
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 FOAM=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1
+#include "shared/groups.h"
+#include "include/population.glsl"
+#include "include/candidates.glsl"
+#include "include/boundary.glsl"
+#include "include/foam.glsl"
+#include "include/surroundings.glsl"
+
+layout(local_size_x = PARTICLE_GROUP) in;
+
+layout(binding = PRESSURE_POINT) uniform samplerBuffer pressure_point;
+layout(binding = ACCELERATION) uniform samplerBuffer acceleration;
+layout(binding = SORTED_POSITION) uniform samplerBuffer sorted_position;
+layout(binding = SORTED_VELOCITY) uniform samplerBuffer sorted_velocity;
+layout(std430, binding = POSITION) restrict writeonly buffer Position { vec4 position[]; };
+layout(std430, binding = VELOCITY) restrict writeonly buffer Velocity { vec4 velocity[]; };
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= particleCount()) return;
+  const Grid g = loadGrid();
+  const Support support = makeSupport(g.cell_m);
+  vec3 x_i = texelFetch(pressure_point, int(i)).xyz;
+  const vec4 own = texelFetch(acceleration, int(i));
+  const ivec3 cell = cellOf(g, x_i);
+
+  vec3 drag = vec3(0.0);
+#if NEIGHBOUR_FOAM
+  const float H2 = support.H * support.H;
+  float near = -1.0;  // the particle itself is none of its neighbours
+#endif
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const CandidateRange range = candidateRange(g, cell, dx, dz);
+      const vec3 x = x_i + range.shift_m;
+      for (int j = range.first; j < range.last; ++j) {
+        const vec4 a = texelFetch(pressure_point, j);
+        const vec3 r = x - a.xyz;
+        const float r2 = dot(r, r);
+        drag += (a.w * viscosityLaplacian(sqrt(r2), support.H)) * (texelFetch(acceleration, j).xyz - own.xyz);
+#if NEIGHBOUR_FOAM
+        near += step(r2, H2);
+#endif
+      }
+    }
+  }
+
+  vec3 v = own.xyz + sim.dt_s * (sim.viscosity_norm * sim.viscosity_pas / own.w * drag + floorAcceleration(x_i, own.xyz, 0.0, own.w));
+  v *= min(1.0, sim.max_speed_mps / max(length(v), 1e-6));
+  if (!meetSurroundings(x_i, v)) {
+#if POOL_PARTICLES
+    position[i] = vec4(x_i, DEAD_ID);
+    velocity[i] = vec4(0.0);
+#endif
+    return;
+  }
+
+#if FOAM
+  float foam = foamStep(texelFetch(sorted_velocity, int(i)).w, own.w / sim.rest_density_kgpm3);
+#if NEIGHBOUR_FOAM
+  foam = max(foam, neighbourFoam(near));
+#endif
+#else
+  const float foam = 0.0;
+#endif
+  position[i] = vec4(x_i, texelFetch(sorted_position, int(i)).w);
+  velocity[i] = vec4(v, foam);
+}

@@ -1,0 +1,54 @@
+// The multiplier of each particle's density constraint C_i = rho_i / rho_0 - 1, without COHESION only where C_i > 0.
+// Reads SORTED_POSITION (the positions of this iteration), CELL_START, floor and walls. Writes PRESSURE_POINT (position, lambda [m^2])
+// and ACCELERATION.w (rho).
+// Equation: lambda_i = -C_i / (sum_k |grad_k C_i|^2 + softness) (Macklin & Mueller 2013, eq. 11); floor and walls count in rho_i
+// and in the particle's own gradient, they do not move.
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 COHESION=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 COHESION=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0
+#include "shared/groups.h"
+#include "include/population.glsl"
+#include "include/candidates.glsl"
+#include "include/boundary.glsl"
+
+layout(local_size_x = PARTICLE_GROUP) in;
+
+layout(binding = SORTED_POSITION) uniform samplerBuffer iterate;
+layout(std430, binding = PRESSURE_POINT) restrict writeonly buffer PressurePoint { vec4 pressure_point[]; };
+layout(std430, binding = ACCELERATION) restrict writeonly buffer Acceleration { vec4 acceleration[]; };
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= particleCount()) return;
+  const Grid g = loadGrid();
+  const Support support = makeSupport(g.cell_m);
+  const vec3 x_i = texelFetch(iterate, int(i)).xyz;
+  const ivec3 cell = cellOf(g, x_i);
+
+  float sum = 0.0;
+  float squares = 0.0;
+  vec3 pull = vec3(0.0);
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const CandidateRange range = candidateRange(g, cell, dx, dz);
+      const vec3 x = x_i + range.shift_m;
+      for (int j = range.first; j < range.last; ++j) {
+        const vec3 r = x - texelFetch(iterate, j).xyz;
+        const float r2 = dot(r, r);
+        const vec3 p = pressurePull(r2, support) * r;
+        sum += densityShape(r2, support);
+        pull += p;
+        squares += dot(p, p);
+      }
+    }
+  }
+
+  const float rho = sim.mass_kg * sim.density_norm * sum + boundaryDensity(x_i);
+  const float slope = sim.mass_kg * sim.slope_norm / sim.rest_density_kgpm3;
+  const vec3 own = boundaryGradient(x_i) / sim.rest_density_kgpm3 - slope * pull;
+  float constraint = rho / sim.rest_density_kgpm3 - 1.0;
+#if !COHESION
+  constraint = max(constraint, 0.0);
+#endif
+  const float lambda = -constraint / (dot(own, own) + slope * slope * squares + sim.constraint_softness_pm2);
+  pressure_point[i] = vec4(x_i, lambda);
+  acceleration[i] = vec4(0.0, 0.0, 0.0, rho);
+}

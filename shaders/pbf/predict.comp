@@ -1,0 +1,42 @@
+// Position-based fluids (Macklin & Mueller 2013, algorithm 1), first step: speeds from gravity and the downward force, and where
+// they would take the particles.
+// Reads and writes POSITION (then the predicted place, wrapped on periodic sides but not yet kept out of walls and floor) and
+// VELOCITY (then the predicted speed, which is what the way from the old to the predicted place stands for).
+// Invariant: not faster than max_speed_mps.
+// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1
+#include "shared/groups.h"
+#include "include/population.glsl"
+#include "include/floor.glsl"
+#include "include/sides.glsl"
+
+layout(local_size_x = PARTICLE_GROUP) in;
+
+layout(std430, binding = POSITION) restrict buffer Position { vec4 position[]; };
+layout(std430, binding = VELOCITY) restrict buffer Velocity { vec4 velocity[]; };
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= unsortedCount()) return;
+  vec4 x = position[i];
+  vec4 v = velocity[i];
+  v.y -= sim.dt_s * sim.gravity_mps2;
+#if COUPLED
+  const Floor f = loadFloor();
+  const float above_m = max(x.y - (floorHeight(f, x.xz) + f.band_m), 0.0);
+  v.y -= sim.dt_s * sim.downforce_per_m_s2 * above_m * above_m;
+#endif
+  v.xyz *= min(1.0, sim.max_speed_mps / max(length(v.xyz), 1e-6));
+  x.xyz += sim.dt_s * v.xyz;
+#if FOLLOW
+  carryAlong(x.xyz, v.xyz);
+#else
+#if PERIODIC_X
+  wrapAround(x.x, sim.min_x_m, sim.max_x_m);
+#endif
+#if PERIODIC_Z
+  wrapAround(x.z, sim.min_z_m, sim.max_z_m);
+#endif
+#endif
+  position[i] = x;
+  velocity[i] = v;
+}
