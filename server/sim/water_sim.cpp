@@ -202,6 +202,11 @@ void WaterSim::uploadStartingState() {
 }
 
 void WaterSim::reset() {
+  boats_.clear();
+  last_boat_id_ = 0;
+  if (scene_.boats) {
+    for (const core::Boat& boat : scene_.boats->boats) (void)spawnBoat(boat);
+  }
   parts_->effects.clear();
   start_tick_ = tick_;
   abandoned_until_tick_ = tick_;
@@ -217,6 +222,32 @@ core::Result<void> WaterSim::start(const core::Effect& effect) {
   if (!parts_->wave)
     return Error{ErrorCode::kInvalidInput, "effects act on the wave, and this scene has none: use a scene with a wave"};
   return parts_->effects.start(effect, time_s());
+}
+
+// Boats
+
+core::Result<std::uint32_t> WaterSim::spawnBoat(const core::Boat& boat) {
+  if (!scene_.boats) return Error{ErrorCode::kInvalidInput, "this scene has no boats: use a scene that has"};
+  if (boats_.size() >= scene_.boats->capacity_count) {
+    return Error{ErrorCode::kUnavailable,
+                 "all " + std::to_string(boats_.size()) + " places for boats are taken: remove a boat first"};
+  }
+  boats_.push_back({.boat_id = ++last_boat_id_,
+                    .length_m = boat.length_m,
+                    .beam_m = boat.beam_m,
+                    .height_m = boat.height_m,
+                    .draught_m = boat.density_ratio * boat.height_m});
+  return last_boat_id_;
+}
+
+core::Result<void> WaterSim::controlBoat(std::uint32_t boat_id, double /*throttle*/, double /*rudder*/) {
+  if (std::ranges::any_of(boats_, [&](const BoatRecord& boat) { return boat.boat_id == boat_id; })) return {};
+  return Error{ErrorCode::kInvalidInput, "there is no boat " + std::to_string(boat_id)};
+}
+
+core::Result<void> WaterSim::removeBoat(std::uint32_t boat_id) {
+  if (std::erase_if(boats_, [&](const BoatRecord& boat) { return boat.boat_id == boat_id; }) > 0) return {};
+  return Error{ErrorCode::kInvalidInput, "there is no boat " + std::to_string(boat_id)};
 }
 
 core::Result<void> WaterSim::setScene(const core::Scene& scene) {
@@ -308,7 +339,7 @@ void WaterSim::setCareful(bool careful) {
 bool WaterSim::requestFrame(const FrameRequest& request) {
   Wave* wave = request.surface ? parts_->wave.get() : nullptr;
   ParticleBuffers* particles = request.particles ? parts_->particlesOrNull() : nullptr;
-  if (!wave && !particles) return true;
+  if (!wave && !particles) return !(request.foam || request.bodies);
   const auto timer = timers_.scope("stream");
   parts_->uniforms.bindUniform(SIM_UNIFORMS);
   return parts_->frames->pack(tick_, time_s(), particles, wave);

@@ -17,6 +17,10 @@ struct Health {
   double max_elevation_m = 0.0;
   double wave_volume_m3 = 0.0;  ///< integral of eta
   double wave_energy_j = 0.0;   ///< rho d/2 integral (eta_t^2 + c^2 |grad eta|^2): conserved by the undamped leapfrog
+  double breaking_ratio = 0.0;  ///< share of the surface that breaks
+  std::int64_t volume_error_units = 0;  ///< of the volume ledger
+  double emitted_m3 = 0.0;              ///< water turned into particles since the start
+  double absorbed_m3 = 0.0;             ///< particles turned back into water since the start
 
   [[nodiscard]] bool isGood() const { return nonfinite_count == 0 && escaped_count == 0; }
 };

@@ -21,6 +21,17 @@ namespace spindrift::sim {
 struct FrameRequest {
   bool surface = false;
   bool particles = false;
+  bool foam = false;
+  bool bodies = false;
+};
+
+/// A boat on the water: what does not move.
+struct BoatRecord {
+  std::uint32_t boat_id = 0;
+  double length_m = 0.0;
+  double beam_m = 0.0;
+  double height_m = 0.0;
+  double draught_m = 0.0;
 };
 
 /// The state as plain numbers, for tests, hashes and checkpoints: positions and velocities 4 floats a particle (xyz +
@@ -47,6 +58,13 @@ class WaterSim {
 
   /// Starts an effect now. kInvalidInput without a wave, kUnavailable when too many are active.
   core::Result<void> start(const core::Effect& effect);
+  /// The new boat's id. kUnavailable when the scene's capacity is reached, kInvalidInput without boats.
+  core::Result<std::uint32_t> spawnBoat(const core::Boat& boat);
+  /// kInvalidInput for an unknown id.
+  core::Result<void> controlBoat(std::uint32_t boat_id, double throttle, double rudder);
+  core::Result<void> removeBoat(std::uint32_t boat_id);
+  [[nodiscard]] std::vector<BoatRecord> boats() const { return boats_; }
+
   /// New parameter values from the next tick on. kInvalidInput when a step rule breaks or the change needs a restart;
   /// then nothing changes.
   core::Result<void> setScene(const core::Scene& scene);
@@ -67,6 +85,10 @@ class WaterSim {
   [[nodiscard]] std::uint64_t recoveredCount() const { return recovered_count_; }
   /// Mean cost of each pass since the last call, per scope.
   std::vector<gpu::PassCost> takePassCosts() { return timers_.take(); }
+
+  /// Live now.
+  [[nodiscard]] std::uint32_t particleCount() const { return derived_.particles ? derived_.particles->count : 0; }
+  [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats_.size()); }
 
   [[nodiscard]] std::uint64_t tick() const { return tick_; }
   /// Simulated time since the start or the last reset().
@@ -112,6 +134,8 @@ class WaterSim {
   std::uint64_t abandoned_until_tick_ = 0;  ///< health of ticks up to this one belongs to a state that was given up
   std::uint64_t careful_until_tick_ = 0;    ///< after a recovery: twice the substeps until then
   bool is_careful_ = false;
+  std::vector<BoatRecord> boats_;
+  std::uint32_t last_boat_id_ = 0;
 };
 
 }  // namespace spindrift::sim
