@@ -7,6 +7,7 @@
 
 #include <spindrift/stream/client_message.h>
 #include <spindrift/stream/parameters.h>
+#include <spindrift/stream/scene_loader.h>
 
 #include "fields.h"
 #include "scene_rules.h"

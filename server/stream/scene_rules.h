@@ -22,9 +22,6 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
 /// hold while the scene runs too, so parameters are checked against them.
 std::vector<FieldIssue> checkWater(const v1::Scene& scene);
 
-/// Whether a scene may be called that.
-bool isSceneName(const std::string& name);
-
 /// Rules about texts and about which parts there are; hold whatever the numbers say. Defaults are filled in.
 std::vector<FieldIssue> checkStructure(const v1::Scene& scene);
 
