@@ -54,6 +54,7 @@ Room::Room(gpu::Context& ctx, std::string name, v1::Scene scene, const SceneCata
       commands_(kCommandQueueCount),
       clock_(sim_->derived().tick_s),
       tick_shift_(0 - sim_->tick()) {
+  recovery_news_.restart(sim_->recoveredCount());
   readBoats();
   publishSnapshot();
 }

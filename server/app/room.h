@@ -20,6 +20,7 @@
 #include <spindrift/v1/scene.pb.h>
 
 #include "encoder_thread.h"
+#include "growth_news.h"
 #include "real_time_clock.h"
 #include "scene_catalog.h"
 
@@ -129,8 +130,7 @@ class Room {
   std::uint32_t pending_tick_count_ = 0;  ///< of Step: ticks that the paused room still advances
   v1::BoatList boats_;                    ///< as announced last
   std::uint32_t spawned_boat_id_ = 0;     ///< of the command being applied
-  std::uint64_t announced_recovered_count_ = 0;
-  TimePoint next_recovery_news_{};
+  GrowthNews recovery_news_{std::chrono::seconds(1)};
   TimePoint next_scene_change_{};
   double next_frame_s_ = 0.0;    ///< simulation time
   TimePoint next_idle_frame_{};  ///< wall time, while paused

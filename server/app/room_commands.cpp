@@ -20,7 +20,6 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t kPendingTickMaxCount = 600;
 /// A new scene builds buffers and programs while every room of the thread waits.
 constexpr auto kSceneChangeInterval = 1s;
-constexpr auto kRecoveryNewsInterval = 1s;
 
 stream::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message) {
   return {.command_id = 0, .reason = reason, .field = std::move(field), .message = std::move(message)};
@@ -192,7 +191,7 @@ Room::Outcome Room::changeScene(const core::ChangeScene& change, RoomObserver& o
   step_count_ = 0;
   last_passes_.clear();
   slow_since_ = {};
-  announced_recovered_count_ = sim_->recoveredCount();
+  recovery_news_.restart(sim_->recoveredCount());
   readBoats();
   publishSnapshot();
   spdlog::info("room {}: scene {}", name_, scene_.name());
@@ -215,13 +214,11 @@ void Room::announceBoats(net::Hub& hub) {
 
 void Room::announceRecovery(TimePoint now, net::Hub& hub) {
   const std::uint64_t count = sim_->recoveredCount();
-  if (count == announced_recovered_count_ || now < next_recovery_news_) return;
+  if (!recovery_news_.tell(count, now)) return;
   hub.broadcastControl(
       name_,
       stream::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
                         fmt::format("the guard put the water back to its last good state ({} times so far)", count)));
-  announced_recovered_count_ = count;
-  next_recovery_news_ = now + kRecoveryNewsInterval;
   announceBoats(hub);
 }
 
