@@ -31,6 +31,15 @@ std::string firstLine(const std::string& text) {
   return end == std::string::npos ? text : text.substr(0, end) + " (and more)";
 }
 
+/// Why a running room does not take a scene.
+v1::RejectReason whyNot(core::Scene wanted) {
+  // What could be started afresh only needs other buffers or programs than the room has.
+  if (sim::derive(wanted)) return v1::REJECT_REASON_NEEDS_RESTART;
+  wanted.allow_unstable = true;
+  wanted.fixed_substeps_count = 1;
+  return sim::derive(wanted) ? v1::REJECT_REASON_BREAKS_STEP_RULE : v1::REJECT_REASON_OUT_OF_RANGE;
+}
+
 template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
@@ -92,12 +101,8 @@ Room::Outcome Room::setParameter(const core::SetParameter& change, net::Hub& hub
     return rejection(error->reason, error->field, error->message);
   }
   const core::Scene wanted = stream::toCore(changed);
-  if (auto applied = sim_->setScene(wanted); !applied) {
-    // A scene that could not be started breaks a rule; one that could needs other buffers than the room has.
-    const bool could_start = static_cast<bool>(sim::derive(wanted));
-    return rejection(could_start ? v1::REJECT_REASON_NEEDS_RESTART : v1::REJECT_REASON_BREAKS_STEP_RULE, change.path,
-                     applied.error().message);
-  }
+  if (auto applied = sim_->setScene(wanted); !applied)
+    return rejection(whyNot(wanted), change.path, applied.error().message);
   scene_ = std::move(changed);
   publishSnapshot();
   hub.broadcastControl(name_, stream::parameterChanged(change.path, change.value, tick()));

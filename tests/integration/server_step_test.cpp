@@ -17,7 +17,6 @@ TEST_F(Step, AdvancesAPausedRoomByExactlyItsTicksAndShowsThem) {
   const auto frame = one.waitFor(
       [&](const v1::ServerMessage& message) { return message.has_frame() && message.frame().tick() == *paused + 7; });
   ASSERT_TRUE(frame);
-  EXPECT_TRUE(one.greeting().layers_size() > 0);
   EXPECT_EQ(one.apply(setSpeed(1.0)), *paused + 7) << "and stops there";
   const auto later = one.nextFrame(v1::LAYER_SURFACE);
   ASSERT_TRUE(later);
@@ -51,6 +50,18 @@ TEST_F(Step, BeyondItsBoundIsRejected) {
   ASSERT_TRUE(one.apply(setPaused(true)));
   EXPECT_EQ(one.rejected(step(601)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
   EXPECT_EQ(one.rejected(step(0)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+}
+
+TEST_F(Step, OnTopOfOnesThatAreStillToComeIsBusy) {
+  ScriptedClient one = client();
+  ASSERT_TRUE(one.apply(setPaused(true)));
+  v1::ClientMessage first;
+  *first.mutable_command() = step(600);
+  first.mutable_command()->set_command_id(1'000'000);
+  one.send(first);
+  const v1::Reject reject = one.rejected(step(600));
+  EXPECT_EQ(reject.reason(), v1::REJECT_REASON_BUSY) << reject.message();
+  EXPECT_EQ(reject.field(), "step.tick_count");
 }
 
 TEST_F(Step, EndsWhenTheRoomRunsAgain) {
