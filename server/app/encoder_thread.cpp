@@ -46,7 +46,8 @@ std::uint64_t EncoderThread::encodeCount(const std::string& room, v1::Layer laye
 }
 
 void EncoderThread::loop() {
-  constexpr std::array kLayers = {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS};
+  constexpr std::array kLayers = {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES,
+                                  v1::LAYER_DIAGNOSTICS};
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });

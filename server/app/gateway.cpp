@@ -21,6 +21,8 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
   std::vector<v1::Layer> layers;
   if (scene.has_wave()) layers.push_back(v1::LAYER_SURFACE);
   if (scene.has_particles()) layers.push_back(v1::LAYER_PARTICLES);
+  if (scene.has_boats()) layers.push_back(v1::LAYER_BODIES);
+  if (scene.foam().surface()) layers.push_back(v1::LAYER_FOAM);
   layers.push_back(v1::LAYER_DIAGNOSTICS);
   return layers;
 }
@@ -71,8 +73,21 @@ std::shared_ptr<const RoomSnapshot> Gateway::greet(net::SessionId session, const
   facts.server_time_s = monotonic_s();
   facts.paused = snapshot->paused;
   facts.speed = snapshot->speed;
+  facts.boats = snapshot->boats;
+  facts.scenes = rooms_.scenes().names();
   hub().sendControl(session, stream::greeting(facts, snapshot->scene));
   return snapshot;
+}
+
+void Gateway::sceneChanged(const Room& room) {
+  std::vector<net::SessionId> members;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [session, state] : sessions_) {
+      if (state.room == &room) members.push_back(session);
+    }
+  }
+  for (const net::SessionId session : members) greet(session, room);
 }
 
 void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {

@@ -13,9 +13,9 @@
 
 namespace spindrift::app {
 
-class Gateway final : public net::Application {
+class Gateway final : public net::Application, public RoomObserver {
  public:
-  /// `rooms` outlives the gateway.
+  /// `rooms` outlives the gateway, though its thread may have ended.
   Gateway(const SimulationThread& rooms, std::size_t message_max_bytes, double messages_per_s);
 
   void serverStarts(net::Hub& hub) override { hub_ = &hub; }
@@ -24,6 +24,9 @@ class Gateway final : public net::Application {
   void sessionMessage(net::SessionId session, core::ByteView message) override;
   void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
   std::optional<net::HttpReply> httpRequest(const net::HttpRequest& request) override;
+
+  /// Greets everybody in the room again; their layers go on.
+  void sceneChanged(const Room& room) override;
 
  private:
   struct Session {

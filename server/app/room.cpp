@@ -1,14 +1,10 @@
 #include "room.h"
 
 #include <algorithm>
-#include <variant>
 
 #include <spdlog/spdlog.h>
 
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/parameters.h>
 #include <spindrift/stream/scene_loader.h>
-#include <spindrift/stream/server_message.h>
 
 namespace spindrift::app {
 namespace {
@@ -19,6 +15,8 @@ using std::chrono::duration;
 constexpr std::size_t kCommandQueueCount = 1024;
 /// A paused room still shows newcomers its water.
 constexpr auto kPausedFrameInterval = 500ms;
+/// A paused room's frame that found no free slot is asked for again.
+constexpr auto kDroppedFrameRetry = 10ms;
 /// While the device works on a frame, look for it this often.
 constexpr auto kReadbackPollInterval = 1ms;
 constexpr double kSlowFactor = 0.9;
@@ -31,19 +29,40 @@ net::LayerIndex slot(v1::Layer layer) {
 
 }  // namespace
 
-Room::Room(std::string name, v1::Scene scene, std::unique_ptr<sim::WaterSim> sim)
-    : name_(std::move(name)),
+core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene) {
+  // A step's shaders are compiled when they first run, which takes a software device seconds; diagnostics run every
+  // fourth tick, so as many ticks leave their rhythm as it was.
+  constexpr int kWarmUpTickCount = 4;
+  auto sim = sim::WaterSim::create(ctx, stream::toCore(scene));
+  if (!sim) return sim;
+  for (int i = 0; i < kWarmUpTickCount; ++i) (*sim)->step();
+  (void)(*sim)->requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+  ctx.finish();
+  (void)(*sim)->takeFrames();
+  (void)(*sim)->takePassCosts();
+  (*sim)->reset();
+  return sim;
+}
+
+Room::Room(gpu::Context& ctx, std::string name, v1::Scene scene, const SceneCatalog& scenes,
+           std::unique_ptr<sim::WaterSim> sim)
+    : ctx_(ctx),
+      name_(std::move(name)),
+      scenes_(scenes),
       scene_(std::move(scene)),
       sim_(std::move(sim)),
       commands_(kCommandQueueCount),
-      clock_(sim_->derived().tick_s) {
+      clock_(sim_->derived().tick_s),
+      tick_shift_(0 - sim_->tick()) {
+  recovery_news_.restart(sim_->recoveredCount());
+  readBoats();
   publishSnapshot();
 }
 
-core::Result<std::unique_ptr<Room>> Room::create(gpu::Context& ctx, RoomSetup setup) {
-  auto sim = sim::WaterSim::create(ctx, stream::toCore(setup.scene));
+core::Result<std::unique_ptr<Room>> Room::create(gpu::Context& ctx, RoomSetup setup, const SceneCatalog& scenes) {
+  auto sim = createWarm(ctx, setup.scene);
   if (!sim) return core::Error{sim.error().code, "room " + setup.name + ": " + sim.error().message};
-  return std::unique_ptr<Room>(new Room(std::move(setup.name), std::move(setup.scene), *std::move(sim)));
+  return std::unique_ptr<Room>(new Room(ctx, std::move(setup.name), std::move(setup.scene), scenes, *std::move(sim)));
 }
 
 std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
@@ -52,9 +71,21 @@ std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
 }
 
 void Room::publishSnapshot() {
-  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{scene_, paused_, clock_.speed()});
+  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{scene_, paused_, clock_.speed(), boats_});
   const std::lock_guard lock(snapshot_mutex_);
   snapshot_ = std::move(fresh);
+}
+
+void Room::readBoats() {
+  boats_.Clear();
+  for (const sim::BoatRecord& boat : sim_->boats()) {
+    v1::BoatInfo& info = *boats_.add_boats();
+    info.set_boat_id(boat.boat_id);
+    info.set_length_m(boat.length_m);
+    info.set_beam_m(boat.beam_m);
+    info.set_height_m(boat.height_m);
+    info.set_draught_m(boat.draught_m);
+  }
 }
 
 // One tick
@@ -65,95 +96,51 @@ void Room::start(TimePoint now) {
 }
 
 Room::TimePoint Room::due(TimePoint now) const {
+  if (pending_tick_count_ > 0) return now;
   const TimePoint next = paused_ ? now + 10ms : clock_.due();
   return frames_in_flight_ > 0 ? std::min(next, now + kReadbackPollInterval) : next;
 }
 
-void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder) {
+void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
   if (!paused_) unpaused_wall_s_ += duration<double>(now - last_run_).count();
   last_run_ = now;
   handOverFrames(encoder);
-  if (paused_ || now >= clock_.due()) applyCommands(hub);
+  if (paused_ || now >= clock_.due()) applyCommands(hub, observer);
   if (paused_) {
-    if (now >= next_idle_frame_) requestFrame(now, hub);
+    advancePaused(now, hub);
   } else if (now >= clock_.due()) {
-    const auto begin = std::chrono::steady_clock::now();
-    sim_->step();
-    const auto end = std::chrono::steady_clock::now();
-    step_ms_sum_ += duration<double, std::milli>(end - begin).count();
-    ++step_count_;
-    run_s_ += sim_->derived().tick_s;
-    unpaused_wall_s_ += duration<double>(end - last_run_).count();
-    last_run_ = end;
-    clock_.ticked(end);
-    if (sim_->time_s() + 1e-9 >= next_frame_s_) requestFrame(end, hub);
-    watchRealTime(end);
+    step(now, hub);
   }
+  announceRecovery(now, hub);
   handOverFrames(encoder);
 }
 
-// Commands
-
-void Room::applyCommands(net::Hub& hub) {
-  for (const core::Command& command : commands_.drain()) {
-    if (auto rejection = apply(command, hub)) {
-      rejection->command_id = command.command_id;
-      hub.sendControl(command.session_id, stream::reject(*rejection));
-    } else {
-      hub.sendControl(command.session_id, stream::ack(command.command_id, sim_->tick()));
-    }
-  }
+void Room::step(TimePoint now, net::Hub& hub) {
+  const TimePoint end = timedStep();
+  run_s_ += sim_->derived().tick_s;
+  unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
+  last_run_ = end;
+  clock_.ticked(end);
+  if (sim_->time_s() + 1e-9 >= next_frame_s_) requestFrame(end, hub);
+  watchRealTime(end);
 }
 
-std::optional<stream::CommandRejection> Room::apply(const core::Command& command, net::Hub& hub) {
-  // Checked against the scene when it arrived; parameters may have changed since.
-  if (auto rejection = stream::checkAgainstScene(command, scene_)) return rejection;
-  const auto announce = [&] {
-    publishSnapshot();
-    hub.broadcastControl(name_, stream::roomState(paused_, clock_.speed()));
-  };
-  if (const auto* change = std::get_if<core::SetParameter>(&command.action)) return setParameter(command, *change, hub);
-  if (const auto* pause = std::get_if<core::SetPaused>(&command.action)) {
-    if (paused_ && !pause->paused) clock_.restart(std::chrono::steady_clock::now());
-    paused_ = pause->paused;
-    announce();
-    return {};
+void Room::advancePaused(TimePoint now, net::Hub& hub) {
+  if (pending_tick_count_ > 0) {
+    const TimePoint end = timedStep();
+    if (--pending_tick_count_ == 0) next_idle_frame_ = end;  // what was asked for is there to see at once
+    now = end;
   }
-  if (const auto* speed = std::get_if<core::SetSpeed>(&command.action)) {
-    clock_.setSpeed(speed->speed);
-    announce();
-    return {};
-  }
-  if (std::holds_alternative<core::Reset>(command.action)) {
-    sim_->reset();
-    next_frame_s_ = 0.0;
-    return {};
-  }
-  core::Result<void> started;
-  if (const auto* splash = std::get_if<core::Splash>(&command.action)) started = sim_->start(*splash);
-  if (const auto* wave = std::get_if<core::BreakingWave>(&command.action)) started = sim_->start(*wave);
-  if (started) return {};
-  const bool busy = started.error().code == core::ErrorCode::kUnavailable;
-  return stream::CommandRejection{.command_id = command.command_id,
-                                  .reason = busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART,
-                                  .field = "",
-                                  .message = started.error().message};
+  if (now >= next_idle_frame_) requestFrame(now, hub);
 }
 
-std::optional<stream::CommandRejection> Room::setParameter(const core::Command& command,
-                                                           const core::SetParameter& change, net::Hub& hub) {
-  v1::Scene changed = scene_;
-  if (auto error = stream::setParameter(changed, change.path, change.value)) {
-    return stream::CommandRejection{command.command_id, error->reason, error->field, error->message};
-  }
-  if (auto applied = sim_->setScene(stream::toCore(changed)); !applied) {
-    return stream::CommandRejection{command.command_id, v1::REJECT_REASON_BREAKS_STEP_RULE, change.path,
-                                    applied.error().message};
-  }
-  scene_ = std::move(changed);
-  publishSnapshot();
-  hub.broadcastControl(name_, stream::parameterChanged(change.path, change.value, sim_->tick()));
-  return {};
+Room::TimePoint Room::timedStep() {
+  const auto begin = std::chrono::steady_clock::now();
+  sim_->step();
+  const auto end = std::chrono::steady_clock::now();
+  step_ms_sum_ += duration<double, std::milli>(end - begin).count();
+  ++step_count_;
+  return end;
 }
 
 // Frames
@@ -163,19 +150,24 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
   if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, sim_->time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
   wants_diagnostics_ = wants_diagnostics_ || hub.watcherCount(name_, slot(v1::LAYER_DIAGNOSTICS)) > 0;
-  const sim::FrameRequest request{
-      .surface = scene_.has_wave() && hub.watcherCount(name_, slot(v1::LAYER_SURFACE)) > 0,
-      .particles = scene_.has_particles() && hub.watcherCount(name_, slot(v1::LAYER_PARTICLES)) > 0};
-  if (!request.surface && !request.particles) return;
-  if (sim_->requestFrame(request))
+  const auto wanted = [&](bool has_it, v1::Layer layer) { return has_it && hub.watcherCount(name_, slot(layer)) > 0; };
+  const sim::FrameRequest request{.surface = wanted(scene_.has_wave(), v1::LAYER_SURFACE),
+                                  .particles = wanted(scene_.has_particles(), v1::LAYER_PARTICLES),
+                                  .foam = wanted(scene_.foam().surface(), v1::LAYER_FOAM),
+                                  .bodies = wanted(scene_.has_boats(), v1::LAYER_BODIES)};
+  if (!request.surface && !request.particles && !request.foam && !request.bodies) return;
+  if (sim_->requestFrame(request)) {
     ++frames_in_flight_;
-  else
+  } else {
     ++dropped_frames_;
+    next_idle_frame_ = now + kDroppedFrameRetry;
+  }
 }
 
 void Room::handOverFrames(EncoderThread& encoder) {
   for (core::FrameView& frame : sim_->takeFrames()) {
-    --frames_in_flight_;
+    if (frames_in_flight_ > 0) --frames_in_flight_;
+    frame.tick += tick_shift_;
     if (wants_diagnostics_) frame.diagnostics = diagnostics();
     wants_diagnostics_ = false;
     encoder.submit(name_, std::move(frame));
@@ -183,7 +175,7 @@ void Room::handOverFrames(EncoderThread& encoder) {
   if (wants_diagnostics_ && frames_in_flight_ == 0) {
     wants_diagnostics_ = false;
     core::FrameView frame;
-    frame.tick = sim_->tick();
+    frame.tick = tick();
     frame.time_s = sim_->time_s();
     frame.diagnostics = diagnostics();
     encoder.submit(name_, std::move(frame));
@@ -198,7 +190,7 @@ core::DiagnosticsView Room::diagnostics() {
   out.step_ms = last_step_ms_;
   out.real_time_factor = paused_ ? 0.0 : clock_.realTimeFactor();
   out.substeps_count = d.substeps_count;
-  out.particle_count = d.particles ? d.particles->count : 0;
+  out.particle_count = sim_->particleCount();
   out.max_particle_speed_mps = h.max_speed_mps;
   out.max_elevation_m = h.max_elevation_m;
   out.kinetic_energy_j = h.kinetic_energy_j;
@@ -209,6 +201,11 @@ core::DiagnosticsView Room::diagnostics() {
   out.nonfinite_count = sim_->nonfiniteCount();
   out.escaped_count = sim_->escapedCount();
   out.recovered_count = sim_->recoveredCount();
+  out.boat_count = sim_->boatCount();
+  out.volume_error_units = h.volume_error_units;
+  out.emitted_m3 = h.emitted_m3;
+  out.absorbed_m3 = h.absorbed_m3;
+  out.breaking_ratio = h.breaking_ratio;
   if (step_count_ > 0) {
     last_passes_.clear();
     for (const gpu::PassCost& pass : sim_->takePassCosts())

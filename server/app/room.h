@@ -20,7 +20,9 @@
 #include <spindrift/v1/scene.pb.h>
 
 #include "encoder_thread.h"
+#include "growth_news.h"
 #include "real_time_clock.h"
+#include "scene_catalog.h"
 
 namespace spindrift::app {
 
@@ -35,13 +37,29 @@ struct RoomSnapshot {
   v1::Scene scene;  ///< with parameters as they are now
   bool paused = false;
   double speed = 1.0;
+  v1::BoatList boats;  ///< on the water now
 };
+
+class Room;
+
+/// Who has to know that a room is another one now. Called on the simulation thread; must not block.
+class RoomObserver {
+ public:
+  virtual ~RoomObserver() = default;
+  /// The room's scene was replaced; its snapshot is the new one already.
+  virtual void sceneChanged(const Room& room) = 0;
+};
+
+/// A simulation whose shaders are compiled, put back to its start. Its ticks have begun to count.
+core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene);
 
 class Room {
  public:
   using TimePoint = RealTimeClock::TimePoint;
 
-  static core::Result<std::unique_ptr<Room>> create(gpu::Context& ctx, RoomSetup setup);
+  /// The simulation is warm when this returns: every shader was compiled, and time stands at the start. `scenes` is
+  /// what the room can be changed to; it and the context outlive the room.
+  static core::Result<std::unique_ptr<Room>> create(gpu::Context& ctx, RoomSetup setup, const SceneCatalog& scenes);
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -53,36 +71,67 @@ class Room {
   void start(TimePoint now);
   /// When the room wants to run again.
   [[nodiscard]] TimePoint due(TimePoint now) const;
-  /// Drains commands, steps if not paused, asks for a frame when one is due and watched, hands over finished ones.
-  void run(TimePoint now, net::Hub& hub, EncoderThread& encoder);
+  /// Drains commands, steps if not paused, asks for a frame when one is due and watched, hands over finished ones. At
+  /// most one tick a call, so that rooms share the thread.
+  void run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer);
 
   /// For the summary at the end.
   [[nodiscard]] const sim::WaterSim& water() const { return *sim_; }
+  /// Ticks since the room began, whatever its scenes: never goes back.
+  [[nodiscard]] std::uint64_t tick() const { return sim_->tick() + tick_shift_; }
   /// Ends the simulation while the context still lives; only the any-thread functions may be called afterwards.
   void releaseDevice() { sim_.reset(); }
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
   [[nodiscard]] std::uint64_t droppedFrameCount() const { return dropped_frames_; }
 
  private:
-  Room(std::string name, v1::Scene scene, std::unique_ptr<sim::WaterSim> sim);
+  /// Empty: applied.
+  using Outcome = std::optional<stream::CommandRejection>;
 
-  void applyCommands(net::Hub& hub);
-  /// Empty optional: applied.
-  std::optional<stream::CommandRejection> apply(const core::Command& command, net::Hub& hub);
-  std::optional<stream::CommandRejection> setParameter(const core::Command& command, const core::SetParameter& change,
-                                                       net::Hub& hub);
+  Room(gpu::Context& ctx, std::string name, v1::Scene scene, const SceneCatalog& scenes,
+       std::unique_ptr<sim::WaterSim> sim);
+
+  void step(TimePoint now, net::Hub& hub);
+  TimePoint timedStep();
+  void advancePaused(TimePoint now, net::Hub& hub);
+
+  // room_commands.cpp
+  void applyCommands(net::Hub& hub, RoomObserver& observer);
+  Outcome apply(const core::Command& command, net::Hub& hub, RoomObserver& observer);
+  Outcome applyEffect(const core::Effect& effect);
+  Outcome setParameter(const core::SetParameter& change, net::Hub& hub);
+  Outcome reset(net::Hub& hub);
+  Outcome spawnBoat(const core::SpawnBoat& spawn, net::Hub& hub);
+  Outcome controlBoat(const core::ControlBoat& control);
+  Outcome removeBoat(const core::RemoveBoat& remove, net::Hub& hub);
+  Outcome advance(const core::Step& step);
+  Outcome changeScene(const core::ChangeScene& change, RoomObserver& observer);
+  void announceState(net::Hub& hub);
+  /// Where the boats on the water are others than those announced last.
+  void announceBoats(net::Hub& hub);
+  void announceRecovery(TimePoint now, net::Hub& hub);
+
   void requestFrame(TimePoint now, net::Hub& hub);
+  void readBoats();
   void handOverFrames(EncoderThread& encoder);
   core::DiagnosticsView diagnostics();
   void watchRealTime(TimePoint now);
   void publishSnapshot();
 
+  gpu::Context& ctx_;
   const std::string name_;
+  const SceneCatalog& scenes_;
   v1::Scene scene_;
   std::unique_ptr<sim::WaterSim> sim_;
   core::BoundedQueue<core::Command> commands_;
   RealTimeClock clock_;
+  std::uint64_t tick_shift_ = 0;  ///< from the simulation's ticks to the room's, modulo 2^64
   bool paused_ = false;
+  std::uint32_t pending_tick_count_ = 0;  ///< of Step: ticks that the paused room still advances
+  v1::BoatList boats_;                    ///< as announced last
+  std::uint32_t spawned_boat_id_ = 0;     ///< of the command being applied
+  GrowthNews recovery_news_{std::chrono::seconds(1)};
+  TimePoint next_scene_change_{};
   double next_frame_s_ = 0.0;    ///< simulation time
   TimePoint next_idle_frame_{};  ///< wall time, while paused
   bool wants_diagnostics_ = false;

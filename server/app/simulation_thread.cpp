@@ -7,8 +7,10 @@
 namespace spindrift::app {
 
 core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gpu::DeviceChoice& device,
-                                                                        std::vector<RoomSetup> setups) {
+                                                                        std::vector<RoomSetup> setups,
+                                                                        SceneCatalog scenes) {
   auto self = std::unique_ptr<SimulationThread>(new SimulationThread);
+  self->scenes_ = std::move(scenes);
   std::promise<core::Result<void>> built;
   auto outcome = built.get_future();
   self->thread_ = std::thread([raw = self.get(), device, &built, setups = std::move(setups)]() mutable {
@@ -39,18 +41,19 @@ core::Result<void> SimulationThread::build(const gpu::DeviceChoice& device, std:
   context_ = *std::move(context);
   device_line_ = context_->device().name;
   for (RoomSetup& setup : setups) {
-    auto room = Room::create(*context_, std::move(setup));
+    auto room = Room::create(*context_, std::move(setup), scenes_);
     if (!room) return room.error();
     rooms_.push_back(*std::move(room));
   }
   return {};
 }
 
-void SimulationThread::run(net::Hub& hub, EncoderThread& encoder) {
+void SimulationThread::run(net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
   {
     const std::lock_guard lock(mutex_);
     hub_ = &hub;
     encoder_ = &encoder;
+    observer_ = &observer;
   }
   wake_.notify_one();
 }
@@ -77,7 +80,7 @@ void SimulationThread::loop() {
   for (const auto& room : rooms_) room->start(Clock::now());
   while (!stopping_) {
     lock.unlock();
-    for (const auto& room : rooms_) room->run(Clock::now(), *hub_, *encoder_);
+    for (const auto& room : rooms_) room->run(Clock::now(), *hub_, *encoder_, *observer_);
     const auto now = Clock::now();
     auto due = now + std::chrono::milliseconds(100);
     for (const auto& room : rooms_) due = std::min(due, room->due(now));
@@ -89,7 +92,7 @@ void SimulationThread::loop() {
     const sim::WaterSim& water = room->water();
     summary_.push_back(fmt::format(
         "room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, guard stepped in {} times", room->name(),
-        water.tick(), room->meanRealTimeFactor(Clock::now()), room->droppedFrameCount(), water.recoveredCount()));
+        room->tick(), room->meanRealTimeFactor(Clock::now()), room->droppedFrameCount(), water.recoveredCount()));
     room->releaseDevice();
   }
   context_.reset();

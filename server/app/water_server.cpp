@@ -4,7 +4,7 @@ namespace spindrift::app {
 
 core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions options) {
   auto self = std::unique_ptr<WaterServer>(new WaterServer);
-  auto simulation = SimulationThread::start(options.device, std::move(options.rooms));
+  auto simulation = SimulationThread::start(options.device, std::move(options.rooms), std::move(options.scenes));
   if (!simulation) return simulation.error();
   self->simulation_ = *std::move(simulation);
   self->gateway_ = std::make_unique<Gateway>(*self->simulation_, options.network.read_message_max_bytes,
@@ -13,7 +13,7 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
   if (!network) return network.error();
   self->network_ = *std::move(network);
   self->encoder_ = std::make_unique<EncoderThread>(self->network_->hub());
-  self->simulation_->run(self->network_->hub(), *self->encoder_);
+  self->simulation_->run(self->network_->hub(), *self->encoder_, *self->gateway_);
   self->port_ = self->network_->port();
   return self;
 }

@@ -19,6 +19,7 @@ struct WaterServerOptions {
   gpu::DeviceChoice device;
   net::ServerOptions network;
   std::vector<RoomSetup> rooms;  ///< at least one; the first is the default room
+  SceneCatalog scenes;           ///< what rooms can be changed to
 };
 
 class WaterServer {

@@ -167,6 +167,9 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
       h.surface_units = t.elevation_units;
       h.outflow_units = t.outflow_units;
       h.volume_error_units = t.elevation_units + t.outflow_units;
+      const double droplet_m3 = derived.uniforms.droplet_units * double{ELEVATION_UNIT_M} * area_m2;
+      h.emitted_m3 = h.emitted_count * droplet_m3;
+      h.absorbed_m3 = h.absorbed_count * droplet_m3;
       if (is_pooled_) h.volume_error_units += std::int64_t{h.particle_count} * derived.uniforms.droplet_units;
       h.wave_volume_m3 = static_cast<double>(t.elevation_units) * ELEVATION_UNIT_M * area_m2;
       h.wave_energy_j = 0.5 * rho * area_m2 * (scene.gravity_mps2 * t.sum[0] + t.sum[1]);

@@ -542,7 +542,7 @@ bool WaterSim::requestFrame(const FrameRequest& request) {
                                   .population = population ? &*population : nullptr,
                                   .foam = request.foam ? parts_->foam.get() : nullptr,
                                   .boats = request.bodies ? parts_->boats.get() : nullptr};
-  if (!wanted.wave && !wanted.particles && !wanted.foam && !wanted.boats) return true;
+  if (!wanted.wave && !wanted.particles && !wanted.foam && !wanted.boats) return false;
   const auto timer = timers_.scope("stream");
   parts_->uniforms.bindUniform(SIM_UNIFORMS);
   return parts_->frames->pack(tick_, time_s(), wanted);

@@ -7,6 +7,7 @@
 
 #include <spindrift/stream/client_message.h>
 #include <spindrift/stream/parameters.h>
+#include <spindrift/stream/scene_loader.h>
 
 #include "fields.h"
 #include "scene_rules.h"
@@ -18,6 +19,9 @@ namespace {
 /// Far above any client message; the network's own bound is lower. Keeps sizes within what Protobuf's int can hold.
 constexpr std::size_t kParseMaxBytes = 1024 * 1024;
 constexpr std::size_t kPathMaxBytes = 128;
+/// Bytes of a scene's name that are echoed.
+constexpr std::size_t kNameEchoMaxBytes = 64;
+constexpr const char* kNoBoats = "this scene has no boats; choose a scene that has";
 
 CommandRejection rejection(std::uint64_t command_id, FieldIssue issue) {
   return {command_id, issue.reason, std::move(issue.path), std::move(issue.message)};
@@ -36,6 +40,17 @@ core::Action actionOf(const v1::Command& command) {
       return core::SetPaused{command.set_paused().paused()};
     case v1::Command::kSetSpeed:
       return core::SetSpeed{command.set_speed().speed()};
+    case v1::Command::kSpawnBoat:
+      return core::SpawnBoat{toCore(command.spawn_boat().boat())};
+    case v1::Command::kControlBoat:
+      return core::ControlBoat{command.control_boat().boat_id(), command.control_boat().throttle_ratio(),
+                               command.control_boat().rudder_ratio()};
+    case v1::Command::kRemoveBoat:
+      return core::RemoveBoat{command.remove_boat().boat_id()};
+    case v1::Command::kStep:
+      return core::Step{command.step().has_tick_count() ? command.step().tick_count() : core::Step{}.tick_count};
+    case v1::Command::kChangeScene:
+      return core::ChangeScene{command.change_scene().name()};
     case v1::Command::kReset:
     case v1::Command::ACTION_NOT_SET:
       break;
@@ -63,6 +78,11 @@ ClientMessage parseCommand(const v1::Command& command) {
       return CommandRejection{id, v1::REJECT_REASON_NOT_FINITE, cleanText(set.path(), kPathMaxBytes),
                               formatNumber(set.value()) + " is not a finite number; send a finite one"};
     }
+  }
+  if (command.has_change_scene() && !isSceneName(command.change_scene().name())) {
+    return CommandRejection{id, v1::REJECT_REASON_UNKNOWN_SCENE, "change_scene.name",
+                            "\"" + cleanText(command.change_scene().name(), kNameEchoMaxBytes) +
+                                "\" is no scene; the greeting lists what there is"};
   }
   return core::Command{0, id, actionOf(command)};
 }
@@ -139,6 +159,16 @@ std::optional<CommandRejection> checkAgainstScene(const core::Command& command, 
     if (auto error = checkParameter(scene, set->path, set->value)) {
       issues.push_back({error->reason, std::move(error->field), std::move(error->message)});
     }
+  } else if (const auto* spawn = std::get_if<core::SpawnBoat>(&command.action)) {
+    if (scene.has_boats()) {
+      issues = checkBoat(spawn->boat, scene, "spawn_boat.boat.");
+    } else {
+      addAbsent(issues, "spawn_boat", kNoBoats);
+    }
+  } else if (std::holds_alternative<core::ControlBoat>(command.action) && !scene.has_boats()) {
+    addAbsent(issues, "control_boat", kNoBoats);
+  } else if (std::holds_alternative<core::RemoveBoat>(command.action) && !scene.has_boats()) {
+    addAbsent(issues, "remove_boat", kNoBoats);
   }
   if (issues.empty()) return std::nullopt;
   return rejection(command.command_id, std::move(issues.front()));

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <google/protobuf/message.h>
@@ -18,6 +19,14 @@ struct FieldIssue {
   std::string path;     ///< from the message checked: "events[0].effect.splash.depth_m"
   std::string message;  ///< value, bound, what to do; without the path
 };
+
+inline void addRange(std::vector<FieldIssue>& issues, std::string path, std::string message) {
+  issues.push_back({v1::REJECT_REASON_OUT_OF_RANGE, std::move(path), std::move(message)});
+}
+
+inline void addAbsent(std::vector<FieldIssue>& issues, std::string path, std::string message) {
+  issues.push_back({v1::REJECT_REASON_ABSENT_PART, std::move(path), std::move(message)});
+}
 
 /// The field's options; null where the field is no number with a range.
 const v1::ParameterOptions* parameterOptions(const google::protobuf::FieldDescriptor& field);

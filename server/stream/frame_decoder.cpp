@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +21,7 @@ static_assert(std::endian::native == std::endian::little, "payload integers are 
 
 constexpr std::size_t kSampleBytes = 2;
 constexpr std::size_t kParticleBytes = 12;
+constexpr std::size_t kBodyBytes = 28;
 /// Far beyond any scene; keeps every decoded value finite as a float.
 constexpr double kMaxMagnitude = 1e6;
 
@@ -62,14 +65,17 @@ std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer lay
   return std::nullopt;
 }
 
+std::optional<core::Error> checkResolution(std::uint32_t resolution_count) {
+  if (resolution_count >= 1 && resolution_count <= kSurfaceMaxResolutionCount) return std::nullopt;
+  return invalid("resolution_count: " + std::to_string(resolution_count) + " is not from 1 to " +
+                 std::to_string(kSurfaceMaxResolutionCount));
+}
+
 std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
   if (!frame.has_surface_fixed16()) return invalid("codec: not surface_fixed16, the only surface codec known here");
   const v1::SurfaceFixed16& header = frame.surface_fixed16();
   const std::size_t n = header.resolution_count();
-  if (n < 1 || n > kSurfaceMaxResolutionCount) {
-    return invalid("resolution_count: " + std::to_string(n) + " is not from 1 to " +
-                   std::to_string(kSurfaceMaxResolutionCount));
-  }
+  if (auto error = checkResolution(header.resolution_count())) return error;
   // Bounds of 0 would make every sample lie in one place, or be flat whatever the payload says.
   if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
   if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return error;
@@ -93,6 +99,24 @@ std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
   if (auto error = checkRange("max_speed_mps", header.max_speed_mps(), 0.0)) return error;
   if (auto error = checkRange("radius_m", header.radius_m(), 0.0)) return error;
   return checkFrame(frame, v1::LAYER_PARTICLES, header.count() * kParticleBytes);
+}
+
+std::optional<core::Error> checkFoam(const v1::LayerFrame& frame) {
+  if (!frame.has_foam_fixed8()) return invalid("codec: not foam_fixed8, the only foam codec known here");
+  const v1::FoamFixed8& header = frame.foam_fixed8();
+  const std::size_t n = header.resolution_count();
+  if (auto error = checkResolution(header.resolution_count())) return error;
+  if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
+  return checkFrame(frame, v1::LAYER_FOAM, n * n);
+}
+
+std::optional<core::Error> checkBodies(const v1::LayerFrame& frame) {
+  if (!frame.has_bodies_fixed28()) return invalid("codec: not bodies_fixed28, the only codec of bodies known here");
+  const std::size_t count = frame.bodies_fixed28().count();
+  if (count > kBodyMaxCount) {
+    return invalid("count: " + std::to_string(count) + " is above " + std::to_string(kBodyMaxCount));
+  }
+  return checkFrame(frame, v1::LAYER_BODIES, count * kBodyBytes);
 }
 
 }  // namespace
@@ -154,6 +178,42 @@ core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame) {
     for (std::size_t axis = 0; axis < 3; ++axis) out.velocity_mps[3 * i + axis] = velocity(at[6 + axis]);
     out.tint[i] = at[9];
     out.foam[i] = at[10];
+  }
+  return out;
+}
+
+core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame) {
+  if (auto error = checkFoam(frame)) return *error;
+  FoamSamples out;
+  out.resolution_count = frame.foam_fixed8().resolution_count();
+  out.side_m = frame.foam_fixed8().side_m();
+  const core::ByteView payload = viewOf(frame.payload());
+  out.foam.assign(payload.begin(), payload.end());
+  return out;
+}
+
+core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame) {
+  if (auto error = checkBodies(frame)) return *error;
+  const core::ByteView payload = viewOf(frame.payload());
+  const auto angle = [](std::int16_t value) { return value / 32767.0 * std::numbers::pi; };
+  const auto ratio = [](std::uint8_t byte) { return std::max(static_cast<std::int8_t>(byte) / 127.0, -1.0); };
+  std::vector<BodySample> out;
+  for (std::size_t i = 0; i < frame.bodies_fixed28().count(); ++i) {
+    const std::uint8_t* at = payload.data() + i * kBodyBytes;
+    BodySample body;
+    body.boat_id = load<std::uint32_t>(at);
+    if (body.boat_id == 0) return invalid("boat_id: 0 is no boat; the frame is damaged");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      body.position_m[axis] = load<std::int32_t>(at + 4 + 4 * axis) / 1000.0;
+      if (auto error = checkRange("position_m", body.position_m[axis], -kMaxMagnitude)) return *error;
+    }
+    body.heading_rad = angle(load<std::int16_t>(at + 16));
+    body.pitch_rad = angle(load<std::int16_t>(at + 18));
+    body.roll_rad = angle(load<std::int16_t>(at + 20));
+    body.speed_mps = load<std::int16_t>(at + 22) / 100.0;
+    body.throttle_ratio = ratio(at[24]);
+    body.rudder_ratio = ratio(at[25]);
+    out.push_back(body);
   }
   return out;
 }

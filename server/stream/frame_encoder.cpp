@@ -115,6 +115,38 @@ class ParticlesFixed12Codec final : public LayerCodec {
   void requestKeyframe() override {}
 };
 
+class FoamFixed8Codec final : public LayerCodec {
+ public:
+  v1::Layer layer() const override { return v1::LAYER_FOAM; }
+
+  core::SharedBytes encode(const core::FrameView& frame) override {
+    if (!frame.foam) return nullptr;
+    const core::FoamView& foam = *frame.foam;
+    assert(foam.words.size() * 4 == std::size_t{foam.resolution_count} * foam.resolution_count);
+    v1::LayerFrame codec;
+    codec.mutable_foam_fixed8()->set_resolution_count(foam.resolution_count);
+    codec.mutable_foam_fixed8()->set_side_m(foam.side_m);
+    return serializeKeyframe(frame, v1::LAYER_FOAM, codec, foam.words);
+  }
+
+  void requestKeyframe() override {}
+};
+
+class BodiesFixed28Codec final : public LayerCodec {
+ public:
+  v1::Layer layer() const override { return v1::LAYER_BODIES; }
+
+  core::SharedBytes encode(const core::FrameView& frame) override {
+    if (!frame.bodies) return nullptr;
+    assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
+    v1::LayerFrame codec;
+    codec.mutable_bodies_fixed28()->set_count(frame.bodies->count);
+    return serializeKeyframe(frame, v1::LAYER_BODIES, codec, frame.bodies->words);
+  }
+
+  void requestKeyframe() override {}
+};
+
 class DiagnosticsCodec final : public LayerCodec {
  public:
   v1::Layer layer() const override { return v1::LAYER_DIAGNOSTICS; }
@@ -130,6 +162,12 @@ std::unique_ptr<LayerCodec> makeSurfaceFixed16Codec() {
 std::unique_ptr<LayerCodec> makeParticlesFixed12Codec() {
   return std::make_unique<ParticlesFixed12Codec>();
 }
+std::unique_ptr<LayerCodec> makeFoamFixed8Codec() {
+  return std::make_unique<FoamFixed8Codec>();
+}
+std::unique_ptr<LayerCodec> makeBodiesFixed28Codec() {
+  return std::make_unique<BodiesFixed28Codec>();
+}
 std::unique_ptr<LayerCodec> makeDiagnosticsCodec() {
   return std::make_unique<DiagnosticsCodec>();
 }
@@ -137,6 +175,8 @@ std::unique_ptr<LayerCodec> makeDiagnosticsCodec() {
 FrameEncoder::FrameEncoder() {
   slots_[v1::LAYER_SURFACE].codec = makeSurfaceFixed16Codec();
   slots_[v1::LAYER_PARTICLES].codec = makeParticlesFixed12Codec();
+  slots_[v1::LAYER_FOAM].codec = makeFoamFixed8Codec();
+  slots_[v1::LAYER_BODIES].codec = makeBodiesFixed28Codec();
   slots_[v1::LAYER_DIAGNOSTICS].codec = makeDiagnosticsCodec();
 }
 

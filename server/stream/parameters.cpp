@@ -5,6 +5,7 @@
 #include <spindrift/stream/parameters.h>
 
 #include "fields.h"
+#include "scene_rules.h"
 #include "text.h"
 
 namespace spindrift::stream {
@@ -101,6 +102,14 @@ std::optional<ParameterError> checkTarget(const std::optional<Target>& target, s
   return std::nullopt;
 }
 
+/// What the rest of the scene says against a value that is fine in itself: water too shallow for a boat, ...
+std::optional<ParameterError> checkChanged(const v1::Scene& changed, std::string_view path) {
+  if (!changed.has_wave()) return std::nullopt;
+  const std::vector<FieldIssue> issues = checkWater(changed);
+  if (issues.empty()) return std::nullopt;
+  return ParameterError{issues.front().reason, std::string(path), issues.front().path + ": " + issues.front().message};
+}
+
 void appendReference(const Descriptor& type, const std::string& prefix, std::string& table) {
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
@@ -125,14 +134,18 @@ std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene)
 }
 
 std::optional<ParameterError> checkParameter(const v1::Scene& scene, std::string_view path, double value) {
-  return checkTarget(findTarget(scene, path), path, value);
+  v1::Scene changed = scene;
+  return setParameter(changed, path, value);
 }
 
 std::optional<ParameterError> setParameter(v1::Scene& scene, std::string_view path, double value) {
-  const std::optional<Target> target = findTarget(scene, path);
+  v1::Scene changed = scene;
+  const std::optional<Target> target = findTarget(changed, path);
   if (auto error = checkTarget(target, path, value)) return error;
-  // The part belongs to `scene`, which the caller let us change.
+  // The part belongs to `changed`, which is ours.
   setNumber(const_cast<Message&>(*target->part), *target->field, value);
+  if (auto error = checkChanged(changed, path)) return error;
+  scene = std::move(changed);
   return std::nullopt;
 }
 

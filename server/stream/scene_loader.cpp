@@ -176,6 +176,7 @@ Location locate(const TextFormat::ParseInfoTree& root, std::string_view path) {
     if (bracket != std::string_view::npos) {
       std::from_chars(segment.data() + bracket + 1, segment.data() + segment.size(), index);
     }
+    if (field->is_repeated() != (index >= 0)) break;
     const TextFormat::ParseLocation location = tree->GetLocation(field, index);
     if (location.line < 0) break;
     best = {location.line, location.column};

@@ -24,14 +24,6 @@ std::string metres(double value) {
   return formatQuantity(value, "m");
 }
 
-void addRange(std::vector<FieldIssue>& issues, std::string path, std::string message) {
-  issues.push_back({v1::REJECT_REASON_OUT_OF_RANGE, std::move(path), std::move(message)});
-}
-
-void addAbsent(std::vector<FieldIssue>& issues, std::string path, std::string message) {
-  issues.push_back({v1::REJECT_REASON_ABSENT_PART, std::move(path), std::move(message)});
-}
-
 void checkHeight(double value_m, double depth_m, const std::string& path, std::vector<FieldIssue>& issues) {
   const double max_m = kMaxEffectDepthRatio * depth_m;
   if (value_m <= max_m) return;
@@ -53,11 +45,6 @@ void checkPatch(double shift_m, double scale, double side_m, const std::string& 
   addRange(issues, path,
            metres(shift_m) + " pushes the particle patch over the edge of the water; choose " +
                formatNumber(reach_m > 0 ? -reach_m : 0) + " to " + metres(reach_m) + " or a smaller patch_scale");
-}
-
-bool isName(const std::string& name) {
-  const char* const allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
-  return !name.empty() && name.size() <= kNameMaxBytes && name.find_first_not_of(allowed) == std::string::npos;
 }
 
 void checkText(const std::string& text, std::size_t max_bytes, const std::string& path,
@@ -86,8 +73,43 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   if (scene.has_coupling() && !scene.has_particles()) {
     addAbsent(issues, "coupling", "needs particles; add \"particles {}\" or remove coupling");
   }
-  if (scene.has_foam() && !scene.has_particles()) {
-    addAbsent(issues, "foam", "needs particles; add \"particles {}\" or remove foam");
+  if (scene.has_foam() && !scene.has_particles() && !scene.foam().surface()) {
+    addAbsent(
+        issues, "foam",
+        "needs particles, or a field on the surface; add \"particles {}\", say \"surface: true\" where there is a "
+        "wave, or remove foam");
+  }
+  if (scene.foam().surface() && !scene.has_wave()) {
+    addAbsent(issues, "foam.surface", "needs a wave; add \"wave {}\" or remove surface");
+  }
+  if (scene.coupling().patch_follow() == v1::PATCH_FOLLOW_BOAT && !scene.has_boats()) {
+    addAbsent(issues, "coupling.patch_follow",
+              "PATCH_FOLLOW_BOAT needs boats; add \"boats {}\" or follow something else");
+  }
+  if (scene.has_wave()) return;
+  const auto needsWave = [&](const char* path, const std::string& part) {
+    addAbsent(issues, path, "needs a wave; add \"wave {}\" or remove " + part);
+  };
+  if (scene.obstacles_size() > 0) needsWave("obstacles[0]", "the obstacles");
+  if (scene.beaches_size() > 0) needsWave("beaches[0]", "the beaches");
+  if (scene.has_boats()) needsWave("boats", "boats");
+  if (scene.has_storm()) needsWave("storm", "storm");
+}
+
+void checkCount(int count, int max_count, const std::string& path, const char* what, std::vector<FieldIssue>& issues) {
+  if (count <= max_count) return;
+  addRange(issues, path + "[" + std::to_string(max_count) + "]",
+           std::to_string(count) + " " + what + " are more than " + std::to_string(max_count) + "; remove some");
+}
+
+void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  checkCount(scene.obstacles_size(), kSceneObstacleMaxCount, "obstacles", "obstacles", issues);
+  checkCount(scene.beaches_size(), kSceneBeachMaxCount, "beaches", "beaches", issues);
+  checkCount(scene.boats().boats_size(), static_cast<int>(core::kMaxBoats), "boats.boats", "boats", issues);
+  for (int i = 0; i < scene.obstacles_size(); ++i) {
+    if (scene.obstacles(i).shape_case() != v1::Obstacle::SHAPE_NOT_SET) continue;
+    issues.push_back({v1::REJECT_REASON_MALFORMED, "obstacles[" + std::to_string(i) + "]",
+                      "has no shape; say what stands there: \"rock {}\" or \"breakwater {}\""});
   }
 }
 
@@ -125,6 +147,11 @@ void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, cons
 
 }  // namespace
 
+bool isSceneName(const std::string& name) {
+  const char* const allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  return !name.empty() && name.size() <= kNameMaxBytes && name.find_first_not_of(allowed) == std::string::npos;
+}
+
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene) {
   std::vector<FieldIssue> issues;
   const bool is_splash = std::holds_alternative<core::Splash>(effect);
@@ -157,7 +184,7 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
 
 std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
   std::vector<FieldIssue> issues;
-  if (!isName(scene.name())) {
+  if (!isSceneName(scene.name())) {
     addRange(
         issues, "name",
         "\"" + cleanText(scene.name(), kNameMaxBytes) +
@@ -166,6 +193,7 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
   checkText(scene.title(), kTitleMaxBytes, "title", issues);
   checkText(scene.description(), kDescriptionMaxBytes, "description", issues);
   checkParts(scene, issues);
+  checkLists(scene, issues);
   if (scene.events_size() > kSceneEventMaxCount) {
     addRange(issues, "events[" + std::to_string(kSceneEventMaxCount) + "]",
              std::to_string(scene.events_size()) + " events are more than " + std::to_string(kSceneEventMaxCount) +
@@ -186,6 +214,9 @@ std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
     const double side_m = scene.has_wave() ? scene.wave().side_m() : particles.box_side_m();
     checkPatch(particles.patch_shift_x_m(), particles.patch_scale(), side_m, "particles.patch_shift_x_m", issues);
     checkPatch(particles.patch_shift_z_m(), particles.patch_scale(), side_m, "particles.patch_shift_z_m", issues);
+  }
+  if (scene.has_wave()) {
+    for (FieldIssue& issue : checkWater(scene)) issues.push_back(std::move(issue));
   }
   for (int i = 0; i < scene.events_size(); ++i) checkEventNumbers(scene.events(i), scene, eventPrefix(i), issues);
   return issues;

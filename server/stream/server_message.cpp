@@ -34,13 +34,16 @@ core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene) {
   out.set_server_time_s(facts.server_time_s);
   out.mutable_room_state()->set_paused(facts.paused);
   out.mutable_room_state()->set_speed(facts.speed);
+  *out.mutable_boat_list() = facts.boats;
+  for (const std::string& name : facts.scenes) out.add_scenes(name);
   return serialize(message);
 }
 
-core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick) {
+core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id) {
   v1::ServerMessage message;
   message.mutable_ack()->set_command_id(command_id);
   message.mutable_ack()->set_applied_tick(applied_tick);
+  message.mutable_ack()->set_boat_id(boat_id);
   return serialize(message);
 }
 
@@ -72,6 +75,21 @@ core::SharedBytes roomState(bool paused, double speed) {
   v1::ServerMessage message;
   message.mutable_room_state()->set_paused(paused);
   message.mutable_room_state()->set_speed(speed);
+  return serialize(message);
+}
+
+core::SharedBytes boatList(const v1::BoatList& boats) {
+  v1::ServerMessage message;
+  *message.mutable_boat_list() = boats;
+  return serialize(message);
+}
+
+core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view text) {
+  v1::ServerMessage message;
+  v1::RoomEvent& out = *message.mutable_room_event();
+  out.set_kind(kind);
+  out.set_tick(tick);
+  out.set_message(std::string(text));
   return serialize(message);
 }
 
@@ -109,6 +127,11 @@ core::SharedBytes diagnostics(const core::FrameView& frame) {
   out.set_nonfinite_count(in.nonfinite_count);
   out.set_escaped_count(in.escaped_count);
   out.set_recovered_count(in.recovered_count);
+  out.set_boat_count(in.boat_count);
+  out.set_volume_error_units(in.volume_error_units);
+  out.set_emitted_m3(in.emitted_m3);
+  out.set_absorbed_m3(in.absorbed_m3);
+  out.set_breaking_ratio(in.breaking_ratio);
   for (const core::DiagnosticsView::PassTime& pass : in.passes) {
     v1::Diagnostics::PassTime& time = *out.add_passes();
     time.set_name(pass.name);

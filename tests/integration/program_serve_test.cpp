@@ -174,6 +174,11 @@ TEST_F(RunningServe, HasEveryRoomOfItsCommandLine) {
   EXPECT_EQ(ScriptedClient(port_).greeting().room(), "main");
 }
 
+TEST_F(RunningServe, OffersTheShippedScenes) {
+  const ScriptedClient one(port_);
+  EXPECT_THAT(one.greeting().scenes(), testing::IsSupersetOf({"default", "wave_only"}));
+}
+
 TEST_F(RunningServe, EndsCleanlyOnSigterm) {
   expectCleanEndOn(SIGTERM);
 }

@@ -111,6 +111,36 @@ TEST_F(Check, SmallSceneIsFineWithItsDerivedQuantities) {
   }
 }
 
+TEST_F(Check, PrintsSidesSolverAndWhatFloatsAndStandsInTheWater) {
+  const std::string file = scene(
+      "wave { resolution_count: 32 side_m: 16 depth_m: 1 steepening_ratio: 0.5\n"
+      "  boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_REFLECT sponge_width_m: 3 }\n"
+      "particles { count: 512 layers_count: 2 equation_of_state: EQUATION_OF_STATE_TAIT cohesion: true }\n"
+      "obstacles { rock { x_m: 5 } }\nbeaches { width_m: 4 shore_depth_m: 0.25 }\n"
+      "boats { boats { x_m: -4 height_m: 0.5 density_ratio: 0.5 } }\nstorm { level_ratio: 0.75 }\n");
+  const Outcome outcome = runProgram({"check", file});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* word :
+       {"sides      -x absorbs, +x reflects, -z periodic, +z periodic, sponge of 3 m", "steepening 0.5",
+        "weakly compressible, Tait's equation of state, conserving pressure force, cohesion", "obstacles  1",
+        "beach      at +x, 4 m wide, up to a depth of 0.25 m", "boats      1 of at most 8", "draught 0.25 m",
+        "storm      0.75"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(word));
+  }
+}
+
+TEST_F(Check, PrintsThePositionBasedSolver) {
+  const Outcome outcome = runProgram({"check", scene("particles { solver: PRESSURE_SOLVER_POSITION_BASED }\n")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("position-based, 4 iterations a substep"));
+}
+
+TEST_F(Check, RuleBetweenFieldsIsNamedWithFileLineColumnAndRemedy) {
+  const std::string file = scene("wave {}\nboats {\n  boats { x_m: 50 }\n}\n");
+  expectOneErrorLine(runProgram({"check", file}), 2,
+                     {file + ":3:11: boats.boats[0].x_m: 50 m", "choose -10.8 to 10.8 m"});
+}
+
 class ShippedScene : public testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedScene, IsFine) {

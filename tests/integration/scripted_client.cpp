@@ -48,6 +48,39 @@ v1::Command reset() {
   return command;
 }
 
+v1::Command spawnBoat(double x_m, double z_m) {
+  v1::Command command;
+  command.mutable_spawn_boat()->mutable_boat()->set_x_m(x_m);
+  command.mutable_spawn_boat()->mutable_boat()->set_z_m(z_m);
+  return command;
+}
+
+v1::Command controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {
+  v1::Command command;
+  command.mutable_control_boat()->set_boat_id(boat_id);
+  command.mutable_control_boat()->set_throttle_ratio(throttle_ratio);
+  command.mutable_control_boat()->set_rudder_ratio(rudder_ratio);
+  return command;
+}
+
+v1::Command removeBoat(std::uint32_t boat_id) {
+  v1::Command command;
+  command.mutable_remove_boat()->set_boat_id(boat_id);
+  return command;
+}
+
+v1::Command step(std::uint32_t tick_count) {
+  v1::Command command;
+  command.mutable_step()->set_tick_count(tick_count);
+  return command;
+}
+
+v1::Command changeScene(const std::string& name) {
+  v1::Command command;
+  command.mutable_change_scene()->set_name(name);
+  return command;
+}
+
 ScriptedClient::ScriptedClient(std::uint16_t port, const std::string& room) {
   if (!ws_.connect("127.0.0.1", port, room.empty() ? "/ws" : "/ws/" + room)) return;
   const auto first = ws_.receive();

@@ -18,6 +18,11 @@ v1::Command setParameter(const std::string& path, double value);
 v1::Command setPaused(bool paused);
 v1::Command setSpeed(double speed);
 v1::Command reset();
+v1::Command spawnBoat(double x_m, double z_m);
+v1::Command controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
+v1::Command removeBoat(std::uint32_t boat_id);
+v1::Command step(std::uint32_t tick_count);
+v1::Command changeScene(const std::string& name);
 
 class ScriptedClient {
  public:

@@ -40,10 +40,14 @@ class ServerTest : public testing::Test {
  protected:
   virtual std::vector<RoomText> rooms() const { return {{"main", kStillPool}}; }
 
+  /// What rooms can be changed to.
+  virtual app::SceneCatalog scenes() const { return {}; }
+
   void SetUp() override {
     app::WaterServerOptions options;
     options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
     options.network.port = 0;
+    options.scenes = scenes();
     for (const RoomText& room : rooms()) {
       auto scene = stream::parseSceneText(room.scene, room.name);
       ASSERT_TRUE(scene) << scene.error().message;

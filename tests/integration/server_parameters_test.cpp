@@ -101,6 +101,15 @@ TEST_F(FixedStepParameters, WhatBreaksAStepRuleIsRejectedWithTheRule) {
   EXPECT_TRUE(one.apply(setParameter("particles.sound_speed_mps", 10)));
 }
 
+TEST_F(Parameters, WhatLeavesNoLatticeIsRejectedAsOutOfRange) {
+  ScriptedClient one = client();
+  const v1::Reject reject = one.rejected(setParameter("particles.count", 1));
+  EXPECT_EQ(reject.reason(), v1::REJECT_REASON_OUT_OF_RANGE) << reject.message();
+  EXPECT_EQ(reject.field(), "particles.count");
+  EXPECT_THAT(reject.message(), HasSubstr("at least 3 are needed"));
+  EXPECT_TRUE(one.runFor(5)) << "the room goes on as it was";
+}
+
 TEST_F(Parameters, AStiffenedRoomTakesMoreSubsteps) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_DIAGNOSTICS);

@@ -85,6 +85,7 @@ int serve(const ServeOptions& options) {
   WaterServerOptions server_options;
   server_options.device = *device;
   server_options.rooms = *std::move(rooms);
+  server_options.scenes = SceneCatalog(findSceneFolder());
   server_options.network.address = options.address;
   server_options.network.port = options.port;
   server_options.network.thread_count = options.thread_count;

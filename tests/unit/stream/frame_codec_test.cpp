@@ -180,7 +180,8 @@ TEST(FrameEncoding, OfALayerThatTheFrameLacksIsNothingAndNotCounted) {
     EXPECT_EQ(encoder.encode(layer, empty), nullptr);
     EXPECT_EQ(encoder.encodeCount(layer), 0u);
   }
-  EXPECT_EQ(encoder.encode(v1::LAYER_FOAM, TestFrame().view), nullptr) << "no codec for it";
+  EXPECT_EQ(encoder.encode(v1::LAYER_FOAM, TestFrame().view), nullptr) << "the frame has none";
+  EXPECT_EQ(encoder.encode(v1::LAYER_UNSPECIFIED, TestFrame().view), nullptr) << "no codec for it";
 }
 
 TEST(FrameEncoding, CountsOneEncodeAFrameWhoeverSharesTheBytes) {

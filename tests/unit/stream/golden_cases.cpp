@@ -10,6 +10,8 @@
 #include <spindrift/stream/frame_encoder.h>
 #include <spindrift/stream/server_message.h>
 
+#include "golden_boats.h"
+
 namespace spindrift::stream {
 namespace {
 
@@ -99,6 +101,11 @@ core::Bytes diagnosticsBytes() {
   view.nonfinite_count = 0;
   view.escaped_count = 1;
   view.recovered_count = kTick;
+  view.boat_count = 2;
+  view.volume_error_units = -3;
+  view.emitted_m3 = 12.5;
+  view.absorbed_m3 = 11.75;
+  view.breaking_ratio = 0.03125;
   view.passes = {{"grid", 1.25}, {"sph", 4.5}};
   core::FrameView frame;
   frame.tick = 1234;
@@ -111,6 +118,25 @@ core::Bytes serialized(const v1::ServerMessage& message) {
   core::Bytes bytes(message.ByteSizeLong());
   message.SerializeWithCachedSizesToArray(bytes.data());
   return bytes;
+}
+
+core::Bytes foamBytes() {
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t i = 0; i < 256; i += 4) words.push_back(i | (i + 1) << 8 | (i + 2) << 16 | (i + 3) << 24);
+  core::FrameView frame;
+  frame.tick = kTick;
+  frame.time_s = kTimeS;
+  frame.foam = core::FoamView{16, 8.0, words};
+  return *FrameEncoder().encode(v1::LAYER_FOAM, frame);
+}
+
+core::Bytes bodiesBytes() {
+  const std::vector<std::uint32_t> words = goldenBodyWords();
+  core::FrameView frame;
+  frame.tick = 1234;
+  frame.time_s = kTimeS;
+  frame.bodies = core::BodiesView{2, words};
+  return *FrameEncoder().encode(v1::LAYER_BODIES, frame);
 }
 
 /// Written out here rather than made by greeting(), so that a better help text does not change the golden bytes.
@@ -137,7 +163,10 @@ core::Bytes greetingBytes() {
   scene.mutable_wave()->set_depth_m(1.5);
   scene.mutable_wave()->set_damping_per_s(0);
   scene.mutable_wave()->set_stencil(v1::STENCIL_NINE_POINT);
-  scene.mutable_wave()->set_boundary(v1::BOUNDARY_WALL);
+  scene.mutable_wave()->set_boundary_minus_x(v1::WAVE_BOUNDARY_REFLECT);
+  scene.mutable_wave()->set_boundary_plus_x(v1::WAVE_BOUNDARY_REFLECT);
+  scene.mutable_wave()->set_boundary_minus_z(v1::WAVE_BOUNDARY_REFLECT);
+  scene.mutable_wave()->set_boundary_plus_z(v1::WAVE_BOUNDARY_ABSORB);
   v1::ParameterDescription& parameter = *out.add_parameters();
   parameter.set_path("wave.damping_per_s");
   parameter.set_label("Wave damping");
@@ -149,6 +178,9 @@ core::Bytes greetingBytes() {
   out.set_server_time_s(kTimeS);
   out.mutable_room_state()->set_paused(true);
   out.mutable_room_state()->set_speed(0.5);
+  *out.mutable_boat_list() = goldenBoats();
+  out.add_scenes("harbour");
+  out.add_scenes("pool");
   return serialized(message);
 }
 
@@ -183,6 +215,29 @@ std::string particleJson(const core::Bytes& bytes) {
          ", \"foam\": " + numbers(samples->foam);
 }
 
+std::string foamJson(const core::Bytes& bytes) {
+  const auto message = parseServerMessage(bytes);
+  const auto samples = decodeFoam(message->frame());
+  return frameJson(message->frame(), "LAYER_FOAM") +
+         ",\n    \"resolution_count\": 16, \"side_m\": 8,\n    \"foam\": " + numbers(samples->foam);
+}
+
+std::string bodiesJson(const core::Bytes& bytes) {
+  const auto message = parseServerMessage(bytes);
+  const auto samples = decodeBodies(message->frame());
+  std::string text = frameJson(message->frame(), "LAYER_BODIES") + ", \"count\": 2,\n    \"bodies\": [";
+  for (const BodySample& body : *samples) {
+    if (text.back() != '[') text += ",\n      ";
+    text += "{\"boat_id\": " + std::to_string(body.boat_id) +
+            ", \"position_m\": " + numbers(std::vector<double>(body.position_m, body.position_m + 3)) +
+            ", \"heading_rad\": " + number(body.heading_rad) + ", \"pitch_rad\": " + number(body.pitch_rad) +
+            ", \"roll_rad\": " + number(body.roll_rad) + ", \"speed_mps\": " + number(body.speed_mps) +
+            ", \"throttle_ratio\": " + number(body.throttle_ratio) +
+            ", \"rudder_ratio\": " + number(body.rudder_ratio) + "}";
+  }
+  return text + "]";
+}
+
 std::string diagnosticsJson() {
   return "\"kind\": \"diagnostics\", \"tick\": \"1234\", \"time_s\": 20.5, \"step_ms\": 6.5, \"real_time_factor\": "
          "0.875,\n"
@@ -191,7 +246,10 @@ std::string diagnosticsJson() {
          "    \"kinetic_energy_j\": 1500.5, \"potential_energy_j\": -250.25, \"wave_energy_j\": 10000,\n"
          "    \"mean_density_ratio\": 0.96875, \"max_density_ratio\": 1.0625, \"nonfinite_count\": \"0\", "
          "\"escaped_count\": \"1\",\n    \"recovered_count\": " +
-         wide(kTick) + ", \"passes\": [{\"name\": \"grid\", \"ms\": 1.25}, {\"name\": \"sph\", \"ms\": 4.5}]";
+         wide(kTick) +
+         ", \"passes\": [{\"name\": \"grid\", \"ms\": 1.25}, {\"name\": \"sph\", \"ms\": 4.5}],\n"
+         "    \"boat_count\": 2, \"volume_error_units\": \"-3\", \"emitted_m3\": 12.5, \"absorbed_m3\": 11.75, "
+         "\"breaking_ratio\": 0.03125";
 }
 
 std::string greetingJson() {
@@ -204,11 +262,14 @@ std::string greetingJson() {
          "9.8125,\n"
          "      \"wave\": {\"side_m\": 16, \"depth_m\": 1.5, \"damping_per_s\": 0, \"stencil\": "
          "\"STENCIL_NINE_POINT\", "
-         "\"boundary\": \"BOUNDARY_WALL\"}},\n"
+         "\"boundary_minus_x\": \"WAVE_BOUNDARY_REFLECT\",\n        \"boundary_plus_x\": \"WAVE_BOUNDARY_REFLECT\", "
+         "\"boundary_minus_z\": \"WAVE_BOUNDARY_REFLECT\", \"boundary_plus_z\": \"WAVE_BOUNDARY_ABSORB\"}},\n"
          "    \"parameters\": [{\"path\": \"wave.damping_per_s\", \"label\": \"Wave damping\", \"unit\": \"1/s\", "
          "\"min\": 0, "
          "\"max\": 5, \"step\": 0.25,\n      \"default\": 0.125, \"value\": 0, \"help\": \"How fast waves fade.\"}],\n"
-         "    \"server_time_s\": 20.5, \"room_state\": {\"paused\": true, \"speed\": 0.5}";
+         "    \"server_time_s\": 20.5, \"room_state\": {\"paused\": true, \"speed\": 0.5},\n"
+         "    \"boat_list\": {\"boats\": " +
+         std::string(kGoldenBoatsJson) + "}, \"scenes\": [\"harbour\", \"pool\"]";
 }
 
 std::string because(const std::string& why) {
@@ -226,6 +287,8 @@ std::vector<GoldenCase> goldenCases() {
   using enum GoldenVerdict;
   const core::Bytes surface = surfaceBytes();
   const core::Bytes particles = particleBytes();
+  const core::Bytes foam = foamBytes();
+  const core::Bytes bodies = bodiesBytes();
   const auto seal = [](v1::LayerFrame& frame) {
     frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
   };
@@ -244,6 +307,16 @@ std::vector<GoldenCase> goldenCases() {
        "\"kind\": \"reject\", \"command_id\": \"301\", \"reason\": \"REJECT_REASON_OUT_OF_RANGE\", "
        "\"field\": \"splash.radius_m\", \"message\": \"too wide\"",
        *reject(301, v1::REJECT_REASON_OUT_OF_RANGE, "splash.radius_m", "too wide")},
+      {"foam_16.bin", kOk, foamJson(foam), foam},
+      {"bodies_2.bin", kOk, bodiesJson(bodies), bodies},
+      {"ack_boat.bin", kOk, "\"kind\": \"ack\", \"command_id\": \"302\", \"applied_tick\": \"1234\", \"boat_id\": 7",
+       *ack(302, 1234, 7)},
+      {"boat_list.bin", kOk, "\"kind\": \"boat_list\", \"boats\": " + std::string(kGoldenBoatsJson),
+       *boatList(goldenBoats())},
+      {"room_event.bin", kOk,
+       "\"kind\": \"room_event\", \"event\": \"ROOM_EVENT_KIND_RECOVERED\", \"tick\": " + wide(kTick) +
+           ", \"message\": \"put back\"",
+       *roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, kTick, "put back")},
       bad("surface_truncated", surface, "payload two bytes short, checksum of what is there",
           [&](v1::LayerFrame& f) {
             f.mutable_payload()->resize(f.payload().size() - 2);
@@ -274,6 +347,27 @@ std::vector<GoldenCase> goldenCases() {
           [](v1::LayerFrame& f) {
             f.mutable_particles_fixed12()->set_max_speed_mps(std::numeric_limits<double>::infinity());
           }),
+      bad("foam_truncated", foam, "payload one byte short, checksum of what is there",
+          [&](v1::LayerFrame& f) {
+            f.mutable_payload()->pop_back();
+            seal(f);
+          }),
+      bad("foam_crc", foam, "wrong checksum", [](v1::LayerFrame& f) { f.set_crc32c(f.crc32c() ^ 1u); }),
+      bad("foam_resolution", foam, "resolution_count above 4096",
+          [](v1::LayerFrame& f) { f.mutable_foam_fixed8()->set_resolution_count(65'552); }),
+      bad("foam_side", foam, "side_m is negative", [](v1::LayerFrame& f) { f.mutable_foam_fixed8()->set_side_m(-8); }),
+      bad("bodies_truncated", bodies, "the last boat is cut short, checksum of what is there",
+          [&](v1::LayerFrame& f) {
+            f.mutable_payload()->resize(f.payload().size() - 2);
+            seal(f);
+          }),
+      bad("bodies_crc", bodies, "wrong checksum", [](v1::LayerFrame& f) { f.set_crc32c(f.crc32c() ^ 1u); }),
+      bad("bodies_count", bodies, "count says fewer boats than the payload holds",
+          [](v1::LayerFrame& f) { f.mutable_bodies_fixed28()->set_count(1); }),
+      bad("bodies_count_huge", bodies, "count whose size in bytes wraps to the payload's in 32 bits",
+          [](v1::LayerFrame& f) { f.mutable_bodies_fixed28()->set_count(0x4000'0002u); }),
+      bad("bodies_layer", bodies, "the codec of another layer",
+          [](v1::LayerFrame& f) { f.mutable_foam_fixed8()->set_resolution_count(1); }),
       {"bad_cut.bin", kBadMessage, because("the first half of surface_16.bin"), cutInHalf(surface)},
       {"bad_empty.bin", kBadMessage, because("no bytes: no kind of message"), {}},
       {"bad_kind.bin", kBadMessage, because("a kind of message of the future: field 15"), {0x7A, 0x02, 0x08, 0x01}},

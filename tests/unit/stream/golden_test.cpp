@@ -25,6 +25,19 @@ std::string readFile(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+bool decodes(const v1::LayerFrame& frame) {
+  switch (frame.layer()) {
+    case v1::LAYER_SURFACE:
+      return static_cast<bool>(decodeSurface(frame));
+    case v1::LAYER_FOAM:
+      return static_cast<bool>(decodeFoam(frame));
+    case v1::LAYER_BODIES:
+      return static_cast<bool>(decodeBodies(frame));
+    default:
+      return static_cast<bool>(decodeParticles(frame));
+  }
+}
+
 class Golden : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -62,9 +75,7 @@ TEST_F(Golden, FilesGetTheVerdictTheyAreNamedFor) {
     ASSERT_EQ(static_cast<bool>(message), golden.verdict != GoldenVerdict::kBadMessage) << golden.file;
     if (!message || !message->has_frame()) continue;
     const v1::LayerFrame& frame = message->frame();
-    const bool decodes = frame.layer() == v1::LAYER_SURFACE ? static_cast<bool>(decodeSurface(frame))
-                                                            : static_cast<bool>(decodeParticles(frame));
-    EXPECT_EQ(decodes, golden.verdict == GoldenVerdict::kOk) << golden.file;
+    EXPECT_EQ(decodes(frame), golden.verdict == GoldenVerdict::kOk) << golden.file;
   }
 }
 

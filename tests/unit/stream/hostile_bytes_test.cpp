@@ -68,7 +68,7 @@ core::Bytes serialized(const google::protobuf::MessageLite& message) {
 }
 
 std::vector<core::Bytes> validClientMessages() {
-  std::vector<v1::ClientMessage> messages(9);
+  std::vector<v1::ClientMessage> messages(14);
   messages[0].mutable_hello()->mutable_version()->set_major(1);
   messages[0].mutable_hello()->set_client("hostile \xC3\xA9");
   messages[1].mutable_subscribe()->set_layer(v1::LAYER_SURFACE);
@@ -86,6 +86,14 @@ std::vector<core::Bytes> validClientMessages() {
   messages[6].mutable_command()->mutable_reset();
   messages[7].mutable_command()->mutable_set_paused()->set_paused(true);
   messages[8].mutable_command()->mutable_set_speed()->set_speed(2);
+  v1::Boat& boat = *messages[9].mutable_command()->mutable_spawn_boat()->mutable_boat();
+  boat.set_x_m(3);
+  boat.set_heading_deg(-90);
+  messages[10].mutable_command()->mutable_control_boat()->set_boat_id(1);
+  messages[10].mutable_command()->mutable_control_boat()->set_throttle_ratio(0.5);
+  messages[11].mutable_command()->mutable_remove_boat()->set_boat_id(1);
+  messages[12].mutable_command()->mutable_step()->set_tick_count(10);
+  messages[13].mutable_command()->mutable_change_scene()->set_name("harbour");
   std::vector<core::Bytes> out;
   for (const v1::ClientMessage& message : messages) out.push_back(serialized(message));
   return out;
@@ -100,6 +108,18 @@ bool isFinite(const core::Action& action) {
   }
   if (const auto* set = std::get_if<core::SetParameter>(&action)) return std::isfinite(set->value);
   if (const auto* speed = std::get_if<core::SetSpeed>(&action)) return std::isfinite(speed->speed);
+  if (const auto* spawn = std::get_if<core::SpawnBoat>(&action)) {
+    const core::Boat& boat = spawn->boat;
+    return std::isfinite(boat.x_m + boat.z_m + boat.heading_deg + boat.length_m + boat.beam_m + boat.height_m +
+                         boat.density_ratio + boat.max_speed_mps + boat.throttle_ratio + boat.rudder_ratio);
+  }
+  if (const auto* control = std::get_if<core::ControlBoat>(&action)) {
+    return std::abs(control->throttle_ratio) <= 1 && std::abs(control->rudder_ratio) <= 1;
+  }
+  if (const auto* step = std::get_if<core::Step>(&action)) return step->tick_count >= 1 && step->tick_count <= 600;
+  if (const auto* change = std::get_if<core::ChangeScene>(&action)) {
+    return !change->name.empty() && change->name.size() <= 64 && change->name.find('/') == std::string::npos;
+  }
   return true;
 }
 
@@ -124,7 +144,8 @@ bool allFinite(const std::vector<float>& values) {
 }
 
 v1::Scene fullScene() {
-  const auto scene = parseSceneText("wave {} particles {} coupling {} foam {}", "hostile.textproto");
+  const auto scene = parseSceneText("wave {} particles {} coupling {} foam {} boats {} obstacles { rock { x_m: 4 } }",
+                                    "hostile.textproto");
   EXPECT_TRUE(scene);
   return *scene;
 }
@@ -185,6 +206,12 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
       ++decoded_count;
       ASSERT_TRUE(allFinite(particles->position_m) && allFinite(particles->velocity_mps)) << "case " << i;
       ASSERT_EQ(particles->position_m.size(), std::size_t{3} * particles->count);
+    } else if (const auto foam = decodeFoam(frame)) {
+      ++decoded_count;
+      ASSERT_EQ(foam->foam.size(), std::size_t{foam->resolution_count} * foam->resolution_count);
+    } else if (const auto bodies = decodeBodies(frame)) {
+      ++decoded_count;
+      ASSERT_EQ(bodies->size(), frame.bodies_fixed28().count());
     } else {
       ++refused_count;
     }
@@ -198,7 +225,8 @@ TEST(HostileBytes, DamagedScenesLoadCheckedOrNotAtAll) {
   const std::string valid =
       "name: 'pool' gravity_mps2: 9.81\nwave { resolution_count: 64 depth_m: 1.5 stencil: STENCIL_NINE_POINT }\n"
       "particles { count: 100 boundary_x: BOUNDARY_WALL }\ncoupling { lattice_count: 3 }\nfoam { lifetime_s: 1e0 }\n"
-      "events { at_s: 1 effect { splash { x_m: -2 depth_m: 0.4 } } }\n";
+      "events { at_s: 1 effect { splash { x_m: -2 depth_m: 0.4 } } }\n"
+      "obstacles { rock { x_m: 5 } }\nboats { boats { z_m: -3 } }\nstorm { level_ratio: 0.5 }\n";
   int loaded_count = 0;
   for (int i = 0; i < 2'000; ++i) {
     const core::Bytes bytes = mutate(core::Bytes(valid.begin(), valid.end()), random);

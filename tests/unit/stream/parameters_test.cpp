@@ -26,6 +26,7 @@ v1::Scene fullScene() {
   scene.mutable_particles();
   scene.mutable_coupling();
   scene.mutable_foam();
+  scene.mutable_storm();
   fillDefaults(scene);
   return scene;
 }
@@ -76,9 +77,26 @@ TEST(Parameters, EveryOneThatCanBeSetExplainsItself) {
 
 TEST(Parameters, DescribeOnlyTheLiveOnesOfThePartsPresent) {
   const std::set<std::string> all = pathsOf(fullScene());
-  EXPECT_THAT(all,
-              testing::IsSupersetOf({"gravity_mps2", "wave.depth_m", "wave.damping_per_s", "particles.viscosity_pas",
-                                     "coupling.downforce_per_m_s2", "foam.lifetime_s", "stream.frame_rate_hz"}));
+  EXPECT_THAT(all, testing::IsSupersetOf({"gravity_mps2",
+                                          "wave.depth_m",
+                                          "wave.damping_per_s",
+                                          "particles.viscosity_pas",
+                                          "coupling.downforce_per_m_s2",
+                                          "foam.lifetime_s",
+                                          "stream.frame_rate_hz",
+                                          "particles.count",
+                                          "particles.iterations_count",
+                                          "wave.steepening_ratio",
+                                          "coupling.emission_ratio",
+                                          "foam.neighbours_count",
+                                          "foam.breaking_lifetime_s",
+                                          "foam.wake_lifetime_s",
+                                          "foam.landing_lifetime_s",
+                                          "storm.level_ratio",
+                                          "storm.drops_per_m2_s",
+                                          "storm.drop_depth_m",
+                                          "storm.wave_height_m",
+                                          "storm.wind_direction_deg"}));
   EXPECT_FALSE(all.contains("wave.resolution_count")) << "needs a restart";
   EXPECT_FALSE(all.contains("seed"));
 
@@ -87,7 +105,7 @@ TEST(Parameters, DescribeOnlyTheLiveOnesOfThePartsPresent) {
   waves.add_events()->mutable_effect()->mutable_splash();
   fillDefaults(waves);
   EXPECT_THAT(pathsOf(waves), testing::UnorderedElementsAre("gravity_mps2", "wave.depth_m", "wave.damping_per_s",
-                                                            "stream.frame_rate_hz"));
+                                                            "wave.steepening_ratio", "stream.frame_rate_hz"));
 }
 
 TEST(Parameters, EveryOneDescribedCanBeSetToItsBoundsAndThenTellsItsValue) {
@@ -113,6 +131,24 @@ TEST(Parameters, StepsOfTheSliderAreNotEnforced) {
   v1::Scene scene = fullScene();
   EXPECT_FALSE(setParameter(scene, "wave.depth_m", 1.2345));
   EXPECT_EQ(scene.wave().depth_m(), 1.2345);
+}
+
+TEST(Parameters, CannotMakeTheWaterTooShallowForWhatFloatsInIt) {
+  auto scene = parseSceneText(
+      "wave { depth_m: 2 boundary_minus_x: WAVE_BOUNDARY_REFLECT boundary_plus_x: WAVE_BOUNDARY_REFLECT }\n"
+      "beaches { shore_depth_m: 0.2 }\n"
+      "boats { boats { height_m: 1 density_ratio: 0.5 } }\n",
+      "pool.textproto");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const std::string before = scene->SerializeAsString();
+  const auto error = setParameter(*scene, "wave.depth_m", 0.45);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->reason, v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(error->field, "wave.depth_m");
+  EXPECT_THAT(error->message, AllOf(HasSubstr("boats.boats[0].height_m"), HasSubstr("0.45 m")));
+  EXPECT_THAT(setParameter(*scene, "wave.depth_m", 0.1)->message, HasSubstr("beaches[0].shore_depth_m"));
+  EXPECT_EQ(scene->SerializeAsString(), before);
+  EXPECT_FALSE(setParameter(*scene, "wave.depth_m", 0.6));
 }
 
 struct BadSet {
@@ -148,13 +184,16 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const BadSet kBadSets[] = {
     {"Empty", "", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"Unknown", "wave.colour", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
-    {"UnknownPart", "boats.count", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
+    {"UnknownPart", "sharks.count", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"Part", "wave", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"TrailingDot", "wave.depth_m.", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"Dots", "...", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"Enum", "wave.stencil", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"Text", "title", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"Seed", "seed", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
+    {"Boat", "boats.boats.x_m", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
+    {"Obstacle", "obstacles.rock.x_m", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
+    {"Flag", "particles.cohesion", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"Event", "events.at_s", 1, v1::REJECT_REASON_UNKNOWN_PARAMETER, "greeting"},
     {"AbsentPart", "foam.lifetime_s", 1, v1::REJECT_REASON_ABSENT_PART, "no foam"},
     {"Restart", "wave.resolution_count", 512, v1::REJECT_REASON_NEEDS_RESTART, "256 cells"},

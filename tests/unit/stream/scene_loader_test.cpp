@@ -58,12 +58,15 @@ const BadScene kBadScenes[] = {
     {"Syntax", "wave {\n  depth_m 1\n}\n", "pool.textproto:2:11: ", {"\":\""}},
     {"UnclosedBrace", "wave {\n  depth_m: 1\n", "pool.textproto:3:1: ", {}},
     {"UnknownField", "wave {\n  depth: 1\n}\n", "pool.textproto:2:3: ", {"depth"}},
-    {"UnknownPart", "wave {}\nboats { count: 3 }\n", "pool.textproto:2:1: ", {"boats"}},
+    {"UnknownPart", "wave {}\nsharks { count: 3 }\n", "pool.textproto:2:1: ", {"sharks"}},
     {"WrongType", "wave {\n  depth_m: \"deep\"\n}\n", "pool.textproto:2:12: ", {"deep"}},
     {"NegativeCount", "wave {\n  resolution_count: -64\n}\n", "pool.textproto:2:", {}},
     {"FractionalCount", "particles {\n\n  count: 2.5\n}\n", "pool.textproto:3:10: ", {"2.5"}},
-    {"UnknownEnum", "wave {\n  boundary: BOUNDARY_SPONGE\n}\n", "pool.textproto:2:13: ", {"BOUNDARY_SPONGE"}},
-    {"UnknownEnumNumber", "wave {\n  boundary: 7\n}\n", "pool.textproto:2:3: wave.boundary: 7", {"Boundary", "1 to 2"}},
+    {"UnknownEnum", "particles {\n  boundary_x: BOUNDARY_SPONGE\n}\n", "pool.textproto:2:15: ", {"BOUNDARY_SPONGE"}},
+    {"UnknownEnumNumber",
+     "particles {\n  boundary_x: 7\n}\n",
+     "pool.textproto:2:3: particles.boundary_x: 7",
+     {"Boundary", "1 to 2"}},
     {"AboveRange",
      "wave {\n  depth_m: 200\n}\n",
      "pool.textproto:2:3: wave.depth_m: 200 m",
@@ -165,14 +168,14 @@ TEST(SceneLoader, ReportsEveryErrorOfAFileInOrder) {
 TEST(SceneLoader, FindsTheWordThatAnErrorIsAboutBehindTabsAndAheadOfALineBreak) {
   const std::vector<std::string> errors = errorsOf(
       "wave {\n"
-      "\tboundary: BOUNDARY_SPONGE\n"
+      "\tboundary_plus_x: BOUNDARY_SPONGE\n"
       "\n"
       "  depth\n"
       "    : 3\n"
       "}\n"
       "allow_unstable: maybe\n");
   ASSERT_EQ(errors.size(), 3u) << testing::PrintToString(errors);
-  EXPECT_THAT(errors[0], AllOf(StartsWith("pool.textproto:2:19: "), HasSubstr("BOUNDARY_SPONGE")));
+  EXPECT_THAT(errors[0], AllOf(StartsWith("pool.textproto:2:26: "), HasSubstr("BOUNDARY_SPONGE")));
   EXPECT_THAT(errors[1], AllOf(StartsWith("pool.textproto:4:3: "), HasSubstr("\"depth\"")));
   EXPECT_THAT(errors[2], AllOf(StartsWith("pool.textproto:7:17: "), HasSubstr("maybe")));
 }

@@ -29,6 +29,8 @@ struct Health {
   std::uint32_t emitted_count = 0;       ///< particles that breaking water became
   std::uint32_t absorbed_count = 0;      ///< particles that fell back
   std::uint32_t pool_refused_count = 0;  ///< substeps in which the pool had no room
+  double emitted_m3 = 0.0;               ///< the same as volumes
+  double absorbed_m3 = 0.0;
 
   [[nodiscard]] bool isGood() const { return nonfinite_count == 0 && escaped_count == 0; }
 };

@@ -70,7 +70,8 @@ class WaterSim {
   /// Back to the starting state at time 0; parameters stay as they are now, ticks go on counting.
   void reset();
 
-  /// Packs a frame of the state now; false when it was dropped because earlier ones are still being read.
+  /// Packs a frame of the state now. False when none will come: it was dropped because earlier ones are still being
+  /// read, or the scene has nothing of what was asked for.
   bool requestFrame(const FrameRequest& request);
   /// Frames that have arrived, oldest first. `diagnostics` is left empty.
   std::vector<core::FrameView> takeFrames();

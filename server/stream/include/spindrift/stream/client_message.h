@@ -58,8 +58,8 @@ ClientMessage parseClientMessage(core::ByteView bytes);
 std::optional<std::string> checkVersion(const Hello& hello);
 
 /// What the scene at hand forbids although the message is fine in itself: absent parts, splashes deeper or wider than
-/// the water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range. nullopt =
-/// fine. `scene` has its defaults filled in.
+/// the water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range, boats too
+/// big, outside of the water or in an obstacle. nullopt = fine. `scene` has its defaults filled in.
 std::optional<CommandRejection> checkAgainstScene(const core::Command& command, const v1::Scene& scene);
 
 }  // namespace spindrift::stream

@@ -14,6 +14,7 @@ namespace spindrift::stream {
 /// Bounds on what a server may send.
 inline constexpr std::uint32_t kSurfaceMaxResolutionCount = 4096;
 inline constexpr std::uint32_t kParticleMaxCount = 4 * 1024 * 1024;
+inline constexpr std::uint32_t kBodyMaxCount = 1024;
 inline constexpr std::size_t kServerMessageMaxBytes = 64 * 1024 * 1024;
 
 /// Elevations on a square grid, row by row (x fastest); sample (i, k) lies at x = (i + 1/2) side_m / n - side_m / 2,
@@ -35,6 +36,25 @@ struct ParticleSamples {
   std::vector<std::uint8_t> foam;   ///< none (0) to white (255): count values
 };
 
+/// White water on the surface; samples lie as the surface's do.
+struct FoamSamples {
+  std::uint32_t resolution_count = 0;
+  double side_m = 0.0;
+  std::vector<std::uint8_t> foam;  ///< none (0) to white (255): n * n values
+};
+
+/// One boat as it floats. Heading turns from +x toward +z, pitch lifts the bow, roll lowers starboard.
+struct BodySample {
+  std::uint32_t boat_id = 0;
+  double position_m[3] = {0, 0, 0};  ///< of the hull's centre
+  double heading_rad = 0.0;          ///< angles within about +-pi
+  double pitch_rad = 0.0;
+  double roll_rad = 0.0;
+  double speed_mps = 0.0;  ///< along the heading
+  double throttle_ratio = 0.0;
+  double rudder_ratio = 0.0;
+};
+
 /// Parses one server message. Error kInvalidInput: over kServerMessageMaxBytes, unparseable, or a kind unknown here.
 core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes);
 
@@ -44,5 +64,12 @@ core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame);
 
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is fine).
 core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame);
+
+/// Decodes a frame of the foam layer; errors as for the surface.
+core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame);
+
+/// Decodes a frame of the bodies layer; errors likewise, count at most kBodyMaxCount (0 is fine), ids above 0,
+/// positions within 10^6 m.
+core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame);
 
 }  // namespace spindrift::stream

@@ -28,6 +28,8 @@ class LayerCodec {
 /// Fixed width: the words as the GPU packed them, copied once into the message. Every frame is a keyframe.
 std::unique_ptr<LayerCodec> makeSurfaceFixed16Codec();
 std::unique_ptr<LayerCodec> makeParticlesFixed12Codec();
+std::unique_ptr<LayerCodec> makeFoamFixed8Codec();
+std::unique_ptr<LayerCodec> makeBodiesFixed28Codec();
 std::unique_ptr<LayerCodec> makeDiagnosticsCodec();
 
 /// The codecs of one room. Methods from one thread (the encoder's), except encodeCount(): any thread.

@@ -23,8 +23,8 @@ struct ParameterError {
 };
 
 /// Whether `value` may be set at `path` ("particles.viscosity_pas"); nullopt = yes. Reasons: UNKNOWN_PARAMETER,
-/// ABSENT_PART, NEEDS_RESTART, NOT_FINITE, OUT_OF_RANGE (also a count that is not whole). Slider steps are not
-/// enforced.
+/// ABSENT_PART, NEEDS_RESTART, NOT_FINITE, OUT_OF_RANGE (also a count that is not whole, or what the rest of the scene
+/// forbids: water shallower than a boat's draught). Slider steps are not enforced.
 std::optional<ParameterError> checkParameter(const v1::Scene& scene, std::string_view path, double value);
 
 /// Sets it, or leaves the scene untouched and says why as checkParameter does.

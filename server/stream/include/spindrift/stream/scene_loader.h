@@ -16,6 +16,12 @@ namespace spindrift::stream {
 inline constexpr std::size_t kSceneFileMaxBytes = 1024 * 1024;
 /// Most timed events a scene may hold.
 inline constexpr int kSceneEventMaxCount = 256;
+/// Most obstacles, and most beaches: one a side.
+inline constexpr int kSceneObstacleMaxCount = 64;
+inline constexpr int kSceneBeachMaxCount = 4;
+
+/// Whether a scene may be called that: 1 to 64 letters, digits, '_' and '-'.
+bool isSceneName(const std::string& name);
 
 /// Reads, parses and checks a scene file. The result has every default filled in; a scene that leaves out its name gets
 /// the file's name without its ending. Errors: kUnavailable (missing, directory, unreadable), kInvalidInput (too big,

@@ -28,15 +28,20 @@ struct GreetingFacts {
   double server_time_s = 0.0;  ///< monotonic clock
   bool paused = false;
   double speed = 1.0;
+  v1::BoatList boats;               ///< on the water now
+  std::vector<std::string> scenes;  ///< what ChangeScene takes
 };
 
 core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene);
-core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick);
+/// `boat_id` is the new boat's, for SpawnBoat.
+core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0);
 core::SharedBytes reject(const CommandRejection& rejection);
 core::SharedBytes reject(std::uint64_t command_id, v1::RejectReason reason, std::string_view field,
                          std::string_view message);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
 core::SharedBytes roomState(bool paused, double speed);
+core::SharedBytes boatList(const v1::BoatList& boats);
+core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view message);
 core::SharedBytes pong(double client_time_s, double server_time_s);
 core::SharedBytes refusal(std::string_view message);
 /// The frame's diagnostics; null where the frame has none. Values pass unchanged, also non-finite ones: they are the

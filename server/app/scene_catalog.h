@@ -1,0 +1,34 @@
+// The scenes that a room can be changed to: a folder's scene files, listed once at the start.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/v1/scene.pb.h>
+
+namespace spindrift::app {
+
+/// At most this many are listed, in the order of their names.
+inline constexpr std::size_t kCatalogMaxCount = 64;
+
+class SceneCatalog {
+ public:
+  SceneCatalog() = default;
+  /// Regular files NAME.textproto in the folder with names of letters, digits, '_' and '-'; empty where there are none.
+  explicit SceneCatalog(std::filesystem::path folder);
+
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] bool has(const std::string& name) const;
+  /// Reads the file anew, so that an edited scene comes as it is now. The scene is called as it is listed. kUnavailable
+  /// for a name that is not listed, otherwise the loader's errors.
+  [[nodiscard]] core::Result<v1::Scene> load(const std::string& name) const;
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace spindrift::app

@@ -1,0 +1,148 @@
+// ChangeScene from end to end: everybody is greeted again, layers and ticks go on.
+#include <thread>
+
+#include "server_fixture.h"
+#include "temporary_folder.h"
+
+namespace spindrift::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Scenes : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kStillWave}, {"other", kStillWave}}; }
+  app::SceneCatalog scenes() const override {
+    folder_.write("pond.textproto",
+                  "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }\nstream { frame_rate_hz: 60 }");
+    folder_.write("box.textproto",
+                  "particles { count: 200 layers_count: 4 box_side_m: 1 headroom_m: 1\n"
+                  "  boundary_x: BOUNDARY_WALL boundary_z: BOUNDARY_WALL }");
+    folder_.write("broken.textproto", "wave { depth_m: 200 }\nparticles { count: 0 }\n");
+    folder_.write("impossible.textproto", "particles { count: 10 }\n");
+    return app::SceneCatalog(folder_.path());
+  }
+
+  /// Changes the scene as soon as the room lets us; the tick of its Ack.
+  static std::optional<std::uint64_t> changeTo(ScriptedClient& client, const std::string& name) {
+    for (int i = 0; i < 50; ++i) {
+      const v1::ServerMessage answer = client.ask(changeScene(name));
+      if (answer.has_ack()) return answer.ack().applied_tick();
+      if (answer.reject().reason() != v1::REJECT_REASON_BUSY) return std::nullopt;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(Scenes, AreListedInTheGreeting) {
+  EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "impossible", "pond"));
+}
+
+TEST_F(Scenes, ChangeForEverybodyInTheRoomWithAGreetingAndGrowingTicks) {
+  ScriptedClient one = client();
+  ScriptedClient two = client();
+  ScriptedClient elsewhere = client("other");
+  two.subscribe(v1::LAYER_SURFACE);
+  const auto before = two.nextFrame(v1::LAYER_SURFACE);
+  ASSERT_TRUE(before);
+  EXPECT_EQ(before->surface_fixed16().resolution_count(), 32u);
+
+  const auto applied = changeTo(one, "pond");
+  ASSERT_TRUE(applied);
+  EXPECT_GT(*applied, before->tick());
+  for (ScriptedClient* each : {&one, &two}) {
+    const auto greeting = each->waitFor(v1::ServerMessage::kGreeting);
+    ASSERT_TRUE(greeting);
+    EXPECT_EQ(greeting->greeting().scene().name(), "pond");
+    EXPECT_EQ(greeting->greeting().session_id(), each->greeting().session_id());
+    EXPECT_EQ(greeting->greeting().scenes_size(), 4);
+  }
+  const auto frame = two.waitFor(
+      [](const v1::ServerMessage& m) { return m.has_frame() && m.frame().surface_fixed16().resolution_count() == 48; });
+  ASSERT_TRUE(frame) << "the subscription goes on";
+  EXPECT_GE(frame->frame().tick(), *applied);
+  EXPECT_LT(frame->frame().time_s(), 1.0 + static_cast<double>(frame->frame().tick() - *applied) / 60.0);
+  EXPECT_FALSE(elsewhere.hasReceived(v1::ServerMessage::kGreeting));
+  EXPECT_EQ(client("other").greeting().scene().name(), "other");
+}
+
+TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  one.subscribe(v1::LAYER_PARTICLES);
+  one.subscribe(v1::LAYER_DIAGNOSTICS);
+  ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
+  const auto box = changeTo(one, "box");
+  ASSERT_TRUE(box);
+  const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
+  ASSERT_TRUE(particles) << "a layer asked for before the room had it";
+  EXPECT_GE(particles->tick(), *box);
+  EXPECT_TRUE(stream::decodeParticles(*particles));
+  const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
+  ASSERT_TRUE(greeting);
+  EXPECT_THAT(greeting->greeting().layers(), ElementsAre(v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS));
+  EXPECT_EQ(one.rejected(splash()).reason(), v1::REJECT_REASON_ABSENT_PART);
+
+  const auto pond = changeTo(one, "pond");
+  ASSERT_TRUE(pond);
+  EXPECT_GT(*pond, *box);
+  const auto surface = one.waitFor([&](const v1::ServerMessage& m) {
+    return m.has_frame() && m.frame().layer() == v1::LAYER_SURFACE && m.frame().tick() >= *pond;
+  });
+  ASSERT_TRUE(surface);
+  EXPECT_TRUE(stream::decodeSurface(surface->frame()));
+  EXPECT_TRUE(
+      one.waitFor([&](const v1::ServerMessage& m) { return m.has_diagnostics() && m.diagnostics().tick() > *pond; }));
+}
+
+TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldGoesOn) {
+  ScriptedClient one = client();
+  for (const char* name : {"sea", "../main", ""}) {
+    const v1::Reject reject = one.rejected(changeScene(name));
+    EXPECT_EQ(reject.reason(), v1::REJECT_REASON_UNKNOWN_SCENE) << name;
+    EXPECT_EQ(reject.field(), "change_scene.name");
+  }
+  EXPECT_TRUE(one.runFor(5));
+}
+
+TEST_F(Scenes, ThatDoNotLoadAreRejectedWithTheReasonAndTheOldGoesOn) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  const v1::Reject broken = one.rejected(changeScene("broken"));
+  EXPECT_EQ(broken.reason(), v1::REJECT_REASON_UNKNOWN_SCENE);
+  EXPECT_THAT(broken.message(), HasSubstr("wave.depth_m: 200 m"));
+  EXPECT_EQ(broken.message().find('\n'), std::string::npos);
+  const v1::Reject impossible = one.rejected(changeScene("impossible"));
+  EXPECT_EQ(impossible.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_THAT(impossible.message(), HasSubstr("particles.count"));
+  EXPECT_FALSE(one.hasReceived(v1::ServerMessage::kGreeting));
+  EXPECT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
+  EXPECT_TRUE(one.runFor(5));
+}
+
+TEST_F(Scenes, KeepThePauseAndTheSpeed) {
+  ScriptedClient one = client();
+  ASSERT_TRUE(one.apply(setSpeed(0.5)));
+  ASSERT_TRUE(one.apply(setPaused(true)));
+  const auto applied = changeTo(one, "pond");
+  ASSERT_TRUE(applied);
+  const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
+  ASSERT_TRUE(greeting);
+  EXPECT_TRUE(greeting->greeting().room_state().paused());
+  EXPECT_EQ(greeting->greeting().room_state().speed(), 0.5);
+  EXPECT_EQ(one.apply(setSpeed(0.5)), applied) << "the tick stands still";
+}
+
+TEST_F(Scenes, DoNotChangeFasterThanTheRoomCanBuildThem) {
+  ScriptedClient one = client();
+  ASSERT_TRUE(changeTo(one, "pond"));
+  EXPECT_EQ(one.rejected(changeScene("pond")).reason(), v1::REJECT_REASON_BUSY);
+}
+
+}  // namespace
+}  // namespace spindrift::test
