@@ -102,6 +102,8 @@ function main(): void {
     },
     parameterChanged: ({ path, value }) => parameters.serverSays(path, value),
     roomState: (message) => setPaused(message.paused),
+    boatList: () => {},
+    roomEvent: ({ message }) => toast.show(message, "good"),
     stats: (message) => {
       link = message.stats;
       hud.link(link);

@@ -13,7 +13,7 @@ import {
   type Texture,
 } from "three";
 
-import { kParticleBytes } from "../codec/parse";
+import { kParticleBytes } from "../codec/frames";
 import type { ParticleFrame } from "../net/messages";
 import { makeMaterial, type Uniforms } from "./shaders";
 import type { Sky } from "./sky";

@@ -63,7 +63,7 @@ export class WaterScene {
   constructor(
     private readonly renderer: WebGLRenderer,
     private readonly quality: Quality,
-    release: (frame: Frame) => void,
+    private readonly release: (frame: Frame) => void,
   ) {
     this.surfaces = new FrameRing<SurfaceFrame>(kRingCount, release);
     this.particleFrames = new FrameRing<ParticleFrame>(kRingCount, release);
@@ -85,7 +85,7 @@ export class WaterScene {
     const depthM = wave?.depthM ?? 1;
     if (wave) {
       const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
-      this.field = new FieldPass(resolutionCount, Math.min(resolutionCount, this.quality.fieldCountMax), sideM, wave.periodic);
+      this.field = new FieldPass(resolutionCount, Math.min(resolutionCount, this.quality.fieldCountMax), sideM, wave.periodicX, wave.periodicZ);
       this.field.renderStill(this.renderer);
       this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), sideM, depthM, this.quality);
       this.waters.add(this.body.group);
@@ -113,6 +113,7 @@ export class WaterScene {
   /** Takes over a frame; `nowS` is the client's clock. */
   take(frame: Frame, nowS: number): void {
     if (frame.layer === "surface") this.surfaces.push(frame);
+    else if (frame.layer !== "particles") this.release(frame);
     else {
       if (!this.greeting?.wave) this.ground?.lowerTo(frame.minM[1] - frame.radiusM);
       this.particleFrames.push(frame);
