@@ -1,5 +1,6 @@
 // The water's skin: mirrored sky by Fresnel, and through it what was drawn before, bent by the slope, its colour absorbed
 // along the path in the water (Beer-Lambert, a per channel), and replaced by scattered light. PLAIN: unbent.
+// BEACH: ends where the bed comes up. FOAM: with white water on it, cut out of lace at the foam's strength.
 #include <sky>
 
 in vec3 v_world;
@@ -18,6 +19,16 @@ uniform vec2 u_resolution;
 uniform vec2 u_near_far_m;
 uniform float u_side_m;
 uniform float u_depth_m;
+#ifdef BEACH
+#include <bed>
+#endif
+#ifdef FOAM
+uniform sampler2D u_foam_from;
+uniform sampler2D u_foam_to;
+uniform float u_foam_mix;
+uniform sampler2D u_noise;
+uniform float u_lace_m;
+#endif
 layout(location = 0) out vec4 color;
 
 const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
@@ -40,6 +51,12 @@ void main() {
   vec2 uv = gl_FragCoord.xy / u_resolution;
   float behind_depth = texture(u_behind_depth, uv).r;
   if (behind_depth < gl_FragCoord.z) discard;
+  float edge = 1.0;
+#ifdef BEACH
+  float deep_m = v_top_m + bedDepth(v_world.xz, u_side_m, u_depth_m);
+  if (deep_m <= 0.0) discard;
+  edge = smoothstep(0.0, 0.05 * u_depth_m, deep_m);
+#endif
 
   vec3 from_eye = v_world - u_camera_m;
   float distance_m = length(from_eye);
@@ -83,6 +100,7 @@ void main() {
   float away = (1.0 - facing) * (1.0 - facing);
   float fresnel = 0.02 + 0.98 * away * away * (1.0 - facing);
   vec3 mirrored = reflect(ray, normal);
+  fresnel *= edge;
 #ifdef SKIRT
   float rim = smoothstep(0.07, 0.0, v_top_m - v_world.y);
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
@@ -90,7 +108,29 @@ void main() {
   mirrored.y = abs(mirrored.y);
   vec3 water = mix(under, skyLight(mirrored), fresnel);
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel);
+  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
+#endif
+#if defined(FOAM) && !defined(SKIRT)
+  vec2 place = v_world.xz / u_side_m + 0.5;
+  float foam = mix(texture(u_foam_from, place).r, texture(u_foam_to, place).r, u_foam_mix);
+#ifdef BEACH
+  // Where the water thins out it is never quite clean.
+  foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
+#endif
+  if (foam > 0.01) {
+    vec2 at = v_world.xz - 0.6 * field.gb;
+    float lace = texture(u_noise, at / u_lace_m).r;
+#ifndef PLAIN
+    lace = clamp(0.68 * lace + 0.42 * texture(u_noise, at.yx / (0.29 * u_lace_m)).r - 0.05, 0.0, 1.0);
+#endif
+    float strength = min(1.15 * sqrt(foam), 1.0);
+    float white = smoothstep(0.98 - strength, 1.30 - strength, lace + 0.12) * smoothstep(0.0, 0.12, foam);
+    // Air under the surface first, then froth on it.
+    water = mix(water, vec3(0.16, 0.42, 0.46), 0.45 * foam);
+    float sunlit = clamp(dot(normal, u_sun_direction), 0.0, 1.0);
+    vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 0.75 * sunlit + vec3(0.30, 0.36, 0.42)) * (0.86 + 0.2 * lace);
+    water = mix(water, froth, 0.94 * white);
+  }
 #endif
   color = vec4(toDisplay(water), 1.0);
 }
