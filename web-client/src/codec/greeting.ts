@@ -1,4 +1,5 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, no Protobuf objects.
+import { CouplingMode } from "../gen/spindrift/v1/scene_pb";
 import { Layer, type BoatList, type Greeting } from "../gen/spindrift/v1/wire_pb";
 import { malformed, type Malformed } from "./frames";
 import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
@@ -56,6 +57,8 @@ export interface GreetingInfo {
   /** Horizontal side of the water, metres. */
   sideM: number;
   hasParticles: boolean;
+  /** Breaking water turns into particles and back. */
+  isTwoWay: boolean;
   /** The room takes boats. */
   hasBoats: boolean;
   obstacles: ObstacleInfo[];
@@ -106,6 +109,7 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
       wave,
       sideM,
       hasParticles: scene?.particles !== undefined,
+      isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
       hasBoats: scene?.boats !== undefined,
       obstacles: scene ? readObstacles(scene) : [],
       beaches: scene ? readBeaches(scene) : [],
