@@ -32,7 +32,7 @@ import { PlayoutClock } from "./playout_clock";
 import type { WaterShape } from "./pick";
 import { makeMaterial } from "./shaders";
 import { Sky } from "./sky";
-import { bedOf, type Bed } from "./terrain";
+import { bedOf, groundExtent, type Bed } from "./terrain";
 import { WaterBody } from "./water_body";
 
 const kRingCount = 4;
@@ -147,7 +147,7 @@ export class WaterScene {
   extent(): WaterExtent | undefined {
     if (!this.greeting) return undefined;
     const { sideM, wave } = this.greeting;
-    if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM };
+    if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM, ground: groundExtent(bedOf(this.greeting)) };
     const frame = this.particleFrames.newest();
     return frame && { sideM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
   }

@@ -123,12 +123,13 @@ void main() {
 #ifndef PLAIN
     lace = clamp(0.68 * lace + 0.42 * texture(u_noise, at.yx / (0.29 * u_lace_m)).r - 0.05, 0.0, 1.0);
 #endif
-    float strength = min(1.15 * sqrt(foam), 1.0);
-    float white = smoothstep(0.98 - strength, 1.30 - strength, lace + 0.12) * smoothstep(0.0, 0.12, foam);
+    // Much foam closes, little foam is a few thin threads; what fades also grows see-through.
+    float strength = min(1.1 * foam + 0.12, 1.0);
+    float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Air under the surface first, then froth on it.
     water = mix(water, vec3(0.16, 0.42, 0.46), 0.45 * foam);
     float sunlit = clamp(dot(normal, u_sun_direction), 0.0, 1.0);
-    vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 0.75 * sunlit + vec3(0.30, 0.36, 0.42)) * (0.86 + 0.2 * lace);
+    vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 1.05 * sunlit + vec3(0.40, 0.45, 0.50)) * (0.80 + 0.28 * lace);
     water = mix(water, froth, 0.94 * white);
   }
 #endif
