@@ -8,7 +8,7 @@ import { depthAtM, groundExtent, groundHeightM, type Bed } from "./terrain";
 
 const kDrySand: Paint = [0.66, 0.53, 0.36, 0.7];
 const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
-const kCut: Paint = [0.40, 0.31, 0.21, 0.9];
+const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
 /** How far the floor round the water is lowered, in sides, so that it does not fight with the bed. */
 export const kFloorDropSides = 0.002;
 
