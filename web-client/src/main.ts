@@ -161,6 +161,7 @@ function main(): void {
   function showPressed(): void {
     for (const name of viewNames) byId(`view-${name}`).setAttribute("aria-pressed", String(views.view === name));
     byId<HTMLButtonElement>("view-boat").disabled = boats.mineId === 0;
+    document.body.classList.toggle("boat-view", views.view === "boat");
   }
 
   const followed: Followed = { xM: 0, yM: 0, zM: 0, headingRad: 0, lengthM: 1 };

@@ -23,6 +23,9 @@ const kBehindLengths = 2.5;
 const kAboveLengths = 1.05;
 const kFollowPerS = { target: 7, heading: 2.2, eye: 3.2 };
 
+/** A hidden page comes back with one step of at most this; a slow one still keeps up. */
+const kLongestFrameS = 2;
+
 /** What the boat's view follows. */
 export interface Followed {
   xM: number;
@@ -136,7 +139,7 @@ export class CameraViews {
 
   private follow(following: NonNullable<CameraViews["following"]>, boat: Followed, nowS: number): void {
     const { camera, controls, scratchM } = this;
-    const elapsedS = Math.min(Math.max(nowS - following.lastS, 0), 0.25);
+    const elapsedS = Math.min(Math.max(nowS - following.lastS, 0), kLongestFrameS);
     following.lastS = nowS;
     const still = this.reducedMotion();
     const share = (perS: number): number => (still ? 1 : 1 - Math.exp(-perS * elapsedS));

@@ -66,8 +66,8 @@ export class WaterBody {
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
-  /** `foam` absent: a room that sends none. */
-  constructor(sky: Sky, field: Texture, behind: BehindTextures, bed: Bed, noise: Texture, foam: Uniforms | undefined, quality: { surfaceCellsCount: number; plain: boolean }) {
+  /** `foam` absent: a room that sends none. `hasSolids`: there is something over the water to mirror. */
+  constructor(sky: Sky, field: Texture, behind: BehindTextures, bed: Bed, noise: Texture, foam: Uniforms | undefined, hasSolids: boolean, quality: { surfaceCellsCount: number; plain: boolean }) {
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
     this.uniforms = {
@@ -91,6 +91,7 @@ export class WaterBody {
     if (quality.plain) defines["PLAIN"] = 1;
     if (beaches.length > 0) defines["BEACH"] = 1;
     if (foam) defines["FOAM"] = 1;
+    if (hasSolids) defines["MIRROR"] = 1;
     this.meshes = [
       new Mesh(makeGrid(cellsCount), makeMaterial("water", this.uniforms, { side: DoubleSide, defines })),
       new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })),

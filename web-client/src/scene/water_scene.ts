@@ -108,7 +108,8 @@ export class WaterScene {
       this.field.renderStill(this.renderer);
       if (greeting.layers.includes("foam")) this.foam = new FoamField(wave.periodicX, wave.periodicZ);
       const bed = bedOf(greeting);
-      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), bed, this.noise, this.foam?.uniforms, this.quality);
+      const hasSolids = greeting.hasBoats || greeting.obstacles.length > 0 || greeting.beaches.length > 0;
+      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), bed, this.noise, this.foam?.uniforms, hasSolids, this.quality);
       this.waters.add(this.body.group);
       this.enterSolids(greeting, bed);
     }

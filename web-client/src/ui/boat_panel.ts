@@ -3,7 +3,7 @@ import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { CommandAction } from "../net/messages";
 import { byId, make } from "./dom";
 import { boatLimits, boatOfLength, clampTo, type BoatLimits } from "./effect_limits";
-import { Helm, helmKey } from "./helm";
+import { Helm, helmKey, type HelmKey } from "./helm";
 import { LatestSender } from "./latest_sender";
 import { SelectRow } from "./select_row";
 import { SliderRow } from "./slider_row";
@@ -58,6 +58,15 @@ export class BoatPanel {
     this.mine = new SelectRow("my-boat", "My boat", "The boat that the helm steers and the boat view follows.", (value) => this.choose(Number(value)));
     byId("my-boat-row").append(this.mine.element);
     this.spawn.addEventListener("click", () => this.launch());
+    for (const button of document.querySelectorAll<HTMLElement>("#pad [data-helm]")) {
+      const key = button.dataset["helm"] as HelmKey;
+      button.addEventListener("pointerdown", (event) => {
+        button.setPointerCapture(event.pointerId);
+        this.hold(key, true);
+      });
+      for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(end, () => this.hold(key, false));
+      button.addEventListener("contextmenu", (event) => event.preventDefault());
+    }
     this.remove.addEventListener("click", () => {
       if (this.mineId) send({ case: "removeBoat", value: { boatId: this.mineId } }, `Remove boat ${this.mineId}`);
     });
@@ -103,8 +112,7 @@ export class BoatPanel {
   key(code: string, isDown: boolean): boolean {
     const key = helmKey(code);
     if (!key || !this.mineId) return false;
-    if (isDown) this.helm.press(key);
-    else this.helm.release(key);
+    this.hold(key, isDown);
     return true;
   }
 
@@ -131,6 +139,11 @@ export class BoatPanel {
 
   lengthOf(boatId: number): number {
     return this.boats.find((boat) => boat.boatId === boatId)?.lengthM ?? 2;
+  }
+
+  private hold(key: HelmKey, isDown: boolean): void {
+    if (isDown) this.helm.press(key);
+    else this.helm.release(key);
   }
 
   private choose(boatId: number): void {

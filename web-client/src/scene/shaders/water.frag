@@ -1,5 +1,6 @@
 // The water's skin: mirrored sky by Fresnel, and through it what was drawn before, bent by the slope, its colour absorbed
 // along the path in the water (Beer-Lambert, a per channel), and replaced by scattered light. PLAIN: unbent.
+// MIRROR: what stands in the water shows in it too, as far as it is on the screen.
 // BEACH: ends where the bed comes up. FOAM: with white water on it, cut out of lace at the foam's strength.
 #include <sky>
 
@@ -46,6 +47,50 @@ float wayOut(vec3 from, vec3 direction) {
   vec3 t = max((high - from) / safe, (low - from) / safe);
   return max(min(t.x, min(t.y, t.z)), 0.0);
 }
+
+#if defined(MIRROR) && !defined(SKIRT) && !defined(PLAIN)
+uniform mat4 projectionMatrix;
+const int kMirrorSteps = 18;
+const int kMirrorHalvings = 4;
+
+// How far (m) a point lies behind what the screen shows there; far in front where it is off the screen.
+float behindScreen(vec3 at, out vec2 uv) {
+  vec4 view = viewMatrix * vec4(at, 1.0);
+  vec4 clip = projectionMatrix * view;
+  uv = clip.xy / clip.w * 0.5 + 0.5;
+  if (clip.w <= 0.0 || any(greaterThan(abs(uv - 0.5), vec2(0.5)))) return -1e6;
+  return viewZ(texture(u_behind_depth, uv).r) - view.z;
+}
+
+// Light along `direction` from `from`: of a solid where the ray meets one on the screen, else of the sky.
+vec3 mirroredLight(vec3 from, vec3 direction) {
+  vec3 sky = skyLight(direction);
+  float reach_m = 0.3 * u_side_m;
+  float jitter = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float before_m = 0.0;
+  vec2 uv;
+  for (int i = 1; i <= kMirrorSteps; ++i) {
+    // Steps grow with the way: near the foot of a hull they have to be short.
+    float share = (float(i) - 0.7 * jitter) / float(kMirrorSteps);
+    float along_m = reach_m * share * share;
+    float deep_m = behindScreen(from + direction * along_m, uv);
+    if (deep_m > 0.0 && deep_m < 1.0 + 1.5 * (along_m - before_m)) {
+      for (int half_step = 0; half_step < kMirrorHalvings; ++half_step) {
+        float middle_m = 0.5 * (before_m + along_m);
+        if (behindScreen(from + direction * middle_m, uv) > 0.0) along_m = middle_m;
+        else before_m = middle_m;
+      }
+      behindScreen(from + direction * along_m, uv);
+      vec2 edge = smoothstep(0.5, 0.42, abs(uv - 0.5));
+      return mix(sky, texture(u_behind, uv).rgb, edge.x * edge.y * (1.0 - share * share));
+    }
+    before_m = along_m;
+  }
+  return sky;
+}
+#else
+vec3 mirroredLight(vec3 from, vec3 direction) { return skyLight(direction); }
+#endif
 
 void main() {
   vec2 uv = gl_FragCoord.xy / u_resolution;
@@ -106,7 +151,7 @@ void main() {
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
 #else
   mirrored.y = abs(mirrored.y);
-  vec3 water = mix(under, skyLight(mirrored), fresnel);
+  vec3 water = mix(under, fresnel > 0.03 ? mirroredLight(v_world, mirrored) : skyLight(mirrored), fresnel);
   float at_sun = dot(mirrored, u_sun_direction);
   if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
