@@ -4,8 +4,9 @@ import type { BufferGeometry } from "three";
 import type { BreakwaterInfo, RockInfo } from "../codec/scene_info";
 import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
 
-const kRingsCount = 14;
-const kAroundCount = 22;
+const kRingsCount = 16;
+const kAroundCount = 26;
+const kCutsCount = 11;
 const kConcrete: Paint = [0.46, 0.45, 0.42, 0.8];
 const kWhitePaint: Paint = [0.85, 0.85, 0.82, 0];
 const kRedPaint: Paint = [0.70, 0.07, 0.04, 0];
@@ -30,9 +31,19 @@ function bumps(x: number, y: number, z: number, seed: number): number {
   return mix(layer(0), layer(1), fz);
 }
 
-/** One boulder: a dome over the water, a widening foot under it. */
+/** Planes that break pieces off a boulder: direction and distance from its middle, in shares of its size. */
+function makeCuts(seed: number): [x: number, y: number, z: number, away: number][] {
+  return Array.from({ length: kCutsCount }, (_, i) => {
+    const round = 2 * Math.PI * ((i + hash(i, 5, seed)) / kCutsCount) * 3;
+    const up = 0.05 + 0.95 * hash(i, 6, seed) ** 1.3;
+    return [Math.cos(round) * Math.cos(up), Math.sin(up), Math.sin(round) * Math.cos(up), 0.70 + 0.24 * hash(i, 7, seed)];
+  });
+}
+
+/** One boulder: a broken dome over the water, a widening foot under it. */
 function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed: number): void {
   const { radiusM, heightM } = rock;
+  const cuts = makeCuts(seed);
   const rows: Point[][] = [];
   for (let ring = 0; ring <= kRingsCount; ++ring) {
     const share = ring / kRingsCount;
@@ -43,12 +54,16 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
       // 0..0.4 under water, the rest above it.
       const under = Math.max(1 - share / 0.4, 0);
       const polar = Math.max((share - 0.4) / 0.6, 0) * (Math.PI / 2);
-      const out = under > 0 ? 1 + 0.35 * under : Math.cos(polar) ** 0.75;
-      const y = under > 0 ? bottomM * under : heightM * Math.sin(polar);
-      const rough = 0.65 * bumps(2.1 * c + 9, 2.2 * share + 5, 2.1 * s + 9, seed) + 0.35 * bumps(5 * c + 20, 5 * share, 5 * s + 20, seed + 1);
-      const radius = radiusM * out * (0.78 + 0.42 * rough);
-      const lift = under > 0 ? 0 : 0.3 * heightM * (rough - 0.5) * Math.sin(polar);
-      row.push([rock.xM + c * radius, y + lift, rock.zM + s * radius]);
+      const out = under > 0 ? 1 : Math.cos(polar) ** 0.85;
+      let [x, y, z] = [c * out, Math.sin(polar), s * out];
+      for (const [cutX, cutY, cutZ, away] of cuts) {
+        const beyond = Math.max(cutX * x + cutY * y + cutZ * z - away, 0);
+        [x, y, z] = [x - cutX * beyond, y - cutY * beyond, z - cutZ * beyond];
+      }
+      const rough = 0.6 * bumps(2.5 * x + 9, 2.5 * y + 5, 2.5 * z + 9, seed) + 0.4 * bumps(6 * x + 20, 6 * y + 7, 6 * z + 20, seed + 1);
+      const wide = radiusM * (0.98 + 0.26 * rough) * (1 + 0.35 * under);
+      const high = under > 0 ? bottomM * under + heightM * y * (1 - under) : heightM * y * (1.02 + 0.22 * (rough - 0.5));
+      row.push([rock.xM + x * wide, high, rock.zM + z * wide]);
     }
     rows.push(row);
   }
