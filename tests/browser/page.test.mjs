@@ -159,12 +159,30 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     }
   });
 
+  step("rolls a swell from another side when asked to", async () => {
+    await stillWater(page);
+    await page.getByTestId("wave-side").selectOption({ label: "far side (−z)" });
+    await page.getByTestId("wave-shape").selectOption({ label: "swell" });
+    await acknowledged(page, () => page.getByTestId("wave").click());
+    await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
+  });
+
+  step("shows what the scene has and hides what it lacks", async () => {
+    for (const id of ["boats-box", "view-boat"]) assert.ok(await page.locator(`#${id}`).isHidden(), `#${id} shows in a scene without boats`);
+    for (const view of ["view-overview", "view-wave", "view-splash"]) {
+      await page.getByTestId(view).click();
+      assert.equal(await page.getByTestId(view).getAttribute("aria-pressed"), "true");
+    }
+  });
+
   step("pauses and resumes for everybody, and a slider moved here moves there", async () => {
     const other = await openPage();
     await acknowledged(page, () => page.getByTestId("pause").click());
     await waitFor(other, "the other page to hear of the pause", (stats) => stats.paused === true);
+    assert.ok(await page.getByTestId("step").isEnabled(), "a paused room cannot be stepped");
     await acknowledged(page, () => page.getByTestId("pause").click());
     const resumed = await waitFor(other, "the other page to hear of the end of the pause", (stats) => stats.paused === false);
+    assert.ok(await other.getByTestId("step").isDisabled(), "a running room can be stepped");
     await waitFor(other, "time to go on", (stats) => stats.simTime > resumed.simTime);
 
     for (const target of [page, other]) await target.locator("#parameters-box > summary").click();

@@ -5,17 +5,19 @@ import "./style.css";
 import type { GreetingInfo } from "./codec/greeting";
 import type { CommandAction, ConnectionState, LinkStats } from "./net/messages";
 import { socketUrl, WaterClient, type WorkerLike } from "./net/water_client";
-import { CameraViews } from "./scene/camera_views";
+import { CameraViews, type Followed, type ViewName } from "./scene/camera_views";
 import { FrameGovernor } from "./scene/frame_governor";
 import type { PixelRect } from "./scene/framing";
 import { elevationRangeM } from "./scene/height_field";
 import { pickWater } from "./scene/pick";
 import { chooseQuality, type ChosenQuality } from "./scene/quality";
 import { WaterScene } from "./scene/water_scene";
-import { byId, setText } from "./ui/dom";
+import { byId, isTyping, setText } from "./ui/dom";
+import { BoatPanel } from "./ui/boat_panel";
 import { EffectsPanel } from "./ui/effects_panel";
 import { describeState, Hud } from "./ui/hud";
 import { ParametersPanel } from "./ui/parameters_panel";
+import { RoomPanel } from "./ui/room_panel";
 import { TapDetector, toDeviceCoordinates } from "./ui/tap";
 import { Toast } from "./ui/toast";
 
@@ -24,6 +26,7 @@ const canvas = byId<HTMLCanvasElement>("view");
 const notice = byId("notice");
 /** As in style.css: below this width the panel is a sheet at the bottom. */
 const kNarrowPx = 760;
+const kHelmLabel = "Helm";
 const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 function showNotice(text: string): void {
@@ -68,7 +71,6 @@ function main(): void {
   let link: LinkStats | undefined;
   let simTimeS = 0;
   let lastAck: { commandId: number; appliedTick: number } | null = null;
-  let paused = false;
   /** Particles without a wave say how high they stand with their first frame only. */
   let isExtentKnown = true;
   const sentLabels = new Map<number, string>();
@@ -78,7 +80,12 @@ function main(): void {
     state: (message) => {
       state = message.state;
       hud.connection(state);
-      for (const button of buttons) button.disabled = state.name !== "live" || (needsWave.has(button.id) && !effects.available);
+      const isLive = state.name === "live";
+      for (const button of effectButtons) button.disabled = !isLive || !effects.available;
+      // A greeting follows and turns the rest on: what they do depends on the scene.
+      if (isLive) return;
+      room.setLive(false);
+      boats.setLive(false);
     },
     greeting: (message) => enter(message.greeting),
     frame: ({ frame }) => {
@@ -90,18 +97,31 @@ function main(): void {
       if (extent) views.measured(extent);
     },
     diagnostics: ({ diagnostics }) => hud.diagnostics(diagnostics),
-    ack: ({ commandId, appliedTick }) => {
+    ack: ({ commandId, appliedTick, boatId }) => {
       lastAck = { commandId, appliedTick };
       hud.acked(commandId, appliedTick);
       parameters.ack(commandId);
-      toast.show(`${takeLabel(commandId)}: applied at tick ${appliedTick}`, "good");
+      room.ack(commandId);
+      boats.ack(commandId, boatId);
+      const label = takeLabel(commandId);
+      // Twenty a second would say nothing to anybody.
+      if (label !== kHelmLabel) toast.show(`${label}: applied at tick ${appliedTick}`, "good");
     },
     reject: ({ commandId, message }) => {
       parameters.reject(commandId, message);
+      room.reject(commandId, message);
       toast.show(`${takeLabel(commandId)}: ${message}`, "bad");
     },
     parameterChanged: ({ path, value }) => parameters.serverSays(path, value),
-    roomState: (message) => setPaused(message.paused),
+    roomState: (message) => room.roomState(message.paused, message.speed),
+    boatList: (message) => {
+      scene.setBoats(message.boats);
+      boats.setBoats(message.boats);
+    },
+    roomEvent: ({ event, message }) => {
+      const said = message || { recovered: "The water was put back to its last good state.", reset: "The scene started again.", other: "Something happened." }[event];
+      toast.show(said, event === "recovered" ? "warn" : "good");
+    },
     stats: (message) => {
       link = message.stats;
       hud.link(link);
@@ -110,9 +130,14 @@ function main(): void {
   const scene = new WaterScene(renderer, quality, (frame) => client.release(frame));
   const views = new CameraViews(scene.camera, canvas, reducedMotion);
   const effects = new EffectsPanel(byId("effects"));
-  const parameters = new ParametersPanel(byId("parameters"), (action) => send(action, "Parameter"));
-  const buttons = ["splash", "wave", "pause", "reset"].map((id) => byId<HTMLButtonElement>(id));
-  const needsWave = new Set(["splash", "wave"]);
+  const parameters = new ParametersPanel(byId("parameters"), (action) => send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
+  const room = new RoomPanel(send);
+  const boats = new BoatPanel(send, (boatId) => scene.poseOf(boatId), () => {
+    if (boats.mineId === 0 && views.view === "boat") showView("overview");
+    showPressed();
+  });
+  const effectButtons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
+  const viewNames: ViewName[] = ["splash", "wave", "overview", "boat"];
 
   function send(action: CommandAction | undefined, label: string): number {
     if (!action) return 0;
@@ -128,14 +153,31 @@ function main(): void {
     return label;
   }
 
-  function setPaused(now: boolean): void {
-    paused = now;
-    setText(byId("pause"), paused ? "Resume" : "Pause");
-    byId("pause").setAttribute("aria-pressed", String(paused));
+  function showView(name: ViewName): void {
+    views.go(name, nowS());
+    showPressed();
+  }
+
+  function showPressed(): void {
+    for (const name of viewNames) byId(`view-${name}`).setAttribute("aria-pressed", String(views.view === name));
+    byId<HTMLButtonElement>("view-boat").disabled = boats.mineId === 0;
+    document.body.classList.toggle("boat-view", views.view === "boat");
+  }
+
+  const followed: Followed = { xM: 0, yM: 0, zM: 0, headingRad: 0, lengthM: 1 };
+  function followedBoat(): Followed | undefined {
+    const pose = boats.mineId ? scene.poseOf(boats.mineId) : undefined;
+    if (!pose) return undefined;
+    followed.xM = pose.xM;
+    followed.yM = pose.yM;
+    followed.zM = pose.zM;
+    followed.headingRad = pose.headingRad;
+    followed.lengthM = boats.lengthOf(boats.mineId);
+    return followed;
   }
 
   function enter(entered: GreetingInfo): void {
-    const sameWater = greeting?.sideM === entered.sideM && greeting.room === entered.room;
+    const sameWater = greeting?.sideM === entered.sideM && greeting.room === entered.room && greeting.sceneName === entered.sceneName;
     greeting = entered;
     scene.enter(entered);
     if (!sameWater) {
@@ -145,26 +187,25 @@ function main(): void {
     }
     effects.enter(entered);
     parameters.enter(entered.parameters);
-    byId("parameters-box").hidden = entered.parameters.length === 0;
+    byId("parameters-box").hidden = !parameters.hasRows;
+    byId("effects-box").hidden = byId("effect-buttons").hidden = !effects.available;
     setText(byId("title"), entered.title);
     setText(byId("description"), entered.description);
     document.title = `${entered.title} – Spindrift`;
-    hud.deviceIs(entered.device);
-    setPaused(entered.paused);
-    for (const button of buttons) {
-      button.disabled = needsWave.has(button.id) && !effects.available;
-      button.title = button.disabled ? "This scene has no wave" : "";
-    }
+    hud.enter(entered);
+    room.enter(entered);
+    boats.enter(entered);
+    byId("view-boat").hidden = !boats.available;
+    for (const button of effectButtons) button.disabled = !effects.available;
+    showPressed();
     // The card has this scene's text now, and its height.
     resize();
   }
 
   byId("splash").addEventListener("click", () => send(effects.splashAt(0, 0), "Splash"));
-  byId("wave").addEventListener("click", () => send(effects.breakingWave(), "Breaking wave"));
-  byId("pause").addEventListener("click", () => send({ case: "setPaused", value: { paused: !paused } }, paused ? "Resume" : "Pause"));
-  byId("reset").addEventListener("click", () => send({ case: "reset", value: {} }, "Reset"));
-  byId("view-splash").addEventListener("click", () => views.go("splash", nowS()));
-  byId("view-wave").addEventListener("click", () => views.go("wave", nowS()));
+  byId("wave").addEventListener("click", () => send(effects.breakingWave(), "Wave"));
+  for (const name of viewNames) byId(`view-${name}`).addEventListener("click", () => showView(name));
+  canvas.addEventListener("pointerup", showPressed);
   byId("retry").addEventListener("click", () => client.retryNow());
   const panelToggle = byId("panel-toggle");
   const setPanelOpen = (open: boolean): void => {
@@ -215,7 +256,17 @@ function main(): void {
     };
   }
   window.addEventListener("resize", resize);
-  document.addEventListener("visibilitychange", () => client.setVisible(!document.hidden));
+  document.addEventListener("visibilitychange", () => {
+    client.setVisible(!document.hidden);
+    if (document.hidden) boats.leaveHelm();
+  });
+  window.addEventListener("blur", () => boats.leaveHelm());
+  // The helm's keys, while the boat's view shows and nobody moves a slider or a list with them.
+  window.addEventListener("keydown", (event) => {
+    if (views.view !== "boat" || event.ctrlKey || event.altKey || event.metaKey || event.shiftKey || isTyping(event.target)) return;
+    if (boats.key(event.code, true)) event.preventDefault();
+  });
+  window.addEventListener("keyup", (event) => boats.key(event.code, false));
 
   let contextLost = false;
   canvas.addEventListener("webglcontextlost", () => {
@@ -237,7 +288,8 @@ function main(): void {
     const frameMs = performance.now() - lastFrameMs;
     lastFrameMs += frameMs;
     if (governor.note(frameMs)) resize();
-    views.update(nowS());
+    boats.update(nowS());
+    views.update(nowS(), followedBoat());
     scene.render(nowS());
     ++framesShown;
     if (lastFrameMs - fpsSinceMs >= 500) {
@@ -248,13 +300,18 @@ function main(): void {
     }
   });
 
+  function drawnBoats() {
+    const drawn = scene.drawnBoats();
+    return drawn ? drawn.poses.slice(0, drawn.count).map((pose) => ({ ...pose })) : [];
+  }
+
   // For tests and the curious: real values, read-only.
   const spindrift = {
     stats: () => {
       const surface = scene.newestSurface();
       const range = surface && elevationRangeM(surface);
       return {
-        framesReceived: { surface: 0, particles: 0, diagnostics: 0, ...link?.receivedCount },
+        framesReceived: { surface: 0, particles: 0, foam: 0, bodies: 0, diagnostics: 0, ...link?.receivedCount },
         malformedCount: link?.malformedCount ?? 0,
         overtakenCount: link?.overtakenCount ?? 0,
         latencyMs: link?.latencyMs ?? null,
@@ -265,7 +322,10 @@ function main(): void {
         connectionState: describeState(state),
         displayFps,
         pixelRatio: governor.pixelRatio,
-        paused,
+        paused: room.paused,
+        boats: drawnBoats(),
+        myBoat: boats.mineId,
+        view: views.view ?? null,
       };
     },
   };

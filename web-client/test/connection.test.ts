@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
 
-import { Layer, RejectReason } from "../src/gen/spindrift/v1/wire_pb";
+import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
 import { backoffS } from "../src/net/backoff";
 import { socketUrl } from "../src/net/water_client";
 import { Rig } from "./fakes";
-import { encode, greeting, surfaceFrame } from "./wire";
+import { encode, foamFrame, greeting, surfaceFrame } from "./wire";
 
 function liveRig(): Rig {
   const rig = new Rig();
@@ -33,8 +33,40 @@ describe("the connection", () => {
   it("asks for no layer that the room does not offer", () => {
     const rig = new Rig();
     rig.socket.open();
-    rig.socket.deliver(greeting({ layers: [Layer.PARTICLES, Layer.BODIES] }));
+    rig.socket.deliver(greeting({ layers: [Layer.PARTICLES, 77 as Layer] }));
     expect(rig.socket.sentOf("subscribe").map(({ value }) => value.layer)).toEqual([Layer.PARTICLES]);
+  });
+
+  it("asks for foam and bodies where the room offers them, at the rate of frames", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.socket.deliver(greeting({ layers: [Layer.FOAM, Layer.BODIES, Layer.SURFACE] }));
+    expect(rig.socket.sentOf("subscribe").map(({ value }) => [value.layer, value.maxRateHz])).toEqual([
+      [Layer.SURFACE, 30], [Layer.FOAM, 30], [Layer.BODIES, 30],
+    ]);
+  });
+
+  it("passes on boats, events and the id of a new boat", () => {
+    const rig = liveRig();
+    const boat = { boatId: 3, lengthM: 2.4, beamM: 0.9, heightM: 0.6, draughtM: 0.24 };
+    rig.socket.deliver({ case: "boatList", value: { boats: [boat] } });
+    rig.socket.deliver({ case: "roomEvent", value: { kind: RoomEventKind.RECOVERED, tick: 4n, message: "the water was put back" } });
+    rig.connection.command(1, { case: "spawnBoat", value: {} });
+    rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 5n, boatId: 3 } });
+    expect(rig.logOf("boatList")).toEqual([[[boat]]]);
+    expect(rig.logOf("roomEvent")).toEqual([["recovered", "the water was put back"]]);
+    expect(rig.logOf("ack")).toEqual([[1, 5, 3]]);
+  });
+
+  it("counts the layers of one tick as one frame, in whatever order they come", () => {
+    const rig = liveRig();
+    for (let i = 0; i < 200; ++i) {
+      rig.socket.deliver(surfaceFrame([1, 2, 3, 4], { tick: BigInt(2 * i) }));
+      if (i > 0) rig.socket.deliver(foamFrame(new Uint8Array(4), { tick: BigInt(2 * i - 2) }));
+      rig.time.advance(50);
+    }
+    expect(rig.lastStats()["framesPerS"]).toBeCloseTo(20, 1);
+    expect(rig.lastStats()["receivedCount"]).toMatchObject({ surface: 200, foam: 199, bodies: 0 });
   });
 
   it("is refused by a refusal and by another major version, and then waits for a person", () => {
@@ -140,7 +172,7 @@ describe("the connection", () => {
     rig.socket.deliver({ case: "reject", value: { commandId: 2n, reason: RejectReason.BUSY, field: "", message: "try again" } });
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 77n } });
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 78n } });
-    expect(rig.logOf("ack")).toEqual([[1, 77]]);
+    expect(rig.logOf("ack")).toEqual([[1, 77, 0]]);
     expect(rig.logOf("reject")).toEqual([[2, "BUSY", "", "try again"]]);
   });
 

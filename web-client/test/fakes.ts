@@ -101,7 +101,8 @@ export class Rig {
     const events: ConnectionEvents = {
       state: (state) => this.states.push(state),
       greeting: note("greeting"), frame: note("frame"), diagnostics: note("diagnostics"), ack: note("ack"), reject: note("reject"),
-      parameterChanged: note("parameterChanged"), roomState: note("roomState"), stats: note("stats"),
+      parameterChanged: note("parameterChanged"), roomState: note("roomState"), boatList: note("boatList"),
+      roomEvent: note("roomEvent"), stats: note("stats"),
     };
     this.connection = new Connection("ws://host/ws", world, events);
     this.connection.start();

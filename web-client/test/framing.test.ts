@@ -65,6 +65,14 @@ describe("a view of the water", () => {
     expect(far.positionM.distanceTo(near.positionM.multiplyScalar(2))).toBeCloseTo(0, 9);
   });
 
+  it("is centred on the ground where there is land on one side", () => {
+    const tangents = freeTangents(47, 800, 1280, screens[0]!.free);
+    const water = { sideM: 40, minYM: -3, maxYM: 2 };
+    const square = frameBox(water, backwards[0]!, tangents);
+    const moved = frameBox({ ...water, ground: { minXM: -10, maxXM: 30, minZM: -25, maxZM: 15 } }, backwards[0]!, tangents);
+    expect(moved.positionM.sub(square.positionM).distanceTo(new Vector3(10, 0, -5))).toBeCloseTo(0, 9);
+  });
+
   it("does not ask for an endless distance where the panels leave nothing", () => {
     const nothing = freeTangents(47, 600, 300, { leftPx: 300, topPx: 600, rightPx: 300, bottomPx: 600 });
     const { positionM } = frameBox(waters[0]!, backwards[0]!, nothing);

@@ -37,6 +37,22 @@ describe("the hand-over to a slow page", () => {
     expect(handover.takeBuffer(16).byteLength).toBe(16);
   });
 
+  it("reuses one buffer for payloads that grow and shrink, and forgets it when told", () => {
+    const handover = new FrameHandover<Numbered>(() => {}, 1, true);
+    const made = handover.takeBuffer(120_000);
+    expect(made.byteLength).toBe(131_072);
+    for (const size of [0, 12, 60_000, 131_072, 1]) {
+      handover.offer({ id: 0, buffer: made });
+      handover.release(made);
+      expect(handover.takeBuffer(size)).toBe(made);
+    }
+    handover.offer({ id: 0, buffer: made });
+    handover.release(made);
+    handover.forgetSpares();
+    expect(handover.takeBuffer(0).byteLength).toBeGreaterThan(0);
+    expect(handover.takeBuffer(200_000).byteLength).toBe(262_144);
+  });
+
   it("is not fooled into more frames under way by buffers that nobody lent", () => {
     const { delivered, handover, offer } = rig(1);
     for (let i = 0; i < 10; ++i) handover.release(new ArrayBuffer(8));

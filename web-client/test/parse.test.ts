@@ -1,9 +1,11 @@
 import { describe, expect, it } from "vitest";
 
 import { crc32c } from "../src/codec/crc32c";
-import { kMaxParticleCount, parse } from "../src/codec/parse";
-import { Layer, RejectReason } from "../src/gen/spindrift/v1/wire_pb";
-import { encode, greeting, particleFrame, surfaceFrame } from "./wire";
+import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frames";
+import { parse } from "../src/codec/parse";
+import { Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
+import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
+import { bodiesFrame, bodiesPayload, encode, foamFrame, greeting, particleFrame, surfaceFrame } from "./wire";
 
 function expectMalformed(buffer: ArrayBuffer, reason: RegExp): void {
   const parsed = parse(buffer);
@@ -36,7 +38,7 @@ describe("parse", () => {
     expect(structuredClone(parsed.greeting)).toMatchObject({
       versionMajor: 1, room: "pool", device: "a device", title: "Splash pool", sessionId: "5",
       layers: ["surface", "particles", "diagnostics"], sideM: 16, hasParticles: true, paused: true, speed: 0.5,
-      wave: { resolutionCount: 256, sideM: 16, depthM: 1.5, periodic: true },
+      wave: { resolutionCount: 256, sideM: 16, depthM: 1.5, periodicX: true, periodicZ: true },
       parameters: [{ path: "particles.viscosity_pas", value: 55, min: 0, max: 500, step: 1 }],
     });
   });
@@ -74,7 +76,7 @@ describe("parse", () => {
   });
 
   it("reads every kind of small message", () => {
-    expect(parse(encode({ case: "ack", value: { commandId: 3n, appliedTick: 99n } }))).toEqual({ kind: "ack", commandId: 3n, appliedTick: 99n });
+    expect(parse(encode({ case: "ack", value: { commandId: 3n, appliedTick: 99n, boatId: 7 } }))).toEqual({ kind: "ack", commandId: 3n, appliedTick: 99n, boatId: 7 });
     expect(
       parse(encode({ case: "reject", value: { commandId: 4n, reason: RejectReason.OUT_OF_RANGE, field: "splash.radius_m", message: "too wide" } })),
     ).toEqual({ kind: "reject", commandId: 4n, reason: "OUT_OF_RANGE", field: "splash.radius_m", message: "too wide" });
@@ -128,5 +130,93 @@ describe("parse", () => {
         const parsed = parse(bytes.buffer);
         if (parsed.kind === "surface") expect(crc32c(parsed.payload)).toBe(crc32c(whole.subarray(whole.length - 8)));
       }
+  });
+});
+
+describe("parse of what stands and floats in the water", () => {
+  const boat = { boatId: 3, lengthM: 2.4, beamM: 0.9, heightM: 0.6, draughtM: 0.24 };
+
+  it("reads foam and bodies as views into the message", () => {
+    const foam = parse(encode(foamFrame(Uint8Array.of(0, 80, 255, 9))));
+    expect(foam).toMatchObject({ kind: "foam", header: { tick: 9n, timeS: 0.5, resolutionCount: 2, sideM: 16 } });
+    const buffer = encode(bodiesFrame(bodiesPayload([{ boatId: 5 }, { boatId: 6 }])));
+    const bodies = parse(buffer);
+    if (bodies.kind !== "bodies") throw new Error(JSON.stringify(bodies));
+    expect(bodies.header).toEqual({ tick: 9n, timeS: 0.5, count: 2 });
+    expect(bodies.payload.buffer).toBe(buffer);
+  });
+
+  it("takes frames without a single particle or boat", () => {
+    expect(parse(encode(particleFrame(new Uint8Array(0))))).toMatchObject({ kind: "particles", header: { count: 0 } });
+    expect(parse(encode(bodiesFrame(new Uint8Array(0))))).toMatchObject({ kind: "bodies", header: { count: 0 } });
+  });
+
+  it("refuses hostile sizes before it touches the payload", () => {
+    for (const resolutionCount of [0, 1, 4097, 0xffffffff]) expectMalformed(encode(foamFrame(new Uint8Array(4), {}, { resolutionCount })), /foam of/);
+    for (const sideM of [0, -1, Number.NaN, Number.POSITIVE_INFINITY, 2e6]) expectMalformed(encode(foamFrame(new Uint8Array(4), {}, { sideM })), /foam side/);
+    for (const count of [kMaxBodyCount + 1, 0xffffffff]) expectMalformed(encode(bodiesFrame(new Uint8Array(28), {}, count)), /at most/);
+    expectMalformed(encode(foamFrame(new Uint8Array(5), {}, { resolutionCount: 2 })), /payload of 5 bytes, header says 4/);
+    expectMalformed(encode(bodiesFrame(new Uint8Array(55), {}, 2)), /payload of 55 bytes, header says 56/);
+    expectMalformed(encode(bodiesFrame(new Uint8Array(28), {}, 0)), /payload of 28 bytes, header says 0/);
+  });
+
+  it("refuses a wrong checksum, layer, time and a predicted frame of the new layers", () => {
+    const payload = bodiesPayload([{}]);
+    expectMalformed(encode(foamFrame(new Uint8Array(4), { crc32c: 1 })), /crc32c/);
+    expectMalformed(encode(bodiesFrame(payload, { crc32c: 1 })), /crc32c/);
+    expectMalformed(encode(foamFrame(new Uint8Array(4), { layer: Layer.SURFACE })), /carries foam/);
+    expectMalformed(encode(bodiesFrame(payload, { layer: Layer.PARTICLES })), /carries bodies/);
+    expectMalformed(encode(foamFrame(new Uint8Array(4), { timeS: Number.NaN })), /time_s/);
+    expectMalformed(encode(bodiesFrame(payload, { keyframe: false })), /keyframes/);
+  });
+
+  it("survives every truncation and every flipped byte of a bodies frame", () => {
+    const whole = new Uint8Array(encode(bodiesFrame(bodiesPayload([{ boatId: 9, xMm: -1200 }]))));
+    for (let length = 1; length < whole.length; ++length) expect(parse(whole.slice(0, length).buffer).kind).not.toBe("bodies");
+    for (let at = 0; at < whole.length; ++at)
+      for (const flip of [1, 0x80, 0xff]) {
+        const bytes = whole.slice();
+        bytes[at]! ^= flip;
+        expect(() => parse(bytes.buffer)).not.toThrow();
+      }
+  });
+
+  it("reads boats, events and the ledger", () => {
+    expect(parse(encode({ case: "boatList", value: { boats: [boat] } }))).toEqual({ kind: "boatList", boats: [boat] });
+    for (const bad of [{ lengthM: 0 }, { beamM: Number.NaN }, { heightM: 1e9 }, { draughtM: -1 }])
+      expectMalformed(encode({ case: "boatList", value: { boats: [{ ...boat, ...bad }] } }), /boat 3/);
+    expectMalformed(encode({ case: "boatList", value: { boats: [boat, boat] } }), /two boats/);
+    expectMalformed(encode(greeting({ boatList: { boats: [boat, boat] } })), /two boats/);
+    expect(parse(encode({ case: "roomEvent", value: { kind: RoomEventKind.RESET, tick: 8n, message: "again" } }))).toEqual({
+      kind: "roomEvent", event: "reset", tick: 8n, message: "again",
+    });
+    const counted = { boatCount: 2, volumeErrorUnits: -3n, emittedM3: 1.5, absorbedM3: 1.25, breakingRatio: 0.01 };
+    expect(parse(encode({ case: "diagnostics", value: counted }))).toMatchObject({ kind: "diagnostics", diagnostics: counted });
+  });
+
+  it("reads what stands in the water, and leaves out what cannot be drawn", () => {
+    const scene = {
+      name: "harbor",
+      wave: { resolutionCount: 256, sideM: 60, depthM: 3, boundaryMinusX: WaveBoundary.ABSORB, boundaryPlusX: WaveBoundary.REFLECT },
+      boats: { capacityCount: 4 },
+      obstacles: [
+        { shape: { case: "rock", value: { xM: 3, zM: -4, radiusM: 2, heightM: 1 } } },
+        { shape: { case: "rock", value: { radiusM: Number.NaN } } },
+        { shape: { case: "breakwater", value: { xM: 1, zM: 2, lengthM: 20, widthM: 2, headingDeg: 90, heightM: 1.5 } } },
+        { shape: { case: undefined } },
+      ],
+      beaches: [{ side: Side.MINUS_X, widthM: 12, shoreDepthM: 0 }, { side: Side.MINUS_X, widthM: 3 }, { side: Side.DIRECTION, widthM: 3 }],
+    };
+    const parsed = parse(encode(greeting({ scene, scenes: ["harbor", "splash"], boatList: { boats: [boat] } })));
+    if (parsed.kind !== "greeting") throw new Error(JSON.stringify(parsed));
+    expect(structuredClone(parsed.greeting)).toMatchObject({
+      sceneName: "harbor", scenes: ["harbor", "splash"], boats: [boat], hasBoats: true, hasParticles: false,
+      wave: { periodicX: false, periodicZ: true },
+      obstacles: [
+        { shape: "rock", xM: 3, zM: -4, radiusM: 2, heightM: 1 },
+        { shape: "breakwater", xM: 1, zM: 2, lengthM: 20, widthM: 2, headingRad: Math.PI / 2, heightM: 1.5 },
+      ],
+      beaches: [{ side: "-x", widthM: 12, shoreDepthM: 0 }],
+    });
   });
 });

@@ -108,6 +108,7 @@ describe("the effect sliders' ranges", () => {
       splashDepthM: { ...optionsOf(getOption(splash.depthM, parameter)), max: 1.35 },
       waveAmplitudeM: { ...optionsOf(getOption(wave.amplitudeM, parameter)), max: 1.35 },
       waveLengthM: { ...optionsOf(getOption(wave.lengthM, parameter)), max: 16 },
+      waveDirectionDeg: { ...optionsOf(getOption(wave.directionDeg, parameter)), max: 180 },
     });
     expect(limits.splashRadiusM.label).toBe("Splash radius");
   });

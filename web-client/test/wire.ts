@@ -43,6 +43,56 @@ export function particleFrame(payload: Uint8Array, change: Partial<FrameInit> = 
   } as ServerBody;
 }
 
+export function foamFrame(payload: Uint8Array, change: Partial<FrameInit> = {}, codec: Record<string, number> = {}): ServerBody {
+  return {
+    case: "frame",
+    value: {
+      layer: Layer.FOAM, tick: 9n, timeS: 0.5, keyframe: true, crc32c: crc32c(payload), payload,
+      codec: { case: "foamFixed8", value: { resolutionCount: Math.sqrt(payload.length), sideM: 16, ...codec } },
+      ...change,
+    },
+  } as ServerBody;
+}
+
+export interface BodyRecord {
+  boatId: number;
+  xMm: number;
+  yMm: number;
+  zMm: number;
+  heading: number;
+  pitch: number;
+  roll: number;
+  speedCmps: number;
+  throttle: number;
+  rudder: number;
+}
+
+/** The wire's 28 bytes a boat. */
+export function bodiesPayload(records: Partial<BodyRecord>[]): Uint8Array<ArrayBuffer> {
+  const view = new DataView(new ArrayBuffer(28 * records.length));
+  records.forEach((record, at) => {
+    const { boatId = 1, xMm = 0, yMm = 0, zMm = 0, heading = 0, pitch = 0, roll = 0, speedCmps = 0, throttle = 0, rudder = 0 } = record;
+    const from = 28 * at;
+    view.setUint32(from, boatId, true);
+    [xMm, yMm, zMm].forEach((mm, axis) => view.setInt32(from + 4 + 4 * axis, mm, true));
+    [heading, pitch, roll, speedCmps].forEach((value, i) => view.setInt16(from + 16 + 2 * i, value, true));
+    view.setInt8(from + 24, throttle);
+    view.setInt8(from + 25, rudder);
+  });
+  return new Uint8Array(view.buffer);
+}
+
+export function bodiesFrame(payload: Uint8Array, change: Partial<FrameInit> = {}, count = payload.length / 28): ServerBody {
+  return {
+    case: "frame",
+    value: {
+      layer: Layer.BODIES, tick: 9n, timeS: 0.5, keyframe: true, crc32c: crc32c(payload), payload,
+      codec: { case: "bodiesFixed28", value: { count } },
+      ...change,
+    },
+  } as ServerBody;
+}
+
 export function greeting(change: Record<string, unknown> = {}): ServerBody {
   return {
     case: "greeting",

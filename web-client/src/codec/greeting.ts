@@ -1,7 +1,8 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, no Protobuf objects.
-import { Boundary } from "../gen/spindrift/v1/scene_pb";
-import { Layer, type Greeting } from "../gen/spindrift/v1/wire_pb";
-import type { ParsedMessage } from "./parse";
+import { CouplingMode } from "../gen/spindrift/v1/scene_pb";
+import { Layer, type BoatList, type Greeting } from "../gen/spindrift/v1/wire_pb";
+import { malformed, type Malformed } from "./frames";
+import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
 
 /** Major version of the wire that this client speaks. */
 export const kWireMajor = 1;
@@ -19,11 +20,23 @@ export interface ParameterInfo {
   help: string;
 }
 
-export interface WaveInfo {
-  resolutionCount: number;
-  sideM: number;
-  depthM: number;
-  periodic: boolean;
+/** A layer of the wire by the name that it has in here. */
+export type LayerName = "surface" | "particles" | "foam" | "bodies" | "diagnostics";
+export const kLayers: Record<LayerName, Layer> = {
+  surface: Layer.SURFACE,
+  particles: Layer.PARTICLES,
+  foam: Layer.FOAM,
+  bodies: Layer.BODIES,
+  diagnostics: Layer.DIAGNOSTICS,
+};
+
+/** A boat's hull, metres. */
+export interface BoatDetail {
+  boatId: number;
+  lengthM: number;
+  beamM: number;
+  heightM: number;
+  draughtM: number;
 }
 
 export interface GreetingInfo {
@@ -33,8 +46,10 @@ export interface GreetingInfo {
   device: string;
   room: string;
   sessionId: string;
-  layers: ("surface" | "particles" | "diagnostics")[];
+  layers: LayerName[];
   frameRateMaxHz: number;
+  /** Of the scene; what ChangeScene calls it. */
+  sceneName: string;
   title: string;
   description: string;
   /** Absent where the scene has no heightfield. */
@@ -42,30 +57,41 @@ export interface GreetingInfo {
   /** Horizontal side of the water, metres. */
   sideM: number;
   hasParticles: boolean;
+  /** Breaking water turns into particles and back. */
+  isTwoWay: boolean;
+  /** The room takes boats. */
+  hasBoats: boolean;
+  obstacles: ObstacleInfo[];
+  beaches: BeachInfo[];
+  boats: BoatDetail[];
+  /** What ChangeScene takes. */
+  scenes: string[];
   parameters: ParameterInfo[];
   paused: boolean;
   speed: number;
 }
 
+/** The boats, or why the list cannot be trusted. */
+export function readBoatList(list: BoatList): BoatDetail[] | string {
+  const boats = list.boats.map(({ boatId, lengthM, beamM, heightM, draughtM }) => ({ boatId, lengthM, beamM, heightM, draughtM }));
+  for (const { boatId, lengthM, beamM, heightM, draughtM } of boats) {
+    if (![lengthM, beamM, heightM].every((size) => size > 0 && size <= 1e4)) return `boat ${boatId}: hull of ${lengthM} m by ${beamM} m by ${heightM} m`;
+    if (!(draughtM >= 0 && draughtM <= 1e4)) return `boat ${boatId}: draught ${draughtM} m`;
+  }
+  if (new Set(boats.map(({ boatId }) => boatId)).size < boats.length) return "two boats of one id";
+  return boats;
+}
+
 /** A greeting's plain form, or "malformed" where a size that the page draws with is not a positive number. */
-export function readGreeting(greeting: Greeting): ParsedMessage {
+export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: GreetingInfo } | Malformed {
   const scene = greeting.scene;
-  const wave = scene?.wave;
-  const waveInfo = wave && {
-    resolutionCount: wave.resolutionCount ?? 0,
-    sideM: wave.sideM ?? 0,
-    depthM: wave.depthM ?? 0,
-    periodic: wave.boundary !== Boundary.WALL,
-  };
-  const sideM = waveInfo?.sideM ?? scene?.particles?.boxSideM ?? 0;
-  if (waveInfo && !(waveInfo.depthM > 0 && Number.isFinite(waveInfo.depthM)))
-    return { kind: "malformed", reason: `greeting: wave.depth_m ${waveInfo.depthM} has to be above 0` };
-  if (!(sideM > 0 && Number.isFinite(sideM)))
-    return { kind: "malformed", reason: `greeting: side of the water ${sideM} m has to be above 0` };
-  const layers: GreetingInfo["layers"] = [];
-  if (greeting.layers.includes(Layer.SURFACE)) layers.push("surface");
-  if (greeting.layers.includes(Layer.PARTICLES)) layers.push("particles");
-  if (greeting.layers.includes(Layer.DIAGNOSTICS)) layers.push("diagnostics");
+  const wave = scene?.wave && readWave(scene.wave);
+  const sideM = wave?.sideM ?? scene?.particles?.boxSideM ?? 0;
+  if (wave && !(wave.depthM > 0 && Number.isFinite(wave.depthM)))
+    return malformed(`greeting: wave.depth_m ${wave.depthM} has to be above 0`);
+  if (!(sideM > 0 && Number.isFinite(sideM))) return malformed(`greeting: side of the water ${sideM} m has to be above 0`);
+  const boats = greeting.boatList ? readBoatList(greeting.boatList) : [];
+  if (typeof boats === "string") return malformed(`greeting: ${boats}`);
   return {
     kind: "greeting",
     greeting: {
@@ -75,13 +101,20 @@ export function readGreeting(greeting: Greeting): ParsedMessage {
       device: greeting.device,
       room: greeting.room,
       sessionId: greeting.sessionId.toString(),
-      layers,
+      layers: (Object.keys(kLayers) as LayerName[]).filter((name) => greeting.layers.includes(kLayers[name])),
       frameRateMaxHz: greeting.limits?.frameRateMaxHz ?? 0,
+      sceneName: scene?.name ?? "",
       title: scene?.title || scene?.name || greeting.room,
       description: scene?.description ?? "",
-      wave: waveInfo,
+      wave,
       sideM,
       hasParticles: scene?.particles !== undefined,
+      isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
+      hasBoats: scene?.boats !== undefined,
+      obstacles: scene ? readObstacles(scene) : [],
+      beaches: scene ? readBeaches(scene) : [],
+      boats,
+      scenes: [...greeting.scenes],
       parameters: greeting.parameters
         .filter((p) => [p.min, p.max, p.value].every(Number.isFinite) && p.min < p.max)
         .map(({ path, label, unit, min, max, step, default: fallback, value, help }) => ({

@@ -2,9 +2,10 @@
 // after a loss. Socket, clock and timers are injected, so tests need no network. Runs in the worker.
 import { create, toBinary } from "@bufbuild/protobuf";
 
-import { kWireMajor, kWireMinor, type GreetingInfo } from "../codec/greeting";
-import { parse, type ParsedMessage } from "../codec/parse";
-import { ClientMessageSchema, Layer, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
+import type { ParsedFrame } from "../codec/frames";
+import { kLayers, kWireMajor, kWireMinor, type BoatDetail, type GreetingInfo } from "../codec/greeting";
+import { parse, type DiagnosticsInfo, type RoomEventName } from "../codec/parse";
+import { ClientMessageSchema, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import { LinkMeter } from "./link_meter";
 import type { CommandAction, ConnectionState, LinkStats } from "./messages";
@@ -44,17 +45,18 @@ export interface ConnectionWorld {
   clearTimer(timer: number): void;
 }
 
-type FrameMessage = Extract<ParsedMessage, { kind: "surface" | "particles" }>;
-
 export interface ConnectionEvents {
   state(state: ConnectionState): void;
   greeting(greeting: GreetingInfo): void;
-  frame(frame: FrameMessage): void;
-  diagnostics(message: Extract<ParsedMessage, { kind: "diagnostics" }>["diagnostics"]): void;
-  ack(commandId: number, appliedTick: number): void;
+  frame(frame: ParsedFrame): void;
+  diagnostics(diagnostics: DiagnosticsInfo): void;
+  /** `boatId`: of the boat that the command made, else 0. */
+  ack(commandId: number, appliedTick: number, boatId: number): void;
   reject(commandId: number, reason: string, field: string, message: string): void;
   parameterChanged(path: string, value: number): void;
   roomState(paused: boolean, speed: number): void;
+  boatList(boats: BoatDetail[]): void;
+  roomEvent(event: RoomEventName, message: string): void;
   stats(stats: Omit<LinkStats, "overtakenCount">): void;
 }
 
@@ -158,6 +160,8 @@ export class Connection {
         return this.greeted(parsed.greeting);
       case "surface":
       case "particles":
+      case "foam":
+      case "bodies":
         this.meter.frame(parsed.kind, parsed.header.tick);
         return this.events.frame(parsed);
       case "diagnostics":
@@ -165,7 +169,7 @@ export class Connection {
         return this.events.diagnostics(parsed.diagnostics);
       case "ack":
         if (this.pendingSinceMs.delete(Number(parsed.commandId)))
-          this.events.ack(Number(parsed.commandId), Number(parsed.appliedTick));
+          this.events.ack(Number(parsed.commandId), Number(parsed.appliedTick), parsed.boatId);
         return;
       case "reject":
         if (this.pendingSinceMs.delete(Number(parsed.commandId)))
@@ -175,6 +179,10 @@ export class Connection {
         return this.events.parameterChanged(parsed.path, parsed.value);
       case "roomState":
         return this.events.roomState(parsed.paused, parsed.speed);
+      case "boatList":
+        return this.events.boatList(parsed.boats);
+      case "roomEvent":
+        return this.events.roomEvent(parsed.event, parsed.message);
       case "pong":
         return this.meter.roundTrip(this.world.nowMs() - parsed.clientTimeS * 1000);
       case "refusal":
@@ -201,9 +209,8 @@ export class Connection {
     const frameRateHz = offered > 0 ? Math.min(offered, kFrameRateHz) : kFrameRateHz;
     for (const layer of this.greeting.layers) {
       const rateHz = layer === "diagnostics" ? Math.min(kDiagnosticsRateHz, frameRateHz) : frameRateHz;
-      const wire = { surface: Layer.SURFACE, particles: Layer.PARTICLES, diagnostics: Layer.DIAGNOSTICS }[layer];
       const maxRateHz = this.visible || layer === "diagnostics" ? rateHz : 0;
-      this.send(create(ClientMessageSchema, { message: { case: "subscribe", value: { layer: wire, maxRateHz } } }));
+      this.send(create(ClientMessageSchema, { message: { case: "subscribe", value: { layer: kLayers[layer], maxRateHz } } }));
     }
   }
 

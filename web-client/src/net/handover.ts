@@ -1,6 +1,8 @@
 // Frames of one layer on their way to the page: at most `maxUnderWay` delivered and not yet given back, plus one newest
 // frame waiting. A slow page therefore never has more than that many messages to chew; older frames are overtaken.
 
+const kLeastGrowingBytes = 1024;
+
 /** Buffers come back by release(); the last few are kept for the next copies. */
 export class FrameHandover<T extends { buffer: ArrayBuffer }> {
   overtakenCount = 0;
@@ -11,16 +13,24 @@ export class FrameHandover<T extends { buffer: ArrayBuffer }> {
   constructor(
     private readonly deliver: (frame: T) => void,
     private readonly maxUnderWay: number,
+    /** Payloads change their size: buffers are made in powers of two and used for anything that fits. */
+    private readonly isGrowing = false,
   ) {}
 
-  /** A buffer of this size to copy the next payload into: a returned one where it fits. */
+  /** A buffer of at least this size to copy the next payload into: a returned one where it fits. */
   takeBuffer(bytesCount: number): ArrayBuffer {
-    const at = this.spares.findIndex((spare) => spare.byteLength === bytesCount);
+    const wanted = this.capacityOf(bytesCount);
+    const at = this.spares.findIndex((spare) => (this.isGrowing ? spare.byteLength >= wanted : spare.byteLength === wanted));
     if (at < 0) {
       this.spares.length = 0;
-      return new ArrayBuffer(bytesCount);
+      return new ArrayBuffer(wanted);
     }
     return this.spares.splice(at, 1)[0]!;
+  }
+
+  /** Another room: what was kept for the old one's sizes goes. */
+  forgetSpares(): void {
+    this.spares.length = 0;
   }
 
   offer(frame: T): void {
@@ -45,6 +55,10 @@ export class FrameHandover<T extends { buffer: ArrayBuffer }> {
     this.waiting = undefined;
     ++this.underWayCount;
     this.deliver(next);
+  }
+
+  private capacityOf(bytesCount: number): number {
+    return this.isGrowing ? Math.max(2 ** Math.ceil(Math.log2(Math.max(bytesCount, 1))), kLeastGrowingBytes) : bytesCount;
   }
 
   private keep(buffer: ArrayBuffer): void {

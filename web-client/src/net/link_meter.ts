@@ -1,15 +1,17 @@
 // Counts what arrives and turns it into rates: kB/s, frames/s, latency. Frames of two layers with one tick are one frame.
-import type { LinkStats } from "./messages";
+import type { FrameLayer, LinkStats } from "./messages";
 
 const kRoundTripsKept = 5;
+/** A frame older than the newest by less than this is a late part of one that was counted; by more, time began anew. */
+const kSameFrameTicks = 30n;
 
 export class LinkMeter {
-  private readonly receivedCount = { surface: 0, particles: 0, diagnostics: 0 };
+  private readonly receivedCount = { surface: 0, particles: 0, foam: 0, bodies: 0, diagnostics: 0 };
   private malformedCount = 0;
   private lastMalformed = "";
   private bytesCount = 0;
   private frameCount = 0;
-  private lastTick = -1n;
+  private lastTick = -kSameFrameTicks;
   private kilobytesPerS = 0;
   private framesPerS = 0;
   private roundTripsMs: number[] = [];
@@ -20,9 +22,11 @@ export class LinkMeter {
     this.bytesCount += count;
   }
 
-  frame(layer: "surface" | "particles", tick: bigint): void {
+  frame(layer: FrameLayer, tick: bigint): void {
     ++this.receivedCount[layer];
-    if (tick !== this.lastTick) ++this.frameCount;
+    // Layers of one tick may come in any order, and one of them late.
+    if (tick <= this.lastTick && tick > this.lastTick - kSameFrameTicks) return;
+    ++this.frameCount;
     this.lastTick = tick;
   }
 

@@ -2,8 +2,9 @@
 // gives every one back with "release", which is what bounds the frames under way.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 
-import type { GreetingInfo } from "../codec/greeting";
-import type { DiagnosticsInfo, ParticleHeader, SurfaceHeader } from "../codec/parse";
+import type { BodiesHeader, FoamHeader, ParticleHeader, SurfaceHeader } from "../codec/frames";
+import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { DiagnosticsInfo, RoomEventName } from "../codec/parse";
 import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";
 
 /** A command's action as plain data, one member of the oneof in wire.proto. */
@@ -18,7 +19,7 @@ export type ConnectionState =
   | { name: "retrying"; inS: number; why: string }
   | { name: "refused"; reason: string };
 
-export type FrameLayer = "surface" | "particles";
+export type FrameLayer = "surface" | "particles" | "foam" | "bodies";
 
 export interface SurfaceFrame extends SurfaceHeader {
   layer: "surface";
@@ -28,11 +29,23 @@ export interface SurfaceFrame extends SurfaceHeader {
 
 export interface ParticleFrame extends ParticleHeader {
   layer: "particles";
-  /** 12 bytes a particle, as on the wire. */
+  /** 12 bytes a particle, as on the wire; may be longer than `count` of them. */
   buffer: ArrayBuffer;
 }
 
-export type Frame = SurfaceFrame | ParticleFrame;
+export interface FoamFrame extends FoamHeader {
+  layer: "foam";
+  /** resolutionCount^2 bytes. */
+  buffer: ArrayBuffer;
+}
+
+export interface BodiesFrame extends BodiesHeader {
+  layer: "bodies";
+  /** 28 bytes a boat, as on the wire; may be longer than `count` of them. */
+  buffer: ArrayBuffer;
+}
+
+export type Frame = SurfaceFrame | ParticleFrame | FoamFrame | BodiesFrame;
 
 /** Measured over the last half second; counts since the page was opened. */
 export interface LinkStats {
@@ -59,8 +72,10 @@ export type WorkerToPage =
   | { type: "greeting"; greeting: GreetingInfo }
   | { type: "frame"; frame: Frame }
   | { type: "diagnostics"; diagnostics: DiagnosticsInfo }
-  | { type: "ack"; commandId: number; appliedTick: number }
+  | { type: "ack"; commandId: number; appliedTick: number; boatId: number }
   | { type: "reject"; commandId: number; reason: string; field: string; message: string }
   | { type: "parameterChanged"; path: string; value: number }
   | { type: "roomState"; paused: boolean; speed: number }
+  | { type: "boatList"; boats: BoatDetail[] }
+  | { type: "roomEvent"; event: RoomEventName; message: string }
   | { type: "stats"; stats: LinkStats };

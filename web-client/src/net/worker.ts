@@ -2,7 +2,7 @@
 // into an aligned buffer, and travel to the page and back by transfer.
 import { Connection, type ConnectionWorld, type SocketLike } from "./connection";
 import { FrameHandover } from "./handover";
-import type { PageToWorker, ParticleFrame, SurfaceFrame, WorkerToPage } from "./messages";
+import type { Frame, FrameLayer, PageToWorker, WorkerToPage } from "./messages";
 
 /** The page's ring holds four; one more may be on its way. */
 const kMaxFramesUnderWay = 5;
@@ -11,8 +11,17 @@ function toPage(message: WorkerToPage, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
 }
 
-const surfaces = new FrameHandover<SurfaceFrame>((frame) => toPage({ type: "frame", frame }, [frame.buffer]), kMaxFramesUnderWay);
-const particles = new FrameHandover<ParticleFrame>((frame) => toPage({ type: "frame", frame }, [frame.buffer]), kMaxFramesUnderWay);
+function handover(isGrowing: boolean): FrameHandover<Frame> {
+  return new FrameHandover<Frame>((frame) => toPage({ type: "frame", frame }, [frame.buffer]), kMaxFramesUnderWay, isGrowing);
+}
+
+// Particles come and go in scenes where only broken water is particles, and so do boats.
+const handovers: Record<FrameLayer, FrameHandover<Frame>> = {
+  surface: handover(false),
+  particles: handover(true),
+  foam: handover(false),
+  bodies: handover(true),
+};
 
 function copyInto(buffer: ArrayBuffer, payload: Uint8Array): ArrayBuffer {
   new Uint8Array(buffer).set(payload);
@@ -33,23 +42,25 @@ function start(url: string): void {
   connection?.stop();
   connection = new Connection(url, world, {
     state: (state) => toPage({ type: "state", state }),
-    greeting: (greeting) => toPage({ type: "greeting", greeting }),
-    frame: (frame) => {
-      if (frame.kind === "surface") {
-        const buffer = copyInto(surfaces.takeBuffer(frame.payload.length), frame.payload);
-        surfaces.offer({ layer: "surface", ...frame.header, buffer });
-      } else {
-        const buffer = copyInto(particles.takeBuffer(frame.payload.length), frame.payload);
-        particles.offer({ layer: "particles", ...frame.header, buffer });
-      }
+    greeting: (greeting) => {
+      for (const layer of Object.values(handovers)) layer.forgetSpares();
+      toPage({ type: "greeting", greeting });
+    },
+    frame: ({ kind, header, payload }) => {
+      const buffer = copyInto(handovers[kind].takeBuffer(payload.length), payload);
+      handovers[kind].offer({ layer: kind, ...header, buffer } as Frame);
     },
     diagnostics: (diagnostics) => toPage({ type: "diagnostics", diagnostics }),
-    ack: (commandId, appliedTick) => toPage({ type: "ack", commandId, appliedTick }),
+    ack: (commandId, appliedTick, boatId) => toPage({ type: "ack", commandId, appliedTick, boatId }),
     reject: (commandId, reason, field, message) => toPage({ type: "reject", commandId, reason, field, message }),
     parameterChanged: (path, value) => toPage({ type: "parameterChanged", path, value }),
     roomState: (paused, speed) => toPage({ type: "roomState", paused, speed }),
-    stats: (stats) =>
-      toPage({ type: "stats", stats: { ...stats, overtakenCount: surfaces.overtakenCount + particles.overtakenCount } }),
+    boatList: (boats) => toPage({ type: "boatList", boats }),
+    roomEvent: (event, message) => toPage({ type: "roomEvent", event, message }),
+    stats: (stats) => {
+      const overtakenCount = Object.values(handovers).reduce((sum, layer) => sum + layer.overtakenCount, 0);
+      toPage({ type: "stats", stats: { ...stats, overtakenCount } });
+    },
   });
   connection.start();
 }
@@ -62,7 +73,7 @@ self.addEventListener("message", (event: MessageEvent<PageToWorker>) => {
     case "command":
       return connection?.command(message.commandId, message.action);
     case "release":
-      return (message.layer === "surface" ? surfaces : particles).release(message.buffer);
+      return handovers[message.layer].release(message.buffer);
     case "visible":
       return connection?.setVisible(message.visible);
     case "retry":

@@ -2,19 +2,39 @@
 import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
+import { wrapAngle } from "./bodies";
 import { frameBox, freeTangents, type PixelRect, type Placement, type WaterExtent } from "./framing";
 
-export type ViewName = "splash" | "wave";
+export type ViewName = "splash" | "wave" | "boat" | "overview";
+type FixedView = Exclude<ViewName, "boat">;
 
 /** From the water toward the camera; how far away it stands follows from what has to be seen. */
-const kBackward: Record<ViewName, Vector3> = {
+const kBackward: Record<FixedView, Vector3> = {
   splash: new Vector3(0.43, 0.50, 1.22),
   wave: new Vector3(0.20, 0.13, 1.30),
+  overview: new Vector3(-0.30, 1.25, 0.80),
 };
 /** Free parts less wide than this many heights raise the view from above, up to so many times its height. */
 const kWideTangents = 1.3;
 const kMostRaised = 2.6;
 const kTravelS = 0.9;
+/** The boat's view: behind and above, in boat lengths, and how fast it follows place, heading and its own stand. */
+const kBehindLengths = 2.5;
+const kAboveLengths = 1.05;
+const kFollowPerS = { target: 7, heading: 2.2, eye: 3.2 };
+
+/** A hidden page comes back with one step of at most this; a slow one still keeps up. */
+const kLongestFrameS = 2;
+
+/** What the boat's view follows. */
+export interface Followed {
+  xM: number;
+  yM: number;
+  zM: number;
+  headingRad: number;
+  lengthM: number;
+}
+
 export class CameraViews {
   readonly controls: OrbitControls;
   private extent: WaterExtent = { sideM: 16, minYM: -1, maxYM: 1 };
@@ -23,6 +43,9 @@ export class CameraViews {
   private heightPx = 1;
   /** The view that the camera stands in or travels to; none after somebody turned it by hand. */
   private framed: ViewName | undefined = "splash";
+  /** In the boat's view: the heading that the eye stands behind, and whether somebody turned the view by hand since. */
+  private following: { headingRad: number; byHand: boolean; lastS: number } | undefined;
+  private readonly scratchM = new Vector3();
   private travel: { fromM: Vector3; toM: Vector3; fromTargetM: Vector3; toTargetM: Vector3; startedS: number } | undefined;
 
   constructor(
@@ -38,7 +61,10 @@ export class CameraViews {
     // Just above the level of the still water: the page has no under-water view.
     this.controls.maxPolarAngle = Math.PI / 2 - 0.03;
     this.controls.listenToKeyEvents(canvas);
-    this.controls.addEventListener("start", () => (this.framed = this.travel = undefined));
+    this.controls.addEventListener("start", () => {
+      if (this.following) this.following.byHand = true;
+      else this.framed = this.travel = undefined;
+    });
   }
 
   /** Other water: back to the first view. */
@@ -50,7 +76,7 @@ export class CameraViews {
   /** The water turned out to be of another height; a view that nobody has left yet follows. */
   measured(extent: WaterExtent): void {
     this.extent = extent;
-    if (this.framed) this.jump(this.framed);
+    this.frameAgain();
   }
 
   /**
@@ -67,10 +93,21 @@ export class CameraViews {
     this.widthPx = widthPx;
     this.heightPx = Math.max(heightPx, 1);
     this.free = free;
-    if (!same && this.framed) this.jump(this.framed);
+    if (!same) this.frameAgain();
+  }
+
+  get view(): ViewName | undefined {
+    return this.framed;
   }
 
   go(name: ViewName, nowS: number): void {
+    if (name === "boat") {
+      this.framed = name;
+      this.travel = undefined;
+      this.following = { headingRad: Number.NaN, byHand: false, lastS: nowS };
+      return;
+    }
+    this.following = undefined;
     if (this.reducedMotion()) return this.jump(name);
     const { positionM, targetM } = this.placed(name);
     this.framed = name;
@@ -83,7 +120,9 @@ export class CameraViews {
     };
   }
 
-  update(nowS: number): void {
+  /** `followed`: the boat of the boat's view; without one the camera stays where it is. */
+  update(nowS: number, followed?: Followed): void {
+    if (this.following && followed) this.follow(this.following, followed, nowS);
     if (this.travel) {
       const done = Math.min((nowS - this.travel.startedS) / kTravelS, 1);
       const eased = done * done * (3 - 2 * done);
@@ -98,7 +137,46 @@ export class CameraViews {
     this.controls.dispose();
   }
 
-  private jump(name: ViewName): void {
+  private follow(following: NonNullable<CameraViews["following"]>, boat: Followed, nowS: number): void {
+    const { camera, controls, scratchM } = this;
+    const elapsedS = Math.min(Math.max(nowS - following.lastS, 0), kLongestFrameS);
+    following.lastS = nowS;
+    const still = this.reducedMotion();
+    const share = (perS: number): number => (still ? 1 : 1 - Math.exp(-perS * elapsedS));
+    if (Number.isNaN(following.headingRad)) following.headingRad = boat.headingRad;
+    const turnRad = wrapAngle(boat.headingRad - following.headingRad) * share(kFollowPerS.heading);
+    following.headingRad += turnRad;
+    controls.minDistance = boat.lengthM;
+    // The eye relative to the boat, before the boat moves on.
+    const offsetM = scratchM.copy(camera.position).sub(controls.target);
+    const follow = share(kFollowPerS.target);
+    const { target } = controls;
+    target.set(
+      target.x + (boat.xM - target.x) * follow,
+      target.y + (boat.yM + 0.25 * boat.lengthM - target.y) * follow,
+      target.z + (boat.zM - target.z) * follow,
+    );
+    if (following.byHand) {
+      const [c, s] = [Math.cos(turnRad), Math.sin(turnRad)];
+      camera.position.set(target.x + offsetM.x * c - offsetM.z * s, target.y + offsetM.y, target.z + offsetM.x * s + offsetM.z * c);
+      return;
+    }
+    const behindM = kBehindLengths * boat.lengthM * Math.max(1, 1.15 / Math.max(camera.aspect, 0.6));
+    scratchM.set(
+      target.x - behindM * Math.cos(following.headingRad),
+      target.y + kAboveLengths * boat.lengthM,
+      target.z - behindM * Math.sin(following.headingRad),
+    );
+    camera.position.lerp(scratchM, share(kFollowPerS.eye));
+  }
+
+  /** The view that nobody has left yet, for another canvas or other water. */
+  private frameAgain(): void {
+    if (this.framed && this.framed !== "boat") this.jump(this.framed);
+  }
+
+  private jump(name: FixedView): void {
+    this.following = undefined;
     const { positionM, targetM } = this.placed(name);
     this.framed = name;
     this.travel = undefined;
@@ -107,7 +185,7 @@ export class CameraViews {
     this.controls.update();
   }
 
-  private placed(name: ViewName): Placement {
+  private placed(name: FixedView): Placement {
     const { extent, camera } = this;
     const tangents = freeTangents(camera.fov, this.heightPx, this.widthPx, this.free);
     const backward = kBackward[name].clone();

@@ -36,16 +36,16 @@ export class FieldPass {
     private readonly resolutionCount: number,
     fieldCount: number,
     sideM: number,
-    periodic: boolean,
+    periodicX: boolean,
+    periodicZ: boolean,
   ) {
-    const wrap = periodic ? RepeatWrapping : ClampToEdgeWrapping;
     this.target = new WebGLRenderTarget(fieldCount, fieldCount, {
       format: RGBAFormat,
       type: HalfFloatType,
       minFilter: LinearFilter,
       magFilter: LinearFilter,
-      wrapS: wrap,
-      wrapT: wrap,
+      wrapS: periodicX ? RepeatWrapping : ClampToEdgeWrapping,
+      wrapT: periodicZ ? RepeatWrapping : ClampToEdgeWrapping,
       depthBuffer: false,
     });
     this.texture = this.target.texture;
@@ -69,7 +69,7 @@ export class FieldPass {
           u_mix: { value: 0 },
           u_cell_m: { value: sideM / resolutionCount },
           u_cells_per_texel: { value: resolutionCount / fieldCount },
-          u_periodic: { value: periodic },
+          u_periodic: { value: new Vector2(Number(periodicX), Number(periodicZ)) },
         },
         { depthTest: false, depthWrite: false },
       ),

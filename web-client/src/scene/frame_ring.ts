@@ -1,7 +1,14 @@
 // The last few frames of a layer, oldest first. Owns their buffers until it gives them back through `release`.
 
+interface Between<T> {
+  from: T;
+  to: T;
+  mix: number;
+}
+
 export class FrameRing<T extends { timeS: number }> {
   private frames: T[] = [];
+  private between: Between<T> | undefined;
 
   constructor(
     private readonly maxCount: number,
@@ -23,16 +30,25 @@ export class FrameRing<T extends { timeS: number }> {
   clear(): void {
     for (const frame of this.frames) this.release(frame);
     this.frames = [];
+    this.between = undefined;
   }
 
-  /** The frames on either side of `timeS` and how far between them it lies, 0..1; both the same one at the ends. */
-  around(timeS: number): { from: T; to: T; mix: number } | undefined {
-    if (this.frames.length === 0) return undefined;
-    const after = this.frames.findIndex((frame) => frame.timeS > timeS);
-    if (after < 0) return { from: this.frames.at(-1)!, to: this.frames.at(-1)!, mix: 0 };
-    if (after === 0) return { from: this.frames[0]!, to: this.frames[0]!, mix: 0 };
-    const from = this.frames[after - 1]!;
-    const to = this.frames[after]!;
-    return { from, to, mix: (timeS - from.timeS) / (to.timeS - from.timeS) };
+  /**
+   * The frames on either side of `timeS` and how far between them it lies, 0..1; both the same one at the ends. The answer
+   * is written over by the next call: this runs for every layer of every picture.
+   */
+  around(timeS: number): Readonly<Between<T>> | undefined {
+    const { frames } = this;
+    if (frames.length === 0) return undefined;
+    let after = 0;
+    while (after < frames.length && frames[after]!.timeS <= timeS) ++after;
+    const to = frames[Math.min(after, frames.length - 1)]!;
+    const from = after === 0 ? to : frames[after - 1]!;
+    const mix = from === to ? 0 : (timeS - from.timeS) / (to.timeS - from.timeS);
+    if (!this.between) return (this.between = { from, to, mix });
+    this.between.from = from;
+    this.between.to = to;
+    this.between.mix = mix;
+    return this.between;
   }
 }

@@ -14,6 +14,8 @@ export interface WaterExtent {
   sideM: number;
   minYM: number;
   maxYM: number;
+  /** Where more than the square is to be seen: land behind shores. */
+  ground?: { minXM: number; maxXM: number; minZM: number; maxZM: number };
 }
 
 export interface Placement {
@@ -70,13 +72,14 @@ export function frameBox(extent: WaterExtent, backward: Vector3, tangents: { acr
   const back = backward.clone().normalize();
   const right = new Vector3(0, 1, 0).cross(back).normalize();
   const up = back.clone().cross(right);
-  const middleM = new Vector3(0, (extent.minYM + extent.maxYM) / 2, 0);
   const half = extent.sideM / 2;
+  const { minXM, maxXM, minZM, maxZM } = extent.ground ?? { minXM: -half, maxXM: half, minZM: -half, maxZM: half };
+  const middleM = new Vector3((minXM + maxXM) / 2, (extent.minYM + extent.maxYM) / 2, (minZM + maxZM) / 2);
   const across: AxisCorners = [];
   const upward: AxisCorners = [];
-  for (const x of [-half, half])
+  for (const x of [minXM, maxXM])
     for (const y of [extent.minYM, extent.maxYM])
-      for (const z of [-half, half]) {
+      for (const z of [minZM, maxZM]) {
         const corner = new Vector3(x, y, z).sub(middleM);
         across.push([corner.dot(right), corner.dot(back)]);
         upward.push([corner.dot(up), corner.dot(back)]);

@@ -13,7 +13,7 @@ import {
   type Texture,
 } from "three";
 
-import { kParticleBytes } from "../codec/parse";
+import { kParticleBytes } from "../codec/frames";
 import type { ParticleFrame } from "../net/messages";
 import { makeMaterial, type Uniforms } from "./shaders";
 import type { Sky } from "./sky";
@@ -65,14 +65,15 @@ export class ParticleCloud {
     this.shown = frame;
     this.mesh.visible = frame.count > 0;
     if (frame.count === 0) return;
-    const words = new Uint16Array(frame.buffer);
     // The buffer itself goes back to the worker when the ring drops the frame; the GPU's copy is refreshed from here
-    // once, and a restored context is filled by the next frame.
-    if (!this.words || this.words.array.length !== words.length) this.rebuild(words.slice());
-    else {
-      this.words.array.set(words);
-      this.words.needsUpdate = true;
-    }
+    // once, and a restored context is filled by the next frame. The copy only ever grows, and only what is used travels.
+    const wordsCount = frame.count * kWordsPerParticle;
+    const words = this.words && this.words.array.length >= wordsCount ? this.words : this.rebuild(frame.buffer.byteLength / 2);
+    words.array.set(new Uint16Array(frame.buffer, 0, wordsCount));
+    words.clearUpdateRanges();
+    words.addUpdateRange(0, wordsCount);
+    words.needsUpdate = true;
+    this.mesh.geometry.setDrawRange(0, frame.count);
     (this.uniforms["u_min_m"]!.value as Vector3).set(...frame.minM);
     (this.uniforms["u_max_m"]!.value as Vector3).set(...frame.maxM);
     this.uniforms["u_max_speed_mps"]!.value = frame.maxSpeedMps;
@@ -92,12 +93,15 @@ export class ParticleCloud {
     this.mesh.material.dispose();
   }
 
-  private rebuild(words: Uint16Array): void {
+  private rebuild(wordsCount: number): InterleavedBuffer {
     this.mesh.geometry.dispose();
     const geometry = new BufferGeometry();
-    this.words = new InterleavedBuffer(words, kWordsPerParticle);
-    geometry.setAttribute("position", new InterleavedBufferAttribute(this.words, 3, 0, true));
-    geometry.setAttribute("a_packed", new InterleavedBufferAttribute(this.words, 3, 3, true));
+    const wholeCount = Math.floor(wordsCount / kWordsPerParticle) * kWordsPerParticle;
+    const words = new InterleavedBuffer(new Uint16Array(wholeCount), kWordsPerParticle);
+    geometry.setAttribute("position", new InterleavedBufferAttribute(words, 3, 0, true));
+    geometry.setAttribute("a_packed", new InterleavedBufferAttribute(words, 3, 3, true));
     this.mesh.geometry = geometry;
+    this.words = words;
+    return words;
   }
 }

@@ -1,6 +1,7 @@
 // The shader texts with their shared parts put in, and the one way to make a material of them.
 import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
 
+import bed from "./shaders/bed.glsl?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
 import fieldFrag from "./shaders/field.frag?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
@@ -16,6 +17,8 @@ import skyBakeFrag from "./shaders/sky_bake.frag?raw";
 import skyBakeVert from "./shaders/sky_bake.vert?raw";
 import skyDomeFrag from "./shaders/sky_dome.frag?raw";
 import skyDomeVert from "./shaders/sky_dome.vert?raw";
+import solidFrag from "./shaders/solid.frag?raw";
+import solidVert from "./shaders/solid.vert?raw";
 import waterFrag from "./shaders/water.frag?raw";
 import waterVert from "./shaders/water.vert?raw";
 
@@ -27,14 +30,17 @@ const kPrograms = {
   present: [fullscreenVert, presentFrag],
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
+  solid: [solidVert, solidFrag],
   water: [waterVert, waterFrag],
 } as const;
 
 // Samplers default to low precision in GLSL ES, which would round elevations on phones.
 const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].map((t) => `precision highp ${t};\n`).join("");
 
+const kShared: Record<string, string> = { sky, bed, cell_hash: cellHash, particle_color: particleColor };
+
 function expand(source: string): string {
-  return kPrecision + source.replace("#include <sky>", sky).replace("#include <cell_hash>", cellHash).replace("#include <particle_color>", particleColor);
+  return kPrecision + source.replace(/#include <(\w+)>/g, (_, name: string) => kShared[name]!);
 }
 
 export type Uniforms = Record<string, IUniform>;

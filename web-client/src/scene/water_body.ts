@@ -1,8 +1,9 @@
 // The water as one body: a grid lifted by the field, and a skirt round it down to the floor.
-import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Group, Mesh, Vector2, Vector3, type RawShaderMaterial, type Texture } from "three";
+import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Group, Mesh, Vector2, Vector3, Vector4, type RawShaderMaterial, type Texture } from "three";
 
 import { makeMaterial, type Uniforms } from "./shaders";
 import type { Sky } from "./sky";
+import { bedUniformValues, type Bed } from "./terrain";
 
 export interface BehindTextures {
   color: Texture;
@@ -65,7 +66,10 @@ export class WaterBody {
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
-  constructor(sky: Sky, field: Texture, behind: BehindTextures, sideM: number, depthM: number, quality: { surfaceCellsCount: number; plain: boolean }) {
+  /** `foam` absent: a room that sends none. `hasSolids`: there is something over the water to mirror. */
+  constructor(sky: Sky, field: Texture, behind: BehindTextures, bed: Bed, noise: Texture, foam: Uniforms | undefined, hasSolids: boolean, quality: { surfaceCellsCount: number; plain: boolean }) {
+    const { sideM, depthM, beaches } = bed;
+    const { widthsM, shoreDepthsM } = bedUniformValues(bed);
     this.uniforms = {
       ...sky.uniforms,
       u_field: { value: field },
@@ -76,9 +80,18 @@ export class WaterBody {
       u_near_far_m: { value: new Vector2(1, 2) },
       u_side_m: { value: sideM },
       u_depth_m: { value: depthM },
+      u_beach_width_m: { value: new Vector4(...widthsM) },
+      u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
+      u_noise: { value: noise },
+      u_lace_m: { value: Math.min(Math.max(sideM / 7, 1), 9) },
+      ...foam,
     };
     const cellsCount = quality.surfaceCellsCount;
-    const defines = quality.plain ? { PLAIN: 1 } : {};
+    const defines: Record<string, number> = {};
+    if (quality.plain) defines["PLAIN"] = 1;
+    if (beaches.length > 0) defines["BEACH"] = 1;
+    if (foam) defines["FOAM"] = 1;
+    if (hasSolids) defines["MIRROR"] = 1;
     this.meshes = [
       new Mesh(makeGrid(cellsCount), makeMaterial("water", this.uniforms, { side: DoubleSide, defines })),
       new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })),

@@ -1,4 +1,4 @@
-// Everything that is drawn of one room. A frame: field pass → sky, floor, particles into a linear target → the water to
+// Everything that is drawn of one room. A frame: field pass → sky, floor, solids, particles into a linear target → the water to
 // the canvas, reading the target for what shines through → the target where no water is.
 import {
   DepthTexture,
@@ -7,23 +7,32 @@ import {
   Scene,
   UnsignedIntType,
   Vector2,
+  Vector3,
   WebGLRenderTarget,
+  type RawShaderMaterial,
   type WebGLRenderer,
 } from "three";
 
-import type { GreetingInfo } from "../codec/greeting";
-import type { Frame, ParticleFrame, SurfaceFrame } from "../net/messages";
+import { kMaxResolutionCount } from "../codec/frames";
+import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { FoamFrame, Frame, ParticleFrame, SurfaceFrame } from "../net/messages";
+import { unpackBodies, type BodiesState, type BodyPose } from "./bodies";
+import { Boats } from "./boats";
 import { FieldPass } from "./field_pass";
+import { FoamField } from "./foam_field";
 import { FrameRing } from "./frame_ring";
 import { FullscreenPass } from "./fullscreen";
 import type { WaterExtent } from "./framing";
 import { Ground } from "./ground";
 import { elevationAtM, elevationRangeM } from "./height_field";
+import { kFloorDropSides, Landscape } from "./landscape";
+import { makeNoiseTexture } from "./noise_texture";
 import { ParticleCloud } from "./particle_cloud";
 import { PlayoutClock } from "./playout_clock";
 import type { WaterShape } from "./pick";
 import { makeMaterial } from "./shaders";
 import { Sky } from "./sky";
+import { bedOf, groundExtent, type Bed } from "./terrain";
 import { WaterBody } from "./water_body";
 
 const kRingCount = 4;
@@ -31,7 +40,9 @@ const kRingCount = 4;
 const kMaxAdvanceIntervals = 1.5;
 /** Height left for waves in a view, in sides of the water. */
 const kWaveRoom = 0.04;
-const kMaxResolutionCount = 4096;
+/** Cells a side of the drawn bed, where there is more to it than a floor. */
+const kBedCells = 96;
+const kPlainBedCells = 48;
 
 export interface Quality {
   /** Cells a side of the drawn surface. */
@@ -51,22 +62,30 @@ export class WaterScene {
   private readonly waters = new Scene();
   private readonly surfaces: FrameRing<SurfaceFrame>;
   private readonly particleFrames: FrameRing<ParticleFrame>;
+  private readonly foamFrames: FrameRing<FoamFrame>;
+  private readonly bodyStates = new FrameRing<BodiesState>(kRingCount, () => {});
   private readonly present: FullscreenPass;
+  private readonly noise = makeNoiseTexture();
   private behind: WebGLRenderTarget;
   private field: FieldPass | undefined;
   private body: WaterBody | undefined;
   private ground: Ground | undefined;
   private cloud: ParticleCloud | undefined;
+  private foam: FoamField | undefined;
+  private solid: RawShaderMaterial | undefined;
+  private landscape: Landscape | undefined;
+  private boats: Boats | undefined;
   private greeting: GreetingInfo | undefined;
   private readonly size = new Vector2();
 
   constructor(
     private readonly renderer: WebGLRenderer,
     private readonly quality: Quality,
-    release: (frame: Frame) => void,
+    private readonly release: (frame: Frame) => void,
   ) {
     this.surfaces = new FrameRing<SurfaceFrame>(kRingCount, release);
     this.particleFrames = new FrameRing<ParticleFrame>(kRingCount, release);
+    this.foamFrames = new FrameRing<FoamFrame>(kRingCount, release);
     this.sky = new Sky(quality.samplesCount > 1);
     this.present = new FullscreenPass(
       makeMaterial("present", { ...this.sky.uniforms, u_behind: { value: null } }, { depthWrite: false }),
@@ -85,12 +104,17 @@ export class WaterScene {
     const depthM = wave?.depthM ?? 1;
     if (wave) {
       const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
-      this.field = new FieldPass(resolutionCount, Math.min(resolutionCount, this.quality.fieldCountMax), sideM, wave.periodic);
+      this.field = new FieldPass(resolutionCount, Math.min(resolutionCount, this.quality.fieldCountMax), sideM, wave.periodicX, wave.periodicZ);
       this.field.renderStill(this.renderer);
-      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), sideM, depthM, this.quality);
+      if (greeting.layers.includes("foam")) this.foam = new FoamField(wave.periodicX, wave.periodicZ);
+      const bed = bedOf(greeting);
+      const hasSolids = greeting.hasBoats || greeting.obstacles.length > 0 || greeting.beaches.length > 0;
+      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), bed, this.noise, this.foam?.uniforms, hasSolids, this.quality);
       this.waters.add(this.body.group);
+      this.enterSolids(greeting, bed);
     }
     this.ground = new Ground(this.sky, this.field?.texture, sideM, depthM, this.quality.plain);
+    if (this.landscape) this.ground.lowerTo(-depthM - kFloorDropSides * sideM);
     this.solids.add(this.ground.mesh);
     if (greeting.hasParticles) {
       this.cloud = new ParticleCloud(this.sky, this.field?.texture, sideM, depthM, this.quality);
@@ -101,23 +125,53 @@ export class WaterScene {
     this.camera.updateProjectionMatrix();
   }
 
+  /** A boat came or went. */
+  setBoats(boats: readonly BoatDetail[]): void {
+    if (this.greeting) this.greeting.boats = [...boats];
+    this.boats?.setBoats(boats);
+  }
+
+  /** Where a boat is drawn now; to be read at once. */
+  poseOf(boatId: number): BodyPose | undefined {
+    return this.boats?.poseOf(boatId);
+  }
+
+  drawnBoats(): { poses: readonly BodyPose[]; count: number } | undefined {
+    return this.boats?.drawn();
+  }
+
+  newestFoam(): FoamFrame | undefined {
+    return this.foamFrames.newest();
+  }
+
   /** What a view has to show: the water with room for its waves, or the particles of the newest frame. */
   extent(): WaterExtent | undefined {
     if (!this.greeting) return undefined;
     const { sideM, wave } = this.greeting;
-    if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM };
+    if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM, ground: groundExtent(bedOf(this.greeting)) };
     const frame = this.particleFrames.newest();
     return frame && { sideM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
   }
 
   /** Takes over a frame; `nowS` is the client's clock. */
   take(frame: Frame, nowS: number): void {
-    if (frame.layer === "surface") this.surfaces.push(frame);
-    else {
-      if (!this.greeting?.wave) this.ground?.lowerTo(frame.minM[1] - frame.radiusM);
-      this.particleFrames.push(frame);
+    switch (frame.layer) {
+      case "surface":
+        this.surfaces.push(frame);
+        break;
+      case "foam":
+        this.foamFrames.push(frame);
+        break;
+      case "bodies":
+        this.bodyStates.push(unpackBodies(frame));
+        this.release(frame);
+        break;
+      case "particles":
+        if (!this.greeting?.wave && frame.count > 0) this.ground?.lowerTo(frame.minM[1] - frame.radiusM);
+        this.particleFrames.push(frame);
     }
-    this.clock.noteFrame(frame.timeS, nowS);
+    // One layer gives the time: those of one tick come apart, and a late one would look like time going back.
+    if (frame.layer === (this.greeting?.wave ? "surface" : "particles")) this.clock.noteFrame(frame.timeS, nowS);
   }
 
   newestSurface(): SurfaceFrame | undefined {
@@ -145,6 +199,7 @@ export class WaterScene {
     camera.updateMatrixWorld();
     this.sky.follow(camera);
     this.ground?.update(camera.position);
+    (this.solid?.uniforms["u_camera_m"]!.value as Vector3 | undefined)?.copy(camera.position);
     this.cloud?.update(camera, this.size.x, this.size.y);
     this.body?.update(camera.position, camera.near, camera.far, this.behindTextures(), this.size.x, this.size.y);
 
@@ -169,6 +224,7 @@ export class WaterScene {
     this.leave();
     this.sky.dispose();
     this.present.dispose();
+    this.noise.dispose();
     this.behind.dispose();
   }
 
@@ -176,6 +232,10 @@ export class WaterScene {
     const surfaces = this.surfaces.around(shownS);
     if (surfaces && this.field?.accepts(surfaces.from) && this.field.accepts(surfaces.to))
       this.field.render(this.renderer, surfaces.from, surfaces.to, surfaces.mix);
+    const foam = this.foam && this.foamFrames.around(shownS);
+    if (foam) this.foam!.show(foam.from, foam.to, foam.mix);
+    const bodies = this.boats && this.bodyStates.around(shownS);
+    if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
     const particles = this.particleFrames.around(shownS);
     if (!particles || !this.cloud) return;
     const maxAdvanceS = kMaxAdvanceIntervals * this.clock.intervalS();
@@ -186,12 +246,44 @@ export class WaterScene {
   private leave(): void {
     this.surfaces.clear();
     this.particleFrames.clear();
+    this.foamFrames.clear();
+    this.bodyStates.clear();
     this.clock.reset();
     if (this.body) this.waters.remove(this.body.group);
     if (this.ground) this.solids.remove(this.ground.mesh);
     if (this.cloud) this.solids.remove(this.cloud.mesh);
-    for (const part of [this.field, this.body, this.ground, this.cloud]) part?.dispose();
+    if (this.landscape) this.solids.remove(this.landscape.group);
+    for (const part of [this.field, this.body, this.ground, this.cloud, this.foam, this.landscape, this.boats, this.solid]) part?.dispose();
     this.field = this.body = this.ground = this.cloud = undefined;
+    this.foam = this.landscape = this.boats = this.solid = undefined;
+  }
+
+  /** Boats, rocks, walls and a bed that is more than a floor: one material for all of them. */
+  private enterSolids(greeting: GreetingInfo, bed: Bed): void {
+    const isNatural = greeting.obstacles.length > 0 || greeting.beaches.length > 0;
+    if (!isNatural && !greeting.hasBoats) return;
+    const { plain } = this.quality;
+    this.solid = makeMaterial(
+      "solid",
+      {
+        ...this.sky.uniforms,
+        u_camera_m: { value: new Vector3() },
+        u_field: { value: this.field!.texture },
+        u_noise: { value: this.noise },
+        u_side_m: { value: bed.sideM },
+        u_grain_m: { value: Math.min(Math.max(bed.sideM / 16, 0.5), 4) },
+        u_wet_m: { value: 0.08 * bed.depthM },
+      },
+      { defines: plain ? { PLAIN: 1 } : {} },
+    );
+    if (isNatural) {
+      this.landscape = new Landscape(bed, greeting.obstacles, this.solid, plain ? kPlainBedCells : kBedCells);
+      this.solids.add(this.landscape.group);
+    }
+    if (greeting.hasBoats) {
+      this.boats = new Boats(this.solids, this.solid);
+      this.boats.setBoats(greeting.boats);
+    }
   }
 
   private behindTextures() {

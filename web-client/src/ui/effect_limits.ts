@@ -3,7 +3,8 @@ import { getOption, type DescField } from "@bufbuild/protobuf";
 
 import type { GreetingInfo } from "../codec/greeting";
 import { parameter } from "../gen/spindrift/v1/options_pb";
-import { BreakingWaveSchema, SplashSchema } from "../gen/spindrift/v1/scene_pb";
+import { BoatSchema, BreakingWaveSchema, SplashSchema } from "../gen/spindrift/v1/scene_pb";
+import { ControlBoatSchema, SetSpeedSchema } from "../gen/spindrift/v1/wire_pb";
 
 export interface Range {
   label: string;
@@ -19,6 +20,7 @@ export interface EffectLimits {
   splashDepthM: Range;
   waveAmplitudeM: Range;
   waveLengthM: Range;
+  waveDirectionDeg: Range;
 }
 
 /** The server's own bounds: a splash or a crest as wide as the water, elevations that leave a tenth of its depth. */
@@ -43,7 +45,43 @@ export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
     splashDepthM: range(SplashSchema.field.depthM, kDeepestDepths * depthM),
     waveAmplitudeM: range(BreakingWaveSchema.field.amplitudeM, kDeepestDepths * depthM),
     waveLengthM: range(BreakingWaveSchema.field.lengthM, kLongestWaveSides * sideM),
+    waveDirectionDeg: range(BreakingWaveSchema.field.directionDeg, Infinity),
   };
+}
+
+export interface BoatLimits {
+  lengthM: Range;
+  throttleRatio: Range;
+  rudderRatio: Range;
+}
+
+/** A hull at most this share of the water's side long, and so deep that its draught leaves water under it. */
+const kLongestBoatSides = 0.25;
+/** Beam, height and density of a new boat as shares of its length: those of the proto's own boat. */
+const kBoatShape = { beam: 0.375, height: 0.25, density: 0.4 };
+const kDraughtDepths = 0.6;
+
+/** undefined for a scene that takes no boats. */
+export function boatLimits(greeting: GreetingInfo): BoatLimits | undefined {
+  if (!greeting.hasBoats || !greeting.wave) return undefined;
+  const { sideM, depthM } = greeting.wave;
+  const deepest = (kDraughtDepths * depthM) / (kBoatShape.height * kBoatShape.density);
+  return {
+    lengthM: range(BoatSchema.field.lengthM, Math.min(kLongestBoatSides * sideM, deepest)),
+    throttleRatio: range(ControlBoatSchema.field.throttleRatio, Infinity),
+    rudderRatio: range(ControlBoatSchema.field.rudderRatio, Infinity),
+  };
+}
+
+/** A new boat of this length, within the ranges of its fields. */
+export function boatOfLength(lengthM: number): { lengthM: number; beamM: number; heightM: number; densityRatio: number; draughtM: number } {
+  const heightM = Math.max(kBoatShape.height * lengthM, range(BoatSchema.field.heightM, Infinity).min);
+  const beamM = Math.max(kBoatShape.beam * lengthM, range(BoatSchema.field.beamM, Infinity).min);
+  return { lengthM, beamM, heightM, densityRatio: kBoatShape.density, draughtM: kBoatShape.density * heightM };
+}
+
+export function speedRange(): Range {
+  return range(SetSpeedSchema.field.speed, Infinity);
 }
 
 /** Keeps a slider's value inside a new room's range. */

@@ -1,24 +1,43 @@
 // The effect sliders and their commands: a splash at a place, a wave from a side.
 import type { GreetingInfo } from "../codec/greeting";
-import { Side } from "../gen/spindrift/v1/scene_pb";
+import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
 import type { CommandAction } from "../net/messages";
 import { clampTo, effectLimits, type EffectLimits } from "./effect_limits";
+import { SelectRow, type Choice } from "./select_row";
 import { SliderRow } from "./slider_row";
 
 type EffectKey = keyof EffectLimits;
-const kKeys: EffectKey[] = ["splashRadiusM", "splashDepthM", "waveAmplitudeM", "waveLengthM"];
+const kKeys: EffectKey[] = ["splashRadiusM", "splashDepthM", "waveAmplitudeM", "waveLengthM", "waveDirectionDeg"];
 const kHelp: Record<EffectKey, string> = {
   splashRadiusM: "Radius of the disc that a splash pushes down.",
   splashDepthM: "How far a splash pushes the surface down.",
   waveAmplitudeM: "Height of the crest that a breaking wave starts with.",
   waveLengthM: "Width of that crest.",
+  waveDirectionDeg: "Where the wave travels to: 0 is +x, 90 is +z.",
 };
+const kSides: readonly Choice[] = [
+  { value: String(Side.PLUS_X), label: "right side (+x)" },
+  { value: String(Side.MINUS_X), label: "left side (−x)" },
+  { value: String(Side.PLUS_Z), label: "near side (+z)" },
+  { value: String(Side.MINUS_Z), label: "far side (−z)" },
+  { value: String(Side.DIRECTION), label: "a direction" },
+];
+const kShapes: readonly Choice[] = [
+  { value: String(WaveShape.BREAKING), label: "breaking" },
+  { value: String(WaveShape.SWELL), label: "swell" },
+];
 
 export class EffectsPanel {
   private values: Record<EffectKey, number> | undefined;
   private readonly rows = new Map<EffectKey, SliderRow>();
 
-  constructor(private readonly root: HTMLElement) {}
+  private readonly side = new SelectRow("wave-side", "Wave from", "Where the wave is released.", () => this.showDirection());
+  private readonly shape = new SelectRow("wave-shape", "Wave shape", "A front steep enough to break, or a symmetric swell.", () => {});
+
+  constructor(private readonly root: HTMLElement) {
+    this.side.setChoices(kSides, kSides[0]!.value);
+    this.shape.setChoices(kShapes, kShapes[0]!.value);
+  }
 
   /** Values that still fit the new room are kept. */
   enter(greeting: GreetingInfo): void {
@@ -29,7 +48,7 @@ export class EffectsPanel {
       return;
     }
     const before = this.values;
-    this.values = { splashRadiusM: 0, splashDepthM: 0, waveAmplitudeM: 0, waveLengthM: 0 };
+    this.values = { splashRadiusM: 0, splashDepthM: 0, waveAmplitudeM: 0, waveLengthM: 0, waveDirectionDeg: 0 };
     for (const key of kKeys) {
       const range = limits[key];
       const value = clampTo(before?.[key] ?? range.default, range);
@@ -44,7 +63,10 @@ export class EffectsPanel {
       });
       this.rows.set(key, made);
       this.root.append(made.element);
+      // Under the crest's size, over its direction.
+      if (key === "waveLengthM") this.root.append(this.shape.element, this.side.element);
     }
+    this.showDirection();
   }
 
   get available(): boolean {
@@ -59,7 +81,14 @@ export class EffectsPanel {
 
   breakingWave(): CommandAction | undefined {
     if (!this.values) return undefined;
-    const { waveAmplitudeM: amplitudeM, waveLengthM: lengthM } = this.values;
-    return { case: "breakingWave", value: { side: Side.PLUS_X, amplitudeM, lengthM } };
+    const { waveAmplitudeM: amplitudeM, waveLengthM: lengthM, waveDirectionDeg: directionDeg } = this.values;
+    const side = Number(this.side.value) as Side;
+    const shape = Number(this.shape.value) as WaveShape;
+    return { case: "breakingWave", value: { side, shape, amplitudeM, lengthM, ...(side === Side.DIRECTION ? { directionDeg } : {}) } };
+  }
+
+  private showDirection(): void {
+    const row = this.rows.get("waveDirectionDeg");
+    if (row) row.element.hidden = Number(this.side.value) !== Side.DIRECTION;
   }
 }

@@ -1,4 +1,5 @@
 // The numbers: what the server measured and what the page measured. Every value is written as it arrives.
+import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
 import type { ConnectionState, LinkStats } from "../net/messages";
 import { byId, make, setText } from "./dom";
@@ -29,12 +30,36 @@ export class Hud {
   private readonly device = byId("device");
   private readonly state = byId("state");
   private readonly retry = byId("retry");
+  private readonly boats = byId("boat-count");
+  private readonly breaking = byId("breaking");
+  private readonly volumeError = byId("volume-error");
+  private readonly exchanged = byId("exchanged");
   private readonly lastAck = byId("last-ack");
   private readonly passes = byId("passes");
   private readonly remark = byId("remark");
   private readonly health = byId("health");
 
+  /** Shows the rows that this room has numbers for. */
+  enter(greeting: GreetingInfo): void {
+    const breaks = greeting.isTwoWay || greeting.layers.includes("foam");
+    const rows: [HTMLElement, boolean][] = [
+      [this.boats, greeting.hasBoats],
+      [this.breaking, breaks],
+      [this.volumeError, greeting.isTwoWay],
+      [this.exchanged, greeting.isTwoWay],
+      [this.particles, greeting.hasParticles],
+    ];
+    for (const [value, isShown] of rows) value.parentElement!.hidden = !isShown;
+    setText(this.device, greeting.device);
+    this.device.title = greeting.device;
+  }
+
   diagnostics(d: DiagnosticsInfo): void {
+    setText(this.boats, String(d.boatCount));
+    setText(this.breaking, `${(100 * d.breakingRatio).toFixed(2)} %`);
+    setText(this.volumeError, `${d.volumeErrorUnits} units`);
+    this.volumeError.classList.toggle("trouble", d.volumeErrorUnits !== 0n);
+    setText(this.exchanged, `${d.emittedM3.toFixed(3)} / ${d.absorbedM3.toFixed(3)} m³`);
     setText(this.simTime, `${d.timeS.toFixed(2)} s`);
     setText(this.rtf, `${d.realTimeFactor.toFixed(2)} ×`);
     setText(this.particles, d.particleCount.toLocaleString("en"));
@@ -68,11 +93,6 @@ export class Hud {
     this.state.dataset["state"] = state.name;
     this.state.title = state.name === "retrying" ? state.why : "";
     this.retry.hidden = state.name !== "retrying" && state.name !== "refused";
-  }
-
-  deviceIs(device: string): void {
-    setText(this.device, device);
-    this.device.title = device;
   }
 
   acked(commandId: number, appliedTick: number): void {

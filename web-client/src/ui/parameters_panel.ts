@@ -10,12 +10,15 @@ export class ParametersPanel {
   constructor(
     private readonly root: HTMLElement,
     private readonly send: (action: CommandAction) => number,
+    /** Parameters with a place of their own, by path. */
+    private readonly featured: Readonly<Record<string, HTMLElement>> = {},
   ) {}
 
   enter(parameters: ParameterInfo[]): void {
     for (const model of this.models.values()) model.dispose();
     this.models = new Map();
     this.root.replaceChildren();
+    for (const root of Object.values(this.featured)) root.replaceChildren();
     for (const info of parameters) {
       const { path } = info;
       const row: SliderRow = new SliderRow(path, info, info.value, info.help, (value) => model.input(value));
@@ -26,8 +29,13 @@ export class ParametersPanel {
         changed: () => row.show(model.shownValue, model.error),
       });
       this.models.set(path, model);
-      this.root.append(row.element);
+      (this.featured[path] ?? this.root).append(row.element);
     }
+  }
+
+  /** Whether there is anything to show outside of the featured places. */
+  get hasRows(): boolean {
+    return this.root.childElementCount > 0;
   }
 
   ack(commandId: number): boolean {

@@ -2,18 +2,19 @@
 import { setText } from "./dom";
 
 const kShownMs = 4000;
+const kShownLongMs = 8000;
 
 export class Toast {
   private timer: number | undefined;
 
   constructor(private readonly element: HTMLElement) {}
 
-  show(text: string, tone: "good" | "bad"): void {
+  show(text: string, tone: "good" | "warn" | "bad"): void {
     setText(this.element, text);
     this.element.dataset["tone"] = tone;
     this.element.classList.add("shown");
     if (this.timer !== undefined) window.clearTimeout(this.timer);
     // The text stays for those who read it late (and for screen readers); only its display fades.
-    this.timer = window.setTimeout(() => this.element.classList.remove("shown"), kShownMs);
+    this.timer = window.setTimeout(() => this.element.classList.remove("shown"), tone === "good" ? kShownMs : kShownLongMs);
   }
 }

@@ -7,13 +7,14 @@ uniform vec2 u_quantum_m;
 uniform float u_mix;
 uniform float u_cell_m;
 uniform float u_cells_per_texel;  // 1 or more; with more, the neighbourhood below has wider steps
-uniform bool u_periodic;
+uniform vec2 u_periodic;  // along x and z: 1 or 0
 
 layout(location = 0) out vec4 field;
 
 float elevation(ivec2 cell, int n) {
   ivec2 wrapped = cell + n * (ivec2(lessThan(cell, ivec2(0))) - ivec2(greaterThanEqual(cell, ivec2(n))));
-  cell = u_periodic ? wrapped : clamp(cell, ivec2(0), ivec2(n - 1));
+  ivec2 held = clamp(cell, ivec2(0), ivec2(n - 1));
+  cell = ivec2(u_periodic.x > 0.5 ? wrapped.x : held.x, u_periodic.y > 0.5 ? wrapped.y : held.y);
   float from = float(texelFetch(u_from, cell, 0).r) * u_quantum_m.x;
   float to = float(texelFetch(u_to, cell, 0).r) * u_quantum_m.y;
   return mix(from, to, u_mix);

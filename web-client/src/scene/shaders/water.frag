@@ -1,5 +1,7 @@
 // The water's skin: mirrored sky by Fresnel, and through it what was drawn before, bent by the slope, its colour absorbed
 // along the path in the water (Beer-Lambert, a per channel), and replaced by scattered light. PLAIN: unbent.
+// MIRROR: what stands in the water shows in it too, as far as it is on the screen.
+// BEACH: ends where the bed comes up. FOAM: with white water on it, cut out of lace at the foam's strength.
 #include <sky>
 
 in vec3 v_world;
@@ -18,6 +20,16 @@ uniform vec2 u_resolution;
 uniform vec2 u_near_far_m;
 uniform float u_side_m;
 uniform float u_depth_m;
+#ifdef BEACH
+#include <bed>
+#endif
+#ifdef FOAM
+uniform sampler2D u_foam_from;
+uniform sampler2D u_foam_to;
+uniform float u_foam_mix;
+uniform sampler2D u_noise;
+uniform float u_lace_m;
+#endif
 layout(location = 0) out vec4 color;
 
 const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
@@ -36,10 +48,60 @@ float wayOut(vec3 from, vec3 direction) {
   return max(min(t.x, min(t.y, t.z)), 0.0);
 }
 
+#if defined(MIRROR) && !defined(SKIRT) && !defined(PLAIN)
+uniform mat4 projectionMatrix;
+const int kMirrorSteps = 18;
+const int kMirrorHalvings = 4;
+
+// How far (m) a point lies behind what the screen shows there; far in front where it is off the screen.
+float behindScreen(vec3 at, out vec2 uv) {
+  vec4 view = viewMatrix * vec4(at, 1.0);
+  vec4 clip = projectionMatrix * view;
+  uv = clip.xy / clip.w * 0.5 + 0.5;
+  if (clip.w <= 0.0 || any(greaterThan(abs(uv - 0.5), vec2(0.5)))) return -1e6;
+  return viewZ(texture(u_behind_depth, uv).r) - view.z;
+}
+
+// Light along `direction` from `from`: of a solid where the ray meets one on the screen, else of the sky.
+vec3 mirroredLight(vec3 from, vec3 direction) {
+  vec3 sky = skyLight(direction);
+  float reach_m = 0.3 * u_side_m;
+  float jitter = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float before_m = 0.0;
+  vec2 uv;
+  for (int i = 1; i <= kMirrorSteps; ++i) {
+    // Steps grow with the way: near the foot of a hull they have to be short.
+    float share = (float(i) - 0.7 * jitter) / float(kMirrorSteps);
+    float along_m = reach_m * share * share;
+    float deep_m = behindScreen(from + direction * along_m, uv);
+    if (deep_m > 0.0 && deep_m < 1.0 + 1.5 * (along_m - before_m)) {
+      for (int half_step = 0; half_step < kMirrorHalvings; ++half_step) {
+        float middle_m = 0.5 * (before_m + along_m);
+        if (behindScreen(from + direction * middle_m, uv) > 0.0) along_m = middle_m;
+        else before_m = middle_m;
+      }
+      behindScreen(from + direction * along_m, uv);
+      vec2 edge = smoothstep(0.5, 0.42, abs(uv - 0.5));
+      return mix(sky, texture(u_behind, uv).rgb, edge.x * edge.y * (1.0 - share * share));
+    }
+    before_m = along_m;
+  }
+  return sky;
+}
+#else
+vec3 mirroredLight(vec3 from, vec3 direction) { return skyLight(direction); }
+#endif
+
 void main() {
   vec2 uv = gl_FragCoord.xy / u_resolution;
   float behind_depth = texture(u_behind_depth, uv).r;
   if (behind_depth < gl_FragCoord.z) discard;
+  float edge = 1.0;
+#ifdef BEACH
+  float deep_m = v_top_m + bedDepth(v_world.xz, u_side_m, u_depth_m);
+  if (deep_m <= 0.0) discard;
+  edge = smoothstep(0.0, 0.05 * u_depth_m, deep_m);
+#endif
 
   vec3 from_eye = v_world - u_camera_m;
   float distance_m = length(from_eye);
@@ -83,14 +145,38 @@ void main() {
   float away = (1.0 - facing) * (1.0 - facing);
   float fresnel = 0.02 + 0.98 * away * away * (1.0 - facing);
   vec3 mirrored = reflect(ray, normal);
+  fresnel *= edge;
 #ifdef SKIRT
   float rim = smoothstep(0.07, 0.0, v_top_m - v_world.y);
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
 #else
   mirrored.y = abs(mirrored.y);
-  vec3 water = mix(under, skyLight(mirrored), fresnel);
+  vec3 water = mix(under, fresnel > 0.03 ? mirroredLight(v_world, mirrored) : skyLight(mirrored), fresnel);
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel);
+  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
+#endif
+#if defined(FOAM) && !defined(SKIRT)
+  vec2 place = v_world.xz / u_side_m + 0.5;
+  float foam = mix(texture(u_foam_from, place).r, texture(u_foam_to, place).r, u_foam_mix);
+#ifdef BEACH
+  // Where the water thins out it is never quite clean.
+  foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
+#endif
+  if (foam > 0.01) {
+    vec2 at = v_world.xz - 0.6 * field.gb;
+    float lace = texture(u_noise, at / u_lace_m).r;
+#ifndef PLAIN
+    lace = clamp(0.68 * lace + 0.42 * texture(u_noise, at.yx / (0.29 * u_lace_m)).r - 0.05, 0.0, 1.0);
+#endif
+    // Much foam closes, little foam is a few thin threads; what fades also grows see-through.
+    float strength = min(1.1 * foam + 0.12, 1.0);
+    float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
+    // Air under the surface first, then froth on it.
+    water = mix(water, vec3(0.16, 0.42, 0.46), 0.45 * foam);
+    float sunlit = clamp(dot(normal, u_sun_direction), 0.0, 1.0);
+    vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 1.05 * sunlit + vec3(0.40, 0.45, 0.50)) * (0.80 + 0.28 * lace);
+    water = mix(water, froth, 0.94 * white);
+  }
 #endif
   color = vec4(toDisplay(water), 1.0);
 }

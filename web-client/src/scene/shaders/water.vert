@@ -1,4 +1,5 @@
 // Surface: a unit grid lifted by the field. Skirt (SKIRT): the four sides, top edge lifted, bottom edge on the floor.
+// BEACH: the floor rises toward some sides.
 
 in vec3 position;  // x, z in -1/2..1/2; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT
@@ -12,13 +13,21 @@ uniform sampler2D u_field;
 uniform float u_side_m;
 uniform float u_depth_m;
 
+#ifdef BEACH
+#include <bed>
+#endif
+
 out vec3 v_world;
 out float v_view_z;
 out float v_top_m;
 
 void main() {
   v_top_m = texture(u_field, position.xz + 0.5).r;
-  v_world = vec3(position.x * u_side_m, mix(-u_depth_m, v_top_m, position.y), position.z * u_side_m);
+  float depth_m = u_depth_m;
+#ifdef BEACH
+  depth_m = bedDepth(position.xz * u_side_m, u_side_m, u_depth_m);
+#endif
+  v_world = vec3(position.x * u_side_m, mix(-depth_m, max(v_top_m, -depth_m), position.y), position.z * u_side_m);
 #ifdef SKIRT
   v_side_normal = normal;
 #endif

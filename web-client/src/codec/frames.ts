@@ -1,0 +1,125 @@
+// A LayerFrame → its header as plain data and its payload as a view, or the reason why it cannot be trusted. Pure.
+import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
+import { crc32c } from "./crc32c";
+
+/** Largest grid side and counts this client takes; all far above what a server sends. */
+export const kMaxResolutionCount = 4096;
+export const kMaxParticleCount = 4 * 1024 * 1024;
+export const kMaxBodyCount = 1024;
+export const kParticleBytes = 12;
+export const kBodyBytes = 28;
+/** No size, place or speed on the wire is beyond this, in metres (a second). */
+const kLargest = 1e6;
+
+// 64-bit integers stay bigint: beyond 2^53 a number would round them.
+
+/** What every frame carries: tick, and simulation time in seconds. */
+export interface FrameHeader {
+  tick: bigint;
+  timeS: number;
+}
+
+/** Elevation of sample (i, k) = int16 value * quantumM; it lies at x = (i + 1/2) sideM / n - sideM / 2, z with k. */
+export interface SurfaceHeader extends FrameHeader {
+  resolutionCount: number;
+  sideM: number;
+  quantumM: number;
+}
+
+/** Position = min + u16 / 65535 (max - min) a axis; velocity = i8 / 127 maxSpeedMps. Metres, axes x, y, z. */
+export interface ParticleHeader extends FrameHeader {
+  count: number;
+  minM: [number, number, number];
+  maxM: [number, number, number];
+  maxSpeedMps: number;
+  radiusM: number;
+}
+
+/** A byte a sample, 0 none to 255 white; samples lie as those of the surface. */
+export interface FoamHeader extends FrameHeader {
+  resolutionCount: number;
+  sideM: number;
+}
+
+export interface BodiesHeader extends FrameHeader {
+  count: number;
+}
+
+export type ParsedFrame =
+  | { kind: "surface"; header: SurfaceHeader; payload: Uint8Array }
+  | { kind: "particles"; header: ParticleHeader; payload: Uint8Array }
+  | { kind: "foam"; header: FoamHeader; payload: Uint8Array }
+  | { kind: "bodies"; header: BodiesHeader; payload: Uint8Array };
+
+export interface Malformed {
+  kind: "malformed";
+  reason: string;
+}
+
+export function malformed(reason: string): Malformed {
+  return { kind: "malformed", reason };
+}
+
+function isSize(value: number): boolean {
+  return value > 0 && value <= kLargest;
+}
+
+/** Why layer, time or payload of the frame cannot be trusted, or undefined. The checksum comes last: it costs most. */
+function frameFault(frame: LayerFrame, layer: Layer, what: string, wantedBytes: number): string | undefined {
+  const { payload } = frame;
+  if (frame.layer !== layer) return `layer ${frame.layer} carries ${what}`;
+  if (payload.length !== wantedBytes) return `${what}: payload of ${payload.length} bytes, header says ${wantedBytes}`;
+  if (!Number.isFinite(frame.timeS)) return `time_s ${frame.timeS} is not finite`;
+  if (!frame.keyframe) return "a frame on top of another one, but this codec has only keyframes";
+  const crc = crc32c(payload);
+  return crc === frame.crc32c ? undefined : `crc32c 0x${crc.toString(16)}, frame says 0x${frame.crc32c.toString(16)}`;
+}
+
+function gridFault(what: string, resolutionCount: number, sideM: number): string | undefined {
+  if (resolutionCount < 2 || resolutionCount > kMaxResolutionCount)
+    return `${what} of ${resolutionCount} samples a side, allowed are 2 to ${kMaxResolutionCount}`;
+  return isSize(sideM) ? undefined : `${what} side ${sideM} m has to be above 0`;
+}
+
+export function parseFrame(frame: LayerFrame): ParsedFrame | Malformed {
+  const { tick, timeS, payload, codec } = frame;
+  switch (codec.case) {
+    case "surfaceFixed16": {
+      const { resolutionCount, sideM, quantumM } = codec.value;
+      const fault =
+        gridFault("surface", resolutionCount, sideM) ??
+        (isSize(quantumM) ? undefined : `surface quantum ${quantumM} m has to be above 0`) ??
+        frameFault(frame, Layer.SURFACE, "a surface", 2 * resolutionCount * resolutionCount);
+      return fault ? malformed(fault) : { kind: "surface", header: { tick, timeS, resolutionCount, sideM, quantumM }, payload };
+    }
+    case "foamFixed8": {
+      const { resolutionCount, sideM } = codec.value;
+      const fault = gridFault("foam", resolutionCount, sideM) ?? frameFault(frame, Layer.FOAM, "foam", resolutionCount * resolutionCount);
+      return fault ? malformed(fault) : { kind: "foam", header: { tick, timeS, resolutionCount, sideM }, payload };
+    }
+    case "bodiesFixed28": {
+      const { count } = codec.value;
+      if (count > kMaxBodyCount) return malformed(`${count} bodies, at most ${kMaxBodyCount} are taken`);
+      const fault = frameFault(frame, Layer.BODIES, "bodies", count * kBodyBytes);
+      return fault ? malformed(fault) : { kind: "bodies", header: { tick, timeS, count }, payload };
+    }
+    case "particlesFixed12": {
+      const { count, minXM, minYM, minZM, maxXM, maxYM, maxZM, maxSpeedMps, radiusM } = codec.value;
+      if (count > kMaxParticleCount) return malformed(`${count} particles, at most ${kMaxParticleCount} are taken`);
+      const minM: ParticleHeader["minM"] = [minXM, minYM, minZM];
+      const maxM: ParticleHeader["maxM"] = [maxXM, maxYM, maxZM];
+      for (let axis = 0; axis < 3; ++axis) {
+        const low = minM[axis]!;
+        const high = maxM[axis]!;
+        if (!(low >= -kLargest && high <= kLargest && low <= high))
+          return malformed(`particle bounds ${low} m to ${high} m on axis ${"xyz"[axis]}`);
+      }
+      if (!(maxSpeedMps >= 0 && maxSpeedMps <= kLargest)) return malformed(`particle speed bound ${maxSpeedMps} m/s`);
+      if (!isSize(radiusM)) return malformed(`particle radius ${radiusM} m has to be above 0`);
+      const fault = frameFault(frame, Layer.PARTICLES, "particles", count * kParticleBytes);
+      return fault ? malformed(fault) : { kind: "particles", header: { tick, timeS, count, minM, maxM, maxSpeedMps, radiusM }, payload };
+    }
+    case undefined:
+      return malformed(`frame of layer ${frame.layer} in a codec this client does not know`);
+  }
+}

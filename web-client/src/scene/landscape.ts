@@ -1,0 +1,65 @@
+// What stands in the water: the bed with its beaches, rocks, breakwaters. Made once a scene.
+import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
+
+import type { ObstacleInfo } from "../codec/scene_info";
+import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
+import { makeBreakwaterGeometry, makeRockGeometry } from "./obstacle_mesh";
+import { depthAtM, groundExtent, groundHeightM, type Bed } from "./terrain";
+
+const kDrySand: Paint = [0.66, 0.53, 0.36, 0.7];
+const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
+const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
+/** How far the floor round the water is lowered, in sides, so that it does not fight with the bed. */
+export const kFloorDropSides = 0.002;
+
+/** The bed as a grid with cut faces all round, down to the floor. */
+export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry {
+  const { minXM, maxXM, minZM, maxZM } = groundExtent(bed);
+  const floorM = -bed.depthM - kFloorDropSides * bed.sideM;
+  const columns = Array.from({ length: cellsCount + 1 }, (_, i) => minXM + ((maxXM - minXM) * i) / cellsCount);
+  // From near to far, so that rows go up where columns go right, seen from above.
+  const lines = Array.from({ length: cellsCount + 1 }, (_, k) => maxZM - ((maxZM - minZM) * k) / cellsCount);
+  const at = (xM: number, zM: number): Point => [xM, groundHeightM(bed, xM, zM), zM];
+  const rows = lines.map((zM) => columns.map((xM) => at(xM, zM)));
+  const builder = new MeshBuilder();
+  builder.grid(rows, (row, column) => {
+    const share = Math.min(Math.max(1 + rows[row]![column]![1] / (0.8 * bed.depthM), 0), 1);
+    return [0, 1, 2, 3].map((c) => kSeabed[c]! + (kDrySand[c]! - kSeabed[c]!) * share) as unknown as Paint;
+  });
+  const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
+  const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
+  for (const edge of edges) builder.grid([edge.map(down), edge], kCut);
+  return builder.build();
+}
+
+export class Landscape {
+  readonly group = new Group();
+  private readonly geometries: BufferGeometry[] = [];
+
+  /** `material` is shared and stays its owner's. */
+  constructor(bed: Bed, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, cellsCount: number) {
+    this.add(makeGroundGeometry(bed, cellsCount), material);
+    for (const obstacle of obstacles) {
+      // Down to the bed at its middle and a little deeper where the bed falls away.
+      const depthM = Math.min(depthAtM(bed, obstacle.xM, obstacle.zM) + 0.25 * bed.depthM, bed.depthM);
+      if (obstacle.shape === "rock") {
+        this.add(makeRockGeometry(obstacle, depthM), material);
+        continue;
+      }
+      const mesh = this.add(makeBreakwaterGeometry(obstacle, depthM), material);
+      mesh.position.set(obstacle.xM, 0, obstacle.zM);
+      mesh.rotation.y = -obstacle.headingRad;
+    }
+  }
+
+  dispose(): void {
+    for (const geometry of this.geometries) geometry.dispose();
+  }
+
+  private add(geometry: BufferGeometry, material: RawShaderMaterial): Mesh {
+    const mesh = new Mesh(geometry, material);
+    this.geometries.push(geometry);
+    this.group.add(mesh);
+    return mesh;
+  }
+}

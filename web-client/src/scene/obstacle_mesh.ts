@@ -1,0 +1,144 @@
+// Rocks and breakwaters as triangles, standing on the bed. Their outline at the still water is the scene's.
+import type { BufferGeometry } from "three";
+
+import type { BreakwaterInfo, RockInfo } from "../codec/scene_info";
+import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
+
+const kRingsCount = 16;
+const kAroundCount = 26;
+const kCutsCount = 11;
+const kConcrete: Paint = [0.46, 0.45, 0.42, 0.8];
+const kWhitePaint: Paint = [0.85, 0.85, 0.82, 0];
+const kRedPaint: Paint = [0.70, 0.07, 0.04, 0];
+const kLamp: Paint = [1.6, 1.2, 0.5, 0];
+
+/** A fixed number in [0, 1) for a place and a seed. */
+export function hash(a: number, b: number, c: number): number {
+  let mixed = Math.imul(a | 0, 0x9e3779b1) ^ Math.imul(b | 0, 0x85ebca6b) ^ Math.imul(c | 0, 0xc2b2ae35);
+  mixed = Math.imul(mixed ^ (mixed >>> 15), 0x2c1b3c6d);
+  mixed = Math.imul(mixed ^ (mixed >>> 12), 0x297a2d39);
+  return ((mixed ^ (mixed >>> 15)) >>> 0) / 4294967296;
+}
+
+/** Smooth noise in 0..1 over the unit sphere. */
+function bumps(x: number, y: number, z: number, seed: number): number {
+  const [ix, iy, iz] = [Math.floor(x), Math.floor(y), Math.floor(z)];
+  const smooth = (t: number): number => t * t * (3 - 2 * t);
+  const [fx, fy, fz] = [smooth(x - ix), smooth(y - iy), smooth(z - iz)];
+  const at = (dx: number, dy: number, dz: number): number => hash(ix + dx + 57 * (iz + dz), iy + dy, seed);
+  const mix = (a: number, b: number, t: number): number => a + (b - a) * t;
+  const layer = (dz: number): number => mix(mix(at(0, 0, dz), at(1, 0, dz), fx), mix(at(0, 1, dz), at(1, 1, dz), fx), fy);
+  return mix(layer(0), layer(1), fz);
+}
+
+/** Planes that break pieces off a boulder: direction and distance from its middle, in shares of its size. */
+function makeCuts(seed: number): [x: number, y: number, z: number, away: number][] {
+  return Array.from({ length: kCutsCount }, (_, i) => {
+    const round = 2 * Math.PI * ((i + hash(i, 5, seed)) / kCutsCount) * 3;
+    const up = 0.05 + 0.95 * hash(i, 6, seed) ** 1.3;
+    return [Math.cos(round) * Math.cos(up), Math.sin(up), Math.sin(round) * Math.cos(up), 0.70 + 0.24 * hash(i, 7, seed)];
+  });
+}
+
+/** One boulder: a broken dome over the water, a widening foot under it. */
+function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed: number): void {
+  const { radiusM, heightM } = rock;
+  const cuts = makeCuts(seed);
+  const rows: Point[][] = [];
+  for (let ring = 0; ring <= kRingsCount; ++ring) {
+    const share = ring / kRingsCount;
+    const row: Point[] = [];
+    for (let i = 0; i <= kAroundCount; ++i) {
+      const angle = (2 * Math.PI * (i % kAroundCount)) / kAroundCount;
+      const [c, s] = [Math.cos(angle), -Math.sin(angle)];
+      // 0..0.4 under water, the rest above it.
+      const under = Math.max(1 - share / 0.4, 0);
+      const polar = Math.max((share - 0.4) / 0.6, 0) * (Math.PI / 2);
+      const out = under > 0 ? 1 : Math.cos(polar) ** 0.85;
+      let [x, y, z] = [c * out, Math.sin(polar), s * out];
+      for (const [cutX, cutY, cutZ, away] of cuts) {
+        const beyond = Math.max(cutX * x + cutY * y + cutZ * z - away, 0);
+        [x, y, z] = [x - cutX * beyond, y - cutY * beyond, z - cutZ * beyond];
+      }
+      const rough = 0.6 * bumps(2.5 * x + 9, 2.5 * y + 5, 2.5 * z + 9, seed) + 0.4 * bumps(6 * x + 20, 6 * y + 7, 6 * z + 20, seed + 1);
+      const wide = radiusM * (0.98 + 0.26 * rough) * (1 + 0.35 * under);
+      const high = under > 0 ? bottomM * under + heightM * y * (1 - under) : heightM * y * (1.02 + 0.22 * (rough - 0.5));
+      row.push([rock.xM + x * wide, high, rock.zM + z * wide]);
+    }
+    rows.push(row);
+  }
+  builder.grid(rows, (row, column) => {
+    const share = row / kRingsCount;
+    const uneven = 0.82 + 0.36 * hash(row, column % kAroundCount, seed);
+    const weed = Math.max(1 - Math.abs(share - 0.38) / 0.12, 0);
+    return [uneven * (0.30 - 0.12 * weed), uneven * (0.275 - 0.07 * weed), uneven * (0.25 - 0.13 * weed), 1];
+  });
+}
+
+/** A boulder of the scene's size with smaller ones leaning on it. `depthM`: of the water where it stands. */
+export function makeRockGeometry(rock: RockInfo, depthM: number): BufferGeometry {
+  const builder = new MeshBuilder();
+  const seed = Math.round(rock.xM * 131 + rock.zM * 977);
+  const bottomM = -depthM - 0.1 * rock.radiusM;
+  addBoulder(builder, rock, bottomM, seed);
+  for (let i = 0; i < 3; ++i) {
+    const angle = 2 * Math.PI * (i / 3 + 0.25 * hash(i, 1, seed));
+    const size = 0.3 + 0.2 * hash(i, 2, seed);
+    const away = 0.98 * (1 - 0.7 * size) * rock.radiusM;
+    addBoulder(
+      builder,
+      {
+        shape: "rock", xM: rock.xM + away * Math.cos(angle), zM: rock.zM + away * Math.sin(angle),
+        radiusM: size * rock.radiusM, heightM: rock.heightM * (0.25 + 0.35 * hash(i, 3, seed)),
+      },
+      bottomM, seed + 7 * i + 1,
+    );
+  }
+  return builder.build(true);
+}
+
+/** A wall of courses of stone with a concrete top and a light at its +x end, along its own x axis round its middle. */
+export function makeBreakwaterGeometry(wall: BreakwaterInfo, depthM: number): BufferGeometry {
+  const { lengthM, widthM, heightM } = wall;
+  const builder = new MeshBuilder();
+  const capM = Math.min(0.16 * heightM, 0.25 * widthM);
+  const courseM = Math.min(Math.max(0.45 * widthM, 0.25), 1.4, Math.max(heightM, 0.2));
+  const stonesCount = Math.min(Math.max(Math.round(lengthM / (1.7 * courseM)), 1), 160);
+  const stoneM = lengthM / stonesCount;
+  const bottomM = -depthM - 0.05;
+  const topM = heightM - capM;
+  const coursesCount = Math.min(Math.max(Math.round((topM - bottomM) / courseM), 1), 12);
+  for (let course = 0; course < coursesCount; ++course)
+    for (let stone = 0; stone < stonesCount; ++stone) {
+      const at = hash(stone, course, 11);
+      const lowM = bottomM + ((topM - bottomM) * course) / coursesCount;
+      const highM = bottomM + ((topM - bottomM) * (course + 1)) / coursesCount;
+      const shade = 0.75 + 0.4 * hash(stone, course, 12);
+      const gap = 0.02 * courseM;
+      const halfZ = (widthM / 2) * (1 - 0.05 * at);
+      const shift = course % 2 === 0 ? 0 : 0.3 * stoneM;
+      const fromM = Math.max(-lengthM / 2 + stone * stoneM + (stone > 0 ? shift : 0), -lengthM / 2);
+      const toM = Math.min(-lengthM / 2 + (stone + 1) * stoneM + (stone < stonesCount - 1 ? shift : 0), lengthM / 2);
+      const halfX = (toM - fromM) / 2 - gap;
+      const size = (yM: number, inset: number) => ({ yM, halfX: halfX - inset, halfZ: halfZ - inset });
+      builder.block((fromM + toM) / 2, 0, size(lowM, 0), size(highM - gap, 0.06 * courseM), [0.27 * shade, 0.255 * shade, 0.235 * shade, 1]);
+    }
+  // The core closes the joints.
+  const core = { halfX: 0.96 * (lengthM / 2), halfZ: 0.9 * (widthM / 2) };
+  builder.block(0, 0, { yM: bottomM, ...core }, { yM: topM, ...core }, [0.10, 0.10, 0.095, 1]);
+  const cap = { halfX: lengthM / 2, halfZ: 0.97 * (widthM / 2) };
+  builder.block(0, 0, { yM: topM, ...cap }, { yM: heightM, halfX: cap.halfX - 0.1 * capM, halfZ: cap.halfZ - 0.1 * capM }, kConcrete);
+  addLight(builder, lengthM / 2 - 0.5 * widthM, heightM, widthM);
+  return builder.build();
+}
+
+function addLight(builder: MeshBuilder, xM: number, baseM: number, widthM: number): void {
+  const high = Math.min(1.6 * widthM, 3.5);
+  const size = (yM: number, half: number) => ({ yM: baseM + yM * high, halfX: half * high, halfZ: half * high });
+  builder.block(xM, 0, size(0, 0.16), size(0.12, 0.13), kConcrete);
+  for (let band = 0; band < 4; ++band)
+    builder.block(xM, 0, size(0.12 + 0.15 * band, 0.085 - 0.008 * band), size(0.27 + 0.15 * band, 0.077 - 0.008 * band), band % 2 === 0 ? kRedPaint : kWhitePaint);
+  builder.block(xM, 0, size(0.72, 0.09), size(0.76, 0.09), kWhitePaint);
+  builder.block(xM, 0, size(0.76, 0.05), size(0.9, 0.05), kLamp);
+  builder.block(xM, 0, size(0.9, 0.075), size(1, 0.01), kRedPaint);
+}

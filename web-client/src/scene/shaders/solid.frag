@@ -1,0 +1,51 @@
+// Sun and sky on painted or grainy solids; stone and sand are dark where the water wets them, and crests gather light on
+// what lies under them. PLAIN: without that light and without gloss.
+#include <sky>
+
+in vec3 v_world;
+in vec3 v_normal;
+in vec4 v_color;
+uniform vec3 u_camera_m;
+uniform sampler2D u_field;
+uniform sampler2D u_noise;
+uniform float u_side_m;
+uniform float u_grain_m;  // size of one tile of the noise
+uniform float u_wet_m;    // height over the still water up to which stone is wet
+layout(location = 0) out vec4 color;
+
+void main() {
+  vec3 normal = normalize(v_normal);
+  vec3 albedo = v_color.rgb;
+  float grain = v_color.a;
+  if (grain > 0.0) {
+    vec3 steep = abs(normal);
+    vec2 at = steep.y > max(steep.x, steep.z) ? v_world.xz : steep.x > steep.z ? v_world.zy : v_world.xy;
+    float fine = texture(u_noise, at / u_grain_m).r - 0.5;
+    float coarse = texture(u_noise, at.yx / (5.3 * u_grain_m) + 0.37).r - 0.5;
+    albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
+    float wet = 1.0 - smoothstep(0.0, 1.0, v_world.y / u_wet_m - 0.5 * coarse);
+    albedo *= 1.0 - 0.42 * min(grain, 1.0) * wet;
+  }
+  float sun = max(dot(normal, u_sun_direction), 0.0);
+#ifndef PLAIN
+  if (v_world.y < 0.0) {
+    // Sunlight reaching this point crossed the surface further along toward the sun, bent to a steeper path.
+    vec2 crossed = v_world.xz - u_sun_direction.xz / u_sun_direction.y * v_world.y * 0.62;
+    float curvature = texture(u_field, crossed / u_side_m + 0.5).a;
+    sun *= mix(0.85, 1.0 / clamp(1.0 - 0.25 * v_world.y * curvature, 0.35, 4.0), 0.75);
+  }
+#endif
+  vec3 ambient = mix(vec3(0.15, 0.17, 0.19), vec3(0.38, 0.47, 0.58), normal.y * 0.5 + 0.5);
+  vec3 lit = albedo * (kSunColor * 1.25 * sun + ambient);
+#ifndef PLAIN
+  vec3 ray = normalize(v_world - u_camera_m);
+  float away = 1.0 - clamp(-dot(normal, ray), 0.0, 1.0);
+  float shine = (0.03 + 0.30 * away * away * away * away) * (1.0 - min(grain, 1.0));
+  if (shine > 0.01 && v_world.y > 0.0) {
+    vec3 mirrored = reflect(ray, normal);
+    mirrored.y = abs(mirrored.y);
+    lit += shine * skyLight(mirrored) + (1.0 - grain) * kSunColor * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
+  }
+#endif
+  color = vec4(lit, 1.0);
+}

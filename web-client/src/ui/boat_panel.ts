@@ -1,0 +1,211 @@
+// Boats: launch one, choose which is mine, steer it by sliders or keys, take it away.
+import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { CommandAction } from "../net/messages";
+import { byId, make } from "./dom";
+import { boatLimits, boatOfLength, clampTo, type BoatLimits } from "./effect_limits";
+import { Helm, helmKey, type HelmKey } from "./helm";
+import { LatestSender } from "./latest_sender";
+import { SelectRow } from "./select_row";
+import { SliderRow } from "./slider_row";
+import { spawnPlace } from "./spawn_place";
+
+/** At most 20 helm commands a second. */
+export const kHelmEveryMs = 50;
+
+interface HelmOrder {
+  boatId: number;
+  throttleRatio: number;
+  rudderRatio: number;
+}
+
+interface Pose {
+  xM: number;
+  zM: number;
+  throttle: number;
+  rudder: number;
+}
+
+export class BoatPanel {
+  /** The boat that is mine; 0 = none. */
+  mineId = 0;
+  private readonly helm = new Helm();
+  private readonly orders: LatestSender<HelmOrder>;
+  private greeting: GreetingInfo | undefined;
+  private limits: BoatLimits | undefined;
+  private boats: readonly BoatDetail[] = [];
+  private lengthM = 0;
+  private spawnId = 0;
+  private isLive = false;
+  private lastS = 0;
+  private readonly root = byId("boats-box");
+  private readonly spawn = byId<HTMLButtonElement>("spawn");
+  private readonly remove = byId<HTMLButtonElement>("remove");
+  private readonly mine: SelectRow;
+  private rows: { length: SliderRow; throttle: SliderRow; rudder: SliderRow } | undefined;
+
+  constructor(
+    private readonly send: (action: CommandAction, label: string) => number,
+    /** Where a boat is drawn now. */
+    private readonly poseOf: (boatId: number) => Pose | undefined,
+    /** Another boat is mine, or none. */
+    private readonly chosen: () => void,
+  ) {
+    this.orders = new LatestSender((order) => void send({ case: "controlBoat", value: order }, "Helm"), {
+      nowMs: () => performance.now(),
+      setTimer: (callback, ms) => window.setTimeout(callback, ms),
+      clearTimer: (timer) => window.clearTimeout(timer),
+    }, kHelmEveryMs);
+    this.mine = new SelectRow("my-boat", "My boat", "The boat that the helm steers and the boat view follows.", (value) => this.choose(Number(value)));
+    byId("my-boat-row").append(this.mine.element);
+    this.spawn.addEventListener("click", () => this.launch());
+    for (const button of document.querySelectorAll<HTMLElement>("#pad [data-helm]")) {
+      const key = button.dataset["helm"] as HelmKey;
+      button.addEventListener("pointerdown", (event) => {
+        button.setPointerCapture(event.pointerId);
+        this.hold(key, true);
+      });
+      for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(end, () => this.hold(key, false));
+      button.addEventListener("contextmenu", (event) => event.preventDefault());
+    }
+    this.remove.addEventListener("click", () => {
+      if (this.mineId) send({ case: "removeBoat", value: { boatId: this.mineId } }, `Remove boat ${this.mineId}`);
+    });
+  }
+
+  get available(): boolean {
+    return this.limits !== undefined;
+  }
+
+  enter(greeting: GreetingInfo): void {
+    this.greeting = greeting;
+    this.limits = boatLimits(greeting);
+    this.root.hidden = !this.limits;
+    if (this.limits) this.showRows(this.limits);
+    this.setBoats(this.limits ? greeting.boats : []);
+    this.setLive(true);
+  }
+
+  setBoats(boats: readonly BoatDetail[]): void {
+    this.boats = boats;
+    if (this.mineId && !boats.some(({ boatId }) => boatId === this.mineId)) {
+      this.orders.cancel();
+      this.choose(0);
+    }
+    this.refresh();
+  }
+
+  setLive(isLive: boolean): void {
+    this.isLive = isLive;
+    if (!isLive) this.orders.cancel();
+    this.refresh();
+  }
+
+  ack(commandId: number, boatId: number): void {
+    if (commandId !== this.spawnId || boatId === 0) return;
+    this.spawnId = 0;
+    // The list with the new boat may come after its ack.
+    if (!this.boats.some((boat) => boat.boatId === boatId)) this.boats = [...this.boats, { boatId, ...boatOfLength(this.lengthM) }];
+    this.choose(boatId);
+  }
+
+  /** Whether the key is the helm's; the caller keeps it from scrolling the page then. */
+  key(code: string, isDown: boolean): boolean {
+    const key = helmKey(code);
+    if (!key || !this.mineId) return false;
+    this.hold(key, isDown);
+    return true;
+  }
+
+  /** Moves what held keys move. */
+  update(nowS: number): void {
+    const elapsedS = Math.min(nowS - this.lastS, 0.1);
+    this.lastS = nowS;
+    if (!this.mineId || !this.helm.advance(elapsedS)) return;
+    this.rows?.throttle.show(this.helm.throttle, "");
+    this.rows?.rudder.show(this.helm.rudder, "");
+    this.order();
+  }
+
+  /** The page lost focus: engine stopped, rudder amidships, once; then no more orders. */
+  leaveHelm(): void {
+    if (!this.mineId) return;
+    const wasSet = this.helm.throttle !== 0 || this.helm.rudder !== 0;
+    this.helm.centre();
+    this.showHelm();
+    if (!wasSet) return this.orders.cancel();
+    this.order();
+    this.orders.flush();
+  }
+
+  lengthOf(boatId: number): number {
+    return this.boats.find((boat) => boat.boatId === boatId)?.lengthM ?? 2;
+  }
+
+  private hold(key: HelmKey, isDown: boolean): void {
+    if (isDown) this.helm.press(key);
+    else this.helm.release(key);
+  }
+
+  private choose(boatId: number): void {
+    if (boatId === this.mineId) return this.refresh();
+    this.orders.flush();
+    this.mineId = boatId;
+    const pose = boatId ? this.poseOf(boatId) : undefined;
+    this.helm.takeOver(pose?.throttle ?? 0, pose?.rudder ?? 0);
+    this.showHelm();
+    this.refresh();
+    this.chosen();
+  }
+
+  private launch(): void {
+    if (!this.greeting || !this.limits) return;
+    const boat = boatOfLength(this.lengthM);
+    const { draughtM, ...hull } = boat;
+    const others = this.boats.flatMap(({ boatId }) => this.poseOf(boatId) ?? []).map(({ xM, zM }) => ({ xM, zM }));
+    const place = spawnPlace(this.greeting, boat.lengthM, draughtM, others);
+    this.spawnId = this.send({ case: "spawnBoat", value: { boat: { ...hull, ...place } } }, "New boat");
+  }
+
+  private order(): void {
+    if (!this.mineId || !this.isLive) return;
+    this.orders.offer({ boatId: this.mineId, throttleRatio: this.helm.throttle, rudderRatio: this.helm.rudder });
+  }
+
+  private showHelm(): void {
+    this.rows?.throttle.show(this.helm.throttle, "");
+    this.rows?.rudder.show(this.helm.rudder, "");
+  }
+
+  private showRows(limits: BoatLimits): void {
+    this.lengthM = clampTo(this.lengthM || limits.lengthM.default, limits.lengthM);
+    if (!this.rows) {
+      this.rows = {
+        length: new SliderRow("boat-length", limits.lengthM, this.lengthM, "Length of the next boat.", (value) => (this.lengthM = value)),
+        throttle: new SliderRow("throttle", limits.throttleRatio, 0, "Engine: ahead to the right, astern to the left. Keys W and S or up and down in the boat view.", (value) => {
+          this.helm.setThrottle(value);
+          this.order();
+        }),
+        rudder: new SliderRow("rudder", limits.rudderRatio, 0, "Rudder. Keys A and D or left and right in the boat view.", (value) => {
+          this.helm.setRudder(value);
+          this.order();
+        }),
+      };
+      byId("helm").append(this.rows.throttle.element, this.rows.rudder.element, make("p", { class: "hint" }, ["In the boat view: arrow keys or WASD."]));
+      byId("new-boat").append(this.rows.length.element);
+    }
+    this.rows.length.setRange(limits.lengthM, this.lengthM);
+    this.showHelm();
+  }
+
+  private refresh(): void {
+    const choices = [{ value: "0", label: this.boats.length ? "none" : "no boats yet" }, ...this.boats.map(({ boatId, lengthM }) => ({ value: String(boatId), label: `Boat ${boatId} (${lengthM.toFixed(1)} m)` }))];
+    this.mine.setChoices(choices, String(this.mineId));
+    const hasMine = this.isLive && this.mineId !== 0;
+    this.mine.disabled = !this.isLive || this.boats.length === 0;
+    this.spawn.disabled = !this.isLive;
+    this.remove.disabled = !hasMine;
+    if (!this.rows) return;
+    this.rows.throttle.disabled = this.rows.rudder.disabled = !hasMine;
+    this.rows.length.disabled = !this.isLive;
+  }
+}

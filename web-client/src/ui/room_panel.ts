@@ -1,0 +1,74 @@
+// What changes the room for everybody: pause, single steps, reset, the speed of time, another scene.
+import type { GreetingInfo } from "../codec/greeting";
+import type { CommandAction } from "../net/messages";
+import { byId, setText } from "./dom";
+import { speedRange } from "./effect_limits";
+import { SelectRow } from "./select_row";
+import { SliderModel } from "./slider_model";
+import { SliderRow } from "./slider_row";
+
+export class RoomPanel {
+  paused = false;
+  private isLive = false;
+  private sceneName = "";
+  private changeId = 0;
+  private readonly pause = byId<HTMLButtonElement>("pause");
+  private readonly step = byId<HTMLButtonElement>("step");
+  private readonly reset = byId<HTMLButtonElement>("reset");
+  private readonly speedRow: SliderRow;
+  private readonly speed: SliderModel;
+  private readonly scenes: SelectRow;
+
+  constructor(send: (action: CommandAction, label: string) => number) {
+    this.pause.addEventListener("click", () => {
+      send({ case: "setPaused", value: { paused: !this.paused } }, this.paused ? "Resume" : "Pause");
+    });
+    this.step.addEventListener("click", () => send({ case: "step", value: { tickCount: 1 } }, "Step"));
+    this.reset.addEventListener("click", () => send({ case: "reset", value: {} }, "Reset"));
+    const range = speedRange();
+    this.speedRow = new SliderRow("speed", range, 1, "Simulated seconds per second, for everybody in the room.", (value) => this.speed.input(value));
+    this.speed = new SliderModel(1, {
+      send: (value) => send({ case: "setSpeed", value: { speed: value } }, "Speed"),
+      setTimer: (callback, ms) => window.setTimeout(callback, ms),
+      clearTimer: (timer) => window.clearTimeout(timer),
+      changed: () => this.speedRow.show(this.speed.shownValue, this.speed.error),
+    });
+    this.scenes = new SelectRow("scene", "Scene", "Another scene, for everybody in the room.", (name) => {
+      this.changeId = send({ case: "changeScene", value: { name } }, `Scene ${name}`);
+    });
+    byId("room").append(this.scenes.element, this.speedRow.element);
+  }
+
+  enter(greeting: GreetingInfo): void {
+    this.sceneName = greeting.sceneName;
+    const names = greeting.scenes.includes(greeting.sceneName) || greeting.scenes.length === 0 ? greeting.scenes : [greeting.sceneName, ...greeting.scenes];
+    this.scenes.setChoices(names.map((name) => ({ value: name, label: name.replaceAll("_", " ") })), this.sceneName);
+    this.scenes.element.hidden = names.length < 2;
+    this.roomState(greeting.paused, greeting.speed);
+    this.setLive(true);
+  }
+
+  setLive(isLive: boolean): void {
+    this.isLive = isLive;
+    this.pause.disabled = this.reset.disabled = this.scenes.disabled = this.speedRow.disabled = !isLive;
+    this.step.disabled = !isLive || !this.paused;
+    this.step.title = this.paused ? "One tick" : "Pause first";
+  }
+
+  roomState(paused: boolean, speed: number): void {
+    this.paused = paused;
+    setText(this.pause, paused ? "Resume" : "Pause");
+    this.pause.setAttribute("aria-pressed", String(paused));
+    if (speed > 0) this.speed.serverSays(speed);
+    this.setLive(this.isLive);
+  }
+
+  ack(commandId: number): void {
+    this.speed.ack(commandId);
+  }
+
+  reject(commandId: number, message: string): void {
+    this.speed.reject(commandId, message);
+    if (commandId === this.changeId) this.scenes.value = this.sceneName;
+  }
+}

@@ -1,0 +1,47 @@
+// Where a new boat fits: in water deep enough, clear of what stands and floats there. Pure.
+import type { GreetingInfo } from "../codec/greeting";
+import type { ObstacleInfo } from "../codec/scene_info";
+import { bedOf, depthAtM, type Bed } from "../scene/terrain";
+
+const kTriesCount = 160;
+/** Turns by the golden angle, so that tries fill the square evenly from its middle outward. */
+const kTurnRad = Math.PI * (3 - Math.sqrt(5));
+
+/** Distance from a place to the outline of an obstacle; negative inside. */
+export function clearanceM(obstacle: ObstacleInfo, xM: number, zM: number): number {
+  const dx = xM - obstacle.xM;
+  const dz = zM - obstacle.zM;
+  if (obstacle.shape === "rock") return Math.hypot(dx, dz) - obstacle.radiusM;
+  const [c, s] = [Math.cos(obstacle.headingRad), Math.sin(obstacle.headingRad)];
+  const outX = Math.abs(dx * c + dz * s) - obstacle.lengthM / 2;
+  const outZ = Math.abs(dz * c - dx * s) - obstacle.widthM / 2;
+  return Math.hypot(Math.max(outX, 0), Math.max(outZ, 0)) + Math.min(Math.max(outX, outZ), 0);
+}
+
+/** Free place nearest the middle for a hull of `lengthM`; the roomiest one tried where nothing is quite free. */
+export function spawnPlace(
+  greeting: Pick<GreetingInfo, "sideM" | "wave" | "beaches" | "obstacles">,
+  lengthM: number,
+  draughtM: number,
+  others: readonly { xM: number; zM: number }[],
+): { xM: number; zM: number } {
+  const bed: Bed = bedOf(greeting as GreetingInfo);
+  const half = greeting.sideM / 2;
+  const wantedM = 0.75 * lengthM;
+  let best = { xM: 0, zM: 0 };
+  let bestM = -Infinity;
+  for (let i = 0; i < kTriesCount; ++i) {
+    const outM = 0.97 * half * Math.sqrt(i / kTriesCount);
+    const xM = outM * Math.cos(i * kTurnRad);
+    const zM = outM * Math.sin(i * kTurnRad);
+    let freeM = Math.min(half - Math.abs(xM), half - Math.abs(zM));
+    for (const obstacle of greeting.obstacles) freeM = Math.min(freeM, clearanceM(obstacle, xM, zM));
+    for (const other of others) freeM = Math.min(freeM, Math.hypot(xM - other.xM, zM - other.zM) - wantedM);
+    if (depthAtM(bed, xM, zM) < 1.3 * draughtM) freeM = Math.min(freeM, -lengthM);
+    if (freeM <= bestM) continue;
+    best = { xM, zM };
+    bestM = freeM;
+    if (freeM >= wantedM) break;
+  }
+  return best;
+}

@@ -1,0 +1,115 @@
+import { describe, expect, it } from "vitest";
+
+import type { GreetingInfo } from "../src/codec/greeting";
+import { boatLimits, boatOfLength, effectLimits, speedRange } from "../src/ui/effect_limits";
+import { Helm, helmKey } from "../src/ui/helm";
+import { LatestSender } from "../src/ui/latest_sender";
+import { FakeTime } from "./fakes";
+
+function sender() {
+  const time = new FakeTime();
+  const sent: [value: number, atMs: number][] = [];
+  const world = { nowMs: () => time.nowMs, setTimer: time.setTimer.bind(time), clearTimer: time.clearTimer.bind(time) };
+  return { time, sent, sender: new LatestSender<number>((value) => sent.push([value, time.nowMs]), world, 50) };
+}
+
+describe("orders to the helm", () => {
+  it("go at most twenty times a second, the first at once and the last always", () => {
+    const rig = sender();
+    for (let ms = 0; ms < 1000; ms += 5) {
+      rig.sender.offer(ms);
+      rig.time.advance(5);
+    }
+    rig.time.advance(500);
+    expect(rig.sent[0]).toEqual([0, 1000]);
+    expect(rig.sent.length).toBeLessThanOrEqual(21);
+    expect(rig.sent.length).toBeGreaterThan(15);
+    expect(rig.sent.at(-1)![0]).toBe(995);
+    for (let i = 1; i < rig.sent.length; ++i) expect(rig.sent[i]![1] - rig.sent[i - 1]![1]).toBeGreaterThanOrEqual(50);
+    expect(rig.time.timerCount).toBe(0);
+  });
+
+  it("go at once when flushed and not at all when cancelled", () => {
+    const rig = sender();
+    rig.sender.offer(1);
+    rig.sender.offer(2);
+    rig.sender.flush();
+    rig.sender.offer(3);
+    rig.sender.cancel();
+    rig.sender.flush();
+    rig.time.advance(1000);
+    expect(rig.sent.map(([value]) => value)).toEqual([1, 2]);
+    expect(rig.time.timerCount).toBe(0);
+  });
+});
+
+describe("the helm", () => {
+  it("knows arrows and WASD by their place on the keyboard", () => {
+    expect(["ArrowUp", "KeyW", "ArrowDown", "KeyS", "ArrowLeft", "KeyA", "ArrowRight", "KeyD", "Space"].map(helmKey)).toEqual([
+      "ahead", "ahead", "astern", "astern", "port", "port", "starboard", "starboard", undefined,
+    ]);
+  });
+
+  it("moves the lever while its key is held and leaves it there", () => {
+    const helm = new Helm();
+    helm.press("ahead");
+    for (let i = 0; i < 100; ++i) helm.advance(0.016);
+    expect(helm.throttle).toBe(1);
+    helm.release("ahead");
+    expect(helm.advance(1)).toBe(false);
+    expect(helm.throttle).toBe(1);
+    helm.press("astern");
+    helm.advance(0.5);
+    expect(helm.throttle).toBeCloseTo(0.3, 9);
+  });
+
+  it("brings the rudder back amidships when its keys are let go, but not where a slider set it", () => {
+    const helm = new Helm();
+    helm.press("port");
+    helm.advance(0.1);
+    expect(helm.rudder).toBeCloseTo(-0.4, 9);
+    helm.release("port");
+    helm.advance(1);
+    expect(helm.rudder).toBe(0);
+    helm.setRudder(0.5);
+    expect(helm.advance(1)).toBe(false);
+    expect(helm.rudder).toBe(0.5);
+  });
+
+  it("does nothing with both keys of a pair, and forgets every key when centred", () => {
+    const helm = new Helm();
+    for (const key of ["ahead", "astern"] as const) helm.press(key);
+    expect(helm.advance(1)).toBe(false);
+    helm.centre();
+    helm.press("ahead");
+    helm.centre();
+    expect(helm.advance(1)).toBe(false);
+    expect([helm.throttle, helm.rudder]).toEqual([0, 0]);
+  });
+});
+
+describe("limits from the scene", () => {
+  const wave = { resolutionCount: 256, sideM: 24, depthM: 1.5, periodicX: true, periodicZ: true };
+  const greeting = (change: Partial<GreetingInfo>) => ({ wave, hasBoats: true, ...change }) as GreetingInfo;
+
+  it("let waves come from every direction", () => {
+    expect(effectLimits(greeting({}))!.waveDirectionDeg).toMatchObject({ min: -180, max: 180, step: 1, default: 0 });
+  });
+
+  it("keep boats afloat: no longer than a quarter of the side, nor deeper than the water", () => {
+    expect(boatLimits(greeting({}))!.lengthM).toMatchObject({ min: 0.3, max: 6, default: 2.4 });
+    const shallow = boatLimits(greeting({ wave: { ...wave, depthM: 0.2 } }))!.lengthM;
+    expect(boatOfLength(shallow.max).draughtM).toBeLessThanOrEqual(0.6 * 0.2 + 1e-9);
+    expect(boatLimits(greeting({ hasBoats: false }))).toBeUndefined();
+    expect(boatLimits(greeting({ wave: undefined }))).toBeUndefined();
+    expect(boatLimits(greeting({}))!.throttleRatio).toMatchObject({ min: -1, max: 1 });
+  });
+
+  it("make boats of the proto's own shape", () => {
+    const boat = boatOfLength(2.4);
+    expect(boat.beamM).toBeCloseTo(0.9, 9);
+    expect(boat.heightM).toBeCloseTo(0.6, 9);
+    expect(boat.densityRatio).toBe(0.4);
+    expect(speedRange()).toMatchObject({ min: 0.1, max: 4, default: 1 });
+  });
+});

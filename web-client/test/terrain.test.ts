@@ -1,0 +1,124 @@
+import type { BufferGeometry } from "three";
+import { describe, expect, it } from "vitest";
+
+import type { BreakwaterInfo, RockInfo } from "../src/codec/scene_info";
+import { makeGroundGeometry } from "../src/scene/landscape";
+import { makeLace } from "../src/scene/noise_texture";
+import { makeBreakwaterGeometry, makeRockGeometry } from "../src/scene/obstacle_mesh";
+import { bedUniformValues, depthAtM, groundExtent, groundHeightM, landWidthM, type Bed } from "../src/scene/terrain";
+import { clearanceM, spawnPlace } from "../src/ui/spawn_place";
+
+const bed: Bed = { sideM: 40, depthM: 3, beaches: [{ side: "-x", widthM: 12, shoreDepthM: 0 }, { side: "+z", widthM: 5, shoreDepthM: 1 }] };
+const rock: RockInfo = { shape: "rock", xM: 5, zM: -6, radiusM: 2, heightM: 1.2 };
+const wall: BreakwaterInfo = { shape: "breakwater", xM: 1, zM: 2, lengthM: 12, widthM: 2, headingRad: 0.5, heightM: 1 };
+
+function bounds(geometry: BufferGeometry) {
+  geometry.computeBoundingBox();
+  return geometry.boundingBox!;
+}
+
+describe("the bed", () => {
+  it("is level away from beaches and rises on a straight line toward their sides", () => {
+    expect(depthAtM(bed, 0, 0)).toBe(3);
+    expect(depthAtM(bed, -8, 0)).toBeCloseTo(3, 9);
+    expect(depthAtM(bed, -14, 0)).toBeCloseTo(1.5, 9);
+    expect(depthAtM(bed, -20, 0)).toBeCloseTo(0, 9);
+    expect(depthAtM(bed, 5, 20)).toBeCloseTo(1, 9);
+    expect(depthAtM(bed, 5, 17.5)).toBeCloseTo(2, 9);
+  });
+
+  it("takes the shallower where two beaches meet", () => {
+    expect(depthAtM(bed, -17, 20)).toBeCloseTo(0.75, 9);
+    expect(depthAtM(bed, -9, 20)).toBeCloseTo(1, 9);
+  });
+
+  it("goes on as dry land behind a shore, without a step, and nowhere else", () => {
+    expect(landWidthM(bed, bed.beaches[0]!)).toBeGreaterThan(1);
+    expect(landWidthM(bed, bed.beaches[1]!)).toBe(0);
+    let before = groundHeightM(bed, -19.99, 0);
+    for (let xM = -20; xM > -20 - landWidthM(bed, bed.beaches[0]!); xM -= 0.05) {
+      const heightM = groundHeightM(bed, xM, 0);
+      expect(heightM).toBeGreaterThanOrEqual(before - 1e-9);
+      expect(heightM - before).toBeLessThan(0.02);
+      before = heightM;
+    }
+    expect(before).toBeGreaterThan(0.3);
+    const extent = groundExtent(bed);
+    expect(extent).toMatchObject({ maxXM: 20, minZM: -20, maxZM: 20 });
+    expect(extent.minXM).toBeCloseTo(-20 - landWidthM(bed, bed.beaches[0]!), 9);
+  });
+
+  it("tells the shaders the same, side by side", () => {
+    expect(bedUniformValues(bed)).toEqual({ widthsM: [1, 12, 5, 1], shoreDepthsM: [3, 0, 1, 3] });
+  });
+
+  it("is drawn from its floor up to its land", () => {
+    const { min, max } = bounds(makeGroundGeometry(bed, 24));
+    expect(min.y).toBeLessThan(-3);
+    expect(min.y).toBeGreaterThan(-3.2);
+    expect(max.y).toBeCloseTo(groundHeightM(bed, min.x, 0), 6);
+  });
+});
+
+describe("what stands in the water", () => {
+  it("is a rock round its place, from the bed to about its height", () => {
+    const { min, max } = bounds(makeRockGeometry(rock, 3));
+    expect(min.y).toBeLessThanOrEqual(-3);
+    expect(max.y).toBeGreaterThan(0.7 * rock.heightM);
+    expect(max.y).toBeLessThan(1.5 * rock.heightM);
+    expect((min.x + max.x) / 2).toBeCloseTo(5, 0);
+    expect((max.x - min.x) / 2).toBeGreaterThan(1.6);
+    expect((max.x - min.x) / 2).toBeLessThan(3.6);
+  });
+
+  it("is the same rock every time", () => {
+    const once = makeRockGeometry(rock, 3).getAttribute("position").array;
+    expect(makeRockGeometry(rock, 3).getAttribute("position").array).toEqual(once);
+  });
+
+  it("is a wall of its own length and width, from the bed up", () => {
+    const { min, max } = bounds(makeBreakwaterGeometry(wall, 3));
+    expect(max.x - min.x).toBeCloseTo(12, 1);
+    expect(max.z - min.z).toBeCloseTo(2, 0);
+    expect(min.y).toBeLessThanOrEqual(-3);
+    expect(max.y).toBeGreaterThan(1);
+  });
+});
+
+describe("the lace of foam", () => {
+  it("has every brightness equally often, so that half the foam covers half the water", () => {
+    const lace = makeLace(64);
+    const sorted = [...lace].sort((a, b) => a - b);
+    for (const share of [0.1, 0.5, 0.9]) expect(sorted[Math.floor(share * sorted.length)]! / 256).toBeCloseTo(share, 2);
+  });
+});
+
+describe("a new boat's place", () => {
+  const water = { sideM: 40, wave: { resolutionCount: 256, sideM: 40, depthM: 3, periodicX: true, periodicZ: true }, beaches: [...bed.beaches], obstacles: [rock, wall] };
+
+  it("measures the way to rocks and turned walls", () => {
+    expect(clearanceM(rock, 5, -3)).toBeCloseTo(1, 9);
+    expect(clearanceM(rock, 5, -6)).toBeCloseTo(-2, 9);
+    const along = (m: number): [number, number] => [1 + m * Math.cos(0.5), 2 + m * Math.sin(0.5)];
+    expect(clearanceM(wall, ...along(8))).toBeCloseTo(2, 9);
+    expect(clearanceM(wall, ...along(0))).toBeCloseTo(-1, 9);
+  });
+
+  it("is deep enough and clear of everything, boat after boat", () => {
+    const others: { xM: number; zM: number }[] = [];
+    for (let i = 0; i < 8; ++i) {
+      const place = spawnPlace(water, 2.4, 0.24, others);
+      for (const obstacle of water.obstacles) expect(clearanceM(obstacle, place.xM, place.zM)).toBeGreaterThan(1.2);
+      for (const other of others) expect(Math.hypot(place.xM - other.xM, place.zM - other.zM)).toBeGreaterThan(2.4);
+      expect(depthAtM(bed, place.xM, place.zM)).toBeGreaterThan(0.3);
+      expect(Math.max(Math.abs(place.xM), Math.abs(place.zM))).toBeLessThan(20);
+      others.push(place);
+    }
+  });
+
+  it("is inside of the water even where nothing is free", () => {
+    const full = { ...water, obstacles: [{ ...rock, xM: 0, zM: 0, radiusM: 100 }] };
+    const { xM, zM } = spawnPlace(full, 2.4, 0.24, []);
+    expect(Math.max(Math.abs(xM), Math.abs(zM))).toBeLessThan(20);
+  });
+});
