@@ -138,6 +138,11 @@ double latticeConstraintSlope2(KernelSet set, double s, double H, double rho_0, 
                    [&](double r) { return r > 0 ? std::pow(mass_kg * pressureSlope(set, r, H) / rho_0, 2) : 0.0; });
 }
 
+double latticeStressRatio(KernelSet set, double s, double H, double rho_0, double mass_kg) {
+  const int reach = layersWithin(s, H);
+  return sumLayers(s, H, -reach, reach, [&](double r) { return mass_kg / rho_0 * r * pressureSlope(set, r, H) / 3; });
+}
+
 double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho) {
   if (equation == core::EquationOfState::kLinear) return stiffness_m2ps2 * (rho - rho_0);
   return stiffness_m2ps2 * rho_0 / 7 * (std::pow(rho / rho_0, 7) - 1);
