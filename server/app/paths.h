@@ -8,7 +8,7 @@
 
 namespace spindrift::app {
 
-/// `given` if it names a file, else the shipped scene of that name ("default", "splash"). kUnavailable names both
+/// `given` if it names a file, else the shipped scene of that name ("harbor", "splash"). kUnavailable names both
 /// places.
 core::Result<std::filesystem::path> findScene(const std::string& given);
 

@@ -128,6 +128,13 @@ core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, d
                   wanted_m, 1.2 * wanted_m, side_x_m, side_z_m));
 }
 
+/// k of the equation of state, such that the lattice's stress is c0^2 (rho - rho0).
+double stiffnessOf(const core::ParticleScene& p, const ParticleLayout& layout) {
+  return p.sound_speed_mps * p.sound_speed_mps /
+         latticeStressRatio(p.kernel_set, layout.spacing_m, layout.support_radius_m, p.rest_density_kgpm3,
+                            layout.mass_kg);
+}
+
 /// `volume_m3`: of the water, when it is given; else the scene's layers decide.
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3 = 0.0) {
   if (isTwoWay(scene)) return layOutPool(scene);
@@ -165,8 +172,7 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
       kConstraintSoftness * latticeConstraintSlope2(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
   // Position-based water has no stiffness; its layers rest as those of a water that gives way by a hundredth.
   const bool is_position_based = p.solver == core::PressureSolver::kPositionBased;
-  const double stiffness =
-      is_position_based ? 100 * scene.gravity_mps2 * s * out.layers_count : p.sound_speed_mps * p.sound_speed_mps;
+  const double stiffness = is_position_based ? 100 * scene.gravity_mps2 * s * out.layers_count : stiffnessOf(p, out);
   out.layer_heights_m =
       restingLayers({.kernel_set = p.kernel_set,
                      .spacing_m = s,
@@ -293,7 +299,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.cell_count = l.cell_count;
     u.mass_kg = f(l.mass_kg);
     u.rest_density_kgpm3 = f(p.rest_density_kgpm3);
-    u.stiffness_m2ps2 = f(p.sound_speed_mps * p.sound_speed_mps);
+    u.stiffness_m2ps2 = f(stiffnessOf(p, l));
     u.viscosity_pas = f(p.viscosity_pas);
     u.max_speed_mps = f(p.max_speed_mps);
     const bool follows = scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing;

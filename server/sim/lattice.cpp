@@ -43,6 +43,33 @@ std::vector<double> lateralSquares(double s, int reach) {
   return out;
 }
 
+/// Sum of f(distance, height) over the points of a layer, by height 0 .. H, zero from there on. Linear between 4096
+/// heights: good to 1e-7 of the largest value.
+class HeightTable {
+ public:
+  template <typename F>
+  HeightTable(double H, const std::vector<double>& lateral, F f) : per_m_(kIntervals / H) {
+    for (int k = 0; k <= kIntervals; ++k) {
+      const double dy = k / per_m_;
+      double sum = 0.0;
+      for (const double d2 : lateral) sum += f(std::sqrt(d2 + dy * dy), dy);
+      sum_.push_back(sum);
+    }
+  }
+  double operator()(double height_m) const {
+    const double u = height_m * per_m_;
+    if (u >= kIntervals) return 0.0;
+    const auto k = static_cast<std::size_t>(u);
+    const double t = u - static_cast<double>(k);
+    return (1 - t) * sum_[k] + t * sum_[k + 1];
+  }
+
+ private:
+  static constexpr int kIntervals = 4096;
+  double per_m_;
+  std::vector<double> sum_;
+};
+
 }  // namespace
 
 double densityNorm(KernelSet set, double H) {
@@ -138,6 +165,11 @@ double latticeConstraintSlope2(KernelSet set, double s, double H, double rho_0, 
                    [&](double r) { return r > 0 ? std::pow(mass_kg * pressureSlope(set, r, H) / rho_0, 2) : 0.0; });
 }
 
+double latticeStressRatio(KernelSet set, double s, double H, double rho_0, double mass_kg) {
+  const int reach = layersWithin(s, H);
+  return sumLayers(s, H, -reach, reach, [&](double r) { return mass_kg / rho_0 * r * pressureSlope(set, r, H) / 3; });
+}
+
 double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho) {
   if (equation == core::EquationOfState::kLinear) return stiffness_m2ps2 * (rho - rho_0);
   return stiffness_m2ps2 * rho_0 / 7 * (std::pow(rho / rho_0, 7) - 1);
@@ -152,28 +184,25 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
   constexpr double kVelocityKeep = 0.98;  // damps the fall within a few dozen steps
   constexpr double kToleranceOfGravity = 1e-3;
   const double dt_s = 0.1 * H / std::sqrt(std::max(water.stiffness_m2ps2, water.gravity_mps2 * H));
+  // What a whole layer at height difference dy gives: summed over its particles once, then looked up.
   const std::vector<double> lateral = lateralSquares(s, layersWithin(s, H));
   const std::vector<double> floor_lateral = lateralSquares(s, water.floor_points / 2);
+  const HeightTable density_of(H, lateral, [&](double r, double) { return densityKernel(set, r, H); });
+  const HeightTable push_of(H, lateral,
+                            [&](double r, double dy) { return r > 0 ? pressureSlope(set, r, H) * dy / r : 0.0; });
+  const HeightTable floor_density_of(H, floor_lateral,
+                                     [&](double r, double) { return cubicNorm(H) * cubicShape(r / H); });
+  const HeightTable floor_push_of(H, floor_lateral, [&](double r, double dy) {
+    return r > 0 ? cubicNorm(H) / H * cubicSlope(r / H) * dy / r : 0.0;
+  });
 
   std::vector<double> y(n), v(n, 0.0), pressure(n), density(n);
   for (std::size_t k = 0; k < n; ++k) y[k] = (static_cast<double>(k) + 0.5) * s;
-  // visit(distance, vertical part, mass) of every particle and virtual particle that layer k feels, itself included.
-  const auto forOthers = [&](std::size_t k, auto&& particle, auto&& virtual_particle) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const double dy = y[k] - y[j];
-      if (std::abs(dy) >= H) continue;
-      for (const double d2 : lateral) particle(j, std::sqrt(d2 + dy * dy), dy);
-    }
-    const double height = y[k] + kVirtualDepthRatio * s;
-    for (const double d2 : floor_lateral) virtual_particle(std::sqrt(d2 + height * height), height);
-  };
 
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     for (std::size_t k = 0; k < n; ++k) {
-      double rho = 0.0;
-      forOthers(
-          k, [&](std::size_t, double r, double) { rho += water.mass_kg * densityKernel(set, r, H); },
-          [&](double r, double) { rho += water.virtual_mass_kg * cubicNorm(H) * cubicShape(r / H); });
+      double rho = water.virtual_mass_kg * floor_density_of(y[k] + kVirtualDepthRatio * s);
+      for (std::size_t j = 0; j < n; ++j) rho += water.mass_kg * density_of(std::abs(y[k] - y[j]));
       density[k] = rho;
       pressure[k] = pressureOf(water.equation_of_state, water.stiffness_m2ps2, water.rest_density_kgpm3, rho);
       if (!water.cohesion) pressure[k] = std::max(pressure[k], 0.0);
@@ -182,17 +211,16 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
     for (std::size_t k = 0; k < n; ++k) {
       double a = -water.gravity_mps2;
       const double own = pressure[k] / (density[k] * density[k]);
-      forOthers(
-          k,
-          [&](std::size_t j, double r, double dy) {
-            const double pair = water.pressure_force == core::PressureForce::kMean
-                                    ? (pressure[k] + pressure[j]) / (2 * density[k] * density[j])
-                                    : own + pressure[j] / (density[j] * density[j]);
-            if (r > 0) a += water.mass_kg * pair * pressureSlope(set, r, H) * dy / r;
-          },
-          [&](double r, double dy) {
-            a += water.virtual_mass_kg * std::max(own, 0.0) * cubicNorm(H) / H * cubicSlope(r / H) * dy / r;
-          });
+      for (std::size_t j = 0; j < n; ++j) {
+        const double dy = y[k] - y[j];
+        const double push = push_of(std::abs(dy));
+        if (push == 0) continue;
+        const double pair = water.pressure_force == core::PressureForce::kMean
+                                ? (pressure[k] + pressure[j]) / (2 * density[k] * density[j])
+                                : own + pressure[j] / (density[j] * density[j]);
+        a += water.mass_kg * pair * std::copysign(push, dy);
+      }
+      a += water.virtual_mass_kg * std::max(own, 0.0) * floor_push_of(y[k] + kVirtualDepthRatio * s);
       worst = std::max(worst, std::abs(a));
       v[k] = kVelocityKeep * v[k] + dt_s * a;
     }

@@ -52,6 +52,11 @@ WallSupport calibratedWall(core::KernelSet set, double s, double H, double rho_0
 /// Squared gradient of the density constraint rho/rho_0 - 1, summed over the neighbours inside the lattice. [1/m^2]
 double latticeConstraintSlope2(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
+/// Stress of a slightly compressed lattice over the pressure that its density has, from the virial sum m/(3 rho) r
+/// |dW/dr|. Few neighbours sum to less than the integral, 0.95 for Wendland C2 at H = 2 s: dividing the stiffness by it
+/// makes c0^2 (rho - rho_0) the pressure that carries water, and c0 its speed of sound.
+double latticeStressRatio(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
+
 /// What restingLayers() needs to know of the water.
 struct RestingWater {
   core::KernelSet kernel_set = core::KernelSet::kWendlandC2;

@@ -30,7 +30,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // SPH.
   float mass_kg;                // of a particle
   float rest_density_kgpm3;
-  float stiffness_m2ps2;        // k = c0^2 in p = k (rho - rho0)
+  float stiffness_m2ps2;        // k in p = k (rho - rho0): c0^2 over the lattice's stress ratio (sim/lattice.h)
   float viscosity_pas;
   float max_speed_mps;
   float gravity_mps2;

@@ -176,7 +176,7 @@ TEST_F(RunningServe, HasEveryRoomOfItsCommandLine) {
 
 TEST_F(RunningServe, OffersTheShippedScenes) {
   const ScriptedClient one(port_);
-  EXPECT_THAT(one.greeting().scenes(), testing::IsSupersetOf({"default", "wave_only"}));
+  EXPECT_THAT(one.greeting().scenes(), testing::IsSupersetOf({"harbor", "wave_only"}));
 }
 
 TEST_F(RunningServe, EndsCleanlyOnSigterm) {

@@ -113,10 +113,21 @@ struct Floor {
   }
 };
 
-double pressure(const core::Scene& scene, double rho) {
+double pressure(const core::Scene& scene, const sim::Derived& d, double rho) {
   const core::ParticleScene& s = *scene.particles;
   const double rho_0 = s.rest_density_kgpm3;
-  const double k = s.sound_speed_mps * s.sound_speed_mps;
+  // c0^2 over the virial of the starting lattice.
+  const double H = d.particles->support_radius_m;
+  double virial = 0;
+  for (int z = -4; z <= 4; ++z) {
+    for (int y = -4; y <= 4; ++y) {
+      for (int x = -4; x <= 4; ++x) {
+        const double r = d.particles->spacing_m * length({1.0 * x, 1.0 * y, 1.0 * z});
+        virial -= d.particles->mass_kg / rho_0 * r * pressureGradient(s.kernel_set, r, H) / 3;
+      }
+    }
+  }
+  const double k = s.sound_speed_mps * s.sound_speed_mps / virial;
   const double p = s.equation_of_state == core::EquationOfState::kTait ? rho_0 * k / 7 * (std::pow(rho / rho_0, 7) - 1)
                                                                        : k * (rho - rho_0);
   return s.cohesion ? p : std::max(p, 0.0);
@@ -228,16 +239,18 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
   const double rho_0 = scene.particles->rest_density_kgpm3;
   const Floor floor{scene, d, surface};
   std::vector<Vec3> out(x.size());
+  std::vector<double> p;
+  for (const double rho_i : rho) p.push_back(pressure(scene, d, rho_i));
   for (std::size_t i = 0; i < x.size(); ++i) {
     Vec3 a = {0, -scene.gravity_mps2, 0};
-    const double own = pressure(scene, rho[i]);
+    const double own = p[i];
     const double own_term = own / (rho[i] * rho[i]);
     for (std::size_t j = 0; j < x.size(); ++j) {
       if (j == i) continue;
       const Vec3 r = between(scene, d, x[i], x[j]);
       const double distance = length(r);
       if (distance >= H) continue;
-      const double other = pressure(scene, rho[j]);
+      const double other = p[j];
       const double pair = scene.particles->pressure_force == core::PressureForce::kMean
                               ? (own + other) / (2 * rho[i] * rho[j])
                               : own_term + other / (rho[j] * rho[j]);

@@ -33,7 +33,7 @@ std::size_t residentBytes() {
 TEST(Soak, DefaultSceneStaysHealthyAndGrowsNeitherInEnergyNorInMemory) {
   auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
   if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
-  auto scene = stream::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes/default.textproto");
+  auto scene = stream::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes/pool.textproto");
   ASSERT_TRUE(scene) << scene.error().message;
   auto made = sim::WaterSim::create(**ctx, stream::toCore(*scene));
   ASSERT_TRUE(made) << made.error().message;

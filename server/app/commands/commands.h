@@ -11,7 +11,7 @@
 namespace spindrift::app {
 
 struct ServeOptions {
-  std::string scene = "default";
+  std::string scene = "harbor";
   std::vector<std::string> rooms;  ///< NAME=SCENE
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;
@@ -34,7 +34,7 @@ int check(const CheckOptions& options);
 
 struct BenchOptions {
   std::string suite = "all";  ///< step, stream, all
-  std::string scene = "default";
+  std::string scene = "harbor";
   std::string device = "auto";
   std::string json_file;
   double seconds = 2.0;  ///< measured time per case

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -109,6 +111,118 @@ TEST(Derive, RefusesAPatchThatLeavesTheWater) {
   const auto d = derive(scene);
   ASSERT_FALSE(d);
   EXPECT_THAT(d.error().message, HasSubstr("patch_shift_x_m"));
+}
+
+/// Particles alone between walls.
+core::Scene boxScene(std::uint32_t count) {
+  core::Scene scene = smallScene(count);
+  scene.wave.reset();
+  scene.coupling.reset();
+  scene.particles->boundary_x = scene.particles->boundary_z = core::Boundary::kWall;
+  return scene;
+}
+
+TEST(Derive, LaysOutOblongBoxesAndDams) {
+  for (const std::uint32_t count : {100u, 777u, 5000u, 50'000u}) {
+    core::Scene scene = boxScene(count);
+    scene.particles->box_side_m = 8.0;
+    scene.particles->box_width_m = 2.0;
+    scene.particles->fill_x_ratio = 0.3;
+    scene.particles->fill_z_ratio = 0.9;
+    scene.particles->layers_count = 6;
+    const auto d = derive(scene);
+    ASSERT_TRUE(d) << d.error().message;
+    const ParticleLayout& p = *d->particles;
+    EXPECT_NEAR(p.max_m[0] - p.min_m[0], 8.0, 1e-12);
+    EXPECT_NEAR(p.max_m[2] - p.min_m[2], 2.0, 1e-12);
+    EXPECT_NEAR(p.max_m[0] + p.min_m[0], 0.0, 1e-12) << "centred on the origin";
+    EXPECT_NEAR(p.pitch_x_m * p.columns_x_count, 0.3 * 8.0, 1e-9);
+    EXPECT_NEAR(p.pitch_z_m * p.columns_z_count, 0.9 * 2.0, 1e-9);
+    EXPECT_NEAR(p.pitch_x_m / p.pitch_z_m, 1.0, 0.5 / p.columns_z_count + 1e-9);
+    EXPECT_EQ(p.count, p.columns_x_count * p.columns_z_count * p.layers_count);
+    EXPECT_NEAR(p.spacing_m * p.spacing_m * p.spacing_m * p.count, p.volume_m3, 1e-9 * p.volume_m3);
+  }
+}
+
+TEST(Derive, TilesOblongPeriodicBoxesOrSaysWhyNot) {
+  core::Scene scene = boxScene(4000);
+  scene.particles->boundary_x = scene.particles->boundary_z = core::Boundary::kPeriodic;
+  scene.particles->box_side_m = 8.0;
+  scene.particles->box_width_m = 4.0;
+  const auto d = derive(scene);
+  ASSERT_TRUE(d) << d.error().message;
+  EXPECT_NEAR(d->particles->cells[0] * d->particles->support_radius_m, 8.0, 1e-9);
+  EXPECT_NEAR(d->particles->cells[2] * d->particles->support_radius_m, 4.0, 1e-9);
+  scene.particles->box_width_m = 4.0 * std::sqrt(2.0);
+  const auto refused = derive(scene);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("particles.box_width_m"));
+}
+
+TEST(Derive, TaitWaterTakesSmallerStepsForItsFasterSound) {
+  core::Scene scene = smallScene();
+  const auto linear = derive(scene);
+  scene.particles->equation_of_state = core::EquationOfState::kTait;
+  const auto tait = derive(scene);
+  ASSERT_TRUE(linear && tait);
+  const auto bound = [](const Derived& d) {
+    return std::ranges::find(d.rules, std::string("particles.sound_speed_mps"), &StepRule::field)->max_dt_s;
+  };
+  EXPECT_LT(bound(*tait), bound(*linear));
+  const core::ParticleScene& p = *scene.particles;
+  const double c0 = p.sound_speed_mps;
+  const double rho_ratio =
+      std::pow(1 + 7 * (0.5 * p.max_speed_mps * p.max_speed_mps + 9.81 * tait->particles->band_m) / (c0 * c0), 1.0 / 7);
+  EXPECT_NEAR(bound(*tait), 0.4 * tait->particles->support_radius_m / (c0 * std::pow(rho_ratio, 3) + p.max_speed_mps),
+              1e-12);
+}
+
+TEST(Derive, WallsGiveWhatTheMissingLayersWouldHave) {
+  const double s = 0.1;
+  for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
+    for (const double H : {0.17, 0.2, 0.24, 0.3}) {
+      const double m = calibratedMass(set, s, H, 1000.0);
+      const WallSupport wall = calibratedWall(set, s, H, 1000.0, m);
+      double missing = 0.0;
+      for (int x = 1; x <= 3; ++x)
+        for (int y = -3; y <= 3; ++y)
+          for (int z = -3; z <= 3; ++z) missing += m * densityKernel(set, s * std::sqrt(x * x + y * y + z * z), H);
+      EXPECT_NEAR(1000.0 * wall.share * std::pow(1 - s / 2 / wall.reach_m, 2), missing, 1e-6);
+      EXPECT_GT(wall.reach_m, s / 2);
+      EXPECT_LE(wall.reach_m, H);
+    }
+  }
+}
+
+TEST(Derive, CountsUpToAMillionFitTheirDispatches) {
+  core::Scene scene = boxScene(1'048'576);
+  scene.particles->layers_count = 16;
+  const auto d = derive(scene);
+  ASSERT_TRUE(d) << d.error().message;
+  EXPECT_LE(d->particles->count / 64 + 1, 65535u);
+  EXPECT_LE(d->particles->cell_count / 256 + 1, 65535u);
+  EXPECT_GE(d->device_bytes, std::uint64_t{d->particles->count} * 7 * 16);
+}
+
+TEST(Derive, AnotherCountKeepsTheVolumeOfTheWater) {
+  core::Scene scene = boxScene(8000);
+  scene.particles->layers_count = 10;
+  const auto first = derive(scene);
+  ASSERT_TRUE(first);
+  ParticleLayout layout = *first->particles;
+  for (const std::uint32_t count : {1000u, 65'536u, 4000u, 8000u}) {
+    scene.particles->count = count;
+    const auto again = layOutAgain(scene, layout);
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->volume_m3, first->particles->volume_m3);
+    EXPECT_NEAR(again->count, count, 0.1 * count);
+    const double volume = std::pow(again->spacing_m, 3) * again->count;
+    EXPECT_NEAR(volume, again->volume_m3, 0.75 / again->layers_count * 1.1 * again->volume_m3)
+        << "half a layer, at one and a half powers of it";
+    layout = *again;
+  }
+  EXPECT_EQ(layout.layers_count, 10u);
+  EXPECT_EQ(layout.columns_x_count, first->particles->columns_x_count);
 }
 
 TEST(Derive, GivesTheNinePointStencilALargerStep) {

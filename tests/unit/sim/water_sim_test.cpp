@@ -245,7 +245,7 @@ TEST_F(Water, ParametersTakeEffectWithoutARestart) {
   EXPECT_EQ(sim.tick(), 10u);
   EXPECT_GT(sim.derived().substeps_count, 2u) << "a stiffer water takes smaller steps by itself";
   sim.step();
-  scene.particles->count = 5000;
+  scene.particles->layers_count = 5;
   const auto refused = sim.setScene(scene);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message, HasSubstr("start the room again"));

@@ -24,13 +24,16 @@ TEST(ShippedScenes, AllLoadAndSayWhatTheyShow) {
     EXPECT_FALSE(scene->title().empty()) << entry.path();
     EXPECT_FALSE(scene->description().empty()) << entry.path();
   }
-  EXPECT_GE(count, 5u);
+  EXPECT_GE(count, 14u);
 }
 
 TEST(ShippedScenes, TheDefaultHasEveryPartAndKeepsSomethingHappening) {
-  const auto scene = loadSceneFile(sceneFolder() / "default.textproto");
+  const auto scene = loadSceneFile(sceneFolder() / "harbor.textproto");
   ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_TRUE(scene->has_wave() && scene->has_particles() && scene->has_coupling() && scene->has_foam());
+  EXPECT_TRUE(scene->has_wave() && scene->has_particles() && scene->has_coupling() && scene->has_foam() &&
+              scene->has_boats() && scene->has_storm());
+  EXPECT_GT(scene->obstacles_size(), 0);
+  EXPECT_GT(scene->beaches_size(), 0);
   bool repeating_splash = false;
   bool repeating_wave = false;
   for (const v1::TimedEvent& event : scene->events()) {
