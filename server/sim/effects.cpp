@@ -40,6 +40,7 @@ shared::EventUniform uniformOf(const core::Splash& splash, double gain, double s
   u.x_m = static_cast<float>(splash.x_m);
   u.z_m = static_cast<float>(splash.z_m);
   u.radius_m = static_cast<float>(splash.radius_m);
+  u.depth_m = static_cast<float>(splash.depth_m);
   if (splash.radius_m > kCrownRadius_cells * wave.cell_m)
     u.speed_mps = static_cast<float>(strength * std::sqrt(2 * kCrownFall * kStandardGravity_mps2 * splash.depth_m));
   return u;

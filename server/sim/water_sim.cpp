@@ -26,6 +26,7 @@
 #include "relay_particles.h"
 #include "sph.h"
 #include "starting_state.h"
+#include "stir.h"
 #include "storm.h"
 #include "surface_foam.h"
 #include "wave.h"
@@ -88,6 +89,7 @@ struct WaterSim::Parts {
   std::unique_ptr<Boats> boats;
   std::unique_ptr<SurfaceFoam> foam;
   std::unique_ptr<PatchFollower> follower;
+  std::unique_ptr<Stir> stir;  ///< where there is no wave for effects to act on
   std::unique_ptr<FramePacker> frames;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
@@ -142,6 +144,7 @@ void WaterSim::step() {
   startEvents();
   // The surface, its breakers and the boats move once a tick; the wave divides it by its own bound.
   advanceWave();
+  stirParticles();
   sampleSurface();
   breakWaves();
   moveBoats();
@@ -168,6 +171,13 @@ void WaterSim::advanceWave() {
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr);
   }
   parts_->wave->clearPressure();  // hulls and falling particles press anew for the next tick
+}
+
+void WaterSim::stirParticles() {
+  if (!parts_->stir || parts_->effects.idle()) return;
+  const auto timer = timers_.scope("stir");
+  parts_->stir->apply(parts_->effects.advance(time_s(), Stir::stage(scene_, derived_)), *parts_->particles,
+                      parts_->population(derived_));
 }
 
 void WaterSim::sampleSurface() {
@@ -302,6 +312,7 @@ core::Result<void> WaterSim::build() {
   if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, *derived_.particles, defines));
   if (scene_.boats) create(parts_->boats, Boats::create(ctx_, scene_, *derived_.wave, defines));
   if (hasSurfaceFoam(scene_)) create(parts_->foam, SurfaceFoam::create(ctx_, scene_, *derived_.wave, defines));
+  if (!scene_.wave) create(parts_->stir, Stir::create(ctx_, defines));
   if (followNumber(scene_) != 0) create(parts_->follower, PatchFollower::create(ctx_, scene_, defines));
   create(parts_->frames, FramePacker::create(ctx_, scene_, derived_, defines));
   create(parts_->diagnostics, Diagnostics::create(ctx_, derived_, defines));
@@ -367,8 +378,6 @@ void WaterSim::reset() {
 // Commands
 
 core::Result<void> WaterSim::start(const core::Effect& effect) {
-  if (!parts_->wave)
-    return Error{ErrorCode::kInvalidInput, "effects act on the wave, and this scene has none: use a scene with a wave"};
   auto started = parts_->effects.start(effect, time_s());
   const auto* splash = std::get_if<core::Splash>(&effect);
   if (started && splash && parts_->follower) parts_->follower->goTo(splash->x_m, splash->z_m);

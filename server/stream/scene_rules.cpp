@@ -1,5 +1,6 @@
 #include "scene_rules.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -18,7 +19,6 @@ constexpr double kEdgeToleranceRatio = 1e-9;
 constexpr std::size_t kNameMaxBytes = 64;
 constexpr std::size_t kTitleMaxBytes = 200;
 constexpr std::size_t kDescriptionMaxBytes = 4000;
-constexpr const char* kNoSurface = "this scene has no wave, so there is no surface to move; choose a scene with a wave";
 
 std::string metres(double value) {
   return formatQuantity(value, "m");
@@ -113,18 +113,30 @@ void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   }
 }
 
+/// What effects are measured by: the wave, or the resting water of a box of particles.
+struct Stage {
+  double side_m;
+  double depth_m;
+};
+
+Stage stageOf(const v1::Scene& scene) {
+  if (scene.has_wave()) return {scene.wave().side_m(), scene.wave().depth_m()};
+  const v1::ParticleScene& p = scene.particles();
+  const double width_m = p.box_width_m() > 0 ? p.box_width_m() : p.box_side_m();
+  const double area_m2 = p.box_side_m() * p.fill_x_ratio() * width_m * p.fill_z_ratio();
+  return {std::min(p.box_side_m(), width_m),
+          p.layers_count() * std::sqrt(area_m2 * p.layers_count() / std::max(p.count(), 1u))};
+}
+
 std::string eventPrefix(int index) {
   return "events[" + std::to_string(index) + "].";
 }
 
-void checkEffectPart(const v1::TimedEvent& event, const v1::Scene& scene, const std::string& prefix,
-                     std::vector<FieldIssue>& issues) {
+void checkEffectPart(const v1::TimedEvent& event, const std::string& prefix, std::vector<FieldIssue>& issues) {
   const v1::Effect& effect = event.effect();
   if (effect.effect_case() == v1::Effect::EFFECT_NOT_SET) {
     issues.push_back({v1::REJECT_REASON_MALFORMED, prefix + "effect",
                       "missing; say what happens: \"effect { splash {} }\" or \"effect { breaking_wave {} }\""});
-  } else if (!scene.has_wave()) {
-    addAbsent(issues, prefix + "effect", kNoSurface);
   }
 }
 
@@ -136,7 +148,7 @@ void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, cons
              formatQuantity(event.every_s(), "s") + " is shorter than a tick of " + formatQuantity(tick_s, "s") +
                  "; choose 0 (once) or at least a tick");
   }
-  if (!scene.has_wave() || event.effect().effect_case() == v1::Effect::EFFECT_NOT_SET) return;
+  if (event.effect().effect_case() == v1::Effect::EFFECT_NOT_SET) return;
   const core::Effect effect = event.effect().has_splash() ? core::Effect(toCore(event.effect().splash()))
                                                           : core::Effect(toCore(event.effect().breaking_wave()));
   for (FieldIssue& issue : checkEffect(effect, scene)) {
@@ -155,12 +167,9 @@ bool isSceneName(const std::string& name) {
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene) {
   std::vector<FieldIssue> issues;
   const bool is_splash = std::holds_alternative<core::Splash>(effect);
-  if (!scene.has_wave()) {
-    addAbsent(issues, is_splash ? "splash" : "breaking_wave", kNoSurface);
-    return issues;
-  }
-  const double side_m = scene.wave().side_m();
-  const double depth_m = scene.wave().depth_m();
+  const Stage stage = stageOf(scene);
+  const double side_m = stage.side_m;
+  const double depth_m = stage.depth_m;
   if (is_splash) {
     const core::Splash& splash = std::get<core::Splash>(effect);
     checkPosition(splash.x_m, side_m, "splash.x_m", issues);
@@ -200,7 +209,7 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
                  "; remove some, or repeat one with every_s");
   }
   for (int i = 0; i < scene.events_size(); ++i) {
-    checkEffectPart(scene.events(i), scene, eventPrefix(i), issues);
+    checkEffectPart(scene.events(i), eventPrefix(i), issues);
   }
   return issues;
 }

@@ -12,6 +12,12 @@ vec2 splashDisplacement(vec2 r_m, float radius_m) {
   return q2 < SPLASH_REACH * SPLASH_REACH ? 0.5 * r_m * exp(-q2) : vec2(0.0);
 }
 
+/// Its divergence.
+float splashElevation(vec2 r_m, float radius_m) {
+  const float q2 = dot(r_m, r_m) / (radius_m * radius_m);
+  return (1.0 - q2) * exp(-q2);
+}
+
 /// Crest: sech^2(s / width), with a front and a back of their own width. s runs in the direction of travel.
 float crestShape(float s_m, float front_m, float back_m) {
   const float u = 1.0 / cosh(clamp(s_m / (s_m > 0.0 ? front_m : back_m), -12.0, 12.0));

@@ -28,6 +28,10 @@ struct EventUniform {
   float lateral_m;     // crest: half its extent along the crest; 0 = across the whole domain
   float half_step_m;   // crest: how far it travels in half a step
   float speed_mps;     // crest: of the wave. splash: of the crown that it throws now; 0 for rain drops
+  float depth_m;       // splash: its whole depth
+  float unused_x;
+  float unused_y;
+  float unused_z;
 };
 #ifdef __cplusplus
 struct EventUniforms {
@@ -37,7 +41,7 @@ struct EventUniforms {
   uint crest_count;
   uint padding[2];
 };
-static_assert(sizeof(EventUniform) == 48 && sizeof(EventUniforms) == 48 * (MAX_SPLASHES + MAX_CRESTS) + 16);
+static_assert(sizeof(EventUniform) == 64 && sizeof(EventUniforms) == 64 * (MAX_SPLASHES + MAX_CRESTS) + 16);
 }  // namespace spindrift::shared
 #else
 layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {

@@ -72,11 +72,11 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   // dispatches, and one more in every fourth tick.
   EXPECT_EQ(wave.programs, 6u);
   EXPECT_EQ(wave.dispatches, 2u);
-  // Particles alone: 6 grid, 3 sph, their diagnostics and packing; 2 x 9 dispatches a tick.
-  EXPECT_EQ(particles.programs, 11u);
+  // Particles alone: 6 grid, 3 sph, effects on particles, their diagnostics and packing; 2 x 9 dispatches a tick.
+  EXPECT_EQ(particles.programs, 12u);
   EXPECT_EQ(particles.dispatches, 18u);
-  // Together: the sum, and the surface sampling once a tick.
-  EXPECT_EQ(all.programs, wave.programs + particles.programs + 1);
+  // Together: the sum, and the surface sampling once a tick; effects are the wave's.
+  EXPECT_EQ(all.programs, wave.programs + particles.programs - 1 + 1);
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 1);
   EXPECT_LT(wave.bytes, all.bytes);
   EXPECT_LT(particles.bytes, all.bytes);
@@ -302,13 +302,39 @@ TEST_F(Water, ScenesStartTheirOwnEventsOnTime) {
   EXPECT_NE(sim.copyState().elevation_m, std::vector<double>(32 * 32, 0.0));
 }
 
-TEST_F(Water, EffectsNeedAWave) {
-  core::Scene scene = smallScene();
+TEST_F(Water, EffectsMoveTheParticlesWhereThereIsNoWave) {
+  core::Scene scene = smallScene(3000);
   scene.wave.reset();
   scene.coupling.reset();
-  const auto refused = make(scene).start(core::Splash{});
-  ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message, HasSubstr("wave"));
+  scene.particles->box_side_m = 4.0;
+  scene.particles->layers_count = 6;
+  scene.particles->boundary_x = scene.particles->boundary_z = core::Boundary::kWall;
+  scene.particles->viscosity_pas = 5.0;
+  WaterSim& sim = make(scene);
+  const auto highest = [&] {
+    const StateCopy state = sim.copyState();
+    float y = -1e9f;
+    for (std::size_t i = 1; i < state.position.size(); i += 4) y = std::max(y, state.position[i]);
+    return y;
+  };
+  for (int i = 0; i < 60; ++i) sim.step();
+  const float calm = highest();
+  ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 0.7, 0.5, 0.1}));
+  float thrown = calm;
+  for (int i = 0; i < 60; ++i) {
+    sim.step();
+    thrown = std::max(thrown, highest());
+  }
+  EXPECT_GT(thrown, calm + 0.15f) << "the rim and the jet of a splash";
+  EXPECT_EQ(sim.recoveredCount(), 0u);
+
+  sim.reset();
+  ASSERT_TRUE(sim.start(core::BreakingWave{core::Side::kMinusX, 0.2, 0.8, 0.2}));
+  for (int i = 0; i < 20; ++i) sim.step();
+  double momentum = 0;
+  const StateCopy state = sim.copyState();
+  for (std::size_t i = 0; i < state.velocity.size(); i += 4) momentum += state.velocity[i];
+  EXPECT_GT(momentum / sim.particleCount(), 0.02) << "from -x the water moves toward +x";
 }
 
 TEST_F(Water, PeriodicParticlesStayInsideAndUnderTheSpeedLimit) {

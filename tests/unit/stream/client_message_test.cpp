@@ -279,14 +279,19 @@ const SceneLimit kSceneLimits[] = {
 INSTANTIATE_TEST_SUITE_P(ClientMessages, ForbiddenByTheScene, testing::ValuesIn(kSceneLimits),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-TEST(ClientMessages, EffectsNeedAWave) {
-  const auto scene = parseSceneText("particles {}", "dry.textproto");
+TEST(ClientMessages, WithoutAWaveTheBoxOfParticlesLimitsEffects) {
+  // 8,000 particles in 20 layers on 4 m x 2 m: a spacing of 0.141 m, 2.83 m deep.
+  const auto scene =
+      parseSceneText("particles { count: 8000 layers_count: 20 box_side_m: 4 box_width_m: 2 }", "box.textproto");
   ASSERT_TRUE(scene);
-  for (const core::Action& action : {core::Action(core::Splash{}), core::Action(core::BreakingWave{})}) {
-    const auto rejection = checkAgainstScene(core::Command{1, 2, action}, *scene);
-    ASSERT_TRUE(rejection);
-    EXPECT_EQ(rejection->reason, v1::REJECT_REASON_ABSENT_PART);
-  }
+  EXPECT_FALSE(checkAgainstScene(core::Command{1, 2, core::Splash{0, 0, 0.9, 2.5, 0.2}}, *scene));
+  const auto deep = checkAgainstScene(core::Command{1, 2, core::Splash{0, 0, 0.9, 2.6, 0.2}}, *scene);
+  ASSERT_TRUE(deep);
+  EXPECT_EQ(deep->field, "splash.depth_m");
+  EXPECT_THAT(deep->message, HasSubstr("2.8284"));
+  const auto wide = checkAgainstScene(core::Command{1, 2, core::Splash{0, 0, 1.1, 0.5, 0.2}}, *scene);
+  ASSERT_TRUE(wide);
+  EXPECT_EQ(wide->field, "splash.radius_m");
 }
 
 TEST(ClientMessages, WhatTheSceneAllowsPasses) {

@@ -51,7 +51,7 @@ class WaterSim {
   /// Advances by one tick.
   void step();
 
-  /// Starts an effect now. kInvalidInput without a wave, kUnavailable when too many are active.
+  /// Starts an effect now, on the wave, or on the particles where there is none. kUnavailable when too many are active.
   core::Result<void> start(const core::Effect& effect);
   /// A boat comes to the water; its id. kInvalidInput in a scene without boats, kUnavailable when there is no place.
   core::Result<std::uint32_t> spawnBoat(const core::Boat& boat);
@@ -108,6 +108,7 @@ class WaterSim {
   core::Result<void> relay(const core::Scene& scene);
   void startEvents();
   void advanceWave();
+  void stirParticles();
   void sampleSurface();
   void breakWaves();
   void moveBoats();

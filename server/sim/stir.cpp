@@ -1,0 +1,44 @@
+#include "stir.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <shared/bindings.h>
+
+#include "create_all.h"
+
+namespace spindrift::sim {
+
+core::Result<std::unique_ptr<Stir>> Stir::create(gpu::Context& ctx, const gpu::Defines& defines) {
+  auto out = std::unique_ptr<Stir>(new Stir(ctx));
+  Creation create;
+  create(out->event_uniforms_, gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms)));
+  create(out->program_, gpu::Program::create(ctx, "sph/stir.comp", defines));
+  if (create.error()) return *create.error();
+  return out;
+}
+
+WaveLayout Stir::stage(const core::Scene& scene, const Derived& derived) {
+  const ParticleLayout& l = *derived.particles;
+  WaveLayout out;
+  out.side_m = std::min(l.max_m[0] - l.min_m[0], l.max_m[2] - l.min_m[2]);
+  out.cell_m = l.spacing_m;
+  out.resolution_count = static_cast<std::uint32_t>(out.side_m / out.cell_m);
+  out.speed_mps = std::sqrt(scene.gravity_mps2 * l.band_m);
+  out.dt_s = derived.tick_s;
+  return out;
+}
+
+void Stir::apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population) {
+  if (events.splash_count + events.crest_count == 0) return;
+  event_uniforms_.uploadValue(events);
+  ctx_.barrier(gpu::Barrier::kUniform);
+  event_uniforms_.bindUniform(EVENT_UNIFORMS);
+  population.bind();
+  particles.position.bindTexel(POSITION);
+  particles.velocity.bindStorage(VELOCITY);
+  population.forParticles(program_);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+}  // namespace spindrift::sim

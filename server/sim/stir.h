@@ -1,0 +1,36 @@
+// Effects in a scene of particles alone: they move the particles themselves. See shaders/sph/stir.comp.
+#pragma once
+
+#include <memory>
+
+#include <shared/event_uniforms.h>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim/derive.h>
+
+#include "particle_buffers.h"
+#include "particle_pool.h"
+
+namespace spindrift::sim {
+
+class Stir {
+ public:
+  static core::Result<std::unique_ptr<Stir>> create(gpu::Context& ctx, const gpu::Defines& defines);
+
+  /// Adds a tick's share of the effects to the velocities; nothing where no effect acts.
+  void apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population);
+
+  /// What effects are measured by where there is no wave: the particles' box, and long waves on their resting depth.
+  static WaveLayout stage(const core::Scene& scene, const Derived& derived);
+
+ private:
+  explicit Stir(gpu::Context& ctx) : ctx_(ctx) {}
+
+  gpu::Context& ctx_;
+  gpu::Buffer event_uniforms_;
+  gpu::Program program_;
+};
+
+}  // namespace spindrift::sim
