@@ -56,44 +56,6 @@ double heightOf(const core::Obstacle& obstacle) {
 
 }  // namespace
 
-bool isPeriodicX(const core::WaveScene& wave) {
-  return wave.boundary_minus_x == WaveBoundary::kPeriodic;
-}
-bool isPeriodicZ(const core::WaveScene& wave) {
-  return wave.boundary_minus_z == WaveBoundary::kPeriodic;
-}
-
-bool isOpen(const core::Scene& scene) {
-  const core::WaveScene& w = *scene.wave;
-  for (const WaveBoundary side : {w.boundary_minus_x, w.boundary_plus_x, w.boundary_minus_z, w.boundary_plus_z}) {
-    if (side == WaveBoundary::kAbsorb) return true;
-  }
-  return false;
-}
-
-bool isTwoWay(const core::Scene& scene) {
-  return scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
-}
-bool hasSurfaceFoam(const core::Scene& scene) {
-  return scene.wave && scene.foam && scene.foam->surface;
-}
-bool hasPressureHead(const core::Scene& scene) {
-  return scene.wave && (scene.boats || isTwoWay(scene));
-}
-bool hasBreakers(const core::Scene& scene) {
-  return scene.wave && (isTwoWay(scene) || hasSurfaceFoam(scene) || scene.wave->steepening_ratio > 0);
-}
-bool isSampled(const core::Scene& scene) {
-  return scene.wave && (scene.coupling || scene.boats || hasBreakers(scene));
-}
-
-bool isVaried(const core::Scene& scene) {
-  const core::WaveScene& w = *scene.wave;
-  const bool has_walls = !isPeriodicX(w) || !isPeriodicZ(w);
-  return isOpen(scene) || !scene.obstacles.empty() || !scene.beaches.empty() ||
-         (has_walls && w.stencil == core::Stencil::kNinePoint);
-}
-
 double bedDepth(const core::Scene& scene, double x_m, double z_m) {
   double depth_m = scene.wave->depth_m;
   for (const core::Beach& beach : scene.beaches) {
@@ -193,10 +155,6 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
     }
   }
   return out;
-}
-
-bool hasTerrain(const core::Scene& scene) {
-  return scene.wave && (!scene.obstacles.empty() || !scene.beaches.empty());
 }
 
 Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const Basin& basin) {

@@ -8,6 +8,8 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/sim/derive.h>
 
+#include "scene_parts.h"
+
 namespace spindrift::sim {
 
 /// n x n cells, x fastest.
@@ -20,22 +22,6 @@ struct Basin {
   /// Rates at which flow and elevation are lost [1/s]: equal in a sponge; flow alone where a beach runs dry.
   std::vector<std::array<float, 2>> loss_per_s;
 };
-
-/// Whether shaders need tables: the bed or the sides differ from a flat basin with periodic sides, or with walls under
-/// the 5-point stencil.
-bool isVaried(const core::Scene& scene);
-/// Whether water can leave: a side absorbs.
-bool isOpen(const core::Scene& scene);
-/// Whether particles or boats look at the surface.
-bool isSampled(const core::Scene& scene);
-bool isTwoWay(const core::Scene& scene);
-/// Whether anything presses on the surface: hulls or falling particles.
-bool hasPressureHead(const core::Scene& scene);
-/// Whether anybody needs to know where the wave breaks.
-bool hasBreakers(const core::Scene& scene);
-bool hasSurfaceFoam(const core::Scene& scene);
-bool isPeriodicX(const core::WaveScene& wave);
-bool isPeriodicZ(const core::WaveScene& wave);
 
 /// Still depth at a place, obstacles not considered. [m]
 double bedDepth(const core::Scene& scene, double x_m, double z_m);
@@ -55,7 +41,4 @@ struct Terrain {
 };
 
 Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const Basin& basin);
-/// Whether there is ground to see: obstacles or beaches.
-bool hasTerrain(const core::Scene& scene);
-
 }  // namespace spindrift::sim

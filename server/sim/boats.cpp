@@ -46,24 +46,24 @@ Error unknownBoat(std::uint32_t boat_id) {
 
 }  // namespace
 
-Boats::Boats(gpu::Context& ctx, const core::Scene& scene, const WaveLayout& layout)
-    : ctx_(ctx), cell_m_(layout.cell_m), places_(std::min<std::size_t>(scene.boats->capacity_count, MAX_BOATS)) {}
+Boats::Boats(gpu::Context& ctx, const core::Scene& scene, double cell_m)
+    : ctx_(ctx), cell_m_(cell_m), places_(std::min<std::size_t>(scene.boats->capacity_count, MAX_BOATS)) {}
 
-core::Result<std::unique_ptr<Boats>> Boats::create(gpu::Context& ctx, const core::Scene& scene,
-                                                   const WaveLayout& layout, const gpu::Defines& defines) {
+core::Result<std::unique_ptr<Boats>> Boats::create(gpu::Context& ctx, const core::Scene& scene, double cell_m,
+                                                   const gpu::Defines& defines) {
   static_assert(core::kMaxBoats == MAX_BOATS);
   if (scene.boats->boats.size() > scene.boats->capacity_count) {
     return Error{ErrorCode::kInvalidInput,
                  fmt::format("boats.boats: {} boats are more than boats.capacity_count = {}: remove some or raise it",
                              scene.boats->boats.size(), scene.boats->capacity_count)};
   }
-  auto out = std::unique_ptr<Boats>(new Boats(ctx, scene, layout));
+  auto out = std::unique_ptr<Boats>(new Boats(ctx, scene, cell_m));
   Creation create;
   create(out->state_,
          gpu::TexelBuffer::create(ctx, "boats", std::size_t{MAX_BOATS} * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F));
   create(out->control_uniforms_, gpu::Buffer::create(ctx, "boat controls", sizeof(shared::BoatControls)));
   create(out->move_, gpu::Program::create(ctx, "bodies/move.comp", defines));
-  create(out->press_, gpu::Program::create(ctx, "bodies/press.comp", defines));
+  if (scene.wave) create(out->press_, gpu::Program::create(ctx, "bodies/press.comp", defines));
   if (create.error()) return *create.error();
   return out;
 }
@@ -144,10 +144,12 @@ void Boats::bind() const {
   control_uniforms_.bindUniform(BOAT_CONTROLS);
 }
 
-void Boats::move(const Wave& wave) {
+void Boats::move(const Wave* wave) {
   if (controls_.place_count == 0) return;
-  wave.bindSurface();
-  wave.bindTerrain();
+  if (wave) {
+    wave->bindSurface();
+    wave->bindTerrain();
+  }
   bind();
   state_.bindStorage(BOATS);
   move_.dispatchGroups(1);

@@ -23,8 +23,8 @@ namespace spindrift::sim {
 
 class Boats {
  public:
-  static core::Result<std::unique_ptr<Boats>> create(gpu::Context& ctx, const core::Scene& scene,
-                                                     const WaveLayout& layout, const gpu::Defines& defines);
+  static core::Result<std::unique_ptr<Boats>> create(gpu::Context& ctx, const core::Scene& scene, double cell_m,
+                                                     const gpu::Defines& defines);
 
   /// Only the scene's own boats, where they start; ids start again.
   void reset(const core::Scene& scene);
@@ -38,8 +38,8 @@ class Boats {
   /// device.
   void mend();
 
-  /// One substep, after Wave::sampleSurface().
-  void move(const Wave& wave);
+  /// One tick, after Wave::sampleSurface(). Without a wave boats swim at the resting level, and only push particles.
+  void move(const Wave* wave);
   /// Adds what the hulls press to the pressure head.
   void press(const gpu::TexelBuffer& pressure_head);
   /// Binds BOATS and their controls for passes that look at hulls.
@@ -50,7 +50,7 @@ class Boats {
   [[nodiscard]] gpu::TexelBuffer& state() { return state_; }
 
  private:
-  Boats(gpu::Context& ctx, const core::Scene& scene, const WaveLayout& layout);
+  Boats(gpu::Context& ctx, const core::Scene& scene, double cell_m);
 
   struct Place {
     std::uint32_t boat_id = 0;  ///< 0 = free

@@ -7,8 +7,9 @@
 
 #include <spindrift/sim/derive.h>
 
-#include "basin.h"
 #include "lattice.h"
+#include "particle_layout.h"
+#include "scene_parts.h"
 
 namespace spindrift::sim {
 namespace {
@@ -29,65 +30,10 @@ constexpr double kNinePointCourant = 0.8660254;
 constexpr double kWaveSafety = 0.98;
 /// Share of its flow that fully breaking water loses in the time sqrt(d/g): a bore is gone within a few depths' travel.
 constexpr double kBreakingLoss = 0.6;
-/// Softness of the position-based constraint over its squared gradient inside the lattice: 0 makes lone pairs jump, 1
-/// halves every correction.
-constexpr double kConstraintSoftness = 0.05;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
-constexpr std::uint32_t kMaxCellCount = 1u << 22;
-/// A droplet is spread over 25 cells, at most 14 % on one; more than this and a single one would bare the ground.
-constexpr double kMaxDropletHeight = 2.0;
 
 Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
-}
-
-core::Result<void> countCells(ParticleLayout& out) {
-  std::uint64_t cells = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    out.cells[axis] = static_cast<std::uint32_t>(
-        std::max(1.0, std::ceil((out.max_m[axis] - out.min_m[axis]) / out.support_radius_m - 1e-6)));
-    cells *= out.cells[axis];
-  }
-  if (cells > kMaxCellCount) {
-    return invalid(fmt::format(
-        "particles.headroom_m: a domain of {} x {} x {} cells has more than {}: use less headroom or fewer particles",
-        out.cells[0], out.cells[1], out.cells[2], kMaxCellCount));
-  }
-  out.cell_count = static_cast<std::uint32_t>(cells);
-  return {};
-}
-
-/// Two-way: particles of a given volume anywhere over the water, none at the start. Sides are the wave's.
-core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
-  const core::ParticleScene& p = *scene.particles;
-  ParticleLayout out;
-  const double side_m = scene.wave->side_m;
-  out.count = p.count;
-  out.spacing_m = scene.coupling->droplet_spacing_m;
-  out.support_radius_m = p.support_ratio * out.spacing_m;
-  if (isPeriodicX(*scene.wave) || isPeriodicZ(*scene.wave)) {
-    // The grid's cells have edge H and must tile a periodic side exactly.
-    out.support_radius_m = side_m / std::max(std::floor(side_m / out.support_radius_m + 1e-9), 3.0);
-  }
-  out.neighbours_count = latticeNeighbours(out.spacing_m, out.support_radius_m);
-  out.mass_kg = calibratedMass(p.kernel_set, out.spacing_m, out.support_radius_m, p.rest_density_kgpm3);
-  // Walls do not support spray: a share of 0 over any reach.
-  out.wall_reach_m = out.support_radius_m;
-  out.constraint_softness_pm2 =
-      kConstraintSoftness *
-      latticeConstraintSlope2(p.kernel_set, out.spacing_m, out.support_radius_m, p.rest_density_kgpm3, out.mass_kg);
-  const double cell_m = side_m / scene.wave->resolution_count;
-  const double droplet_height_m = out.spacing_m * out.spacing_m * out.spacing_m / (cell_m * cell_m);
-  if (droplet_height_m > kMaxDropletHeight * scene.wave->depth_m) {
-    return invalid(
-        fmt::format("coupling.droplet_spacing_m: a droplet of {:.3g} m holds {:.3g} m of one wave cell's water, more "
-                    "than {:.3g} of the depth of {:.3g} m: use smaller droplets or a coarser wave",
-                    out.spacing_m, droplet_height_m, kMaxDropletHeight, scene.wave->depth_m));
-  }
-  out.min_m = {-side_m / 2, -scene.wave->depth_m, -side_m / 2};
-  out.max_m = {side_m / 2, p.headroom_m, side_m / 2};
-  if (auto counted = countCells(out); !counted) return counted.error();
-  return out;
 }
 
 /// Largest c of Tait's equation: c = c0 (rho/rho0)^3 at the pressure with which water of U_max comes to rest at the
@@ -97,114 +43,6 @@ double fastestSound(const core::Scene& scene, const ParticleLayout& layout) {
   if (p.equation_of_state == core::EquationOfState::kLinear) return p.sound_speed_mps;
   const double head = 0.5 * p.max_speed_mps * p.max_speed_mps + scene.gravity_mps2 * layout.band_m;
   return p.sound_speed_mps * std::pow(1 + 7 * head / (p.sound_speed_mps * p.sound_speed_mps), 3.0 / 7.0);
-}
-
-/// The support radius: whole cells of it must tile every periodic side.
-core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, double side_x_m, double side_z_m,
-                                   std::uint32_t layers_count) {
-  const core::ParticleScene& p = *scene.particles;
-  const double wanted_m = p.support_ratio * spacing_m;
-  const bool along_x = p.boundary_x == Boundary::kPeriodic;
-  const bool along_z = p.boundary_z == Boundary::kPeriodic;
-  if (!along_x && !along_z) return wanted_m;
-  const double shorter_m = along_x && along_z ? std::min(side_x_m, side_z_m) : along_x ? side_x_m : side_z_m;
-  const double cells = std::floor(shorter_m / wanted_m + 1e-9);
-  if (cells < 3) {
-    return invalid(fmt::format(
-        "particles.count: {} particles in {} layers leave {:.0f} cells of the support radius {:.3g} m "
-        "across a periodic side of {:.3g} m, at least 3 are needed: use more particles, fewer layers, or walls",
-        p.count, layers_count, cells, wanted_m, shorter_m));
-  }
-  if (!along_x || !along_z || side_x_m == side_z_m) return shorter_m / cells;
-  // Two periodic sides of different length: the coarsest tiling of both that widens the support by at most a fifth.
-  const double ratio = std::max(side_x_m, side_z_m) / shorter_m;
-  for (double k = cells; k >= 3 && shorter_m / k <= 1.2 * wanted_m; --k) {
-    if (std::abs(k * ratio - std::round(k * ratio)) < 1e-6) return shorter_m / k;
-  }
-  return invalid(
-      fmt::format("particles.box_width_m: no support radius between {:.3g} and {:.3g} m tiles periodic sides of {:.4g} "
-                  "and {:.4g} m: "
-                  "use a width in a simple ratio to the length, another count, or walls",
-                  wanted_m, 1.2 * wanted_m, side_x_m, side_z_m));
-}
-
-/// k of the equation of state, such that the lattice's stress is c0^2 (rho - rho0).
-double stiffnessOf(const core::ParticleScene& p, const ParticleLayout& layout) {
-  return p.sound_speed_mps * p.sound_speed_mps /
-         latticeStressRatio(p.kernel_set, layout.spacing_m, layout.support_radius_m, p.rest_density_kgpm3,
-                            layout.mass_kg);
-}
-
-/// `volume_m3`: of the water, when it is given; else the scene's layers decide.
-core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3 = 0.0) {
-  if (isTwoWay(scene)) return layOutPool(scene);
-  const core::ParticleScene& p = *scene.particles;
-  ParticleLayout out;
-  const double side_x_m = (scene.wave ? scene.wave->side_m : p.box_side_m) * (scene.wave ? p.patch_scale : 1.0);
-  const double side_z_m = !scene.wave && p.box_width_m > 0 ? p.box_width_m : side_x_m;
-  const double fill_x_m = p.fill_x_ratio * side_x_m;
-  const double fill_z_m = p.fill_z_ratio * side_z_m;
-  const double area_m2 = fill_x_m * fill_z_m;
-  const auto atLeastOne = [](double v) { return static_cast<std::uint32_t>(std::max(std::lround(v), 1L)); };
-  out.layers_count = atLeastOne(volume_m3 > 0 ? volume_m3 / area_m2 / std::cbrt(volume_m3 / p.count) : p.layers_count);
-  out.columns_x_count = atLeastOne(fill_x_m / std::sqrt(area_m2 * out.layers_count / p.count));
-  out.pitch_x_m = fill_x_m / out.columns_x_count;
-  out.columns_z_count = atLeastOne(fill_z_m / out.pitch_x_m);
-  out.pitch_z_m = fill_z_m / out.columns_z_count;
-  out.count = out.columns_x_count * out.columns_z_count * out.layers_count;
-  out.spacing_m = std::sqrt(out.pitch_x_m * out.pitch_z_m);
-  const double s = out.spacing_m;
-  out.volume_m3 = volume_m3 > 0 ? volume_m3 : area_m2 * s * out.layers_count;
-
-  const auto support = supportRadius(scene, s, side_x_m, side_z_m, out.layers_count);
-  if (!support) return support.error();
-  out.support_radius_m = *support;
-  const double H = out.support_radius_m;
-
-  const int floor_points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : kFlatFloorLattice;
-  out.neighbours_count = latticeNeighbours(s, H);
-  out.mass_kg = calibratedMass(p.kernel_set, s, H, p.rest_density_kgpm3);
-  out.virtual_mass_kg = calibratedVirtualMass(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg, floor_points);
-  const WallSupport wall = calibratedWall(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
-  out.wall_share = wall.share;
-  out.wall_reach_m = wall.reach_m;
-  out.constraint_softness_pm2 =
-      kConstraintSoftness * latticeConstraintSlope2(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
-  // Position-based water has no stiffness; its layers rest as those of a water that gives way by a hundredth.
-  const bool is_position_based = p.solver == core::PressureSolver::kPositionBased;
-  const double stiffness = is_position_based ? 100 * scene.gravity_mps2 * s * out.layers_count : stiffnessOf(p, out);
-  out.layer_heights_m =
-      restingLayers({.kernel_set = p.kernel_set,
-                     .spacing_m = s,
-                     .support_radius_m = H,
-                     .rest_density_kgpm3 = p.rest_density_kgpm3,
-                     .stiffness_m2ps2 = stiffness,
-                     .gravity_mps2 = scene.gravity_mps2,
-                     .mass_kg = out.mass_kg,
-                     .virtual_mass_kg = out.virtual_mass_kg,
-                     .floor_points = floor_points,
-                     .equation_of_state = is_position_based ? core::EquationOfState::kLinear : p.equation_of_state,
-                     .pressure_force = is_position_based ? core::PressureForce::kConserving : p.pressure_force,
-                     .cohesion = p.cohesion && !is_position_based},
-                    static_cast<int>(out.layers_count));
-  out.band_m = out.layer_heights_m.back() + s / 2;
-  const double centre_x = scene.wave ? p.patch_shift_x_m : 0.0;
-  const double centre_z = scene.wave ? p.patch_shift_z_m : 0.0;
-  // Below the band the floor can sink as far as the water is deep.
-  const double lowest_m = -out.band_m - (scene.coupling ? scene.wave->depth_m : 0.0);
-  out.min_m = {centre_x - side_x_m / 2, lowest_m, centre_z - side_z_m / 2};
-  out.max_m = {centre_x + side_x_m / 2, p.headroom_m, centre_z + side_z_m / 2};
-  if (scene.wave) {
-    const double half_m = scene.wave->side_m / 2 * (1 + 1e-9);
-    if (out.min_m[0] < -half_m || out.max_m[0] > half_m || out.min_m[2] < -half_m || out.max_m[2] > half_m) {
-      return invalid(fmt::format(
-          "particles.patch_shift_x_m, patch_shift_z_m: a patch of {:.3g} m centred at ({:.3g}, {:.3g}) m leaves the "
-          "water of {:.3g} m: move it inside or make patch_scale smaller",
-          side_x_m, centre_x, centre_z, scene.wave->side_m));
-    }
-  }
-  if (auto counted = countCells(out); !counted) return counted.error();
-  return out;
 }
 
 void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, std::vector<StepRule>& rules) {
@@ -302,6 +140,11 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.stiffness_m2ps2 = f(stiffnessOf(p, l));
     u.viscosity_pas = f(p.viscosity_pas);
     u.max_speed_mps = f(p.max_speed_mps);
+    if (!scene.wave) {
+      // Boats and effects measure by these.
+      u.wave_side_m = f(std::min(l.max_m[0] - l.min_m[0], l.max_m[2] - l.min_m[2]));
+      u.wave_cell_m = f(l.spacing_m);
+    }
     const bool follows = scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing;
     const double half_m = follows ? scene.wave->side_m / 2 : 0.0;
     u.frame_min_x_m = f(follows ? -half_m : l.min_m[0]);
@@ -362,8 +205,8 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     return invalid("coupling: needs both wave and particles: add the missing part or remove coupling");
   if (scene.foam && !scene.particles && !hasSurfaceFoam(scene))
     return invalid("foam: needs particles, or a wave and surface: true: add what is missing or remove foam");
-  if (!scene.wave && (scene.boats || scene.storm || !scene.obstacles.empty() || !scene.beaches.empty()))
-    return invalid("boats, storm, obstacles, beaches: need a wave: add one or remove them");
+  if (!scene.wave && (scene.storm || !scene.obstacles.empty() || !scene.beaches.empty()))
+    return invalid("storm, obstacles, beaches: need a wave: add one or remove them");
 
   if (scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing) {
     if (isTwoWay(scene))
@@ -430,18 +273,6 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
   d.device_bytes = deviceBytes(scene, d);
   fillUniforms(scene, d);
   return d;
-}
-
-core::Result<ParticleLayout> layOutAgain(const core::Scene& scene, const ParticleLayout& before) {
-  return layOutParticles(scene, before.volume_m3);
-}
-
-bool countsNeighbours(const core::Scene& scene) {
-  return scene.particles && scene.foam && scene.foam->neighbours_count > 0;
-}
-
-bool storesFoamSource(const core::Scene& scene) {
-  return countsNeighbours(scene) && scene.particles->solver == core::PressureSolver::kWeaklyCompressible;
 }
 
 bool needsRestart(const Derived& before, const Derived& after) {

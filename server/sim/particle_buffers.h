@@ -20,7 +20,4 @@ struct ParticleBuffers {
   static core::Result<ParticleBuffers> create(gpu::Context& ctx, std::size_t count, bool stores_foam_source);
 };
 
-/// The defines that specialise a scene's shaders: only what is present is compiled.
-gpu::Defines shaderDefines(const core::Scene& scene);
-
 }  // namespace spindrift::sim

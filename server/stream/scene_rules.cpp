@@ -92,7 +92,6 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   };
   if (scene.obstacles_size() > 0) needsWave("obstacles[0]", "the obstacles");
   if (scene.beaches_size() > 0) needsWave("beaches[0]", "the beaches");
-  if (scene.has_boats()) needsWave("boats", "boats");
   if (scene.has_storm()) needsWave("storm", "storm");
 }
 
@@ -111,21 +110,6 @@ void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
     issues.push_back({v1::REJECT_REASON_MALFORMED, "obstacles[" + std::to_string(i) + "]",
                       "has no shape; say what stands there: \"rock {}\" or \"breakwater {}\""});
   }
-}
-
-/// What effects are measured by: the wave, or the resting water of a box of particles.
-struct Stage {
-  double side_m;
-  double depth_m;
-};
-
-Stage stageOf(const v1::Scene& scene) {
-  if (scene.has_wave()) return {scene.wave().side_m(), scene.wave().depth_m()};
-  const v1::ParticleScene& p = scene.particles();
-  const double width_m = p.box_width_m() > 0 ? p.box_width_m() : p.box_side_m();
-  const double area_m2 = p.box_side_m() * p.fill_x_ratio() * width_m * p.fill_z_ratio();
-  return {std::min(p.box_side_m(), width_m),
-          p.layers_count() * std::sqrt(area_m2 * p.layers_count() / std::max(p.count(), 1u))};
 }
 
 std::string eventPrefix(int index) {
@@ -158,6 +142,15 @@ void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, cons
 }
 
 }  // namespace
+
+Stage stageOf(const v1::Scene& scene) {
+  if (scene.has_wave()) return {scene.wave().side_m(), scene.wave().depth_m()};
+  const v1::ParticleScene& p = scene.particles();
+  const double width_m = p.box_width_m() > 0 ? p.box_width_m() : p.box_side_m();
+  const double area_m2 = p.box_side_m() * p.fill_x_ratio() * width_m * p.fill_z_ratio();
+  return {std::min(p.box_side_m(), width_m),
+          p.layers_count() * std::sqrt(area_m2 * p.layers_count() / std::max(p.count(), 1u))};
+}
 
 bool isSceneName(const std::string& name) {
   const char* const allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
@@ -224,9 +217,7 @@ std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
     checkPatch(particles.patch_shift_x_m(), particles.patch_scale(), side_m, "particles.patch_shift_x_m", issues);
     checkPatch(particles.patch_shift_z_m(), particles.patch_scale(), side_m, "particles.patch_shift_z_m", issues);
   }
-  if (scene.has_wave()) {
-    for (FieldIssue& issue : checkWater(scene)) issues.push_back(std::move(issue));
-  }
+  for (FieldIssue& issue : checkWater(scene)) issues.push_back(std::move(issue));
   for (int i = 0; i < scene.events_size(); ++i) checkEventNumbers(scene.events(i), scene, eventPrefix(i), issues);
   return issues;
 }

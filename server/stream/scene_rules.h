@@ -11,6 +11,13 @@
 
 namespace spindrift::stream {
 
+/// What effects and boats are measured by: the wave, or the resting water of a box of particles.
+struct Stage {
+  double side_m;
+  double depth_m;
+};
+Stage stageOf(const v1::Scene& scene);
+
 /// What the scene forbids about a splash or a breaking wave; paths start with "splash" or "breaking_wave".
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene);
 

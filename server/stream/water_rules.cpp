@@ -183,12 +183,11 @@ void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   }
 }
 
-void checkHull(const core::Boat& boat, const v1::WaveScene& wave, const std::string& prefix,
-               std::vector<FieldIssue>& issues) {
-  const double max_length_m = kMaxBoatSideRatio * wave.side_m();
+void checkHull(const core::Boat& boat, const Stage& water, const std::string& prefix, std::vector<FieldIssue>& issues) {
+  const double max_length_m = kMaxBoatSideRatio * water.side_m;
   if (boat.length_m > max_length_m) {
     addRange(issues, prefix + "length_m",
-             metres(boat.length_m) + " is more than a quarter of the water's side of " + metres(wave.side_m()) +
+             metres(boat.length_m) + " is more than a quarter of the water's side of " + metres(water.side_m) +
                  "; choose at most " + metres(max_length_m));
   }
   if (boat.beam_m > boat.length_m) {
@@ -196,11 +195,11 @@ void checkHull(const core::Boat& boat, const v1::WaveScene& wave, const std::str
              metres(boat.beam_m) + " is more than the boat's length; choose at most " + metres(boat.length_m));
   }
   const double draught_m = boat.density_ratio * boat.height_m;
-  if (draught_m >= wave.depth_m()) {
+  if (draught_m >= water.depth_m) {
     addRange(issues, prefix + "height_m",
              metres(boat.height_m) + " at a density of " + formatNumber(boat.density_ratio) + " draws " +
-                 metres(draught_m) + ", and the water is " + metres(wave.depth_m()) + " deep; choose less than " +
-                 metres(wave.depth_m() / boat.density_ratio) + " or a lighter boat");
+                 metres(draught_m) + ", and the water is " + metres(water.depth_m) + " deep; choose less than " +
+                 metres(water.depth_m / boat.density_ratio) + " or a lighter boat");
   }
 }
 
@@ -229,11 +228,11 @@ void checkBoats(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
 
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix) {
   std::vector<FieldIssue> issues;
-  const v1::WaveScene& wave = scene.wave();
-  checkHull(boat, wave, prefix, issues);
+  const Stage water = stageOf(scene);
+  checkHull(boat, water, prefix, issues);
   const Footprint hull = footprintOf(boat);
-  checkInside(boat.x_m, hull.reachX_m(), wave.side_m(), prefix + "x_m", issues);
-  checkInside(boat.z_m, hull.reachZ_m(), wave.side_m(), prefix + "z_m", issues);
+  checkInside(boat.x_m, hull.reachX_m(), water.side_m, prefix + "x_m", issues);
+  checkInside(boat.z_m, hull.reachZ_m(), water.side_m, prefix + "z_m", issues);
   for (int i = 0; i < scene.obstacles_size(); ++i) {
     const v1::Obstacle& obstacle = scene.obstacles(i);
     const bool hits = obstacle.has_rock()         ? overlap(hull, obstacle.rock())
@@ -249,9 +248,11 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
 
 std::vector<FieldIssue> checkWater(const v1::Scene& scene) {
   std::vector<FieldIssue> issues;
-  checkSides(scene.wave(), issues);
-  checkObstacles(scene, issues);
-  checkBeaches(scene, issues);
+  if (scene.has_wave()) {
+    checkSides(scene.wave(), issues);
+    checkObstacles(scene, issues);
+    checkBeaches(scene, issues);
+  }
   if (scene.has_boats()) checkBoats(scene, issues);
   return issues;
 }

@@ -6,9 +6,18 @@
 // moving boat on a circle of about two lengths; the surface's slope pulls. Contacts: three circles along each hull against other
 // boats, obstacles, shallow ground and sides; overlap is shared half and half, the approaching speed is lost.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
-// variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
+// variants: WAVE=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "include/boat.glsl"
+#include "include/wave_cell.glsl"
+#if WAVE
 #include "include/surface_sample.glsl"
+#else
+// Without a wave boats swim at the resting level, in water that stands still.
+vec4 surfaceUnder(vec2 xz, out vec2 flow_mps) {
+  flow_mps = vec2(0.0);
+  return vec4(0.0);
+}
+#endif
 #if VARIED
 #include "include/terrain.glsl"
 #endif
@@ -66,7 +75,11 @@ float floatOnWater(inout BoatState b) {
       vec2 flow_mps;
       const vec4 s = surfaceUnder(place_m, flow_mps);
       const float keel_m = b.centre_m.y - 0.5 * b.hull_m.z + at_m.x * b.tilt.x - at_m.y * b.tilt.y;
+      #if WAVE
       const float level_m = s.x + hullHead(b, at_m);
+#else
+      const float level_m = s.x;
+#endif
       const float submerged_m = clamp(level_m - keel_m, 0.0, b.hull_m.z);
       slope += vec2(level_m, at_m.x) * at_m.x;
       lift += submerged_m;

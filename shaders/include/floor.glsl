@@ -3,10 +3,10 @@
 #ifndef SPINDRIFT_FLOOR
 #define SPINDRIFT_FLOOR
 
+#include "include/wave_cell.glsl"
 #include "shared/sim_uniforms.h"
 
 #if COUPLED
-#include "include/wave_cell.glsl"
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 #endif

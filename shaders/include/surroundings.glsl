@@ -11,14 +11,14 @@
 #if COUPLED && VARIED
 #include "include/terrain.glsl"
 #endif
-#if HULLS && COUPLED
+#if HULLS
 #include "include/hull.glsl"
 #endif
 
 /// Moves x and v to where they may be. False: the particle has become water.
 bool meetSurroundings(inout vec3 x, inout vec3 v) {
   keepInside(x, v);
-#if HULLS && COUPLED
+#if HULLS
   pushOutOfHulls(x, v);
 #endif
 #if COUPLED && VARIED

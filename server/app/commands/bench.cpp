@@ -46,20 +46,30 @@ struct StepResult {
   std::vector<gpu::PassCost> passes;
 };
 
-/// The scene, its parts alone, and the thesis's particle counts.
+/// The scene, its parts alone, and, where the number of particles is the scene's, the thesis's counts.
 std::vector<StepCase> stepCases(const core::Scene& base) {
   std::vector<StepCase> cases = {{"scene as it is", base}};
   core::Scene wave_only = base;
   wave_only.particles.reset();
   wave_only.coupling.reset();
   wave_only.foam.reset();
-  if (base.wave && base.particles) {
-    cases.push_back({"wave only", wave_only});
+  wave_only.boats.reset();
+  wave_only.storm.reset();
+  const bool two_way = base.coupling && base.coupling->mode == core::CouplingMode::kTwoWay;
+  if (base.boats || base.storm || base.particles) {
+    core::Scene calm = base;
+    calm.events.clear();
+    calm.boats.reset();
+    calm.storm.reset();
+    cases.push_back({"calm", calm});
+  }
+  if (base.wave && (base.particles || base.boats || base.foam)) cases.push_back({"wave only", wave_only});
+  if (base.wave && base.particles && !two_way) {
     core::Scene uncoupled = base;
     uncoupled.coupling.reset();
     cases.push_back({"not coupled", uncoupled});
   }
-  if (base.particles) {
+  if (base.particles && !two_way) {
     for (const std::uint32_t count : {8192u, 16384u, 32768u, 65536u}) {
       core::Scene scene = base;
       scene.particles->count = count;
@@ -93,7 +103,7 @@ core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double
   const sim::Derived& d = water.derived();
   StepResult r;
   r.name = test.name;
-  r.particle_count = d.particles ? d.particles->count : 0;
+  r.particle_count = water.particleCount();
   r.neighbours_count = d.particles ? d.particles->neighbours_count : 0;
   r.substeps_count = d.substeps_count;
   r.tick_ms = elapsed_s * 1e3 / ticks;
@@ -101,7 +111,8 @@ core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double
   r.real_time_factor = d.tick_s / (elapsed_s / ticks);
   r.passes = water.takePassCosts();
   for (const gpu::PassCost& pass : r.passes) {
-    if (r.particle_count > 0 && (pass.name == "grid" || pass.name == "sph"))
+    // A pool's count changes from tick to tick; a cost per particle would say nothing.
+    if (r.particle_count > 0 && d.uniforms.pool_capacity_count == 0 && (pass.name == "grid" || pass.name == "sph"))
       r.particle_us += pass.total_ms * 1e3 / ticks / d.substeps_count / r.particle_count;
   }
   for (gpu::PassCost& pass : r.passes) pass.mean_ms = pass.total_ms / ticks;
@@ -124,7 +135,7 @@ boost::json::object toJson(const StepResult& r) {
 
 void print(std::FILE* out, const StepResult& r) {
   fmt::print(out, "{:<18} {:>9} {:>8} {:>9.3f} {:>9.3f} {:>11} {:>6.2f}  ", r.name, r.particle_count, r.substeps_count,
-             r.tick_ms, r.substep_ms, r.particle_count ? fmt::format("{:.3f}", r.particle_us) : "-",
+             r.tick_ms, r.substep_ms, r.particle_us > 0 ? fmt::format("{:.3f}", r.particle_us) : "-",
              r.real_time_factor);
   for (const gpu::PassCost& pass : r.passes) fmt::print(out, " {} {:.2f}", pass.name, pass.mean_ms);
   fmt::print(out, "\n");
@@ -142,11 +153,12 @@ core::Result<boost::json::object> measureStream(gpu::Context& ctx, const core::S
   const auto begin = Clock::now();
   while (since_s(begin) < seconds || frames == 0) {
     (*sim)->step();
-    (void)(*sim)->requestFrame({.surface = true, .particles = true});
+    (void)(*sim)->requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
     ctx.finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) {
       const auto start = Clock::now();
-      for (const auto& message : {encoder.encodeSurface(frame), encoder.encodeParticles(frame)})
+      for (const auto& message : {encoder.encodeSurface(frame), encoder.encodeParticles(frame),
+                                  encoder.encode(v1::LAYER_FOAM, frame), encoder.encode(v1::LAYER_BODIES, frame)})
         bytes += message ? message->size() : 0;
       encode_s += since_s(start);
       ++frames;

@@ -225,5 +225,31 @@ TEST_F(BoatsOnDevice, HullsPushParticles) {
   EXPECT_EQ(sim.escapedCount(), 0u);
 }
 
+TEST_F(BoatsOnDevice, PloughThroughParticlesWithoutAWave) {
+  core::Scene scene = smallScene(3000);
+  scene.wave.reset();
+  scene.coupling.reset();
+  scene.particles->box_side_m = 8.0;
+  scene.particles->boundary_x = scene.particles->boundary_z = core::Boundary::kWall;
+  for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
+    scene.particles->solver = solver;
+    scene.boats.emplace();
+    scene.boats->boats = {core::Boat{
+        .x_m = -2.0, .length_m = 1.6, .beam_m = 0.7, .height_m = 0.5, .max_speed_mps = 2.0, .throttle_ratio = 1.0}};
+    WaterSim& sim = make(scene);
+    double fastest_mps = 0;
+    for (int i = 0; i < 150; ++i) {
+      sim.step();
+      fastest_mps = std::max(fastest_mps, sim.health().max_speed_mps);
+    }
+    const BoatPose b = pose(sim);
+    EXPECT_GT(b.x_m, -1.0) << "it drove";
+    EXPECT_LT(std::abs(b.x_m), 4.0) << "and stays in the box";
+    EXPECT_GT(fastest_mps, 0.4) << "particles give way";
+    EXPECT_EQ(sim.escapedCount(), 0u);
+    EXPECT_EQ(sim.recoveredCount(), 0u);
+  }
+}
+
 }  // namespace
 }  // namespace spindrift::sim

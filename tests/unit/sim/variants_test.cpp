@@ -170,7 +170,7 @@ TEST_F(Variants, EachSolverCompilesItsOwnProgramsOnly) {
     return ctx_->ledger().program_count - before;
   };
   EXPECT_EQ(programs(PressureSolver::kWeaklyCompressible), 11u);
-  EXPECT_EQ(programs(PressureSolver::kPositionBased), 13u);
+  EXPECT_EQ(programs(PressureSolver::kPositionBased), 14u);
 }
 
 TEST_F(Variants, SprayWithFewNeighboursIsFoam) {

@@ -110,10 +110,11 @@ const BadScene kBadScenes[] = {
      "wave {}\nevents {\n  every_s: 0.001\n  effect { splash {} }\n}\n",
      "pool.textproto:3:3: events[0].every_s: 0.001 s",
      {"tick"}},
-    {"EventWithoutWave",
-     "particles {}\nevents { effect { breaking_wave {} } }\n",
-     "pool.textproto:2:10: events[0].effect: ",
-     {"no wave"}},
+    {"EventHigherThanTheBoxOfParticles",
+     "particles { count: 8000 layers_count: 2 box_side_m: 4 }\nevents { effect { breaking_wave { amplitude_m: 0.3 } } "
+     "}\n",
+     "pool.textproto:2:35: events[0].effect.breaking_wave.amplitude_m: 0.3 m",
+     {"0.9 of the water's depth"}},
     {"SplashDeeperThanTheWater",
      "wave { depth_m: 1 }\nevents { effect { splash {} } }\nevents {\n  effect {\n    splash {\n      depth_m: 0.95\n  "
      "  }\n  }\n}\n",

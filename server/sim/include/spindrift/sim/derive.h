@@ -79,11 +79,6 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
 /// the spacing is (volume / count)^(1/3) and the layers follow from it. Errors as derive()'s.
 core::Result<ParticleLayout> layOutAgain(const core::Scene& scene, const ParticleLayout& before);
 
-/// Whether few neighbours make foam in this scene; the weakly compressible solver then keeps what its density pass
-/// counted in one more buffer.
-bool countsNeighbours(const core::Scene& scene);
-bool storesFoamSource(const core::Scene& scene);
-
 /// Whether going from one scene to another needs new buffers or programs (a restart) instead of new uniforms.
 bool needsRestart(const Derived& before, const Derived& after);
 

@@ -1,0 +1,16 @@
+// Where particles start, and the grid around them. Part of derive().
+#pragma once
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/sim/derive.h>
+
+namespace spindrift::sim {
+
+/// `volume_m3`: of the water, when it is given; else the scene's layers decide. Errors as derive()'s.
+core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3 = 0.0);
+
+/// k of p = k (rho - rho0): c0^2 over what the lattice makes of it.
+double stiffnessOf(const core::ParticleScene& particles, const ParticleLayout& layout);
+
+}  // namespace spindrift::sim

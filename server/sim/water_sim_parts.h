@@ -1,0 +1,56 @@
+// What a WaterSim is made of. For its own source files only.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <spindrift/sim/water_sim.h>
+
+#include "basin.h"
+#include "boats.h"
+#include "breakers.h"
+#include "checkpoints.h"
+#include "diagnostics.h"
+#include "effects.h"
+#include "frame_packer.h"
+#include "neighbor_grid.h"
+#include "particle_buffers.h"
+#include "particle_pool.h"
+#include "patch_follower.h"
+#include "position_based.h"
+#include "sph.h"
+#include "stir.h"
+#include "surface_foam.h"
+#include "wave.h"
+
+namespace spindrift::sim {
+
+/// What the scene named, and nothing else.
+struct WaterSim::Parts {
+  gpu::Buffer uniforms;
+  std::optional<ParticleBuffers> particles;
+  std::unique_ptr<NeighborGrid> grid;
+  std::unique_ptr<Sph> sph;  ///< one of the two solvers
+  std::unique_ptr<PositionBased> position_based;
+  std::unique_ptr<Wave> wave;
+  Effects effects;
+  std::unique_ptr<Breakers> breakers;
+  std::unique_ptr<ParticlePool> pool;
+  std::unique_ptr<Boats> boats;
+  std::unique_ptr<SurfaceFoam> foam;
+  std::unique_ptr<PatchFollower> follower;
+  std::unique_ptr<Stir> stir;  ///< where there is no wave for effects to act on
+  std::unique_ptr<FramePacker> frames;
+  std::unique_ptr<Diagnostics> diagnostics;
+  std::unique_ptr<Checkpoints> checkpoints;
+
+  /// Whom the passes over particles are for.
+  [[nodiscard]] Population population(const Derived& derived) const {
+    return {derived.particles->count, derived.particles->cell_count, pool.get()};
+  }
+  [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
+  core::Result<void> makeCheckpoints(gpu::Context& ctx);
+  core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,155 @@
+// WaterSim: its health, its frames, its state as numbers.
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <shared/fixed_point.h>
+#include <shared/pool.h>
+#include <spdlog/spdlog.h>
+
+#include "water_sim_parts.h"
+
+namespace spindrift::sim {
+namespace {
+
+constexpr double kCheckpointInterval_s = 1.0;
+/// How long a room that was put back runs with half the step.
+constexpr double kCareful_s = 5.0;
+
+}  // namespace
+
+// Health
+
+void WaterSim::watchHealth() {
+  for (const Health& health : parts_->diagnostics->poll(scene_, derived_)) {
+    if (health.tick <= abandoned_until_tick_) continue;
+    health_ = health;
+    nonfinite_count_ += health.nonfinite_count;
+    escaped_count_ += health.escaped_count;
+    if (health.isGood()) {
+      parts_->checkpoints->confirm(health.tick);
+    } else {
+      recover(health);
+      return;
+    }
+  }
+  if (is_careful_ && tick_ >= careful_until_tick_) setCareful(false);
+}
+
+void WaterSim::saveCheckpoint() {
+  const auto interval = static_cast<std::uint64_t>(std::ceil(kCheckpointInterval_s / derived_.tick_s));
+  if (tick_ % interval == 0) parts_->checkpoints->save(tick_);
+}
+
+void WaterSim::recover(const Health& breach) {
+  ++recovered_count_;
+  const bool restored = parts_->checkpoints->restore();
+  if (!restored) uploadStartingState();
+  if (parts_->boats) parts_->boats->mend();
+  parts_->effects.clear();
+  abandoned_until_tick_ = tick_;
+  careful_until_tick_ = tick_ + static_cast<std::uint64_t>(kCareful_s / derived_.tick_s);
+  setCareful(true);
+  if (recovered_count_ <= 10 || recovered_count_ % 100 == 0) {
+    spdlog::warn(
+        "scene {}: tick {} has {} non-finite values and {} escaped particles; went back to {} with half the step for "
+        "{} s (guard stepped in {} times)",
+        scene_.name, breach.tick, breach.nonfinite_count, breach.escaped_count,
+        restored ? "the last good checkpoint" : "the start", kCareful_s, recovered_count_);
+  }
+}
+
+void WaterSim::setCareful(bool careful) {
+  is_careful_ = careful;
+  const std::optional<ParticleLayout> kept = derived_.particles;
+  auto derived = derive(scene_, kept ? &*kept : nullptr);
+  if (derived && careful) {
+    core::Scene halved = scene_;
+    halved.fixed_substeps_count = 2 * derived->substeps_count;
+    derived = derive(halved, kept ? &*kept : nullptr);
+  }
+  // scene_ was accepted before and halving a step breaks no rule; at the bound of substeps the step stays as it was.
+  if (derived) derived_ = *std::move(derived);
+  parts_->uniforms.uploadValue(derived_.uniforms);
+  if (parts_->wave) parts_->wave->uploadBasin(scene_, *derived_.wave);
+  ctx_.barrier(gpu::Barrier::kUniform | gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
+}
+
+// Frames
+
+bool WaterSim::requestFrame(const FrameRequest& request) {
+  std::optional<Population> population;
+  if (parts_->particles) population = parts_->population(derived_);
+  const FramePacker::Parts wanted{.wave = request.surface ? parts_->wave.get() : nullptr,
+                                  .particles = request.particles ? parts_->particlesOrNull() : nullptr,
+                                  .population = population ? &*population : nullptr,
+                                  .foam = request.foam ? parts_->foam.get() : nullptr,
+                                  .boats = request.bodies ? parts_->boats.get() : nullptr};
+  if (!wanted.wave && !wanted.particles && !wanted.foam && !wanted.boats) return false;
+  const auto timer = timers_.scope("stream");
+  parts_->uniforms.bindUniform(SIM_UNIFORMS);
+  return parts_->frames->pack(tick_, time_s(), wanted);
+}
+
+std::vector<core::FrameView> WaterSim::takeFrames() {
+  return parts_->frames->poll(scene_, derived_);
+}
+
+// State
+
+StateCopy WaterSim::copyState() {
+  ctx_.barrier(gpu::Barrier::kBufferUpdate);
+  StateCopy out;
+  if (parts_->particles) {
+    std::size_t count = derived_.particles->count;
+    if (parts_->pool) {
+      out.pool = parts_->pool->words().downloadVector<std::uint32_t>(POOL_WORDS);
+      count = out.pool[POOL_LIVE];
+    }
+    const std::size_t n = count * 4;
+    out.position = parts_->particles->position.downloadVector<float>(n);
+    out.velocity = parts_->particles->velocity.downloadVector<float>(n);
+    const auto acceleration = parts_->particles->acceleration.downloadVector<float>(n);
+    for (std::size_t i = 3; i < n; i += 4) out.density_kgpm3.push_back(acceleration[i]);
+  }
+  if (parts_->boats) out.boats = parts_->boats->state().downloadVector<float>(std::size_t{MAX_BOATS} * BOAT_TEXELS * 4);
+  if (parts_->wave) {
+    const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
+    for (const std::int32_t units : parts_->wave->elevation().downloadVector<std::int32_t>(n))
+      out.elevation_m.push_back(units * double{ELEVATION_UNIT_M});
+    out.flow_m2ps = parts_->wave->flow().downloadVector<float>(n * parts_->wave->flowComponents());
+  }
+  return out;
+}
+
+void WaterSim::setState(const StateCopy& state) {
+  if (parts_->particles) {
+    parts_->particles->position.upload(state.position);
+    parts_->particles->velocity.upload(state.velocity);
+  }
+  if (parts_->wave) {
+    std::vector<std::int32_t> units;
+    for (const double eta_m : state.elevation_m)
+      units.push_back(static_cast<std::int32_t>(std::lround(eta_m * double{ELEVATION_UNITS_PER_M})));
+    parts_->wave->elevation().upload(units);
+    parts_->wave->flow().upload(state.flow_m2ps);
+  }
+  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
+}
+
+std::uint64_t WaterSim::stateHash() {
+  const StateCopy state = copyState();
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  const auto add = [&](std::span<const std::byte> bytes) {
+    for (const std::byte b : bytes) hash = (hash ^ static_cast<std::uint64_t>(b)) * 0x100000001b3ull;
+  };
+  add(std::as_bytes(std::span(state.position)));
+  add(std::as_bytes(std::span(state.velocity)));
+  add(std::as_bytes(std::span(state.elevation_m)));
+  add(std::as_bytes(std::span(state.flow_m2ps)));
+  add(std::as_bytes(std::span(state.boats)));
+  add(std::as_bytes(std::span(state.pool)));
+  return hash;
+}
+
+}  // namespace spindrift::sim
