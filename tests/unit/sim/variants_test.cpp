@@ -169,7 +169,7 @@ TEST_F(Variants, EachSolverCompilesItsOwnProgramsOnly) {
     make(scene);
     return ctx_->ledger().program_count - before;
   };
-  EXPECT_EQ(programs(PressureSolver::kWeaklyCompressible), 11u);
+  EXPECT_EQ(programs(PressureSolver::kWeaklyCompressible), 12u);
   EXPECT_EQ(programs(PressureSolver::kPositionBased), 14u);
 }
 
