@@ -45,6 +45,7 @@ void WaterSim::recover(const Health& breach) {
   ++recovered_count_;
   const bool restored = parts_->checkpoints->restore();
   if (!restored) uploadStartingState();
+  if (parts_->wave) parts_->wave->clearPressure();
   if (parts_->boats) parts_->boats->mend();
   parts_->effects.clear();
   abandoned_until_tick_ = tick_;
@@ -127,6 +128,7 @@ void WaterSim::setState(const StateCopy& state) {
     parts_->particles->position.upload(state.position);
     parts_->particles->velocity.upload(state.velocity);
   }
+  if (parts_->boats) parts_->boats->state().upload(state.boats);
   if (parts_->wave) {
     std::vector<std::int32_t> units;
     for (const double eta_m : state.elevation_m)

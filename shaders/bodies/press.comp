@@ -32,6 +32,7 @@ void main() {
 #endif
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return;
   const float head_m = hullHead(b, vec2(dot(d, forwardOf(b.heading)), dot(d, starboardOf(b.heading))));
-  const int units = int(round(head_m * ELEVATION_UNITS_PER_M));
+  // Nothing for a boat whose state is not finite; diagnostics count it.
+  const int units = head_m * ELEVATION_UNITS_PER_M < TRANSFER_MAX_UNITS ? int(round(head_m * ELEVATION_UNITS_PER_M)) : 0;
   if (units != 0) atomicAdd(pressure_head[cell.x + n * cell.y], units);
 }

@@ -1,5 +1,6 @@
 // Boats: floating, driving, meeting things, wakes.
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -223,6 +224,24 @@ TEST_F(BoatsOnDevice, HullsPushParticles) {
   }
   EXPECT_EQ(inside, 0);
   EXPECT_EQ(sim.escapedCount(), 0u);
+}
+
+TEST_F(BoatsOnDevice, ABoatThatIsNotANumberIsMendedAndHarmsNobody) {
+  core::Scene scene = boatScene();
+  scene.boats->boats = {core::Boat{.x_m = -3.0}, core::Boat{.x_m = 3.0}};
+  WaterSim& sim = make(scene);
+  for (int i = 0; i < 130; ++i) sim.step();
+  StateCopy broken = sim.copyState();
+  broken.boats[8] = std::numeric_limits<float>::quiet_NaN();
+  sim.setState(broken);
+  for (int i = 0; i < 200; ++i) sim.step();
+  EXPECT_GE(sim.recoveredCount(), 1u);
+  for (const float value : sim.copyState().boats) ASSERT_TRUE(std::isfinite(value));
+  EXPECT_NEAR(pose(sim, 0).x_m, -3.0, 0.5) << "back where it came to the water";
+  EXPECT_NEAR(pose(sim, 1).x_m, 3.0, 0.5);
+  const auto recovered = sim.recoveredCount();
+  for (int i = 0; i < 200; ++i) sim.step();
+  EXPECT_EQ(sim.recoveredCount(), recovered);
 }
 
 TEST_F(BoatsOnDevice, PloughThroughParticlesWithoutAWave) {
