@@ -177,10 +177,10 @@ struct Scene {
   std::optional<ParticleScene> particles;
   std::optional<CouplingScene> coupling;  ///< needs wave and particles
   std::optional<FoamScene> foam;          ///< needs particles, or a wave when it has a surface field
-  std::vector<Obstacle> obstacles;        ///< need a wave, like all that follows
-  std::vector<Beach> beaches;
-  std::optional<BoatsScene> boats;
-  std::optional<StormScene> storm;
+  std::vector<Obstacle> obstacles;        ///< need a wave
+  std::vector<Beach> beaches;             ///< need a wave
+  std::optional<BoatsScene> boats;        ///< on the wave, or among particles alone
+  std::optional<StormScene> storm;        ///< needs a wave
   StreamScene stream;
   std::vector<TimedEvent> events;
 };
