@@ -1,0 +1,56 @@
+// The same scene, seed and commands give the same bits: again, and with another number of the rasteriser's threads.
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <spindrift/gpu/context.h>
+
+namespace spindrift {
+namespace {
+
+/// What state_hash prints for a scene, with llvmpipe on so many threads.
+std::string hashOf(const std::string& scene, int ticks, int threads) {
+  const std::string command = "LP_NUM_THREADS=" + std::to_string(threads) +
+                              " '" SPINDRIFT_STATE_HASH "' '" SPINDRIFT_SOURCE_DIR "/server/scenes/" + scene +
+                              ".textproto' " + std::to_string(ticks) + " 2>/dev/null";
+  std::FILE* out = popen(command.c_str(), "r");
+  if (!out) return "popen failed";
+  std::array<char, 64> line{};
+  const char* read = std::fgets(line.data(), line.size(), out);
+  const int status = pclose(out);
+  if (!read || !WIFEXITED(status) || WEXITSTATUS(status) != 0) return "exit status " + std::to_string(status);
+  return line.data();
+}
+
+struct Run {
+  const char* scene;
+  int ticks;
+};
+
+class Determinism : public ::testing::TestWithParam<Run> {
+ protected:
+  void SetUp() override {
+    if (auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0}); !ctx)
+      GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+  }
+};
+
+TEST_P(Determinism, RepeatsBitForBitOnAnyNumberOfThreads) {
+  const auto [scene, ticks] = GetParam();
+  const std::string first = hashOf(scene, ticks, 1);
+  ASSERT_EQ(first.size(), 17u) << first;
+  EXPECT_EQ(hashOf(scene, ticks, 1), first) << "the same again";
+  EXPECT_EQ(hashOf(scene, ticks, 2), first) << "on two threads";
+  EXPECT_EQ(hashOf(scene, ticks, 4), first) << "on four threads";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
+                         testing::Values(Run{"pool", 40}, Run{"splash", 90}, Run{"harbor", 90}, Run{"dam_break", 30},
+                                         Run{"open_water", 60}, Run{"splash_particles", 30}),
+                         [](const auto& run) { return std::string(run.param.scene); });
+
+}  // namespace
+}  // namespace spindrift

@@ -1,0 +1,56 @@
+// A shipped scene on the software device, for long runs.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/gpu/context.h>
+#include <spindrift/sim/water_sim.h>
+#include <spindrift/stream/scene_loader.h>
+
+namespace spindrift {
+
+class Endurance : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
+    if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+    ctx_ = *std::move(ctx);
+  }
+  void TearDown() override {
+    water_.reset();
+    if (ctx_) {
+      EXPECT_EQ(ctx_->debugErrorCount(), 0u) << "the driver complained; see the log";
+    }
+  }
+
+  static v1::Scene shipped(const std::string& name) {
+    auto scene =
+        stream::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes" / (name + ".textproto"));
+    if (!scene) throw std::runtime_error(scene.error().message);
+    return *scene;
+  }
+
+  sim::WaterSim& make(const core::Scene& scene) {
+    auto made = sim::WaterSim::create(*ctx_, scene);
+    if (!made) throw std::runtime_error(made.error().message);
+    water_ = *std::move(made);
+    return *water_;
+  }
+
+  /// A number of the environment, for runs longer than a test's.
+  static int wanted(const char* variable, int otherwise) {
+    const char* text = std::getenv(variable);
+    return text ? std::atoi(text) : otherwise;
+  }
+
+  std::unique_ptr<gpu::Context> ctx_;
+  std::unique_ptr<sim::WaterSim> water_;
+};
+
+}  // namespace spindrift
