@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <shared/groups.h>
 #include <shared/pool.h>
 
 #include "sim_fixture.h"
@@ -120,6 +121,20 @@ TEST_F(TwoWay, TheLedgerIsExactThroughStormsWavesBoatsRocksAndOpenSides) {
   EXPECT_EQ(sim.nonfiniteCount(), 0u);
   EXPECT_EQ(sim.escapedCount(), 0u);
   EXPECT_EQ(sim.recoveredCount(), 0u);
+}
+
+TEST_F(TwoWay, AGridOfWholeScanBlocksCountsItsParticles) {
+  core::Scene scene = twoWayScene();
+  scene.wave->side_m = 16.0;
+  scene.particles->headroom_m = 3.0;
+  scene.coupling->droplet_spacing_m = 0.25;  // cells of 0.5 m: 32 x 8 x 32 = two blocks of 4096
+  WaterSim& sim = make(scene);
+  ASSERT_EQ(sim.derived().particles->cell_count % SCAN_BLOCK, 0u) << sim.derived().particles->cell_count;
+  ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 1.8, 0.9, 0.15}));
+  for (int i = 0; i < 60; ++i) sim.step();
+  EXPECT_GT(sim.health().emitted_count, 5u);
+  EXPECT_EQ(sim.nonfiniteCount(), 0u);
+  EXPECT_EQ(sim.health().volume_error_units, 0);
 }
 
 TEST_F(TwoWay, AFullPoolThrowsNoMoreAndLosesNothing) {
