@@ -206,7 +206,18 @@ TEST_F(Endurance, NoParticleStaysBelowTheSurfaceOrInARock) {
   sim::WaterSim& water = make(scene);
   const auto n = static_cast<int>(scene.wave->resolution_count);
   const double cell_m = scene.wave->side_m / n;
-  const double spacing_m = water.derived().particles->spacing_m;
+  const auto surface = [&](const sim::StateCopy& state, double x_m, double z_m) {
+    const auto at = [&](double p) { return std::clamp((p + scene.wave->side_m / 2) / cell_m - 0.5, 0.0, n - 1.001); };
+    const double u = at(x_m);
+    const double v = at(z_m);
+    const auto i = static_cast<std::size_t>(u);
+    const auto k = static_cast<std::size_t>(v);
+    const auto row = [&](std::size_t z) {
+      return std::lerp(state.elevation_m[i + n * z], state.elevation_m[i + 1 + n * z], u - static_cast<double>(i));
+    };
+    return std::lerp(row(k), row(k + 1), v - static_cast<double>(k));
+  };
+  double deepest_m = -1e9;
   std::size_t seen = 0;
   for (int tick = 0; tick < 360; ++tick) {
     if (tick % 60 == 0) {
@@ -220,11 +231,7 @@ TEST_F(Endurance, NoParticleStaysBelowTheSurfaceOrInARock) {
       const double x = state.position[i];
       const double y = state.position[i + 1];
       const double z = state.position[i + 2];
-      const auto cellOf = [&](double p) {
-        return std::clamp(static_cast<int>((p + scene.wave->side_m / 2) / cell_m), 0, n - 1);
-      };
-      const double eta = state.elevation_m[static_cast<std::size_t>(cellOf(x) + n * cellOf(z))];
-      ASSERT_GT(y, eta - spacing_m - 0.35) << "a particle is put on the surface or taken in, the tick it is below";
+      deepest_m = std::max(deepest_m, surface(state, x, z) - y);
       for (const core::Obstacle& obstacle : scene.obstacles) {
         const auto* rock = std::get_if<core::Rock>(&obstacle);
         if (!rock || y > rock->height_m) continue;
@@ -233,6 +240,10 @@ TEST_F(Endurance, NoParticleStaysBelowTheSurfaceOrInARock) {
     }
   }
   EXPECT_GT(seen, 1000u);
+  std::printf("%zu sightings, the deepest %.3f m below the surface\n", seen, deepest_m);
+  // The particles met the surface as it was at the start of the tick; what others took from it or gave it since is not
+  // yet theirs. A splash of 1 m in 0.2 s moves it by at most 0.13 m in a tick.
+  EXPECT_LE(deepest_m, 0.13);
 }
 
 }  // namespace
