@@ -256,9 +256,9 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
   }
   if (d.wave) {
     const double max_dt_s = waveMaxStep(*scene.wave, *d.wave);
-    d.rules.push_back(
-        {scene.wave->stencil == core::Stencil::kNinePoint ? "wave CFL, 0.849 dx / c" : "wave CFL, 0.693 dx / c",
-         "wave.depth_m", max_dt_s});
+    const std::string limit = scene.wave->stencil == core::Stencil::kNinePoint ? "0.849" : "0.693";
+    const std::string speed = scene.wave->steepening_ratio > 0 ? "(c sqrt(1 + steepening))" : "c";
+    d.rules.push_back({"wave CFL, " + limit + " dx / " + speed, "wave.depth_m", max_dt_s});
     std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
     d.wave->substeps_count = stepsFor(d.tick_s, max_dt_s);
     d.wave->dt_s = d.tick_s / d.wave->substeps_count;

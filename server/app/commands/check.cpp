@@ -74,17 +74,18 @@ void print(const std::string& file, const v1::Scene& scene, const core::Scene& i
              scene.title(), d.tick_s * 1e3, d.substeps_count, d.dt_s * 1e3);
   if (d.wave) {
     fmt::print(
-        "  wave       {0} x {0} cells of {1:.3f} m, speed {2:.2f} m/s, {3} steps a substep, Courant number {4:.3f}\n",
+        "  wave       {0} x {0} cells of {1:.3f} m, speed {2:.2f} m/s, {3} steps a tick, Courant number {4:.3f}\n",
         d.wave->resolution_count, d.wave->cell_m, d.wave->speed_mps, d.wave->substeps_count, d.wave->courant);
     printWave(in);
   }
   if (d.particles) {
     const auto& p = *d.particles;
-    fmt::print(
-        "  particles  {} ({} x {} x {}), spacing {:.3f} m, support radius {:.3f} m, {:.0f} neighbours, mass {:.3f} "
-        "kg\n",
-        p.count, p.columns_x_count, p.layers_count, p.columns_z_count, p.spacing_m, p.support_radius_m,
-        p.neighbours_count, p.mass_kg);
+    // A pool has no lattice: its particles come and go.
+    const std::string count = p.layers_count == 0 ? fmt::format("up to {}", p.count)
+                                                  : fmt::format("{} ({} x {} x {})", p.count, p.columns_x_count,
+                                                                p.layers_count, p.columns_z_count);
+    fmt::print("  particles  {}, spacing {:.3f} m, support radius {:.3f} m, {:.0f} neighbours, mass {:.3f} kg\n", count,
+               p.spacing_m, p.support_radius_m, p.neighbours_count, p.mass_kg);
     fmt::print("  grid       {} x {} x {} cells\n", p.cells[0], p.cells[1], p.cells[2]);
     printParticles(in);
   }
