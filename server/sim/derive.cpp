@@ -94,7 +94,7 @@ std::uint32_t stepsFor(double interval_s, double max_dt_s) {
 std::uint64_t waveCellBytes(const core::Scene& scene) {
   std::uint64_t bytes = 4 + (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8);
   if (isVaried(scene)) bytes += 16 + 8;
-  if (isOpen(scene)) bytes += 4;
+  if (isOpen(scene)) bytes += 8;
   if (isSampled(scene)) bytes += 24 + (isVaried(scene) ? 20 : 0);
   if (hasPressureHead(scene)) bytes += 4;
   if (hasBreakers(scene)) bytes += 32;

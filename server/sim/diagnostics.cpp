@@ -15,8 +15,8 @@
 namespace spindrift::sim {
 namespace {
 
-/// An invocation's partial result, as shaders/diagnostics writes it. The integers are sums of the upper and lower
-/// halves of 32-bit numbers.
+/// An invocation's partial result, as shaders/diagnostics writes it. The integers are sums of upper and
+/// lower parts.
 struct Partial {
   float nonfinite, escaped, max_a, max_b;
   float sum[4];
@@ -46,7 +46,7 @@ Total total(std::span<const std::byte> bytes) {
     out.max_b = std::max(out.max_b, static_cast<double>(p.max_b));
     out.count_b += p.max_b;
     out.elevation_units += std::int64_t{p.elevation_high} * 65536 + p.elevation_low;
-    out.outflow_units += std::int64_t{p.outflow_high} * 65536 + p.outflow_low;
+    out.outflow_units += std::int64_t{p.outflow_high} * (1 << 24) + p.outflow_low;
     for (int k = 0; k < 4; ++k) out.sum[k] += p.sum[k];
   }
   return out;

@@ -28,7 +28,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->basin_, TexelBuffer::create(ctx, "basin", cells, TexelFormat::kRGBA32F));
     create(wave->sponge_, TexelBuffer::create(ctx, "sponge", cells, TexelFormat::kRG32F));
   }
-  if (wave->has_outflow_) create(wave->outflow_, TexelBuffer::create(ctx, "outflow", cells, TexelFormat::kR32I));
+  if (wave->has_outflow_) create(wave->outflow_, TexelBuffer::create(ctx, "outflow", cells, TexelFormat::kRG32UI));
   wave->has_head_ = hasPressureHead(scene);
   wave->has_terrain_ = sampled && isVaried(scene);
   if (wave->has_head_)

@@ -39,7 +39,9 @@ class Wave {
 
   [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< n x n [units]
   [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }            ///< n x n x 2 (9-point: 4) [m^2/s]
-  [[nodiscard]] gpu::TexelBuffer* outflow() { return has_outflow_ ? &outflow_ : nullptr; }  ///< n x n [units]
+  [[nodiscard]] gpu::TexelBuffer* outflow() {
+    return has_outflow_ ? &outflow_ : nullptr;
+  }  ///< n x n [units: low 24 bits, the rest]
   /// 2, or 4 with the 9-point stencil.
   [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
   /// Binds SURFACE and SURFACE_FLOW for lookups. Sampled scenes only.

@@ -1,7 +1,7 @@
 // Health of the wave: one partial result an invocation, summed on the host in double and 64-bit integer precision.
 // Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
 // non-finite flows and boats, 0, max |eta|, cells that break; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
-// sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, and both of OUTFLOW (integers: the volume to the last unit).
+// sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers: the volume to the last unit).
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 HULLS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1 HULLS=1
 #include "shared/groups.h"
 #include "include/transfer.glsl"
@@ -12,7 +12,7 @@ layout(local_size_x = REDUCE_GROUP) in;
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
 #if OPEN
-layout(binding = OUTFLOW) uniform isamplerBuffer outflow;
+layout(binding = OUTFLOW) uniform usamplerBuffer outflow;
 #endif
 #if HULLS
 #include "include/boat.glsl"
@@ -49,9 +49,9 @@ void main() {
     volume.x += uint(units >> 16);
     volume.y += uint(units & 0xffff);
 #if OPEN
-    const int left_units = texelFetch(outflow, i).x;
-    volume.z += uint(left_units >> 16);
-    volume.w += uint(left_units & 0xffff);
+    const uvec2 left_units = texelFetch(outflow, i).xy;
+    volume.z += left_units.y;
+    volume.w += left_units.x;
 #endif
     if (isnan(motion) || isinf(motion)) {
       worst.x += 1.0;

@@ -28,7 +28,8 @@
 #define BLOCK_TOTAL 11
 
 // Wave, n x n cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance of those
-// faces [m]; loss of flow and of elevation in sponges and on beaches [1/s]; what left through absorbing sides [units].
+// faces [m]; loss of flow and of elevation in sponges and on beaches [1/s]; what left through absorbing sides [units: low 24
+// bits, the rest].
 #define FLOW 12
 #define ELEVATION 13
 #define BASIN 14

@@ -1,6 +1,6 @@
 // Second half of a wave step: water moves through the faces, in whole units.
 // Reads FLOW [m^2/s], SPONGE. Updates ELEVATION [n x n, units] and, in basins with an absorbing side, OUTFLOW (units that left
-// for the open water through this cell since the start).
+// for the open water through this cell since the start: low 24 bits, the rest).
 // Equation: eta_t = -div q - sigma eta; sigma only in a sponge, where it equals the flow's, so that plane waves enter it
 // without reflection.
 // Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit.
@@ -15,7 +15,7 @@ layout(binding = FLOW) uniform samplerBuffer flow;
 layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
 #if OPEN
 layout(binding = SPONGE) uniform samplerBuffer sponge;
-layout(std430, binding = OUTFLOW) restrict buffer Outflow { int outflow[]; };
+layout(std430, binding = OUTFLOW) restrict buffer Outflow { uvec2 outflow[]; };
 #endif
 
 void main() {
@@ -41,7 +41,9 @@ void main() {
 #if OPEN
   const float sigma_per_s = texelFetch(sponge, i).y;
   const int lost = int(round(float(elevation[i]) * (1.0 - exp(-sigma_per_s * sim.wave_dt_s))));
-  outflow[i] += lost;
+  // 24 bits, and what goes beyond them: 32 would turn over after 128 m of water through one cell, hours of a storm.
+  const int low = int(outflow[i].x) + lost;
+  outflow[i] = uvec2(uint(low & 0xffffff), outflow[i].y + uint(low >> 24));
   gain -= lost;
 #endif
   elevation[i] += gain;
