@@ -102,8 +102,6 @@ describe("limits from the scene", () => {
     expect(boatOfLength(shallow.max).draughtM).toBeLessThanOrEqual(0.6 * 0.2 + 1e-9);
     expect(boatLimits(greeting({ hasBoats: false }))).toBeUndefined();
     expect(boatLimits(greeting({ wave: undefined }))).toBeUndefined();
-    const box = { sideM: 6, depthM: 0.5 };
-    expect(effectLimits(greeting({ wave: undefined, box }))).toMatchObject({ splashRadiusM: { max: 3 }, splashDepthM: { max: 0.45 } });
     expect(boatLimits(greeting({}))!.throttleRatio).toMatchObject({ min: -1, max: 1 });
   });
 

@@ -1,5 +1,5 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, no Protobuf objects.
-import { CouplingMode, type ParticleScene } from "../gen/spindrift/v1/scene_pb";
+import { CouplingMode } from "../gen/spindrift/v1/scene_pb";
 import { Layer, type BoatList, type Greeting } from "../gen/spindrift/v1/wire_pb";
 import { malformed, type Malformed } from "./frames";
 import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
@@ -54,8 +54,6 @@ export interface GreetingInfo {
   description: string;
   /** Absent where the scene has no heightfield. */
   wave: WaveInfo | undefined;
-  /** What effects and boats are measured by where there is no heightfield: the box of particles, as deep as it rests. */
-  box: { sideM: number; depthM: number } | undefined;
   /** Horizontal side of the water, metres. */
   sideM: number;
   hasParticles: boolean;
@@ -84,14 +82,6 @@ export function readBoatList(list: BoatList): BoatDetail[] | string {
   return boats;
 }
 
-/** The shorter side of a box of particles and the depth of its layers at their spacing. */
-function restingBox(particles: ParticleScene): { sideM: number; depthM: number } {
-  const { boxSideM = 0, boxWidthM = 0, fillXRatio = 1, fillZRatio = 1, layersCount = 1, count = 1 } = particles;
-  const widthM = boxWidthM > 0 ? boxWidthM : boxSideM;
-  const areaM2 = boxSideM * fillXRatio * widthM * fillZRatio;
-  return { sideM: Math.min(boxSideM, widthM), depthM: layersCount * Math.sqrt((areaM2 * layersCount) / Math.max(count, 1)) };
-}
-
 /** A greeting's plain form, or "malformed" where a size that the page draws with is not a positive number. */
 export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: GreetingInfo } | Malformed {
   const scene = greeting.scene;
@@ -117,7 +107,6 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
       title: scene?.title || scene?.name || greeting.room,
       description: scene?.description ?? "",
       wave,
-      box: wave || !scene?.particles ? undefined : restingBox(scene.particles),
       sideM,
       hasParticles: scene?.particles !== undefined,
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,

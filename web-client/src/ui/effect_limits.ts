@@ -36,11 +36,10 @@ function range(field: DescField, largest: number): Range {
   return { label, unit, min, max: rounded, step, default: Math.min(fallback, rounded) };
 }
 
-/** undefined where there is neither a heightfield nor a box of particles to splash. */
+/** undefined for a scene without a heightfield: nothing there to splash. */
 export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
-  const water = greeting.wave ?? greeting.box;
-  if (!water) return undefined;
-  const { sideM, depthM } = water;
+  if (!greeting.wave) return undefined;
+  const { sideM, depthM } = greeting.wave;
   return {
     splashRadiusM: range(SplashSchema.field.radiusM, kWidestRadiusSides * sideM),
     splashDepthM: range(SplashSchema.field.depthM, kDeepestDepths * depthM),
@@ -64,9 +63,8 @@ const kDraughtDepths = 0.6;
 
 /** undefined for a scene that takes no boats. */
 export function boatLimits(greeting: GreetingInfo): BoatLimits | undefined {
-  const water = greeting.wave ?? greeting.box;
-  if (!greeting.hasBoats || !water) return undefined;
-  const { sideM, depthM } = water;
+  if (!greeting.hasBoats || !greeting.wave) return undefined;
+  const { sideM, depthM } = greeting.wave;
   const deepest = (kDraughtDepths * depthM) / (kBoatShape.height * kBoatShape.density);
   return {
     lengthM: range(BoatSchema.field.lengthM, Math.min(kLongestBoatSides * sideM, deepest)),
