@@ -4,6 +4,7 @@ import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import { parse } from "../src/codec/parse";
+import { unpackBodies, type BodyPose } from "../src/scene/bodies";
 import { elevationAtM } from "../src/scene/height_field";
 
 interface GoldenCase {
@@ -26,11 +27,16 @@ function camel(name: string): string {
   return name.replace(/_([a-z0-9])/g, (_, letter: string) => letter.toUpperCase());
 }
 
+/** What the tests below read; a kind or a layer that is not here would go unread without a word. */
+const kKinds = ["frame", "diagnostics", "greeting", "ack", "reject", "boat_list", "room_event"];
+const kLayers = ["LAYER_SURFACE", "LAYER_PARTICLES", "LAYER_FOAM", "LAYER_BODIES"];
+
 describe("golden bytes", () => {
-  it("are there, of every verdict and kind", () => {
+  it("are of every verdict, kind and layer, and of none that no test here reads", () => {
     expect(new Set(cases.map((c) => c.verdict))).toEqual(new Set(["ok", "bad_frame", "bad_message"]));
-    const kinds = cases.map((c) => c.kind);
-    for (const kind of ["frame", "diagnostics", "greeting", "ack", "reject"]) expect(kinds).toContain(kind);
+    const good = cases.filter((c) => c.verdict === "ok");
+    expect(new Set(good.map((c) => c.kind))).toEqual(new Set(kKinds));
+    expect(new Set(good.filter((c) => c.kind === "frame").map((c) => c["layer"]))).toEqual(new Set(kLayers));
   });
 
   it.each(cases.filter((c) => c.verdict === "bad_frame"))("refuses $file: $why", ({ file }) => {
@@ -83,6 +89,50 @@ describe("golden bytes", () => {
     }
   });
 
+  it.each(cases.filter((c) => c["layer"] === "LAYER_FOAM"))("reads the foam of $file to the last byte", (golden) => {
+    const parsed = parse(read(golden.file));
+    if (parsed.kind !== "foam") throw new Error(JSON.stringify(parsed));
+    expect(parsed.header).toEqual({
+      tick: BigInt(golden["tick"] as string), timeS: golden["time_s"], resolutionCount: golden["resolution_count"], sideM: golden["side_m"],
+    });
+    expect([...parsed.payload]).toEqual(golden["foam"]);
+  });
+
+  it.each(cases.filter((c) => c["layer"] === "LAYER_BODIES"))("unpacks the boats of $file", (golden) => {
+    const parsed = parse(read(golden.file));
+    if (parsed.kind !== "bodies") throw new Error(JSON.stringify(parsed));
+    const { header, payload } = parsed;
+    expect(header).toEqual({ tick: BigInt(golden["tick"] as string), timeS: golden["time_s"], count: golden["count"] });
+    const { bodies } = unpackBodies({ layer: "bodies", ...header, buffer: payload.slice().buffer });
+    const wanted = golden["bodies"] as Record<string, number | number[]>[];
+    expect(bodies).toHaveLength(wanted.length);
+    wanted.forEach((boat, i) => {
+      const { boatId, xM, yM, zM, headingRad, pitchRad, rollRad, speedMps, throttle, rudder } = bodies[i] as BodyPose;
+      expect([boatId, xM, yM, zM]).toEqual([boat["boat_id"], ...(boat["position_m"] as number[])]);
+      // The file holds nine decimal digits.
+      expect(headingRad).toBeCloseTo(boat["heading_rad"] as number, 8);
+      expect(pitchRad).toBeCloseTo(boat["pitch_rad"] as number, 8);
+      expect(rollRad).toBeCloseTo(boat["roll_rad"] as number, 8);
+      expect(speedMps).toBeCloseTo(boat["speed_mps"] as number, 8);
+      expect(throttle).toBeCloseTo(boat["throttle_ratio"] as number, 8);
+      expect(rudder).toBeCloseTo(boat["rudder_ratio"] as number, 8);
+    });
+  });
+
+  it.each(cases.filter((c) => c.kind === "boat_list"))("reads the boats of $file", (golden) => {
+    const boats = golden["boats"] as Record<string, number>[];
+    expect(parse(read(golden.file))).toEqual({
+      kind: "boatList", boats: boats.map((boat) => Object.fromEntries(Object.entries(boat).map(([name, value]) => [camel(name), value]))),
+    });
+  });
+
+  it.each(cases.filter((c) => c.kind === "room_event"))("reads the event of $file", (golden) => {
+    expect(parse(read(golden.file))).toEqual({
+      kind: "roomEvent", event: (golden["event"] as string).replace("ROOM_EVENT_KIND_", "").toLowerCase(),
+      tick: BigInt(golden["tick"] as string), message: golden["message"],
+    });
+  });
+
   it("reads the diagnostics to the last bit", () => {
     const golden = cases.find((c) => c.kind === "diagnostics")!;
     const parsed = parse(read(golden.file));
@@ -111,13 +161,17 @@ describe("golden bytes", () => {
     });
   });
 
-  it("reads ack and reject with 64-bit numbers whole", () => {
-    const ack = cases.find((c) => c.kind === "ack")!;
-    expect(parse(read(ack.file))).toEqual({ kind: "ack", commandId: BigInt(ack["command_id"] as string), appliedTick: BigInt(ack["applied_tick"] as string), boatId: (ack["boat_id"] as number | undefined) ?? 0 });
-    const reject = cases.find((c) => c.kind === "reject")!;
-    expect(parse(read(reject.file))).toEqual({
-      kind: "reject", commandId: BigInt(reject["command_id"] as string), reason: (reject["reason"] as string).replace("REJECT_REASON_", ""),
-      field: reject["field"], message: reject["message"],
+  it.each(cases.filter((c) => c.kind === "ack"))("reads $file with 64-bit numbers whole", (golden) => {
+    expect(parse(read(golden.file))).toEqual({
+      kind: "ack", commandId: BigInt(golden["command_id"] as string), appliedTick: BigInt(golden["applied_tick"] as string),
+      boatId: golden["boat_id"] ?? 0,
+    });
+  });
+
+  it.each(cases.filter((c) => c.kind === "reject"))("reads $file", (golden) => {
+    expect(parse(read(golden.file))).toEqual({
+      kind: "reject", commandId: BigInt(golden["command_id"] as string), reason: (golden["reason"] as string).replace("REJECT_REASON_", ""),
+      field: golden["field"], message: golden["message"],
     });
   });
 });

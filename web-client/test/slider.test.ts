@@ -121,7 +121,15 @@ describe("the effect sliders' ranges", () => {
     expect(clampTo(3, small.splashRadiusM)).toBe(0.5);
   });
 
-  it("are absent without a wave", () => {
+  it("measure a box of particles by its narrower side and its resting water, as the server does", () => {
+    // 2 layers of 8 particles at 0.5 m: a metre of water.
+    const limits = enter({ particles: { boxSideM: 4, boxWidthM: 2, fillXRatio: 0.5, fillZRatio: 1, layersCount: 2, count: 32 } })!;
+    expect(limits.splashRadiusM.max).toBe(1);
+    expect(limits.splashDepthM.max).toBe(0.9);
+    expect(limits.waveLengthM.max).toBe(2);
+  });
+
+  it("are absent where no water says how deep it is", () => {
     expect(enter({ particles: { boxSideM: 2.4 } })).toBeUndefined();
   });
 });

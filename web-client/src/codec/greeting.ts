@@ -1,5 +1,5 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, no Protobuf objects.
-import { CouplingMode } from "../gen/spindrift/v1/scene_pb";
+import { CouplingMode, type ParticleScene } from "../gen/spindrift/v1/scene_pb";
 import { Layer, type BoatList, type Greeting } from "../gen/spindrift/v1/wire_pb";
 import { malformed, type Malformed } from "./frames";
 import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
@@ -56,6 +56,8 @@ export interface GreetingInfo {
   wave: WaveInfo | undefined;
   /** Horizontal side of the water, metres. */
   sideM: number;
+  /** What effects and boats are measured by: the wave, or the resting water of a box of particles. */
+  stage: { sideM: number; depthM: number };
   hasParticles: boolean;
   /** Breaking water turns into particles and back. */
   isTwoWay: boolean;
@@ -80,6 +82,14 @@ export function readBoatList(list: BoatList): BoatDetail[] | string {
   }
   if (new Set(boats.map(({ boatId }) => boatId)).size < boats.length) return "two boats of one id";
   return boats;
+}
+
+/** The server's own measure: the box's narrower side, and how deep its particles would lie at rest where they fill it. */
+function boxStage(particles: ParticleScene | undefined): { sideM: number; depthM: number } {
+  const { boxSideM = 0, boxWidthM = 0, fillXRatio = 1, fillZRatio = 1, layersCount = 0, count = 0 } = particles ?? {};
+  const widthM = boxWidthM > 0 ? boxWidthM : boxSideM;
+  const areaM2 = boxSideM * fillXRatio * widthM * fillZRatio;
+  return { sideM: Math.min(boxSideM, widthM), depthM: layersCount * Math.sqrt((areaM2 * layersCount) / Math.max(count, 1)) };
 }
 
 /** A greeting's plain form, or "malformed" where a size that the page draws with is not a positive number. */
@@ -108,6 +118,7 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
       description: scene?.description ?? "",
       wave,
       sideM,
+      stage: wave ? { sideM, depthM: wave.depthM } : boxStage(scene?.particles),
       hasParticles: scene?.particles !== undefined,
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
       hasBoats: scene?.boats !== undefined,

@@ -15,8 +15,8 @@ export interface Bed {
   beaches: readonly BeachInfo[];
 }
 
-export function bedOf(greeting: GreetingInfo): Bed {
-  return { sideM: greeting.sideM, depthM: greeting.wave?.depthM ?? 1, beaches: greeting.beaches };
+export function bedOf(greeting: Pick<GreetingInfo, "sideM" | "stage" | "beaches">): Bed {
+  return { sideM: greeting.sideM, depthM: greeting.stage.depthM, beaches: greeting.beaches };
 }
 
 /** How far inside of the side a place lies; negative outside. */

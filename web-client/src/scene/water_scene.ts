@@ -111,8 +111,8 @@ export class WaterScene {
       const hasSolids = greeting.hasBoats || greeting.obstacles.length > 0 || greeting.beaches.length > 0;
       this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), bed, this.noise, this.foam?.uniforms, hasSolids, this.quality);
       this.waters.add(this.body.group);
-      this.enterSolids(greeting, bed);
     }
+    this.enterSolids(greeting, bedOf(greeting));
     this.ground = new Ground(this.sky, this.field?.texture, sideM, depthM, this.quality.plain);
     if (this.landscape) this.ground.lowerTo(-depthM - kFloorDropSides * sideM);
     this.solids.add(this.ground.mesh);
@@ -268,7 +268,7 @@ export class WaterScene {
       {
         ...this.sky.uniforms,
         u_camera_m: { value: new Vector3() },
-        u_field: { value: this.field!.texture },
+        u_field: { value: this.field?.texture ?? null },
         u_noise: { value: this.noise },
         u_side_m: { value: bed.sideM },
         u_grain_m: { value: Math.min(Math.max(bed.sideM / 16, 0.5), 4) },

@@ -36,10 +36,10 @@ function range(field: DescField, largest: number): Range {
   return { label, unit, min, max: rounded, step, default: Math.min(fallback, rounded) };
 }
 
-/** undefined for a scene without a heightfield: nothing there to splash. */
+/** undefined where no water says how deep it is: nothing there to splash. */
 export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
-  if (!greeting.wave) return undefined;
-  const { sideM, depthM } = greeting.wave;
+  const { sideM, depthM } = greeting.stage;
+  if (!(depthM > 0 && Number.isFinite(depthM))) return undefined;
   return {
     splashRadiusM: range(SplashSchema.field.radiusM, kWidestRadiusSides * sideM),
     splashDepthM: range(SplashSchema.field.depthM, kDeepestDepths * depthM),
@@ -63,8 +63,8 @@ const kDraughtDepths = 0.6;
 
 /** undefined for a scene that takes no boats. */
 export function boatLimits(greeting: GreetingInfo): BoatLimits | undefined {
-  if (!greeting.hasBoats || !greeting.wave) return undefined;
-  const { sideM, depthM } = greeting.wave;
+  const { sideM, depthM } = greeting.stage;
+  if (!greeting.hasBoats || !(depthM > 0 && Number.isFinite(depthM))) return undefined;
   const deepest = (kDraughtDepths * depthM) / (kBoatShape.height * kBoatShape.density);
   return {
     lengthM: range(BoatSchema.field.lengthM, Math.min(kLongestBoatSides * sideM, deepest)),

@@ -20,12 +20,12 @@ export function clearanceM(obstacle: ObstacleInfo, xM: number, zM: number): numb
 
 /** Free place nearest the middle for a hull of `lengthM`; the roomiest one tried where nothing is quite free. */
 export function spawnPlace(
-  greeting: Pick<GreetingInfo, "sideM" | "wave" | "beaches" | "obstacles">,
+  greeting: Pick<GreetingInfo, "sideM" | "stage" | "beaches" | "obstacles">,
   lengthM: number,
   draughtM: number,
   others: readonly { xM: number; zM: number }[],
 ): { xM: number; zM: number } {
-  const bed: Bed = bedOf(greeting as GreetingInfo);
+  const bed: Bed = bedOf(greeting);
   const half = greeting.sideM / 2;
   const wantedM = 0.75 * lengthM;
   let best = { xM: 0, zM: 0 };
