@@ -56,6 +56,8 @@ export interface GreetingInfo {
   wave: WaveInfo | undefined;
   /** Horizontal side of the water, metres. */
   sideM: number;
+  /** The same along z: another one in a narrow tank of particles. */
+  widthM: number;
   /** What effects and boats are measured by: the wave, or the resting water of a box of particles. */
   stage: { sideM: number; depthM: number };
   hasParticles: boolean;
@@ -118,6 +120,7 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
       description: scene?.description ?? "",
       wave,
       sideM,
+      widthM: (!wave && scene?.particles?.boxWidthM) || sideM,
       stage: wave ? { sideM, depthM: wave.depthM } : boxStage(scene?.particles),
       hasParticles: scene?.particles !== undefined,
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,

@@ -1,5 +1,5 @@
 // The floor under and around the water, out to the haze.
-import { CircleGeometry, Mesh, Vector3, type RawShaderMaterial, type Texture } from "three";
+import { CircleGeometry, Mesh, Vector2, Vector3, type RawShaderMaterial, type Texture } from "three";
 
 import { makeMaterial, type Uniforms } from "./shaders";
 import type { Sky } from "./sky";
@@ -9,12 +9,13 @@ export class Ground {
   private readonly uniforms: Uniforms;
 
   /** `field` absent: a floor without water above it. */
-  constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number, plain: boolean) {
+  constructor(sky: Sky, field: Texture | undefined, sideM: number, widthM: number, depthM: number, plain: boolean) {
     this.uniforms = {
       ...sky.uniforms,
       u_camera_m: { value: new Vector3() },
       u_field: { value: field ?? null },
       u_side_m: { value: sideM },
+      u_half_m: { value: new Vector2(sideM / 2, widthM / 2) },
       u_depth_m: { value: depthM },
       u_has_water: { value: field !== undefined },
     };

@@ -113,7 +113,7 @@ export class WaterScene {
       this.waters.add(this.body.group);
     }
     this.enterSolids(greeting, bedOf(greeting));
-    this.ground = new Ground(this.sky, this.field?.texture, sideM, depthM, this.quality.plain);
+    this.ground = new Ground(this.sky, this.field?.texture, sideM, greeting.widthM, depthM, this.quality.plain);
     if (this.landscape) this.ground.lowerTo(-depthM - kFloorDropSides * sideM);
     this.solids.add(this.ground.mesh);
     if (greeting.hasParticles) {

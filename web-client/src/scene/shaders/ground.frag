@@ -6,6 +6,7 @@ in vec3 v_world;
 uniform vec3 u_camera_m;
 uniform sampler2D u_field;
 uniform float u_side_m;
+uniform vec2 u_half_m;
 uniform float u_depth_m;
 uniform bool u_has_water;
 layout(location = 0) out vec4 color;
@@ -28,7 +29,7 @@ float slabs(vec2 at, float tile_m, float uneven, float joint_dark) {
 
 void main() {
   vec2 at = v_world.xz;
-  vec2 outside = max(abs(at) - 0.5 * u_side_m, 0.0);
+  vec2 outside = max(abs(at) - u_half_m, 0.0);
   float away_m = length(outside);
   vec3 light = kSunColor * 0.85 * u_sun_direction.y + vec3(0.34, 0.42, 0.52);
   vec3 toward = v_world - u_camera_m;

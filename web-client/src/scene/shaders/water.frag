@@ -169,7 +169,8 @@ void main() {
     lace = clamp(0.68 * lace + 0.42 * texture(u_noise, at.yx / (0.29 * u_lace_m)).r - 0.05, 0.0, 1.0);
 #endif
     // Much foam closes, little foam is a few thin threads; what fades also grows see-through.
-    float strength = min(1.1 * foam + 0.12, 1.0);
+    // Fading foam opens early, so that only what just broke is solid white.
+    float strength = min(1.1 * foam * sqrt(foam) + 0.1, 1.0);
     float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Air under the surface first, then froth on it.
     water = mix(water, vec3(0.16, 0.42, 0.46), 0.45 * foam);
