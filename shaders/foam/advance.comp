@@ -20,8 +20,8 @@ layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
 #endif
 
 /// White that a second of full breaking makes, and one particle that falls back.
-const float kBreakingGain_per_s = 8.0;
-const float kLandingGain = 0.12;
+const float kBreakingGain_per_s = 3.0;
+const float kLandingGain = 0.06;
 const float kWakeGain_per_s = 5.0;
 
 vec4 before(ivec2 cell, int n) {

@@ -10,7 +10,7 @@
 #include "shared/pool.h"
 
 /// Share of the rising water that a fully breaking cell throws out as spray.
-#define SPRAY_SHARE 0.2
+#define SPRAY_SHARE 0.15
 
 /// Expected particles in the tick: the volume thrown out over a particle's; drawn by the hash of cell and tick.
 bool emits(uint cell, uint tick, float intensity, float rate_mps) {
