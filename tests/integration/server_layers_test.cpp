@@ -87,16 +87,20 @@ TEST_F(Pool, TakesAnotherNumberOfParticlesWhileItRuns) {
   ScriptedClient two = client();
   two.subscribe(v1::LAYER_PARTICLES);
   ASSERT_TRUE(two.nextFrame(v1::LAYER_PARTICLES));
-  ASSERT_TRUE(one.apply(setParameter("particles.count", 2048)));
+  const auto applied = one.apply(setParameter("particles.count", 2048));
+  ASSERT_TRUE(applied);
   const auto told = two.waitFor(v1::ServerMessage::kParameterChanged);
   ASSERT_TRUE(told);
   EXPECT_EQ(told->parameter_changed().path(), "particles.count");
+  EXPECT_EQ(told->parameter_changed().value(), 2048.0);
+  EXPECT_EQ(told->parameter_changed().applied_tick(), *applied);
   EXPECT_TRUE(two.waitFor([](const v1::ServerMessage& m) {
     return m.has_frame() && m.frame().layer() == v1::LAYER_PARTICLES && m.frame().particles_fixed12().count() > 1500 &&
            stream::decodeParticles(m.frame());
   }));
   const v1::Reject refused = one.rejected(setParameter("particles.count", 2'000'000));
   EXPECT_EQ(refused.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(refused.field(), "particles.count");
   EXPECT_THAT(refused.message(), HasSubstr("1048576"));
   EXPECT_THAT(refused.message(), HasSubstr("2000000"));
 }
