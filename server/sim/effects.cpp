@@ -34,14 +34,14 @@ constexpr double kCrownFall = 1.1;
 /// A splash smaller than this many wave cells is a drop; it throws no crown.
 constexpr double kCrownRadius_cells = 4.0;
 
-shared::EventUniform uniformOf(const core::Splash& splash, double gain, double strength, const WaveLayout& wave) {
+shared::EventUniform uniformOf(const core::Splash& splash, double gain, double strength, const EffectStage& stage) {
   shared::EventUniform u{};
   u.gain_m = static_cast<float>(-splash.depth_m * gain);
   u.x_m = static_cast<float>(splash.x_m);
   u.z_m = static_cast<float>(splash.z_m);
   u.radius_m = static_cast<float>(splash.radius_m);
   u.depth_m = static_cast<float>(splash.depth_m);
-  if (splash.radius_m > kCrownRadius_cells * wave.cell_m)
+  if (splash.radius_m > kCrownRadius_cells * stage.cell_m)
     u.speed_mps = static_cast<float>(strength * std::sqrt(2 * kCrownFall * kStandardGravity_mps2 * splash.depth_m));
   return u;
 }
@@ -64,11 +64,11 @@ std::pair<double, double> directionOf(const core::BreakingWave& wave) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, double age_s, const WaveLayout& layout) {
+shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, double age_s, const EffectStage& stage) {
   shared::EventUniform u{};
   const double width_m = wave.length_m / kWidthOfHalfHeight;
   const bool breaking = wave.shape == core::WaveShape::kBreaking;
-  const double front_m = std::max((breaking ? kBreakingFrontShare : 1.0) * width_m, 1.5 * layout.cell_m);
+  const double front_m = std::max((breaking ? kBreakingFrontShare : 1.0) * width_m, 1.5 * stage.cell_m);
   const double back_m = std::max(2 * width_m - front_m, front_m);
   const auto [dx, dz] = directionOf(wave);
   u.gain_m = static_cast<float>(wave.amplitude_m * gain);
@@ -77,17 +77,23 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
   u.front_m = static_cast<float>(front_m);
   u.back_m = static_cast<float>(back_m);
   const bool group = wave.side == core::Side::kDirection;
-  u.lateral_m = group ? static_cast<float>(kGroupLateralShare * layout.side_m) : 0.0f;
+  u.lateral_m = group ? static_cast<float>(kGroupLateralShare * std::min(stage.side_x_m, stage.side_z_m)) : 0.0f;
   // A group needs room for the trough behind it, too.
   const double inset_m = kCrestInset * (group ? 1.5 * (front_m + back_m) : back_m);
-  u.offset_m =
-      static_cast<float>(-layout.side_m / 2 + std::min(inset_m, 0.4 * layout.side_m) + layout.speed_mps * age_s);
-  u.half_step_m = static_cast<float>(0.5 * layout.speed_mps * layout.dt_s);
-  u.speed_mps = static_cast<float>(layout.speed_mps);
+  // A group may go any way: it starts as far from the centre as the shorter side allows.
+  const double side_m = group ? std::min(stage.side_x_m, stage.side_z_m) : dx != 0.0 ? stage.side_x_m : stage.side_z_m;
+  u.half_side_m = static_cast<float>(0.5 * side_m);
+  u.offset_m = static_cast<float>(-side_m / 2 + std::min(inset_m, 0.4 * side_m) + stage.speed_mps * age_s);
+  u.half_step_m = static_cast<float>(0.5 * stage.speed_mps * stage.dt_s);
+  u.speed_mps = static_cast<float>(stage.speed_mps);
   return u;
 }
 
 }  // namespace
+
+EffectStage stageOf(const WaveLayout& wave) {
+  return {wave.side_m, wave.side_m, wave.cell_m, wave.speed_mps, wave.dt_s};
+}
 
 double pulse(double phase) {
   const double t = std::clamp(phase, 0.0, 1.0);
@@ -109,18 +115,19 @@ core::Result<void> Effects::start(const core::Effect& effect, double time_s, std
   return {};
 }
 
-shared::EventUniforms Effects::advance(double time_s, const WaveLayout& wave) {
+shared::EventUniforms Effects::advance(double time_s, const EffectStage& stage) {
   shared::EventUniforms out{};
   for (const Active& a : active_) {
     const double age_s = time_s - a.start_s;
-    const double gain = pulse((age_s + wave.dt_s) / duration(a.effect)) - pulse(age_s / duration(a.effect));
+    const double gain = pulse((age_s + stage.dt_s) / duration(a.effect)) - pulse(age_s / duration(a.effect));
     if (gain <= 0.0) continue;
     if (const auto* splash = std::get_if<core::Splash>(&a.effect))
-      out.splashes[out.splash_count++] = uniformOf(*splash, gain, gain * duration(a.effect) / (1.5 * wave.dt_s), wave);
+      out.splashes[out.splash_count++] =
+          uniformOf(*splash, gain, gain * duration(a.effect) / (1.5 * stage.dt_s), stage);
     else
-      out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, wave);
+      out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, stage);
   }
-  std::erase_if(active_, [&](const Active& a) { return time_s + wave.dt_s >= a.start_s + duration(a.effect); });
+  std::erase_if(active_, [&](const Active& a) { return time_s + stage.dt_s >= a.start_s + duration(a.effect); });
   return out;
 }
 

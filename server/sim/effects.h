@@ -16,6 +16,16 @@ namespace spindrift::sim {
 /// the start over the duration.
 double pulse(double phase);
 
+/// The water that effects act on: a rectangle round the origin.
+struct EffectStage {
+  double side_x_m = 0.0;
+  double side_z_m = 0.0;
+  double cell_m = 0.0;     ///< what it resolves
+  double speed_mps = 0.0;  ///< of its long waves, sqrt(g d)
+  double dt_s = 0.0;       ///< between two calls of advance()
+};
+EffectStage stageOf(const WaveLayout& wave);
+
 /// At most MAX_SPLASHES splashes and MAX_CRESTS crests at a time.
 class Effects {
  public:
@@ -24,7 +34,7 @@ class Effects {
   core::Result<void> start(const core::Effect& effect, double time_s, std::size_t spare = 0);
 
   /// What the active effects add during [time_s, time_s + dt_s]; those that have ended are forgotten.
-  shared::EventUniforms advance(double time_s, const WaveLayout& wave);
+  shared::EventUniforms advance(double time_s, const EffectStage& stage);
 
   [[nodiscard]] bool idle() const { return active_.empty(); }
   void clear() { active_.clear(); }

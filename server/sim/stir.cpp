@@ -1,6 +1,5 @@
 #include "stir.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <shared/bindings.h>
@@ -18,15 +17,13 @@ core::Result<std::unique_ptr<Stir>> Stir::create(gpu::Context& ctx, const gpu::D
   return out;
 }
 
-WaveLayout Stir::stage(const core::Scene& scene, const Derived& derived) {
+EffectStage Stir::stage(const core::Scene& scene, const Derived& derived) {
   const ParticleLayout& l = *derived.particles;
-  WaveLayout out;
-  out.side_m = std::min(l.max_m[0] - l.min_m[0], l.max_m[2] - l.min_m[2]);
-  out.cell_m = l.spacing_m;
-  out.resolution_count = static_cast<std::uint32_t>(out.side_m / out.cell_m);
-  out.speed_mps = std::sqrt(scene.gravity_mps2 * l.band_m);
-  out.dt_s = derived.tick_s;
-  return out;
+  return {.side_x_m = l.max_m[0] - l.min_m[0],
+          .side_z_m = l.max_m[2] - l.min_m[2],
+          .cell_m = l.spacing_m,
+          .speed_mps = std::sqrt(scene.gravity_mps2 * l.band_m),
+          .dt_s = derived.tick_s};
 }
 
 void Stir::apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population) {
@@ -35,7 +32,7 @@ void Stir::apply(const shared::EventUniforms& events, const ParticleBuffers& par
   ctx_.barrier(gpu::Barrier::kUniform);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   population.bind();
-  particles.position.bindTexel(POSITION);
+  particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   population.forParticles(program_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);

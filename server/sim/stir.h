@@ -10,6 +10,7 @@
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim/derive.h>
 
+#include "effects.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
 
@@ -19,11 +20,11 @@ class Stir {
  public:
   static core::Result<std::unique_ptr<Stir>> create(gpu::Context& ctx, const gpu::Defines& defines);
 
-  /// Adds a tick's share of the effects to the velocities; nothing where no effect acts.
+  /// Adds a tick's share of the effects to positions and velocities; nothing where no effect acts.
   void apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population);
 
   /// What effects are measured by where there is no wave: the particles' box, and long waves on their resting depth.
-  static WaveLayout stage(const core::Scene& scene, const Derived& derived);
+  static EffectStage stage(const core::Scene& scene, const Derived& derived);
 
  private:
   explicit Stir(gpu::Context& ctx) : ctx_(ctx) {}

@@ -46,7 +46,7 @@ void WaterSim::advanceWave() {
   if (!parts_->wave) return;
   const auto timer = timers_.scope("wave");
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
-    parts_->wave->displace(parts_->effects.advance(time_s() + k * derived_.wave->dt_s, *derived_.wave));
+    parts_->wave->displace(parts_->effects.advance(time_s() + k * derived_.wave->dt_s, stageOf(*derived_.wave)));
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr);
   }
   parts_->wave->clearPressure();  // hulls and falling particles press anew for the next tick

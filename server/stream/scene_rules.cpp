@@ -141,15 +141,21 @@ void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, cons
   }
 }
 
+/// The side of the water that a wave from there runs along. A wave in a direction may run along either.
+double sideAlong(core::Side side, const Stage& stage) {
+  if (side == core::Side::kPlusX || side == core::Side::kMinusX) return stage.side_x_m;
+  if (side == core::Side::kPlusZ || side == core::Side::kMinusZ) return stage.side_z_m;
+  return stage.shorterSide_m();
+}
+
 }  // namespace
 
 Stage stageOf(const v1::Scene& scene) {
-  if (scene.has_wave()) return {scene.wave().side_m(), scene.wave().depth_m()};
+  if (scene.has_wave()) return {scene.wave().side_m(), scene.wave().side_m(), scene.wave().depth_m()};
   const v1::ParticleScene& p = scene.particles();
   const double width_m = p.box_width_m() > 0 ? p.box_width_m() : p.box_side_m();
   const double area_m2 = p.box_side_m() * p.fill_x_ratio() * width_m * p.fill_z_ratio();
-  return {std::min(p.box_side_m(), width_m),
-          p.layers_count() * std::sqrt(area_m2 * p.layers_count() / std::max(p.count(), 1u))};
+  return {p.box_side_m(), width_m, p.layers_count() * std::sqrt(area_m2 * p.layers_count() / std::max(p.count(), 1u))};
 }
 
 bool isSceneName(const std::string& name) {
@@ -161,21 +167,22 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
   std::vector<FieldIssue> issues;
   const bool is_splash = std::holds_alternative<core::Splash>(effect);
   const Stage stage = stageOf(scene);
-  const double side_m = stage.side_m;
   const double depth_m = stage.depth_m;
   if (is_splash) {
     const core::Splash& splash = std::get<core::Splash>(effect);
-    checkPosition(splash.x_m, side_m, "splash.x_m", issues);
-    checkPosition(splash.z_m, side_m, "splash.z_m", issues);
-    if (splash.radius_m > 0.5 * side_m) {
+    checkPosition(splash.x_m, stage.side_x_m, "splash.x_m", issues);
+    checkPosition(splash.z_m, stage.side_z_m, "splash.z_m", issues);
+    const double max_radius_m = 0.5 * stage.shorterSide_m();
+    if (splash.radius_m > max_radius_m) {
       addRange(
           issues, "splash.radius_m",
-          metres(splash.radius_m) + " is more than half the side of the water; choose at most " + metres(0.5 * side_m));
+          metres(splash.radius_m) + " is more than half the side of the water; choose at most " + metres(max_radius_m));
     }
     checkHeight(splash.depth_m, depth_m, "splash.depth_m", issues);
   } else {
     const core::BreakingWave& wave = std::get<core::BreakingWave>(effect);
     checkHeight(wave.amplitude_m, depth_m, "breaking_wave.amplitude_m", issues);
+    const double side_m = sideAlong(wave.side, stage);
     if (wave.length_m > side_m) {
       addRange(issues, "breaking_wave.length_m",
                metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m));

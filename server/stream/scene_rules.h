@@ -1,6 +1,7 @@
 // Rules between the fields of a scene, and between an effect and the scene it happens in.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,11 @@ namespace spindrift::stream {
 
 /// What effects and boats are measured by: the wave, or the resting water of a box of particles.
 struct Stage {
-  double side_m;
+  double side_x_m;
+  double side_z_m;
   double depth_m;
+
+  [[nodiscard]] double shorterSide_m() const { return std::min(side_x_m, side_z_m); }
 };
 Stage stageOf(const v1::Scene& scene);
 

@@ -184,10 +184,10 @@ void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
 }
 
 void checkHull(const core::Boat& boat, const Stage& water, const std::string& prefix, std::vector<FieldIssue>& issues) {
-  const double max_length_m = kMaxBoatSideRatio * water.side_m;
+  const double max_length_m = kMaxBoatSideRatio * water.shorterSide_m();
   if (boat.length_m > max_length_m) {
     addRange(issues, prefix + "length_m",
-             metres(boat.length_m) + " is more than a quarter of the water's side of " + metres(water.side_m) +
+             metres(boat.length_m) + " is more than a quarter of the water's side of " + metres(water.shorterSide_m()) +
                  "; choose at most " + metres(max_length_m));
   }
   if (boat.beam_m > boat.length_m) {
@@ -231,8 +231,8 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
   const Stage water = stageOf(scene);
   checkHull(boat, water, prefix, issues);
   const Footprint hull = footprintOf(boat);
-  checkInside(boat.x_m, hull.reachX_m(), water.side_m, prefix + "x_m", issues);
-  checkInside(boat.z_m, hull.reachZ_m(), water.side_m, prefix + "z_m", issues);
+  checkInside(boat.x_m, hull.reachX_m(), water.side_x_m, prefix + "x_m", issues);
+  checkInside(boat.z_m, hull.reachZ_m(), water.side_z_m, prefix + "z_m", issues);
   for (int i = 0; i < scene.obstacles_size(); ++i) {
     const v1::Obstacle& obstacle = scene.obstacles(i);
     const bool hits = obstacle.has_rock()         ? overlap(hull, obstacle.rock())

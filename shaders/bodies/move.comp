@@ -169,10 +169,14 @@ void meetGround(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
 #endif
 
 void meetSides(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
-  const float inside_m = 0.5 * sim.wave_side_m - 0.5 * b.hull_m.y;
+#if WAVE
+  const vec2 inside_m = vec2(0.5 * sim.wave_side_m - 0.5 * b.hull_m.y);
+#else
+  const vec2 inside_m = vec2(sim.max_x_m, sim.max_z_m) - 0.5 * b.hull_m.y;
+#endif
   for (int k = -1; k <= 1; ++k) {
     const vec2 over_m = circleOf(b, k) + shift_m;
-    const vec2 beyond_m = clamp(over_m, vec2(-inside_m), vec2(inside_m)) - over_m;
+    const vec2 beyond_m = clamp(over_m, -inside_m, inside_m) - over_m;
 #if !WAVE_PERIODIC_X
     if (beyond_m.x != 0.0) pushBack(shift_m, velocity_mps, vec2(sign(beyond_m.x), 0.0), abs(beyond_m.x), -sign(beyond_m.x) * velocity_mps.x);
 #endif

@@ -32,14 +32,14 @@ float crestIntegral(float s_m, float front_m, float back_m) {
 
 /// Displacement of a crest at a place, along its direction. A crest that spans the domain takes its water evenly from all of
 /// it, and moves none across the sides; a group of finite width takes it from a trough behind.
-float crestDisplacement(EventUniform e, vec2 place_m, float half_side_m) {
+float crestDisplacement(EventUniform e, vec2 place_m) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestIntegral(s - e.offset_m, e.front_m, e.back_m);
   if (e.lateral_m == 0.0) {
-    const float low = crestIntegral(-half_side_m - e.offset_m, e.front_m, e.back_m);
-    const float high = crestIntegral(half_side_m - e.offset_m, e.front_m, e.back_m);
-    return own - mix(low, high, (s + half_side_m) / (2.0 * half_side_m));
+    const float low = crestIntegral(-e.half_side_m - e.offset_m, e.front_m, e.back_m);
+    const float high = crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m);
+    return own - mix(low, high, (s + e.half_side_m) / (2.0 * e.half_side_m));
   }
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;
@@ -48,14 +48,14 @@ float crestDisplacement(EventUniform e, vec2 place_m, float half_side_m) {
 }
 
 /// The change of elevation that belongs to it, for the flow that makes the crest travel.
-float crestElevation(EventUniform e, vec2 place_m, float half_side_m) {
+float crestElevation(EventUniform e, vec2 place_m) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestShape(s - e.offset_m, e.front_m, e.back_m);
   if (e.lateral_m == 0.0) {
-    const float low = crestIntegral(-half_side_m - e.offset_m, e.front_m, e.back_m);
-    const float high = crestIntegral(half_side_m - e.offset_m, e.front_m, e.back_m);
-    return own - (high - low) / (2.0 * half_side_m);
+    const float low = crestIntegral(-e.half_side_m - e.offset_m, e.front_m, e.back_m);
+    const float high = crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m);
+    return own - (high - low) / (2.0 * e.half_side_m);
   }
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;

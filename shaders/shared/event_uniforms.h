@@ -29,9 +29,9 @@ struct EventUniform {
   float half_step_m;   // crest: how far it travels in half a step
   float speed_mps;     // crest: of the wave. splash: of the crown that it throws now; 0 for rain drops
   float depth_m;       // splash: its whole depth
+  float half_side_m;   // crest across the whole domain: half of the domain's side along its direction
   float unused_x;
   float unused_y;
-  float unused_z;
 };
 #ifdef __cplusplus
 struct EventUniforms {

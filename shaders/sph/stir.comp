@@ -1,7 +1,9 @@
-// Effects in a scene without a wave: they set the particles themselves in motion, once a tick.
-// Reads EventUniforms, POSITION. Adds to VELOCITY [m/s]. (Scenes with a wave move the surface instead: shaders/wave.)
-// A splash drives its disc down and its rim outward and up, with the speed of a fall through its depth; a crest gives the water under
-// it the speed that belongs to its height, u = a sqrt(g/d) (long waves), in its direction. The gains of a pulse sum to the whole.
+// Effects in a scene without a wave: they move the particles themselves, once a tick.
+// Reads EventUniforms. Changes POSITION [m] and VELOCITY [m/s]. (Scenes with a wave move the surface: shaders/wave.)
+// Equation: a change of the surface by eta = div V moves the water under it by -V/d along, and by eta (y + d)/d upward: no divergence, so
+// that the pressure solver has nothing to undo. A splash leaves its cavity to fall in, and brings its rim to the crown's speed, outward and up;
+// a crest sets its water in motion with u = c eta/d (long waves). The gains of a pulse sum to the whole.
+// Invariant: nothing moves by more than a quarter of the spacing in a tick, or out of the walls.
 // variants: PERIODIC_X=1 PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Z=0
 #include "shared/groups.h"
 #include "include/event_shapes.glsl"
@@ -9,29 +11,49 @@
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
-layout(binding = POSITION) uniform samplerBuffer position;
+layout(std430, binding = POSITION) restrict buffer Position { vec4 position[]; };
 layout(std430, binding = VELOCITY) restrict buffer Velocity { vec4 velocity[]; };
+
+/// Where a crown leaves, in radii: a ring just outside of the splash.
+const float CROWN_RADII = 1.1;
+const float CROWN_WIDTH_RADII = 0.35;
 
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= unsortedCount()) return;
-  const vec3 x = texelFetch(position, int(i)).xyz;
+  const vec4 own = position[i];
+  vec3 x = own.xyz;
   const float depth_m = sim.band_m;
-  const float half_side_m = 0.5 * (sim.max_x_m - sim.min_x_m);
-  // Full at the top of the resting water, nothing at the floor.
-  const float reach = clamp((x.y + depth_m) / depth_m, 0.0, 1.0);
-  vec3 gain_mps = vec3(0.0);
+  const float height_ratio = clamp((x.y + depth_m) / depth_m, 0.0, 1.0);  // 0 at the floor, 1 at the resting surface
+  vec3 move_m = vec3(0.0);
+  vec3 v_mps = velocity[i].xyz;
   for (uint k = 0u; k < splash_count; ++k) {
     const EventUniform e = splashes[k];
     const vec2 r_m = x.xz - vec2(e.x_m, e.z_m);
-    const float fall_mps = e.gain_m * sqrt(2.0 * sim.gravity_mps2 / max(e.depth_m, 1e-3));
-    gain_mps.y += reach * fall_mps * splashElevation(r_m, e.radius_m);
-    gain_mps.xz -= reach * fall_mps / e.radius_m * splashDisplacement(r_m, e.radius_m);
+    move_m.xz -= e.gain_m / depth_m * splashDisplacement(r_m, e.radius_m);
+    move_m.y += e.gain_m * height_ratio * splashElevation(r_m, e.radius_m);
+    const float off = (length(r_m) / e.radius_m - CROWN_RADII) / CROWN_WIDTH_RADII;
+    const vec3 outward = normalize(vec3(0.5 * r_m.x, 0.87 * length(r_m) + 1e-6, 0.5 * r_m.y));
+    const float share = e.speed_mps > 0.0 ? height_ratio * height_ratio * exp(-off * off) : 0.0;
+    v_mps += share * max(e.speed_mps - dot(v_mps, outward), 0.0) * outward;
   }
   for (uint k = 0u; k < crest_count; ++k) {
     const EventUniform e = crests[k];
-    const float at = max(crestElevation(e, x.xz, half_side_m), 0.0);
-    gain_mps.xz += e.gain_m * at * sqrt(sim.gravity_mps2 / depth_m) * vec2(e.direction_x, e.direction_z);
+    const vec2 d = vec2(e.direction_x, e.direction_z);
+    const float eta = crestElevation(e, x.xz);
+    move_m.xz -= e.gain_m / depth_m * crestDisplacement(e, x.xz) * d;
+    move_m.y += e.gain_m * height_ratio * eta;
+    v_mps.xz += e.gain_m * eta / depth_m * e.speed_mps * d;
   }
-  velocity[i].xyz += gain_mps;
+  x += move_m * min(1.0, 0.25 * sim.spacing_m / max(length(move_m), 1e-9));
+#if PERIODIC_X
+  x.x -= (sim.max_x_m - sim.min_x_m) * (step(sim.max_x_m, x.x) - step(x.x, sim.min_x_m));
+#endif
+#if PERIODIC_Z
+  x.z -= (sim.max_z_m - sim.min_z_m) * (step(sim.max_z_m, x.z) - step(x.z, sim.min_z_m));
+#endif
+  x.xz = clamp(x.xz, vec2(sim.min_x_m, sim.min_z_m), vec2(sim.max_x_m, sim.max_z_m));
+  x.y = clamp(x.y, sim.min_y_m, sim.max_y_m);
+  position[i] = vec4(x, own.w);
+  velocity[i].xyz = v_mps;
 }

@@ -13,11 +13,11 @@ layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[];
 layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
 
 /// Units that leave a cell through its own faces toward +x and +z.
-ivec2 outward(EventUniform e, ivec2 cell, int n, float units, float half_side_m) {
+ivec2 outward(EventUniform e, ivec2 cell, int n, float units) {
   const float cell_m = sim.wave_cell_m;
   const vec2 p = waveCellCentre(cell);
-  const float at_x = crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0), half_side_m);
-  const float at_z = crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m), half_side_m);
+  const float at_x = crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0));
+  const float at_z = crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m));
   const Flow open = conductanceOf(cell, n);
   return ivec2(open.x > 0.0 ? transferUnits(-e.direction_x * at_x, units) : 0,
                open.y > 0.0 ? transferUnits(-e.direction_z * at_z, units) : 0);
@@ -28,7 +28,6 @@ void main() {
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (cell.x >= n || cell.y >= n) return;
   const float cell_m = sim.wave_cell_m;
-  const float half_side_m = 0.5 * sim.wave_side_m;
   const ivec2 left = ivec2(wrapped(cell.x - 1, n), cell.y);
   const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n));
   const int i = cell.x + n * cell.y;
@@ -39,13 +38,13 @@ void main() {
   for (uint k = 0u; k < crest_count; ++k) {
     EventUniform e = crests[k];
     const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-    const ivec2 out_here = outward(e, cell, n, units, half_side_m);
-    gain += outward(e, left, n, units, half_side_m).x - out_here.x + outward(e, before, n, units, half_side_m).y - out_here.y;
+    const ivec2 out_here = outward(e, cell, n, units);
+    gain += outward(e, left, n, units).x - out_here.x + outward(e, before, n, units).y - out_here.y;
     e.offset_m -= e.half_step_m;
     const vec2 d = vec2(e.direction_x, e.direction_z);
-    const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0), half_side_m);
-    const float at_z = crestElevation(e, p + vec2(0.0, 0.5 * cell_m), half_side_m);
-    const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m), half_side_m);
+    const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0));
+    const float at_z = crestElevation(e, p + vec2(0.0, 0.5 * cell_m));
+    const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m));
     flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d.x * at_x, d.y * at_z, (d.x + d.y) * at_corner, (d.y - d.x) * at_corner));
   }
   elevation[i] += gain;

@@ -132,6 +132,16 @@ const BadScene kBadScenes[] = {
      "wave { side_m: 4 }\nevents {\n  effect { splash { radius_m: 2.5 } }\n}\n",
      "pool.textproto:3:21: events[0].effect.splash.radius_m: 2.5 m",
      {"half the side", "at most 2 m"}},
+    {"SplashOutsideTheNarrowWayOfABox",
+     "particles { box_side_m: 4 box_width_m: 1 }\nevents {\n  effect { splash { x_m: 1.9 z_m: 0.6 radius_m: 0.3 "
+     "depth_m: 0.1 } }\n}\n",
+     "pool.textproto:3:30: events[0].effect.splash.z_m: 0.6 m",
+     {"outside", "-0.5 to 0.5 m"}},
+    {"CrestLongerThanTheWayItRuns",
+     "particles { box_side_m: 4 box_width_m: 1 }\nevents {\n  effect { breaking_wave { side: SIDE_PLUS_Z amplitude_m: "
+     "0.1 length_m: 3 } }\n}\n",
+     "pool.textproto:3:63: events[0].effect.breaking_wave.length_m: 3 m",
+     {"at most 1 m"}},
     {"CrestHigherThanTheDepth",
      "wave { depth_m: 1 }\nevents {\n  effect { breaking_wave { amplitude_m: 1.1 } }\n}\n",
      "pool.textproto:3:28: events[0].effect.breaking_wave.amplitude_m: 1.1 m",

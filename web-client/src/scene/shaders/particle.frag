@@ -3,6 +3,7 @@
 #include <particle_color>
 
 flat in vec3 v_center_m;
+flat in float v_radius_m;
 flat in vec2 v_tint_foam;
 flat in float v_world_y_m;
 flat in float v_above_m;
@@ -21,9 +22,9 @@ void main() {
   float along = dot(ray, v_center_m);
   float miss2 = dot(v_center_m, v_center_m) - along * along;
   float pixel_m = 2.0 * along / (projectionMatrix[1][1] * u_resolution.y);
-  float covered = (u_radius_m - sqrt(miss2)) / pixel_m + 0.5;
+  float covered = (v_radius_m - sqrt(miss2)) / pixel_m + 0.5;
   if (covered <= 0.0) discard;
-  vec3 hit = ray * (along - sqrt(max(u_radius_m * u_radius_m - miss2, 0.0)));
+  vec3 hit = ray * (along - sqrt(max(v_radius_m * v_radius_m - miss2, 0.0)));
   vec3 normal_view = normalize(hit - v_center_m);
   vec3 normal = mat3(u_camera_world) * normal_view;
 
@@ -35,7 +36,7 @@ void main() {
   float over_m = v_world_y_m + normal.y * u_radius_m - highest_m;
   if (over_m > 0.0 && world_ray.y < -0.02) hit += ray * min(over_m / -world_ray.y, 2.0 * u_radius_m);
   // A soft edge lets whatever comes later and lies behind it draw over it, rather than leave a rim of the background.
-  if (covered < 1.0) hit += ray * 2.0 * u_radius_m;
+  if (covered < 1.0) hit += ray * 2.0 * v_radius_m;
   vec4 clip = projectionMatrix * vec4(hit, 1.0);
   gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
 

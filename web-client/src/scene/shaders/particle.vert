@@ -17,9 +17,9 @@ uniform sampler2D u_field;
 uniform float u_side_m;
 uniform bool u_has_water;
 
+#include <particle_color>
 #ifdef PLAIN
 #include <sky>
-#include <particle_color>
 uniform float u_depth_m;
 flat out vec3 v_sunlit;
 flat out vec3 v_ambient_low;
@@ -27,6 +27,7 @@ flat out vec3 v_ambient_high;
 flat out float v_radius_px;
 #else
 flat out vec3 v_center_m;
+flat out float v_radius_m;
 flat out vec2 v_tint_foam;
 flat out float v_world_y_m;
 flat out float v_above_m;  // centre over the water's surface; far over it in a scene without one
@@ -40,11 +41,14 @@ void main() {
   vec3 center = mix(u_min_m, u_max_m, position.xzy) + velocity * u_advance_s;
   vec2 tint_foam = vec2(float(words.y >> 8u), float(words.z & 255u)) / 255.0;
   float above_m = u_has_water ? center.y - texture(u_field, center.xz / u_side_m + 0.5).r : 1e3;
+  float out_of_water = outOfWater(above_m, u_radius_m);
+  float foam = foamShare(tint_foam.y, out_of_water);
+  float radius_m = u_radius_m * (u_has_water ? mix(1.0, kSprayRadius, foam * out_of_water) : 1.0);
   vec3 center_m = (viewMatrix * vec4(center, 1.0)).xyz;
 
   float distance_m = length(center_m);
   float ahead_m = -center_m.z;
-  if (ahead_m < 1.5 * u_radius_m) {
+  if (ahead_m < 1.5 * radius_m) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
     gl_PointSize = 1.0;
     return;
@@ -52,20 +56,18 @@ void main() {
   gl_Position = projectionMatrix * vec4(center_m, 1.0);
   // Off the axis a sphere's silhouette is longer than wide: tan(off + half) - tan(off), the far end of it.
   float off = length(center_m.xy) / ahead_m;
-  float half_width = u_radius_m / sqrt(distance_m * distance_m - u_radius_m * u_radius_m);
+  float half_width = radius_m / sqrt(distance_m * distance_m - radius_m * radius_m);
   float reach = half_width * (1.0 + off * off) / max(1.0 - off * half_width, 0.1);
   gl_PointSize = reach * projectionMatrix[1][1] * u_resolution.y;
 
 #ifdef PLAIN
   v_radius_px = 0.5 * gl_PointSize;
   gl_PointSize += 2.0;
-  float out_of_water = outOfWater(above_m, u_radius_m);
   // Just under the surface the patch lies behind its sphere, so that the surface covers it; elsewhere in front, so that
   // the floor does not.
   float under_skin = (1.0 - out_of_water) * smoothstep(-2.5, -1.2, above_m / u_radius_m);
   vec4 pushed = projectionMatrix * vec4(center_m * (1.0 + mix(-0.8, 1.1, under_skin) * u_radius_m / distance_m), 1.0);
   gl_Position.z = pushed.z / pushed.w * gl_Position.w;
-  float foam = foamShare(tint_foam.y, out_of_water);
   vec3 lit = particleAlbedo(tint_foam.x, foam, out_of_water) * lightReaching(center.y, u_depth_m, out_of_water);
   v_sunlit = lit * kSunColor * 1.15;
   v_ambient_low = lit * kAmbientBelow * (1.0 + 0.35 * foam);
@@ -74,6 +76,7 @@ void main() {
   // One pixel more all round for the soft edge.
   gl_PointSize += 2.0;
   v_center_m = center_m;
+  v_radius_m = radius_m;
   v_tint_foam = tint_foam;
   v_world_y_m = center.y;
   v_above_m = above_m;

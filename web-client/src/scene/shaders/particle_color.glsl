@@ -2,6 +2,9 @@
 const vec3 kAmbientBelow = vec3(0.20, 0.28, 0.36);
 const vec3 kAmbientAbove = vec3(0.52, 0.66, 0.84);
 
+// Spray over a surface: a particle stands for many droplets, drawn as a smaller ball than its volume, else it reads as beads.
+const float kSprayRadius = 0.62;
+
 float outOfWater(float above_m, float radius_m) { return smoothstep(0.15, 1.0, above_m / radius_m); }
 
 // Bubbles under water are dimmer than foam on it.
