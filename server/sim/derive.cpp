@@ -260,7 +260,17 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     const std::string speed = scene.wave->steepening_ratio > 0 ? "(c sqrt(1 + steepening))" : "c";
     d.rules.push_back({"wave CFL, " + limit + " dx / " + speed, "wave.depth_m", max_dt_s});
     std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
-    d.wave->substeps_count = stepsFor(d.tick_s, max_dt_s);
+    const std::uint32_t needed_count = stepsFor(d.tick_s, max_dt_s);
+    const std::uint32_t fixed_count = scene.wave->fixed_substeps_count;
+    if (fixed_count != 0 && fixed_count < needed_count && !scene.allow_unstable) {
+      return invalid(
+          fmt::format("wave.fixed_substeps_count: {} steps of {:.4g} ms are above the bound of {:.4g} ms ({}): use at "
+                      "least {}, 0 to "
+                      "let the rule choose, or set allow_unstable",
+                      fixed_count, d.tick_s / fixed_count * 1e3, max_dt_s * 1e3,
+                      "wave CFL, " + limit + " dx / " + speed, needed_count));
+    }
+    d.wave->substeps_count = fixed_count != 0 ? fixed_count : needed_count;
     d.wave->dt_s = d.tick_s / d.wave->substeps_count;
     d.wave->courant = d.wave->speed_mps * d.wave->dt_s / d.wave->cell_m;
     if (d.wave->substeps_count > kMaxSubstepsCount) {

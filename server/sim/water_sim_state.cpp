@@ -53,7 +53,7 @@ void WaterSim::recover(const Health& breach) {
   setCareful(true);
   if (recovered_count_ <= 10 || recovered_count_ % 100 == 0) {
     spdlog::warn(
-        "scene {}: tick {} has {} non-finite values and {} escaped particles; went back to {} with half the step for "
+        "scene {}: tick {} has {} values out of range and {} escaped particles; went back to {} with half the step for "
         "{} s (guard stepped in {} times)",
         scene_.name, breach.tick, breach.nonfinite_count, breach.escaped_count,
         restored ? "the last good checkpoint" : "the start", kCareful_s, recovered_count_);
@@ -67,6 +67,7 @@ void WaterSim::setCareful(bool careful) {
   if (derived && careful) {
     core::Scene halved = scene_;
     halved.fixed_substeps_count = 2 * derived->substeps_count;
+    if (halved.wave) halved.wave->fixed_substeps_count = 2 * derived->wave->substeps_count;
     derived = derive(halved, kept ? &*kept : nullptr);
   }
   // scene_ was accepted before and halving a step breaks no rule; at the bound of substeps the step stays as it was.

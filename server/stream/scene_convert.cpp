@@ -97,6 +97,7 @@ core::WaveScene toCore(const v1::WaveScene& in) {
   out.boundary_plus_z = toCore(in.boundary_plus_z());
   out.sponge_width_m = in.sponge_width_m();
   out.steepening_ratio = in.steepening_ratio();
+  out.fixed_substeps_count = in.fixed_substeps_count();
   return out;
 }
 

@@ -1,6 +1,6 @@
 // Health of the wave: one partial result an invocation, summed on the host in double and 64-bit integer precision.
 // Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
-// non-finite flows and boats, 0, max |eta|, cells that break; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
+// cells with a flow that is not finite or beyond range, non-finite boats, 0, max |eta|, cells that break; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
 // sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers: the volume to the last unit).
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 HULLS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1 HULLS=1
 #include "shared/groups.h"
@@ -53,7 +53,10 @@ void main() {
     volume.z += left_units.y;
     volume.w += left_units.x;
 #endif
-    if (isnan(motion) || isinf(motion)) {
+    // Water beyond the range of its units has nowhere to go: transferUnits() drops it, sums turn over.
+    const bool is_beyond = units > ELEVATION_MAX_UNITS || units < -ELEVATION_MAX_UNITS ||
+                           !all(lessThan(abs(own) * sim.wave_transfer, Flow(TRANSFER_MAX_UNITS)));
+    if (is_beyond) {
       worst.x += 1.0;
       continue;
     }

@@ -7,5 +7,7 @@
 #define ELEVATION_UNIT_M 5.9604644775390625e-8f
 // A transfer or a pressure head beyond this many units (16 m) is an error of the simulation; it counts as none.
 #define TRANSFER_MAX_UNITS 268435456.0f
+// Half of the range: water beyond it (64 m) is an error too; the guard steps in before it turns over.
+#define ELEVATION_MAX_UNITS 1073741824
 
 #endif

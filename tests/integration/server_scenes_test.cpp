@@ -143,5 +143,49 @@ TEST_F(Scenes, DoNotChangeFasterThanTheRoomCanBuildThem) {
   EXPECT_EQ(one.rejected(changeScene("pond")).reason(), v1::REJECT_REASON_BUSY);
 }
 
+class ShippedScenes : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
+  app::SceneCatalog scenes() const override { return app::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
+};
+
+TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
+  ScriptedClient one = client();
+  for (const auto layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_BODIES, v1::LAYER_FOAM})
+    one.subscribe(layer);
+  for (const std::string name : {"harbor", "splash", "dam_break", "harbor"}) {
+    std::optional<std::uint64_t> applied;
+    for (int i = 0; i < 100 && !applied; ++i) {
+      const v1::ServerMessage answer = one.ask(changeScene(name));
+      if (answer.has_ack())
+        applied = answer.ack().applied_tick();
+      else
+        ASSERT_EQ(answer.reject().reason(), v1::REJECT_REASON_BUSY) << name << ": " << answer.reject().message();
+      if (!applied) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    ASSERT_TRUE(applied) << name;
+    const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
+    ASSERT_TRUE(greeting);
+    EXPECT_EQ(greeting->greeting().scene().name(), name);
+    // Every layer that the scene has sends frames of it, and they decode.
+    for (const int layer : greeting->greeting().layers()) {
+      if (layer == v1::LAYER_DIAGNOSTICS) continue;
+      const auto frame = one.waitFor([&](const v1::ServerMessage& m) {
+        return m.has_frame() && m.frame().layer() == layer && m.frame().tick() >= *applied;
+      });
+      ASSERT_TRUE(frame) << name << " layer " << layer;
+      if (layer == v1::LAYER_SURFACE) {
+        EXPECT_TRUE(stream::decodeSurface(frame->frame()));
+      }
+      if (layer == v1::LAYER_PARTICLES) {
+        EXPECT_TRUE(stream::decodeParticles(frame->frame()));
+      }
+    }
+    const auto splashed = one.apply(splash(0.3, 0.3));
+    ASSERT_TRUE(splashed) << name;
+    EXPECT_GT(*splashed, *applied);
+  }
+}
+
 }  // namespace
 }  // namespace spindrift::test

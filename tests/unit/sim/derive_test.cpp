@@ -88,6 +88,27 @@ TEST(Derive, RefusesAFixedStepThatBreaksARuleAndNamesFieldValueAndBound) {
   EXPECT_TRUE(derive(scene));
 }
 
+TEST(Derive, RefusesAFixedWaveStepThatBreaksItsRule) {
+  core::Scene scene = smallScene();
+  scene.wave->depth_m = 40.0;
+  const auto free = derive(scene);
+  ASSERT_TRUE(free);
+  ASSERT_GT(free->wave->substeps_count, 1u);
+  scene.wave->fixed_substeps_count = free->wave->substeps_count - 1;
+  const auto d = derive(scene);
+  ASSERT_FALSE(d);
+  EXPECT_THAT(d.error().message, HasSubstr("wave.fixed_substeps_count"));
+  EXPECT_THAT(d.error().message, HasSubstr("at least " + std::to_string(free->wave->substeps_count)));
+  scene.allow_unstable = true;
+  const auto unstable = derive(scene);
+  ASSERT_TRUE(unstable);
+  EXPECT_EQ(unstable->wave->substeps_count, free->wave->substeps_count - 1);
+  scene.wave->fixed_substeps_count = 2 * free->wave->substeps_count;
+  const auto finer = derive(scene);
+  ASSERT_TRUE(finer);
+  EXPECT_NEAR(finer->wave->courant, 0.5 * free->wave->courant, 1e-12);
+}
+
 TEST(Derive, RefusesCouplingWithoutItsParts) {
   core::Scene scene = smallScene();
   scene.wave.reset();

@@ -51,6 +51,7 @@ TEST(SceneDefaults, EqualThoseOfCoreForTheWave) {
   EXPECT_EQ(actual.boundary_plus_z, expected.boundary_plus_z);
   EXPECT_EQ(actual.sponge_width_m, expected.sponge_width_m);
   EXPECT_EQ(actual.steepening_ratio, expected.steepening_ratio);
+  EXPECT_EQ(actual.fixed_substeps_count, expected.fixed_substeps_count);
 }
 
 TEST(SceneDefaults, EqualThoseOfCoreForTheParticles) {
@@ -202,7 +203,7 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
       "wave { resolution_count: 64 side_m: 8 depth_m: 2 damping_per_s: 0.3 stencil: STENCIL_NINE_POINT\n"
       "       boundary_minus_x: WAVE_BOUNDARY_REFLECT boundary_plus_x: WAVE_BOUNDARY_ABSORB\n"
       "       boundary_minus_z: WAVE_BOUNDARY_ABSORB boundary_plus_z: WAVE_BOUNDARY_REFLECT\n"
-      "       sponge_width_m: 1.5 steepening_ratio: 0.5 }\n"
+      "       sponge_width_m: 1.5 steepening_ratio: 0.5 fixed_substeps_count: 7 }\n"
       "particles { count: 100 layers_count: 2 patch_shift_x_m: 0.5 patch_shift_z_m: -0.5 patch_scale: 0.25\n"
       "            box_side_m: 3 headroom_m: 4 support_ratio: 2.5 rest_density_kgpm3: 900 sound_speed_mps: 20\n"
       "            max_speed_mps: 5 viscosity_pas: 1 jitter_ratio: 0.01 boundary_x: BOUNDARY_WALL\n"
@@ -243,6 +244,7 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
   EXPECT_EQ(out.wave->boundary_plus_z, core::WaveBoundary::kReflect);
   EXPECT_EQ(out.wave->sponge_width_m, 1.5);
   EXPECT_EQ(out.wave->steepening_ratio, 0.5);
+  EXPECT_EQ(out.wave->fixed_substeps_count, 7u);
   EXPECT_EQ(out.particles->count, 100u);
   EXPECT_EQ(out.particles->layers_count, 2.0);
   EXPECT_EQ(out.particles->patch_shift_x_m, 0.5);

@@ -53,6 +53,7 @@ struct WaveScene {
   }
   double sponge_width_m = 4.0;    ///< of the layer along an absorbing side
   double steepening_ratio = 0.0;  ///< 0: linear; 1: waves travel at the speed of shallow water of their own height
+  std::uint32_t fixed_substeps_count = 0;  ///< 0 = derive() chooses; otherwise this many wave steps a tick, checked
 };
 
 /// A round rock that stands out of the water.

@@ -1,0 +1,69 @@
+// The guard from end to end: a room whose water really becomes unstable goes back, says so, and sends no nonsense.
+#include "server_fixture.h"
+
+namespace spindrift::test {
+namespace {
+
+/// A third too few wave steps: Courant number 0.73 where 0.707 is the limit, and a splash to start from.
+constexpr const char* kUnstable = R"(
+  wave { resolution_count: 64 side_m: 8 depth_m: 3 fixed_substeps_count: 1 }
+  allow_unstable: true
+  stream { frame_rate_hz: 60 }
+  events { at_s: 0.2 effect { splash { radius_m: 1 depth_m: 0.5 duration_s: 0.1 } } }
+)";
+
+class Guard : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kUnstable}, {"calm", kStillWave}}; }
+};
+
+TEST_F(Guard, SaysThatItPutARoomBackAndTheRoomGoesOn) {
+  ScriptedClient one = client();
+  ScriptedClient two = client();
+  ScriptedClient elsewhere = client("calm");
+  const auto recovered = [](const v1::ServerMessage& m) {
+    return m.has_room_event() && m.room_event().kind() == v1::ROOM_EVENT_KIND_RECOVERED;
+  };
+  std::uint64_t tick = 0;
+  for (ScriptedClient* each : {&one, &two}) {
+    const auto news = each->waitFor(recovered);
+    ASSERT_TRUE(news) << "the guard never stepped in";
+    EXPECT_GT(news->room_event().tick(), 12u) << "not before the splash";
+    EXPECT_THAT(news->room_event().message(), testing::HasSubstr("1 times"));
+    tick = news->room_event().tick();
+  }
+  // Water at rest again, or as good: what went wild is not what people see.
+  one.subscribe(v1::LAYER_SURFACE);
+  one.subscribe(v1::LAYER_DIAGNOSTICS);
+  for (int frame = 0; frame < 10; ++frame) {
+    const auto next = one.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(next);
+    EXPECT_GT(next->tick(), tick);
+    const double max_m = maxElevation_m(*next);
+    EXPECT_GE(max_m, 0.0) << "decodes";
+    EXPECT_LT(max_m, 5.0);
+  }
+  const auto message = one.waitFor(v1::ServerMessage::kDiagnostics);
+  ASSERT_TRUE(message);
+  EXPECT_GE(message->diagnostics().recovered_count(), 1u);
+  EXPECT_GT(message->diagnostics().nonfinite_count(), 0u);
+  EXPECT_TRUE(one.apply(splash(0.3, 0.5))) << "commands go on";
+  EXPECT_FALSE(elsewhere.hasReceived(v1::ServerMessage::kRoomEvent));
+}
+
+TEST_F(Guard, SpeaksUpAgainWhenItStepsInAgain) {
+  ScriptedClient one = client();
+  ASSERT_TRUE(one.apply(setSpeed(4)));
+  const auto recovered = [](const char* times) {
+    return [times](const v1::ServerMessage& m) {
+      return m.has_room_event() && m.room_event().kind() == v1::ROOM_EVENT_KIND_RECOVERED &&
+             m.room_event().message().find(times) != std::string::npos;
+    };
+  };
+  ASSERT_TRUE(one.waitFor(recovered("1 times")));
+  ASSERT_TRUE(one.apply(splash(0.5, 1.0)));
+  EXPECT_TRUE(one.waitFor(recovered("2 times"))) << "the careful seconds are over, the step is too long again";
+}
+
+}  // namespace
+}  // namespace spindrift::test
