@@ -1,8 +1,16 @@
 #include "starting_state.h"
 
+#include <spindrift/sim/water_sim.h>
+
 #include "random.h"
 
 namespace spindrift::sim {
+namespace {
+
+constexpr double kCalmInterval_s = 1.0 / 3;
+
+}  // namespace
+
 std::vector<float> startingPositions(const core::Scene& scene, const ParticleLayout& layout) {
   SplitMix64 random(scene.seed);
   const double jitter_m = scene.particles->jitter_ratio * layout.spacing_m;
@@ -22,6 +30,25 @@ std::vector<float> startingPositions(const core::Scene& scene, const ParticleLay
     }
   }
   return out;
+}
+
+core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core::Scene& scene) {
+  core::Scene quiet = scene;
+  quiet.events.clear();
+  quiet.storm.reset();
+  quiet.particles->settle_s = 0;
+  auto water = WaterSim::create(ctx, quiet);
+  if (!water) return water.error();
+  double calm_at_s = kCalmInterval_s;
+  while ((*water)->time_s() < scene.particles->settle_s) {
+    (*water)->step();
+    if ((*water)->time_s() < calm_at_s) continue;
+    calm_at_s += kCalmInterval_s;
+    StateCopy state = (*water)->copyState();
+    state.velocity.assign(state.velocity.size(), 0.0f);
+    (*water)->setState(state);
+  }
+  return (*water)->copyState().position;
 }
 
 }  // namespace spindrift::sim

@@ -169,6 +169,11 @@ core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, cons
   if (!derived) return derived.error();
   auto sim = std::unique_ptr<WaterSim>(new WaterSim(ctx, scene, *std::move(derived)));
   if (auto built = sim->build(); !built) return built.error();
+  if (scene.particles && scene.particles->settle_s > 0 && !isTwoWay(scene)) {
+    auto settled = settledPositions(ctx, scene);
+    if (!settled) return settled.error();
+    sim->parts_->settled_positions = *std::move(settled);
+  }
   sim->reset();
   return sim;
 }
@@ -235,7 +240,9 @@ void WaterSim::uploadStartingState() {
   if (parts_->pool) {
     parts_->pool->clear();
   } else if (parts_->particles) {
-    parts_->particles->position.upload(startingPositions(scene_, *derived_.particles));
+    const std::vector<float>& settled = parts_->settled_positions;
+    const bool fits = settled.size() == std::size_t{derived_.particles->count} * 4;  // not after another live count
+    parts_->particles->position.upload(fits ? settled : startingPositions(scene_, *derived_.particles));
     parts_->particles->velocity.clear();
     // Density is known before the first step, so that a first frame can be packed.
     const auto rho_0 = static_cast<float>(scene_.particles->rest_density_kgpm3);

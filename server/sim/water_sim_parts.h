@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <spindrift/sim/water_sim.h>
 
@@ -43,6 +44,7 @@ struct WaterSim::Parts {
   std::unique_ptr<FramePacker> frames;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
+  std::vector<float> settled_positions;  ///< where particles start; empty: on the lattice
 
   /// Whom the passes over particles are for.
   [[nodiscard]] Population population(const Derived& derived) const {

@@ -127,6 +127,7 @@ core::ParticleScene toCore(const v1::ParticleScene& in) {
   out.fill_x_ratio = in.fill_x_ratio();
   out.fill_z_ratio = in.fill_z_ratio();
   out.box_width_m = in.box_width_m();
+  out.settle_s = in.settle_s();
   return out;
 }
 

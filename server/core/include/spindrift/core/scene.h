@@ -108,6 +108,7 @@ struct ParticleScene {
   bool cohesion = false;               ///< pressure may be negative
   double fill_x_ratio = 1.0;           ///< share of the domain along x that the lattice fills, from the -x side
   double fill_z_ratio = 1.0;
+  double settle_s = 0.0;     ///< simulated time in which the starting lattice comes to rest before the first tick
   double box_width_m = 0.0;  ///< side along z of the box when the scene has no wave; 0 = box_side_m
 };
 

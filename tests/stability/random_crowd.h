@@ -1,0 +1,118 @@
+// People who do whatever a scene allows, at random.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <spindrift/sim/water_sim.h>
+#include <spindrift/stream/client_message.h>
+#include <spindrift/stream/parameters.h>
+#include <spindrift/stream/scene_loader.h>
+
+namespace spindrift {
+
+/// Random values in a range, the same in every run.
+class Dice {
+ public:
+  explicit Dice(std::uint32_t seed) : random_(seed) {}
+  double between(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(random_); }
+  int upTo(int count) { return std::min(static_cast<int>(between(0, count)), count - 1); }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// Random effects, boats and parameters over their whole ranges, within what the scene allows, as people could send
+/// them.
+class Crowd {
+ public:
+  explicit Crowd(v1::Scene scene) : scene_(std::move(scene)), parameters_(stream::describeParameters(scene_)) {}
+
+  /// Sends one command; whether the scene allowed it.
+  bool send(sim::WaterSim& water) {
+    const core::Action action = any(water);
+    if (stream::checkAgainstScene(core::Command{1, 1, action}, scene_)) return false;
+    if (const auto* splash = std::get_if<core::Splash>(&action)) return static_cast<bool>(water.start(*splash));
+    if (const auto* wave = std::get_if<core::BreakingWave>(&action)) return static_cast<bool>(water.start(*wave));
+    if (const auto* spawn = std::get_if<core::SpawnBoat>(&action))
+      return static_cast<bool>(water.spawnBoat(spawn->boat));
+    if (const auto* control = std::get_if<core::ControlBoat>(&action))
+      return static_cast<bool>(water.controlBoat(control->boat_id, control->throttle_ratio, control->rudder_ratio));
+    if (const auto* remove = std::get_if<core::RemoveBoat>(&action))
+      return static_cast<bool>(water.removeBoat(remove->boat_id));
+    if (const auto* set = std::get_if<core::SetParameter>(&action)) {
+      v1::Scene changed = scene_;
+      if (stream::setParameter(changed, set->path, set->value)) return false;
+      if (!water.setScene(stream::toCore(changed))) return false;
+      scene_ = std::move(changed);
+      return true;
+    }
+    water.reset();
+    return true;
+  }
+
+ private:
+  core::Action any(const sim::WaterSim& water) {
+    const double half_m = scene_.wave().side_m() / 2;
+    const auto boats = water.boats();
+    const int kind = dice_.upTo(1000);
+    if (kind < 1) return core::Reset{};
+    if (kind < 250) {
+      return core::Splash{dice_.between(-half_m, half_m), dice_.between(-half_m, half_m), dice_.between(0.2, 3.0),
+                          dice_.between(0.05, 1.0), dice_.between(0.05, 0.6)};
+    }
+    if (kind < 400) {
+      return core::BreakingWave{static_cast<core::Side>(dice_.upTo(5)),
+                                dice_.between(0.05, 1.0),
+                                dice_.between(0.5, 8.0),
+                                dice_.between(0.1, 1.0),
+                                static_cast<core::WaveShape>(dice_.upTo(2)),
+                                dice_.between(-180, 180)};
+    }
+    if (kind < 500) {
+      return core::SpawnBoat{core::Boat{.x_m = dice_.between(-half_m, half_m),
+                                        .z_m = dice_.between(-half_m, half_m),
+                                        .heading_deg = dice_.between(-180, 180),
+                                        .length_m = dice_.between(0.8, 5.0),
+                                        .beam_m = dice_.between(0.3, 0.8),
+                                        .height_m = dice_.between(0.2, 0.8),
+                                        .density_ratio = dice_.between(0.1, 0.9),
+                                        .max_speed_mps = dice_.between(1.0, 12.0)}};
+    }
+    if (kind < 750 && !boats.empty()) {
+      return core::ControlBoat{boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id,
+                               dice_.between(-1, 1), dice_.between(-1, 1)};
+    }
+    if (kind < 800 && !boats.empty())
+      return core::RemoveBoat{boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id};
+    // Somebody always puts back what makes a step several times as dear: it lasts until the next change of a parameter,
+    // a few ticks, so that a run is about 10,000 commands and not about patience.
+    if (costly_) return core::SetParameter{std::exchange(costly_, nullptr)->path(), costly_value_before_};
+    const auto& parameter = parameters_[static_cast<std::size_t>(dice_.upTo(static_cast<int>(parameters_.size())))];
+    double value = dice_.between(parameter.min(), parameter.max());
+    if (parameter.step() >= 1) value = std::round(value);
+    if (isCostly(parameter.path())) {
+      costly_ = &parameter;
+      costly_value_before_ = parameter.value();
+    }
+    return core::SetParameter{parameter.path(), value};
+  }
+
+  static bool isCostly(const std::string& path) {
+    return path == "particles.sound_speed_mps" || path == "particles.max_speed_mps" || path == "wave.depth_m" ||
+           path == "gravity_mps2";
+  }
+
+  v1::Scene scene_;
+  std::vector<v1::ParameterDescription> parameters_;
+  const v1::ParameterDescription* costly_ = nullptr;  ///< set last, to be put back next
+  double costly_value_before_ = 0.0;
+  Dice dice_{20231121};
+};
+
+}  // namespace spindrift
