@@ -7,13 +7,6 @@
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
-namespace {
-
-/// A reduction costs a tenth of a step on two cores; a breach is still seen within a tenth of a second, and frames hold
-/// integers, so no client sees it.
-constexpr std::uint64_t kDiagnosticsInterval_ticks = 4;
-
-}  // namespace
 
 // The algorithm
 
@@ -145,7 +138,6 @@ void WaterSim::bindSurroundings() {
 }
 
 void WaterSim::measure() {
-  if (tick_ % kDiagnosticsInterval_ticks != 0) return;
   const auto timer = timers_.scope("diagnostics");
   std::optional<Population> population;
   if (parts_->particles) population = parts_->population(derived_);

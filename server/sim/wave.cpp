@@ -80,6 +80,14 @@ void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
   landing_.upload(terrain.landing);
 }
 
+void Wave::scaleFlow(double ratio) {
+  ctx_.barrier(gpu::Barrier::kBufferUpdate);
+  auto flow_m2ps = flow_.downloadVector<float>(std::size_t{n_} * n_ * flow_components_);
+  for (float& q : flow_m2ps) q *= static_cast<float>(ratio);
+  flow_.upload(flow_m2ps);
+  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
+}
+
 void Wave::bindTerrain() const {
   if (!has_terrain_) return;
   terrain_.bindTexel(TERRAIN);

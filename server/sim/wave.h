@@ -30,6 +30,9 @@ class Wave {
   /// Tables for changed parameters (depth, gravity).
   void uploadBasin(const core::Scene& scene, const WaveLayout& layout);
 
+  /// Multiplies the flow everywhere. Waits: for what people rarely do.
+  void scaleFlow(double ratio);
+
   /// Adds one wave step's share of the active effects. An empty one says that no effect acts now.
   void displace(const shared::EventUniforms& events);
   /// One wave step. `breaking` may be null.

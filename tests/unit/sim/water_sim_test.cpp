@@ -69,12 +69,13 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   const Cost wave = cost(wave_only);
   const Cost particles = cost(particles_only);
   // A wave alone: splash, crest, momentum, continuity, its diagnostics and packing; one wave step a tick of two
-  // dispatches, and one more in every fourth tick.
+  // dispatches, and one for its health.
   EXPECT_EQ(wave.programs, 6u);
-  EXPECT_EQ(wave.dispatches, 2u);
-  // Particles alone: 6 grid, 3 sph, effects on particles, their diagnostics and packing; 2 x 9 dispatches a tick.
+  EXPECT_EQ(wave.dispatches, 3u);
+  // Particles alone: 6 grid, 3 sph, effects on particles, their diagnostics and packing; 2 x 9 dispatches a tick
+  // and one for their health.
   EXPECT_EQ(particles.programs, 12u);
-  EXPECT_EQ(particles.dispatches, 18u);
+  EXPECT_EQ(particles.dispatches, 19u);
   // Together: the sum, and the surface sampling once a tick; effects are the wave's.
   EXPECT_EQ(all.programs, wave.programs + particles.programs - 1 + 1);
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 1);

@@ -167,6 +167,25 @@ TEST_F(WaveOnDevice, ASplashPushesDownByItsDepthThenRingsOutAndKeepsTheVolume) {
   EXPECT_EQ(volume, 0.0) << "to the last unit";
 }
 
+TEST_F(WaveOnDevice, WaterTakenAwayTakesItsMotionAndWaterAddedIsAtRest) {
+  core::Scene scene = waveScene(64);
+  scene.wave->depth_m = 2.0;
+  WaterSim& sim = make(scene);
+  ASSERT_TRUE(sim.start(core::Splash{0.3, 0.2, 1.0, 0.5, 0.1}));
+  for (int i = 0; i < 20; ++i) sim.step();
+  const StateCopy before = sim.copyState();
+  ASSERT_GT(std::ranges::max(before.flow_m2ps), 0.01f);
+  scene.wave->depth_m = 0.5;
+  ASSERT_TRUE(sim.setScene(scene));
+  const StateCopy shallow = sim.copyState();
+  for (std::size_t i = 0; i < before.flow_m2ps.size(); ++i)
+    ASSERT_FLOAT_EQ(shallow.flow_m2ps[i], 0.25f * before.flow_m2ps[i]) << "the same speed in a quarter of the water";
+  EXPECT_EQ(shallow.elevation_m, before.elevation_m);
+  scene.wave->depth_m = 20.0;
+  ASSERT_TRUE(sim.setScene(scene));
+  EXPECT_EQ(sim.copyState().flow_m2ps, shallow.flow_m2ps);
+}
+
 TEST_F(WaveOnDevice, ACrestTravelsOneWayAtTheWaveSpeed) {
   core::Scene scene = waveScene(96);
   scene.wave->setBoundaries(core::WaveBoundary::kPeriodic);
