@@ -163,6 +163,12 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
                      .pressure_force = is_position_based ? core::PressureForce::kConserving : p.pressure_force,
                      .cohesion = p.cohesion && !is_position_based},
                     static_cast<int>(out.layers_count));
+  // A dam's column stands free on one side: it starts at rest density, without the pressure that its neighbours would
+  // hold, or its side would burst.
+  if (p.fill_x_ratio < 1 || p.fill_z_ratio < 1) {
+    for (std::size_t k = 0; k < out.layer_heights_m.size(); ++k)
+      out.layer_heights_m[k] = (static_cast<double>(k) + 0.5) * s;
+  }
   out.band_m = out.layer_heights_m.back() + s / 2;
   const double centre_x = scene.wave ? p.patch_shift_x_m : 0.0;
   const double centre_z = scene.wave ? p.patch_shift_z_m : 0.0;
