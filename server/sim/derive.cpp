@@ -155,7 +155,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.slope_norm = f(slopeNorm(p.kernel_set, H));
     u.viscosity_norm = f(viscosityNorm(H));
     u.cubic_norm = f(cubicNorm(H));
-    u.wall_restitution = 0.0f;
+    u.floor_drag_pm2 = f(l.floor_drag_pm2);
     u.reentry_m = f(0.01 * l.spacing_m);
     u.band_m = f(l.band_m);
     u.virtual_mass_kg = f(l.virtual_mass_kg);

@@ -159,6 +159,15 @@ WallSupport calibratedWall(KernelSet set, double s, double H, double rho_0, doub
   return wall;
 }
 
+double calibratedFloorDrag(double s, double H, double rho_0, double mass_kg, const WallSupport& wall) {
+  double laplacian_pm2 = 0.0;
+  for (int y = 1; y <= layersWithin(s, H); ++y) {
+    for (const double d2 : lateralSquares(s, layersWithin(s, H)))
+      laplacian_pm2 += mass_kg / rho_0 * viscosityNorm(H) * std::max(H - std::sqrt(d2 + s * s * y * y), 0.0);
+  }
+  return laplacian_pm2 / std::pow(1 - s / 2 / wall.reach_m, 2);
+}
+
 double latticeConstraintSlope2(KernelSet set, double s, double H, double rho_0, double mass_kg) {
   const int reach = layersWithin(s, H);
   return sumLayers(s, H, -reach, reach,
@@ -168,6 +177,18 @@ double latticeConstraintSlope2(KernelSet set, double s, double H, double rho_0, 
 double latticeStressRatio(KernelSet set, double s, double H, double rho_0, double mass_kg) {
   const int reach = layersWithin(s, H);
   return sumLayers(s, H, -reach, reach, [&](double r) { return mass_kg / rho_0 * r * pressureSlope(set, r, H) / 3; });
+}
+
+double settledStressRatio(KernelSet set) {
+  switch (set) {
+    case KernelSet::kMuller:
+      return 1.0;
+    case KernelSet::kCubicSpline:
+      return 0.97;
+    case KernelSet::kWendlandC2:
+      break;
+  }
+  return 0.96;
 }
 
 double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho) {
@@ -190,18 +211,30 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
   const HeightTable density_of(H, lateral, [&](double r, double) { return densityKernel(set, r, H); });
   const HeightTable push_of(H, lateral,
                             [&](double r, double dy) { return r > 0 ? pressureSlope(set, r, H) * dy / r : 0.0; });
-  const HeightTable floor_density_of(H, floor_lateral,
-                                     [&](double r, double) { return cubicNorm(H) * cubicShape(r / H); });
-  const HeightTable floor_push_of(H, floor_lateral, [&](double r, double dy) {
+  const HeightTable lattice_density_of(H, floor_lateral,
+                                       [&](double r, double) { return cubicNorm(H) * cubicShape(r / H); });
+  const HeightTable lattice_push_of(H, floor_lateral, [&](double r, double dy) {
     return r > 0 ? cubicNorm(H) / H * cubicSlope(r / H) * dy / r : 0.0;
   });
+  // The floor's density at a height, and its slope turned round.
+  const bool is_flat = water.floor_points == 0;
+  const auto floor_density_of = [&](double height_m) {
+    if (!is_flat) return water.virtual_mass_kg * lattice_density_of(height_m + kVirtualDepthRatio * s);
+    const double u = std::max(1 - height_m / water.flat_floor.reach_m, 0.0);
+    return water.rest_density_kgpm3 * water.flat_floor.share * u * u;
+  };
+  const auto floor_push_of = [&](double height_m) {
+    if (!is_flat) return water.virtual_mass_kg * lattice_push_of(height_m + kVirtualDepthRatio * s);
+    const double u = std::max(1 - height_m / water.flat_floor.reach_m, 0.0);
+    return water.rest_density_kgpm3 * water.flat_floor.share * 2 * u / water.flat_floor.reach_m;
+  };
 
   std::vector<double> y(n), v(n, 0.0), pressure(n), density(n);
   for (std::size_t k = 0; k < n; ++k) y[k] = (static_cast<double>(k) + 0.5) * s;
 
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     for (std::size_t k = 0; k < n; ++k) {
-      double rho = water.virtual_mass_kg * floor_density_of(y[k] + kVirtualDepthRatio * s);
+      double rho = floor_density_of(y[k]);
       for (std::size_t j = 0; j < n; ++j) rho += water.mass_kg * density_of(std::abs(y[k] - y[j]));
       density[k] = rho;
       pressure[k] = pressureOf(water.equation_of_state, water.stiffness_m2ps2, water.rest_density_kgpm3, rho);
@@ -220,7 +253,7 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
                                 : own + pressure[j] / (density[j] * density[j]);
         a += water.mass_kg * pair * std::copysign(push, dy);
       }
-      a += water.virtual_mass_kg * std::max(own, 0.0) * floor_push_of(y[k] + kVirtualDepthRatio * s);
+      a += std::max(own, 0.0) * floor_push_of(y[k]);
       worst = std::max(worst, std::abs(a));
       v[k] = kVelocityKeep * v[k] + dt_s * a;
     }

@@ -8,8 +8,6 @@
 
 namespace spindrift::sim {
 
-/// Virtual lattice under a flat floor, which has no scene parameter of its own.
-inline constexpr int kFlatFloorLattice = 5;
 /// The virtual lattice lies this share of the spacing below the floor: where the next layer would be.
 inline constexpr double kVirtualDepthRatio = 0.5;
 /// Pressure keeps particles about s/2 above the floor; this share of the spacing is the hard limit for what it did not
@@ -49,6 +47,10 @@ struct WallSupport {
 /// slope, because a wall has no pressure of its own to add to the particle's.
 WallSupport calibratedWall(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
+/// What a flat floor's viscosity makes up for: Laplacian of the layers missing below the lowest, so that drag(d) = this
+/// times max(1 - d / reach_m, 0)^2. [1/m^2]
+double calibratedFloorDrag(double s, double H, double rho_0, double mass_kg, const WallSupport& wall);
+
 /// Squared gradient of the density constraint rho/rho_0 - 1, summed over the neighbours inside the lattice. [1/m^2]
 double latticeConstraintSlope2(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
@@ -56,6 +58,10 @@ double latticeConstraintSlope2(core::KernelSet set, double s, double H, double r
 /// |dW/dr|. Few neighbours sum to less than the integral, 0.95 for Wendland C2 at H = 2 s: dividing the stiffness by it
 /// makes c0^2 (rho - rho_0) the pressure that carries water, and c0 its speed of sound.
 double latticeStressRatio(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
+
+/// What is left of that ratio when the lattice has settled into the loose order of resting water, measured in a column of 20
+/// layers at H = 2 s (`spindrift study --suite accuracy`, hydrostatic column).
+double settledStressRatio(core::KernelSet set);
 
 /// What restingLayers() needs to know of the water.
 struct RestingWater {
@@ -67,7 +73,8 @@ struct RestingWater {
   double gravity_mps2 = 0.0;
   double mass_kg = 0.0;
   double virtual_mass_kg = 0.0;
-  int floor_points = kFlatFloorLattice;
+  int floor_points = 0;  ///< of the virtual lattice under coupled water; 0 = a flat floor that supports like a wall
+  WallSupport flat_floor = {};
   core::EquationOfState equation_of_state = core::EquationOfState::kLinear;
   core::PressureForce pressure_force = core::PressureForce::kConserving;
   bool cohesion = false;

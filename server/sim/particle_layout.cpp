@@ -105,11 +105,11 @@ core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, d
 }
 }  // namespace
 
-/// k of the equation of state, such that the lattice's stress is c0^2 (rho - rho0).
+/// k of the equation of state, such that the stress of settled water is c0^2 (rho - rho0).
 double stiffnessOf(const core::ParticleScene& p, const ParticleLayout& layout) {
-  return p.sound_speed_mps * p.sound_speed_mps /
-         latticeStressRatio(p.kernel_set, layout.spacing_m, layout.support_radius_m, p.rest_density_kgpm3,
-                            layout.mass_kg);
+  const double lattice_ratio =
+      latticeStressRatio(p.kernel_set, layout.spacing_m, layout.support_radius_m, p.rest_density_kgpm3, layout.mass_kg);
+  return p.sound_speed_mps * p.sound_speed_mps / (lattice_ratio * settledStressRatio(p.kernel_set));
 }
 
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3) {
@@ -137,13 +137,15 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   out.support_radius_m = *support;
   const double H = out.support_radius_m;
 
-  const int floor_points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : kFlatFloorLattice;
+  const int floor_points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : 0;
   out.neighbours_count = latticeNeighbours(s, H);
   out.mass_kg = calibratedMass(p.kernel_set, s, H, p.rest_density_kgpm3);
-  out.virtual_mass_kg = calibratedVirtualMass(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg, floor_points);
+  if (scene.coupling)
+    out.virtual_mass_kg = calibratedVirtualMass(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg, floor_points);
   const WallSupport wall = calibratedWall(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
   out.wall_share = wall.share;
   out.wall_reach_m = wall.reach_m;
+  out.floor_drag_pm2 = calibratedFloorDrag(s, H, p.rest_density_kgpm3, out.mass_kg, wall);
   out.constraint_softness_pm2 =
       kConstraintSoftness * latticeConstraintSlope2(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
   // Position-based water has no stiffness; its layers rest as those of a water that gives way by a hundredth.
@@ -159,6 +161,7 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
                      .mass_kg = out.mass_kg,
                      .virtual_mass_kg = out.virtual_mass_kg,
                      .floor_points = floor_points,
+                     .flat_floor = wall,
                      .equation_of_state = is_position_based ? core::EquationOfState::kLinear : p.equation_of_state,
                      .pressure_force = is_position_based ? core::PressureForce::kConserving : p.pressure_force,
                      .cohesion = p.cohesion && !is_position_based},

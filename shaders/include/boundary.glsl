@@ -1,4 +1,4 @@
-// What the particles miss beyond floor and walls. The floor has its virtual lattice (include/floor_lattice.glsl); a wall has a
+// What the particles miss beyond floor and walls. The floor has its virtual lattice (include/floor_support.glsl); a wall has a
 // share of the rest density that depends on the distance d alone, f(d) = C max(1 - d/D, 0)^2, with C and D from derive(): a
 // particle half a spacing from the wall gets exactly the density of the layers that are missing beyond it, and the gradient is
 // twice theirs, because a wall particle pushes with its own pressure only while a missing neighbour would have brought its
@@ -7,7 +7,7 @@
 #ifndef SPINDRIFT_BOUNDARY
 #define SPINDRIFT_BOUNDARY
 
-#include "include/floor_lattice.glsl"
+#include "include/floor_support.glsl"
 
 #define HAS_WALLS (PERIODIC_X == 0 || PERIODIC_Z == 0)
 
@@ -60,20 +60,7 @@ vec3 boundaryAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) 
 
 /// Gradient of boundaryDensity. [kg/m^4]
 vec3 boundaryGradient(vec3 x_i) {
-  const Floor f = loadFloor();
-  const float H = sim.support_radius_m;
-  const float spacing_m = sim.spacing_m;
-  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
-  const float inverse_H = 1.0 / H;
-  vec3 push = vec3(0.0);
-  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
-    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) {
-      const vec3 r = latticeOffset(f, x_i, spacing_m, ix, iz);
-      const float distance_m = max(length(r), 1e-4 * H);
-      push += cubicSlope(distance_m * inverse_H) / distance_m * r;
-    }
-  }
-  vec3 gradient = -sim.virtual_mass_kg * sim.cubic_norm * inverse_H * push;
+  vec3 gradient = floorGradient(x_i);
 #if HAS_WALLS
   const vec4 w = wallShares(x_i);
   const float covered = sim.rest_density_kgpm3 - floorDensity(x_i);

@@ -5,10 +5,10 @@
 #include "include/floor.glsl"
 #include "shared/sim_uniforms.h"
 
-/// One axis with walls: stops at the wall and turns the normal speed round.
+/// One axis with walls: stops at the wall.
 void keepBetweenWalls(inout float x, inout float v, float low, float high) {
-  if (x < low) { x = low; v = abs(v) * sim.wall_restitution; }
-  if (x > high) { x = high; v = -abs(v) * sim.wall_restitution; }
+  if (x < low) { x = low; v = max(v, 0.0); }
+  if (x > high) { x = high; v = min(v, 0.0); }
 }
 
 /// One periodic axis: leaves on one side, enters slightly inside the other.

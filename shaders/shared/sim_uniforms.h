@@ -39,12 +39,12 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float slope_norm;             // of its pressure kernel's slope
   float viscosity_norm;         // 45 / (pi H^6)
   float cubic_norm;             // 8 / (pi H^3)
-  float wall_restitution;       // share of the normal speed kept at a wall
+  float floor_drag_pm2;         // a flat floor's share of the viscosity's Laplacian, for a particle on it
   float reentry_m;              // how far inside a periodic side a particle re-enters
 
   // Floor of the particles: the water surface lowered by band_m, or the plane y = -band_m.
   float band_m;                 // thickness of the resting band
-  float virtual_mass_kg;        // of a virtual particle of the floor, for density and viscosity
+  float virtual_mass_kg;        // of a virtual particle of the floor under coupled water, for density and viscosity
   float floor_gap_m;            // particles are kept this far above the floor
   float downforce_per_m_s2;
 

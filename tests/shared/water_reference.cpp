@@ -98,11 +98,48 @@ struct Floor {
     return {bilinear(s.flow_x_mps, x, z), bilinear(s.rate_mps, x, z), bilinear(s.flow_z_mps, x, z)};
   }
 
-  /// Vectors from each virtual particle to the particle; none for one out of reach.
+  /// What a flat floor leaves of its reach at x, which supports like a wall.
+  double reach(const Vec3& x) const {
+    return std::max(1 - std::max(x[1] + d.particles->band_m, 0.0) / d.particles->wall_reach_m, 0.0);
+  }
+
+  /// Share of the density. [kg/m^3]
+  double density(const Vec3& x) const {
+    if (!scene.coupling) return scene.particles->rest_density_kgpm3 * d.particles->wall_share * reach(x) * reach(x);
+    double sum = 0;
+    for (const Vec3& r : lattice(x))
+      sum += d.particles->virtual_mass_kg * cubic(length(r), d.particles->support_radius_m);
+    return sum;
+  }
+
+  /// Its gradient: under coupled water the sum of the virtual particles', whose heights count as fixed. [kg/m^4]
+  Vec3 gradient(const Vec3& x) const {
+    const double slope = -2 * scene.particles->rest_density_kgpm3 * d.particles->wall_share / d.particles->wall_reach_m;
+    if (!scene.coupling) return {0, slope * reach(x), 0};
+    Vec3 sum = {0, 0, 0};
+    for (const Vec3& r : lattice(x)) {
+      const double factor =
+          d.particles->virtual_mass_kg * cubicGradient(length(r), d.particles->support_radius_m) / length(r);
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += factor * r[axis];
+    }
+    return sum;
+  }
+
+  /// Laplacian for the viscosity against it. [1/m^2]
+  double drag(const Vec3& x) const {
+    if (!scene.coupling) return d.particles->floor_drag_pm2 * reach(x) * reach(x);
+    double sum = 0;
+    for (const Vec3& r : lattice(x))
+      sum += d.particles->virtual_mass_kg / scene.particles->rest_density_kgpm3 *
+             viscosityLaplacian(length(r), d.particles->support_radius_m);
+    return sum;
+  }
+
+  /// Vectors from each virtual particle to the particle; none for one out of reach. Coupled water only.
   std::vector<Vec3> lattice(const Vec3& x) const {
     std::vector<Vec3> out;
     if (x[1] - height(x[0], x[2]) + d.particles->spacing_m / 2 >= d.particles->support_radius_m) return out;
-    const int points = scene.coupling ? static_cast<int>(scene.coupling->lattice_count) : 5;
+    const int points = static_cast<int>(scene.coupling->lattice_count);
     const double spacing = d.particles->spacing_m;
     for (int k = -(points / 2); k <= points / 2; ++k) {
       for (int i = -(points / 2); i <= points / 2; ++i)
@@ -116,7 +153,10 @@ struct Floor {
 double pressure(const core::Scene& scene, const sim::Derived& d, double rho) {
   const core::ParticleScene& s = *scene.particles;
   const double rho_0 = s.rest_density_kgpm3;
-  // c0^2 over the virial of the starting lattice.
+  // c0^2 over the virial of the starting lattice, and what settling leaves of it.
+  const double settled = s.kernel_set == core::KernelSet::kMuller        ? 1.0
+                         : s.kernel_set == core::KernelSet::kCubicSpline ? 0.97
+                                                                         : 0.96;
   const double H = d.particles->support_radius_m;
   double virial = 0;
   for (int z = -4; z <= 4; ++z) {
@@ -127,7 +167,7 @@ double pressure(const core::Scene& scene, const sim::Derived& d, double rho) {
       }
     }
   }
-  const double k = s.sound_speed_mps * s.sound_speed_mps / virial;
+  const double k = s.sound_speed_mps * s.sound_speed_mps / (virial * settled);
   const double p = s.equation_of_state == core::EquationOfState::kTait ? rho_0 * k / 7 * (std::pow(rho / rho_0, 7) - 1)
                                                                        : k * (rho - rho_0);
   return s.cohesion ? p : std::max(p, 0.0);
@@ -151,25 +191,15 @@ double boundaryDensity(const core::Scene& scene, const sim::Derived& d, const Fl
     }
     open *= 1 - share;
   }
-  double floor_density = 0;
-  for (const Vec3& r : floor.lattice(x))
-    floor_density += d.particles->virtual_mass_kg * cubic(length(r), d.particles->support_radius_m);
-  return rho_0 * (1 - open * (1 - floor_density / rho_0));
+  return rho_0 * (1 - open * (1 - floor.density(x) / rho_0));
 }
 
-/// Its gradient: along x and z through walls numerically, the floor's as the sum of its virtual particles' (whose
-/// heights count as fixed).
+/// Its gradient, through walls numerically.
 Vec3 boundaryGradient(const core::Scene& scene, const sim::Derived& d, const Floor& floor, const Vec3& x) {
   const double H = d.particles->support_radius_m;
   const double rho_0 = scene.particles->rest_density_kgpm3;
-  double floor_density = 0;
-  Vec3 gradient = {0, 0, 0};
-  for (const Vec3& r : floor.lattice(x)) {
-    const double distance = length(r);
-    floor_density += d.particles->virtual_mass_kg * cubic(distance, H);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      gradient[axis] += d.particles->virtual_mass_kg * cubicGradient(distance, H) / distance * r[axis];
-  }
+  const double floor_density = floor.density(x);
+  Vec3 gradient = floor.gradient(x);
   const double open = (rho_0 - boundaryDensity(scene, d, floor, x)) / (rho_0 - floor_density);
   for (double& g : gradient) g *= open;
   for (const std::size_t axis : {0u, 2u}) {
@@ -236,7 +266,6 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
   const double H = d.particles->support_radius_m;
   const double m = d.particles->mass_kg;
   const double mu = scene.particles->viscosity_pas;
-  const double rho_0 = scene.particles->rest_density_kgpm3;
   const Floor floor{scene, d, surface};
   std::vector<Vec3> out(x.size());
   std::vector<double> p;
@@ -259,11 +288,8 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
       for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (v[j][axis] - v[i][axis]);
     }
     const Vec3 floor_velocity = floor.velocity(x[i][0], x[i][2]);
-    for (const Vec3& r : floor.lattice(x[i])) {
-      const double distance = length(r);
-      const double drag = mu / rho[i] * d.particles->virtual_mass_kg / rho_0 * viscosityLaplacian(distance, H);
-      for (int axis = 0; axis < 3; ++axis) a[axis] += drag * (floor_velocity[axis] - v[i][axis]);
-    }
+    const double floor_drag = mu / rho[i] * floor.drag(x[i]);
+    for (int axis = 0; axis < 3; ++axis) a[axis] += floor_drag * (floor_velocity[axis] - v[i][axis]);
     const Vec3 gradient = boundaryGradient(scene, d, floor, x[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) a[axis] -= std::max(own_term, 0.0) * gradient[axis];
     if (scene.coupling) {

@@ -34,7 +34,8 @@ struct ParticleLayout {
   double volume_m3 = 0.0;         ///< of the water: a running room keeps it when its count changes
   double support_radius_m = 0.0;  ///< H; on periodic axes a whole number of cells spans the patch
   double mass_kg = 0.0;           ///< calibrated: the inside of the lattice has rest density
-  double virtual_mass_kg = 0.0;   ///< of the floor's virtual particles, calibrated likewise
+  double virtual_mass_kg = 0.0;   ///< of the virtual particles of a coupled floor, calibrated likewise
+  double floor_drag_pm2 = 0.0;    ///< of a flat floor, see lattice.h
   double wall_share = 0.0;        ///< calibrated support of walls, see lattice.h
   double wall_reach_m = 0.0;
   double constraint_softness_pm2 = 0.0;  ///< of the position-based solver

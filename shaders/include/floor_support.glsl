@@ -1,0 +1,111 @@
+// The floor's support. A flat floor (!COUPLED) supports like a wall (include/boundary.glsl): f(d) = C max(1 - d/D, 0)^2 of the rest
+// density, whose slope carries the lowest layer at the pressure of its depth.
+// Under coupled water it is virtual particles: a LATTICE x LATTICE grid at spacing s, centred under the particle and snapped to
+// half a spacing below the floor, where the next layer of the water would be, seen by particles closer to it than H (thesis,
+// algorithm 10, cubic kernel). Their mass is calibrated in derive() so that a particle of the resting lattice's lowest layer has
+// rest density. Snapped to the floor itself, as in the thesis, their density hardly changed with the distance, and the lowest
+// layer fell through. Either way the push is the gradient of the density, so that a floor at rest neither adds nor takes energy.
+#ifndef SPINDRIFT_FLOOR_SUPPORT
+#define SPINDRIFT_FLOOR_SUPPORT
+
+#include "include/floor.glsl"
+#include "include/kernels.glsl"
+
+#if POOL_PARTICLES
+// In two-way scenes the surface takes particles in instead of carrying them.
+float floorDensity(vec3 x_i) { return 0.0; }
+vec3 floorGradient(vec3 x_i) { return vec3(0.0); }
+vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) { return vec3(0.0); }
+#elif !COUPLED
+/// What is left of the reach above a flat floor.
+float flatFloorReach(vec3 x_i) { return max(1.0 - max(x_i.y + sim.band_m, 0.0) / sim.wall_reach_m, 0.0); }
+
+/// The floor's share of the density at x_i. [kg/m^3]
+float floorDensity(vec3 x_i) {
+  const float u = flatFloorReach(x_i);
+  return sim.rest_density_kgpm3 * sim.wall_share * u * u;
+}
+
+/// Its gradient. [kg/m^4]
+vec3 floorGradient(vec3 x_i) { return vec3(0.0, -2.0 * sim.rest_density_kgpm3 * sim.wall_share * flatFloorReach(x_i) / sim.wall_reach_m, 0.0); }
+
+/// The floor's share of the acceleration: pressure, -(p_i / rho_i^2) times the gradient, and viscosity against the floor at rest.
+/// `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
+vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
+  const float u = flatFloorReach(x_i);
+  return -pressure_term * floorGradient(x_i) - sim.viscosity_pas / rho_i * sim.floor_drag_pm2 * u * u * v_i;
+}
+#else
+#define LATTICE_REACH (LATTICE / 2)
+
+/// From the virtual particle at (ix, iz) spacings to the particle. [m]
+vec3 latticeOffset(Floor f, vec3 x_i, float spacing_m, int ix, int iz) {
+  const vec2 d = vec2(ix, iz) * spacing_m;
+  return vec3(-d.x, x_i.y - floorHeight(f, x_i.xz + d) + 0.5 * spacing_m, -d.y);
+}
+
+/// Rows of the lattice that a particle sees: -LATTICE_REACH to this, all or none. A loop bound instead of a branch: llvmpipe
+/// runs both sides of a branch, but leaves a loop that no lane needs.
+int lastLatticeRow(Floor f, vec3 x_i, float H, float spacing_m) {
+  return x_i.y - floorHeight(f, x_i.xz) + 0.5 * spacing_m < H ? LATTICE_REACH : -LATTICE_REACH - 1;
+}
+
+/// The floor's share of the density at x_i. [kg/m^3]
+float floorDensity(vec3 x_i) {
+  const Floor f = loadFloor();
+  const float H = sim.support_radius_m;
+  const float spacing_m = sim.spacing_m;
+  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
+  const float inverse_H = 1.0 / H;
+  float sum = 0.0;
+  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
+    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) sum += cubicShape(length(latticeOffset(f, x_i, spacing_m, ix, iz)) * inverse_H);
+  }
+  return sim.virtual_mass_kg * sim.cubic_norm * sum;
+}
+
+/// The floor's share of the acceleration: pressure, -(p_i / rho_i^2) grad of floorDensity (Akinci et al. 2012, eq. 9), and
+/// viscosity against the velocity of the moving surface. `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
+vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
+  const Floor f = loadFloor();
+  const float H = sim.support_radius_m;
+  const float spacing_m = sim.spacing_m;
+  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
+  const float inverse_H = 1.0 / H;
+  vec3 push = vec3(0.0);
+  float drag = 0.0;
+  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
+    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) {
+      const vec3 r = latticeOffset(f, x_i, spacing_m, ix, iz);
+      const float distance_m = max(length(r), 1e-4 * H);
+      push += cubicSlope(distance_m * inverse_H) / distance_m * r;
+      drag += viscosityLaplacian(distance_m, H);
+    }
+  }
+  vec3 normal;
+  vec3 floor_velocity_mps;
+  floorState(f, x_i.xz, normal, floor_velocity_mps);
+  return sim.virtual_mass_kg * (sim.cubic_norm / H * pressure_term * push +
+                                sim.viscosity_norm * sim.viscosity_pas * drag / (rho_i * sim.rest_density_kgpm3) * (floor_velocity_mps - v_i));
+}
+
+/// Gradient of floorDensity. [kg/m^4]
+vec3 floorGradient(vec3 x_i) {
+  const Floor f = loadFloor();
+  const float H = sim.support_radius_m;
+  const float spacing_m = sim.spacing_m;
+  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
+  const float inverse_H = 1.0 / H;
+  vec3 push = vec3(0.0);
+  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
+    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) {
+      const vec3 r = latticeOffset(f, x_i, spacing_m, ix, iz);
+      const float distance_m = max(length(r), 1e-4 * H);
+      push += cubicSlope(distance_m * inverse_H) / distance_m * r;
+    }
+  }
+  return -sim.virtual_mass_kg * sim.cubic_norm * inverse_H * push;
+}
+#endif
+
+#endif
