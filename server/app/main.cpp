@@ -81,6 +81,19 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   bench_command->add_option("--json", bench_options.json_file, "Write JSON to this file, - = standard output");
 
+  StudyOptions study_options;
+  CLI::App* study_command = cli.add_subcommand("study", "Measure the simulation against theory and experiment");
+  study_command->add_option("--suite", study_options.suite, "What to study")
+      ->check(CLI::IsMember({"accuracy"}))
+      ->capture_default_str();
+  study_command->add_option("--case", study_options.only, "One case only");
+  study_command->add_option("--device", study_options.device, "auto, software, or a device's number")
+      ->capture_default_str();
+  study_command->add_flag("--quick", study_options.quick, "Shorter runs, a few minutes in all");
+  study_command->add_option("--journal", study_options.journal_file,
+                            "Keep finished cases in this file and go on from it after an interruption");
+  study_command->add_option("--json", study_options.json_file, "Write JSON to this file, - = standard output");
+
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -97,6 +110,7 @@ int run(int argc, char** argv) {
   if (info_command->parsed()) return info(info_options);
   if (check_command->parsed()) return check(check_options);
   if (bench_command->parsed()) return bench(bench_options);
+  if (study_command->parsed()) return study(study_options);
   return kUsageError;
 }
 

@@ -41,6 +41,16 @@ struct BenchOptions {
 };
 int bench(const BenchOptions& options);
 
+struct StudyOptions {
+  std::string suite = "accuracy";
+  std::string device = "auto";
+  std::string only;  ///< one case; empty: all
+  std::string json_file;
+  std::string journal_file;  ///< finished cases are kept here and not run again; empty: no
+  bool quick = false;
+};
+int study(const StudyOptions& options);
+
 /// Prints the error's line on standard error and returns its exit code.
 int fail(const core::Error& error);
 

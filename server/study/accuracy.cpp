@@ -1,0 +1,25 @@
+#include <spindrift/study/accuracy.h>
+
+#include "cases.h"
+
+namespace spindrift::study {
+
+const std::vector<Case>& accuracyCases() {
+  static const std::vector<Case> cases = {
+      {"eigenmode", "Frequency of a standing mode between walls", eigenmode},
+      {"observed-order", "How the wave's error falls with its resolution", observedOrder},
+      {"phase-error", "Speed of short plane waves, along the axis and the diagonal", phaseError},
+      {"wave-energy", "Energy of undamped waves between walls", waveEnergy},
+      {"damped-mode", "Decay of a damped mode", dampedMode},
+      {"reflection", "What an absorbing side sends back", reflection},
+      {"greens-law", "Height of a crest that runs up a slope", greensLaw},
+      {"still-water", "Particles on a level wave that should not move", stillWater},
+      {"hydrostatic", "Pressure in a column at rest", hydrostaticColumn},
+      {"dam-break", "Front of a collapsing column", damBreak},
+      {"floating-body", "Draught of a boat at rest", floatingBody},
+      {"mach-wedge", "Wake of a boat faster than the waves", machWedge},
+  };
+  return cases;
+}
+
+}  // namespace spindrift::study

@@ -1,0 +1,144 @@
+// A column twice as high as long collapses (Martin & Moyce 1952): Z = front/a against T = t sqrt(2 g/a).
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <spindrift/sim/water_sim.h>
+
+#include "cases.h"
+#include "particle_choices.h"
+
+namespace spindrift::study {
+namespace {
+
+struct Point {
+  double T;
+  double Z;
+};
+
+constexpr std::array<Point, 15> kWide = {{{0.832, 1.217},
+                                          {1.219, 1.474},
+                                          {1.997, 2.292},
+                                          {2.547, 2.995},
+                                          {3.345, 4.134},
+                                          {4.034, 4.944},
+                                          {4.418, 5.881},
+                                          {5.091, 6.980},
+                                          {5.685, 7.945},
+                                          {6.306, 8.966},
+                                          {6.822, 9.986},
+                                          {7.439, 10.963},
+                                          {8.031, 11.977},
+                                          {8.633, 13.005},
+                                          {9.237, 13.970}}};
+constexpr std::array<Point, 10> kNarrow = {{{0.849, 1.245},
+                                            {1.212, 1.443},
+                                            {1.602, 1.884},
+                                            {2.283, 2.689},
+                                            {2.950, 3.728},
+                                            {3.598, 4.528},
+                                            {3.905, 4.999},
+                                            {4.592, 5.841},
+                                            {4.961, 6.271},
+                                            {5.316, 6.717}}};
+
+/// Share of the water that counts as ahead of its front: single particles fly before the tongue.
+constexpr double kAheadShare = 0.01;
+constexpr double kFirstT = 1.0;
+constexpr double kLastT = 9.0;
+
+/// A column of 1 m x 2 m x 0.3 m of `layers` layers in a dry channel long enough for T = 9. The channel is periodic
+/// across.
+core::Scene damScene(core::PressureSolver solver, core::KernelSet set, std::uint32_t layers) {
+  core::Scene scene;
+  scene.name = "dam";
+  scene.tick_rate_hz = 120.0;
+  scene.particles.emplace();
+  core::ParticleScene& p = *scene.particles;
+  p.layers_count = layers;
+  const double spacing_m = 2.0 / layers;
+  p.box_side_m = 16.0;
+  p.box_width_m = 6 * spacing_m;
+  p.count = layers * (layers / 2) * 6;
+  p.fill_x_ratio = 1.0 / 16;
+  p.headroom_m = 1.0;
+  p.max_speed_mps = 12.0;
+  p.sound_speed_mps = 60.0;
+  p.viscosity_pas = solver == core::PressureSolver::kPositionBased ? 1.7 : 2.2;
+  p.jitter_ratio = 0.02;
+  p.iterations_count = 4;
+  p.solver = solver;
+  p.kernel_set = set;
+  p.boundary_x = core::Boundary::kWall;
+  p.boundary_z = core::Boundary::kPeriodic;
+  return scene;
+}
+
+/// The front with time, a point a tick.
+core::Result<std::vector<Point>> front(gpu::Context& ctx, const core::Scene& scene) {
+  auto made = sim::WaterSim::create(ctx, scene);
+  if (!made) return made.error();
+  sim::WaterSim& water = **made;
+  const sim::ParticleLayout& l = *water.derived().particles;
+  const double a_m = 1.0;
+  std::vector<Point> out = {{0.0, 1.0}};
+  while (out.back().T < kLastT + 0.1) {
+    water.step();
+    const sim::StateCopy state = water.copyState();
+    std::vector<float> x_m;
+    for (std::size_t i = 0; i < state.position.size(); i += 4) x_m.push_back(state.position[i]);
+    const auto ahead = std::max<std::ptrdiff_t>(std::lround(kAheadShare * static_cast<double>(x_m.size())), 1);
+    std::nth_element(x_m.begin(), x_m.end() - ahead, x_m.end());
+    const double front_m = *(x_m.end() - ahead) - l.min_m[0] + 0.5 * l.spacing_m;
+    out.push_back({water.time_s() * std::sqrt(2 * scene.gravity_mps2 / a_m), front_m / a_m});
+  }
+  return out;
+}
+
+double at(const std::vector<Point>& series, double T) {
+  const auto next = std::ranges::lower_bound(series, T, {}, &Point::T);
+  if (next == series.begin()) return next->Z;
+  const auto before = next - 1;
+  return std::lerp(before->Z, next->Z, (T - before->T) / (next->T - before->T));
+}
+
+void compare(const std::vector<Point>& computed, const auto& measured, const std::string& name,
+             const std::string& series, std::vector<Row>& rows) {
+  double squares = 0.0;
+  double worst = 0.0;
+  int count = 0;
+  for (const Point& point : measured) {
+    if (point.T < kFirstT || point.T > kLastT) continue;
+    const double error = at(computed, point.T) / point.Z - 1;
+    squares += error * error;
+    worst = std::max(worst, std::abs(error));
+    ++count;
+  }
+  const std::string source = "Martin & Moyce 1952, " + series + ", T = 1 to 9";
+  rows.push_back({name + ", " + series + ": front, root mean square", "%", 100 * std::sqrt(squares / count), 5.0,
+                  Tolerance::kAtMost, 0.0, source});
+  rows.push_back(
+      {name + ", " + series + ": front, worst point", "%", 100 * worst, 10.0, Tolerance::kAtMost, 0.0, source});
+}
+
+}  // namespace
+
+Rows damBreak(gpu::Context& ctx, bool quick) {
+  std::vector<Row> rows;
+  for (const core::PressureSolver solver : kSolvers) {
+    for (const core::KernelSet set : kKernelSets) {
+      // The quick table takes the default kernel set of each solver.
+      if (quick && set != core::KernelSet::kWendlandC2) continue;
+      auto computed = front(ctx, damScene(solver, set, 40));
+      if (!computed) return computed.error();
+      const std::string name = fmt::format("{}, {}", nameOf(solver), nameOf(set));
+      compare(*computed, kWide, name, "a = 2.25 in", rows);
+      compare(*computed, kNarrow, name, "a = 1.125 in", rows);
+    }
+  }
+  return rows;
+}
+
+}  // namespace spindrift::study

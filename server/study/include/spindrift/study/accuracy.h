@@ -1,0 +1,24 @@
+// Cases with a known answer (ARCHITECTURE, "Study"): theory, experiment, or conservation.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/context.h>
+#include <spindrift/study/row.h>
+
+namespace spindrift::study {
+
+struct Case {
+  std::string name;     ///< one word with dashes, what --case names
+  std::string purpose;  ///< one line
+  /// `quick`: shorter runs and coarser water, for a table in minutes; tolerances are the same.
+  std::function<core::Result<std::vector<Row>>(gpu::Context& ctx, bool quick)> run;
+};
+
+/// In the order of the table.
+const std::vector<Case>& accuracyCases();
+
+}  // namespace spindrift::study

@@ -1,0 +1,30 @@
+// One line of a study's table: a measured number beside the number that it should be.
+#pragma once
+
+#include <string>
+
+namespace spindrift::study {
+
+/// How far from `expected` the measured value may be.
+enum class Tolerance {
+  kRelative,  ///< |measured - expected| <= tolerance * |expected|
+  kAbsolute,  ///< |measured - expected| <= tolerance
+  kAtMost,    ///< measured <= expected; tolerance is not used
+  kNone,      ///< reported only
+};
+
+struct Row {
+  std::string name;  ///< what was measured, with the choices that make it this one
+  std::string unit;  ///< of measured and expected; empty for ratios
+  double measured = 0.0;
+  double expected = 0.0;
+  Tolerance kind = Tolerance::kRelative;
+  double tolerance = 0.0;
+  std::string source;  ///< where `expected` comes from
+
+  /// In the measure of the tolerance: relative, absolute, or the measured value itself.
+  [[nodiscard]] double error() const;
+  [[nodiscard]] bool passes() const;
+};
+
+}  // namespace spindrift::study

@@ -1,0 +1,33 @@
+// Standing modes of the wave and what is read from them.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <spindrift/sim/water_sim.h>
+
+namespace spindrift::study {
+
+/// A square of linear, undamped water with one wave step a tick at Courant number `courant`.
+core::Scene waveScene(std::uint32_t resolution_count, double side_m, double depth_m, double courant,
+                      core::Stencil stencil, core::WaveBoundary sides);
+
+/// Sets the surface to eta(x, z) [m], x and z counted from the corner, without flow: half a step later it is as it
+/// would be in a motion that stood still then.
+void setSurface(sim::WaterSim& water, const std::function<double(double x_m, double z_m)>& eta_m);
+
+/// Amplitude of a mode after each of `steps` ticks: <eta, mode> / <mode, mode>.
+std::vector<double> amplitudes(sim::WaterSim& water, const std::function<double(double, double)>& mode, int steps);
+
+/// A series a_n that obeys a_{n+1} - b a_n + r a_{n-1} = 0: fitted b and r (least squares; r fixed at 1 where
+/// `undamped`).
+struct Recurrence {
+  double b = 0.0;
+  double r = 1.0;
+  /// Of exp(-decay t) cos(omega t). [rad/s], [1/s]
+  [[nodiscard]] double omega_radps(double dt_s) const;
+  [[nodiscard]] double decay_per_s(double dt_s) const;
+};
+Recurrence fitRecurrence(const std::vector<double>& series, bool undamped);
+
+}  // namespace spindrift::study
