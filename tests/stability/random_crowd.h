@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <random>
 #include <string>
 #include <utility>
@@ -50,10 +51,20 @@ class Crowd {
       if (stream::setParameter(changed, set->path, set->value)) return false;
       if (!water.setScene(stream::toCore(changed))) return false;
       scene_ = std::move(changed);
+      ++accepted_[set->path];
       return true;
     }
     water.reset();
     return true;
+  }
+
+  /// The live parameters that no command has changed so far: refused every time, or never asked for.
+  [[nodiscard]] std::vector<std::string> untouched() const {
+    std::vector<std::string> out;
+    for (const auto& parameter : parameters_) {
+      if (!accepted_.contains(parameter.path())) out.push_back(parameter.path());
+    }
+    return out;
   }
 
  private:
@@ -93,7 +104,8 @@ class Crowd {
     // Somebody always puts back what makes a step several times as dear: it lasts until the next change of a parameter,
     // a few ticks, so that a run is about 10,000 commands and not about patience.
     if (costly_) return core::SetParameter{std::exchange(costly_, nullptr)->path(), costly_value_before_};
-    const auto& parameter = parameters_[static_cast<std::size_t>(dice_.upTo(static_cast<int>(parameters_.size())))];
+    // In turn, so that a short run has been through them all.
+    const auto& parameter = parameters_[next_parameter_++ % parameters_.size()];
     double value = dice_.between(parameter.min(), parameter.max());
     if (parameter.step() >= 1) value = std::round(value);
     if (isCostly(parameter.path())) {
@@ -112,6 +124,8 @@ class Crowd {
   std::vector<v1::ParameterDescription> parameters_;
   const v1::ParameterDescription* costly_ = nullptr;  ///< set last, to be put back next
   double costly_value_before_ = 0.0;
+  std::size_t next_parameter_ = 0;
+  std::map<std::string, int> accepted_;  ///< changes of each parameter that the room took
   Dice dice_{20231121};
 };
 
