@@ -1,4 +1,8 @@
 // The guard from end to end: a room whose water really becomes unstable goes back, says so, and sends no nonsense.
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -12,9 +16,18 @@ constexpr const char* kUnstable = R"(
   events { at_s: 0.2 effect { splash { radius_m: 1 depth_m: 0.5 duration_s: 0.1 } } }
 )";
 
+/// Eight times as deep: Courant number 2.1, unstable with half the step as well.
+constexpr const char* kHopeless = R"(
+  wave { resolution_count: 64 side_m: 8 depth_m: 24 fixed_substeps_count: 1 }
+  allow_unstable: true
+  stream { frame_rate_hz: 60 }
+)";
+
 class Guard : public ServerTest {
  protected:
-  std::vector<RoomText> rooms() const override { return {{"main", kUnstable}, {"calm", kStillWave}}; }
+  std::vector<RoomText> rooms() const override {
+    return {{"main", kUnstable}, {"calm", kStillWave}, {"hopeless", kHopeless}};
+  }
 };
 
 TEST_F(Guard, SaysThatItPutARoomBackAndTheRoomGoesOn) {
@@ -63,6 +76,33 @@ TEST_F(Guard, SpeaksUpAgainWhenItStepsInAgain) {
   ASSERT_TRUE(one.waitFor(recovered("1 times")));
   ASSERT_TRUE(one.apply(splash(0.5, 1.0)));
   EXPECT_TRUE(one.waitFor(recovered("2 times"))) << "the careful seconds are over, the step is too long again";
+}
+
+TEST_F(Guard, SpeaksUpAtMostOnceASecondHoweverOftenItStepsIn) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  ScriptedClient one = client("hopeless");
+  while (Clock::now() - begin < std::chrono::seconds(4)) {
+    ASSERT_TRUE(one.apply(splash(0.5, 1.0)));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  int told = 0;
+  while (one.hasReceived(v1::ServerMessage::kRoomEvent)) {
+    const auto news = one.waitFor(v1::ServerMessage::kRoomEvent);
+    ASSERT_TRUE(news);
+    told += news->room_event().kind() == v1::ROOM_EVENT_KIND_RECOVERED ? 1 : 0;
+  }
+  // Counted over all that time, so that a late message is no early one.
+  const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  one.subscribe(v1::LAYER_DIAGNOSTICS);
+  const auto message = one.waitFor(v1::ServerMessage::kDiagnostics);
+  ASSERT_TRUE(message);
+  std::printf("%d messages in %.1f s, the guard stepped in %llu times\n", told, elapsed_s,
+              static_cast<unsigned long long>(message->diagnostics().recovered_count()));
+  EXPECT_GE(told, 2);
+  EXPECT_LE(told, static_cast<int>(elapsed_s) + 1);
+  EXPECT_GT(message->diagnostics().recovered_count(), static_cast<std::uint64_t>(2 * told))
+      << "or nothing was held back";
 }
 
 }  // namespace
