@@ -180,15 +180,7 @@ double latticeStressRatio(KernelSet set, double s, double H, double rho_0, doubl
 }
 
 double settledStressRatio(KernelSet set) {
-  switch (set) {
-    case KernelSet::kMuller:
-      return 1.0;
-    case KernelSet::kCubicSpline:
-      return 0.97;
-    case KernelSet::kWendlandC2:
-      break;
-  }
-  return 0.96;
+  return set == KernelSet::kMuller ? 1.0 : 0.97;
 }
 
 double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho) {

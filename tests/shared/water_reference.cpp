@@ -154,9 +154,7 @@ double pressure(const core::Scene& scene, const sim::Derived& d, double rho) {
   const core::ParticleScene& s = *scene.particles;
   const double rho_0 = s.rest_density_kgpm3;
   // c0^2 over the virial of the starting lattice, and what settling leaves of it.
-  const double settled = s.kernel_set == core::KernelSet::kMuller        ? 1.0
-                         : s.kernel_set == core::KernelSet::kCubicSpline ? 0.97
-                                                                         : 0.96;
+  const double settled = s.kernel_set == core::KernelSet::kMuller ? 1.0 : 0.97;
   const double H = d.particles->support_radius_m;
   double virial = 0;
   for (int z = -4; z <= 4; ++z) {

@@ -191,7 +191,7 @@ TEST_F(Endurance, StillPoolStaysStillForAMinuteWithPositionsSolvedFor) {
   core::Scene scene = stream::toCore(shipped("still_pool"));
   scene.particles->solver = core::PressureSolver::kPositionBased;
   sim::WaterSim& water = make(scene);
-  const int ticks = wanted("SPINDRIFT_STILL_TICKS", 3600);
+  const int ticks = wanted("SPINDRIFT_STILL_TICKS", 900);
   double fastest_mps = 0;
   for (int tick = 0; tick < ticks; ++tick) {
     water.step();
