@@ -1,0 +1,56 @@
+// The quick table of `spindrift study --suite accuracy`, a test a case.
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/study/accuracy.h>
+
+namespace spindrift::study {
+namespace {
+
+class Accuracy : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(Accuracy, IsWithinTolerance) {
+  auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
+  if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+  const Case& each = accuracyCases()[GetParam()];
+  const auto rows = each.run(**ctx, true);
+  ASSERT_TRUE(rows) << rows.error().message;
+  EXPECT_FALSE(rows->empty());
+  bool judges = false;
+  for (const Row& row : *rows) {
+    judges = judges || row.kind != Tolerance::kNone;
+    EXPECT_TRUE(row.passes()) << row.name << ": " << row.measured << " " << row.unit << ", expected " << row.expected
+                              << " (" << row.source << ")";
+  }
+  EXPECT_TRUE(judges) << "a case that cannot miss";
+  EXPECT_EQ((*ctx)->debugErrorCount(), 0u) << "the driver complained; see the log";
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Accuracy, ::testing::Range(std::size_t{0}, accuracyCases().size()),
+                         [](const auto& parameter) {
+                           std::string name = accuracyCases()[parameter.param].name;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(Row, JudgesByItsOwnMeasure) {
+  const Row relative{"r", "m", 1.04, 1.0, Tolerance::kRelative, 0.05, ""};
+  EXPECT_TRUE(relative.passes());
+  EXPECT_NEAR(relative.error(), 0.04, 1e-12);
+  Row wrong = relative;
+  wrong.measured = 1.06;
+  EXPECT_FALSE(wrong.passes());
+  wrong = {"a", "", 2.2, 2.0, Tolerance::kAbsolute, 0.1, ""};
+  EXPECT_FALSE(wrong.passes());
+  wrong = {"m", "%", 5.1, 5.0, Tolerance::kAtMost, 0.0, ""};
+  EXPECT_FALSE(wrong.passes());
+  wrong.measured = 5.0;
+  EXPECT_TRUE(wrong.passes());
+  wrong = {"n", "", std::numeric_limits<double>::quiet_NaN(), 0.0, Tolerance::kNone, 0.0, ""};
+  EXPECT_FALSE(wrong.passes()) << "a number that is none never passes";
+}
+
+}  // namespace
+}  // namespace spindrift::study
