@@ -59,8 +59,8 @@ double latticeConstraintSlope2(core::KernelSet set, double s, double H, double r
 /// makes c0^2 (rho - rho_0) the pressure that carries water, and c0 its speed of sound.
 double latticeStressRatio(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
-/// What is left of that ratio when the lattice has settled into the loose order of resting water, measured in a column of 20
-/// layers at H = 2 s (`spindrift study --suite accuracy`, hydrostatic column).
+/// What is left of that ratio when the lattice has settled into the loose order of resting water, measured in a column
+/// of 20 layers at H = 2 s (`spindrift study --suite accuracy`, hydrostatic column).
 double settledStressRatio(core::KernelSet set);
 
 /// What restingLayers() needs to know of the water.
