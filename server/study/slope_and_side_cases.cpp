@@ -49,7 +49,7 @@ Rows reflection(gpu::Context& ctx, bool /*quick*/) {
 }
 
 Rows greensLaw(gpu::Context& ctx, bool quick) {
-  const std::uint32_t n = quick ? 384 : 768;
+  const std::uint32_t n = quick ? 512 : 768;
   core::Scene scene = waveScene(n, 96.0, 2.0, 0.5, Stencil::kFivePoint, WaveBoundary::kPeriodic);
   scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = WaveBoundary::kReflect;
   scene.beaches = {core::Beach{core::Side::kPlusX, 70.0, 0.25}};
