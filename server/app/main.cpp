@@ -84,9 +84,11 @@ int run(int argc, char** argv) {
   StudyOptions study_options;
   CLI::App* study_command = cli.add_subcommand("study", "Measure the simulation against theory and experiment");
   study_command->add_option("--suite", study_options.suite, "What to study")
-      ->check(CLI::IsMember({"accuracy"}))
+      ->check(CLI::IsMember({"accuracy", "stability"}))
       ->capture_default_str();
-  study_command->add_option("--case", study_options.only, "One case only");
+  study_command->add_option(
+      "--case", study_options.only,
+      "One case of the accuracy suite, or the sweeps of the stability suite whose name contains this");
   study_command->add_option("--device", study_options.device, "auto, software, or a device's number")
       ->capture_default_str();
   study_command->add_flag("--quick", study_options.quick, "Shorter runs, a few minutes in all");

@@ -1,0 +1,54 @@
+// Where the simulation stays finite, where its guard steps in, and that it always comes back: sweeps of one value each.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/context.h>
+#include <spindrift/sim/water_sim.h>
+
+namespace spindrift::study {
+
+/// What became of one value.
+struct StabilityPoint {
+  double value = 0.0;
+  std::string refused;             ///< why no room was made of it; empty: one was
+  bool are_frames_finite = true;   ///< bounds of every frame; what is in them are integers
+  std::uint64_t guard_count = 0;   ///< how often the guard stepped in
+  bool is_well_after = true;       ///< two seconds with the rules' own steps: finite, the guard silent
+  double max_density_ratio = 0.0;  ///< largest rho / rho0; 0 without particles
+  double energy_growth = 0.0;      ///< largest energy over what there was to begin with
+  double slowest_step_s = 0.0;     ///< wall time
+
+  /// No breach, and no more energy and density than the sweep's bounds.
+  bool is_stable = false;
+  /// Whatever happened, nobody saw nonsense, nothing hung, and the room lives.
+  [[nodiscard]] bool isSafe() const { return are_frames_finite && is_well_after && slowest_step_s < 10.0; }
+};
+
+struct Sweep {
+  std::string name;  ///< what is swept
+  std::string unit;
+  std::vector<double> values;                         ///< rising
+  std::optional<double> predicted_bound;              ///< largest stable value by the step rules
+  std::function<core::Scene(double)> scene;           ///< `allow_unstable` where the rules would refuse
+  std::function<void(sim::WaterSim&, double)> start;  ///< what happens at the start; may be empty
+  double seconds = 3.0;                               ///< simulated, a point
+  double stable_growth = 0.0;                         ///< largest energy_growth of a stable point
+  double stable_density_ratio = 1e9;                  ///< largest max_density_ratio of one
+};
+
+/// `quick`: fewer values.
+std::vector<Sweep> stabilitySweeps(bool quick);
+
+core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, double value);
+
+/// Largest value up to which every point is stable; nullopt where the first is not.
+std::optional<double> foundBound(const std::vector<StabilityPoint>& points);
+
+}  // namespace spindrift::study

@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <spindrift/study/stability.h>
+
+namespace spindrift::study {
+namespace {
+
+bool isFinite(const core::FrameView& frame) {
+  if (!frame.particles) return true;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(frame.particles->min_m[axis]) || !std::isfinite(frame.particles->max_m[axis])) return false;
+  }
+  return true;
+}
+
+/// Energy of the motion: particles' and wave's.
+double energyOf(const sim::Health& health) {
+  return health.kinetic_energy_j + health.wave_energy_j;
+}
+
+/// What motion is measured by: half the weight of the resting particles times their depth, or, without particles, the
+/// wave's energy soon after the start.
+double energyScale(const sim::WaterSim& water) {
+  const auto& particles = water.derived().particles;
+  if (particles && !water.scene().coupling)
+    return 0.5 * particles->mass_kg * particles->count * water.scene().gravity_mps2 * particles->band_m;
+  return 0.0;
+}
+
+}  // namespace
+
+core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, double value) {
+  StabilityPoint out;
+  out.value = value;
+  const core::Scene scene = sweep.scene(value);
+  auto made = sim::WaterSim::create(ctx, scene);
+  if (!made) {
+    if (made.error().code != core::ErrorCode::kInvalidInput) return made.error();
+    out.refused = made.error().message;
+    return out;
+  }
+  sim::WaterSim& water = **made;
+  if (sweep.start) sweep.start(water, value);
+  double scale_j = energyScale(water);
+  const auto stepOnce = [&] {
+    const auto begin = std::chrono::steady_clock::now();
+    water.step();
+    ctx.finish();
+    out.slowest_step_s =
+        std::max(out.slowest_step_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    (void)water.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+    for (const core::FrameView& frame : water.takeFrames())
+      out.are_frames_finite = out.are_frames_finite && isFinite(frame);
+  };
+  const double start_s = water.time_s();
+  while (water.time_s() < start_s + sweep.seconds) {
+    stepOnce();
+    const sim::Health& health = water.health();
+    out.max_density_ratio = std::max(out.max_density_ratio, health.max_density_ratio);
+    // A wave's energy counts from when its start is over.
+    if (scale_j == 0.0 && water.time_s() > start_s + 0.5) scale_j = energyOf(health);
+    if (scale_j > 0.0) out.energy_growth = std::max(out.energy_growth, energyOf(health) / scale_j);
+  }
+  out.guard_count = water.recoveredCount();
+  out.is_stable = out.guard_count == 0 && out.energy_growth <= sweep.stable_growth &&
+                  out.max_density_ratio <= sweep.stable_density_ratio;
+
+  // With the rules' own steps again.
+  core::Scene ruled = scene;
+  ruled.fixed_substeps_count = 0;
+  if (ruled.wave) ruled.wave->fixed_substeps_count = 0;
+  if (auto back = water.setScene(ruled); !back) return back.error();
+  for (int tick = 0; tick < 8; ++tick) stepOnce();  // news of the last breach is still under way
+  const std::uint64_t guard_count = water.recoveredCount();
+  const double after_s = water.time_s();
+  while (water.time_s() < after_s + 2.0) stepOnce();
+  out.is_well_after = water.recoveredCount() == guard_count && water.health().isGood();
+  return out;
+}
+
+std::optional<double> foundBound(const std::vector<StabilityPoint>& points) {
+  std::optional<double> bound;
+  for (const StabilityPoint& point : points) {
+    if (!point.is_stable) break;
+    bound = point.value;
+  }
+  return bound;
+}
+
+}  // namespace spindrift::study

@@ -1,0 +1,213 @@
+// What is swept: steps in units of their bound, stiffness, viscosity, count, Courant number, depth, amplitude, patch
+// size.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <spindrift/study/stability.h>
+
+#include "particle_choices.h"
+#include "wave_modes.h"
+
+namespace spindrift::study {
+namespace {
+
+using core::PressureSolver;
+using core::Stencil;
+
+/// A settled column's worth of motion is a hundredth of its weight's energy; this is no longer water at rest.
+constexpr double kBoilingShare = 0.05;
+/// Moved by a splash: more than that splash can have given.
+constexpr double kMovingShare = 0.4;
+/// Nor is water that is squeezed by a quarter.
+constexpr double kSqueezed = 1.25;
+/// A wave's energy after its start should never grow; twice allows for what is still under way at half a second.
+constexpr double kGrowingWave = 2.0;
+
+/// Water at rest in a periodic box: about `count` particles in 10 layers.
+core::Scene box(std::uint32_t count) {
+  core::Scene scene;
+  scene.name = "box";
+  scene.particles.emplace();
+  core::ParticleScene& p = *scene.particles;
+  p.count = count;
+  p.layers_count = 10;
+  p.box_side_m = 1.0;
+  p.headroom_m = 1.0;
+  p.max_speed_mps = 4.0;
+  p.sound_speed_mps = 20.0;
+  p.viscosity_pas = 5.0;
+  p.boundary_x = p.boundary_z = core::Boundary::kPeriodic;
+  return scene;
+}
+
+/// The scene with one substep a tick of `factor` times the tightest bound of its rules.
+core::Scene withStep(core::Scene scene, double factor) {
+  scene.allow_unstable = true;
+  scene.fixed_substeps_count = 1;
+  const auto derived = sim::derive(scene);
+  if (derived && !derived->rules.empty()) scene.tick_rate_hz = 1.0 / (factor * derived->rules.front().max_dt_s);
+  return scene;
+}
+
+std::vector<double> pick(bool quick, std::vector<double> few, std::vector<double> many) {
+  return quick ? std::move(few) : std::move(many);
+}
+
+void addSteps(bool quick, std::vector<Sweep>& sweeps) {
+  const std::vector<double> factors =
+      pick(quick, {0.5, 1, 1.25, 1.5, 2, 4}, {0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 4});
+  for (const PressureSolver solver : kSolvers) {
+    for (const core::KernelSet set : kKernelSets) {
+      if (quick && set != core::KernelSet::kWendlandC2) continue;
+      sweeps.push_back({fmt::format("step, {}, {}", nameOf(solver), nameOf(set)), "bounds", factors, 1.0,
+                        [=](double factor) {
+                          core::Scene scene = box(1000);
+                          scene.particles->solver = solver;
+                          scene.particles->kernel_set = set;
+                          return withStep(scene, factor);
+                        },
+                        [](sim::WaterSim& water, double) {
+                          (void)water.start(core::Splash{0, 0, 0.3, 0.4, 0.1});
+                        },
+                        3.0, kMovingShare, kSqueezed});
+    }
+  }
+  sweeps.push_back({"step of thick water (1,000 Pa s)",
+                    "bounds",
+                    factors,
+                    1.0,
+                    [](double factor) {
+                      core::Scene scene = box(1000);
+                      scene.particles->viscosity_pas = 1000.0;
+                      scene.particles->sound_speed_mps = 5.0;
+                      scene.particles->max_speed_mps = 1.0;
+                      return withStep(scene, factor);
+                    },
+                    {},
+                    3.0,
+                    kBoilingShare});
+}
+
+void addWaves(bool quick, std::vector<Sweep>& sweeps) {
+  for (const Stencil stencil : {Stencil::kFivePoint, Stencil::kNinePoint}) {
+    const bool nine = stencil == Stencil::kNinePoint;
+    sweeps.push_back({fmt::format("Courant number, {}-point", nine ? 9 : 5), "",
+                      pick(quick, {0.1, 0.5, 0.7, 0.75, 0.85, 0.9, 1.2},
+                           {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.72, 0.75, 0.8, 0.85, 0.87, 0.9, 1.0, 1.1, 1.2}),
+                      nine ? std::sqrt(3.0) / 2 : std::numbers::sqrt2 / 2,
+                      [=](double courant) {
+                        core::Scene scene = waveScene(64, 8.0, 1.5, courant, stencil, core::WaveBoundary::kReflect);
+                        scene.wave->fixed_substeps_count = 1;
+                        scene.allow_unstable = true;
+                        return scene;
+                      },
+                      [](sim::WaterSim& water, double) {
+                        (void)water.start(core::Splash{0.5, 0.3, 1.0, 0.5, 0.1});
+                      },
+                      5.0, kGrowingWave});
+  }
+  sweeps.push_back({"depth", "m", pick(quick, {0.05, 1, 100}, {0.05, 0.2, 1, 5, 20, 100}), std::nullopt,
+                    [](double depth_m) {
+                      core::Scene scene;
+                      scene.name = "depth";
+                      scene.wave.emplace();
+                      scene.wave->resolution_count = 64;
+                      scene.wave->side_m = 16.0;
+                      scene.wave->depth_m = depth_m;
+                      return scene;
+                    },
+                    [](sim::WaterSim& water, double depth_m) {
+                      (void)water.start(core::Splash{0.5, 0.3, 1.5, std::min(0.9 * depth_m, 10.0), 0.2});
+                    },
+                    5.0, kGrowingWave});
+  sweeps.push_back({"splash in two-way water", "depths", pick(quick, {0.1, 0.9}, {0.1, 0.3, 0.6, 0.9}), std::nullopt,
+                    [](double) {
+                      core::Scene scene;
+                      scene.name = "splash";
+                      scene.wave.emplace();
+                      scene.wave->resolution_count = 96;
+                      scene.wave->side_m = 12.0;
+                      scene.particles.emplace();
+                      scene.particles->count = 4000;
+                      scene.coupling.emplace();
+                      scene.coupling->mode = core::CouplingMode::kTwoWay;
+                      return scene;
+                    },
+                    [](sim::WaterSim& water, double share) {
+                      (void)water.start(core::Splash{0.5, 0.3, 1.5, share * 1.5, 0.05});
+                    },
+                    4.0, kGrowingWave});
+}
+
+void addParticles(bool quick, std::vector<Sweep>& sweeps) {
+  sweeps.push_back({"sound speed, the rules' own steps",
+                    "m/s",
+                    pick(quick, {5, 20, 100}, {3, 5, 10, 20, 50, 100}),
+                    std::nullopt,
+                    [](double sound_mps) {
+                      core::Scene scene = box(1000);
+                      scene.particles->sound_speed_mps = sound_mps;
+                      return scene;
+                    },
+                    {},
+                    2.0,
+                    kBoilingShare});
+  sweeps.push_back({"viscosity, the rules' own steps",
+                    "Pa s",
+                    pick(quick, {0, 10, 1000}, {0, 1, 10, 100, 1000}),
+                    std::nullopt,
+                    [](double viscosity_pas) {
+                      core::Scene scene = box(1000);
+                      scene.particles->viscosity_pas = viscosity_pas;
+                      return scene;
+                    },
+                    {},
+                    2.0,
+                    kBoilingShare});
+  sweeps.push_back({"particles",
+                    "",
+                    pick(quick, {1, 10, 1000}, {1, 2, 10, 100, 1000, 10'000, 65'536}),
+                    std::nullopt,
+                    [](double count) {
+                      core::Scene scene = box(static_cast<std::uint32_t>(count));
+                      scene.particles->boundary_x = scene.particles->boundary_z = core::Boundary::kWall;
+                      scene.particles->layers_count = std::clamp(std::cbrt(count), 1.0, 16.0);
+                      scene.particles->solver = PressureSolver::kPositionBased;
+                      return scene;
+                    },
+                    {},
+                    1.0,
+                    kBoilingShare});
+  sweeps.push_back({"patch on the pool", "of its side", pick(quick, {0.2, 1}, {0.1, 0.2, 0.5, 0.8, 1}), std::nullopt,
+                    [](double scale) {
+                      core::Scene scene;
+                      scene.name = "patch";
+                      scene.wave.emplace();
+                      scene.wave->resolution_count = 64;
+                      scene.particles.emplace();
+                      scene.particles->count = 3000;
+                      scene.particles->layers_count = 3;
+                      scene.particles->patch_scale = scale;
+                      scene.coupling.emplace();
+                      return scene;
+                    },
+                    [](sim::WaterSim& water, double) {
+                      (void)water.start(core::Splash{0, 0, 2.0, 1.0, 0.2});
+                    },
+                    3.0, 1e9});
+}
+
+}  // namespace
+
+std::vector<Sweep> stabilitySweeps(bool quick) {
+  std::vector<Sweep> sweeps;
+  addSteps(quick, sweeps);
+  addWaves(quick, sweeps);
+  addParticles(quick, sweeps);
+  return sweeps;
+}
+
+}  // namespace spindrift::study
