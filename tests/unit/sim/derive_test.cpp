@@ -25,7 +25,7 @@ TEST(Derive, KeepsEveryStepRule) {
       const double dt_s = rule.name.starts_with("wave") ? d->wave->dt_s : d->dt_s;
       EXPECT_LE(dt_s, rule.max_dt_s * (1 + 1e-9)) << rule.name;
     }
-    EXPECT_LE(d->dt_s, 0.4 * d->particles->support_radius_m / (c0 + scene.particles->max_speed_mps) * (1 + 1e-9));
+    EXPECT_LE(d->dt_s, 0.7 * d->particles->support_radius_m / (c0 + scene.particles->max_speed_mps) * (1 + 1e-9));
     EXPECT_NEAR(d->dt_s * d->substeps_count, d->tick_s, 1e-12);
     EXPECT_NEAR(d->wave->dt_s * d->wave->substeps_count, d->tick_s, 1e-12);
   }
@@ -194,7 +194,7 @@ TEST(Derive, TaitWaterTakesSmallerStepsForItsFasterSound) {
   const double c0 = p.sound_speed_mps;
   const double rho_ratio =
       std::pow(1 + 7 * (0.5 * p.max_speed_mps * p.max_speed_mps + 9.81 * tait->particles->band_m) / (c0 * c0), 1.0 / 7);
-  EXPECT_NEAR(bound(*tait), 0.4 * tait->particles->support_radius_m / (c0 * std::pow(rho_ratio, 3) + p.max_speed_mps),
+  EXPECT_NEAR(bound(*tait), 0.7 * tait->particles->support_radius_m / (c0 * std::pow(rho_ratio, 3) + p.max_speed_mps),
               1e-12);
 }
 

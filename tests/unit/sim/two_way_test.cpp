@@ -160,7 +160,7 @@ TEST_F(TwoWay, FramesHoldTheParticlesThatThereAre) {
   };
   EXPECT_EQ(frame().particles->count, 0u);
   ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 1.5, 0.9, 0.15}));
-  for (int i = 0; i < 60; ++i) sim.step();
+  for (int i = 0; i < 40; ++i) sim.step();
   const core::FrameView view = frame();
   EXPECT_EQ(view.particles->count, sim.copyState().pool[POOL_LIVE]);
   EXPECT_GT(view.particles->count, 10u);
