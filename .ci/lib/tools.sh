@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# bench, fmt, lint, clean. Sourced by ./dev.
+# bench, study, fmt, lint, clean. Sourced by ./dev.
 
 command_bench() {
   if wants_help "$@"; then
@@ -15,6 +15,22 @@ TEXT
   prepare_server "$preset"
   cd -- "$called_from" || fail 2 "the folder $called_from is gone"
   exec "$(binary_of "$preset")" bench "${rest[@]}"
+}
+
+command_study() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift study]
+
+The water against theory and experiment, and where it stays stable; --quick for minutes, --json FILE writes it down.
+TEXT
+    return
+  fi
+  local preset rest
+  take_preset "$@"
+  prepare_server "$preset"
+  cd -- "$called_from" || fail 2 "the folder $called_from is gone"
+  exec "$(binary_of "$preset")" study "${rest[@]}"
 }
 
 # The C++ sources of ours, committed or about to be. Not shaders/shared: its blocks are GLSL to one of their two compilers.

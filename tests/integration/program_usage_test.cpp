@@ -33,6 +33,14 @@ TEST_F(Usage, UnknownFlagOfACommandIsNamed) {
   expectOneErrorLine(runProgram({"serve", "--swim"}), 2, {"--swim", "spindrift --help"});
 }
 
+TEST_F(Usage, UnknownCaseOfAStudyIsRefusedWithTheCases) {
+  const Outcome outcome = runProgram({"study", "--device", "software", "--case", "tides"});
+  if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("'tides'"));
+  EXPECT_THAT(outcome.err, HasSubstr("dam-break"));
+}
+
 TEST_F(Usage, PortOutOfRangeIsRefusedWithTheRange) {
   expectOneErrorLine(runProgram({"serve", "--port", "65536"}), 2, {"--port", "65536", "65535"});
 }
@@ -56,7 +64,7 @@ TEST_P(Help, GoesToStandardOutputAndIsFine) {
   EXPECT_EQ(outcome.err, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Help, testing::Values("", "serve", "info", "check", "bench"),
+INSTANTIATE_TEST_SUITE_P(Of, Help, testing::Values("", "serve", "info", "check", "bench", "study"),
                          [](const auto& one) { return one.param.empty() ? std::string("program") : one.param; });
 
 TEST_F(Usage, VersionIsOneLine) {

@@ -6,7 +6,7 @@ import { afterEach, beforeEach, describe, it } from "node:test";
 
 import { repository, Workshop } from "./workshop.mjs";
 
-const COMMANDS = ["run", "test", "build", "bench", "fmt", "lint", "bundle", "clean"];
+const COMMANDS = ["run", "test", "build", "bench", "study", "fmt", "lint", "bundle", "clean"];
 
 describe("./dev", () => {
   let shop;
