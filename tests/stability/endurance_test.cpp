@@ -19,9 +19,9 @@ bool allFinite(const std::vector<float>& values) {
   return true;
 }
 
-/// Elevations are integers that saturate at 32.767 m, particles and foam are integers anyway; what a frame can still get
-/// wrong is its extent. The largest elevation in `max_m`: it grows when people raise gravity or depth again and again while
-/// the water stands high, as 10,000 commands do (they pump energy in; the guard's bound is 64 m).
+/// Elevations are integers that saturate at 32.767 m, particles and foam are integers anyway; what a frame can still
+/// get wrong is its extent. The largest elevation in `max_m`: it grows when people raise gravity or depth again and
+/// again while the water stands high, as 10,000 commands do (they pump energy in; the guard's bound is 64 m).
 void expectSane(const core::FrameView& frame, const v1::Scene& scene, double& max_m) {
   ASSERT_TRUE(frame.surface && frame.particles && frame.foam && frame.bodies);
   const core::SurfaceView& surface = *frame.surface;
