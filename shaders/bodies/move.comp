@@ -75,7 +75,7 @@ float floatOnWater(inout BoatState b) {
       vec2 flow_mps;
       const vec4 s = surfaceUnder(place_m, flow_mps);
       const float keel_m = b.centre_m.y - 0.5 * b.hull_m.z + at_m.x * b.tilt.x - at_m.y * b.tilt.y;
-      #if WAVE
+#if WAVE
       const float level_m = s.x + hullHead(b, at_m);
 #else
       const float level_m = s.x;

@@ -64,9 +64,8 @@ float floorDensity(vec3 x_i) {
   return sim.virtual_mass_kg * sim.cubic_norm * sum;
 }
 
-/// The floor's share of the acceleration: pressure, -(p_i / rho_i^2) grad of floorDensity (Akinci et al. 2012, eq. 9), and
-/// viscosity against the velocity of the moving surface. `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
-vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
+/// Sums over the virtual particles: xyz of the cubic kernel's slope toward the particle, w of the viscosity's Laplacian, without norms.
+vec4 latticeSums(vec3 x_i) {
   const Floor f = loadFloor();
   const float H = sim.support_radius_m;
   const float spacing_m = sim.spacing_m;
@@ -82,29 +81,21 @@ vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
       drag += viscosityLaplacian(distance_m, H);
     }
   }
-  vec3 normal;
-  vec3 floor_velocity_mps;
-  floorState(f, x_i.xz, normal, floor_velocity_mps);
-  return sim.virtual_mass_kg * (sim.cubic_norm / H * pressure_term * push +
-                                sim.viscosity_norm * sim.viscosity_pas * drag / (rho_i * sim.rest_density_kgpm3) * (floor_velocity_mps - v_i));
+  return vec4(push, drag);
 }
 
 /// Gradient of floorDensity. [kg/m^4]
-vec3 floorGradient(vec3 x_i) {
-  const Floor f = loadFloor();
-  const float H = sim.support_radius_m;
-  const float spacing_m = sim.spacing_m;
-  const int last_row = lastLatticeRow(f, x_i, H, spacing_m);
-  const float inverse_H = 1.0 / H;
-  vec3 push = vec3(0.0);
-  for (int iz = -LATTICE_REACH; iz <= last_row; ++iz) {
-    for (int ix = -LATTICE_REACH; ix <= LATTICE_REACH; ++ix) {
-      const vec3 r = latticeOffset(f, x_i, spacing_m, ix, iz);
-      const float distance_m = max(length(r), 1e-4 * H);
-      push += cubicSlope(distance_m * inverse_H) / distance_m * r;
-    }
-  }
-  return -sim.virtual_mass_kg * sim.cubic_norm * inverse_H * push;
+vec3 floorGradient(vec3 x_i) { return -sim.virtual_mass_kg * sim.cubic_norm / sim.support_radius_m * latticeSums(x_i).xyz; }
+
+/// The floor's share of the acceleration: pressure, -(p_i / rho_i^2) grad of floorDensity (Akinci et al. 2012, eq. 9), and
+/// viscosity against the velocity of the moving surface. `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
+vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
+  const vec4 sums = latticeSums(x_i);
+  vec3 normal;
+  vec3 floor_velocity_mps;
+  floorState(loadFloor(), x_i.xz, normal, floor_velocity_mps);
+  return sim.virtual_mass_kg * (sim.cubic_norm / sim.support_radius_m * pressure_term * sums.xyz +
+                                sim.viscosity_norm * sim.viscosity_pas * sums.w / (rho_i * sim.rest_density_kgpm3) * (floor_velocity_mps - v_i));
 }
 #endif
 

@@ -25,6 +25,8 @@ std::string journalKey(const std::string& suite, const std::string& name, const 
 int study(const StudyOptions& options) {
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
+  StudyJournal journal(options.journal_file);
+  if (auto usable = journal.check(); !usable) return fail(usable.error());
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());
 
@@ -34,7 +36,6 @@ int study(const StudyOptions& options) {
   const gpu::DeviceInfo& info = (*ctx)->device();
   fmt::print(out, "{}{}; machine {}, {} hardware threads; device {}, {}\n", options.suite,
              options.quick ? ", quick" : "", host, std::thread::hardware_concurrency(), info.name, info.gl_version);
-  StudyJournal journal(options.journal_file);
   auto result = options.suite == "stability" ? studyStability(**ctx, options, journal, out)
                                              : studyAccuracy(**ctx, options, journal, out);
   if (!result) return fail(result.error());

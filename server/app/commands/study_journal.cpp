@@ -1,11 +1,19 @@
 #include "study_journal.h"
 
 #include <fstream>
+#include <utility>
 
 #include <boost/json/parse.hpp>
 #include <boost/json/serialize.hpp>
 
 namespace spindrift::app {
+namespace {
+
+core::Error unwritable(const std::string& file) {
+  return {core::ErrorCode::kUnavailable, "--journal '" + file + "': cannot be written: choose another file"};
+}
+
+}  // namespace
 
 StudyJournal::StudyJournal(std::string file) : file_(std::move(file)) {
   if (file_.empty()) return;
@@ -19,6 +27,11 @@ StudyJournal::StudyJournal(std::string file) : file_(std::move(file)) {
   }
 }
 
+core::Result<void> StudyJournal::check() const {
+  if (!file_.empty() && !std::ofstream(file_, std::ios::app)) return unwritable(file_);
+  return {};
+}
+
 std::optional<boost::json::value> StudyJournal::find(const std::string& key) const {
   for (const auto& entry : entries_) {
     if (entry.at("key").as_string() == key) return entry.at("result");
@@ -30,8 +43,7 @@ core::Result<void> StudyJournal::add(const std::string& key, boost::json::value 
   if (file_.empty()) return {};
   std::ofstream out(file_, std::ios::app);
   out << boost::json::serialize(boost::json::object{{"key", key}, {"result", std::move(result)}}) << '\n';
-  if (!out.flush())
-    return core::Error{core::ErrorCode::kUnavailable, file_ + ": cannot be written: choose another --journal"};
+  if (!out.flush()) return unwritable(file_);
   return {};
 }
 

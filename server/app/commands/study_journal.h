@@ -17,8 +17,11 @@ class StudyJournal {
   /// Reads what the file holds; a line that was cut off counts as not there. An empty name keeps nothing.
   explicit StudyJournal(std::string file);
 
+  /// kUnavailable when the file cannot be written: to be asked before hours of work.
+  [[nodiscard]] core::Result<void> check() const;
+
   [[nodiscard]] std::optional<boost::json::value> find(const std::string& key) const;
-  /// kUnavailable when the file cannot be written.
+  /// Errors as check()'s.
   core::Result<void> add(const std::string& key, boost::json::value result);
 
  private:

@@ -106,8 +106,12 @@ core::Result<SuiteResult> studyStability(gpu::Context& ctx, const StudyOptions& 
     std::fflush(out);
     json_sweeps.push_back(std::move(json));
   }
-  if (json_sweeps.empty())
-    return core::Error{core::ErrorCode::kInvalidInput, "--case: no sweep's name contains '" + options.only + "'"};
+  if (json_sweeps.empty()) {
+    std::string names;
+    for (const Sweep& sweep : study::stabilitySweeps(options.quick)) names += (names.empty() ? "" : "; ") + sweep.name;
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       "--case: no sweep's name contains '" + options.only + "'; there are: " + names};
+  }
   result.json["sweeps"] = std::move(json_sweeps);
   return result;
 }

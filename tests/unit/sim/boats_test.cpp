@@ -93,35 +93,6 @@ TEST_F(BoatsOnDevice, ReachesItsFullSpeedAndTurnsWithItsRudder) {
   EXPECT_GT(turned, 1.0) << "positive rudder turns from +x toward +z";
 }
 
-TEST_F(BoatsOnDevice, DragsAMachWedgeWhenFasterThanTheWaves) {
-  core::Scene scene = boatScene();
-  scene.wave->resolution_count = 256;
-  scene.wave->side_m = 40.0;
-  scene.wave->depth_m = 0.4;  // c = 1.98 m/s
-  scene.boats->boats = {core::Boat{
-      .x_m = -15.0, .length_m = 1.5, .beam_m = 0.6, .height_m = 0.3, .max_speed_mps = 5.0, .throttle_ratio = 1.0}};
-  WaterSim& sim = make(scene);
-  for (int i = 0; i < 360; ++i) sim.step();
-  const BoatPose b = pose(sim);
-  const double c = sim.derived().wave->speed_mps;
-  ASSERT_GT(b.forward_mps, 1.5 * c);
-  // The crest of the wedge abeam of the track, at two distances behind the boat.
-  const auto eta = sim.copyState().elevation_m;
-  const double cell_m = sim.derived().wave->cell_m;
-  const auto crestAbeam = [&](double behind_m) {
-    const int x = static_cast<int>((b.x_m - behind_m + 20.0) / cell_m);
-    int best = 128;
-    for (int z = 130; z < 250; ++z) {
-      if (std::abs(eta[static_cast<std::size_t>(x + 256 * z)]) >
-          std::abs(eta[static_cast<std::size_t>(x + 256 * best)]))
-        best = z;
-    }
-    return (best - 128) * cell_m;
-  };
-  const double slope = (crestAbeam(9.0) - crestAbeam(5.0)) / 4.0;
-  EXPECT_NEAR(std::atan(slope), std::asin(c / b.forward_mps), 0.12);
-}
-
 TEST_F(BoatsOnDevice, StaysOutOfRocksOtherBoatsAndWalls) {
   core::Scene scene = boatScene();
   scene.obstacles = {core::Rock{4.0, 0.0, 1.5, 0.8}, core::Breakwater{-4.0, 5.0, 6.0, 1.0, 30.0, 0.8}};

@@ -77,69 +77,6 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepForEachStencilAndBoundary) {
   }
 }
 
-TEST_F(WaveOnDevice, StandingModeFollowsTheDiscreteDispersionRelation) {
-  core::Scene scene = waveScene();
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
-  WaterSim& sim = make(scene);
-  const WaveLayout w = *sim.derived().wave;
-  const double kx = 3 * pi / w.side_m;
-  const double kz = 2 * pi / w.side_m;
-  const double s = std::sin(kx * w.cell_m / 2);
-  const double t = std::sin(kz * w.cell_m / 2);
-  const double omega = 2 / w.dt_s * std::asin(w.courant * std::sqrt(s * s + t * t));
-  const auto mode = [&](double time_s) {
-    return [=](double x, double z) { return 0.1 * std::cos(omega * time_s) * std::cos(kx * x) * std::cos(kz * z); };
-  };
-  set(sim, mode(0));
-  const int steps = 2000;
-  for (int k = 0; k < steps; ++k) sim.step();
-  const StateCopy after = sim.copyState();
-  double worst = 0;
-  for (std::uint32_t z = 0; z < w.resolution_count; ++z) {
-    for (std::uint32_t x = 0; x < w.resolution_count; ++x) {
-      const double expected = mode(steps * w.dt_s)((x + 0.5) * w.cell_m, (z + 0.5) * w.cell_m);
-      worst = std::max(worst, std::abs(after.elevation_m[x + w.resolution_count * z] - expected));
-    }
-  }
-  EXPECT_LE(worst, 0.1 * 2e-3) << "over " << steps << " steps, phase " << omega * steps * w.dt_s << " rad";
-}
-
-TEST_F(WaveOnDevice, UndampedEnergyNeitherGrowsNorFades) {
-  core::Scene scene = waveScene(32);
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
-  WaterSim& sim = make(scene);
-  const auto bump = [](double x, double z) { return 0.4 * std::exp(-((x - 5) * (x - 5) + (z - 7) * (z - 7))); };
-  set(sim, bump);
-  double low = 1e300;
-  double high = 0;
-  for (int k = 0; k < 6000; ++k) {
-    sim.step();
-    if (k < 10) continue;
-    low = std::min(low, sim.health().wave_energy_j);
-    high = std::max(high, sim.health().wave_energy_j);
-  }
-  EXPECT_GT(low, 0);
-  EXPECT_LE((high - low) / high, 1e-3);
-}
-
-TEST_F(WaveOnDevice, DampedModeDecaysAtHalfOfKappa) {
-  core::Scene scene = waveScene();
-  scene.wave->damping_per_s = 0.5;
-  WaterSim& sim = make(scene);
-  const double k = 2 * pi / scene.wave->side_m;
-  const auto mode = [&](double x, double) { return 0.1 * std::cos(k * x); };
-  set(sim, mode);
-  // Amplitude envelope from the energy, which decays at kappa.
-  for (int i = 0; i < 60; ++i) sim.step();
-  const double early = sim.health().wave_energy_j;
-  const double early_s = static_cast<double>(sim.health().tick) / scene.tick_rate_hz;
-  for (int i = 0; i < 480; ++i) sim.step();
-  const double late = sim.health().wave_energy_j;
-  const double late_s = static_cast<double>(sim.health().tick) / scene.tick_rate_hz;
-  // The mode rocks a whole number of times to within its own ripple; 5 % covers that ripple over 8 s.
-  EXPECT_NEAR(std::log(early / late) / (late_s - early_s), 0.5, 0.025);
-}
-
 TEST_F(WaveOnDevice, AConstantLevelIsAFixedPointToTheLastBit) {
   WaterSim& sim = make(waveScene());
   const auto level = [](double, double) { return 0.3; };
@@ -206,39 +143,6 @@ TEST_F(WaveOnDevice, ACrestTravelsOneWayAtTheWaveSpeed) {
   EXPECT_NEAR(*std::ranges::max_element(eta), 0.3, 0.05) << "its amplitude above the lowered mean";
 }
 
-/// What is left of a packet's energy after it met the absorbing sides at +-x, as a reflection coefficient of amplitude.
-/// `kz_count`: waves across the periodic z axis; the packet travels at the angle that kx = kz 2 pi / side gives.
-class AbsorbingSide : public WaveOnDevice {
- protected:
-  double reflection(int kx_count, int kz_count, double seconds) {
-    core::Scene scene = waveScene(192);
-    scene.wave->side_m = 24.0;
-    scene.wave->damping_per_s = 0.0;
-    scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = core::WaveBoundary::kAbsorb;
-    scene.wave->sponge_width_m = 4.0;
-    WaterSim& sim = make(scene);
-    const double k = 2 * pi / scene.wave->side_m;
-    set(sim, [&](double x, double z) {
-      const double s = (x - 12.0) / 3.0;
-      return 0.1 * std::exp(-s * s) * std::cos(k * kx_count * (x - 12.0)) * std::cos(k * kz_count * z);
-    });
-    for (int i = 0; i < 8; ++i) sim.step();
-    const double before = sim.health().wave_energy_j;
-    const auto steps = static_cast<int>(seconds * scene.tick_rate_hz);
-    for (int i = 0; i < steps; ++i) sim.step();
-    EXPECT_GT(before, 0.0);
-    return std::sqrt(sim.health().wave_energy_j / before);
-  }
-};
-
-TEST_F(AbsorbingSide, ReturnsLessThanOnePercentOfANormalWave) {
-  EXPECT_LE(reflection(8, 0, 10.0), 0.01);
-}
-
-TEST_F(AbsorbingSide, ReturnsLessThanFivePercentAt45Degrees) {
-  EXPECT_LE(reflection(8, 8, 14.0), 0.05);
-}
-
 TEST_F(WaveOnDevice, VolumeIsExactWithEveryKindOfSideBedAndEffect) {
   for (const auto stencil : {core::Stencil::kFivePoint, core::Stencil::kNinePoint}) {
     core::Scene scene = waveScene(96);
@@ -267,35 +171,6 @@ TEST_F(WaveOnDevice, VolumeIsExactWithEveryKindOfSideBedAndEffect) {
     EXPECT_LT(highest, 3.0);
     EXPECT_EQ(sim.health().nonfinite_count, 0u);
   }
-}
-
-TEST_F(WaveOnDevice, ACrestOnASlopeFollowsGreensLaw) {
-  core::Scene scene = waveScene(384);
-  scene.wave->side_m = 96.0;
-  scene.wave->depth_m = 2.0;
-  scene.wave->damping_per_s = 0.0;
-  scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = core::WaveBoundary::kReflect;
-  scene.beaches = {core::Beach{core::Side::kPlusX, 70.0, 0.25}};
-  WaterSim& sim = make(scene);
-  const auto bump = [](double x, double) {
-    const double u = 1.0 / std::cosh((x - 14.0) / 1.5);
-    return 0.2 * u * u;
-  };
-  set(sim, bump);  // at rest: half of it travels toward the slope
-  const auto crest = [&] {
-    const auto eta = sim.copyState().elevation_m;
-    const auto n = static_cast<std::ptrdiff_t>(sim.derived().wave->resolution_count);
-    const auto at = std::max_element(eta.begin() + n / 4, eta.begin() + n);
-    const double x_m = (static_cast<double>(at - eta.begin()) + 0.5) * sim.derived().wave->cell_m;
-    return std::pair{x_m, *at};
-  };
-  const auto depth = [](double x_m) { return std::min(2.0, 0.25 + 1.75 * (96.0 - x_m) / 70.0); };
-  for (int i = 0; i < 180; ++i) sim.step();
-  const auto [first_x, first] = crest();
-  for (int i = 0; i < 600; ++i) sim.step();
-  const auto [last_x, last] = crest();
-  ASSERT_LT(depth(last_x), 0.6 * depth(first_x)) << "it climbed";
-  EXPECT_NEAR(last / first, std::pow(depth(first_x) / depth(last_x), 0.25), 0.05 * last / first);
 }
 
 }  // namespace

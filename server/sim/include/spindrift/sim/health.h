@@ -7,9 +7,9 @@ namespace spindrift::sim {
 
 struct Health {
   std::uint64_t tick = 0;
-  std::uint64_t nonfinite_count =
-      0;                            ///< particles and wave cells with a value that is NaN, infinite or beyond its range
-  std::uint64_t escaped_count = 0;  ///< particles outside their domain
+  /// Particles, boats and wave cells with a value that is NaN, infinite or beyond its range (fixed_point.h).
+  std::uint64_t nonfinite_count = 0;
+  std::uint64_t escaped_count = 0;   ///< particles outside their domain
   std::uint32_t particle_count = 0;  ///< alive
   double max_speed_mps = 0.0;
   double max_density_ratio = 0.0;  ///< rho / rho0
