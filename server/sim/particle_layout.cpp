@@ -103,6 +103,24 @@ core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, d
                   "use a width in a simple ratio to the length, another count, or walls",
                   wanted_m, 1.2 * wanted_m, side_x_m, side_z_m));
 }
+/// A box that is periodic in y has no place for what needs an up and a down.
+core::Result<void> checkVerticalPeriod(const core::Scene& scene) {
+  const core::ParticleScene& p = *scene.particles;
+  if (!p.periodic_y) {
+    if (p.fill_density_ratio == 1.0) return {};
+    return invalid(
+        "particles.fill_density_ratio: water with a surface finds its density by itself: use 1, or a box with "
+        "periodic_y and no "
+        "surface");
+  }
+  if (scene.wave || scene.boats || scene.gravity_mps2 != 0.0 || p.fill_x_ratio < 1 || p.fill_z_ratio < 1) {
+    return invalid(
+        "particles.periodic_y: a box without floor and surface has no wave, no boats, no dam and no gravity: remove "
+        "them and set gravity_mps2: 0");
+  }
+  return {};
+}
+
 }  // namespace
 
 /// k of the equation of state, such that the stress of settled water is c0^2 (rho - rho0).
@@ -113,6 +131,7 @@ double stiffnessOf(const core::ParticleScene& p, const ParticleLayout& layout) {
 }
 
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3) {
+  if (auto checked = checkVerticalPeriod(scene); !checked) return checked.error();
   if (isTwoWay(scene)) return layOutPool(scene);
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
@@ -166,9 +185,15 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
                      .pressure_force = is_position_based ? core::PressureForce::kConserving : p.pressure_force,
                      .cohesion = p.cohesion && !is_position_based},
                     static_cast<int>(out.layers_count));
+  if (p.periodic_y && out.layers_count * s < 2 * H) {
+    return invalid(fmt::format(
+        "particles.layers_count: {} layers of {:.3g} m are less than two support radii of {:.3g} m, and a particle "
+        "would meet its own images across the periodic height: use at least {:.0f}",
+        out.layers_count, s, H, std::ceil(2 * H / s - 1e-9)));
+  }
   // A dam's column stands free on one side: it starts at rest density, without the pressure that its neighbours would
-  // hold, or its side would burst.
-  if (p.fill_x_ratio < 1 || p.fill_z_ratio < 1) {
+  // hold, or its side would burst. Nothing weighs on the layers of a box without surface.
+  if (p.periodic_y || p.fill_x_ratio < 1 || p.fill_z_ratio < 1) {
     for (std::size_t k = 0; k < out.layer_heights_m.size(); ++k)
       out.layer_heights_m[k] = (static_cast<double>(k) + 0.5) * s;
   }
@@ -178,7 +203,8 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   // Below the band the floor can sink as far as the water is deep.
   const double lowest_m = -out.band_m - (scene.coupling ? scene.wave->depth_m : 0.0);
   out.min_m = {centre_x - side_x_m / 2, lowest_m, centre_z - side_z_m / 2};
-  out.max_m = {centre_x + side_x_m / 2, p.headroom_m, centre_z + side_z_m / 2};
+  out.max_m = {centre_x + side_x_m / 2, p.periodic_y ? 0.0 : p.headroom_m, centre_z + side_z_m / 2};
+  out.mass_kg *= p.fill_density_ratio;
   if (scene.wave) {
     const double half_m = scene.wave->side_m / 2 * (1 + 1e-9);
     if (out.min_m[0] < -half_m || out.max_m[0] > half_m || out.min_m[2] < -half_m || out.max_m[2] > half_m) {

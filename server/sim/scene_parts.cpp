@@ -92,6 +92,7 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
   const bool periodic_z = isTwoWay(scene) ? isPeriodicZ(*scene.wave)
                                           : has_particles && scene.particles->boundary_z == core::Boundary::kPeriodic;
   return {{"PERIODIC_X", flag(periodic_x)},
+          {"PERIODIC_Y", flag(has_particles && scene.particles->periodic_y)},
           {"PERIODIC_Z", flag(periodic_z)},
           {"COUPLED", flag(scene.coupling.has_value())},
           {"KERNEL_SET", std::to_string(has_particles ? kernelSetNumber(scene.particles->kernel_set) : 3)},

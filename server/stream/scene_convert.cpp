@@ -128,6 +128,8 @@ core::ParticleScene toCore(const v1::ParticleScene& in) {
   out.fill_z_ratio = in.fill_z_ratio();
   out.box_width_m = in.box_width_m();
   out.settle_s = in.settle_s();
+  out.periodic_y = in.periodic_y();
+  out.fill_density_ratio = in.fill_density_ratio();
   return out;
 }
 

@@ -13,9 +13,11 @@ const std::vector<Case>& accuracyCases() {
       {"damped-mode", "Decay of a damped mode", dampedMode},
       {"reflection", "What an absorbing side sends back", reflection},
       {"greens-law", "Height of a crest that runs up a slope", greensLaw},
+      {"one-step", "One step on the device and in double precision", oneStep},
       {"still-water", "Particles on a level wave that should not move", stillWater},
       {"hydrostatic", "Pressure in a column at rest", hydrostaticColumn},
       {"dam-break", "Front of a collapsing column", damBreak},
+      {"taylor-green", "Decay of vortices in a box without sides", taylorGreen},
       {"floating-body", "Draught of a boat at rest", floatingBody},
       {"mach-wedge", "Wake of a boat faster than the waves", machWedge},
   };

@@ -18,12 +18,18 @@ Rows dampedMode(gpu::Context& ctx, bool quick);
 Rows reflection(gpu::Context& ctx, bool quick);
 Rows greensLaw(gpu::Context& ctx, bool quick);
 
+// one_step.cpp
+Rows oneStep(gpu::Context& ctx, bool quick);
+
 // particle_cases.cpp
 Rows stillWater(gpu::Context& ctx, bool quick);
 Rows hydrostaticColumn(gpu::Context& ctx, bool quick);
 
 // dam_break.cpp
 Rows damBreak(gpu::Context& ctx, bool quick);
+
+// taylor_green.cpp
+Rows taylorGreen(gpu::Context& ctx, bool quick);
 
 // body_cases.cpp
 Rows floatingBody(gpu::Context& ctx, bool quick);

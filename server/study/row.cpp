@@ -11,6 +11,7 @@ double Row::error() const {
     case Tolerance::kAbsolute:
       return measured - expected;
     case Tolerance::kAtMost:
+    case Tolerance::kAtLeast:
     case Tolerance::kNone:
       break;
   }
@@ -21,6 +22,7 @@ bool Row::passes() const {
   if (!std::isfinite(measured)) return false;
   if (kind == Tolerance::kNone) return true;
   if (kind == Tolerance::kAtMost) return measured <= expected;
+  if (kind == Tolerance::kAtLeast) return measured >= expected;
   return std::abs(error()) <= tolerance;
 }
 

@@ -13,4 +13,13 @@ CandidateRange candidateRange(Grid g, ivec3 cell, int dx, int dz) {
   return r;
 }
 
+/// From a candidate at x_j to the particle at x, its range's shift added; the shorter way round where y is periodic.
+vec3 fromCandidate(Grid g, vec3 x, vec3 x_j) {
+  vec3 r = x - x_j;
+#if PERIODIC_Y
+  r.y -= g.side_m.y * round(r.y / g.side_m.y);
+#endif
+  return r;
+}
+
 #endif

@@ -11,8 +11,8 @@
 #include "include/floor.glsl"
 #include "include/kernels.glsl"
 
-#if POOL_PARTICLES
-// In two-way scenes the surface takes particles in instead of carrying them.
+#if POOL_PARTICLES || PERIODIC_Y
+// In two-way scenes the surface takes particles in instead of carrying them; a box that is periodic in y has no floor.
 float floorDensity(vec3 x_i) { return 0.0; }
 vec3 floorGradient(vec3 x_i) { return vec3(0.0); }
 vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) { return vec3(0.0); }

@@ -1,6 +1,7 @@
-// Positions to cells and cells to ranges of the sorted particles. Cells have edge H and are numbered y fastest: y is the one
-// axis that is never periodic, so the three y-neighbours of a column are one contiguous range everywhere, and the 27 cells
-// around a particle are nine ranges without a special case at the sides. PERIODIC_X and PERIODIC_Z are 0 or 1.
+// Positions to cells and cells to ranges of the sorted particles. Cells have edge H and are numbered y fastest: y is the axis
+// that water's own box never has periodic, so the three y-neighbours of a column are one contiguous range everywhere, and the 27
+// cells around a particle are nine ranges without a special case at the sides. In a box that is periodic in y, meant to be a few
+// cells thick, all of a column are candidates. PERIODIC_X, PERIODIC_Y and PERIODIC_Z are 0 or 1.
 #ifndef SPINDRIFT_GRID_HASH
 #define SPINDRIFT_GRID_HASH
 
@@ -63,8 +64,13 @@ CandidateRange columnCells(Grid g, ivec3 cell, int dx, int dz) {
   const bool inside_z = neighbourColumn(z, g.cells.z, g.side_m.z, PERIODIC_Z == 1, r.shift_m.z);
   const int base = g.cells.y * (x + g.cells.x * z);
   const bool inside = inside_x && inside_z;
+#if PERIODIC_Y
+  r.first = inside ? base : 0;
+  r.last = inside ? base + g.cells.y : 0;
+#else
   r.first = inside ? base + max(cell.y - 1, 0) : 0;
   r.last = inside ? base + min(cell.y + 1, g.cells.y - 1) + 1 : 0;
+#endif
   return r;
 }
 

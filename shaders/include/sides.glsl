@@ -32,7 +32,7 @@ void carryAlong(inout vec3 x, inout vec3 v) {
 }
 #endif
 
-/// Both horizontal axes.
+/// Horizontal axes, and the vertical one where it is periodic.
 void keepInside(inout vec3 x, inout vec3 v) {
 #if FOLLOW
   carryAlong(x, v);
@@ -46,6 +46,9 @@ void keepInside(inout vec3 x, inout vec3 v) {
   wrapAround(x.z, sim.min_z_m, sim.max_z_m);
 #else
   keepBetweenWalls(x.z, v.z, sim.min_z_m, sim.max_z_m);
+#endif
+#if PERIODIC_Y
+  wrapAround(x.y, sim.min_y_m, sim.max_y_m);
 #endif
 #endif
 }

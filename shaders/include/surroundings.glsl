@@ -25,6 +25,7 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
   pushOutOfRocks(x, v);
 #endif
 
+#if !PERIODIC_Y
   const Floor f = loadFloor();
   vec3 normal;
   vec3 floor_velocity_mps;
@@ -47,6 +48,7 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
   }
 #endif
   keepBetweenWalls(x.y, v.y, sim.min_y_m, sim.max_y_m);
+#endif
   return true;
 }
 

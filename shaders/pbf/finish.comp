@@ -2,7 +2,7 @@
 // Reads PRESSURE_POINT (position, m/rho), ACCELERATION (velocity, rho), SORTED_POSITION.w (id), SORTED_VELOCITY.w (foam), CELL_START, the
 // floor. Writes POSITION, VELOCITY (in sorted order).
 // Equation: the weakly compressible solver's viscosity, mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W (thesis 3.18), over one step.
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=1 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 FOAM=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1
+// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=1 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 FOAM=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1
 #include "shared/groups.h"
 #include "include/population.glsl"
 #include "include/candidates.glsl"
@@ -39,7 +39,7 @@ void main() {
       const vec3 x = x_i + range.shift_m;
       for (int j = range.first; j < range.last; ++j) {
         const vec4 a = texelFetch(pressure_point, j);
-        const vec3 r = x - a.xyz;
+        const vec3 r = fromCandidate(g, x, a.xyz);
         const float r2 = dot(r, r);
         drag += (a.w * viscosityLaplacian(sqrt(r2), support.H)) * (texelFetch(acceleration, j).xyz - own.xyz);
 #if NEIGHBOUR_FOAM

@@ -4,7 +4,7 @@
 // Equations: rho_i = sum_j m W(r_ij) (thesis 3.6), plus the floor's virtual particles, cubic kernel (thesis, algorithm
 // 10), and the walls' shares; p_i from the equation of state (include/pressure.glsl).
 // Invariant: rho_i >= m W(0) > 0, so the divisions are safe.
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
+// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
 #include "shared/groups.h"
 #include "include/candidates.glsl"
 #include "include/population.glsl"
@@ -43,7 +43,7 @@ void main() {
       const CandidateRange range = candidateRange(g, cell, dx, dz);
       const vec3 x = x_i + range.shift_m;
       for (int j = range.first; j < range.last; ++j) {
-        const vec3 r = x - texelFetch(sorted_position, j).xyz;
+        const vec3 r = fromCandidate(g, x, texelFetch(sorted_position, j).xyz);
         const float r2 = dot(r, r);
         sum += densityShape(r2, support);
 #if NEIGHBOUR_FOAM

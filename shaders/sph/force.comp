@@ -5,7 +5,7 @@
 // mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W, viscosity kernel (thesis 3.18 with the difference its text means); above the
 // water -downforce (y - eta)^2 (thesis 3.6.2).
 // Invariant: the pair terms are antisymmetric up to rounding (not with MEAN_FORCE); the particle itself adds nothing (r = 0).
-// variants: PERIODIC_X=1 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
+// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
 #include "shared/groups.h"
 #include "include/candidates.glsl"
 #include "include/population.glsl"
@@ -36,7 +36,7 @@ void main() {
       for (int j = range.first; j < range.last; ++j) {
         const vec4 a = texelFetch(pressure_point, j);
         const vec4 b = texelFetch(motion_point, j);
-        const vec3 r = x - a.xyz;
+        const vec3 r = fromCandidate(g, x, a.xyz);
         const float r2 = dot(r, r);
 #if MEAN_FORCE
         push += ((own.w + a.w) * b.w * pressurePull(r2, support)) * r;

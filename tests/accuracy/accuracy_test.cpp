@@ -48,6 +48,10 @@ TEST(Row, JudgesByItsOwnMeasure) {
   EXPECT_FALSE(wrong.passes());
   wrong.measured = 5.0;
   EXPECT_TRUE(wrong.passes());
+  wrong = {"l", "", 0.64, 0.65, Tolerance::kAtLeast, 0.0, ""};
+  EXPECT_FALSE(wrong.passes());
+  wrong.measured = 0.65;
+  EXPECT_TRUE(wrong.passes());
   wrong = {"n", "", std::numeric_limits<double>::quiet_NaN(), 0.0, Tolerance::kNone, 0.0, ""};
   EXPECT_FALSE(wrong.passes()) << "a number that is none never passes";
 }

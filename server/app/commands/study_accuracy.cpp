@@ -22,6 +22,8 @@ const char* nameOf(Tolerance kind) {
       return "absolute";
     case Tolerance::kAtMost:
       return "at most";
+    case Tolerance::kAtLeast:
+      return "at least";
     case Tolerance::kNone:
       break;
   }
@@ -42,7 +44,8 @@ Row fromJson(const boost::json::object& json) {
   row.expected = json.at("expected").to_number<double>();
   row.tolerance = json.at("tolerance").to_number<double>();
   row.source = json.at("source").as_string();
-  for (const Tolerance kind : {Tolerance::kRelative, Tolerance::kAbsolute, Tolerance::kAtMost, Tolerance::kNone}) {
+  for (const Tolerance kind :
+       {Tolerance::kRelative, Tolerance::kAbsolute, Tolerance::kAtMost, Tolerance::kAtLeast, Tolerance::kNone}) {
     if (json.at("tolerance_kind").as_string() == nameOf(kind)) row.kind = kind;
   }
   return row;
@@ -56,6 +59,8 @@ std::string bound(const Row& row) {
       return fmt::format("{:.6g} +- {:.3g}", row.expected, row.tolerance);
     case Tolerance::kAtMost:
       return fmt::format("<= {:.4g}", row.expected);
+    case Tolerance::kAtLeast:
+      return fmt::format(">= {:.4g}", row.expected);
     case Tolerance::kNone:
       break;
   }

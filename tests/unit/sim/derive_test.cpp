@@ -261,5 +261,56 @@ TEST(Derive, GivesTheNinePointStencilALargerStep) {
   EXPECT_LE(nine->wave->substeps_count, five->wave->substeps_count);
 }
 
+/// A box that is periodic in every direction.
+core::Scene weightlessScene() {
+  core::Scene scene = smallScene(5 * 12 * 12);
+  scene.wave.reset();
+  scene.coupling.reset();
+  scene.gravity_mps2 = 0.0;
+  scene.particles->box_side_m = 2.0;
+  scene.particles->layers_count = 5;
+  scene.particles->periodic_y = true;
+  return scene;
+}
+
+TEST(Derive, ABoxPeriodicInHeightIsAsHighAsItsLayers) {
+  core::Scene scene = weightlessScene();
+  const auto whole = derive(scene);
+  ASSERT_TRUE(whole) << whole.error().message;
+  const ParticleLayout& l = *whole->particles;
+  EXPECT_NEAR(l.max_m[1] - l.min_m[1], l.layers_count * l.spacing_m, 1e-12);
+  scene.particles->fill_density_ratio = 1.1;
+  const auto fuller = derive(scene);
+  ASSERT_TRUE(fuller) << fuller.error().message;
+  EXPECT_NEAR(fuller->particles->mass_kg, 1.1 * l.mass_kg, 1e-9 * l.mass_kg);
+}
+
+TEST(Derive, ABoxPeriodicInHeightRefusesWhatNeedsUpAndDown) {
+  const auto refuses = [](const core::Scene& scene, const char* field) {
+    const auto derived = derive(scene);
+    ASSERT_FALSE(derived) << field;
+    EXPECT_NE(derived.error().message.find(field), std::string::npos) << derived.error().message;
+  };
+  core::Scene scene = weightlessScene();
+  scene.gravity_mps2 = 9.81;
+  refuses(scene, "particles.periodic_y");
+  scene = weightlessScene();
+  scene.boats.emplace();
+  refuses(scene, "particles.periodic_y");
+  scene = weightlessScene();
+  scene.particles->fill_x_ratio = 0.5;
+  refuses(scene, "particles.periodic_y");
+  scene = weightlessScene();
+  scene.wave.emplace();
+  refuses(scene, "particles.periodic_y");
+  scene = weightlessScene();
+  scene.particles->layers_count = 3;
+  refuses(scene, "particles.layers_count");
+  scene = weightlessScene();
+  scene.particles->periodic_y = false;
+  scene.particles->fill_density_ratio = 0.98;
+  refuses(scene, "particles.fill_density_ratio");
+}
+
 }  // namespace
 }  // namespace spindrift::sim

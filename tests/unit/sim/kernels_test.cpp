@@ -93,9 +93,13 @@ TEST_F(KernelsOnDevice, EqualTheDoublePrecisionOnes) {
 }
 
 TEST_F(KernelsOnDevice, UniformsLieWhereTheDriverPutsThem) {
-  auto program = gpu::Program::create(
-      *ctx_, "sph/integrate.comp",
-      {{"PERIODIC_X", "1"}, {"PERIODIC_Z", "1"}, {"COUPLED", "1"}, {"WAVE_PERIODIC", "1"}, {"FOAM", "1"}});
+  auto program = gpu::Program::create(*ctx_, "sph/integrate.comp",
+                                      {{"PERIODIC_X", "1"},
+                                       {"PERIODIC_Y", "0"},
+                                       {"PERIODIC_Z", "1"},
+                                       {"COUPLED", "1"},
+                                       {"WAVE_PERIODIC", "1"},
+                                       {"FOAM", "1"}});
   ASSERT_TRUE(program) << program.error().message;
   const auto blocks = program->blocks();
   ASSERT_TRUE(blocks.contains("SimUniforms"));

@@ -31,8 +31,9 @@ class Grid : public OnDevice {
     }
     p.position.upload(positions);
     p.velocity.upload(positions);  // so that a test sees both move together
-    auto grid = NeighborGrid::create(*ctx_, *derived_.particles,
-                                     {{"PERIODIC_X", "1"}, {"PERIODIC_Z", "1"}, {"POOL_PARTICLES", "0"}}, false);
+    auto grid = NeighborGrid::create(
+        *ctx_, *derived_.particles,
+        {{"PERIODIC_X", "1"}, {"PERIODIC_Y", "0"}, {"PERIODIC_Z", "1"}, {"POOL_PARTICLES", "0"}}, false);
     ASSERT_TRUE(grid) << grid.error().message;
     (*grid)->build(p, Population(derived_.particles->count, derived_.particles->cell_count, nullptr));
     ctx_->barrier(gpu::Barrier::kBufferUpdate);

@@ -7,8 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <spindrift/study/water_reference.h>
+
 #include "sim_fixture.h"
-#include "water_reference.h"
 
 namespace spindrift::sim {
 namespace {
@@ -69,7 +70,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepForEachStencilAndBoundary) {
       const std::vector<double> now = sim.copyState().elevation_m;
       sim.step();
       const std::vector<double> after = sim.copyState().elevation_m;
-      const auto expected = testing::referenceWaveStep(scene, sim.derived(), now, before);
+      const auto expected = study::referenceWaveStep(scene, sim.derived(), now, before);
       double worst = 0;
       for (std::size_t i = 0; i < expected.size(); ++i) worst = std::max(worst, std::abs(after[i] - expected[i]));
       EXPECT_LE(worst, 1e-6);

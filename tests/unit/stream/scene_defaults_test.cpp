@@ -82,6 +82,8 @@ TEST(SceneDefaults, EqualThoseOfCoreForTheParticles) {
   EXPECT_EQ(actual.fill_z_ratio, expected.fill_z_ratio);
   EXPECT_EQ(actual.box_width_m, expected.box_width_m);
   EXPECT_EQ(actual.settle_s, expected.settle_s);
+  EXPECT_EQ(actual.periodic_y, expected.periodic_y);
+  EXPECT_EQ(actual.fill_density_ratio, expected.fill_density_ratio);
 }
 
 TEST(SceneDefaults, EqualThoseOfCoreForCouplingAndFoam) {
@@ -210,7 +212,8 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
       "            max_speed_mps: 5 viscosity_pas: 1 jitter_ratio: 0.01 boundary_x: BOUNDARY_WALL\n"
       "            boundary_z: BOUNDARY_WALL kernel_set: KERNEL_SET_MULLER solver: PRESSURE_SOLVER_POSITION_BASED\n"
       "            equation_of_state: EQUATION_OF_STATE_TAIT pressure_force: PRESSURE_FORCE_MEAN iterations_count: 7\n"
-      "            cohesion: true fill_x_ratio: 0.5 fill_z_ratio: 0.75 box_width_m: 2 settle_s: 3 }\n"
+      "            cohesion: true fill_x_ratio: 0.5 fill_z_ratio: 0.75 box_width_m: 2 settle_s: 3\n"
+      "            periodic_y: true fill_density_ratio: 1.1 }\n"
       "coupling { lattice_count: 3 downforce_per_m_s2: 2 mode: COUPLING_MODE_TWO_WAY patch_follow: PATCH_FOLLOW_BOAT\n"
       "           emission_ratio: 2 droplet_spacing_m: 0.2 }\n"
       "foam { density_deficit_ratio: 0.2 lifetime_s: 3 neighbours_count: 4 surface: true breaking_lifetime_s: 1\n"
@@ -271,6 +274,8 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
   EXPECT_EQ(out.particles->fill_z_ratio, 0.75);
   EXPECT_EQ(out.particles->box_width_m, 2.0);
   EXPECT_EQ(out.particles->settle_s, 3.0);
+  EXPECT_TRUE(out.particles->periodic_y);
+  EXPECT_EQ(out.particles->fill_density_ratio, 1.1);
   EXPECT_EQ(out.coupling->mode, core::CouplingMode::kTwoWay);
   EXPECT_EQ(out.coupling->patch_follow, core::PatchFollow::kBoat);
   EXPECT_EQ(out.coupling->emission_ratio, 2.0);

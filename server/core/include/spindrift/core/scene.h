@@ -110,6 +110,10 @@ struct ParticleScene {
   double fill_z_ratio = 1.0;
   double settle_s = 0.0;     ///< simulated time in which the starting lattice comes to rest before the first tick
   double box_width_m = 0.0;  ///< side along z of the box when the scene has no wave; 0 = box_side_m
+  /// A box without floor, surface and gravity: what leaves it above enters it below. `layers_count` layers thick.
+  bool periodic_y = false;
+  double fill_density_ratio =
+      1.0;  ///< density of the starting lattice over rest_density_kgpm3; not 1 only with periodic_y
 };
 
 /// kOneWay: the wave carries a band of particles. kTwoWay: there are particles only where water broke; they return.

@@ -10,6 +10,7 @@ enum class Tolerance {
   kRelative,  ///< |measured - expected| <= tolerance * |expected|
   kAbsolute,  ///< |measured - expected| <= tolerance
   kAtMost,    ///< measured <= expected; tolerance is not used
+  kAtLeast,   ///< measured >= expected; tolerance is not used
   kNone,      ///< reported only
 };
 

@@ -7,7 +7,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/sim/derive.h>
 
-namespace spindrift::testing {
+namespace spindrift::study {
 
 using Vec3 = std::array<double, 3>;
 
@@ -42,4 +42,4 @@ ReferenceProjection referenceProjection(const core::Scene& scene, const sim::Der
 std::vector<double> referenceWaveStep(const core::Scene& scene, const sim::Derived& derived,
                                       const std::vector<double>& eta, const std::vector<double>& eta_previous);
 
-}  // namespace spindrift::testing
+}  // namespace spindrift::study

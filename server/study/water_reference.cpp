@@ -1,10 +1,10 @@
-#include "water_reference.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace spindrift::testing {
+#include <spindrift/study/water_reference.h>
+
+namespace spindrift::study {
 namespace {
 
 using std::numbers::pi;
@@ -47,11 +47,11 @@ double length(const Vec3& a) {
 /// x_i - x_j, the shortest way across periodic sides.
 Vec3 between(const core::Scene& scene, const sim::Derived& d, const Vec3& a, const Vec3& b) {
   Vec3 r = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  for (const int axis : {0, 2}) {
-    const bool periodic =
-        (axis == 0 ? scene.particles->boundary_x : scene.particles->boundary_z) == core::Boundary::kPeriodic;
+  const bool periodic[3] = {scene.particles->boundary_x == core::Boundary::kPeriodic, scene.particles->periodic_y,
+                            scene.particles->boundary_z == core::Boundary::kPeriodic};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     const double side = d.particles->max_m[axis] - d.particles->min_m[axis];
-    if (periodic) r[axis] -= side * std::round(r[axis] / side);
+    if (periodic[axis]) r[axis] -= side * std::round(r[axis] / side);
   }
   return r;
 }
@@ -98,8 +98,9 @@ struct Floor {
     return {bilinear(s.flow_x_mps, x, z), bilinear(s.rate_mps, x, z), bilinear(s.flow_z_mps, x, z)};
   }
 
-  /// What a flat floor leaves of its reach at x, which supports like a wall.
+  /// What a flat floor leaves of its reach at x, which supports like a wall; 0 in a box without one.
   double reach(const Vec3& x) const {
+    if (scene.particles->periodic_y) return 0;
     return std::max(1 - std::max(x[1] + d.particles->band_m, 0.0) / d.particles->wall_reach_m, 0.0);
   }
 
@@ -370,4 +371,4 @@ std::vector<double> referenceWaveStep(const core::Scene& scene, const sim::Deriv
   return next;
 }
 
-}  // namespace spindrift::testing
+}  // namespace spindrift::study
