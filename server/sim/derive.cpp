@@ -173,6 +173,8 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.pool_capacity_count = d.particles->count;
     u.droplet_units =
         static_cast<std::uint32_t>(std::lround(s * s * s / (d.wave->cell_m * d.wave->cell_m) * ELEVATION_UNITS_PER_M));
+    u.splat_reach_count = d.particles->splat_reach_count;
+    u.splat_width_m = f(splatWidth(d.particles->splat_reach_count) * d.wave->cell_m);
     u.emission_ratio = f(scene.coupling->emission_ratio);
     u.seed = static_cast<std::uint32_t>(scene.seed);
   }

@@ -36,10 +36,11 @@ void main() {
 
   const int amount = int(sim.droplet_units);
   int rest = amount;
-  for (int dz = -2; dz <= 2; ++dz) {
-    for (int dx = -2; dx <= 2; ++dx) {
+  const int reach = int(sim.splat_reach_count);
+  for (int dz = -2 * reach; dz <= 2 * reach; ++dz) {
+    for (int dx = -2 * reach; dx <= 2 * reach; ++dx) {
       const int at = splatTarget(cell, ivec2(dx, dz), n);
-      const int share = at >= 0 ? splatShare(amount, ivec2(dx, dz)) : 0;
+      const int share = at >= 0 ? splatShare(amount, ivec2(dx, dz), reach) : 0;
       if (share != 0) atomicAdd(elevation[at], -share);
       rest -= share;
     }

@@ -14,7 +14,7 @@ layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
 #endif
 
 /// A particle at xz with downward speed `impact_mps` ends here. Its momentum acts on the surface during the next tick as the height
-/// of water V v / (g dt) over the cell's area: the ring of a falling drop. An impulse as narrow as the splat's two cells moves water
+/// of water V v / (g dt) over the cell's area: the ring of a falling drop. An impulse as narrow as the splat moves water
 /// to about that depth, while the shallow-water flow moves the whole column: so much less of it counts.
 /// Invariant: ELEVATION gains exactly droplet_units.
 void absorb(vec2 xz, float impact_mps) {
@@ -22,17 +22,18 @@ void absorb(vec2 xz, float impact_mps) {
   const ivec2 middle = wetCellAt(xz, n);
   const int i = middle.x + n * middle.y;
   const int amount = int(sim.droplet_units);
-  const float reached = min(2.0 * sim.wave_cell_m / sim.wave_depth_m, 1.0);
+  const float reached = min(2.0 * sim.splat_width_m / sim.wave_depth_m, 1.0);
   const float head = reached * float(amount) * impact_mps / max(sim.gravity_mps2 * sim.tick_s, 1e-6);
   const int head_units = int(min(head, 0.5 * TRANSFER_MAX_UNITS));
   int rest = amount;
-  for (int dz = -2; dz <= 2; ++dz) {
-    for (int dx = -2; dx <= 2; ++dx) {
+  const int reach = int(sim.splat_reach_count);
+  for (int dz = -2 * reach; dz <= 2 * reach; ++dz) {
+    for (int dx = -2 * reach; dx <= 2 * reach; ++dx) {
       const int at = splatTarget(middle, ivec2(dx, dz), n);
       if (at < 0) continue;
-      const int share = splatShare(amount, ivec2(dx, dz));
+      const int share = splatShare(amount, ivec2(dx, dz), reach);
       atomicAdd(elevation[at], share);
-      atomicAdd(pressure_head[at], splatShare(head_units, ivec2(dx, dz)));
+      atomicAdd(pressure_head[at], splatShare(head_units, ivec2(dx, dz), reach));
       rest -= share;
     }
   }

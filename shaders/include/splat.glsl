@@ -1,5 +1,7 @@
-// Spreads an integer amount over the 5 x 5 wave cells around one, with binomial weights (1 4 6 4 1)^2 / 256; what rounding and dry
-// cells leave goes to the middle, so that the whole amount arrives. Integer additions: the order does not matter.
+// Spreads an integer amount over the (4m+1) x (4m+1) wave cells around one, m = splat_reach_count, with the weights of four boxes of m+1
+// cells folded into each other (m = 1: 1 4 6 4 1 over 16), which are as wide as the droplet: narrower ones would shake single cells
+// until they break. What rounding and dry cells leave goes to the middle, so that the whole amount arrives. Integer additions: the
+// order does not matter.
 #ifndef SPINDRIFT_SPLAT
 #define SPINDRIFT_SPLAT
 
@@ -9,8 +11,6 @@
 #include "include/terrain_texels.glsl"
 layout(binding = LANDING) uniform isamplerBuffer landing;
 #endif
-
-const int kBinomial[5] = int[5](1, 4, 6, 4, 1);
 
 /// The cell under a place; where that is dry, the wet cell that its water runs to.
 ivec2 wetCellAt(vec2 xz, int n) {
@@ -41,9 +41,21 @@ int splatTarget(ivec2 middle, ivec2 offset, int n) {
   return i;
 }
 
-/// amount * weight / 256, toward zero.
-int splatShare(int amount, ivec2 offset) {
-  return amount / 256 * (kBinomial[offset.x + 2] * kBinomial[offset.y + 2]);
+/// How many ways three of `x` can be chosen.
+int chooseThree(int x) {
+  return x < 3 ? 0 : x * (x - 1) * (x - 2) / 6;
+}
+
+/// Share of the whole on one axis, `offset` cells from the middle. Shares sum to 1.
+float splatWeight(int offset, int reach) {
+  const int k = 2 * reach - abs(offset);
+  const float boxes = float(reach + 1);
+  return float(chooseThree(k + 3) - 4 * chooseThree(k + 2 - reach)) / (boxes * boxes * boxes * boxes);
+}
+
+/// amount times the share of the cell at `offset`, toward zero.
+int splatShare(int amount, ivec2 offset, int reach) {
+  return int(float(amount) * splatWeight(offset.x, reach) * splatWeight(offset.y, reach));
 }
 
 #endif

@@ -6,14 +6,16 @@
 
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 
-/// d eta/dt over 3 x 3 cells with weights (1 2 1)^2 / 16: a front is wider than a cell, the ripples of single drops are not.
+/// d eta/dt over 3 x 3 places with weights (1 2 1)^2 / 16, a cell apart, or as far as drops are spread: a front is wider than that,
+/// the ripples of single drops are not.
 float smoothRate(ivec2 cell, int n) {
+  const int apart = max(int(sim.splat_width_m / sim.wave_cell_m + 0.5), 1);
   float sum = 0.0;
-  for (int dz = -1; dz <= 1; ++dz) {
+  for (int dz = -apart; dz <= apart; dz += apart) {
     const int row = n * waveNeighbourZ(cell.y + dz, n);
     const float side = dz == 0 ? 2.0 : 1.0;
-    sum += side * (texelFetch(surface_texels, waveNeighbourX(cell.x - 1, n) + row).y + 2.0 * texelFetch(surface_texels, cell.x + row).y +
-                   texelFetch(surface_texels, waveNeighbourX(cell.x + 1, n) + row).y);
+    sum += side * (texelFetch(surface_texels, waveNeighbourX(cell.x - apart, n) + row).y + 2.0 * texelFetch(surface_texels, cell.x + row).y +
+                   texelFetch(surface_texels, waveNeighbourX(cell.x + apart, n) + row).y);
   }
   return sum / 16.0;
 }

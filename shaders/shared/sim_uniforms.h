@@ -54,6 +54,8 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // Two-way coupling.
   uint pool_capacity_count;
   uint droplet_units;           // elevation units that a particle's volume is in one wave cell
+  uint splat_reach_count;       // what a particle gives and takes is spread over 4 of these + 1 cells on an axis
+  float splat_width_m;          // standard deviation of that spread
   float emission_ratio;         // factor on the scene's emission
   uint seed;
 
@@ -94,7 +96,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float surface_quantum_m;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 60 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 62 * 4, "scalars of four bytes only: std140 and C++ must agree");
 }  // namespace spindrift::shared
 #else
 } sim;

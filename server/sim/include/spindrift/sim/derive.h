@@ -41,8 +41,10 @@ struct ParticleLayout {
   double constraint_softness_pm2 = 0.0;  ///< of the position-based solver
   std::vector<double> layer_heights_m;   ///< of the resting layers above the floor, from below
   double band_m = 0.0;                   ///< thickness of the resting band: highest layer + s/2
-  double neighbours_count = 0.0;         ///< inside the lattice, within H, the particle itself not counted
-  std::array<double, 3> min_m{};         ///< domain x, y, z
+  std::uint32_t splat_reach_count =
+      1;  ///< two-way: what a droplet gives and takes is spread over 4 of these + 1 cells an axis
+  double neighbours_count = 0.0;  ///< inside the lattice, within H, the particle itself not counted
+  std::array<double, 3> min_m{};  ///< domain x, y, z
   std::array<double, 3> max_m{};
   std::array<std::uint32_t, 3> cells{};
   std::uint32_t cell_count = 0;
