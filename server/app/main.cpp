@@ -84,16 +84,17 @@ int run(int argc, char** argv) {
   StudyOptions study_options;
   CLI::App* study_command = cli.add_subcommand("study", "Measure the simulation against theory and experiment");
   study_command->add_option("--suite", study_options.suite, "What to study")
-      ->check(CLI::IsMember({"accuracy", "stability"}))
+      ->check(CLI::IsMember({"accuracy", "stability", "trade"}))
       ->capture_default_str();
-  study_command->add_option(
-      "--case", study_options.only,
-      "One case of the accuracy suite, or the sweeps of the stability suite whose name contains this");
+  study_command->add_option("--case", study_options.only,
+                            "One case of the accuracy suite, the sweeps of the stability suite whose name contains "
+                            "this, or one scene of the trade suite");
   study_command->add_option("--device", study_options.device, "auto, software, or a device's number")
       ->capture_default_str();
   study_command->add_flag("--quick", study_options.quick, "Shorter runs, a few minutes in all");
   study_command->add_option("--journal", study_options.journal_file,
                             "Keep finished cases in this file and go on from it after an interruption");
+  study_command->add_option("--plot", study_options.plot_folder, "Draw charts into this folder, as SVG");
   study_command->add_option("--json", study_options.json_file, "Write JSON to this file, - = standard output");
 
   try {

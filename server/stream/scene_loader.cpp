@@ -12,6 +12,7 @@
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 
+#include <spindrift/stream/fidelity.h>
 #include <spindrift/stream/scene_loader.h>
 
 #include "fields.h"
@@ -207,7 +208,8 @@ core::Error unavailable(const std::string& file, const std::string& why) {
 
 }  // namespace
 
-core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label) {
+core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
+                                       std::optional<v1::Fidelity> fidelity) {
   const auto invalid = [&](std::string message) {
     return core::Error{core::ErrorCode::kInvalidInput, std::move(message)};
   };
@@ -228,6 +230,8 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
   checkFields(scene, "", issues);
   if (text_is_fine) {
     const bool numbers_are_fine = issues.empty();
+    if (fidelity) scene.set_fidelity(*fidelity);
+    if (numbers_are_fine) applyFidelity(scene);
     fillDefaults(scene);
     if (scene.name().empty()) scene.set_name(std::filesystem::path(file_label).stem().string());
     for (FieldIssue& issue : checkStructure(scene)) issues.push_back(std::move(issue));
@@ -242,7 +246,7 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
   return scene;
 }
 
-core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file) {
+core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file, std::optional<v1::Fidelity> fidelity) {
   const std::string label = file.string();
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
@@ -264,7 +268,7 @@ core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file) {
         core::ErrorCode::kInvalidInput,
         label + ": is bigger than " + std::to_string(kSceneFileMaxBytes) + " bytes; a scene is a small text"};
   }
-  return parseSceneText(text, label);
+  return parseSceneText(text, label, fidelity);
 }
 
 }  // namespace spindrift::stream

@@ -47,6 +47,7 @@ struct StudyOptions {
   std::string only;  ///< one case; empty: all
   std::string json_file;
   std::string journal_file;  ///< finished cases are kept here and not run again; empty: no
+  std::string plot_folder;   ///< charts go here; empty: none
   bool quick = false;
 };
 int study(const StudyOptions& options);

@@ -36,8 +36,10 @@ int study(const StudyOptions& options) {
   const gpu::DeviceInfo& info = (*ctx)->device();
   fmt::print(out, "{}{}; machine {}, {} hardware threads; device {}, {}\n", options.suite,
              options.quick ? ", quick" : "", host, std::thread::hardware_concurrency(), info.name, info.gl_version);
-  auto result = options.suite == "stability" ? studyStability(**ctx, options, journal, out)
-                                             : studyAccuracy(**ctx, options, journal, out);
+  const auto suite = options.suite == "stability" ? studyStability
+                     : options.suite == "trade"   ? studyTrade
+                                                  : studyAccuracy;
+  auto result = suite(**ctx, options, journal, out);
   if (!result) return fail(result.error());
   fmt::print(out, "{} within bounds, {} missed\n", result->held_count, result->missed_count);
   boost::json::object json = std::move(result->json);

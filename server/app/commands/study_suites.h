@@ -23,6 +23,8 @@ core::Result<SuiteResult> studyAccuracy(gpu::Context& ctx, const StudyOptions& o
                                         std::FILE* out);
 core::Result<SuiteResult> studyStability(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal,
                                          std::FILE* out);
+core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal,
+                                     std::FILE* out);
 
 /// On standard error while it is a terminal: what is being worked on; an empty text wipes it.
 void showProgress(const std::string& text);

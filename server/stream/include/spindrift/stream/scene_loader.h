@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,15 +25,17 @@ inline constexpr int kSceneBeachMaxCount = 4;
 bool isSceneName(const std::string& name);
 
 /// Reads, parses and checks a scene file. The result has every default filled in; a scene that leaves out its name gets
-/// the file's name without its ending. Errors: kUnavailable (missing, directory, unreadable), kInvalidInput (too big,
-/// or the errors of parseSceneText).
-core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file);
+/// the file's name without its ending. `fidelity` takes the place of the scene's own. Errors: kUnavailable (missing,
+/// directory, unreadable), kInvalidInput (too big, or the errors of parseSceneText).
+core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file,
+                                      std::optional<v1::Fidelity> fidelity = std::nullopt);
 
 /// Parses and checks the text of a scene; `file_label` names it in errors and, without folder and ending, the scene.
 /// Error: kInvalidInput with every error found, one per line, in order of appearance:
 /// `FILE:LINE:COLUMN: field.path: value, bound, what to do`. Rules between fields are checked once the text itself
 /// parses.
-core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label);
+core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
+                                       std::optional<v1::Fidelity> fidelity = std::nullopt);
 
 /// Fills every field that was left out with its default, in the parts that are present (`stream` always is);
 /// UNSPECIFIED enums become their documented default, seed 0 becomes 1. Idempotent.

@@ -1,0 +1,410 @@
+// What accuracy costs: every way to run a scene beside a run finer than the finest that is offered.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include <boost/json.hpp>
+#include <fmt/format.h>
+
+#include <spindrift/stream/fidelity.h>
+#include <spindrift/stream/frame_encoder.h>
+#include <spindrift/stream/scene_loader.h>
+#include <spindrift/study/trade.h>
+#include <spindrift/study/water_record.h>
+
+#include "../paths.h"
+#include "chart.h"
+#include "study_suites.h"
+
+namespace spindrift::app {
+namespace {
+
+using study::RecordErrors;
+using study::TradeChoice;
+using study::WaterRecord;
+
+/// A shipped scene and how much of it is looked at.
+struct TradeScene {
+  const char* name;
+  double seconds;
+  bool is_quick;  ///< part of the quick form
+};
+constexpr TradeScene kTradeScenes[] = {{"splash", 4.0, true},
+                                       {"breaking_wave", 6.0, false},
+                                       {"boat_wake", 5.0, false},
+                                       {"thesis", 4.0, false},
+                                       {"dam_break", 1.6, true}};
+constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
+                                    v1::FIDELITY_REFERENCE};
+constexpr const char* kLevelKnob = "fidelity";
+/// Each of the shipped effects as it is, as the wave alone, and as particles alone (thesis, section 3.8.1).
+constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
+
+/// What is kept of a run.
+struct TradeRow {
+  std::string knob, setting;
+  std::string refused;  ///< why the scene could not be run; empty: it was
+  double wall_ms_per_s = 0.0;
+  double device_mb = 0.0;
+  double stream_mbit_per_s = 0.0;
+  std::uint32_t wave_cells_count = 0, particle_count = 0, substeps_per_s_count = 0;
+  std::uint64_t guard_count = 0;
+  boost::json::object pass_ms_per_s;
+  RecordErrors errors;
+  bool is_on_front = false;
+};
+
+boost::json::value toJson(const std::optional<double>& value) {
+  return value ? boost::json::value(*value) : boost::json::value();
+}
+
+boost::json::object toJson(const TradeRow& r) {
+  return {{"knob", r.knob},
+          {"setting", r.setting},
+          {"refused", r.refused},
+          {"wall_ms_per_s", r.wall_ms_per_s},
+          {"device_mb", r.device_mb},
+          {"stream_mbit_per_s", r.stream_mbit_per_s},
+          {"wave_cells", r.wave_cells_count},
+          {"particles", r.particle_count},
+          {"substeps_per_s", r.substeps_per_s_count},
+          {"guard_count", r.guard_count},
+          {"pass_ms_per_s", r.pass_ms_per_s},
+          {"height_rms_ratio", r.errors.height_rms_ratio},
+          {"surface_rms_ratio", toJson(r.errors.surface_rms_ratio)},
+          {"surface_max_ratio", toJson(r.errors.surface_max_ratio)},
+          {"spectrum_ratio", toJson(r.errors.spectrum_ratio)},
+          {"column_rms_ratio", toJson(r.errors.column_rms_ratio)},
+          {"front_rms_ratio", toJson(r.errors.front_rms_ratio)},
+          {"density_rms_ratio", toJson(r.errors.density_rms_ratio)},
+          {"energy_rms_ratio", r.errors.energy_rms_ratio}};
+}
+
+std::optional<double> optionalNumber(const boost::json::object& json, const char* name) {
+  const auto& value = json.at(name);
+  return value.is_null() ? std::nullopt : std::optional(value.to_number<double>());
+}
+
+TradeRow fromJson(const boost::json::object& json) {
+  TradeRow r;
+  r.knob = json.at("knob").as_string();
+  r.setting = json.at("setting").as_string();
+  r.refused = json.at("refused").as_string();
+  r.wall_ms_per_s = json.at("wall_ms_per_s").to_number<double>();
+  r.device_mb = json.at("device_mb").to_number<double>();
+  r.stream_mbit_per_s = json.at("stream_mbit_per_s").to_number<double>();
+  r.wave_cells_count = json.at("wave_cells").to_number<std::uint32_t>();
+  r.particle_count = json.at("particles").to_number<std::uint32_t>();
+  r.substeps_per_s_count = json.at("substeps_per_s").to_number<std::uint32_t>();
+  r.guard_count = json.at("guard_count").to_number<std::uint64_t>();
+  r.pass_ms_per_s = json.at("pass_ms_per_s").as_object();
+  r.errors.height_rms_ratio = json.at("height_rms_ratio").to_number<double>();
+  r.errors.surface_rms_ratio = optionalNumber(json, "surface_rms_ratio");
+  r.errors.surface_max_ratio = optionalNumber(json, "surface_max_ratio");
+  r.errors.spectrum_ratio = optionalNumber(json, "spectrum_ratio");
+  r.errors.column_rms_ratio = optionalNumber(json, "column_rms_ratio");
+  r.errors.front_rms_ratio = optionalNumber(json, "front_rms_ratio");
+  r.errors.density_rms_ratio = optionalNumber(json, "density_rms_ratio");
+  r.errors.energy_rms_ratio = json.at("energy_rms_ratio").to_number<double>();
+  return r;
+}
+
+/// Counts what the room's encoder would send.
+study::FrameBytes frameBytes() {
+  auto encoder = std::make_shared<stream::FrameEncoder>();
+  return [encoder](const core::FrameView& frame) {
+    std::size_t bytes = 0;
+    for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES}) {
+      if (const auto message = encoder->encode(layer, frame)) bytes += message->size();
+    }
+    return bytes;
+  };
+}
+
+TradeRow rowOf(const TradeChoice& choice, const WaterRecord& run) {
+  TradeRow row;
+  row.knob = choice.knob;
+  row.setting = choice.setting;
+  row.wall_ms_per_s = run.wall_ms_per_s;
+  row.device_mb = static_cast<double>(run.device_bytes) / 1e6;
+  row.stream_mbit_per_s = run.frame_bytes * 8e-6 * choice.scene.stream.frame_rate_hz;
+  row.wave_cells_count = run.wave_cells_count;
+  row.particle_count = run.particle_count;
+  row.substeps_per_s_count = run.substeps_per_s_count;
+  row.guard_count = run.guard_count;
+  for (const gpu::PassCost& pass : run.passes) row.pass_ms_per_s[pass.name] = pass.total_ms / run.seconds;
+  return row;
+}
+
+core::Result<core::Scene> loadLevel(const std::string& name, v1::Fidelity level) {
+  auto file = findScene(name);
+  if (!file) return file.error();
+  auto scene = stream::loadSceneFile(*file, level);
+  if (!scene) return scene.error();
+  return stream::toCore(*scene);
+}
+
+/// The levels first, then BALANCED with one thing changed.
+core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool quick) {
+  std::vector<TradeChoice> choices;
+  for (const v1::Fidelity level : kLevels) {
+    auto loaded = loadLevel(scene.name, level);
+    if (!loaded) return loaded.error();
+    choices.push_back({kLevelKnob, stream::fidelityName(level), *std::move(loaded)});
+  }
+  if (quick) return choices;
+  for (TradeChoice& knob : study::singleKnobs(choices[1].scene)) choices.push_back(std::move(knob));
+  return choices;
+}
+
+void markFront(std::vector<TradeRow>& rows) {
+  std::vector<study::CostAndError> points;
+  for (const TradeRow& row : rows) {
+    const bool counts = row.refused.empty() && row.knob != "seed";
+    points.push_back(counts ? study::CostAndError{row.wall_ms_per_s, row.errors.height_rms_ratio}
+                            : study::CostAndError{HUGE_VAL, HUGE_VAL});
+  }
+  const std::vector<bool> front = study::paretoFront(points);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i] && std::isfinite(points[i].cost);
+}
+
+std::string percent(const std::optional<double>& ratio) {
+  return ratio ? fmt::format("{:.3g}", 100 * *ratio) : "-";
+}
+
+void printHeader(std::FILE* out) {
+  fmt::print(out, "  {:<17} {:<20} {:>8} {:>6} {:>6} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>8} {:>8} {:>7} {:>7}\n",
+             "knob", "setting", "ms / s", "cost x", "MB", "Mbit/s", "height%", "error x", "surface%", "largest%",
+             "spectr%", "columns%", "density%", "front%", "energy%");
+}
+
+void print(std::FILE* out, const TradeRow& row, const TradeRow& balanced) {
+  if (!row.refused.empty()) {
+    fmt::print(out, "  {:<17} {:<20} refused: {}\n", row.knob, row.setting, row.refused);
+    return;
+  }
+  const RecordErrors& e = row.errors;
+  fmt::print(
+      out,
+      "{} {:<17} {:<20} {:>8.1f} {:>6.2f} {:>6.1f} {:>7.2f} {:>7.3g} {:>7.2f} {:>8} {:>8} {:>7} {:>8} {:>8} {:>7} "
+      "{:>7.3g}{}\n",
+      row.is_on_front ? "*" : " ", row.knob, row.setting, row.wall_ms_per_s, row.wall_ms_per_s / balanced.wall_ms_per_s,
+      row.device_mb, row.stream_mbit_per_s, 100 * e.height_rms_ratio,
+      e.height_rms_ratio / balanced.errors.height_rms_ratio, percent(e.surface_rms_ratio), percent(e.surface_max_ratio),
+      percent(e.spectrum_ratio), percent(e.column_rms_ratio), percent(e.density_rms_ratio), percent(e.front_rms_ratio),
+      100 * e.energy_rms_ratio, row.guard_count > 0 ? fmt::format("  guard {}", row.guard_count) : "");
+}
+
+/// Runs what the journal does not know yet; the yardstick only when something is left to run.
+class TradeRuns {
+ public:
+  TradeRuns(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal)
+      : ctx_(ctx), options_(options), journal_(journal) {}
+
+  core::Result<std::vector<TradeRow>> run(const TradeScene& scene) {
+    auto choices = choicesOf(scene, options_.quick);
+    if (!choices) return choices.error();
+    const study::RecordOptions record{.seconds = options_.quick ? std::min(scene.seconds, 2.0) : scene.seconds,
+                                      .sample_interval_s = 0.1,
+                                      .frame_bytes = frameBytes()};
+    std::vector<TradeRow> rows;
+    std::optional<WaterRecord> yardstick;
+    for (std::size_t i = 0; i < choices->size(); ++i) {
+      const TradeChoice& choice = (*choices)[i];
+      const std::string key =
+          journalKey("trade", fmt::format("{}/{}/{}", scene.name, choice.knob, choice.setting), options_, ctx_);
+      if (const auto known = journal_.find(key)) {
+        rows.push_back(fromJson(known->as_object()));
+        continue;
+      }
+      if (!yardstick) {
+        showProgress(fmt::format("{}: the run to judge by", scene.name));
+        auto finest = study::record(ctx_, study::finerThan((*choices)[3].scene), record);
+        if (!finest) return core::Error{finest.error().code, std::string(scene.name) + ": " + finest.error().message};
+        yardstick = *std::move(finest);
+      }
+      showProgress(fmt::format("{}: [{}/{}] {} {}", scene.name, i + 1, choices->size(), choice.knob, choice.setting));
+      auto made = study::record(ctx_, choice.scene, record);
+      TradeRow row;
+      if (made) {
+        row = rowOf(choice, *made);
+        row.errors = study::compare(*made, *yardstick, choice.scene);
+      } else if (made.error().code == core::ErrorCode::kInvalidInput) {
+        row.knob = choice.knob;
+        row.setting = choice.setting;
+        row.refused = made.error().message;
+      } else {
+        return made.error();
+      }
+      if (auto kept = journal_.add(key, toJson(row)); !kept) return kept.error();
+      rows.push_back(std::move(row));
+    }
+    showProgress("");
+    markFront(rows);
+    return rows;
+  }
+
+  /// What scenes cost, without a look at them.
+  core::Result<std::vector<TradeRow>> costs(const std::vector<TradeChoice>& choices, double seconds) {
+    std::vector<TradeRow> rows;
+    for (const TradeChoice& choice : choices) {
+      const std::string key =
+          journalKey("trade", fmt::format("cost/{}/{}", choice.knob, choice.setting), options_, ctx_);
+      if (const auto known = journal_.find(key)) {
+        rows.push_back(fromJson(known->as_object()));
+        continue;
+      }
+      showProgress(fmt::format("cost: {} {}", choice.knob, choice.setting));
+      auto made = study::record(ctx_, choice.scene, {.seconds = seconds, .sample_interval_s = 0.0, .frame_bytes = {}});
+      if (!made) return made.error();
+      rows.push_back(rowOf(choice, *made));
+      if (auto kept = journal_.add(key, toJson(rows.back())); !kept) return kept.error();
+    }
+    showProgress("");
+    return rows;
+  }
+
+ private:
+  gpu::Context& ctx_;
+  const StudyOptions& options_;
+  StudyJournal& journal_;
+};
+
+boost::json::array toJson(const std::vector<TradeRow>& rows) {
+  boost::json::array json;
+  for (const TradeRow& row : rows) {
+    boost::json::object object = toJson(row);
+    object["on_front"] = row.is_on_front;
+    json.push_back(std::move(object));
+  }
+  return json;
+}
+
+void printCosts(std::FILE* out, const std::vector<TradeRow>& rows) {
+  fmt::print(out, "  {:<26} {:<22} {:>9} {:>9} {:>8} {:>9}   ms a simulated second by pass\n", "parts", "size",
+             "ms / s", "real time", "MB", "substeps");
+  for (const TradeRow& row : rows) {
+    fmt::print(out, "  {:<26} {:<22} {:>9.1f} {:>9.2f} {:>8.2f} {:>9}  ", row.knob, row.setting, row.wall_ms_per_s,
+               1e3 / row.wall_ms_per_s, row.device_mb, row.substeps_per_s_count);
+    for (const auto& [name, ms] : row.pass_ms_per_s)
+      fmt::print(out, " {} {:.1f}", std::string(name), ms.to_number<double>());
+    fmt::print(out, "\n");
+  }
+  std::fflush(out);
+}
+
+/// The levels hold what they promise: each is on the front of the levels, finer ones are dearer and closer, and
+/// REFERENCE is the closest of all that was run.
+void judgeLevels(const std::vector<TradeRow>& rows, SuiteResult& result, std::FILE* out) {
+  const TradeRow* before = nullptr;
+  for (const TradeRow& row : rows) {
+    if (row.knob != kLevelKnob) continue;
+    if (before != nullptr) {
+      const bool holds = row.errors.height_rms_ratio < before->errors.height_rms_ratio;
+      ++(holds ? result.held_count : result.missed_count);
+      fmt::print(out, "  {} {} is closer than {}: {:.3g} % < {:.3g} %\n", holds ? "ok  " : "MISS", row.setting,
+                 before->setting, 100 * row.errors.height_rms_ratio, 100 * before->errors.height_rms_ratio);
+    }
+    before = &row;
+  }
+}
+
+/// Cost against error of every way to run a scene, and the front.
+Chart tradeChart(const TradeScene& scene, const std::vector<TradeRow>& rows) {
+  Chart chart;
+  chart.title = fmt::format("What accuracy costs: {}", scene.name);
+  chart.x = {"wall time of a simulated second [ms]", true};
+  chart.y = {"error of the water's height, RMS [%]", true};
+  Chart::Series front{"not beaten in both", {}, Chart::Mark::kLine};
+  Chart::Series levels{"fidelity levels", {}, Chart::Mark::kLargeDot};
+  Chart::Series knobs{"one thing changed", {}, Chart::Mark::kDot};
+  for (const TradeRow& row : rows) {
+    if (!row.refused.empty()) continue;
+    const Chart::Point point{row.wall_ms_per_s, 100 * row.errors.height_rms_ratio,
+                             row.knob == kLevelKnob ? row.setting
+                             : row.is_on_front      ? row.knob + " " + row.setting
+                                                    : ""};
+    (row.knob == kLevelKnob ? levels : knobs).points.push_back(point);
+    if (row.is_on_front) front.points.push_back({point.x, point.y, ""});
+  }
+  std::ranges::sort(front.points, {}, &Chart::Point::x);
+  chart.vertical_line = {{1000.0, "real time"}};
+  chart.series = {front, knobs, levels};
+  return chart;
+}
+
+}  // namespace
+
+core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal,
+                                     std::FILE* out) {
+  SuiteResult result;
+  TradeRuns runs(ctx, options, journal);
+  boost::json::array json_scenes;
+  Chart levels_chart;
+  levels_chart.title = "What accuracy costs: the fidelity levels";
+  levels_chart.x = {"wall time of a simulated second [ms]", true};
+  levels_chart.y = {"error of the water's height, RMS [%]", true};
+  levels_chart.vertical_line = {{1000.0, "real time"}};
+  bool found = false;
+  for (const TradeScene& scene : kTradeScenes) {
+    if (options.quick && !scene.is_quick) continue;
+    if (!options.only.empty() && options.only != scene.name) continue;
+    found = true;
+    fmt::print(out, "{}, {} s, against a run finer than reference; * = not beaten in cost and height both\n",
+               scene.name, options.quick ? std::min(scene.seconds, 2.0) : scene.seconds);
+    std::fflush(out);
+    auto rows = runs.run(scene);
+    if (!rows) return core::Error{rows.error().code, std::string(scene.name) + ": " + rows.error().message};
+    printHeader(out);
+    for (const TradeRow& row : *rows) print(out, row, (*rows)[1]);
+    judgeLevels(*rows, result, out);
+    std::fflush(out);
+    if (!options.plot_folder.empty()) {
+      if (auto drawn =
+              writeChart(options.plot_folder, fmt::format("trade_{}.svg", scene.name), tradeChart(scene, *rows));
+          !drawn)
+        return drawn.error();
+    }
+    Chart::Series series{scene.name, {}, Chart::Mark::kLineAndDots};
+    for (const TradeRow& row : *rows) {
+      if (row.knob == kLevelKnob)
+        series.points.push_back({row.wall_ms_per_s, 100 * row.errors.height_rms_ratio, row.setting});
+    }
+    levels_chart.series.push_back(std::move(series));
+    json_scenes.push_back({{"scene", scene.name}, {"rows", toJson(*rows)}});
+  }
+  result.json["scenes"] = std::move(json_scenes);
+  if (found && !options.plot_folder.empty() && options.only.empty()) {
+    if (auto drawn = writeChart(options.plot_folder, "trade.svg", levels_chart); !drawn) return drawn.error();
+  }
+
+  if (!options.quick && (options.only.empty() || options.only == "cost")) {
+    found = true;
+    fmt::print(out, "cost of particles, waves and both, and of the effects in each form\n");
+    std::fflush(out);
+    auto sweep = runs.costs(study::costSweep(), 0.5);
+    if (!sweep) return sweep.error();
+    std::vector<TradeChoice> effects;
+    for (const std::string effect : kEffects) {
+      for (const char* form : {"", "_wave", "_particles"}) {
+        auto scene = loadLevel(effect + form, v1::FIDELITY_BALANCED);
+        if (!scene) return scene.error();
+        effects.push_back({effect, *form == '\0' ? "coupled" : form + 1, *std::move(scene)});
+      }
+    }
+    auto shown = runs.costs(effects, 4.0);
+    if (!shown) return shown.error();
+    sweep->insert(sweep->end(), shown->begin(), shown->end());
+    printCosts(out, *sweep);
+    result.json["costs"] = toJson(*sweep);
+  }
+  if (!found) {
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       "--case: there is no '" + options.only + "'" + (options.quick ? " in the quick form" : "") +
+                           "; choose one of splash, breaking_wave, boat_wake, thesis, dam_break, cost"};
+  }
+  return result;
+}
+
+}  // namespace spindrift::app

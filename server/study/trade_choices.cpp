@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <spindrift/study/trade.h>
+
+#include "particle_choices.h"
+
+namespace spindrift::study {
+namespace {
+
+constexpr double kMaxTickRate_hz = 240.0;
+constexpr std::uint32_t kMaxResolution = 1024;
+constexpr double kMaxLayers = 64.0;
+
+bool isTwoWay(const core::Scene& scene) {
+  return scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
+}
+
+/// `scale` times as many particles across the water: the rules of stream's fidelity levels.
+core::Scene withFinerParticles(core::Scene scene, double scale) {
+  core::ParticleScene& p = *scene.particles;
+  const int dimensions = scene.wave && !isTwoWay(scene) ? 2 : 3;
+  p.count = static_cast<std::uint32_t>(std::lround(p.count * std::pow(scale, dimensions)));
+  if (!scene.wave) p.layers_count = std::clamp(std::round(p.layers_count * scale), 1.0, kMaxLayers);
+  if (isTwoWay(scene)) scene.coupling->droplet_spacing_m /= scale;
+  return scene;
+}
+
+core::Scene withResolution(core::Scene scene, double scale) {
+  const double cells = std::round(scene.wave->resolution_count * scale / 16) * 16;
+  scene.wave->resolution_count = std::min(static_cast<std::uint32_t>(cells), kMaxResolution);
+  return scene;
+}
+
+}  // namespace
+
+std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
+  std::vector<TradeChoice> out;
+  const auto add = [&](std::string knob, std::string setting, core::Scene changed) {
+    out.push_back({std::move(knob), std::move(setting), std::move(changed)});
+  };
+  const auto changed = [&](auto change) {
+    core::Scene copy = scene;
+    change(copy);
+    return copy;
+  };
+  if (scene.tick_rate_hz * 2 <= kMaxTickRate_hz)
+    add("time step", "/ 2", changed([](core::Scene& s) { s.tick_rate_hz *= 2; }));
+  if (scene.wave) {
+    for (const double scale : {0.5, 0.75, 1.5, 2.0, 3.0})
+      add("wave resolution", fmt::format("x {}", scale), withResolution(scene, scale));
+    const bool nine = scene.wave->stencil == core::Stencil::kNinePoint;
+    add("stencil", nine ? "5-point" : "9-point", changed([&](core::Scene& s) {
+          s.wave->stencil = nine ? core::Stencil::kFivePoint : core::Stencil::kNinePoint;
+        }));
+    for (const double quantum_m : {0.0005, 0.004, 0.016})
+      add("quantum", fmt::format("{} mm", 1e3 * quantum_m),
+          changed([&](core::Scene& s) { s.stream.surface_quantum_m = quantum_m; }));
+  }
+  if (scene.particles) {
+    for (const double scale : {0.7, 1.4, 2.0})
+      add("particles across", fmt::format("x {}", scale), withFinerParticles(scene, scale));
+    for (const core::KernelSet set : kKernelSets) {
+      if (set != scene.particles->kernel_set)
+        add("kernel set", nameOf(set), changed([&](core::Scene& s) { s.particles->kernel_set = set; }));
+    }
+    for (const core::PressureSolver solver : kSolvers) {
+      if (solver == scene.particles->solver) continue;
+      add("solver", nameOf(solver), changed([&](core::Scene& s) {
+            s.particles->solver = solver;
+            // As stiff as a column of water needs: 1 % at ten times the speed of its fall.
+            const double fall_mps =
+                std::sqrt(2 * s.gravity_mps2 * (s.wave ? s.wave->depth_m : s.particles->headroom_m));
+            if (!isTwoWay(s)) s.particles->sound_speed_mps = std::max(s.particles->sound_speed_mps, 10 * fall_mps);
+          }));
+    }
+    if (scene.particles->solver == core::PressureSolver::kPositionBased) {
+      for (const std::uint32_t count : {1u, 8u})
+        add("iterations", std::to_string(count),
+            changed([&](core::Scene& s) { s.particles->iterations_count = count; }));
+    } else {
+      const bool mean = scene.particles->pressure_force == core::PressureForce::kMean;
+      add("pressure force", mean ? "conserving" : "mean (thesis)", changed([&](core::Scene& s) {
+            s.particles->pressure_force = mean ? core::PressureForce::kConserving : core::PressureForce::kMean;
+          }));
+    }
+  }
+  if (scene.coupling) {
+    add("coupling", "wave alone", changed([](core::Scene& s) {
+          s.particles.reset();
+          s.coupling.reset();
+        }));
+    if (!isTwoWay(scene)) {
+      const bool five = scene.coupling->lattice_count == 5;
+      add("lattice", five ? "3 x 3" : "5 x 5",
+          changed([&](core::Scene& s) { s.coupling->lattice_count = five ? 3 : 5; }));
+      add("downward force", "none", changed([](core::Scene& s) { s.coupling->downforce_per_m_s2 = 0.0; }));
+    }
+  }
+  add("seed", "another", changed([](core::Scene& s) { s.seed += 1; }));
+  return out;
+}
+
+core::Scene finerThan(const core::Scene& reference) {
+  core::Scene scene = reference;
+  if (scene.wave) scene = withResolution(scene, 4.0 / 3);
+  if (scene.particles) scene = withFinerParticles(scene, 1.25);
+  return scene;
+}
+
+std::vector<TradeChoice> costSweep() {
+  core::Scene base;
+  base.name = "cost";
+  base.wave.emplace();
+  base.particles.emplace();
+  base.coupling.emplace();
+  base.foam.emplace();
+  std::vector<TradeChoice> out;
+  for (const std::uint32_t n : {64u, 128u, 256u, 512u, 1024u}) {
+    core::Scene scene = base;
+    scene.particles.reset();
+    scene.coupling.reset();
+    scene.foam.reset();
+    scene.wave->resolution_count = n;
+    out.push_back({"wave alone", fmt::format("{} x {} cells", n, n), scene});
+  }
+  for (const bool coupled : {false, true}) {
+    for (const std::uint32_t count : {8192u, 16384u, 32768u, 65536u}) {
+      core::Scene scene = base;
+      scene.particles->count = count;
+      if (!coupled) {
+        scene.wave.reset();
+        scene.coupling.reset();
+      }
+      out.push_back(
+          {coupled ? "coupled, 256 x 256 cells" : "particles alone", fmt::format("{} particles", count), scene});
+    }
+  }
+  // The neighbour grid alone grows and shrinks with the support radius.
+  for (const double ratio : {1.6, 2.0, 2.4, 3.0}) {
+    core::Scene scene = base;
+    scene.wave.reset();
+    scene.coupling.reset();
+    scene.particles->support_ratio = ratio;
+    out.push_back({"particles alone, 8192", fmt::format("support {} spacings", ratio), scene});
+  }
+  return out;
+}
+
+}  // namespace spindrift::study

@@ -1,0 +1,292 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include <spindrift/sim/water_sim.h>
+#include <spindrift/study/water_record.h>
+
+namespace spindrift::study {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Share of a dam's water that counts as ahead of its front.
+constexpr double kAheadShare = 0.01;
+
+/// Averages n cells over m <= n of the same length: the share of each cell in each of the m.
+std::vector<double> averaged(const std::vector<double>& fine, std::size_t n, std::size_t m) {
+  struct Share {
+    std::size_t from, to;
+    double weight;
+  };
+  std::vector<Share> shares;
+  const double ratio = static_cast<double>(m) / static_cast<double>(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double low = static_cast<double>(i) * ratio;
+    const double high = low + ratio;
+    for (auto k = static_cast<std::size_t>(low); k < m && static_cast<double>(k) < high - 1e-12; ++k) {
+      const double overlap = std::min(high, static_cast<double>(k + 1)) - std::max(low, static_cast<double>(k));
+      shares.push_back({i, k, overlap});
+    }
+  }
+  std::vector<double> along_x(m * n, 0.0);
+  for (std::size_t z = 0; z < n; ++z)
+    for (const Share& s : shares) along_x[s.to + m * z] += s.weight * fine[s.from + n * z];
+  std::vector<double> out(m * m, 0.0);
+  for (const Share& s : shares)
+    for (std::size_t x = 0; x < m; ++x) out[x + m * s.to] += s.weight * along_x[x + m * s.from];
+  return out;
+}
+
+/// Volume of the particles over the ground area of columns, each particle shared among the four nearest ones.
+std::vector<double> columns(const sim::WaterSim& water, const sim::StateCopy& state) {
+  const sim::ParticleLayout& l = *water.derived().particles;
+  const double side_x_m = l.max_m[0] - l.min_m[0];
+  const double side_z_m = l.max_m[2] - l.min_m[2];
+  const std::size_t nx = kColumnsAlong;
+  const auto nz = static_cast<std::size_t>(std::max(std::lround(nx * side_z_m / side_x_m), 1L));
+  const double volume_m3 = l.mass_kg / water.scene().particles->rest_density_kgpm3;
+  const double height_m = volume_m3 / (side_x_m / nx * side_z_m / static_cast<double>(nz));
+  std::vector<double> out(nx * nz, 0.0);
+  const auto spread = [](double at, std::size_t n) {
+    const double u = std::clamp(at * static_cast<double>(n) - 0.5, 0.0, static_cast<double>(n - 1));
+    const auto low = std::min(static_cast<std::size_t>(u), n >= 2 ? n - 2 : 0);
+    return std::pair{low, n >= 2 ? u - static_cast<double>(low) : 0.0};
+  };
+  const std::size_t count = std::min<std::size_t>(water.particleCount(), state.position.size() / 4);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [x, tx] = spread((state.position[4 * i] - l.min_m[0]) / side_x_m, nx);
+    const auto [z, tz] = spread((state.position[4 * i + 2] - l.min_m[2]) / side_z_m, nz);
+    for (const std::size_t dz : {0u, 1u}) {
+      for (const std::size_t dx : {0u, 1u}) {
+        const double weight = (dx != 0 ? tx : 1 - tx) * (dz != 0 ? tz : 1 - tz);
+        if (weight > 0) out[x + dx + nx * (z + dz)] += weight * height_m;
+      }
+    }
+  }
+  return out;
+}
+
+double frontOf(const sim::WaterSim& water, const sim::StateCopy& state) {
+  std::vector<float> x_m;
+  for (std::size_t i = 0; i < state.position.size(); i += 4) x_m.push_back(state.position[i]);
+  const auto ahead = std::max<std::ptrdiff_t>(std::lround(kAheadShare * static_cast<double>(x_m.size())), 1);
+  std::nth_element(x_m.begin(), x_m.end() - ahead, x_m.end());
+  return *(x_m.end() - ahead) - water.derived().particles->min_m[0];
+}
+
+double densityError(const sim::WaterSim& water, const sim::StateCopy& state) {
+  const std::size_t count = std::min<std::size_t>(water.particleCount(), state.density_kgpm3.size());
+  if (count == 0) return 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double error = std::max(state.density_kgpm3[i] / water.scene().particles->rest_density_kgpm3 - 1.0, 0.0);
+    squares += error * error;
+  }
+  return std::sqrt(squares / static_cast<double>(count));
+}
+
+/// Energy at given times, from what arrives some ticks late.
+class EnergySeries {
+ public:
+  void add(const sim::WaterSim& water) {
+    const sim::Health& h = water.health();
+    if (!points_.empty() && points_.back().tick == h.tick) return;
+    points_.push_back({h.tick, h.kinetic_energy_j + h.potential_energy_j + h.wave_energy_j});
+  }
+  [[nodiscard]] double at(std::uint64_t tick) const {
+    const auto next = std::ranges::lower_bound(points_, tick, {}, &Point::tick);
+    return next != points_.end() ? next->energy_j : points_.empty() ? 0.0 : points_.back().energy_j;
+  }
+
+ private:
+  struct Point {
+    std::uint64_t tick;
+    double energy_j;
+  };
+  std::vector<Point> points_;
+};
+
+WaterRecord::Sample sampleOf(sim::WaterSim& water) {
+  WaterRecord::Sample sample;
+  const core::Scene& scene = water.scene();
+  const sim::StateCopy state = water.copyState();
+  if (scene.wave) {
+    // As it is streamed: whole quanta.
+    std::vector<double> elevation_m = state.elevation_m;
+    const double quantum_m = scene.stream.surface_quantum_m;
+    for (double& eta_m : elevation_m) eta_m = std::round(eta_m / quantum_m) * quantum_m;
+    const std::size_t n = scene.wave->resolution_count;
+    sample.surface_m = averaged(elevation_m, n, std::min(kSurfaceCells, n));
+  }
+  if (!scene.particles) return sample;
+  sample.density_rms_ratio = densityError(water, state);
+  if (scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay)
+    return sample;  // spray comes and goes by chance
+  sample.column_m = columns(water, state);
+  if (scene.particles->fill_x_ratio < 1) sample.front_m = frontOf(water, state);
+  return sample;
+}
+
+/// Power of the surface in rings of wave numbers.
+std::vector<double> spectrum(const std::vector<double>& field, std::size_t n) {
+  using Complex = std::complex<double>;
+  std::vector<Complex> turn(n);
+  for (std::size_t i = 0; i < n; ++i)
+    turn[i] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+  const std::size_t half = n / 2;
+  std::vector<Complex> rows(half * n);
+  for (std::size_t z = 0; z < n; ++z)
+    for (std::size_t k = 0; k < half; ++k)
+      for (std::size_t x = 0; x < n; ++x) rows[k + half * z] += field[x + n * z] * turn[k * x % n];
+  std::vector<double> rings(half, 0.0);
+  for (std::size_t k = 0; k < half; ++k) {
+    for (std::size_t l = 0; l < n; ++l) {
+      Complex sum = 0.0;
+      for (std::size_t z = 0; z < n; ++z) sum += rows[k + half * z] * turn[l * z % n];
+      const double across = static_cast<double>(std::min(l, n - l));
+      const auto ring = static_cast<std::size_t>(std::lround(std::hypot(static_cast<double>(k), across)));
+      if (ring > 0 && ring < half) rings[ring] += std::norm(sum);
+    }
+  }
+  return rings;
+}
+
+/// Mean square and largest difference of fields over samples, and the mean square of the reference.
+struct FieldDifference {
+  double squares = 0.0;
+  double reference_squares = 0.0;
+  double largest = 0.0;
+
+  void add(const std::vector<double>& a, const std::vector<double>& reference) {
+    for (std::size_t i = 0; i < std::min(a.size(), reference.size()); ++i) {
+      const double d = a[i] - reference[i];
+      squares += d * d;
+      reference_squares += reference[i] * reference[i];
+      largest = std::max(largest, std::abs(d));
+    }
+    count += reference.size();
+  }
+  [[nodiscard]] double rmsRatio() const { return std::sqrt(squares / reference_squares); }
+  [[nodiscard]] double maxRatio() const { return largest / std::sqrt(reference_squares / static_cast<double>(count)); }
+
+ private:
+  std::size_t count = 0;
+};
+
+}  // namespace
+
+core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, const RecordOptions& options) {
+  auto made = sim::WaterSim::create(ctx, scene);
+  if (!made) return made.error();
+  sim::WaterSim& water = **made;
+  const sim::Derived& d = water.derived();
+  WaterRecord out;
+  out.device_bytes = d.device_bytes;
+  out.substeps_per_s_count = static_cast<std::uint32_t>(std::lround(d.substeps_count / d.tick_s));
+  if (d.particles) out.particle_count = d.particles->count;
+  if (d.wave) out.wave_cells_count = d.wave->resolution_count * d.wave->resolution_count;
+
+  EnergySeries energy;
+  std::vector<std::uint64_t> sample_ticks;
+  double frame_bytes = 0.0;
+  std::size_t frame_count = 0;
+  double wall_s = 0.0;
+  // The first tick compiles shaders on some drivers.
+  water.step();
+  ctx.finish();
+  (void)water.takePassCosts();
+  const double begin_s = water.time_s();
+  double next_sample_s = options.sample_interval_s;
+  while (water.time_s() < options.seconds - 1e-9) {
+    const double until_s = options.sample_interval_s > 0 ? std::min(next_sample_s, options.seconds) : options.seconds;
+    const auto begin = Clock::now();
+    while (water.time_s() < until_s - 1e-9) {
+      water.step();
+      energy.add(water);
+    }
+    ctx.finish();
+    wall_s += std::chrono::duration<double>(Clock::now() - begin).count();
+    if (options.sample_interval_s <= 0) continue;
+    next_sample_s += options.sample_interval_s;
+    sample_ticks.push_back(water.tick());
+    out.samples.push_back(sampleOf(water));
+    if (!options.frame_bytes) continue;
+    (void)water.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+    ctx.finish();
+    for (const core::FrameView& frame : water.takeFrames()) {
+      frame_bytes += static_cast<double>(options.frame_bytes(frame));
+      ++frame_count;
+    }
+  }
+  for (std::size_t i = 0; i < out.samples.size(); ++i) out.samples[i].energy_j = energy.at(sample_ticks[i]);
+  out.seconds = water.time_s() - begin_s;
+  out.wall_ms_per_s = 1e3 * wall_s / out.seconds;
+  out.passes = water.takePassCosts();
+  out.frame_bytes = frame_count > 0 ? frame_bytes / static_cast<double>(frame_count) : 0.0;
+  out.guard_count = water.recoveredCount();
+  return out;
+}
+
+RecordErrors compare(const WaterRecord& run, const WaterRecord& reference, const core::Scene& scene) {
+  FieldDifference surface, column, front, energy;
+  std::vector<double> power(kSurfaceCells / 2, 0.0), reference_power(kSurfaceCells / 2, 0.0);
+  double density = 0.0;
+  double largest_energy_j = 0.0;
+  const std::size_t count = std::min(run.samples.size(), reference.samples.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const WaterRecord::Sample& a = run.samples[i];
+    const WaterRecord::Sample& b = reference.samples[i];
+    surface.add(a.surface_m, b.surface_m);
+    column.add(a.column_m, b.column_m);
+    if (a.front_m && b.front_m) front.add({*a.front_m}, {*b.front_m});
+    energy.add({a.energy_j}, {b.energy_j});
+    largest_energy_j = std::max(largest_energy_j, std::abs(b.energy_j));
+    density += a.density_rms_ratio * a.density_rms_ratio;
+    if (a.surface_m.size() != kSurfaceCells * kSurfaceCells || b.surface_m.size() != a.surface_m.size()) continue;
+    const std::vector<double> p = spectrum(a.surface_m, kSurfaceCells);
+    const std::vector<double> q = spectrum(b.surface_m, kSurfaceCells);
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      power[k] += p[k];
+      reference_power[k] += q[k];
+    }
+  }
+  RecordErrors out;
+  if (scene.wave) {
+    out.surface_rms_ratio = surface.rmsRatio();
+    out.surface_max_ratio = surface.maxRatio();
+    double difference = 0.0;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < power.size(); ++k) {
+      difference += std::abs(power[k] - reference_power[k]);
+      sum += reference_power[k];
+    }
+    if (sum > 0) out.spectrum_ratio = difference / sum;
+    out.height_rms_ratio = *out.surface_rms_ratio;
+  }
+  if (column.reference_squares > 0) {
+    out.column_rms_ratio = column.rmsRatio();
+    out.height_rms_ratio =
+        scene.wave ? std::sqrt((std::pow(*out.surface_rms_ratio, 2) + std::pow(*out.column_rms_ratio, 2)) / 2)
+                   : *out.column_rms_ratio;
+  }
+  if (front.reference_squares > 0) out.front_rms_ratio = front.rmsRatio();
+  if (scene.particles && count > 0) out.density_rms_ratio = std::sqrt(density / static_cast<double>(count));
+  if (largest_energy_j > 0 && count > 0)
+    out.energy_rms_ratio = std::sqrt(energy.squares / static_cast<double>(count)) / largest_energy_j;
+  return out;
+}
+
+std::vector<bool> paretoFront(const std::vector<CostAndError>& points) {
+  std::vector<bool> front;
+  for (const CostAndError& p : points) {
+    front.push_back(std::ranges::none_of(points, [&](const CostAndError& q) {
+      return q.cost <= p.cost && q.error <= p.error && (q.cost < p.cost || q.error < p.error);
+    }));
+  }
+  return front;
+}
+
+}  // namespace spindrift::study
