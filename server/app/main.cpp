@@ -14,6 +14,12 @@ namespace {
 
 constexpr int kUsageError = 2;
 
+/// Every command that runs scenes takes it.
+void addFidelity(CLI::App& command, std::string& fidelity) {
+  command.add_option("--fidelity", fidelity, "How finely scenes are simulated, whatever they say themselves")
+      ->check(CLI::IsMember({"draft", "balanced", "fine", "reference"}));
+}
+
 void setUpLogging(const std::string& level) {
   // Standard output belongs to what was asked for (--json -, the address); everything else goes to standard error.
   auto logger = spdlog::stderr_color_mt("spindrift");
@@ -42,6 +48,7 @@ int run(int argc, char** argv) {
       ->add_option("--scene", serve_options.scene,
                    "Scene of the room 'main': a .textproto file or the name of a shipped scene")
       ->capture_default_str();
+  addFidelity(*serve_command, serve_options.fidelity);
   serve_command->add_option("--room", serve_options.rooms, "A further room, NAME=SCENE; may be repeated");
   serve_command->add_option("--address", serve_options.address, "Address to listen on")->capture_default_str();
   serve_command->add_option("--port", serve_options.port, "Port to listen on; 0 = any free one")
@@ -67,6 +74,8 @@ int run(int argc, char** argv) {
   CLI::App* check_command = cli.add_subcommand("check", "Check scenes and print what follows from them");
   check_command->add_option("scene", check_options.scenes, "Scene files or names of shipped scenes")->required();
 
+  addFidelity(*check_command, check_options.fidelity);
+
   BenchOptions bench_options;
   CLI::App* bench_command = cli.add_subcommand("bench", "Time the passes of a step and the stream's encoder");
   bench_command->add_option("--suite", bench_options.suite, "What to time")
@@ -74,6 +83,7 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   bench_command->add_option("--scene", bench_options.scene, "Scene file or name of a shipped scene")
       ->capture_default_str();
+  addFidelity(*bench_command, bench_options.fidelity);
   bench_command->add_option("--device", bench_options.device, "auto, software, or a device's number")
       ->capture_default_str();
   bench_command->add_option("--seconds", bench_options.seconds, "Measured time per case")

@@ -13,7 +13,8 @@ constexpr const char* kEnding = ".textproto";
 
 }  // namespace
 
-SceneCatalog::SceneCatalog(fs::path folder) : folder_(std::move(folder)) {
+SceneCatalog::SceneCatalog(fs::path folder, std::optional<v1::Fidelity> fidelity)
+    : folder_(std::move(folder)), fidelity_(fidelity) {
   if (folder_.empty()) return;
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
@@ -32,7 +33,7 @@ bool SceneCatalog::has(const std::string& name) const {
 
 core::Result<v1::Scene> SceneCatalog::load(const std::string& name) const {
   if (!has(name)) return core::Error{core::ErrorCode::kUnavailable, "scene '" + name + "' is not listed"};
-  auto scene = stream::loadSceneFile(folder_ / (name + kEnding));
+  auto scene = stream::loadSceneFile(folder_ / (name + kEnding), fidelity_);
   if (scene) scene->set_name(name);
   return scene;
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ class SceneCatalog {
  public:
   SceneCatalog() = default;
   /// Regular files NAME.textproto in the folder with names of letters, digits, '_' and '-'; empty where there are none.
-  explicit SceneCatalog(std::filesystem::path folder);
+  /// `fidelity` takes the place of every scene's own.
+  explicit SceneCatalog(std::filesystem::path folder, std::optional<v1::Fidelity> fidelity = std::nullopt);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] bool has(const std::string& name) const;
@@ -28,6 +30,7 @@ class SceneCatalog {
 
  private:
   std::filesystem::path folder_;
+  std::optional<v1::Fidelity> fidelity_;
   std::vector<std::string> names_;
 };
 

@@ -119,7 +119,12 @@ shared::EventUniforms Effects::advance(double time_s, const EffectStage& stage) 
   shared::EventUniforms out{};
   for (const Active& a : active_) {
     const double age_s = time_s - a.start_s;
-    const double gain = pulse((age_s + stage.dt_s) / duration(a.effect)) - pulse(age_s / duration(a.effect));
+    // What is displaced at once stands for an interval; half a step off would cost the leapfrog its second order. A
+    // crest brings the flow of half a step before with it, so its interval is centred here; a splash brings none, and
+    // the coming step pulls at it for a whole step, so its interval ends here.
+    const double ahead_s = isSplash(a.effect) ? 0.0 : stage.dt_s / 2;
+    const double gain =
+        pulse((age_s + ahead_s) / duration(a.effect)) - pulse((age_s + ahead_s - stage.dt_s) / duration(a.effect));
     if (gain <= 0.0) continue;
     if (const auto* splash = std::get_if<core::Splash>(&a.effect))
       out.splashes[out.splash_count++] =
@@ -127,7 +132,7 @@ shared::EventUniforms Effects::advance(double time_s, const EffectStage& stage) 
     else
       out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, stage);
   }
-  std::erase_if(active_, [&](const Active& a) { return time_s + stage.dt_s >= a.start_s + duration(a.effect); });
+  std::erase_if(active_, [&](const Active& a) { return time_s >= a.start_s + duration(a.effect); });
   return out;
 }
 

@@ -33,7 +33,7 @@ class Effects {
   /// ended. `spare`: places that must stay free, so that weather does not crowd out people.
   core::Result<void> start(const core::Effect& effect, double time_s, std::size_t spare = 0);
 
-  /// What the active effects add during [time_s, time_s + dt_s]; those that have ended are forgotten.
+  /// What the active effects add at time_s, after a step of dt_s; those that have ended are forgotten.
   shared::EventUniforms advance(double time_s, const EffectStage& stage);
 
   [[nodiscard]] bool idle() const { return active_.empty(); }

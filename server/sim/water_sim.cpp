@@ -39,8 +39,8 @@ void WaterSim::advanceWave() {
   if (!parts_->wave) return;
   const auto timer = timers_.scope("wave");
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
-    parts_->wave->displace(parts_->effects.advance(time_s() + k * derived_.wave->dt_s, stageOf(*derived_.wave)));
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr);
+    parts_->wave->displace(parts_->effects.advance(time_s() + (k + 1) * derived_.wave->dt_s, stageOf(*derived_.wave)));
   }
   parts_->wave->clearPressure();  // hulls and falling particles press anew for the next tick
 }
@@ -48,8 +48,8 @@ void WaterSim::advanceWave() {
 void WaterSim::stirParticles() {
   if (!parts_->stir || parts_->effects.idle()) return;
   const auto timer = timers_.scope("stir");
-  parts_->stir->apply(parts_->effects.advance(time_s(), Stir::stage(scene_, derived_)), *parts_->particles,
-                      parts_->population(derived_));
+  parts_->stir->apply(parts_->effects.advance(time_s() + derived_.tick_s, Stir::stage(scene_, derived_)),
+                      *parts_->particles, parts_->population(derived_));
 }
 
 void WaterSim::sampleSurface() {

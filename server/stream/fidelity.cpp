@@ -26,7 +26,7 @@ struct Level {
 constexpr std::array<Level, 4> kLevels = {{
     {v1::FIDELITY_DRAFT, 0.5, 0.7, 1.0, v1::STENCIL_FIVE_POINT, 3, 3, 0.002},
     {v1::FIDELITY_BALANCED, 1.0, 1.0, 1.0, v1::STENCIL_FIVE_POINT, 3, 4, 0.001},
-    {v1::FIDELITY_FINE, 1.5, 1.4, 1.0, v1::STENCIL_NINE_POINT, 5, 4, 0.0005},
+    {v1::FIDELITY_FINE, 1.5, 1.4, 2.0, v1::STENCIL_NINE_POINT, 5, 4, 0.0005},
     {v1::FIDELITY_REFERENCE, 3.0, 2.0, 2.0, v1::STENCIL_NINE_POINT, 5, 8, 0.0005},
 }};
 
@@ -43,6 +43,10 @@ void scaleNumber(google::protobuf::Message& message, const char* name, double fa
   const double step = options.multiple_of() > 0 ? options.multiple_of() : options.step();
   double value = std::round(numberOf(message, field) * factor / step) * step;
   setNumber(message, field, std::clamp(value, options.min(), options.max()));
+}
+
+double layersOf(const v1::ParticleScene& particles) {
+  return numberOf(particles, *v1::ParticleScene::descriptor()->FindFieldByName("layers_count"));
 }
 
 }  // namespace
@@ -72,11 +76,16 @@ void applyFidelity(v1::Scene& scene) {
   }
   if (scene.has_particles()) {
     v1::ParticleScene& particles = *scene.mutable_particles();
-    // A band on the surface keeps its layers and gets thinner; a box is filled to the same height; spray keeps its
-    // volume.
-    const int dimensions = scene.has_wave() && !is_two_way ? 2 : 3;
-    scaleNumber(particles, "count", std::pow(level.particle_scale, dimensions));
-    if (!scene.has_wave()) scaleNumber(particles, "layers_count", level.particle_scale);
+    if (is_two_way) {
+      scaleNumber(particles, "count", std::pow(level.particle_scale, 3));  // the spray's volume
+    } else if (scene.has_wave()) {
+      scaleNumber(particles, "count", std::pow(level.particle_scale, 2));  // a band of the same layers, thinner
+    } else {
+      // As deep as before: whole layers decide.
+      const double layers_count = layersOf(particles);
+      scaleNumber(particles, "layers_count", level.particle_scale);
+      scaleNumber(particles, "count", std::pow(layersOf(particles) / layers_count, 3));
+    }
     if (!particles.has_iterations_count()) particles.set_iterations_count(level.iterations_count);
   }
   if (scene.has_coupling()) {

@@ -55,7 +55,8 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
       out.are_frames_finite = out.are_frames_finite && isFinite(frame);
   };
   const double start_s = water.time_s();
-  while (water.time_s() < start_s + sweep.seconds) {
+  for (int tick = 0; water.time_s() < start_s + sweep.seconds; ++tick) {
+    if (sweep.disturb) sweep.disturb(water, value, tick);
     stepOnce();
     const sim::Health& health = water.health();
     out.max_density_ratio = std::max(out.max_density_ratio, health.max_density_ratio);
@@ -68,14 +69,14 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
                   out.max_density_ratio <= sweep.stable_density_ratio;
 
   // With the rules' own steps again.
-  core::Scene ruled = scene;
+  core::Scene ruled = sweep.disturb ? water.scene() : scene;
   ruled.fixed_substeps_count = 0;
   if (ruled.wave) ruled.wave->fixed_substeps_count = 0;
   if (auto back = water.setScene(ruled); !back) return back.error();
   for (int tick = 0; tick < 8; ++tick) stepOnce();  // news of the last breach is still under way
   const std::uint64_t guard_count = water.recoveredCount();
   const double after_s = water.time_s();
-  while (water.time_s() < after_s + 2.0) stepOnce();
+  while (water.time_s() < after_s + sweep.seconds_after) stepOnce();
   out.is_well_after = water.recoveredCount() == guard_count && water.health().isGood();
   return out;
 }

@@ -1,8 +1,10 @@
-// What is swept: steps in units of their bound, stiffness, viscosity, count, Courant number, depth, amplitude, patch
-// size.
+// What is swept: steps in units of their bound, stiffness, viscosity, count, Courant number, depth, amplitude, cells,
+// patch size, commands.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <random>
 
 #include <fmt/format.h>
 
@@ -91,6 +93,20 @@ void addSteps(bool quick, std::vector<Sweep>& sweeps) {
                     kBoilingShare});
 }
 
+/// 12 m of breaking water with spray.
+core::Scene twoWayWater(std::uint32_t resolution_count) {
+  core::Scene scene;
+  scene.name = "two_way";
+  scene.wave.emplace();
+  scene.wave->resolution_count = resolution_count;
+  scene.wave->side_m = 12.0;
+  scene.particles.emplace();
+  scene.particles->count = 6000;
+  scene.coupling.emplace();
+  scene.coupling->mode = core::CouplingMode::kTwoWay;
+  return scene;
+}
+
 void addWaves(bool quick, std::vector<Sweep>& sweeps) {
   for (const Stencil stencil : {Stencil::kFivePoint, Stencil::kNinePoint}) {
     const bool nine = stencil == Stencil::kNinePoint;
@@ -124,22 +140,99 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
                     },
                     5.0, kGrowingWave});
   sweeps.push_back({"splash in two-way water", "depths", pick(quick, {0.1, 0.9}, {0.1, 0.3, 0.6, 0.9}), std::nullopt,
-                    [](double) {
-                      core::Scene scene;
-                      scene.name = "splash";
-                      scene.wave.emplace();
-                      scene.wave->resolution_count = 96;
-                      scene.wave->side_m = 12.0;
-                      scene.particles.emplace();
-                      scene.particles->count = 4000;
-                      scene.coupling.emplace();
-                      scene.coupling->mode = core::CouplingMode::kTwoWay;
-                      return scene;
-                    },
+                    [](double) { return twoWayWater(96); },
                     [](sim::WaterSim& water, double share) {
                       (void)water.start(core::Splash{0.5, 0.3, 1.5, share * 1.5, 0.05});
                     },
                     4.0, kGrowingWave});
+  sweeps.push_back({"wave in two-way water", "depths", pick(quick, {0.1, 1}, {0.1, 0.3, 1, 3, 10}), std::nullopt,
+                    [](double) {
+                      core::Scene scene = twoWayWater(96);
+                      scene.wave->steepening_ratio = 1.0;
+                      scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = core::WaveBoundary::kReflect;
+                      return scene;
+                    },
+                    [](sim::WaterSim& water, double share) {
+                      core::BreakingWave wave;
+                      wave.amplitude_m = share * 1.5;
+                      (void)water.start(wave);
+                    },
+                    4.0, kGrowingWave});
+  sweeps.push_back({"cells of two-way water, drops of 0.1 m", "",
+                    pick(quick, {48, 288}, {48, 96, 192, 288, 384, 576, 768}), std::nullopt,
+                    [](double cells) { return twoWayWater(static_cast<std::uint32_t>(cells)); },
+                    [](sim::WaterSim& water, double) {
+                      (void)water.start(core::Splash{0.5, 0.3, 1.5, 1.2, 0.2});
+                    },
+                    quick ? 1.5 : 4.0, kGrowingWave});
+}
+
+/// Any command that a client may send, at random; refusals are part of it.
+void command(sim::WaterSim& water, std::mt19937& random) {
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * std::generate_canonical<double, 53>(random);
+  };
+  switch (random() % 6) {
+    case 0:
+      (void)water.start(
+          core::Splash{between(-6, 6), between(-6, 6), between(0.05, 4), between(0.01, 3), between(0.02, 1)});
+      break;
+    case 1: {
+      core::BreakingWave wave;
+      wave.side = static_cast<core::Side>(random() % 5);
+      wave.direction_deg = between(-180, 180);
+      wave.amplitude_m = between(0.01, 3);
+      wave.length_m = between(0.3, 8);
+      (void)water.start(wave);
+      break;
+    }
+    case 2: {
+      core::Boat boat;
+      boat.x_m = between(-5, 5);
+      boat.z_m = between(-5, 5);
+      boat.heading_deg = between(-180, 180);
+      (void)water.spawnBoat(boat);
+      break;
+    }
+    case 3:
+      (void)water.controlBoat(static_cast<std::uint32_t>(1 + random() % 32), between(-1, 1), between(-1, 1));
+      break;
+    case 4:
+      (void)water.removeBoat(static_cast<std::uint32_t>(1 + random() % 32));
+      break;
+    default: {
+      core::Scene scene = water.scene();
+      scene.gravity_mps2 = between(0, 50);
+      scene.wave->depth_m = between(0.3, 10);
+      scene.wave->damping_per_s = between(0, 5);
+      scene.wave->steepening_ratio = between(0, 1);
+      scene.particles->viscosity_pas = between(0, 100);
+      scene.storm->level_ratio = between(0, 1);
+      (void)water.setScene(scene);
+    }
+  }
+}
+
+void addCommands(bool quick, std::vector<Sweep>& sweeps) {
+  const auto random = std::make_shared<std::mt19937>(1);
+  sweeps.push_back({"commands of every kind",
+                    "a tick",
+                    pick(quick, {1, 30}, {1, 10, 100, 1000}),
+                    std::nullopt,
+                    [](double) {
+                      core::Scene scene = twoWayWater(96);
+                      scene.wave->steepening_ratio = 0.5;
+                      scene.boats.emplace();
+                      scene.storm.emplace();
+                      return scene;
+                    },
+                    {},
+                    quick ? 2.0 : 10.0,
+                    1e9,
+                    1e9,
+                    [random](sim::WaterSim& water, double count, int) {
+                      for (int i = 0; i < static_cast<int>(count); ++i) command(water, *random);
+                    }});
 }
 
 void addParticles(bool quick, std::vector<Sweep>& sweeps) {
@@ -181,6 +274,25 @@ void addParticles(bool quick, std::vector<Sweep>& sweeps) {
                     {},
                     1.0,
                     kBoilingShare});
+  if (!quick) {
+    sweeps.push_back({"particles, up to the capacity",
+                      "",
+                      {262'144, 1'048'576},
+                      std::nullopt,
+                      [](double count) {
+                        core::Scene scene = box(static_cast<std::uint32_t>(count));
+                        scene.particles->layers_count = 32;
+                        scene.particles->box_side_m = 10.0;
+                        scene.particles->headroom_m = 3.0;
+                        return scene;
+                      },
+                      {},
+                      0.1,
+                      kBoilingShare,
+                      1e9,
+                      {},
+                      0.1});
+  }
   sweeps.push_back({"patch on the pool", "of its side", pick(quick, {0.2, 1}, {0.1, 0.2, 0.5, 0.8, 1}), std::nullopt,
                     [](double scale) {
                       core::Scene scene;
@@ -207,6 +319,7 @@ std::vector<Sweep> stabilitySweeps(bool quick) {
   addSteps(quick, sweeps);
   addWaves(quick, sweeps);
   addParticles(quick, sweeps);
+  addCommands(quick, sweeps);
   return sweeps;
 }
 

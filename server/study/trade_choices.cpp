@@ -21,9 +21,14 @@ bool isTwoWay(const core::Scene& scene) {
 /// `scale` times as many particles across the water: the rules of stream's fidelity levels.
 core::Scene withFinerParticles(core::Scene scene, double scale) {
   core::ParticleScene& p = *scene.particles;
-  const int dimensions = scene.wave && !isTwoWay(scene) ? 2 : 3;
-  p.count = static_cast<std::uint32_t>(std::lround(p.count * std::pow(scale, dimensions)));
-  if (!scene.wave) p.layers_count = std::clamp(std::round(p.layers_count * scale), 1.0, kMaxLayers);
+  double count_ratio = std::pow(scale, scene.wave && !isTwoWay(scene) ? 2 : 3);
+  if (!scene.wave) {
+    // As deep as before: whole layers decide.
+    const double layers_count = std::clamp(std::round(p.layers_count * scale), 1.0, kMaxLayers);
+    count_ratio = std::pow(layers_count / p.layers_count, 3);
+    p.layers_count = layers_count;
+  }
+  p.count = static_cast<std::uint32_t>(std::lround(p.count * count_ratio));
   if (isTwoWay(scene)) scene.coupling->droplet_spacing_m /= scale;
   return scene;
 }
@@ -91,6 +96,7 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
     add("coupling", "wave alone", changed([](core::Scene& s) {
           s.particles.reset();
           s.coupling.reset();
+          if (s.foam && !s.foam->surface) s.foam.reset();
         }));
     if (!isTwoWay(scene)) {
       const bool five = scene.coupling->lattice_count == 5;

@@ -143,6 +143,20 @@ TEST_F(Check, PrintsThePositionBasedSolver) {
   EXPECT_THAT(outcome.out, HasSubstr("position-based, 4 iterations a substep"));
 }
 
+TEST_F(Check, EveryShippedSceneIsFineAtEveryFidelity) {
+  for (const char* level : {"draft", "balanced", "fine", "reference"}) {
+    std::vector<std::string> arguments = {"check", "--fidelity", level};
+    for (const auto& entry : std::filesystem::directory_iterator(SPINDRIFT_SOURCE_DIR "/server/scenes")) {
+      if (entry.path().extension() == ".textproto") arguments.push_back(entry.path());
+    }
+    ASSERT_GT(arguments.size(), 10u);
+    const Outcome outcome = runProgram(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << level << ": " << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(std::string("), ") + level));
+  }
+  expectOneErrorLine(runProgram({"check", "--fidelity", "best", smallScene()}), 2, {"--fidelity", "best"});
+}
+
 TEST_F(Check, RuleBetweenFieldsIsNamedWithFileLineColumnAndRemedy) {
   const std::string file = scene("wave {}\nboats {\n  boats { x_m: 50 }\n}\n");
   expectOneErrorLine(runProgram({"check", file}), 2,

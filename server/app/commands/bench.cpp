@@ -12,6 +12,7 @@
 
 #include <spindrift/gpu/context.h>
 #include <spindrift/sim/water_sim.h>
+#include <spindrift/stream/fidelity.h>
 #include <spindrift/stream/frame_encoder.h>
 #include <spindrift/stream/scene_loader.h>
 
@@ -181,7 +182,7 @@ int bench(const BenchOptions& options) {
   if (!device) return fail(device.error());
   auto file = findScene(options.scene);
   if (!file) return fail(file.error());
-  auto loaded = stream::loadSceneFile(*file);
+  auto loaded = stream::loadSceneFile(*file, stream::parseFidelity(options.fidelity));
   if (!loaded) return fail(loaded.error());
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/sim/derive.h>
+#include <spindrift/stream/fidelity.h>
 #include <spindrift/stream/scene_loader.h>
 
 #include "../paths.h"
@@ -70,8 +71,9 @@ void printBoats(const core::BoatsScene& boats) {
 }
 
 void print(const std::string& file, const v1::Scene& scene, const core::Scene& in, const sim::Derived& d) {
-  fmt::print("{}: fine\n  scene      {} ({})\n  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", file, scene.name(),
-             scene.title(), d.tick_s * 1e3, d.substeps_count, d.dt_s * 1e3);
+  fmt::print("{}: fine\n  scene      {} ({}), {}\n  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", file,
+             scene.name(), scene.title(), stream::fidelityName(scene.fidelity()), d.tick_s * 1e3, d.substeps_count,
+             d.dt_s * 1e3);
   if (d.wave) {
     fmt::print(
         "  wave       {0} x {0} cells of {1:.3f} m, speed {2:.2f} m/s, {3} steps a tick, Courant number {4:.3f}\n",
@@ -106,7 +108,7 @@ int check(const CheckOptions& options) {
       code = fail(file.error());
       continue;
     }
-    auto scene = stream::loadSceneFile(*file);
+    auto scene = stream::loadSceneFile(*file, stream::parseFidelity(options.fidelity));
     if (!scene) {
       code = fail(scene.error());
       continue;

@@ -15,6 +15,7 @@ struct ServeOptions {
   std::vector<std::string> rooms;  ///< NAME=SCENE
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;
+  std::string fidelity;  ///< takes the place of the scenes' own; empty: theirs
   std::string device = "auto";
   std::string web_root;  ///< empty: found beside the program
   std::size_t thread_count = 1;
@@ -29,12 +30,14 @@ int info(const InfoOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> scenes;
+  std::string fidelity;  ///< as in ServeOptions
 };
 int check(const CheckOptions& options);
 
 struct BenchOptions {
   std::string suite = "all";  ///< step, stream, all
   std::string scene = "harbor";
+  std::string fidelity;  ///< as in ServeOptions
   std::string device = "auto";
   std::string json_file;
   double seconds = 2.0;  ///< measured time per case

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/stream/fidelity.h>
 #include <spindrift/stream/scene_loader.h>
 
 #include "../paths.h"
@@ -17,27 +18,27 @@ namespace {
 using core::Error;
 using core::ErrorCode;
 
-core::Result<RoomSetup> loadRoom(const std::string& name, const std::string& scene) {
+core::Result<RoomSetup> loadRoom(const std::string& name, const std::string& scene, const std::string& fidelity) {
   if (!std::regex_match(name, std::regex("[A-Za-z0-9_-]{1,32}"))) {
     return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
   }
   auto file = findScene(scene);
   if (!file) return file.error();
-  auto loaded = stream::loadSceneFile(*file);
+  auto loaded = stream::loadSceneFile(*file, stream::parseFidelity(fidelity));
   if (!loaded) return loaded.error();
   return RoomSetup{name, *std::move(loaded)};
 }
 
 core::Result<std::vector<RoomSetup>> loadRooms(const ServeOptions& options) {
   std::vector<RoomSetup> rooms;
-  auto first = loadRoom("main", options.scene);
+  auto first = loadRoom("main", options.scene, options.fidelity);
   if (!first) return first.error();
   rooms.push_back(*std::move(first));
   for (const std::string& text : options.rooms) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
       return Error{ErrorCode::kInvalidInput, "--room '" + text + "': write NAME=SCENE"};
-    auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1));
+    auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1), options.fidelity);
     if (!room) return room.error();
     for (const RoomSetup& known : rooms) {
       if (known.name == room->name)
@@ -85,7 +86,7 @@ int serve(const ServeOptions& options) {
   WaterServerOptions server_options;
   server_options.device = *device;
   server_options.rooms = *std::move(rooms);
-  server_options.scenes = SceneCatalog(findSceneFolder());
+  server_options.scenes = SceneCatalog(findSceneFolder(), stream::parseFidelity(options.fidelity));
   server_options.network.address = options.address;
   server_options.network.port = options.port;
   server_options.network.thread_count = options.thread_count;

@@ -41,11 +41,17 @@ constexpr const char* kLevelKnob = "fidelity";
 /// Each of the shipped effects as it is, as the wave alone, and as particles alone (thesis, section 3.8.1).
 constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
 
+/// Differences of less than this share are chance: the same scene with another seed is off by so much more or less.
+constexpr double kChance = 0.05;
+/// Simulated seconds of the quick form, whose yardstick is REFERENCE itself.
+constexpr double kQuickSeconds = 1.4;
+
 /// What is kept of a run.
 struct TradeRow {
   std::string knob, setting;
-  std::string refused;  ///< why the scene could not be run; empty: it was
-  double wall_ms_per_s = 0.0;
+  std::string refused;         ///< why the scene could not be run; empty: it was
+  double wall_ms_per_s = 0.0;  ///< once levelled: at the best speed that the machine showed
+  double yardstick_ms = 0.0;   ///< how fast the machine was at the time
   double device_mb = 0.0;
   double stream_mbit_per_s = 0.0;
   std::uint32_t wave_cells_count = 0, particle_count = 0, substeps_per_s_count = 0;
@@ -64,6 +70,7 @@ boost::json::object toJson(const TradeRow& r) {
           {"setting", r.setting},
           {"refused", r.refused},
           {"wall_ms_per_s", r.wall_ms_per_s},
+          {"yardstick_ms", r.yardstick_ms},
           {"device_mb", r.device_mb},
           {"stream_mbit_per_s", r.stream_mbit_per_s},
           {"wave_cells", r.wave_cells_count},
@@ -92,6 +99,7 @@ TradeRow fromJson(const boost::json::object& json) {
   r.setting = json.at("setting").as_string();
   r.refused = json.at("refused").as_string();
   r.wall_ms_per_s = json.at("wall_ms_per_s").to_number<double>();
+  r.yardstick_ms = json.at("yardstick_ms").to_number<double>();
   r.device_mb = json.at("device_mb").to_number<double>();
   r.stream_mbit_per_s = json.at("stream_mbit_per_s").to_number<double>();
   r.wave_cells_count = json.at("wave_cells").to_number<std::uint32_t>();
@@ -158,6 +166,21 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
   return choices;
 }
 
+/// Costs as they would have been at one speed of the machine.
+void levelCosts(std::vector<TradeRow>& rows) {
+  double best_ms = HUGE_VAL;
+  for (const TradeRow& row : rows) {
+    if (row.refused.empty()) best_ms = std::min(best_ms, row.yardstick_ms);
+  }
+  for (TradeRow& row : rows) {
+    if (!row.refused.empty()) continue;
+    const double slowness = row.yardstick_ms / best_ms;
+    row.wall_ms_per_s /= slowness;
+    for (auto& [name, ms] : row.pass_ms_per_s) ms = ms.to_number<double>() / slowness;
+    row.yardstick_ms = best_ms;
+  }
+}
+
 void markFront(std::vector<TradeRow>& rows) {
   std::vector<study::CostAndError> points;
   for (const TradeRow& row : rows) {
@@ -165,8 +188,12 @@ void markFront(std::vector<TradeRow>& rows) {
     points.push_back(counts ? study::CostAndError{row.wall_ms_per_s, row.errors.height_rms_ratio}
                             : study::CostAndError{HUGE_VAL, HUGE_VAL});
   }
-  const std::vector<bool> front = study::paretoFront(points);
+  const std::vector<bool> front = study::paretoFront(points, kChance);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i] && std::isfinite(points[i].cost);
+}
+
+double secondsOf(const TradeScene& scene, bool quick) {
+  return quick ? std::min(scene.seconds, kQuickSeconds) : scene.seconds;
 }
 
 std::string percent(const std::optional<double>& ratio) {
@@ -196,20 +223,25 @@ void print(std::FILE* out, const TradeRow& row, const TradeRow& balanced) {
       100 * e.energy_rms_ratio, row.guard_count > 0 ? fmt::format("  guard {}", row.guard_count) : "");
 }
 
-/// Runs what the journal does not know yet; the yardstick only when something is left to run.
+/// Runs what the journal does not know yet; the finest run only when something is left to compare.
 class TradeRuns {
  public:
-  TradeRuns(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal)
-      : ctx_(ctx), options_(options), journal_(journal) {}
+  TradeRuns(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal, study::Yardstick speed)
+      : ctx_(ctx), options_(options), journal_(journal), speed_(std::move(speed)) {}
 
   core::Result<std::vector<TradeRow>> run(const TradeScene& scene) {
     auto choices = choicesOf(scene, options_.quick);
     if (!choices) return choices.error();
-    const study::RecordOptions record{.seconds = options_.quick ? std::min(scene.seconds, 2.0) : scene.seconds,
-                                      .sample_interval_s = 0.1,
-                                      .frame_bytes = frameBytes()};
+    // The quick form judges by the finest that is offered, the full one by a run that is finer still.
+    core::Scene finest_scene = (*choices)[3].scene;
+    if (options_.quick)
+      choices->resize(3);
+    else
+      finest_scene = study::finerThan(finest_scene);
+    const study::RecordOptions record{
+        .seconds = secondsOf(scene, options_.quick), .sample_interval_s = 0.1, .frame_bytes = frameBytes()};
     std::vector<TradeRow> rows;
-    std::optional<WaterRecord> yardstick;
+    std::optional<WaterRecord> finest_run;
     for (std::size_t i = 0; i < choices->size(); ++i) {
       const TradeChoice& choice = (*choices)[i];
       const std::string key =
@@ -218,18 +250,20 @@ class TradeRuns {
         rows.push_back(fromJson(known->as_object()));
         continue;
       }
-      if (!yardstick) {
+      if (!finest_run) {
         showProgress(fmt::format("{}: the run to judge by", scene.name));
-        auto finest = study::record(ctx_, study::finerThan((*choices)[3].scene), record);
+        auto finest = study::record(ctx_, finest_scene, record);
         if (!finest) return core::Error{finest.error().code, std::string(scene.name) + ": " + finest.error().message};
-        yardstick = *std::move(finest);
+        finest_run = *std::move(finest);
       }
       showProgress(fmt::format("{}: [{}/{}] {} {}", scene.name, i + 1, choices->size(), choice.knob, choice.setting));
+      const double before_ms = speed_.measure_ms();
       auto made = study::record(ctx_, choice.scene, record);
       TradeRow row;
       if (made) {
         row = rowOf(choice, *made);
-        row.errors = study::compare(*made, *yardstick, choice.scene);
+        row.yardstick_ms = (before_ms + speed_.measure_ms()) / 2;
+        row.errors = study::compare(*made, *finest_run, choice.scene);
       } else if (made.error().code == core::ErrorCode::kInvalidInput) {
         row.knob = choice.knob;
         row.setting = choice.setting;
@@ -241,6 +275,7 @@ class TradeRuns {
       rows.push_back(std::move(row));
     }
     showProgress("");
+    levelCosts(rows);
     markFront(rows);
     return rows;
   }
@@ -256,12 +291,15 @@ class TradeRuns {
         continue;
       }
       showProgress(fmt::format("cost: {} {}", choice.knob, choice.setting));
+      const double before_ms = speed_.measure_ms();
       auto made = study::record(ctx_, choice.scene, {.seconds = seconds, .sample_interval_s = 0.0, .frame_bytes = {}});
       if (!made) return made.error();
       rows.push_back(rowOf(choice, *made));
+      rows.back().yardstick_ms = (before_ms + speed_.measure_ms()) / 2;
       if (auto kept = journal_.add(key, toJson(rows.back())); !kept) return kept.error();
     }
     showProgress("");
+    levelCosts(rows);
     return rows;
   }
 
@@ -269,6 +307,7 @@ class TradeRuns {
   gpu::Context& ctx_;
   const StudyOptions& options_;
   StudyJournal& journal_;
+  study::Yardstick speed_;
 };
 
 boost::json::array toJson(const std::vector<TradeRow>& rows) {
@@ -294,12 +333,13 @@ void printCosts(std::FILE* out, const std::vector<TradeRow>& rows) {
   std::fflush(out);
 }
 
-/// The levels hold what they promise: each is on the front of the levels, finer ones are dearer and closer, and
-/// REFERENCE is the closest of all that was run.
+/// The levels hold what they promise: each is on the front, and finer ones are closer.
 void judgeLevels(const std::vector<TradeRow>& rows, SuiteResult& result, std::FILE* out) {
   const TradeRow* before = nullptr;
   for (const TradeRow& row : rows) {
     if (row.knob != kLevelKnob) continue;
+    ++(row.is_on_front ? result.held_count : result.missed_count);
+    if (!row.is_on_front) fmt::print(out, "  MISS {} is beaten in cost and height both\n", row.setting);
     if (before != nullptr) {
       const bool holds = row.errors.height_rms_ratio < before->errors.height_rms_ratio;
       ++(holds ? result.held_count : result.missed_count);
@@ -339,7 +379,9 @@ Chart tradeChart(const TradeScene& scene, const std::vector<TradeRow>& rows) {
 core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal,
                                      std::FILE* out) {
   SuiteResult result;
-  TradeRuns runs(ctx, options, journal);
+  auto speed = study::Yardstick::create(ctx);
+  if (!speed) return speed.error();
+  TradeRuns runs(ctx, options, journal, *std::move(speed));
   boost::json::array json_scenes;
   Chart levels_chart;
   levels_chart.title = "What accuracy costs: the fidelity levels";
@@ -351,8 +393,8 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& opti
     if (options.quick && !scene.is_quick) continue;
     if (!options.only.empty() && options.only != scene.name) continue;
     found = true;
-    fmt::print(out, "{}, {} s, against a run finer than reference; * = not beaten in cost and height both\n",
-               scene.name, options.quick ? std::min(scene.seconds, 2.0) : scene.seconds);
+    fmt::print(out, "{}, {} s, against {}; * = not beaten in cost and height both\n", scene.name,
+               secondsOf(scene, options.quick), options.quick ? "reference" : "a run finer than reference");
     std::fflush(out);
     auto rows = runs.run(scene);
     if (!rows) return core::Error{rows.error().code, std::string(scene.name) + ": " + rows.error().message};

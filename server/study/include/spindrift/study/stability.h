@@ -41,6 +41,9 @@ struct Sweep {
   double seconds = 3.0;                               ///< simulated, a point
   double stable_growth = 0.0;                         ///< largest energy_growth of a stable point
   double stable_density_ratio = 1e9;                  ///< largest max_density_ratio of one
+  /// What happens before each tick of the sweep; may be empty.
+  std::function<void(sim::WaterSim&, double value, int tick)> disturb = {};
+  double seconds_after = 2.0;  ///< simulated, with the rules' own steps, that must go well
 };
 
 /// `quick`: fewer values.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
+#include <spindrift/sim/water_sim.h>
 
 namespace spindrift::study {
 
@@ -38,8 +40,8 @@ struct WaterRecord {
   std::uint32_t wave_cells_count = 0;
   std::uint64_t guard_count = 0;
 
-  /// A sample's fields, x fastest: elevation averaged over kSurfaceCells^2 cells [m]; volume of particles over the area
-  /// of columns of the box [m]. Empty where the scene lacks the part.
+  /// A sample's fields, x fastest: elevation on kSurfaceCells^2 cells, averaged or interpolated [m]; volume of
+  /// particles in columns of the box over its mean. Empty where the scene lacks the part.
   struct Sample {
     std::vector<double> surface_m;
     std::vector<double> column_m;
@@ -52,6 +54,21 @@ struct WaterRecord {
 
 inline constexpr std::size_t kSurfaceCells = 64;
 inline constexpr std::size_t kColumnsAlong = 20;
+
+/// How fast the machine is now: wall time of a fixed piece of work, some tenths of a second of coupled water. A virtual
+/// machine's speed changes by a factor of two from minute to minute; costs are compared in units of this.
+class Yardstick {
+ public:
+  static core::Result<Yardstick> create(gpu::Context& ctx);
+  Yardstick(Yardstick&&) noexcept;
+  ~Yardstick();
+  double measure_ms();
+
+ private:
+  explicit Yardstick(gpu::Context& ctx, std::unique_ptr<sim::WaterSim> water);
+  gpu::Context* ctx_;
+  std::unique_ptr<sim::WaterSim> water_;
+};
 
 /// Runs the scene from its start.
 core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, const RecordOptions& options);
@@ -72,11 +89,12 @@ struct RecordErrors {
 };
 RecordErrors compare(const WaterRecord& run, const WaterRecord& reference, const core::Scene& scene);
 
-/// Which points have no other that is at most as dear and at most as far off, and better in one of the two.
+/// Which points have no other that is at most as dear and at most as far off, and better in one of the two by more than
+/// `resolution`, a share: smaller differences are chance.
 struct CostAndError {
   double cost = 0.0;
   double error = 0.0;
 };
-std::vector<bool> paretoFront(const std::vector<CostAndError>& points);
+std::vector<bool> paretoFront(const std::vector<CostAndError>& points, double resolution = 0.0);
 
 }  // namespace spindrift::study

@@ -1,0 +1,127 @@
+// How runs are compared, and which of them are worth their cost.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/study/trade.h>
+#include <spindrift/study/water_record.h>
+
+namespace spindrift::study {
+namespace {
+
+core::Scene waveOnly() {
+  core::Scene scene;
+  scene.name = "wave";
+  scene.wave.emplace();
+  return scene;
+}
+
+/// A record of one sample: `amplitude_m` cos(2 pi k x / side).
+WaterRecord waves(double amplitude_m, int k) {
+  WaterRecord record;
+  WaterRecord::Sample sample;
+  for (std::size_t z = 0; z < kSurfaceCells; ++z)
+    for (std::size_t x = 0; x < kSurfaceCells; ++x)
+      sample.surface_m.push_back(amplitude_m *
+                                 std::cos(2 * std::numbers::pi * k * static_cast<double>(x) / kSurfaceCells));
+  sample.energy_j = amplitude_m * amplitude_m;
+  record.samples.push_back(sample);
+  return record;
+}
+
+TEST(RecordErrors, AreNoneBetweenEqualRuns) {
+  const RecordErrors errors = compare(waves(0.5, 3), waves(0.5, 3), waveOnly());
+  EXPECT_EQ(errors.height_rms_ratio, 0.0);
+  EXPECT_EQ(errors.surface_max_ratio, 0.0);
+  EXPECT_EQ(errors.spectrum_ratio, 0.0);
+  EXPECT_EQ(errors.energy_rms_ratio, 0.0);
+  EXPECT_FALSE(errors.column_rms_ratio);
+  EXPECT_FALSE(errors.density_rms_ratio) << "no particles";
+}
+
+TEST(RecordErrors, AreSharesOfTheReference) {
+  const RecordErrors errors = compare(waves(0.6, 3), waves(0.5, 3), waveOnly());
+  EXPECT_NEAR(errors.height_rms_ratio, 0.2, 1e-12);
+  EXPECT_NEAR(*errors.surface_max_ratio, 0.2 * std::numbers::sqrt2, 1e-9) << "over the root mean square";
+  EXPECT_NEAR(*errors.spectrum_ratio, 0.44, 1e-9) << "(0.36 - 0.25) / 0.25";
+  EXPECT_NEAR(errors.energy_rms_ratio, 0.44, 1e-9);
+}
+
+TEST(RecordErrors, TellWavesOfAnotherLengthApartByTheirSpectrum) {
+  const RecordErrors errors = compare(waves(0.5, 5), waves(0.5, 3), waveOnly());
+  EXPECT_NEAR(*errors.spectrum_ratio, 2.0, 1e-9);
+  EXPECT_NEAR(errors.height_rms_ratio, std::numbers::sqrt2, 1e-9);
+}
+
+TEST(ParetoFront, KeepsWhatNobodyBeatsInBoth) {
+  const std::vector<CostAndError> points = {{1, 10}, {2, 5}, {2, 6}, {3, 5}, {4, 1}, {1, 10}};
+  EXPECT_EQ(paretoFront(points), (std::vector<bool>{true, true, false, false, true, true}));
+}
+
+TEST(ParetoFront, MindsNoDifferenceBelowItsResolution) {
+  const std::vector<CostAndError> points = {{1.00, 1.00}, {1.03, 1.02}, {1.10, 1.00}};
+  EXPECT_EQ(paretoFront(points, 0.05), (std::vector<bool>{true, true, false}));
+}
+
+TEST(SingleKnobs, ChangeOneThingEach) {
+  core::Scene scene;
+  scene.name = "pool";
+  scene.wave.emplace();
+  scene.particles.emplace();
+  scene.coupling.emplace();
+  const auto knobs = singleKnobs(scene);
+  EXPECT_GT(knobs.size(), 15u);
+  for (const TradeChoice& choice : knobs) {
+    int changes = 0;
+    changes += choice.scene.tick_rate_hz != scene.tick_rate_hz;
+    changes += choice.scene.seed != scene.seed;
+    changes += choice.scene.stream.surface_quantum_m != scene.stream.surface_quantum_m;
+    changes += choice.scene.wave->resolution_count != scene.wave->resolution_count;
+    changes += choice.scene.wave->stencil != scene.wave->stencil;
+    if (choice.scene.particles) {
+      changes += choice.scene.particles->count != scene.particles->count;
+      changes += choice.scene.particles->kernel_set != scene.particles->kernel_set;
+      changes += choice.scene.particles->solver != scene.particles->solver;
+      changes += choice.scene.particles->pressure_force != scene.particles->pressure_force;
+      changes += choice.scene.coupling->lattice_count != scene.coupling->lattice_count;
+      changes += choice.scene.coupling->downforce_per_m_s2 != scene.coupling->downforce_per_m_s2;
+    } else {
+      ++changes;
+    }
+    EXPECT_EQ(changes, 1) << choice.knob << " " << choice.setting;
+  }
+}
+
+class OnSoftware : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
+    if (!made) GTEST_SKIP() << "no software EGL device here: " << made.error().message;
+    ctx_ = *std::move(made);
+  }
+  std::unique_ptr<gpu::Context> ctx_;
+};
+
+TEST_F(OnSoftware, FinerRunsOfAWaveComeCloserToTheFinest) {
+  const auto run = [&](std::uint32_t cells) {
+    core::Scene scene = waveOnly();
+    scene.wave->resolution_count = cells;
+    scene.wave->side_m = 12.0;
+    scene.events = {{0.0, 0.0, core::Splash{0.0, 0.0, 1.5, 0.5, 0.2}}};
+    auto record = study::record(*ctx_, scene, {.seconds = 1.5, .sample_interval_s = 0.1, .frame_bytes = {}});
+    EXPECT_TRUE(record) << record.error().message;
+    return record ? *std::move(record) : WaterRecord();
+  };
+  const WaterRecord finest = run(384);
+  ASSERT_EQ(finest.samples.size(), 15u);
+  EXPECT_GT(finest.wall_ms_per_s, 0.0);
+  EXPECT_EQ(finest.guard_count, 0u);
+  const double coarse = compare(run(48), finest, waveOnly()).height_rms_ratio;
+  const double middle = compare(run(96), finest, waveOnly()).height_rms_ratio;
+  EXPECT_LE(middle, 0.5 * coarse) << "a quarter in theory, for an error of second order";
+  EXPECT_GT(middle, 0.0);
+}
+
+}  // namespace
+}  // namespace spindrift::study
