@@ -26,8 +26,8 @@ struct Level {
 constexpr std::array<Level, 4> kLevels = {{
     {v1::FIDELITY_DRAFT, 0.5, 0.7, 1.0, v1::STENCIL_FIVE_POINT, 3, 3, 0.002},
     {v1::FIDELITY_BALANCED, 1.0, 1.0, 1.0, v1::STENCIL_FIVE_POINT, 3, 4, 0.001},
-    {v1::FIDELITY_FINE, 1.5, 1.4, 2.0, v1::STENCIL_NINE_POINT, 5, 4, 0.0005},
-    {v1::FIDELITY_REFERENCE, 3.0, 2.0, 2.0, v1::STENCIL_NINE_POINT, 5, 8, 0.0005},
+    {v1::FIDELITY_FINE, 1.5, 1.7, 1.0, v1::STENCIL_NINE_POINT, 5, 4, 0.0005},
+    {v1::FIDELITY_REFERENCE, 2.5, 2.2, 2.0, v1::STENCIL_NINE_POINT, 5, 8, 0.0005},
 }};
 
 const Level& levelOf(v1::Fidelity fidelity) {

@@ -9,7 +9,7 @@
 
 namespace spindrift::study {
 
-Rows floatingBody(gpu::Context& ctx, bool quick) {
+Outcome floatingBody(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const double density_ratio : {0.2, 0.5, 0.8}) {
     core::Scene scene;
@@ -32,10 +32,10 @@ Rows floatingBody(gpu::Context& ctx, bool quick) {
     rows.push_back({fmt::format("draught of a hull of 0.8 m at density {}", density_ratio), "m", level_m - keel_m,
                     density_ratio * 0.8, Tolerance::kRelative, 0.03, "Archimedes"});
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
-Rows machWedge(gpu::Context& ctx, bool /*quick*/) {
+Outcome machWedge(gpu::Context& ctx, bool /*quick*/) {
   core::Scene scene;
   scene.name = "wedge";
   scene.wave.emplace();
@@ -64,11 +64,13 @@ Rows machWedge(gpu::Context& ctx, bool /*quick*/) {
     return static_cast<double>(best) * cell_m;
   };
   const double c_mps = water.derived().wave->speed_mps;
-  return std::vector<Row>{
-      {fmt::format("half angle of the wedge at {:.2f} c", forward_mps / c_mps), "rad",
-       std::atan((arm_m(9.0) - arm_m(5.0)) / 4.0), std::asin(c_mps / forward_mps), Tolerance::kAbsolute, 0.12,
-       "arcsin(c/U): the wave equation has no dispersion, so no Kelvin wake; tolerance: one cell in "
-       "each of the two places"}};
+  return CaseResult{
+      std::vector<Row>{{fmt::format("half angle of the wedge at {:.2f} c", forward_mps / c_mps), "rad",
+                        std::atan((arm_m(9.0) - arm_m(5.0)) / 4.0), std::asin(c_mps / forward_mps),
+                        Tolerance::kAbsolute, 0.12,
+                        "arcsin(c/U): the wave equation has no dispersion, so no Kelvin wake; tolerance: one cell in "
+                        "each of the two places"}},
+      {}};
 }
 
 }  // namespace spindrift::study

@@ -5,34 +5,34 @@
 
 namespace spindrift::study {
 
-using Rows = core::Result<std::vector<Row>>;
+using Outcome = core::Result<CaseResult>;
 
 // wave_cases.cpp
-Rows eigenmode(gpu::Context& ctx, bool quick);
-Rows observedOrder(gpu::Context& ctx, bool quick);
-Rows phaseError(gpu::Context& ctx, bool quick);
-Rows waveEnergy(gpu::Context& ctx, bool quick);
-Rows dampedMode(gpu::Context& ctx, bool quick);
+Outcome eigenmode(gpu::Context& ctx, bool quick);
+Outcome observedOrder(gpu::Context& ctx, bool quick);
+Outcome phaseError(gpu::Context& ctx, bool quick);
+Outcome waveEnergy(gpu::Context& ctx, bool quick);
+Outcome dampedMode(gpu::Context& ctx, bool quick);
 
 // slope_and_side_cases.cpp
-Rows reflection(gpu::Context& ctx, bool quick);
-Rows greensLaw(gpu::Context& ctx, bool quick);
+Outcome reflection(gpu::Context& ctx, bool quick);
+Outcome greensLaw(gpu::Context& ctx, bool quick);
 
 // one_step.cpp
-Rows oneStep(gpu::Context& ctx, bool quick);
+Outcome oneStep(gpu::Context& ctx, bool quick);
 
 // particle_cases.cpp
-Rows stillWater(gpu::Context& ctx, bool quick);
-Rows hydrostaticColumn(gpu::Context& ctx, bool quick);
+Outcome stillWater(gpu::Context& ctx, bool quick);
+Outcome hydrostaticColumn(gpu::Context& ctx, bool quick);
 
 // dam_break.cpp
-Rows damBreak(gpu::Context& ctx, bool quick);
+Outcome damBreak(gpu::Context& ctx, bool quick);
 
 // taylor_green.cpp
-Rows taylorGreen(gpu::Context& ctx, bool quick);
+Outcome taylorGreen(gpu::Context& ctx, bool quick);
 
 // body_cases.cpp
-Rows floatingBody(gpu::Context& ctx, bool quick);
-Rows machWedge(gpu::Context& ctx, bool quick);
+Outcome floatingBody(gpu::Context& ctx, bool quick);
+Outcome machWedge(gpu::Context& ctx, bool quick);
 
 }  // namespace spindrift::study

@@ -139,10 +139,24 @@ void compare(const std::vector<Point>& computed, const auto& measured, const std
       {name + ", " + series + ": front, worst point", "%", 100 * worst, 10.0, Tolerance::kAtMost, 0.0, source});
 }
 
+Figure::Curve curveOf(const std::string& name, const auto& series) {
+  Figure::Curve curve{name, {}};
+  for (const Point& point : series) {
+    if (point.T <= kLastT + 0.5) curve.points.emplace_back(point.T, point.Z);
+  }
+  return curve;
+}
+
 }  // namespace
 
-Rows damBreak(gpu::Context& ctx, bool quick) {
+Outcome damBreak(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
+  Figure figure{.name = "dam-break",
+                .title = "Front of a collapsing column, height twice its length a",
+                .x_label = "time T = t sqrt(2 g / a) [-]",
+                .y_label = "front Z = x / a [-]",
+                .curves = {curveOf("Martin & Moyce, a = 2.25 in", kWide), curveOf("a = 1.125 in", kNarrow)}};
+  for (Figure::Curve& curve : figure.curves) curve.is_measured = true;
   for (const core::PressureSolver solver : kSolvers) {
     for (const core::KernelSet set : kKernelSets) {
       // The quick table takes the default kernel set of each solver.
@@ -152,9 +166,10 @@ Rows damBreak(gpu::Context& ctx, bool quick) {
       const std::string name = fmt::format("{}, {}, {} Pa s", nameOf(solver), nameOf(set), viscosity(solver, set));
       compare(*computed, kWide, name, "a = 2.25 in", rows);
       compare(*computed, kNarrow, name, "a = 1.125 in", rows);
+      if (set == core::KernelSet::kWendlandC2) figure.curves.push_back(curveOf(nameOf(solver), *computed));
     }
   }
-  return rows;
+  return CaseResult{std::move(rows), {std::move(figure)}};
 }
 
 }  // namespace spindrift::study

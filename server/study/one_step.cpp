@@ -61,7 +61,7 @@ core::Result<Row> waveStep(gpu::Context& ctx, core::Stencil stencil) {
 
 }  // namespace
 
-Rows oneStep(gpu::Context& ctx, bool quick) {
+Outcome oneStep(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const core::Stencil stencil : {core::Stencil::kFivePoint, core::Stencil::kNinePoint}) {
     auto row = waveStep(ctx, stencil);
@@ -91,7 +91,7 @@ Rows oneStep(gpu::Context& ctx, bool quick) {
       }
     }
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
 }  // namespace spindrift::study

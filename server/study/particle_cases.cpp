@@ -38,7 +38,7 @@ core::Scene column(Boundary sides) {
 
 }  // namespace
 
-Rows stillWater(gpu::Context& ctx, bool quick) {
+Outcome stillWater(gpu::Context& ctx, bool quick) {
   core::Scene scene;
   scene.name = "still";
   scene.wave.emplace();
@@ -64,13 +64,15 @@ Rows stillWater(gpu::Context& ctx, bool quick) {
   drift_m /= static_cast<double>((*water)->particleCount());
   const std::string name = fmt::format("8,112 particles on a level wave, {:.0f} s: ", seconds);
   // The floor: a ninth of the particles' spacing of 0.46 m a second.
-  return std::vector<Row>{
-      {name + "largest speed (root mean square)", "m/s", fastest_mps, 0.05, Tolerance::kAtMost, 0.0, "nothing moves"},
-      {name + "elevation", "m", highest_m, 0.0, Tolerance::kAtMost, 0.0, "nothing moves"},
-      {name + "drift in height", "m", drift_m, 0.0, Tolerance::kAbsolute, 0.01, "nothing moves"}};
+  return CaseResult{
+      std::vector<Row>{{name + "largest speed (root mean square)", "m/s", fastest_mps, 0.05, Tolerance::kAtMost, 0.0,
+                        "nothing moves"},
+                       {name + "elevation", "m", highest_m, 0.0, Tolerance::kAtMost, 0.0, "nothing moves"},
+                       {name + "drift in height", "m", drift_m, 0.0, Tolerance::kAbsolute, 0.01, "nothing moves"}},
+      {}};
 }
 
-Rows hydrostaticColumn(gpu::Context& ctx, bool quick) {
+Outcome hydrostaticColumn(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const Boundary sides : {Boundary::kPeriodic, Boundary::kWall}) {
     for (const core::KernelSet set : kKernelSets) {
@@ -114,7 +116,7 @@ Rows hydrostaticColumn(gpu::Context& ctx, bool quick) {
                       "1 + g d / c0^2, the stated compressibility"});
     }
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
 }  // namespace spindrift::study

@@ -37,18 +37,19 @@ core::Result<double> reflected(gpu::Context& ctx, int kx_count, int kz_count, do
 
 }  // namespace
 
-Rows reflection(gpu::Context& ctx, bool /*quick*/) {
+Outcome reflection(gpu::Context& ctx, bool /*quick*/) {
   auto normal = reflected(ctx, 8, 0, 10.0);
   if (!normal) return normal.error();
   auto oblique = reflected(ctx, 8, 8, 14.0);
   if (!oblique) return oblique.error();
-  return std::vector<Row>{
-      {"amplitude sent back, normal incidence, waves of 3 m, sponge of 4 m", "%", 100 * *normal, 1.0,
-       Tolerance::kAtMost, 0.0, "nothing"},
-      {"amplitude sent back at 45 degrees", "%", 100 * *oblique, 5.0, Tolerance::kAtMost, 0.0, "nothing"}};
+  return CaseResult{std::vector<Row>{{"amplitude sent back, normal incidence, waves of 3 m, sponge of 4 m", "%",
+                                      100 * *normal, 1.0, Tolerance::kAtMost, 0.0, "nothing"},
+                                     {"amplitude sent back at 45 degrees", "%", 100 * *oblique, 5.0, Tolerance::kAtMost,
+                                      0.0, "nothing"}},
+                    {}};
 }
 
-Rows greensLaw(gpu::Context& ctx, bool quick) {
+Outcome greensLaw(gpu::Context& ctx, bool quick) {
   const std::uint32_t n = quick ? 512 : 768;
   core::Scene scene = waveScene(n, 96.0, 2.0, 0.5, Stencil::kFivePoint, WaveBoundary::kPeriodic);
   scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = WaveBoundary::kReflect;
@@ -89,7 +90,7 @@ Rows greensLaw(gpu::Context& ctx, bool quick) {
                     height_m / first_m, std::pow(depthAt(x_m) / first_depth_m, -0.25), Tolerance::kRelative, 0.05,
                     "Green's law, d^(-1/4)"});
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
 }  // namespace spindrift::study

@@ -126,7 +126,7 @@ core::Result<Decay> decay(gpu::Context& ctx, const core::Scene& scene) {
 
 }  // namespace
 
-Rows taylorGreen(gpu::Context& ctx, bool quick) {
+Outcome taylorGreen(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const core::PressureSolver solver : kSolvers) {
     for (const core::KernelSet set : kKernelSets) {
@@ -143,7 +143,7 @@ Rows taylorGreen(gpu::Context& ctx, bool quick) {
                       Tolerance::kAtLeast, 0.0, "no clumping: 1 in a lattice, 0.55 where places are random"});
     }
   }
-  if (quick) return rows;
+  if (quick) return CaseResult{std::move(rows), {}};
   for (const std::uint32_t across_count : {20u, 40u, 80u}) {
     auto found =
         decay(ctx, vortexScene(core::PressureSolver::kWeaklyCompressible, core::KernelSet::kWendlandC2, across_count));
@@ -152,7 +152,7 @@ Rows taylorGreen(gpu::Context& ctx, bool quick) {
                     100 * (1 - found->first_speed), 0.0, Tolerance::kNone, 0.0,
                     "speed at t = 1 over theory's; to see it fall"});
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
 }  // namespace spindrift::study

@@ -60,7 +60,7 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
     add("stencil", nine ? "5-point" : "9-point", changed([&](core::Scene& s) {
           s.wave->stencil = nine ? core::Stencil::kFivePoint : core::Stencil::kNinePoint;
         }));
-    for (const double quantum_m : {0.0005, 0.004, 0.016})
+    for (const double quantum_m : {0.0005, 0.016})
       add("quantum", fmt::format("{} mm", 1e3 * quantum_m),
           changed([&](core::Scene& s) { s.stream.surface_quantum_m = quantum_m; }));
   }

@@ -2,7 +2,9 @@
 #include <chrono>
 #include <cmath>
 #include <complex>
+#include <memory>
 #include <numbers>
+#include <numeric>
 
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/study/water_record.h>
@@ -199,35 +201,51 @@ struct FieldDifference {
   std::size_t count = 0;
 };
 
-constexpr int kYardstickTicks = 24;
+constexpr int kTimedRuns = 3;
+
+/// Wall times of a run's intervals, without what lies between them.
+class IntervalTimes {
+ public:
+  void begin() { begin_ = Clock::now(); }
+  void end() { seconds_.push_back(std::chrono::duration<double>(Clock::now() - begin_).count()); }
+  [[nodiscard]] double sum() const { return std::accumulate(seconds_.begin(), seconds_.end(), 0.0); }
+  /// Keeps the faster of each interval.
+  void keepFastest(const IntervalTimes& other) {
+    for (std::size_t i = 0; i < std::min(seconds_.size(), other.seconds_.size()); ++i)
+      seconds_[i] = std::min(seconds_[i], other.seconds_[i]);
+  }
+
+ private:
+  Clock::time_point begin_;
+  std::vector<double> seconds_;
+};
+
+/// Advances to `time_s`, as one interval.
+template <typename EachTick>
+void advance(gpu::Context& ctx, sim::WaterSim& water, double time_s, IntervalTimes& times, EachTick each_tick) {
+  times.begin();
+  while (water.time_s() < time_s - 1e-9) {
+    water.step();
+    each_tick();
+  }
+  ctx.finish();
+  times.end();
+}
+
+/// The scene after its first tick, which compiles shaders on some drivers.
+core::Result<std::unique_ptr<sim::WaterSim>> warm(gpu::Context& ctx, const core::Scene& scene) {
+  auto water = sim::WaterSim::create(ctx, scene);
+  if (!water) return water.error();
+  (*water)->step();
+  ctx.finish();
+  (void)(*water)->takePassCosts();
+  return water;
+}
 
 }  // namespace
 
-Yardstick::Yardstick(gpu::Context& ctx, std::unique_ptr<sim::WaterSim> water) : ctx_(&ctx), water_(std::move(water)) {}
-Yardstick::Yardstick(Yardstick&&) noexcept = default;
-Yardstick::~Yardstick() = default;
-
-core::Result<Yardstick> Yardstick::create(gpu::Context& ctx) {
-  core::Scene scene;
-  scene.name = "yardstick";
-  scene.wave.emplace();
-  scene.particles.emplace();
-  scene.coupling.emplace();
-  auto water = sim::WaterSim::create(ctx, scene);
-  if (!water) return water.error();
-  return Yardstick(ctx, *std::move(water));
-}
-
-double Yardstick::measure_ms() {
-  ctx_->finish();
-  const auto begin = Clock::now();
-  for (int tick = 0; tick < kYardstickTicks; ++tick) water_->step();
-  ctx_->finish();
-  return 1e3 * std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, const RecordOptions& options) {
-  auto made = sim::WaterSim::create(ctx, scene);
+  auto made = warm(ctx, scene);
   if (!made) return made.error();
   sim::WaterSim& water = **made;
   const sim::Derived& d = water.derived();
@@ -241,24 +259,12 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   std::vector<std::uint64_t> sample_ticks;
   double frame_bytes = 0.0;
   std::size_t frame_count = 0;
-  double wall_s = 0.0;
-  // The first tick compiles shaders on some drivers.
-  water.step();
-  ctx.finish();
-  (void)water.takePassCosts();
+  IntervalTimes times;
   const double begin_s = water.time_s();
-  double next_sample_s = options.sample_interval_s;
-  while (water.time_s() < options.seconds - 1e-9) {
-    const double until_s = options.sample_interval_s > 0 ? std::min(next_sample_s, options.seconds) : options.seconds;
-    const auto begin = Clock::now();
-    while (water.time_s() < until_s - 1e-9) {
-      water.step();
-      energy.add(water);
-    }
-    ctx.finish();
-    wall_s += std::chrono::duration<double>(Clock::now() - begin).count();
-    if (options.sample_interval_s <= 0) continue;
-    next_sample_s += options.sample_interval_s;
+  const auto interval_count = static_cast<int>(std::lround(options.seconds / options.sample_interval_s));
+  for (int i = 1; i <= interval_count; ++i) {
+    advance(ctx, water, i * options.sample_interval_s, times, [&] { energy.add(water); });
+    if (!options.has_samples) continue;
     sample_ticks.push_back(water.tick());
     out.samples.push_back(sampleOf(water));
     if (!options.frame_bytes) continue;
@@ -271,10 +277,20 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   }
   for (std::size_t i = 0; i < out.samples.size(); ++i) out.samples[i].energy_j = energy.at(sample_ticks[i]);
   out.seconds = water.time_s() - begin_s;
-  out.wall_ms_per_s = 1e3 * wall_s / out.seconds;
   out.passes = water.takePassCosts();
   out.frame_bytes = frame_count > 0 ? frame_bytes / static_cast<double>(frame_count) : 0.0;
   out.guard_count = water.recoveredCount();
+
+  const double once_s = times.sum();
+  for (int run = 1; run < kTimedRuns && once_s < options.repeat_below_s; ++run) {
+    auto again = warm(ctx, scene);
+    if (!again) return again.error();
+    IntervalTimes again_times;
+    for (int i = 1; i <= interval_count; ++i) advance(ctx, **again, i * options.sample_interval_s, again_times, [] {});
+    times.keepFastest(again_times);
+  }
+  out.wall_ms_per_s = 1e3 * times.sum() / out.seconds;
+  for (gpu::PassCost& pass : out.passes) pass.total_ms *= times.sum() / once_s;
   return out;
 }
 

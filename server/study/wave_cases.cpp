@@ -30,7 +30,7 @@ core::Result<double> frequency(gpu::Context& ctx, const core::Scene& scene, doub
 
 }  // namespace
 
-Rows eigenmode(gpu::Context& ctx, bool quick) {
+Outcome eigenmode(gpu::Context& ctx, bool quick) {
   const core::Scene scene = waveScene(64, 12.0, 1.5, 0.6, Stencil::kFivePoint, WaveBoundary::kReflect);
   const double cell_m = 12.0 / 64;
   const double dt_s = 1.0 / scene.tick_rate_hz;
@@ -45,14 +45,21 @@ Rows eigenmode(gpu::Context& ctx, bool quick) {
                     2 / dt_s * std::asin(0.6 * s), Tolerance::kRelative, 1e-5,
                     "discrete dispersion: sin^2(w dt/2) = S^2 (sin^2(kx dx/2) + sin^2(kz dx/2))"});
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
-Rows observedOrder(gpu::Context& ctx, bool quick) {
+Outcome observedOrder(gpu::Context& ctx, bool quick) {
   const double k = 2 * pi / 12.0;
   const double exact = std::sqrt(9.81 * 1.5) * std::hypot(2 * k, k);
   std::vector<Row> rows;
+  Figure figure{.name = "observed-order",
+                .title = "Error of a wave's frequency",
+                .x_label = "cells a side [-]",
+                .y_label = "relative error [-]",
+                .is_logarithmic = true,
+                .curves = {}};
   for (const Stencil stencil : {Stencil::kFivePoint, Stencil::kNinePoint}) {
+    Figure::Curve curve{nameOf(stencil), {}};
     double coarser = 0.0;
     for (const std::uint32_t n : {32u, 64u, 128u}) {
       core::Scene scene = waveScene(n, 12.0, 1.5, 0.5, stencil, WaveBoundary::kPeriodic);
@@ -67,13 +74,20 @@ Rows observedOrder(gpu::Context& ctx, bool quick) {
         rows.push_back({fmt::format("{}: observed order {} to {} cells", nameOf(stencil), n / 2, n), "",
                         std::log2(coarser / error), 2.0, Tolerance::kAbsolute, 0.1, "second order in dx and dt"});
       }
+      curve.points.emplace_back(n, error);
       coarser = error;
     }
+    figure.curves.push_back(std::move(curve));
   }
-  return rows;
+  Figure::Curve second_order{"second order", {}};
+  const auto [first_n, first_error] = figure.curves.front().points.front();
+  for (const auto& [n, error] : figure.curves.front().points)
+    second_order.points.emplace_back(n, first_error * std::pow(first_n / n, 2));
+  figure.curves.push_back(std::move(second_order));
+  return CaseResult{std::move(rows), {std::move(figure)}};
 }
 
-Rows phaseError(gpu::Context& ctx, bool quick) {
+Outcome phaseError(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const Stencil stencil : {Stencil::kFivePoint, Stencil::kNinePoint}) {
     for (const bool diagonal : {false, true}) {
@@ -92,10 +106,10 @@ Rows phaseError(gpu::Context& ctx, bool quick) {
                       "expansion of the discrete dispersion"});
     }
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
-Rows waveEnergy(gpu::Context& ctx, bool quick) {
+Outcome waveEnergy(gpu::Context& ctx, bool quick) {
   const core::Scene scene = waveScene(32, 12.0, 1.5, 0.6, Stencil::kFivePoint, WaveBoundary::kReflect);
   auto water = sim::WaterSim::create(ctx, scene);
   if (!water) return water.error();
@@ -113,13 +127,14 @@ Rows waveEnergy(gpu::Context& ctx, bool quick) {
     high = std::max(high, energy_j);
   }
   const std::string name = fmt::format("undamped, reflecting, {} steps: ", steps);
-  return std::vector<Row>{{name + "largest energy over the first, less one", "%", 100 * (high / first - 1), 0.1,
-                           Tolerance::kAtMost, 0.0, "conserved by the leapfrog"},
-                          {name + "loss to the lowest", "%", 100 * (1 - low / first), 0.1, Tolerance::kAtMost, 0.0,
-                           "conserved by the leapfrog"}};
+  return CaseResult{std::vector<Row>{{name + "largest energy over the first, less one", "%", 100 * (high / first - 1),
+                                      0.1, Tolerance::kAtMost, 0.0, "conserved by the leapfrog"},
+                                     {name + "loss to the lowest", "%", 100 * (1 - low / first), 0.1,
+                                      Tolerance::kAtMost, 0.0, "conserved by the leapfrog"}},
+                    {}};
 }
 
-Rows dampedMode(gpu::Context& ctx, bool quick) {
+Outcome dampedMode(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const double kappa : {0.2, 1.0}) {
     core::Scene scene = waveScene(64, 12.0, 1.5, 0.5, Stencil::kFivePoint, WaveBoundary::kPeriodic);
@@ -134,7 +149,7 @@ Rows dampedMode(gpu::Context& ctx, bool quick) {
                     fitRecurrence(series, false).decay_per_s((*water)->derived().wave->dt_s), kappa / 2,
                     Tolerance::kRelative, 0.01, "eta_tt + kappa eta_t = c^2 lap eta: kappa/2"});
   }
-  return rows;
+  return CaseResult{std::move(rows), {}};
 }
 
 }  // namespace spindrift::study

@@ -15,11 +15,11 @@ TEST_P(Accuracy, IsWithinTolerance) {
   auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
   if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
   const Case& each = accuracyCases()[GetParam()];
-  const auto rows = each.run(**ctx, true);
-  ASSERT_TRUE(rows) << rows.error().message;
-  EXPECT_FALSE(rows->empty());
+  const auto result = each.run(**ctx, true);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_FALSE(result->rows.empty());
   bool judges = false;
-  for (const Row& row : *rows) {
+  for (const Row& row : result->rows) {
     judges = judges || row.kind != Tolerance::kNone;
     EXPECT_TRUE(row.passes()) << row.name << ": " << row.measured << " " << row.unit << ", expected " << row.expected
                               << " (" << row.source << ")";

@@ -6,6 +6,7 @@
 
 #include <spindrift/study/accuracy.h>
 
+#include "chart.h"
 #include "study_suites.h"
 
 namespace spindrift::app {
@@ -81,10 +82,63 @@ void print(std::FILE* out, const Row& row) {
              row.name, row.measured, row.unit, bound(row), errorOf(row), row.source);
 }
 
-std::vector<Row> rowsOf(const boost::json::value& json) {
-  std::vector<Row> rows;
-  for (const auto& row : json.as_array()) rows.push_back(fromJson(row.as_object()));
-  return rows;
+boost::json::object toJson(const study::Figure& figure) {
+  boost::json::array curves;
+  for (const study::Figure::Curve& curve : figure.curves) {
+    boost::json::array points;
+    for (const auto& [x, y] : curve.points) points.push_back(boost::json::array{x, y});
+    curves.push_back({{"name", curve.name}, {"is_measured", curve.is_measured}, {"points", std::move(points)}});
+  }
+  return {{"name", figure.name},
+          {"title", figure.title},
+          {"x_label", figure.x_label},
+          {"y_label", figure.y_label},
+          {"is_logarithmic", figure.is_logarithmic},
+          {"curves", std::move(curves)}};
+}
+
+study::Figure figureFrom(const boost::json::object& json) {
+  study::Figure figure;
+  figure.name = json.at("name").as_string();
+  figure.title = json.at("title").as_string();
+  figure.x_label = json.at("x_label").as_string();
+  figure.y_label = json.at("y_label").as_string();
+  figure.is_logarithmic = json.at("is_logarithmic").as_bool();
+  for (const auto& value : json.at("curves").as_array()) {
+    const auto& object = value.as_object();
+    study::Figure::Curve curve{std::string(object.at("name").as_string()), {}, object.at("is_measured").as_bool()};
+    for (const auto& point : object.at("points").as_array())
+      curve.points.emplace_back(point.at(0).to_number<double>(), point.at(1).to_number<double>());
+    figure.curves.push_back(std::move(curve));
+  }
+  return figure;
+}
+
+boost::json::object toJson(const study::CaseResult& result) {
+  boost::json::array rows, figures;
+  for (const Row& row : result.rows) rows.push_back(toJson(row));
+  for (const study::Figure& figure : result.figures) figures.push_back(toJson(figure));
+  return {{"rows", std::move(rows)}, {"figures", std::move(figures)}};
+}
+
+study::CaseResult resultFrom(const boost::json::object& json) {
+  study::CaseResult result;
+  for (const auto& row : json.at("rows").as_array()) result.rows.push_back(fromJson(row.as_object()));
+  for (const auto& figure : json.at("figures").as_array()) result.figures.push_back(figureFrom(figure.as_object()));
+  return result;
+}
+
+core::Result<void> draw(const std::string& folder, const study::Figure& figure) {
+  Chart chart;
+  chart.title = figure.title;
+  chart.x = {figure.x_label, figure.is_logarithmic};
+  chart.y = {figure.y_label, figure.is_logarithmic};
+  for (const study::Figure::Curve& curve : figure.curves) {
+    Chart::Series series{curve.name, {}, curve.is_measured ? Chart::Mark::kLargeDot : Chart::Mark::kLine};
+    for (const auto& [x, y] : curve.points) series.points.push_back({x, y, ""});
+    chart.series.push_back(std::move(series));
+  }
+  return writeChart(folder, "accuracy_" + figure.name + ".svg", chart);
 }
 
 }  // namespace
@@ -108,29 +162,36 @@ core::Result<SuiteResult> studyAccuracy(gpu::Context& ctx, const StudyOptions& o
     showProgress(fmt::format("[{}/{}] {}", i + 1, cases.size(), each.name));
     const std::string key = journalKey("accuracy", each.name, options, ctx);
     const auto begin = std::chrono::steady_clock::now();
-    std::vector<Row> rows;
+    study::CaseResult found;
     const auto known = journal.find(key);
     if (known) {
-      rows = rowsOf(*known);
+      found = resultFrom(known->as_object());
     } else {
       auto measured = each.run(ctx, options.quick);
       if (!measured) return core::Error{measured.error().code, each.name + ": " + measured.error().message};
-      rows = *std::move(measured);
+      found = *std::move(measured);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     showProgress("");
-    boost::json::array json_rows;
-    for (const Row& row : rows) {
+    for (const Row& row : found.rows) {
       print(out, row);
-      json_rows.push_back(toJson(row));
       if (row.kind != Tolerance::kNone) ++(row.passes() ? result.held_count : result.missed_count);
     }
     if (!known) {
-      if (auto kept = journal.add(key, json_rows); !kept) return kept.error();
+      if (auto kept = journal.add(key, toJson(found)); !kept) return kept.error();
     }
     fmt::print(out, "  {}\n", known ? std::string("from the journal") : fmt::format("{:.1f} s", seconds));
     std::fflush(out);
-    json_cases.push_back({{"name", each.name}, {"purpose", each.purpose}, {"seconds", seconds}, {"rows", json_rows}});
+    if (!options.plot_folder.empty()) {
+      for (const study::Figure& figure : found.figures) {
+        if (auto drawn = draw(options.plot_folder, figure); !drawn) return drawn.error();
+      }
+    }
+    boost::json::object json = toJson(found);
+    json["name"] = each.name;
+    json["purpose"] = each.purpose;
+    json["seconds"] = seconds;
+    json_cases.push_back(std::move(json));
   }
   result.json["cases"] = std::move(json_cases);
   return result;

@@ -30,11 +30,11 @@ struct TradeScene {
   double seconds;
   bool is_quick;  ///< part of the quick form
 };
-constexpr TradeScene kTradeScenes[] = {{"splash", 4.0, true},
-                                       {"breaking_wave", 6.0, false},
-                                       {"boat_wake", 5.0, false},
-                                       {"thesis", 4.0, false},
-                                       {"dam_break", 1.6, true}};
+constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, true},
+                                       {"breaking_wave", 4.5, false},
+                                       {"boat_wake", 4.0, false},
+                                       {"thesis", 3.0, false},
+                                       {"dam_break", 1.4, true}};
 constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
                                     v1::FIDELITY_REFERENCE};
 constexpr const char* kLevelKnob = "fidelity";
@@ -49,9 +49,8 @@ constexpr double kQuickSeconds = 1.4;
 /// What is kept of a run.
 struct TradeRow {
   std::string knob, setting;
-  std::string refused;         ///< why the scene could not be run; empty: it was
-  double wall_ms_per_s = 0.0;  ///< once levelled: at the best speed that the machine showed
-  double yardstick_ms = 0.0;   ///< how fast the machine was at the time
+  std::string refused;  ///< why the scene could not be run; empty: it was
+  double wall_ms_per_s = 0.0;
   double device_mb = 0.0;
   double stream_mbit_per_s = 0.0;
   std::uint32_t wave_cells_count = 0, particle_count = 0, substeps_per_s_count = 0;
@@ -70,7 +69,6 @@ boost::json::object toJson(const TradeRow& r) {
           {"setting", r.setting},
           {"refused", r.refused},
           {"wall_ms_per_s", r.wall_ms_per_s},
-          {"yardstick_ms", r.yardstick_ms},
           {"device_mb", r.device_mb},
           {"stream_mbit_per_s", r.stream_mbit_per_s},
           {"wave_cells", r.wave_cells_count},
@@ -99,7 +97,6 @@ TradeRow fromJson(const boost::json::object& json) {
   r.setting = json.at("setting").as_string();
   r.refused = json.at("refused").as_string();
   r.wall_ms_per_s = json.at("wall_ms_per_s").to_number<double>();
-  r.yardstick_ms = json.at("yardstick_ms").to_number<double>();
   r.device_mb = json.at("device_mb").to_number<double>();
   r.stream_mbit_per_s = json.at("stream_mbit_per_s").to_number<double>();
   r.wave_cells_count = json.at("wave_cells").to_number<std::uint32_t>();
@@ -166,21 +163,6 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
   return choices;
 }
 
-/// Costs as they would have been at one speed of the machine.
-void levelCosts(std::vector<TradeRow>& rows) {
-  double best_ms = HUGE_VAL;
-  for (const TradeRow& row : rows) {
-    if (row.refused.empty()) best_ms = std::min(best_ms, row.yardstick_ms);
-  }
-  for (TradeRow& row : rows) {
-    if (!row.refused.empty()) continue;
-    const double slowness = row.yardstick_ms / best_ms;
-    row.wall_ms_per_s /= slowness;
-    for (auto& [name, ms] : row.pass_ms_per_s) ms = ms.to_number<double>() / slowness;
-    row.yardstick_ms = best_ms;
-  }
-}
-
 void markFront(std::vector<TradeRow>& rows) {
   std::vector<study::CostAndError> points;
   for (const TradeRow& row : rows) {
@@ -226,8 +208,8 @@ void print(std::FILE* out, const TradeRow& row, const TradeRow& balanced) {
 /// Runs what the journal does not know yet; the finest run only when something is left to compare.
 class TradeRuns {
  public:
-  TradeRuns(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal, study::Yardstick speed)
-      : ctx_(ctx), options_(options), journal_(journal), speed_(std::move(speed)) {}
+  TradeRuns(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal)
+      : ctx_(ctx), options_(options), journal_(journal) {}
 
   core::Result<std::vector<TradeRow>> run(const TradeScene& scene) {
     auto choices = choicesOf(scene, options_.quick);
@@ -257,12 +239,10 @@ class TradeRuns {
         finest_run = *std::move(finest);
       }
       showProgress(fmt::format("{}: [{}/{}] {} {}", scene.name, i + 1, choices->size(), choice.knob, choice.setting));
-      const double before_ms = speed_.measure_ms();
       auto made = study::record(ctx_, choice.scene, record);
       TradeRow row;
       if (made) {
         row = rowOf(choice, *made);
-        row.yardstick_ms = (before_ms + speed_.measure_ms()) / 2;
         row.errors = study::compare(*made, *finest_run, choice.scene);
       } else if (made.error().code == core::ErrorCode::kInvalidInput) {
         row.knob = choice.knob;
@@ -275,7 +255,6 @@ class TradeRuns {
       rows.push_back(std::move(row));
     }
     showProgress("");
-    levelCosts(rows);
     markFront(rows);
     return rows;
   }
@@ -291,15 +270,13 @@ class TradeRuns {
         continue;
       }
       showProgress(fmt::format("cost: {} {}", choice.knob, choice.setting));
-      const double before_ms = speed_.measure_ms();
-      auto made = study::record(ctx_, choice.scene, {.seconds = seconds, .sample_interval_s = 0.0, .frame_bytes = {}});
+      auto made = study::record(
+          ctx_, choice.scene, {.seconds = seconds, .sample_interval_s = 0.1, .has_samples = false, .frame_bytes = {}});
       if (!made) return made.error();
       rows.push_back(rowOf(choice, *made));
-      rows.back().yardstick_ms = (before_ms + speed_.measure_ms()) / 2;
       if (auto kept = journal_.add(key, toJson(rows.back())); !kept) return kept.error();
     }
     showProgress("");
-    levelCosts(rows);
     return rows;
   }
 
@@ -307,7 +284,6 @@ class TradeRuns {
   gpu::Context& ctx_;
   const StudyOptions& options_;
   StudyJournal& journal_;
-  study::Yardstick speed_;
 };
 
 boost::json::array toJson(const std::vector<TradeRow>& rows) {
@@ -333,20 +309,68 @@ void printCosts(std::FILE* out, const std::vector<TradeRow>& rows) {
   std::fflush(out);
 }
 
-/// The levels hold what they promise: each is on the front, and finer ones are closer.
-void judgeLevels(const std::vector<TradeRow>& rows, SuiteResult& result, std::FILE* out) {
-  const TradeRow* before = nullptr;
+/// In every scene REFERENCE is the closest of the levels.
+void judgeScene(const std::vector<TradeRow>& rows, SuiteResult& result, std::FILE* out) {
+  const TradeRow* closest = nullptr;
+  const TradeRow* finest = nullptr;
   for (const TradeRow& row : rows) {
     if (row.knob != kLevelKnob) continue;
-    ++(row.is_on_front ? result.held_count : result.missed_count);
-    if (!row.is_on_front) fmt::print(out, "  MISS {} is beaten in cost and height both\n", row.setting);
-    if (before != nullptr) {
-      const bool holds = row.errors.height_rms_ratio < before->errors.height_rms_ratio;
-      ++(holds ? result.held_count : result.missed_count);
-      fmt::print(out, "  {} {} is closer than {}: {:.3g} % < {:.3g} %\n", holds ? "ok  " : "MISS", row.setting,
-                 before->setting, 100 * row.errors.height_rms_ratio, 100 * before->errors.height_rms_ratio);
+    finest = &row;
+    if (closest == nullptr || row.errors.height_rms_ratio < closest->errors.height_rms_ratio) closest = &row;
+  }
+  ++(closest == finest ? result.held_count : result.missed_count);
+  fmt::print(out, "  {} the closest level is {}: {:.3g} %\n", closest == finest ? "ok  " : "MISS", closest->setting,
+             100 * closest->errors.height_rms_ratio);
+}
+
+/// One way to run every scene: geometric means of what it costs and how far it is off, over those of BALANCED. A scene
+/// that lacks the knob counts as BALANCED.
+struct MeanChoice {
+  std::string knob, setting;
+  double cost = 1.0;
+  double error = 1.0;
+  bool is_on_front = false;
+};
+
+std::vector<MeanChoice> meansOver(const std::vector<std::vector<TradeRow>>& scenes) {
+  std::vector<MeanChoice> means;
+  const double share = 1.0 / static_cast<double>(scenes.size());
+  for (const std::vector<TradeRow>& rows : scenes) {
+    const TradeRow& balanced = rows[1];
+    for (const TradeRow& row : rows) {
+      if (!row.refused.empty()) continue;
+      auto mean = std::ranges::find_if(
+          means, [&](const MeanChoice& m) { return m.knob == row.knob && m.setting == row.setting; });
+      if (mean == means.end()) mean = means.insert(means.end(), MeanChoice{row.knob, row.setting});
+      mean->cost *= std::pow(row.wall_ms_per_s / balanced.wall_ms_per_s, share);
+      mean->error *= std::pow(row.errors.height_rms_ratio / balanced.errors.height_rms_ratio, share);
     }
-    before = &row;
+  }
+  std::vector<study::CostAndError> points;
+  for (const MeanChoice& mean : means)
+    points.push_back(mean.knob == "seed" ? study::CostAndError{HUGE_VAL, HUGE_VAL}
+                                         : study::CostAndError{mean.cost, mean.error});
+  const std::vector<bool> front = study::paretoFront(points, kChance);
+  for (std::size_t i = 0; i < means.size(); ++i) means[i].is_on_front = front[i] && std::isfinite(points[i].cost);
+  return means;
+}
+
+/// The levels hold what they promise: over all scenes each is on the front, and finer ones are closer.
+void judgeLevels(const std::vector<MeanChoice>& means, SuiteResult& result, std::FILE* out) {
+  fmt::print(out, "over all scenes, against balanced; * = not beaten in cost and height both\n");
+  const MeanChoice* before = nullptr;
+  for (const MeanChoice& mean : means) {
+    const bool is_level = mean.knob == kLevelKnob;
+    const bool is_closer = before == nullptr || mean.error < before->error;
+    const bool holds = !is_level || (mean.is_on_front && is_closer);
+    fmt::print(out, "{} {:<17} {:<20} cost x {:>6.2f}  error x {:>5.2f}{}\n", mean.is_on_front ? "*" : " ", mean.knob,
+               mean.setting, mean.cost, mean.error,
+               holds       ? ""
+               : is_closer ? "  MISS: beaten in both"
+                           : "  MISS: no closer than the level before");
+    if (!is_level) continue;
+    ++(holds ? result.held_count : result.missed_count);
+    before = &mean;
   }
 }
 
@@ -379,9 +403,7 @@ Chart tradeChart(const TradeScene& scene, const std::vector<TradeRow>& rows) {
 core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& options, StudyJournal& journal,
                                      std::FILE* out) {
   SuiteResult result;
-  auto speed = study::Yardstick::create(ctx);
-  if (!speed) return speed.error();
-  TradeRuns runs(ctx, options, journal, *std::move(speed));
+  TradeRuns runs(ctx, options, journal);
   boost::json::array json_scenes;
   Chart levels_chart;
   levels_chart.title = "What accuracy costs: the fidelity levels";
@@ -389,6 +411,7 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& opti
   levels_chart.y = {"error of the water's height, RMS [%]", true};
   levels_chart.vertical_line = {{1000.0, "real time"}};
   bool found = false;
+  std::vector<std::vector<TradeRow>> all_rows;
   for (const TradeScene& scene : kTradeScenes) {
     if (options.quick && !scene.is_quick) continue;
     if (!options.only.empty() && options.only != scene.name) continue;
@@ -400,7 +423,8 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& opti
     if (!rows) return core::Error{rows.error().code, std::string(scene.name) + ": " + rows.error().message};
     printHeader(out);
     for (const TradeRow& row : *rows) print(out, row, (*rows)[1]);
-    judgeLevels(*rows, result, out);
+    judgeScene(*rows, result, out);
+    all_rows.push_back(*rows);
     std::fflush(out);
     if (!options.plot_folder.empty()) {
       if (auto drawn =
@@ -417,6 +441,18 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const StudyOptions& opti
     json_scenes.push_back({{"scene", scene.name}, {"rows", toJson(*rows)}});
   }
   result.json["scenes"] = std::move(json_scenes);
+  if (all_rows.size() > 1) {
+    const std::vector<MeanChoice> means = meansOver(all_rows);
+    judgeLevels(means, result, out);
+    boost::json::array json_means;
+    for (const MeanChoice& mean : means)
+      json_means.push_back({{"knob", mean.knob},
+                            {"setting", mean.setting},
+                            {"cost_ratio", mean.cost},
+                            {"error_ratio", mean.error},
+                            {"on_front", mean.is_on_front}});
+    result.json["over_all_scenes"] = std::move(json_means);
+  }
   if (found && !options.plot_folder.empty() && options.only.empty()) {
     if (auto drawn = writeChart(options.plot_folder, "trade.svg", levels_chart); !drawn) return drawn.error();
   }

@@ -54,13 +54,13 @@ TEST(Fidelity, KeepsWhatTheSceneChose) {
 
 TEST(Fidelity, FillsABoxWithMoreLayersAndMakesDropsSmaller) {
   const v1::Scene box = parsed("particles { count: 1000 layers_count: 10 box_side_m: 2 }", v1::FIDELITY_REFERENCE);
-  EXPECT_EQ(box.particles().layers_count(), 20.0);
-  EXPECT_EQ(box.particles().count(), 8000u);
+  EXPECT_EQ(box.particles().layers_count(), 22.0);
+  EXPECT_EQ(box.particles().count(), 10648u) << "as deep as before";
   const v1::Scene spray =
       parsed("wave {} particles { count: 1000 } coupling { mode: COUPLING_MODE_TWO_WAY droplet_spacing_m: 0.2 }",
              v1::FIDELITY_REFERENCE);
-  EXPECT_EQ(spray.particles().count(), 8000u);
-  EXPECT_NEAR(spray.coupling().droplet_spacing_m(), 0.1, 1e-12);
+  EXPECT_EQ(spray.particles().count(), 10648u);
+  EXPECT_NEAR(spray.coupling().droplet_spacing_m(), 0.2 / 2.2, 0.006) << "rounded to whole centimetres";
 }
 
 TEST(Fidelity, StaysInsideTheRanges) {

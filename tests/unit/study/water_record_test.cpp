@@ -109,7 +109,8 @@ TEST_F(OnSoftware, FinerRunsOfAWaveComeCloserToTheFinest) {
     scene.wave->resolution_count = cells;
     scene.wave->side_m = 12.0;
     scene.events = {{0.0, 0.0, core::Splash{0.0, 0.0, 1.5, 0.5, 0.2}}};
-    auto record = study::record(*ctx_, scene, {.seconds = 1.5, .sample_interval_s = 0.1, .frame_bytes = {}});
+    auto record = study::record(*ctx_, scene,
+                                {.seconds = 1.5, .sample_interval_s = 0.1, .frame_bytes = {}, .repeat_below_s = 0.0});
     EXPECT_TRUE(record) << record.error().message;
     return record ? *std::move(record) : WaterRecord();
   };

@@ -7,15 +7,21 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/context.h>
+#include <spindrift/study/figure.h>
 #include <spindrift/study/row.h>
 
 namespace spindrift::study {
+
+struct CaseResult {
+  std::vector<Row> rows;
+  std::vector<Figure> figures;
+};
 
 struct Case {
   std::string name;     ///< one word with dashes, what --case names
   std::string purpose;  ///< one line
   /// `quick`: shorter runs and coarser water, for a table in minutes; tolerances are the same.
-  std::function<core::Result<std::vector<Row>>(gpu::Context& ctx, bool quick)> run;
+  std::function<core::Result<CaseResult>(gpu::Context& ctx, bool quick)> run;
 };
 
 /// In the order of the table.

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +14,6 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
-#include <spindrift/sim/water_sim.h>
 
 namespace spindrift::study {
 
@@ -24,8 +22,12 @@ using FrameBytes = std::function<std::size_t(const core::FrameView& frame)>;
 
 struct RecordOptions {
   double seconds = 4.0;            ///< simulated
-  double sample_interval_s = 0.1;  ///< simulated; 0 = no samples, costs alone
+  double sample_interval_s = 0.1;  ///< simulated
+  bool has_samples = true;         ///< else costs alone
   FrameBytes frame_bytes;          ///< may be empty
+  /// A run that took less wall time than this is repeated, three times in all, and each interval counts with its
+  /// fastest time: a virtual machine's speed changes by a factor of two from minute to minute.
+  double repeat_below_s = 3.0;
 };
 
 struct WaterRecord {
@@ -55,22 +57,7 @@ struct WaterRecord {
 inline constexpr std::size_t kSurfaceCells = 64;
 inline constexpr std::size_t kColumnsAlong = 20;
 
-/// How fast the machine is now: wall time of a fixed piece of work, some tenths of a second of coupled water. A virtual
-/// machine's speed changes by a factor of two from minute to minute; costs are compared in units of this.
-class Yardstick {
- public:
-  static core::Result<Yardstick> create(gpu::Context& ctx);
-  Yardstick(Yardstick&&) noexcept;
-  ~Yardstick();
-  double measure_ms();
-
- private:
-  explicit Yardstick(gpu::Context& ctx, std::unique_ptr<sim::WaterSim> water);
-  gpu::Context* ctx_;
-  std::unique_ptr<sim::WaterSim> water_;
-};
-
-/// Runs the scene from its start.
+/// Runs the scene from its start; the same again gives the same samples.
 core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, const RecordOptions& options);
 
 /// How far a run is from another of the same scene. Ratios are over the root mean square of the other's field, or over

@@ -1,0 +1,24 @@
+// Curves of a case, for a chart beside its table.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spindrift::study {
+
+struct Figure {
+  struct Curve {
+    std::string name;
+    std::vector<std::pair<double, double>> points;
+    bool is_measured = false;  ///< points of an experiment; else a line of ours
+  };
+
+  std::string name;  ///< one word with dashes
+  std::string title;
+  std::string x_label, y_label;  ///< with units
+  bool is_logarithmic = false;   ///< both axes
+  std::vector<Curve> curves;
+};
+
+}  // namespace spindrift::study
