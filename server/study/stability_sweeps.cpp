@@ -155,6 +155,7 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
                     [](sim::WaterSim& water, double share) {
                       core::BreakingWave wave;
                       wave.amplitude_m = share * 1.5;
+                      wave.duration_s = 0.3;  // over when its energy begins to count
                       (void)water.start(wave);
                     },
                     4.0, kGrowingWave});

@@ -24,6 +24,9 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
 #if COUPLED && VARIED
   pushOutOfRocks(x, v);
 #endif
+#if HULLS || (COUPLED && VARIED)
+  keepInside(x, v);  // a hull at a side may have pushed across it
+#endif
 
 #if !PERIODIC_Y
   const Floor f = loadFloor();

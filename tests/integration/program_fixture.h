@@ -20,9 +20,10 @@ struct Outcome {
 };
 
 inline Outcome runProgram(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {},
-                          const std::string& program = SPINDRIFT_PROGRAM) {
+                          const std::string& program = SPINDRIFT_PROGRAM,
+                          std::chrono::milliseconds patience = kPatience) {
   ChildProcess child(program, arguments, environment);
-  const auto exit_code = child.wait();
+  const auto exit_code = child.wait(patience);
   return {exit_code.value_or(-1), child.out(), child.err()};
 }
 

@@ -41,6 +41,26 @@ TEST_F(Usage, UnknownCaseOfAStudyIsRefusedWithTheCases) {
   EXPECT_THAT(outcome.err, HasSubstr("dam-break"));
 }
 
+TEST_F(Usage, QuickTradeStudyComparesTheLevelsAndDrawsThem) {
+  const std::filesystem::path charts = folder().path() / "charts";
+  const Outcome outcome = runProgram({"study", "--device", "software", "--suite", "trade", "--quick", "--case",
+                                      "splash", "--plot", charts.string(), "--json", "-"},
+                                     {}, SPINDRIFT_PROGRAM, std::chrono::minutes(5));
+  if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = boost::json::parse(outcome.out).as_object();
+  const auto& rows = json.at("scenes").at(0).at("rows").as_array();
+  ASSERT_EQ(rows.size(), 3u) << "draft, balanced, fine";
+  for (const auto& row : rows) {
+    EXPECT_GT(row.at("wall_ms_per_s").to_number<double>(), 0.0);
+    EXPECT_GT(row.at("stream_mbit_per_s").to_number<double>(), 0.0);
+    EXPECT_GT(row.at("height_rms_ratio").to_number<double>(), 0.0);
+    EXPECT_LT(row.at("height_rms_ratio").to_number<double>(), 0.5);
+  }
+  EXPECT_LT(rows[2].at("height_rms_ratio").to_number<double>(), rows[0].at("height_rms_ratio").to_number<double>());
+  EXPECT_TRUE(std::filesystem::exists(charts / "trade_splash.svg"));
+}
+
 TEST_F(Usage, PortOutOfRangeIsRefusedWithTheRange) {
   expectOneErrorLine(runProgram({"serve", "--port", "65536"}), 2, {"--port", "65536", "65535"});
 }

@@ -163,10 +163,15 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
   return choices;
 }
 
+/// Whether it is another way to the same water: not another chance, nor less water to be right about.
+bool isComparable(const auto& choice) {
+  return choice.knob != "seed" && choice.knob != "coupling";
+}
+
 void markFront(std::vector<TradeRow>& rows) {
   std::vector<study::CostAndError> points;
   for (const TradeRow& row : rows) {
-    const bool counts = row.refused.empty() && row.knob != "seed";
+    const bool counts = row.refused.empty() && isComparable(row);
     points.push_back(counts ? study::CostAndError{row.wall_ms_per_s, row.errors.height_rms_ratio}
                             : study::CostAndError{HUGE_VAL, HUGE_VAL});
   }
@@ -348,8 +353,8 @@ std::vector<MeanChoice> meansOver(const std::vector<std::vector<TradeRow>>& scen
   }
   std::vector<study::CostAndError> points;
   for (const MeanChoice& mean : means)
-    points.push_back(mean.knob == "seed" ? study::CostAndError{HUGE_VAL, HUGE_VAL}
-                                         : study::CostAndError{mean.cost, mean.error});
+    points.push_back(isComparable(mean) ? study::CostAndError{mean.cost, mean.error}
+                                        : study::CostAndError{HUGE_VAL, HUGE_VAL});
   const std::vector<bool> front = study::paretoFront(points, kChance);
   for (std::size_t i = 0; i < means.size(); ++i) means[i].is_on_front = front[i] && std::isfinite(points[i].cost);
   return means;
