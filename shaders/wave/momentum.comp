@@ -5,7 +5,8 @@
 // eta_tt + kappa eta_t = div(g d grad eta) (thesis 3.21), the damping on the velocity term alone:
 //   q+ = keep q - gain g dt d_face (eta_there - eta_here)/dx,  keep = (1 - a)/(1 + a), gain = 1/(1 + a), a = (kappa + sigma) dt/2
 // STEEPEN: d grows with the elevation, d (1 + 3 s eta/d): to first order the speed of simple waves in shallow water (Whitham 1974,
-// 13.10), so that crests overtake troughs. Breaking water loses its flow at intensity * 2 sqrt(g/d).
+// 13.10), so that crests overtake troughs. The growth has bounds; between two cells its mean over the elevations in between counts, so
+// that the push is the difference of a potential and energy is kept when water stands beyond them. Breaking water loses its flow at intensity * 2 sqrt(g/d).
 // Invariant: a level surface without flow stays so to the last bit; closed faces carry nothing.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=0 BREAKERS=0 STEEPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 HEAD=1 BREAKERS=1 STEEPEN=1 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=1 BREAKERS=0 STEEPEN=1
 #include "shared/fixed_point.h"
@@ -46,6 +47,26 @@ float lossAt(int i) {
   return loss_per_s;
 }
 
+#if STEEPEN
+/// Integral from 0 to `level` of 1 + growth_pu level between its bounds. [units]
+float steepPotential(float level, float growth_pu) {
+  const float low = -0.75 * sim.steepening_ratio;
+  const float high = sim.steepening_ratio;
+  const float inside = clamp(level, low / growth_pu, high / growth_pu);
+  return inside + 0.5 * growth_pu * inside * inside + (1.0 + (level < inside ? low : high)) * (level - inside);
+}
+
+/// Mean of that factor over the elevations between two cells.
+float steepFactor(int a, int b) {
+  const float growth_pu = 3.0 * max(sim.steepening_ratio, 1e-6) * ELEVATION_UNIT_M / sim.wave_depth_m;
+  const float step_units = float(b - a);
+  const float middle = 1.0 + clamp(growth_pu * 0.5 * (float(a) + float(b)), -0.75 * sim.steepening_ratio, sim.steepening_ratio);
+  // Where the two are close, or inside the bounds, it is the factor in the middle, to the last bit.
+  const float steep = (steepPotential(float(b), growth_pu) - steepPotential(float(a), growth_pu)) / (abs(step_units) < 65536.0 ? 1.0 : step_units);
+  return abs(step_units) < 65536.0 ? middle : steep;
+}
+#endif
+
 void main() {
   const int n = int(sim.wave_n);
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
@@ -67,14 +88,11 @@ void main() {
 
   Flow conductance_m = conductanceOf(cell, n);
 #if STEEPEN
-  // The elevation at a face: the mean of its two cells; a diagonal's likewise.
 #if STENCIL == 9
-  const Flow doubled = vec4(here + there_x, here + there_z, here + there_d, there_x + there_z);
+  conductance_m *= vec4(steepFactor(here, there_x), steepFactor(here, there_z), steepFactor(here, there_d), steepFactor(there_x, there_z));
 #else
-  const Flow doubled = vec2(here + there_x, here + there_z);
+  conductance_m *= vec2(steepFactor(here, there_x), steepFactor(here, there_z));
 #endif
-  const float share = 1.5 * sim.steepening_ratio * ELEVATION_UNIT_M / sim.wave_depth_m;
-  conductance_m *= clamp(1.0 + share * doubled, 1.0 - 0.75 * sim.steepening_ratio, 1.0 + sim.steepening_ratio);
 #endif
 
 #if VARIED || BREAKERS
