@@ -60,7 +60,7 @@ std::vector<double> pick(bool quick, std::vector<double> few, std::vector<double
 
 void addSteps(bool quick, std::vector<Sweep>& sweeps) {
   const std::vector<double> factors =
-      pick(quick, {0.5, 1, 1.25, 1.5, 2, 4}, {0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 4});
+      pick(quick, {0.75, 1, 1.5, 4}, {0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 4});
   for (const PressureSolver solver : kSolvers) {
     for (const core::KernelSet set : kKernelSets) {
       if (quick && set != core::KernelSet::kWendlandC2) continue;
@@ -145,7 +145,7 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
                       (void)water.start(core::Splash{0.5, 0.3, 1.5, share * 1.5, 0.05});
                     },
                     4.0, kGrowingWave});
-  sweeps.push_back({"wave in two-way water", "depths", pick(quick, {0.1, 1}, {0.1, 0.3, 1, 3, 10}), std::nullopt,
+  sweeps.push_back({"wave in two-way water", "depths", pick(quick, {0.1, 3}, {0.1, 0.3, 1, 3, 10}), std::nullopt,
                     [](double) {
                       core::Scene scene = twoWayWater(96);
                       scene.wave->steepening_ratio = 1.0;
@@ -228,7 +228,7 @@ void addCommands(bool quick, std::vector<Sweep>& sweeps) {
                       return scene;
                     },
                     {},
-                    quick ? 2.0 : 10.0,
+                    quick ? 1.0 : 10.0,
                     1e9,
                     1e9,
                     [random](sim::WaterSim& water, double count, int) {

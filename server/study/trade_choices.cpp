@@ -98,6 +98,10 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
           s.coupling.reset();
           if (s.foam && !s.foam->surface) s.foam.reset();
         }));
+    // As a band on the wave, or as spray that gives its mass back: each with the other's water.
+    add("coupling", isTwoWay(scene) ? "one-way" : "two-way", changed([&](core::Scene& s) {
+          s.coupling->mode = isTwoWay(s) ? core::CouplingMode::kOneWay : core::CouplingMode::kTwoWay;
+        }));
     if (!isTwoWay(scene)) {
       const bool five = scene.coupling->lattice_count == 5;
       add("lattice", five ? "3 x 3" : "5 x 5",
