@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Expands, validates and embeds the compute shaders.
 
-Every *.comp below the root is an entry point. `#include "a/b.h"` is relative to the root, each file goes in once per
-entry point, a cycle is refused. Shaders carry no `#version`: it and the defines are put before the text, here for
+Every *.comp below the root is an entry point. `#include "a/b.h"` is relative to the root, each file counts once per
+entry point, also where one of several places that include it lies inside of an `#if`; a cycle is refused. Shaders carry no `#version`: it and the defines are put before the text, here for
 validation and in the program before compiling. A comment `// variants: A=1 B=2 | A=3` among an entry point's leading
 comments lists the sets of defines to validate; without it one empty set is.
 Files in shared/ are C++ headers as well: `#pragma once` and whatever is included under `#ifdef __cplusplus` is left out.
@@ -19,6 +19,7 @@ import sys
 VERSION_LINE = "#version 450 core"  # the same as in program.cpp
 INCLUDE = re.compile(r'\s*#\s*include\b\s*(.*)')
 QUOTED = re.compile(r'"([^"]+)"\s*(//.*)?$')
+GUARD = re.compile(r"(\s*//[^\n]*\n|\s)*#ifndef (\w+)\n#define \2\n")
 DELIMITER = "SPINDRIFT_GLSL"
 
 
@@ -35,12 +36,16 @@ class Expansion:
         self.lines = []
         self.origins = []
         self.files = []
-        self._expand(entry, [])
+        self._certain = set()  # files that are there whatever the defines
+        self._expand(entry, [], is_certain=True)
 
-    def _expand(self, name, stack):
+    def _expand(self, name, stack, is_certain):
+        """`is_certain`: no condition lies around this place."""
         if name in stack:
             raise ShaderError("include cycle: " + " -> ".join(stack[stack.index(name):] + [name]))
         self.files.append(name)
+        if is_certain:
+            self._certain.add(name)
         try:
             text = (self.root / name).read_text(encoding="utf-8")
         except UnicodeDecodeError as error:
@@ -48,6 +53,7 @@ class Expansion:
         if DELIMITER in text:
             raise ShaderError(f"{name}: contains the reserved word {DELIMITER}")
         conditions = []  # for each open #if: whether its lines are for C++ only
+        guard_depth = 1 if GUARD.match(text) else 0  # the file's own guard is no condition
         for number, line in enumerate(text.splitlines(), start=1):
             where = f"{name}:{number}"
             directive = re.sub(r"\s+", "", line)
@@ -69,19 +75,28 @@ class Expansion:
             elif any(conditions):
                 self._add("", name, number)
             else:
-                self._include(include.group(1), where, name, number, stack + [name])
+                self._include(include.group(1), where, name, number, stack + [name],
+                              is_certain and len(conditions) <= guard_depth)
 
-    def _include(self, what, where, name, number, stack):
+    def _include(self, what, where, name, number, stack, is_certain):
         quoted = QUOTED.match(what)
         if not quoted:
             raise ShaderError(f'{where}: write #include "file", relative to the shader root, instead of: {what}')
         included = quoted.group(1)
-        if included in stack or included not in self.files:
-            if ".." in included.split("/") or not (self.root / included).is_file():
-                raise ShaderError(f'{where}: no file "{included}" below the shader root')
-            self._expand(included, stack)
-        else:
+        if ".." in included.split("/") or not (self.root / included).is_file():
+            raise ShaderError(f'{where}: no file "{included}" below the shader root')
+        if included in self._certain and included not in stack:
             self._add("", name, number)
+            return
+        if is_certain and included not in self.files:
+            self._expand(included, stack, is_certain)
+            return
+        # Of several places that include a file under conditions the first whose condition holds counts.
+        once = "SPINDRIFT_ONCE_" + re.sub(r"\W", "_", included)
+        self._add(f"#ifndef {once}", name, number)
+        self._add(f"#define {once}", name, number)
+        self._expand(included, stack, is_certain)
+        self._add("#endif", name, number)
 
     def _add(self, line, name, number):
         self.lines.append(line)

@@ -59,8 +59,7 @@ std::vector<double> pick(bool quick, std::vector<double> few, std::vector<double
 }
 
 void addSteps(bool quick, std::vector<Sweep>& sweeps) {
-  const std::vector<double> factors =
-      pick(quick, {0.75, 1, 1.5, 4}, {0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 4});
+  const std::vector<double> factors = pick(quick, {0.75, 1, 1.5, 4}, {0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 4});
   for (const PressureSolver solver : kSolvers) {
     for (const core::KernelSet set : kKernelSets) {
       if (quick && set != core::KernelSet::kWendlandC2) continue;

@@ -71,6 +71,15 @@ class EmbedShaders(unittest.TestCase):
         self.write("c.glsl", "float once(float x) { return x; }\n")
         self.assertEqual(self.assert_embedded().count("float once"), 1)
 
+    def test_a_file_is_there_whichever_of_several_conditions_includes_it(self):
+        self.write("a.comp", "// variants: N=1 | N=2 | N=3\n#if N == 1\n#include \"b.glsl\"\n#endif\n"
+                             "#if N >= 2\n#include \"c.glsl\"\n#include \"b.glsl\"\n#endif\n"
+                             "layout(local_size_x = 1) in;\nvoid main() { float x = once(1.0); }\n")
+        self.write("b.glsl", "#ifndef B\n#define B\n#include \"d.h\"\nfloat once(float x) { return x + kTwo; }\n#endif\n")
+        self.write("c.glsl", "#if N == 3\n#include \"d.h\"\n#endif\n")
+        self.write("d.h", "#pragma once\nconst float kTwo = 2.0;\n")
+        self.assert_embedded()
+
     def test_names_the_line_of_an_included_file_in_a_validation_error(self):
         self.write("a.comp", '\n#include "b.glsl"\n' + MAIN)
         self.write("b.glsl", "// one\n// two\nfloat wrong() { return nothing; }\n")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -260,6 +261,38 @@ TEST_F(Variants, SixtyFiveThousandParticlesWork) {
   EXPECT_EQ(state.position.size(), 4u * sim.derived().particles->count);
   EXPECT_TRUE(isFinite(state));
   EXPECT_LE(fastest(state), 1.0) << "still water";
+}
+
+/// What shaders are compiled for: every coupling on every ground, with boats and foam or without.
+TEST_F(Variants, EveryMixOfPartsRuns) {
+  enum class Ground { kPeriodic, kSponge, kRockAndBeach };
+  for (const auto mode : {core::CouplingMode::kOneWay, core::CouplingMode::kTwoWay}) {
+    for (const Ground ground : {Ground::kPeriodic, Ground::kSponge, Ground::kRockAndBeach}) {
+      for (const bool has_boats : {false, true}) {
+        const bool has_foam = has_boats != (ground == Ground::kPeriodic);
+        core::Scene scene = smallScene();
+        scene.coupling->mode = mode;
+        if (ground == Ground::kSponge) scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+        if (ground == Ground::kRockAndBeach) {
+          scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+          scene.wave->steepening_ratio = 0.5;
+          scene.obstacles.push_back(core::Rock{.x_m = 2.0, .z_m = 2.0, .radius_m = 0.8, .height_m = 0.5});
+          scene.beaches.push_back({.side = core::Side::kMinusX, .width_m = 2.0, .shore_depth_m = 0.0});
+        }
+        if (has_boats) scene.boats.emplace().boats.emplace_back();
+        scene.foam.reset();
+        if (has_foam) scene.foam.emplace().surface = ground == Ground::kSponge;
+        SCOPED_TRACE(fmt::format("two-way {}, ground {}, boats {}, foam {}", mode == core::CouplingMode::kTwoWay,
+                                 static_cast<int>(ground), has_boats, has_foam));
+        auto sim = WaterSim::create(*ctx_, scene);
+        ASSERT_TRUE(sim) << sim.error().message;
+        ASSERT_TRUE((*sim)->start(core::Splash{0.0, 0.0, 1.0, 0.5, 0.1}));
+        for (int i = 0; i < 20; ++i) (*sim)->step();
+        EXPECT_TRUE(isFinite((*sim)->copyState()));
+        EXPECT_EQ((*sim)->recoveredCount(), 0u);
+      }
+    }
+  }
 }
 
 }  // namespace
