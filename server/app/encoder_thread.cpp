@@ -1,6 +1,5 @@
 #include "encoder_thread.h"
 
-#include <array>
 #include <utility>
 
 namespace spindrift::app {
@@ -39,15 +38,13 @@ std::uint64_t EncoderThread::replacedCount() const {
   return replaced_count_;
 }
 
-std::uint64_t EncoderThread::encodeCount(const std::string& room, v1::Layer layer) const {
+std::uint64_t EncoderThread::encodeCount(const std::string& room, stream::Stream stream) const {
   const std::lock_guard lock(mutex_);
   const auto it = encoders_.find(room);
-  return it == encoders_.end() ? 0 : it->second->encodeCount(layer);
+  return it == encoders_.end() ? 0 : it->second->encodeCount(stream);
 }
 
 void EncoderThread::loop() {
-  constexpr std::array kLayers = {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES,
-                                  v1::LAYER_DIAGNOSTICS};
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });
@@ -56,10 +53,12 @@ void EncoderThread::loop() {
     auto& encoder = encoders_[node.key()];
     if (!encoder) encoder = std::make_unique<stream::FrameEncoder>();
     lock.unlock();
-    for (const v1::Layer layer : kLayers) {
-      const auto index = static_cast<net::LayerIndex>(layer);
+    for (const stream::Stream stream : stream::allStreams()) {
+      const auto index = static_cast<net::LayerIndex>(stream::indexOf(stream));
       if (hub_.watcherCount(node.key(), index) == 0) continue;
-      if (auto message = encoder->encode(layer, node.mapped())) hub_.publish(node.key(), index, std::move(message));
+      const bool wants_whole = hub_.wantsWhole(node.key(), index);
+      const stream::EncodedFrame encoded = encoder->encode(stream, node.mapped(), wants_whole);
+      if (encoded.whole || encoded.continuing) hub_.publish(node.key(), index, {encoded.whole, encoded.continuing});
     }
     node.mapped() = {};  // frees the readback slot
     lock.lock();

@@ -30,7 +30,7 @@ class EncoderThread {
 
   [[nodiscard]] std::uint64_t replacedCount() const;
   /// Messages encoded for a layer of a room so far: one a frame, however many clients watch.
-  [[nodiscard]] std::uint64_t encodeCount(const std::string& room, v1::Layer layer) const;
+  [[nodiscard]] std::uint64_t encodeCount(const std::string& room, stream::Stream stream) const;
 
  private:
   void loop();

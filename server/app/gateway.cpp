@@ -112,8 +112,14 @@ void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
           },
           [&](const stream::Subscribe& subscribe) {
             if (!state.said_hello) return refuse("subscribe before hello: send ClientMessage.hello first");
-            hub().watch(session, static_cast<net::LayerIndex>(subscribe.layer),
-                        std::min(subscribe.max_rate_hz, kFrameRateMax_hz));
+            // One packing at a time: asking for the other one stops this one.
+            const stream::Stream wanted = stream::streamOf(subscribe.layer, subscribe.packing);
+            for (const stream::Stream stream : stream::allStreams()) {
+              if (stream.layer != wanted.layer) continue;
+              const bool is_wanted = stream.packing == wanted.packing;
+              hub().watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
+                          is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0);
+            }
           },
           [&](const core::Command& parsed) {
             core::Command command = parsed;

@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <spindrift/stream/frame_encoder.h>
 #include <spindrift/stream/scene_loader.h>
 
 namespace spindrift::app {
@@ -23,8 +24,11 @@ constexpr double kSlowFactor = 0.9;
 constexpr auto kSlowPatience = 5s;
 constexpr auto kSlowWarningInterval = 60s;
 
-net::LayerIndex slot(v1::Layer layer) {
-  return static_cast<net::LayerIndex>(layer);
+/// Whether somebody watches the layer, plain or packed.
+bool isWatched(const net::Hub& hub, const std::string& room, v1::Layer layer) {
+  return std::ranges::any_of(stream::allStreams(), [&](const stream::Stream& stream) {
+    return stream.layer == layer && hub.watcherCount(room, static_cast<net::LayerIndex>(stream::indexOf(stream))) > 0;
+  });
 }
 
 }  // namespace
@@ -149,8 +153,8 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
   const double interval_s = clock_.speed() / scene_.stream().frame_rate_hz();  // frames keep their rate in wall time
   if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, sim_->time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
-  wants_diagnostics_ = wants_diagnostics_ || hub.watcherCount(name_, slot(v1::LAYER_DIAGNOSTICS)) > 0;
-  const auto wanted = [&](bool has_it, v1::Layer layer) { return has_it && hub.watcherCount(name_, slot(layer)) > 0; };
+  wants_diagnostics_ = wants_diagnostics_ || isWatched(hub, name_, v1::LAYER_DIAGNOSTICS);
+  const auto wanted = [&](bool has_it, v1::Layer layer) { return has_it && isWatched(hub, name_, layer); };
   const sim::FrameRequest request{.surface = wanted(scene_.has_wave(), v1::LAYER_SURFACE),
                                   .particles = wanted(scene_.has_particles(), v1::LAYER_PARTICLES),
                                   .foam = wanted(scene_.foam().surface(), v1::LAYER_FOAM),

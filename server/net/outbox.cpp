@@ -17,29 +17,51 @@ Outbox::Outcome Outbox::pushControl(core::SharedBytes message) {
   return {.wake = takeWake()};
 }
 
-Outbox::Outcome Outbox::offerFrame(LayerIndex layer, core::SharedBytes frame, Clock::time_point now) {
+Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_ || layer >= kMaxLayerCount) return {};
   Slot& slot = slots_[layer];
-  if (!slot.gate || !slot.gate->pass(now)) return {};
-  const bool dropped = slot.frame != nullptr;
-  slot.frame = std::move(frame);
-  return {.wake = takeWake(), .dropped = dropped};
+  if (!slot.gate) return {};
+  const bool is_pending = slot.frame != nullptr;
+  const bool can_continue = slot.follows && !is_pending && frame.continuing;
+  const core::SharedBytes& message = can_continue ? frame.continuing : frame.whole;
+  if (!message) {
+    slot.follows = false;
+    if (!is_pending) return {};
+    slot.frame.reset();
+    slot.lost_turn = turn_count_;
+    return {.dropped = true};
+  }
+  if (!slot.gate->pass(now)) {
+    slot.follows = false;  // an unsent frame goes out, this one does not
+    return {};
+  }
+  slot.frame = message;
+  slot.follows = true;
+  slot.lost_turn.reset();
+  return {.wake = takeWake(), .dropped = is_pending};
+}
+
+bool Outbox::wantsWhole(LayerIndex layer, Clock::time_point now) const {
+  const std::lock_guard lock(mutex_);
+  if (close_ || shut_ || layer >= kMaxLayerCount) return false;
+  const Slot& slot = slots_[layer];
+  return slot.gate && !slot.frame && !slot.follows && slot.lost_turn != turn_count_ && slot.gate->isOpen(now);
 }
 
 void Outbox::setWatch(LayerIndex layer, std::optional<double> max_rate_hz) {
   const std::lock_guard lock(mutex_);
   if (layer >= kMaxLayerCount) return;
-  if (max_rate_hz) {
-    slots_[layer].gate.emplace(*max_rate_hz);
-  } else {
-    slots_[layer] = {};
-  }
+  slots_[layer] = {};  // whoever asks again, perhaps for want of a frame, begins with a whole one
+  if (max_rate_hz) slots_[layer].gate.emplace(*max_rate_hz);
 }
 
 void Outbox::clearFrames() {
   const std::lock_guard lock(mutex_);
-  for (Slot& slot : slots_) slot.frame.reset();
+  for (Slot& slot : slots_) {
+    slot.frame.reset();
+    slot.follows = false;
+  }
 }
 
 bool Outbox::requestClose(CloseCode code, std::string reason) {
@@ -60,6 +82,7 @@ void Outbox::shut() {
 Outbox::Next Outbox::next() {
   const std::lock_guard lock(mutex_);
   writer_sleeps_ = false;
+  ++turn_count_;
   if (shut_) return {Kind::kShut, nullptr};
   if (!control_.empty()) {
     Next out{Kind::kControl, std::move(control_.front())};

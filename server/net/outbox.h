@@ -33,9 +33,14 @@ class Outbox {
   /// kTryAgainLater follows what is queued. Ignored once a close was asked for.
   Outcome pushControl(core::SharedBytes message);
 
-  /// Puts the frame into its layer's slot if the session watches the layer and its rate allows. Ignored once a close
-  /// was asked for.
-  Outcome offerFrame(LayerIndex layer, core::SharedBytes frame, Clock::time_point now);
+  /// Puts the frame into its layer's slot if the session watches the layer and its rate allows: the continuing form if
+  /// the client has what it builds on, else the whole one. Without a whole one an unsent older frame is dropped and the
+  /// session waits. Ignored once a close was asked for.
+  Outcome offerFrame(LayerIndex layer, const LayerBytes& frame, Clock::time_point now);
+
+  /// Whether the next frame of the layer would be taken, but only whole. False for a session that has read nothing
+  /// since it lost one: what it cannot take is not made for it.
+  bool wantsWhole(LayerIndex layer, Clock::time_point now) const;
 
   /// Starts a layer at this rate, or stops it (nullopt) and forgets its unsent frame.
   void setWatch(LayerIndex layer, std::optional<double> max_rate_hz);
@@ -70,13 +75,16 @@ class Outbox {
   struct Slot {
     std::optional<RateGate> gate;  ///< empty = not watched
     core::SharedBytes frame;
+    bool follows = false;                    ///< the client has the last frame, or will have it with `frame`
+    std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost for want of a whole one
   };
 
   const std::size_t control_queue_count_;
   mutable std::mutex mutex_;
   std::deque<core::SharedBytes> control_;
   std::array<Slot, kMaxLayerCount> slots_;
-  std::size_t turn_ = 0;  ///< the layer that is asked first
+  std::size_t turn_ = 0;          ///< the layer that is asked first
+  std::uint64_t turn_count_ = 0;  ///< times the writer took something
   bool writer_sleeps_ = false;
   bool shut_ = false;
   std::optional<SessionEnd> close_;

@@ -17,17 +17,21 @@ class RateGate {
   RateGate() = default;
   explicit RateGate(double max_rate_hz) : interval_s_(1.0 / (kRateTolerance * max_rate_hz)) {}
 
+  /// Whether pass() would let a frame through.
+  bool isOpen(Clock::time_point now) const { return !started_ || now + seconds(kEarlyRatio * interval_s_) >= due_; }
+
   bool pass(Clock::time_point now) {
-    const auto seconds = [](double s) {
-      return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
-    };
-    if (started_ && now + seconds(kEarlyRatio * interval_s_) < due_) return false;
+    if (!isOpen(now)) return false;
     due_ = (started_ ? std::max(due_, now) : now) + seconds(interval_s_);
     started_ = true;
     return true;
   }
 
  private:
+  static Clock::duration seconds(double s) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+  }
+
   static constexpr double kRateTolerance = 1.1;
   static constexpr double kEarlyRatio = 0.4;
 

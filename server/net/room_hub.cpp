@@ -1,5 +1,6 @@
 #include "room_hub.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -32,12 +33,20 @@ void RoomHub::broadcastControl(const std::string& room, core::SharedBytes messag
   }
 }
 
-void RoomHub::publish(const std::string& room, LayerIndex layer, core::SharedBytes frame) {
-  assert(layer < kMaxLayerCount && frame);
+void RoomHub::publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) {
+  assert(layer < kMaxLayerCount && (frame.whole || frame.continuing));
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
   if (found == rooms_.end() || layer >= kMaxLayerCount) return;
   for (const Watcher& watcher : found->second.watchers[layer]) watcher.link->offerFrame(layer, frame);
+}
+
+bool RoomHub::wantsWhole(const std::string& room, LayerIndex layer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room);
+  if (found == rooms_.end() || layer >= kMaxLayerCount) return false;
+  return std::ranges::any_of(found->second.watchers[layer],
+                             [layer](const Watcher& watcher) { return watcher.link->wantsWhole(layer); });
 }
 
 void RoomHub::join(SessionId session, const std::string& room) {

@@ -19,7 +19,8 @@ class SessionLink {
  public:
   virtual ~SessionLink() = default;
   virtual void sendControl(core::SharedBytes message) = 0;
-  virtual void offerFrame(LayerIndex layer, core::SharedBytes frame) = 0;
+  virtual void offerFrame(LayerIndex layer, const LayerBytes& frame) = 0;
+  virtual bool wantsWhole(LayerIndex layer) const = 0;
   /// nullopt stops the layer.
   virtual void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) = 0;
   virtual void clearFrames() = 0;
@@ -36,7 +37,8 @@ class RoomHub final : public Hub {
 
   void sendControl(SessionId session, core::SharedBytes message) override;
   void broadcastControl(const std::string& room, core::SharedBytes message) override;
-  void publish(const std::string& room, LayerIndex layer, core::SharedBytes frame) override;
+  void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) override;
+  bool wantsWhole(const std::string& room, LayerIndex layer) const override;
   void join(SessionId session, const std::string& room) override;
   void watch(SessionId session, LayerIndex layer, double max_rate_hz) override;
   std::size_t watcherCount(const std::string& room, LayerIndex layer) const override;

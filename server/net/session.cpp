@@ -196,10 +196,14 @@ void Session::sendControl(core::SharedBytes message) {
   if (outcome.wake) wakeWriter();
 }
 
-void Session::offerFrame(LayerIndex layer, core::SharedBytes frame) {
-  const Outbox::Outcome outcome = outbox_.offerFrame(layer, std::move(frame), Clock::now());
+void Session::offerFrame(LayerIndex layer, const LayerBytes& frame) {
+  const Outbox::Outcome outcome = outbox_.offerFrame(layer, frame, Clock::now());
   if (outcome.dropped) ++context_.counters.dropped_frame_count;
   if (outcome.wake) wakeWriter();
+}
+
+bool Session::wantsWhole(LayerIndex layer) const {
+  return outbox_.wantsWhole(layer, Clock::now());
 }
 
 void Session::setWatch(LayerIndex layer, std::optional<double> max_rate_hz) {

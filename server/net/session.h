@@ -33,7 +33,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
                                    bool echo_subprotocol);
 
   void sendControl(core::SharedBytes message) override;
-  void offerFrame(LayerIndex layer, core::SharedBytes frame) override;
+  void offerFrame(LayerIndex layer, const LayerBytes& frame) override;
+  bool wantsWhole(LayerIndex layer) const override;
   void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) override;
   void clearFrames() override;
   void close(CloseCode code, std::string reason) override;

@@ -92,10 +92,14 @@ ClientMessage parseSubscribe(const v1::Subscribe& subscribe) {
     return Malformed{"subscribe.layer: " + std::to_string(subscribe.layer()) +
                      " is no layer; the greeting lists the room's layers"};
   }
+  if (!v1::Packing_IsValid(subscribe.packing())) {
+    return Malformed{"subscribe.packing: " + std::to_string(subscribe.packing()) +
+                     " is neither plain (0) nor packed (1)"};
+  }
   std::vector<FieldIssue> issues;
   checkFields(subscribe, "subscribe.", issues);
   if (!issues.empty()) return Malformed{issues.front().path + ": " + issues.front().message};
-  return Subscribe{subscribe.layer(), subscribe.max_rate_hz()};
+  return Subscribe{subscribe.layer(), subscribe.max_rate_hz(), subscribe.packing()};
 }
 
 ClientMessage parseChecked(core::ByteView bytes) {

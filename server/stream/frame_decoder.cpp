@@ -9,10 +9,9 @@
 
 #include <google/protobuf/stubs/logging.h>
 
-#include <spindrift/stream/crc32c.h>
 #include <spindrift/stream/frame_decoder.h>
 
-#include "text.h"
+#include "frame_checks.h"
 
 namespace spindrift::stream {
 namespace {
@@ -22,53 +21,11 @@ static_assert(std::endian::native == std::endian::little, "payload integers are 
 constexpr std::size_t kSampleBytes = 2;
 constexpr std::size_t kParticleBytes = 12;
 constexpr std::size_t kBodyBytes = 28;
-/// Far beyond any scene; keeps every decoded value finite as a float.
-constexpr double kMaxMagnitude = 1e6;
-
-core::Error invalid(std::string message) {
-  return {core::ErrorCode::kInvalidInput, std::move(message)};
-}
-
-core::ByteView viewOf(const std::string& bytes) {
-  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
-}
-
 template <typename Integer>
 Integer load(const std::uint8_t* at) {
   Integer value{};
   std::memcpy(&value, at, sizeof value);
   return value;
-}
-
-/// min <= value <= kMaxMagnitude; NaN is out of range as well.
-std::optional<core::Error> checkRange(const char* name, double value, double min) {
-  if (value >= min && value <= kMaxMagnitude) return std::nullopt;
-  return invalid(std::string(name) + ": " + formatNumber(value) + " is not a finite number from " + formatNumber(min) +
-                 " to " + formatNumber(kMaxMagnitude) + "; the frame is damaged");
-}
-
-/// What every fixed-width frame has to get right: layer, time, being whole, payload size and checksum.
-std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer, std::size_t payload_bytes) {
-  if (frame.layer() != layer) {
-    return invalid("layer: " + std::to_string(frame.layer()) + " is not " + v1::Layer_Name(layer));
-  }
-  if (!frame.keyframe()) return invalid("keyframe: false, but frames of this codec always stand by themselves");
-  if (!std::isfinite(frame.time_s())) return invalid("time_s: " + formatNumber(frame.time_s()) + " is not finite");
-  if (frame.payload().size() != payload_bytes) {
-    return invalid("payload: " + std::to_string(frame.payload().size()) + " bytes, but the header calls for " +
-                   std::to_string(payload_bytes));
-  }
-  if (const std::uint32_t crc = crc32c(viewOf(frame.payload())); crc != frame.crc32c()) {
-    return invalid("crc32c: the frame says " + std::to_string(frame.crc32c()) + ", its payload has " +
-                   std::to_string(crc));
-  }
-  return std::nullopt;
-}
-
-std::optional<core::Error> checkResolution(std::uint32_t resolution_count) {
-  if (resolution_count >= 1 && resolution_count <= kSurfaceMaxResolutionCount) return std::nullopt;
-  return invalid("resolution_count: " + std::to_string(resolution_count) + " is not from 1 to " +
-                 std::to_string(kSurfaceMaxResolutionCount));
 }
 
 std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
@@ -79,7 +36,7 @@ std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
   // Bounds of 0 would make every sample lie in one place, or be flat whatever the payload says.
   if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
   if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return error;
-  return checkFrame(frame, v1::LAYER_SURFACE, n * n * kSampleBytes);
+  return checkPlainFrame(frame, v1::LAYER_SURFACE, n * n * kSampleBytes);
 }
 
 std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
@@ -98,7 +55,7 @@ std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
   if (auto error = checkRange("max_z_m", header.max_z_m(), header.min_z_m())) return error;
   if (auto error = checkRange("max_speed_mps", header.max_speed_mps(), 0.0)) return error;
   if (auto error = checkRange("radius_m", header.radius_m(), 0.0)) return error;
-  return checkFrame(frame, v1::LAYER_PARTICLES, header.count() * kParticleBytes);
+  return checkPlainFrame(frame, v1::LAYER_PARTICLES, header.count() * kParticleBytes);
 }
 
 std::optional<core::Error> checkFoam(const v1::LayerFrame& frame) {
@@ -107,7 +64,7 @@ std::optional<core::Error> checkFoam(const v1::LayerFrame& frame) {
   const std::size_t n = header.resolution_count();
   if (auto error = checkResolution(header.resolution_count())) return error;
   if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
-  return checkFrame(frame, v1::LAYER_FOAM, n * n);
+  return checkPlainFrame(frame, v1::LAYER_FOAM, n * n);
 }
 
 std::optional<core::Error> checkBodies(const v1::LayerFrame& frame) {
@@ -116,7 +73,7 @@ std::optional<core::Error> checkBodies(const v1::LayerFrame& frame) {
   if (count > kBodyMaxCount) {
     return invalid("count: " + std::to_string(count) + " is above " + std::to_string(kBodyMaxCount));
   }
-  return checkFrame(frame, v1::LAYER_BODIES, count * kBodyBytes);
+  return checkPlainFrame(frame, v1::LAYER_BODIES, count * kBodyBytes);
 }
 
 }  // namespace

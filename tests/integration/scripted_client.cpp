@@ -95,10 +95,11 @@ void ScriptedClient::hello(std::uint32_t major) {
   send(message);
 }
 
-void ScriptedClient::subscribe(v1::Layer layer, double max_rate_hz) {
+void ScriptedClient::subscribe(v1::Layer layer, double max_rate_hz, v1::Packing packing) {
   v1::ClientMessage message;
   message.mutable_subscribe()->set_layer(layer);
   message.mutable_subscribe()->set_max_rate_hz(max_rate_hz);
+  message.mutable_subscribe()->set_packing(packing);
   send(message);
 }
 

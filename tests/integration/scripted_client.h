@@ -34,7 +34,7 @@ class ScriptedClient {
   WsClient& ws() { return ws_; }
 
   void hello(std::uint32_t major = 1);
-  void subscribe(v1::Layer layer, double max_rate_hz = 60.0);
+  void subscribe(v1::Layer layer, double max_rate_hz = 60.0, v1::Packing packing = v1::PACKING_PLAIN);
   void unsubscribe(v1::Layer layer) { subscribe(layer, 0.0); }
   void send(const v1::ClientMessage& message);
 

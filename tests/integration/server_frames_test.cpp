@@ -109,7 +109,7 @@ TEST_F(WaveFrames, AreEncodedOnceForThreeClients) {
   // A frame requested before the last goodbye may still be encoded after this; the bounds below do not mind.
   const auto end = clients[0].apply(setSpeed(1.0));
   ASSERT_TRUE(end);
-  const std::uint64_t encoded_count = server().encoder().encodeCount("main", v1::LAYER_SURFACE);
+  const std::uint64_t encoded_count = server().encoder().encodeCount("main", {v1::LAYER_SURFACE});
   EXPECT_EQ(received_count, 60u);
   EXPECT_GE(encoded_count, ticks.size());
   EXPECT_LE(encoded_count, *end - *begin + 1) << "more than one message a tick: somebody encodes for each client";
@@ -142,7 +142,7 @@ TEST_F(Frames, AreNotEncodedWhileNobodySubscribes) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.runFor(30));
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS}) {
-    EXPECT_EQ(server().encoder().encodeCount("main", layer), 0u) << v1::Layer_Name(layer);
+    EXPECT_EQ(server().encoder().encodeCount("main", {layer}), 0u) << v1::Layer_Name(layer);
   }
   EXPECT_EQ(server().networkStats().sent_frame_count, 0u);
 }
@@ -156,8 +156,8 @@ TEST_F(Frames, OfALayerNobodySubscribedAreNotSent) {
     ASSERT_TRUE(message->has_frame());
     EXPECT_EQ(message->frame().layer(), v1::LAYER_SURFACE);
   }
-  EXPECT_EQ(server().encoder().encodeCount("main", v1::LAYER_PARTICLES), 0u);
-  EXPECT_EQ(server().encoder().encodeCount("main", v1::LAYER_DIAGNOSTICS), 0u);
+  EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_PARTICLES}), 0u);
+  EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_DIAGNOSTICS}), 0u);
 }
 
 TEST_F(WaveFrames, StopWhenUnsubscribed) {
@@ -167,11 +167,11 @@ TEST_F(WaveFrames, StopWhenUnsubscribed) {
   one.unsubscribe(v1::LAYER_SURFACE);
   ASSERT_TRUE(one.barrier());
   const std::uint64_t sent_count = server().networkStats().sent_frame_count;
-  const std::uint64_t encoded_count = server().encoder().encodeCount("main", v1::LAYER_SURFACE);
+  const std::uint64_t encoded_count = server().encoder().encodeCount("main", {v1::LAYER_SURFACE});
   ASSERT_TRUE(one.runFor(30));
   // One may have been on its way; a room that went on would have sent thirty.
   EXPECT_LE(server().networkStats().sent_frame_count, sent_count + 1);
-  EXPECT_LE(server().encoder().encodeCount("main", v1::LAYER_SURFACE), encoded_count + 1);
+  EXPECT_LE(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), encoded_count + 1);
 }
 
 TEST_F(WaveFrames, GoOnForOthersWhenAClientVanishes) {

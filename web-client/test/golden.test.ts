@@ -3,7 +3,9 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
-import { parse } from "../src/codec/parse";
+import type { Malformed, SurfaceHeader } from "../src/codec/frames";
+import { SurfaceUnpacker } from "../src/codec/packed_surface";
+import { parse, type ParsedMessage } from "../src/codec/parse";
 import { unpackBodies, type BodyPose } from "../src/scene/bodies";
 import { elevationAtM } from "../src/scene/height_field";
 
@@ -27,6 +29,18 @@ function camel(name: string): string {
   return name.replace(/_([a-z0-9])/g, (_, letter: string) => letter.toUpperCase());
 }
 
+type PlainSurface = { kind: "surface"; header: SurfaceHeader; payload: Uint8Array };
+
+/** As the connection does: packed surfaces become plain ones, with the golden frames that they build on read before. */
+function unpacked(golden: GoldenCase, unpacker = new SurfaceUnpacker()): ParsedMessage | PlainSurface | Malformed {
+  const before = cases.find((c) => c.file !== "" && c.file === golden["follows"]);
+  if (before) unpacked(before, unpacker);
+  const parsed = parse(read(golden.file));
+  if (parsed.kind !== "packedSurface") return parsed;
+  const plain = unpacker.unpack(parsed);
+  return plain.kind === "missingBase" ? { kind: "malformed", reason: "the frame before is missing" } : plain;
+}
+
 /** What the tests below read; a kind or a layer that is not here would go unread without a word. */
 const kKinds = ["frame", "diagnostics", "greeting", "ack", "reject", "boat_list", "room_event"];
 const kLayers = ["LAYER_SURFACE", "LAYER_PARTICLES", "LAYER_FOAM", "LAYER_BODIES"];
@@ -39,8 +53,8 @@ describe("golden bytes", () => {
     expect(new Set(good.filter((c) => c.kind === "frame").map((c) => c["layer"]))).toEqual(new Set(kLayers));
   });
 
-  it.each(cases.filter((c) => c.verdict === "bad_frame"))("refuses $file: $why", ({ file }) => {
-    expect(parse(read(file)).kind).toBe("malformed");
+  it.each(cases.filter((c) => c.verdict === "bad_frame"))("refuses $file: $why", (golden) => {
+    expect(unpacked(golden).kind).toBe("malformed");
   });
 
   it.each(cases.filter((c) => c.verdict === "bad_message"))("takes nothing from $file: $why", ({ file }) => {
@@ -48,7 +62,7 @@ describe("golden bytes", () => {
   });
 
   it.each(cases.filter((c) => c["layer"] === "LAYER_SURFACE"))("decodes the surface of $file exactly", (golden) => {
-    const parsed = parse(read(golden.file));
+    const parsed = unpacked(golden);
     if (parsed.kind !== "surface") throw new Error(JSON.stringify(parsed));
     const { header, payload } = parsed;
     expect(header).toEqual({
@@ -57,10 +71,12 @@ describe("golden bytes", () => {
     });
     const frame = { layer: "surface" as const, ...header, buffer: payload.slice().buffer };
     const n = header.resolutionCount;
+    const samples = new Int16Array(frame.buffer);
     (golden["elevation_m"] as number[]).forEach((elevation, at) => {
       const xM = ((at % n) + 0.5) * (header.sideM / n) - header.sideM / 2;
       const zM = (Math.floor(at / n) + 0.5) * (header.sideM / n) - header.sideM / 2;
-      expect(Math.fround(elevationAtM(frame, xM, zM))).toBe(Math.fround(elevation));
+      expect(Math.fround(samples[at]! * header.quantumM)).toBe(Math.fround(elevation));
+      expect(elevationAtM(frame, xM, zM)).toBeCloseTo(elevation, 7);
     });
   });
 

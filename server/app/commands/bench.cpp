@@ -158,7 +158,7 @@ core::Result<boost::json::object> measureStream(gpu::Context& ctx, const core::S
     ctx.finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) {
       const auto start = Clock::now();
-      for (const auto& message : {encoder.encodeSurface(frame), encoder.encodeParticles(frame),
+      for (const auto& message : {encoder.encode(v1::LAYER_SURFACE, frame), encoder.encode(v1::LAYER_PARTICLES, frame),
                                   encoder.encode(v1::LAYER_FOAM, frame), encoder.encode(v1::LAYER_BODIES, frame)})
         bytes += message ? message->size() : 0;
       encode_s += since_s(start);

@@ -35,7 +35,7 @@ TEST(Outbox, SendsControlMessagesInOrder) {
 TEST(Outbox, SendsControlBeforeData) {
   Outbox outbox(8);
   outbox.setWatch(1, kAnyRate_hz);
-  outbox.offerFrame(1, shared("frame"), later());
+  outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.pushControl(shared("control"));
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
@@ -45,8 +45,8 @@ TEST(Outbox, DropsTheOlderFrameOfALayer) {
   Outbox outbox(8);
   outbox.setWatch(1, kAnyRate_hz);
   const auto newest = shared("new");
-  EXPECT_FALSE(outbox.offerFrame(1, shared("old"), later()).dropped);
-  EXPECT_TRUE(outbox.offerFrame(1, newest, later()).dropped);
+  EXPECT_FALSE(outbox.offerFrame(1, {shared("old"), {}}, later()).dropped);
+  EXPECT_TRUE(outbox.offerFrame(1, {newest, {}}, later()).dropped);
   EXPECT_EQ(outbox.next().message, newest);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
@@ -59,9 +59,76 @@ TEST(Outbox, HoldsOneFrameALayerHoweverManyAreOffered) {
   for (int k = 0; k < 1000; ++k) {
     const auto frame = shared("frame");
     frames.push_back(frame);
-    outbox.offerFrame(1 + k % 2, frame, later());
+    outbox.offerFrame(1 + k % 2, {frame, {}}, later());
   }
   EXPECT_EQ(std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }), 2);
+}
+
+TEST(Outbox, ContinuesWhereTheClientHasTheFrameBefore) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  EXPECT_TRUE(outbox.wantsWhole(1, later())) << "it has nothing yet";
+  outbox.offerFrame(1, {{}, shared("2 on 1")}, later());
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "nothing that it could not read";
+  const auto whole = shared("3");
+  outbox.offerFrame(1, {whole, shared("3 on 2")}, later());
+  EXPECT_FALSE(outbox.wantsWhole(1, later()));
+  EXPECT_EQ(outbox.next().message, whole);
+  const auto continuing = shared("4 on 3");
+  outbox.offerFrame(1, {shared("4"), continuing}, later());
+  EXPECT_EQ(outbox.next().message, continuing);
+  EXPECT_FALSE(outbox.wantsWhole(1, later()));
+}
+
+TEST(Outbox, BeginsAgainWithAWholeFrameAfterALoss) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.offerFrame(1, {shared("1"), {}}, later());
+  EXPECT_TRUE(outbox.offerFrame(1, {{}, shared("2 on 1")}, later()).dropped) << "1 was not sent: 2 has no ground";
+  EXPECT_FALSE(outbox.wantsWhole(1, later())) << "nobody reads";
+  outbox.offerFrame(1, {{}, shared("3 on 2")}, later());
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+  EXPECT_TRUE(outbox.wantsWhole(1, later())) << "the writer is free again";
+  const auto whole = shared("4");
+  outbox.offerFrame(1, {whole, shared("4 on 3")}, later());
+  EXPECT_EQ(outbox.next().message, whole);
+}
+
+TEST(Outbox, ReplacesAnUnsentFrameByAWholeOneNeverByOneThatBuildsOnIt) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.offerFrame(1, {shared("1"), {}}, later());
+  const auto whole = shared("2");
+  EXPECT_TRUE(outbox.offerFrame(1, {whole, shared("2 on 1")}, later()).dropped);
+  EXPECT_EQ(outbox.next().message, whole);
+}
+
+TEST(Outbox, ASlowerWatchTakesWholeFramesOnly) {
+  Outbox outbox(8);
+  outbox.setWatch(1, 10.0);
+  Clock::time_point now = later();
+  std::vector<std::string> taken;
+  int asked_count = 0;
+  for (int k = 0; k < 30; ++k) {  // 30 frames a second, of which every third is taken
+    now += std::chrono::microseconds(33'333);
+    const bool wants_whole = outbox.wantsWhole(1, now);
+    asked_count += wants_whole ? 1 : 0;
+    outbox.offerFrame(1, {wants_whole ? shared("w") : core::SharedBytes(), shared("c")}, now);
+    if (const auto sent = outbox.next().message) taken.emplace_back(sent->begin(), sent->end());
+  }
+  EXPECT_GE(taken.size(), 9u);
+  EXPECT_LE(taken.size(), 12u);
+  EXPECT_EQ(static_cast<std::size_t>(asked_count), taken.size());
+  for (const std::string& frame : taken) EXPECT_EQ(frame, "w");
+}
+
+TEST(Outbox, AskingForALayerAgainBeginsWithAWholeFrame) {
+  Outbox outbox(8);
+  outbox.setWatch(1, kAnyRate_hz);
+  outbox.offerFrame(1, {shared("1"), {}}, later());
+  outbox.next();
+  outbox.setWatch(1, kAnyRate_hz);
+  EXPECT_TRUE(outbox.wantsWhole(1, later()));
 }
 
 TEST(Outbox, TakesLayersInTurn) {
@@ -71,7 +138,7 @@ TEST(Outbox, TakesLayersInTurn) {
   std::vector<std::size_t> order;
   // Every layer is refilled after every send: without turns the first layer would be sent alone.
   for (int k = 0; k < 8; ++k) {
-    for (LayerIndex layer = 0; layer < 4; ++layer) outbox.offerFrame(layer, last[layer] = shared("f"), later());
+    for (LayerIndex layer = 0; layer < 4; ++layer) outbox.offerFrame(layer, {last[layer] = shared("f"), {}}, later());
     const auto sent = outbox.next().message;
     order.push_back(static_cast<std::size_t>(std::ranges::find(last, sent) - last.begin()));
   }
@@ -80,7 +147,7 @@ TEST(Outbox, TakesLayersInTurn) {
 
 TEST(Outbox, IgnoresFramesOfLayersThatNobodyWatches) {
   Outbox outbox(8);
-  outbox.offerFrame(3, shared("frame"), later());
+  outbox.offerFrame(3, {shared("frame"), {}}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
 
@@ -93,7 +160,7 @@ TEST(Outbox, KeepsToTheRateOfEachWatch) {
   for (int k = 0; k < 60; ++k) {
     const auto now = start + std::chrono::microseconds(k * 16'667);
     for (LayerIndex layer = 1; layer <= 2; ++layer) {
-      outbox.offerFrame(layer, shared("f"), now);
+      outbox.offerFrame(layer, {shared("f"), {}}, now);
       if (outbox.next().kind == Outbox::Kind::kFrame) ++sent[layer];
     }
   }
@@ -104,7 +171,7 @@ TEST(Outbox, KeepsToTheRateOfEachWatch) {
 TEST(Outbox, ForgetsTheFrameOfALayerThatStops) {
   Outbox outbox(8);
   outbox.setWatch(1, kAnyRate_hz);
-  outbox.offerFrame(1, shared("frame"), later());
+  outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.setWatch(1, std::nullopt);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
@@ -134,11 +201,11 @@ TEST(Outbox, ClosesWhenTheControlQueueOverflows) {
 TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
   Outbox outbox(8);
   outbox.setWatch(1, kAnyRate_hz);
-  outbox.offerFrame(1, shared("frame"), later());
+  outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.pushControl(shared("last words"));
   EXPECT_TRUE(outbox.requestClose(CloseCode::kNormal, "first"));
   EXPECT_FALSE(outbox.requestClose(CloseCode::kPolicy, "second"));
-  outbox.offerFrame(1, shared("frame"), later());
+  outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.pushControl(shared("too late"));
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
@@ -150,7 +217,7 @@ TEST(Outbox, KeepsNothingOnceShut) {
   const auto message = shared("message");
   outbox.setWatch(1, kAnyRate_hz);
   outbox.pushControl(message);
-  outbox.offerFrame(1, message, later());
+  outbox.offerFrame(1, {message, {}}, later());
   outbox.shut();
   outbox.pushControl(message);
   EXPECT_EQ(message.use_count(), 1);

@@ -27,7 +27,7 @@ TEST(Outflow, BringsAFrameToEveryWatcherWhole) {
   WsClient eve = served.watcher(2);
   core::Bytes frame(300'000);
   for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<std::uint8_t>(k * 7 + k / 251);
-  served.server->hub().publish("pool", 1, core::share(frame));
+  served.server->hub().publish("pool", 1, {core::share(frame), {}});
   EXPECT_EQ(ada.receive(), frame);
   EXPECT_EQ(bob.receive(), frame);
   ASSERT_TRUE(eve.sendBinary(bytes("echo nothing else")));
@@ -39,7 +39,7 @@ TEST(Outflow, SharesOneBufferAmongAllClients) {
   std::vector<WsClient> clients;
   for (int k = 0; k < 6; ++k) clients.push_back(served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer));
   const core::SharedBytes frame = core::share(core::Bytes(kHugeFrameBytes));
-  served.server->hub().publish("pool", 1, frame);
+  served.server->hub().publish("pool", 1, {frame, {}});
   // Nobody reads, so every session keeps its one reference, in its slot or in the write that cannot end.
   EXPECT_EQ(frame.use_count(), 1 + 6);
   served.server->stop();
@@ -57,7 +57,7 @@ TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
     const core::SharedBytes frame =
         core::share(core::Bytes(k == 0 ? kHugeFrameBytes : 1000, static_cast<std::uint8_t>(k)));
     frames.push_back(frame);
-    served.server->hub().publish("pool", 1, frame);
+    served.server->hub().publish("pool", 1, {frame, {}});
     const auto received = lively.receive();
     ASSERT_TRUE(received) << "frame " << k;
     ASSERT_EQ(*received, *frame) << "frame " << k;
@@ -75,7 +75,7 @@ TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
 TEST(Outflow, EvictsAClientWhoseWriteStalls) {
   TestServer served({.write_stall_timeout = std::chrono::milliseconds(200)});
   const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
-  served.server->hub().publish("pool", 1, core::share(core::Bytes(kHugeFrameBytes)));
+  served.server->hub().publish("pool", 1, {core::share(core::Bytes(kHugeFrameBytes)), {}});
   ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
   EXPECT_EQ(served.application.closed()[0].end.code, 0);
   EXPECT_EQ(served.application.closed()[0].end.reason, "evicted: a write took longer than 200 ms");
@@ -87,7 +87,7 @@ TEST(Outflow, EvictsAClientWhoseWriteStalls) {
 TEST(Outflow, CutsAStuckClientThatIsToClose) {
   TestServer served({.close_timeout = std::chrono::milliseconds(200)});
   const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
-  served.server->hub().publish("pool", 1, core::share(core::Bytes(kHugeFrameBytes)));
+  served.server->hub().publish("pool", 1, {core::share(core::Bytes(kHugeFrameBytes)), {}});
   served.server->hub().close(served.application.opened().at(0), CloseCode::kNormal, "enough");
   ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
   EXPECT_EQ(served.application.closed()[0].end.reason, "enough");
@@ -98,7 +98,7 @@ TEST(Outflow, KeepsEachWatchToItsOwnRate) {
   WsClient fast = served.watcher(1, kAnyRate_hz);
   WsClient slow = served.watcher(1, 1e-3);
   for (int k = 0; k < 20; ++k) {
-    served.server->hub().publish("pool", 1, shared("frame " + std::to_string(k)));
+    served.server->hub().publish("pool", 1, {shared("frame " + std::to_string(k)), {}});
     ASSERT_EQ(text(fast.receive()), "frame " + std::to_string(k));
   }
   ASSERT_EQ(text(slow.receive()), "frame 0");
@@ -115,7 +115,7 @@ TEST(Outflow, StopsALayer) {
   ASSERT_TRUE(client.sendBinary(bytes("watch 1 0")));
   EXPECT_EQ(text(client.receive()), "watching");
   EXPECT_EQ(served.server->hub().watcherCount("pool", 1), 0U);
-  served.server->hub().publish("pool", 1, shared("frame"));
+  served.server->hub().publish("pool", 1, {shared("frame"), {}});
   ASSERT_TRUE(client.sendBinary(bytes("echo end")));
   EXPECT_EQ(text(client.receive()), "echo end");
 }
@@ -126,7 +126,7 @@ TEST(Outflow, CountsWhatItSent) {
   const std::uint64_t control_bytes = std::string("hello poolwatching").size();
   ASSERT_TRUE(eventually([&] { return served.server->stats().sent_bytes_count == control_bytes; }));
   EXPECT_EQ(served.server->stats().sent_frame_count, 0U);
-  served.server->hub().publish("pool", 1, core::share(core::Bytes(5000)));
+  served.server->hub().publish("pool", 1, {core::share(core::Bytes(5000)), {}});
   ASSERT_TRUE(client.receive());
   ASSERT_TRUE(eventually([&] { return served.server->stats().sent_frame_count == 1; }));
   EXPECT_EQ(served.server->stats().sent_bytes_count, control_bytes + 5000);

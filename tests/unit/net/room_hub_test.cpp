@@ -14,11 +14,13 @@ struct RecordingLink final : SessionLink {
   int control_count = 0;
   int frame_count = 0;
   int clear_count = 0;
+  bool wants_whole = false;
   std::optional<double> rate_hz;
   std::optional<CloseCode> closed;
 
   void sendControl(core::SharedBytes) override { ++control_count; }
-  void offerFrame(LayerIndex, core::SharedBytes) override { ++frame_count; }
+  void offerFrame(LayerIndex, const LayerBytes&) override { ++frame_count; }
+  bool wantsWhole(LayerIndex) const override { return wants_whole; }
   void setWatch(LayerIndex, std::optional<double> max_rate_hz) override { rate_hz = max_rate_hz; }
   void clearFrames() override { ++clear_count; }
   void close(CloseCode code, std::string) override { closed = code; }
@@ -35,14 +37,26 @@ struct RoomHubTest : testing::Test {
   }
 };
 
+TEST_F(RoomHubTest, KnowsWhetherAnyWatcherNeedsAWholeFrame) {
+  hub.join(1, "pool");
+  hub.join(2, "pool");
+  hub.watch(1, 3, 30.0);
+  bob->wants_whole = true;
+  EXPECT_FALSE(hub.wantsWhole("pool", 3)) << "he does not watch it";
+  hub.watch(2, 3, 30.0);
+  EXPECT_TRUE(hub.wantsWhole("pool", 3));
+  EXPECT_FALSE(hub.wantsWhole("pool", 4));
+  EXPECT_FALSE(hub.wantsWhole("pond", 3));
+}
+
 TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
   hub.join(1, "pool");
   hub.join(2, "sea");
   hub.watch(1, 3, 30.0);
   hub.watch(2, 3, 30.0);
-  hub.publish("pool", 3, shared("frame"));
-  hub.publish("pool", 4, shared("frame"));
-  hub.publish("pond", 3, shared("frame"));
+  hub.publish("pool", 3, {shared("frame"), {}});
+  hub.publish("pool", 4, {shared("frame"), {}});
+  hub.publish("pond", 3, {shared("frame"), {}});
   EXPECT_EQ(ada->frame_count, 1);
   EXPECT_EQ(bob->frame_count, 0);
 }
@@ -104,7 +118,7 @@ TEST_F(RoomHubTest, IgnoresSessionsThatAreGone) {
   hub.watch(1, 3, 30.0);
   hub.sendControl(1, shared("control"));
   hub.close(1, CloseCode::kNormal, "");
-  hub.publish("pool", 3, shared("frame"));
+  hub.publish("pool", 3, {shared("frame"), {}});
   EXPECT_EQ(ada->control_count + ada->frame_count, 0);
   EXPECT_EQ(ada->closed, std::nullopt);
   EXPECT_EQ(ada.use_count(), 1) << "the hub let go of the session";

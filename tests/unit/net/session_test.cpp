@@ -277,7 +277,7 @@ TEST(Session, CallbacksNeverOverlapAndCloseComesLastWhenManyComeAndGo) {
   std::atomic<bool> done{false};
   std::thread publisher([&] {
     while (!done) {
-      served.server->hub().publish("pool", 1, core::share(core::Bytes(10'000)));
+      served.server->hub().publish("pool", 1, {core::share(core::Bytes(10'000)), {}});
       std::this_thread::yield();
     }
   });

@@ -43,7 +43,7 @@ TEST(Stop, IsHeldUpByNobody) {
   TestServer served({.close_timeout = kCloseTimeout});
   WsClient idle = served.client();  // never receives, so it does not answer the goodbye either
   const WsClient stuck = served.watcher(1, 1e6, 4096);
-  served.server->hub().publish("pool", 1, core::share(core::Bytes(16U << 20U)));
+  served.server->hub().publish("pool", 1, {core::share(core::Bytes(16U << 20U)), {}});
   RawTcp keep_alive;
   ASSERT_TRUE(keep_alive.connect("127.0.0.1", served.server->port()));
   ASSERT_TRUE(keep_alive.send("GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n"));
@@ -81,7 +81,7 @@ TEST(Stop, WorksUnderLoad) {
     });
   }
   crowd.emplace_back([&served, &done] {
-    while (!done) served.server->hub().publish("pool", 1, core::share(core::Bytes(100'000)));
+    while (!done) served.server->hub().publish("pool", 1, {core::share(core::Bytes(100'000)), {}});
   });
   EXPECT_TRUE(eventually([&] { return served.server->stats().sent_frame_count > 100; }));
   served.server->stop();

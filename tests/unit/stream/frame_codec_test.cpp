@@ -73,10 +73,10 @@ void seal(v1::LayerFrame& frame) {
 }
 
 v1::LayerFrame surfaceFrame() {
-  return frameOf(FrameEncoder().encodeSurface(TestFrame().view));
+  return frameOf(FrameEncoder().encode(v1::LAYER_SURFACE, TestFrame().view));
 }
 v1::LayerFrame particleFrame() {
-  return frameOf(FrameEncoder().encodeParticles(TestFrame().view));
+  return frameOf(FrameEncoder().encode(v1::LAYER_PARTICLES, TestFrame().view));
 }
 
 TEST(FrameEncoding, RoundTripsTheSurfaceExactlyToTheQuantum) {
@@ -132,14 +132,14 @@ TEST(FrameEncoding, WritesTheBytesThatProtobufWouldWrite) {
   frame.mutable_surface_fixed16()->set_quantum_m(0.001);
   frame.set_payload(test.surface_words.data(), test.surface_words.size() * sizeof(std::uint32_t));
   seal(frame);
-  EXPECT_EQ(textOf(FrameEncoder().encodeSurface(test.view)), expected.SerializeAsString());
+  EXPECT_EQ(textOf(FrameEncoder().encode(v1::LAYER_SURFACE, test.view)), expected.SerializeAsString());
 }
 
 TEST(FrameEncoding, HandlesAFrameWithoutParticles) {
   TestFrame test;
   test.view.particles->count = 0;
   test.view.particles->words = {};
-  const auto samples = decodeParticles(frameOf(FrameEncoder().encodeParticles(test.view)));
+  const auto samples = decodeParticles(frameOf(FrameEncoder().encode(v1::LAYER_PARTICLES, test.view)));
   ASSERT_TRUE(samples) << samples.error().message;
   EXPECT_EQ(samples->count, 0u);
   EXPECT_TRUE(samples->position_m.empty());
@@ -149,7 +149,7 @@ TEST(FrameEncoding, HandlesAFrameOfTheLargestScene) {
   TestFrame test;
   test.surface_words.assign(1024 * 1024 / 2, 0x1234'5678u);
   test.view.surface = core::SurfaceView{1024, 16.0, 0.001, test.surface_words};
-  const auto samples = decodeSurface(frameOf(FrameEncoder().encodeSurface(test.view)));
+  const auto samples = decodeSurface(frameOf(FrameEncoder().encode(v1::LAYER_SURFACE, test.view)));
   ASSERT_TRUE(samples) << samples.error().message;
   EXPECT_EQ(samples->elevation_m.size(), 1024u * 1024u);
   EXPECT_EQ(samples->elevation_m.back(), static_cast<float>(0x1234 * 0.001));
@@ -157,7 +157,7 @@ TEST(FrameEncoding, HandlesAFrameOfTheLargestScene) {
 
 TEST(FrameEncoding, KeepsNothingOfTheFramesMemory) {
   TestFrame test;
-  const core::SharedBytes bytes = FrameEncoder().encodeParticles(test.view);
+  const core::SharedBytes bytes = FrameEncoder().encode(v1::LAYER_PARTICLES, test.view);
   const std::string before = textOf(bytes);
   test.particle_words.assign(test.particle_words.size(), 0u);
   EXPECT_EQ(textOf(bytes), before);
@@ -165,7 +165,7 @@ TEST(FrameEncoding, KeepsNothingOfTheFramesMemory) {
 }
 
 TEST(FrameEncoding, CarriesDiagnostics) {
-  const auto message = parseServerMessage(*FrameEncoder().encodeDiagnostics(TestFrame().view));
+  const auto message = parseServerMessage(*FrameEncoder().encode(v1::LAYER_DIAGNOSTICS, TestFrame().view));
   ASSERT_TRUE(message) << message.error().message;
   EXPECT_EQ(message->diagnostics().tick(), 600u);
   EXPECT_EQ(message->diagnostics().step_ms(), 6.5);
@@ -178,7 +178,7 @@ TEST(FrameEncoding, OfALayerThatTheFrameLacksIsNothingAndNotCounted) {
   const core::FrameView empty;
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS, v1::LAYER_BODIES}) {
     EXPECT_EQ(encoder.encode(layer, empty), nullptr);
-    EXPECT_EQ(encoder.encodeCount(layer), 0u);
+    EXPECT_EQ(encoder.encodeCount({layer}), 0u);
   }
   EXPECT_EQ(encoder.encode(v1::LAYER_FOAM, TestFrame().view), nullptr) << "the frame has none";
   EXPECT_EQ(encoder.encode(v1::LAYER_UNSPECIFIED, TestFrame().view), nullptr) << "no codec for it";
@@ -188,41 +188,33 @@ TEST(FrameEncoding, CountsOneEncodeAFrameWhoeverSharesTheBytes) {
   FrameEncoder encoder;
   const TestFrame test;
   for (std::uint64_t frame = 1; frame <= 3; ++frame) {
-    const core::SharedBytes bytes = encoder.encodeSurface(test.view);
+    const core::SharedBytes bytes = encoder.encode(v1::LAYER_SURFACE, test.view);
     const std::vector<core::SharedBytes> clients(100, bytes);
     for (const core::SharedBytes& client : clients) EXPECT_EQ(client->data(), bytes->data());
-    EXPECT_EQ(encoder.encodeCount(v1::LAYER_SURFACE), frame);
+    EXPECT_EQ(encoder.encodeCount({v1::LAYER_SURFACE}), frame);
   }
-  EXPECT_EQ(encoder.encodeCount(v1::LAYER_PARTICLES), 0u);
+  EXPECT_EQ(encoder.encodeCount({v1::LAYER_PARTICLES}), 0u);
 }
 
-/// A codec with state, as a predicting one would have: whole frames only when asked.
-class AlternatingCodec final : public LayerCodec {
+/// Says what it was asked for.
+class EchoingCodec final : public LayerCodec {
  public:
   v1::Layer layer() const override { return v1::LAYER_SURFACE; }
-  core::SharedBytes encode(const core::FrameView&) override {
-    const std::uint8_t is_key = needs_key_ ? 1 : 0;
-    needs_key_ = false;
-    return core::share({is_key});
+  EncodedFrame encode(const core::FrameView&, bool wants_whole) override {
+    return {wants_whole ? core::share({1}) : nullptr, core::share({0})};
   }
-  void requestKeyframe() override { needs_key_ = true; }
-
- private:
-  bool needs_key_ = true;
 };
 
-TEST(FrameEncoding, LetsAnotherCodecInAndPassesKeyframeRequestsOn) {
+TEST(FrameEncoding, LetsAnotherCodecInAndAsksItForWholeFrames) {
   std::vector<std::unique_ptr<LayerCodec>> codecs;
   codecs.push_back(makeSurfaceFixed16Codec());
-  codecs.push_back(std::make_unique<AlternatingCodec>());
+  codecs.push_back(std::make_unique<EchoingCodec>());
   FrameEncoder encoder(std::move(codecs));
   const core::FrameView frame;
-  EXPECT_EQ(*encoder.encodeSurface(frame), core::Bytes{1});
-  EXPECT_EQ(*encoder.encodeSurface(frame), core::Bytes{0});
-  encoder.requestKeyframe(v1::LAYER_PARTICLES);
-  EXPECT_EQ(*encoder.encodeSurface(frame), core::Bytes{0});
-  encoder.requestKeyframe(v1::LAYER_SURFACE);
-  EXPECT_EQ(*encoder.encodeSurface(frame), core::Bytes{1});
+  EXPECT_EQ(encoder.encode({v1::LAYER_SURFACE}, frame, false).whole, nullptr);
+  EXPECT_EQ(*encoder.encode({v1::LAYER_SURFACE}, frame, true).whole, core::Bytes{1});
+  EXPECT_EQ(encoder.encodeCount({v1::LAYER_SURFACE}), 2u);
+  EXPECT_EQ(encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, frame, true).whole, nullptr) << "no codec for it";
 }
 
 using Damage = void (*)(v1::LayerFrame&);
@@ -301,7 +293,7 @@ TEST(FrameDecoding, RefusesDamagedParticles) {
 TEST(FrameDecoding, RefusesBytesThatAreNoServerMessage) {
   EXPECT_FALSE(parseServerMessage({}));
   const core::Bytes cut = [] {
-    core::Bytes bytes = *FrameEncoder().encodeSurface(TestFrame().view);
+    core::Bytes bytes = *FrameEncoder().encode(v1::LAYER_SURFACE, TestFrame().view);
     bytes.resize(bytes.size() - 1);
     return bytes;
   }();

@@ -11,6 +11,7 @@
 #include <spindrift/stream/server_message.h>
 
 #include "golden_boats.h"
+#include "golden_packed.h"
 
 namespace spindrift::stream {
 namespace {
@@ -55,7 +56,7 @@ core::Bytes surfaceBytes() {
   frame.tick = kTick;
   frame.time_s = kTimeS;
   frame.surface = core::SurfaceView{16, 8.0, 0.0009765625, words};
-  return *FrameEncoder().encodeSurface(frame);
+  return *FrameEncoder().encode(v1::LAYER_SURFACE, frame);
 }
 
 core::Bytes particleBytes() {
@@ -82,7 +83,7 @@ core::Bytes particleBytes() {
   frame.tick = 1234;
   frame.time_s = kTimeS;
   frame.particles = particles;
-  return *FrameEncoder().encodeParticles(frame);
+  return *FrameEncoder().encode(v1::LAYER_PARTICLES, frame);
 }
 
 core::Bytes diagnosticsBytes() {
@@ -296,7 +297,7 @@ std::vector<GoldenCase> goldenCases() {
                       const std::function<void(v1::LayerFrame&)>& damage) {
     return GoldenCase{"bad_" + std::move(name) + ".bin", kBadFrame, because(why), damaged(good, damage)};
   };
-  return {
+  std::vector<GoldenCase> cases = {
       {"surface_16.bin", kOk, surfaceJson(surface), surface},
       {"particles_5.bin", kOk, particleJson(particles), particles},
       {"diagnostics.bin", kOk, diagnosticsJson(), diagnosticsBytes()},
@@ -372,6 +373,8 @@ std::vector<GoldenCase> goldenCases() {
       {"bad_empty.bin", kBadMessage, because("no bytes: no kind of message"), {}},
       {"bad_kind.bin", kBadMessage, because("a kind of message of the future: field 15"), {0x7A, 0x02, 0x08, 0x01}},
   };
+  for (GoldenCase& packed : goldenPackedSurfaces()) cases.push_back(std::move(packed));
+  return cases;
 }
 
 std::string goldenJson(const std::vector<GoldenCase>& cases) {

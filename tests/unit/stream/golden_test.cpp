@@ -25,10 +25,11 @@ std::string readFile(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-bool decodes(const v1::LayerFrame& frame) {
+/// `packed` has read the packed frames before it.
+bool decodes(const v1::LayerFrame& frame, PackedSurfaceDecoder& packed) {
   switch (frame.layer()) {
     case v1::LAYER_SURFACE:
-      return static_cast<bool>(decodeSurface(frame));
+      return static_cast<bool>(frame.has_surface_predicted() ? packed.decode(frame) : decodeSurface(frame));
     case v1::LAYER_FOAM:
       return static_cast<bool>(decodeFoam(frame));
     case v1::LAYER_BODIES:
@@ -69,13 +70,14 @@ TEST_F(Golden, FolderHoldsNoOtherBytes) {
 }
 
 TEST_F(Golden, FilesGetTheVerdictTheyAreNamedFor) {
+  PackedSurfaceDecoder packed;
   for (const GoldenCase& golden : goldenCases()) {
     const std::string frozen = readFile(goldenFolder() / golden.file);
     const auto message = parseServerMessage({reinterpret_cast<const std::uint8_t*>(frozen.data()), frozen.size()});
     ASSERT_EQ(static_cast<bool>(message), golden.verdict != GoldenVerdict::kBadMessage) << golden.file;
     if (!message || !message->has_frame()) continue;
     const v1::LayerFrame& frame = message->frame();
-    EXPECT_EQ(decodes(frame), golden.verdict == GoldenVerdict::kOk) << golden.file;
+    EXPECT_EQ(decodes(frame, packed), golden.verdict == GoldenVerdict::kOk) << golden.file;
   }
 }
 

@@ -198,7 +198,8 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
     if (random.below(2) == 0) {
       frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
     }
-    if (const auto surface = decodeSurface(frame)) {
+    PackedSurfaceDecoder packed;
+    if (const auto surface = frame.has_surface_predicted() ? packed.decode(frame) : decodeSurface(frame)) {
       ++decoded_count;
       ASSERT_TRUE(allFinite(surface->elevation_m)) << "case " << i;
       ASSERT_EQ(surface->elevation_m.size(), std::size_t{surface->resolution_count} * surface->resolution_count);

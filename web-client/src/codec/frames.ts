@@ -1,6 +1,7 @@
 // A LayerFrame → its header as plain data and its payload as a view, or the reason why it cannot be trusted. Pure.
 import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
 import { crc32c } from "./crc32c";
+import { kWeightCount } from "./surface_predictor";
 
 /** Largest grid side and counts this client takes; all far above what a server sends. */
 export const kMaxResolutionCount = 4096;
@@ -45,6 +46,17 @@ export interface BodiesHeader extends FrameHeader {
   count: number;
 }
 
+/** A surface that takes the frames before it to be read: see SurfaceUnpacker. */
+export interface PackedSurface {
+  kind: "packedSurface";
+  header: SurfaceHeader;
+  /** The frame that it builds on; undefined: a keyframe. */
+  baseTick: bigint | undefined;
+  weights: number[];
+  earlierWeights: number[];
+  payload: Uint8Array;
+}
+
 export type ParsedFrame =
   | { kind: "surface"; header: SurfaceHeader; payload: Uint8Array }
   | { kind: "particles"; header: ParticleHeader; payload: Uint8Array }
@@ -64,13 +76,19 @@ function isSize(value: number): boolean {
   return value > 0 && value <= kLargest;
 }
 
-/** Why layer, time or payload of the frame cannot be trusted, or undefined. The checksum comes last: it costs most. */
-function frameFault(frame: LayerFrame, layer: Layer, what: string, wantedBytes: number): string | undefined {
+/** Why a plain frame cannot be trusted, or undefined. */
+function plainFault(frame: LayerFrame, layer: Layer, what: string, wantedBytes: number): string | undefined {
+  const { payload } = frame;
+  if (payload.length !== wantedBytes) return `${what}: payload of ${payload.length} bytes, header says ${wantedBytes}`;
+  if (!frame.keyframe) return "a frame on top of another one, but this codec has only keyframes";
+  return frameFault(frame, layer, what);
+}
+
+/** Why layer, time or payload of a frame cannot be trusted, or undefined. The checksum comes last: it costs most. */
+function frameFault(frame: LayerFrame, layer: Layer, what: string): string | undefined {
   const { payload } = frame;
   if (frame.layer !== layer) return `layer ${frame.layer} carries ${what}`;
-  if (payload.length !== wantedBytes) return `${what}: payload of ${payload.length} bytes, header says ${wantedBytes}`;
   if (!Number.isFinite(frame.timeS)) return `time_s ${frame.timeS} is not finite`;
-  if (!frame.keyframe) return "a frame on top of another one, but this codec has only keyframes";
   const crc = crc32c(payload);
   return crc === frame.crc32c ? undefined : `crc32c 0x${crc.toString(16)}, frame says 0x${frame.crc32c.toString(16)}`;
 }
@@ -81,7 +99,7 @@ function gridFault(what: string, resolutionCount: number, sideM: number): string
   return isSize(sideM) ? undefined : `${what} side ${sideM} m has to be above 0`;
 }
 
-export function parseFrame(frame: LayerFrame): ParsedFrame | Malformed {
+export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Malformed {
   const { tick, timeS, payload, codec } = frame;
   switch (codec.case) {
     case "surfaceFixed16": {
@@ -89,18 +107,34 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | Malformed {
       const fault =
         gridFault("surface", resolutionCount, sideM) ??
         (isSize(quantumM) ? undefined : `surface quantum ${quantumM} m has to be above 0`) ??
-        frameFault(frame, Layer.SURFACE, "a surface", 2 * resolutionCount * resolutionCount);
+        plainFault(frame, Layer.SURFACE, "a surface", 2 * resolutionCount * resolutionCount);
       return fault ? malformed(fault) : { kind: "surface", header: { tick, timeS, resolutionCount, sideM, quantumM }, payload };
+    }
+    case "surfacePredicted": {
+      const { resolutionCount, sideM, quantumM, weights, earlierWeights } = codec.value;
+      const weightsFault =
+        weights.length !== kWeightCount || (frame.keyframe && earlierWeights.length !== kWeightCount)
+          ? `surface of ${weights.length} and ${earlierWeights.length} weights, there have to be ${kWeightCount}`
+          : undefined;
+      const fault =
+        gridFault("surface", resolutionCount, sideM) ??
+        (isSize(quantumM) ? undefined : `surface quantum ${quantumM} m has to be above 0`) ??
+        weightsFault ??
+        frameFault(frame, Layer.SURFACE, "a surface");
+      if (fault) return malformed(fault);
+      const baseTick = frame.keyframe ? undefined : frame.baseTick;
+      const header = { tick, timeS, resolutionCount, sideM, quantumM };
+      return { kind: "packedSurface", header, baseTick, weights, earlierWeights, payload };
     }
     case "foamFixed8": {
       const { resolutionCount, sideM } = codec.value;
-      const fault = gridFault("foam", resolutionCount, sideM) ?? frameFault(frame, Layer.FOAM, "foam", resolutionCount * resolutionCount);
+      const fault = gridFault("foam", resolutionCount, sideM) ?? plainFault(frame, Layer.FOAM, "foam", resolutionCount * resolutionCount);
       return fault ? malformed(fault) : { kind: "foam", header: { tick, timeS, resolutionCount, sideM }, payload };
     }
     case "bodiesFixed28": {
       const { count } = codec.value;
       if (count > kMaxBodyCount) return malformed(`${count} bodies, at most ${kMaxBodyCount} are taken`);
-      const fault = frameFault(frame, Layer.BODIES, "bodies", count * kBodyBytes);
+      const fault = plainFault(frame, Layer.BODIES, "bodies", count * kBodyBytes);
       return fault ? malformed(fault) : { kind: "bodies", header: { tick, timeS, count }, payload };
     }
     case "particlesFixed12": {
@@ -116,7 +150,7 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | Malformed {
       }
       if (!(maxSpeedMps >= 0 && maxSpeedMps <= kLargest)) return malformed(`particle speed bound ${maxSpeedMps} m/s`);
       if (!isSize(radiusM)) return malformed(`particle radius ${radiusM} m has to be above 0`);
-      const fault = frameFault(frame, Layer.PARTICLES, "particles", count * kParticleBytes);
+      const fault = plainFault(frame, Layer.PARTICLES, "particles", count * kParticleBytes);
       return fault ? malformed(fault) : { kind: "particles", header: { tick, timeS, count, minM, maxM, maxSpeedMps, radiusM }, payload };
     }
     case undefined:

@@ -3,7 +3,7 @@
 import { fromBinary } from "@bufbuild/protobuf";
 
 import { RejectReason, RoomEventKind, ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
-import { malformed, parseFrame, type Malformed, type ParsedFrame } from "./frames";
+import { malformed, parseFrame, type Malformed, type PackedSurface, type ParsedFrame } from "./frames";
 import { readBoatList, readGreeting, type BoatDetail, type GreetingInfo } from "./greeting";
 
 export interface DiagnosticsInfo {
@@ -37,6 +37,7 @@ export type RoomEventName = "recovered" | "reset" | "other";
 export type ParsedMessage =
   | { kind: "greeting"; greeting: GreetingInfo }
   | ParsedFrame
+  | PackedSurface
   | { kind: "diagnostics"; diagnostics: DiagnosticsInfo }
   | { kind: "ack"; commandId: bigint; appliedTick: bigint; boatId: number }
   | { kind: "reject"; commandId: bigint; reason: string; field: string; message: string }

@@ -4,8 +4,9 @@ import { create, toBinary } from "@bufbuild/protobuf";
 
 import type { ParsedFrame } from "../codec/frames";
 import { kLayers, kWireMajor, kWireMinor, type BoatDetail, type GreetingInfo } from "../codec/greeting";
+import { SurfaceUnpacker } from "../codec/packed_surface";
 import { parse, type DiagnosticsInfo, type RoomEventName } from "../codec/parse";
-import { ClientMessageSchema, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
+import { ClientMessageSchema, Packing, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import { LinkMeter } from "./link_meter";
 import type { CommandAction, ConnectionState, LinkStats } from "./messages";
@@ -21,6 +22,8 @@ const kMaxPendingCount = 64;
 const kMaxUnsentBytes = 256 * 1024;
 const kDiagnosticsRateHz = 10;
 const kFrameRateHz = 60;
+/** A keyframe is asked for at most this often. */
+const kKeyframeEveryMs = 1000;
 /** Live for this long = a good connection: the next loss starts with the shortest wait again. */
 const kSettledMs = 5000;
 
@@ -73,6 +76,8 @@ export class Connection {
   private visible = true;
   private readonly pendingSinceMs = new Map<number, number>();
   private readonly meter: LinkMeter;
+  private readonly unpacker = new SurfaceUnpacker();
+  private askedForKeyframeMs = -Infinity;
 
   constructor(
     private readonly url: string,
@@ -158,12 +163,17 @@ export class Connection {
         return;
       case "greeting":
         return this.greeted(parsed.greeting);
+      case "packedSurface": {
+        const unpacked = this.unpacker.unpack(parsed);
+        if (unpacked.kind === "surface") return this.gotFrame(unpacked);
+        if (unpacked.kind === "malformed") this.meter.malformed(unpacked.reason);
+        return this.askForKeyframe();
+      }
       case "surface":
       case "particles":
       case "foam":
       case "bodies":
-        this.meter.frame(parsed.kind, parsed.header.tick);
-        return this.events.frame(parsed);
+        return this.gotFrame(parsed);
       case "diagnostics":
         this.meter.diagnostics();
         return this.events.diagnostics(parsed.diagnostics);
@@ -190,6 +200,19 @@ export class Connection {
     }
   }
 
+  private gotFrame(frame: ParsedFrame): void {
+    this.meter.frame(frame.kind, frame.header.tick);
+    this.events.frame(frame);
+  }
+
+  /** Subscribing again begins with one. */
+  private askForKeyframe(): void {
+    const nowMs = this.world.nowMs();
+    if (nowMs - this.askedForKeyframeMs < kKeyframeEveryMs) return;
+    this.askedForKeyframeMs = nowMs;
+    this.subscribe();
+  }
+
   private greeted(greeting: GreetingInfo): void {
     if (greeting.versionMajor !== kWireMajor)
       return this.refuse(`the server speaks version ${greeting.versionMajor}.${greeting.versionMinor} of the wire, this page ${kWireMajor}.${kWireMinor}; reload the page`);
@@ -210,7 +233,8 @@ export class Connection {
     for (const layer of this.greeting.layers) {
       const rateHz = layer === "diagnostics" ? Math.min(kDiagnosticsRateHz, frameRateHz) : frameRateHz;
       const maxRateHz = this.visible || layer === "diagnostics" ? rateHz : 0;
-      this.send(create(ClientMessageSchema, { message: { case: "subscribe", value: { layer: kLayers[layer], maxRateHz } } }));
+      const value = { layer: kLayers[layer], maxRateHz, packing: Packing.PACKED };
+      this.send(create(ClientMessageSchema, { message: { case: "subscribe", value } }));
     }
   }
 
@@ -260,6 +284,7 @@ export class Connection {
     const socket = this.socket;
     this.socket = undefined;
     this.greeting = undefined;
+    this.unpacker.forget();
     this.meter.forgetRoundTrips();
     if (!socket) return;
     socket.onopen = socket.onmessage = socket.onclose = socket.onerror = null;

@@ -25,6 +25,12 @@ using SessionId = std::uint64_t;
 using LayerIndex = std::uint32_t;
 inline constexpr LayerIndex kMaxLayerCount = 16;
 
+/// One frame of a layer in the forms that its watchers need; either may be null, not both.
+struct LayerBytes {
+  core::SharedBytes whole;       ///< stands by itself
+  core::SharedBytes continuing;  ///< needs the frame that was published before it
+};
+
 /// WebSocket close codes that this server sends (RFC 6455 section 7.4).
 enum class CloseCode : std::uint16_t {
   kNormal = 1000,
@@ -71,8 +77,13 @@ class Hub {
 
   /// Data plane: one write in flight and one newest slot per layer; an unsent older frame in the slot is dropped and
   /// counted. `room` is the group the sessions joined; only sessions that watch `layer` get it, no faster than the rate
-  /// they asked for (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted).
-  virtual void publish(const std::string& room, LayerIndex layer, core::SharedBytes frame) = 0;
+  /// they asked for (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted). A
+  /// session that has the frame before gets the continuing form where there is one, any other the whole one; where that
+  /// is missing it gets nothing, and wantsWhole() says so.
+  virtual void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) = 0;
+
+  /// Whether a session that could take the next frame needs it whole: it just came, lost one, or takes only some.
+  virtual bool wantsWhole(const std::string& room, LayerIndex layer) const = 0;
 
   /// Puts the session into a room (it leaves the one before; its watches follow, unsent frames do not).
   virtual void join(SessionId session, const std::string& room) = 0;

@@ -29,6 +29,7 @@ struct Hello {
 struct Subscribe {
   v1::Layer layer = v1::LAYER_UNSPECIFIED;  ///< a declared layer, never UNSPECIFIED; the room may still not send it
   double max_rate_hz = 0.0;                 ///< 0..240; 0 = stop
+  v1::Packing packing = v1::PACKING_PLAIN;
 };
 
 struct Ping {

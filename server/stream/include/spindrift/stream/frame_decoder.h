@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <spindrift/core/bytes.h>
@@ -61,6 +62,23 @@ core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes);
 /// Decodes a frame of the surface layer. Error kInvalidInput names what is wrong: another layer or codec, a resolution
 /// of 0 or over kSurfaceMaxResolutionCount, payload length, checksum, numbers not finite or out of bounds.
 core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame);
+
+/// Reads the packed surface, whose frames build on those before: keeps the last two. One instance a subscription.
+class PackedSurfaceDecoder {
+ public:
+  PackedSurfaceDecoder();
+  ~PackedSurfaceDecoder();
+  PackedSurfaceDecoder(const PackedSurfaceDecoder&) = delete;
+  PackedSurfaceDecoder& operator=(const PackedSurfaceDecoder&) = delete;
+
+  /// Errors as decodeSurface()'s; kUnavailable: the frame builds on one that is not here. After an error only a
+  /// keyframe helps: subscribe again.
+  core::Result<SurfaceSamples> decode(const v1::LayerFrame& frame);
+
+ private:
+  struct History;
+  std::unique_ptr<History> history_;
+};
 
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is fine).
 core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame);

@@ -1,0 +1,83 @@
+// A heightfield from what is known of it: its two frames before and the samples already coded of this one. The wave
+// equation says how: eta(t + dt) depends on eta(t) around the place and on eta(t - dt). The weights are not derived
+// from the scene but fitted to each frame (least squares), which takes in depth, damping, the frame interval and the
+// noise of the quanta. Whole numbers only, so that every reader comes to the same.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "residual_coder.h"
+
+namespace spindrift::stream {
+
+/// Weights in units of 1 / 4096, of sums over: the place one frame before (kBefore), its 4 nearest, its 4 diagonal
+/// neighbours, the 4 two cells away along the axes; the place two frames before and its 4 nearest and 4 diagonal
+/// neighbours; in this frame the neighbours at -x, at -z, and at both.
+struct SurfaceWeights {
+  enum Term : std::size_t {
+    kBefore,
+    kBeforeNearest,
+    kBeforeDiagonal,
+    kBeforeFar,
+    kEarlier,
+    kEarlierNearest,
+    kEarlierDiagonal,
+    kWest,
+    kNorth,
+    kNorthWest,
+    kTermCount
+  };
+  std::array<std::int32_t, kTermCount> of{};
+};
+inline constexpr int kWeightBits = 12;
+
+/// Samples of a square grid in quanta, row by row, with a border of two that repeats the outermost ones.
+class SurfacePlane {
+ public:
+  static constexpr std::size_t kBorder = 2;
+
+  SurfacePlane() = default;
+  /// All samples 0.
+  explicit SurfacePlane(std::size_t resolution_count);
+
+  [[nodiscard]] std::size_t resolution() const { return n_; }
+  [[nodiscard]] std::size_t stride() const { return n_ + 2 * kBorder; }
+  /// Row z from its sample 0 on; samples -2 to n + 1 are there, rows -2 to n + 1 likewise.
+  [[nodiscard]] std::int16_t* row(std::ptrdiff_t z) { return samples_.data() + offsetOf(z); }
+  [[nodiscard]] const std::int16_t* row(std::ptrdiff_t z) const { return samples_.data() + offsetOf(z); }
+  /// n * n samples into the plane, borders as well.
+  void assign(std::span<const std::int16_t> samples);
+  /// Writes the border from the samples inside.
+  void fillBorder();
+
+ private:
+  [[nodiscard]] std::size_t offsetOf(std::ptrdiff_t z) const {
+    return static_cast<std::size_t>(z + static_cast<std::ptrdiff_t>(kBorder)) * stride() + kBorder;
+  }
+
+  std::size_t n_ = 0;
+  std::vector<std::int16_t> samples_;
+};
+
+/// The frames that a plane is predicted from. Null where there is none: its weights are 0 then.
+struct SurfaceHistory {
+  const SurfacePlane* before = nullptr;
+  const SurfacePlane* earlier = nullptr;
+};
+
+/// The weights that fit `plane` best.
+SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history);
+
+/// Codes a plane, in tiles of 8 x 8, row by row.
+void encodePlane(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
+                 ResidualEncoder& out);
+
+/// The plane again. Sums wrap around at 32 bits as they do in every reader, so damaged input gives wrong samples,
+/// nothing worse.
+void decodePlane(ResidualDecoder& in, const SurfaceHistory& history, const SurfaceWeights& weights,
+                 SurfacePlane& plane);
+
+}  // namespace spindrift::stream

@@ -1,0 +1,152 @@
+// The packed streams over a real connection: every frame can be read, whoever comes when.
+#include <map>
+
+#include "server_fixture.h"
+
+namespace spindrift::test {
+namespace {
+
+class PackedFrames : public WaveServerTest {
+ protected:
+  static void watch(ScriptedClient& one, double max_rate_hz = 60.0) {
+    one.subscribe(v1::LAYER_SURFACE, max_rate_hz, v1::PACKING_PACKED);
+  }
+};
+
+TEST_F(PackedFrames, CanAllBeReadAndMostBuildOnTheOneBefore) {
+  ScriptedClient one = client();
+  watch(one);
+  one.send([] {
+    v1::ClientMessage message;
+    *message.mutable_command() = splash();
+    message.mutable_command()->set_command_id(77);
+    return message;
+  }());
+  stream::PackedSurfaceDecoder decoder;
+  int continuing_count = 0;
+  double highest_m = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const auto frame = one.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(frame);
+    if (i == 0) {
+      EXPECT_TRUE(frame->keyframe()) << "a newcomer has nothing to build on";
+    }
+    continuing_count += frame->keyframe() ? 0 : 1;
+    const auto surface = decoder.decode(*frame);
+    ASSERT_TRUE(surface) << surface.error().message;
+    for (const float eta_m : surface->elevation_m) highest_m = std::max<double>(highest_m, eta_m);
+  }
+  EXPECT_GT(continuing_count, 0);
+  EXPECT_GT(highest_m, 0.01) << "the splash is to be seen";
+}
+
+TEST_F(PackedFrames, HoldTheSamplesOfThePlainOnes) {
+  ScriptedClient packed = client();
+  ScriptedClient plain = client();
+  ASSERT_TRUE(packed.apply(splash()));
+  watch(packed);
+  plain.subscribe(v1::LAYER_SURFACE);
+  stream::PackedSurfaceDecoder decoder;
+  std::map<std::uint64_t, std::vector<float>> by_tick;
+  for (int i = 0; i < 20; ++i) {
+    const auto frame = packed.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(frame);
+    auto surface = decoder.decode(*frame);
+    ASSERT_TRUE(surface) << surface.error().message;
+    by_tick[frame->tick()] = std::move(surface->elevation_m);
+  }
+  int compared_count = 0;
+  for (int i = 0; i < 20; ++i) {
+    const auto frame = plain.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(frame);
+    const auto surface = stream::decodeSurface(*frame);
+    ASSERT_TRUE(surface) << "the other packing does not reach whoever asked for plain";
+    const auto same = by_tick.find(frame->tick());
+    if (same == by_tick.end()) continue;
+    EXPECT_EQ(same->second, surface->elevation_m) << "tick " << frame->tick();
+    ++compared_count;
+  }
+  EXPECT_GT(compared_count, 0);
+}
+
+TEST_F(PackedFrames, ALatecomerBeginsWithAKeyframeAndDisturbsNobody) {
+  ScriptedClient early = client();
+  watch(early);
+  stream::PackedSurfaceDecoder early_decoder, late_decoder;
+  const auto readOne = [](ScriptedClient& one, stream::PackedSurfaceDecoder& decoder) {
+    const auto frame = one.nextFrame(v1::LAYER_SURFACE);
+    EXPECT_TRUE(frame);
+    if (frame) {
+      const auto surface = decoder.decode(*frame);
+      EXPECT_TRUE(surface) << surface.error().message;
+    }
+    return frame;
+  };
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(readOne(early, early_decoder));
+  ScriptedClient late = client();
+  watch(late);
+  const auto first = readOne(late, late_decoder);
+  ASSERT_TRUE(first);
+  EXPECT_TRUE(first->keyframe());
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(readOne(late, late_decoder));
+    ASSERT_TRUE(readOne(early, early_decoder));
+  }
+}
+
+TEST_F(PackedFrames, AtALowerRateAreWholeEachTime) {
+  ScriptedClient slow = client();
+  watch(slow, 5.0);
+  ScriptedClient fast = client();
+  watch(fast);
+  stream::PackedSurfaceDecoder decoder;
+  std::uint64_t last_tick = 0;
+  for (int i = 0; i < 5; ++i) {
+    const auto frame = slow.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(frame);
+    EXPECT_TRUE(frame->keyframe());
+    const auto surface = decoder.decode(*frame);
+    ASSERT_TRUE(surface) << surface.error().message;
+    EXPECT_GT(frame->tick(), last_tick + (last_tick > 0 ? 2 : 0));
+    last_tick = frame->tick();
+  }
+}
+
+TEST_F(PackedFrames, AskingForTheOtherPackingStopsThisOne) {
+  ScriptedClient one = client();
+  watch(one);
+  ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
+  one.subscribe(v1::LAYER_SURFACE);
+  ASSERT_TRUE(one.barrier());
+  for (int i = 0; i < 5; ++i) {
+    const auto frame = one.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(frame);
+    EXPECT_TRUE(frame->has_surface_fixed16());
+  }
+}
+
+TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotForNobody) {
+  std::vector<ScriptedClient> clients;
+  for (int i = 0; i < 6; ++i) clients.push_back(client());
+  const auto begin = clients[0].apply(setSpeed(1.0));
+  ASSERT_TRUE(begin);
+  for (ScriptedClient& one : clients) watch(one);
+  for (int i = 0; i < 15; ++i) {
+    for (ScriptedClient& one : clients) ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
+  }
+  const auto end = clients[0].apply(setSpeed(1.0));
+  ASSERT_TRUE(end);
+  const stream::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
+  EXPECT_GE(server().encoder().encodeCount("main", packed), 15u);
+  EXPECT_LE(server().encoder().encodeCount("main", packed), *end - *begin + 1);
+  EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), 0u) << "nobody asked for plain frames";
+}
+
+TEST_F(PackedFrames, ForALayerWithoutPackedFormAreThePlainOnes) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_DIAGNOSTICS, 60.0, v1::PACKING_PACKED);
+  EXPECT_TRUE(one.waitFor(v1::ServerMessage::kDiagnostics));
+}
+
+}  // namespace
+}  // namespace spindrift::test

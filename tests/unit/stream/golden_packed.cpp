@@ -1,0 +1,88 @@
+#include "golden_packed.h"
+
+#include <cstdio>
+#include <utility>
+
+#include <spindrift/stream/crc32c.h>
+#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/stream/frame_encoder.h>
+
+namespace spindrift::stream {
+namespace {
+
+constexpr std::uint32_t kSide = 20;  // tiles of 8 do not fit evenly
+
+/// Whole numbers, so that every machine has the same: a slope that moves, noise in one corner, a spike.
+std::vector<std::uint32_t> wordsAt(std::int32_t step) {
+  std::vector<std::uint32_t> words(kSide * kSide / 2);
+  std::uint32_t noise = 1u + static_cast<std::uint32_t>(step);
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(kSide * kSide); ++i) {
+    const std::int32_t x = i % 20, z = i / 20;
+    noise = noise * 1664525u + 1013904223u;
+    std::int32_t value = (x - 2 * step) * (x - 2 * step) - z * (12 - step);
+    if (x > 12 && z > 12) value += static_cast<std::int32_t>(noise >> 20) - 2048;
+    if (x < 4 && z < 4) value = 0;
+    if (i == 150) value = step == 1 ? 32767 : -32768;
+    words[static_cast<std::size_t>(i) / 2] |=
+        static_cast<std::uint32_t>(static_cast<std::uint16_t>(static_cast<std::int16_t>(value))) << (16 * (i % 2));
+  }
+  return words;
+}
+
+std::string jsonOf(const v1::LayerFrame& frame, const SurfaceSamples& samples, const std::string& follows) {
+  std::string text =
+      "\"kind\": \"frame\", \"layer\": \"LAYER_SURFACE\", \"packing\": \"PACKING_PACKED\", \"tick\": \"" +
+      std::to_string(frame.tick()) + "\", \"time_s\": 20.5, \"keyframe\": " + (frame.keyframe() ? "true" : "false") +
+      ",\n    \"follows\": \"" + follows +
+      "\", \"resolution_count\": 20, \"side_m\": 8, \"quantum_m\": 0.0009765625,\n    \"elevation_m\": [";
+  for (std::size_t i = 0; i < samples.elevation_m.size(); ++i) {
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%s%.9g", i > 0 ? ", " : "", static_cast<double>(samples.elevation_m[i]));
+    text += buffer;
+  }
+  return text + "]";
+}
+
+GoldenCase damagedCase(const std::string& name, const std::string& why, const core::Bytes& good,
+                       void (*damage)(v1::LayerFrame&)) {
+  v1::ServerMessage message = *parseServerMessage(good);
+  v1::LayerFrame& frame = *message.mutable_frame();
+  damage(frame);
+  frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+  core::Bytes bytes(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(bytes.data());
+  return {name, GoldenVerdict::kBadFrame, "\"why\": \"" + why + "\"", std::move(bytes)};
+}
+
+}  // namespace
+
+std::vector<GoldenCase> goldenPackedSurfaces() {
+  FrameEncoder encoder;
+  PackedSurfaceDecoder decoder;
+  std::vector<GoldenCase> cases;
+  for (std::int32_t step = 0; step < 3; ++step) {
+    const std::vector<std::uint32_t> words = wordsAt(step);
+    core::FrameView view;
+    view.tick = 100 + 2 * static_cast<std::uint64_t>(step);
+    view.time_s = 20.5;
+    view.surface = core::SurfaceView{kSide, 8.0, 0.0009765625, words};
+    const EncodedFrame encoded = encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, false);
+    const core::Bytes& bytes = encoded.whole ? *encoded.whole : *encoded.continuing;
+    const v1::LayerFrame frame = parseServerMessage(bytes)->frame();
+    const std::string follows = step > 0 ? cases.back().file : "";
+    cases.push_back({"surface_packed_" + std::to_string(step) + ".bin", GoldenVerdict::kOk,
+                     jsonOf(frame, *decoder.decode(frame), follows), bytes});
+  }
+  const core::Bytes& key = cases.front().bytes;
+  cases.push_back(damagedCase("bad_surface_packed_cut.bin",
+                              "the packed payload is cut in half, checksum of what is there", key,
+                              [](v1::LayerFrame& f) { f.mutable_payload()->resize(f.payload().size() / 2); }));
+  cases.push_back(
+      damagedCase("bad_surface_packed_weights.bin", "nine weights instead of ten", key,
+                  [](v1::LayerFrame& f) { f.mutable_surface_predicted()->mutable_weights()->RemoveLast(); }));
+  cases.push_back(damagedCase("bad_surface_packed_longer.bin", "a byte too many behind the raw bits", key,
+                              [](v1::LayerFrame& f) { f.mutable_payload()->push_back('\0'); }));
+  return cases;
+}
+
+}  // namespace spindrift::stream
