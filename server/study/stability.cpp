@@ -48,8 +48,8 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
     const auto begin = std::chrono::steady_clock::now();
     water.step();
     ctx.finish();
-    out.slowest_step_s =
-        std::max(out.slowest_step_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    const double tick_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    out.slowest_step_s = std::max(out.slowest_step_s, tick_s / std::max(water.derived().substeps_count, 1u));
     (void)water.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
     for (const core::FrameView& frame : water.takeFrames())
       out.are_frames_finite = out.are_frames_finite && isFinite(frame);

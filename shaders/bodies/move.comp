@@ -3,7 +3,8 @@
 // Equations: buoyancy from HULL_COLUMNS columns of water under the hull, each submerged to where the surface would be without the
 // hull's own dent (elevation + own head): draught at rest = density ratio * height. Heave, pitch and roll are damped oscillators
 // about it, omega^2 = g/draught. Thrust balances quadratic drag, relative to the moving water, at full speed; the rudder turns a
-// moving boat on a circle of about two lengths; the surface's slope pulls. Contacts: three circles along each hull against other
+// moving boat on a circle of about two lengths; the surface's slope pulls. A boat that waves throw up falls freely: of all this it
+// has its share that the water carries, twice that share while it is below a half. Contacts: three circles along each hull against other
 // boats, obstacles, shallow ground and sides; overlap is shared half and half, the approaching speed is lost.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
 // variants: WAVE=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
@@ -88,13 +89,15 @@ float floatOnWater(inout BoatState b) {
     }
   }
   const float columns = float(kAlong * kAcross);
+  const float hold = clamp(2.0 * lift / (columns * draught_m), 0.0, 1.0);
+  b.aloft = 1.0 - hold;
   const float omega = sqrt(g / draught_m);
   const vec2 inertia = 12.0 / (b.hull_m.xy * b.hull_m.xy + b.hull_m.z * b.hull_m.z);
   const float dt_s = sim.tick_s;
   b.speed_mps.z += dt_s * g * (lift / (columns * draught_m) - 1.0);
-  b.speed_mps.z = mix(rise_mps / columns, b.speed_mps.z, exp(-2.0 * kHeaveDamping * omega * dt_s));
+  b.speed_mps.z = mix(rise_mps / columns, b.speed_mps.z, exp(-2.0 * kHeaveDamping * omega * dt_s * hold));
   b.tilt_rate += dt_s * g / (columns * draught_m) * inertia * vec2(lever.x, -lever.y);
-  b.tilt_rate *= exp(-2.0 * kTiltDamping * omega * dt_s);
+  b.tilt_rate *= exp(-2.0 * kTiltDamping * omega * dt_s * hold);
   b.tilt = clamp(b.tilt + dt_s * b.tilt_rate, vec2(-0.6), vec2(0.6));
   b.centre_m.y += dt_s * b.speed_mps.z;
   return slope.x / slope.y;
@@ -102,6 +105,7 @@ float floatOnWater(inout BoatState b) {
 
 void drive(inout BoatState b, float slope) {
   const float dt_s = sim.tick_s;
+  const float hold = 1.0 - b.aloft;
   vec2 flow_mps;
   surfaceUnder(b.centre_m.xz, flow_mps);
   const vec2 f = forwardOf(b.heading);
@@ -109,12 +113,12 @@ void drive(inout BoatState b, float slope) {
   const float throttle = b.control.x < 0.0 ? kReverseShare * b.control.x : b.control.x;
   const float drag_pm = kDragPerLength / b.hull_m.x;
   vec2 relative_mps = b.speed_mps.xy - water_mps;
-  relative_mps.x += dt_s * (drag_pm * b.full_speed_mps * b.full_speed_mps * throttle - sim.gravity_mps2 * slope);
-  relative_mps.x /= 1.0 + dt_s * drag_pm * abs(relative_mps.x);
-  relative_mps.y *= exp(-dt_s * (kSwayDrag_per_s + abs(relative_mps.y) / b.hull_m.y));
+  relative_mps.x += hold * dt_s * (drag_pm * b.full_speed_mps * b.full_speed_mps * throttle - sim.gravity_mps2 * slope);
+  relative_mps.x /= 1.0 + hold * dt_s * drag_pm * abs(relative_mps.x);
+  relative_mps.y *= exp(-hold * dt_s * (kSwayDrag_per_s + abs(relative_mps.y) / b.hull_m.y));
   b.speed_mps.xy = relative_mps + water_mps;
   const float yaw = b.control.y * (relative_mps.x / (kTurnLengths * b.hull_m.x) + kWashYaw_per_s * abs(throttle));
-  b.yaw_rate = mix(yaw, b.yaw_rate, exp(-kYawRate_per_s * dt_s));
+  b.yaw_rate = mix(yaw, b.yaw_rate, exp(-kYawRate_per_s * hold * dt_s));
   // The heading turns under a velocity that stays; sway drag then takes the boat along.
   const vec2 velocity_mps = velocityOf(b);
   b.heading += dt_s * b.yaw_rate;
@@ -212,4 +216,5 @@ void main() {
   boats[at + 1u] = vec4(b.tilt, b.age_s, b.id);
   boats[at + 2u] = vec4(b.speed_mps, b.yaw_rate);
   boats[at + 3u] = vec4(b.tilt_rate, b.control);
+  boats[at + 5u] = vec4(b.full_speed_mps, b.aloft, 0.0, 0.0);
 }

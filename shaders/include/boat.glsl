@@ -17,10 +17,11 @@ struct BoatState {
   vec2 control;     // throttle, rudder
   vec4 hull_m;      // length, beam, height, draught
   float full_speed_mps;
+  float aloft;      // 0: the water carries it; 1: it flies and neither feels the water nor presses on it
 };
 
 BoatState unpackBoat(vec4 t[BOAT_TEXELS]) {
-  return BoatState(t[0].xyz, t[0].w, t[1].xy, t[1].z, t[1].w, t[2].xyz, t[2].w, t[3].xy, t[3].zw, t[4], t[5].x);
+  return BoatState(t[0].xyz, t[0].w, t[1].xy, t[1].z, t[1].w, t[2].xyz, t[2].w, t[3].xy, t[3].zw, t[4], t[5].x, t[5].y);
 }
 
 vec2 forwardOf(float heading) { return vec2(cos(heading), sin(heading)); }
@@ -35,7 +36,7 @@ float hullHead(BoatState b, vec2 at_m) {
   if (max(abs(q.x), abs(q.y)) > HULL_REACH) return 0.0;
   const vec2 q2 = q * q;
   const float volume_share = 0.25 * b.hull_m.x * b.hull_m.y / (half_m.x * half_m.y) / (0.9064 * 0.9064);
-  return b.hull_m.w * volume_share * exp(-q2.x * q2.x - q2.y * q2.y) * min(b.age_s / BOAT_SETTLING_S, 1.0);
+  return b.hull_m.w * volume_share * exp(-q2.x * q2.x - q2.y * q2.y) * min(b.age_s / BOAT_SETTLING_S, 1.0) * (1.0 - b.aloft);
 }
 
 #endif

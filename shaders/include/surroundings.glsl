@@ -37,7 +37,8 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
   if (gap_m < 0.0) {
     const float approach_mps = floor_velocity_mps.y - v.y;
     if (approach_mps > 0.0 || gap_m < -sim.spacing_m) {
-      absorb(x.xz, max(approach_mps, 0.0));
+      // With its own speed: what rises to meet it would push itself, and more than its own weight where much falls.
+      absorb(x.xz, max(-v.y, 0.0));
       return false;
     }
     x.y -= gap_m;  // thrown out by the water below it

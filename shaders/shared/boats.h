@@ -5,7 +5,7 @@
 //   2  speed forward, to starboard, up [m/s], yaw rate [rad/s]
 //   3  pitch rate, roll rate [rad/s], throttle, rudder [-1..1]
 //   4  length, beam, height, draught at rest [m]
-//   5  full speed [m/s], 0, 0, 0
+//   5  full speed [m/s], share of its hold on the water that it lacks because it flies [0..1], 0, 0
 #ifndef SPINDRIFT_SHARED_BOATS_H
 #define SPINDRIFT_SHARED_BOATS_H
 

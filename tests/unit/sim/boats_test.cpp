@@ -215,6 +215,27 @@ TEST_F(BoatsOnDevice, ABoatThatIsNotANumberIsMendedAndHarmsNobody) {
   EXPECT_EQ(sim.recoveredCount(), recovered);
 }
 
+TEST_F(BoatsOnDevice, ABoatInTheAirFallsFreelyAndLeavesTheWaterAlone) {
+  core::Scene scene = boatScene();
+  scene.boats->boats = {core::Boat{}};
+  WaterSim& sim = make(scene);
+  StateCopy state = sim.copyState();
+  state.boats[1] = 10.0f;
+  sim.setState(state);
+  ASSERT_TRUE(sim.controlBoat(1, 1.0, 1.0));
+  for (int i = 0; i < 60; ++i) sim.step();
+  const BoatPose flying = pose(sim);
+  EXPECT_NEAR(flying.y_m, 10.0 - 0.5 * 9.81, 0.1);
+  EXPECT_EQ(flying.forward_mps, 0.0) << "its propeller turns in the air";
+  EXPECT_EQ(flying.yaw_rate, 0.0);
+  for (const double eta_m : sim.copyState().elevation_m) ASSERT_EQ(eta_m, 0.0);
+  ASSERT_TRUE(sim.controlBoat(1, 0.0, 0.0));
+  for (int i = 0; i < 900; ++i) sim.step();
+  const core::Boat boat;
+  EXPECT_NEAR(pose(sim).y_m, 0.5 * boat.height_m - boat.density_ratio * boat.height_m, 0.03) << "and floats again";
+  EXPECT_EQ(sim.recoveredCount(), 0u);
+}
+
 TEST_F(BoatsOnDevice, PloughThroughParticlesWithoutAWave) {
   core::Scene scene = smallScene(3000);
   scene.wave.reset();

@@ -23,7 +23,7 @@ struct StabilityPoint {
   bool is_well_after = true;       ///< two seconds with the rules' own steps: finite, the guard silent
   double max_density_ratio = 0.0;  ///< largest rho / rho0; 0 without particles
   double energy_growth = 0.0;      ///< largest energy over what there was to begin with
-  double slowest_step_s = 0.0;     ///< wall time
+  double slowest_step_s = 0.0;     ///< wall time of a substep, mean of the slowest tick
 
   /// No breach, and no more energy and density than the sweep's bounds.
   bool is_stable = false;
