@@ -77,9 +77,10 @@ int run(int argc, char** argv) {
   addFidelity(*check_command, check_options.fidelity);
 
   BenchOptions bench_options;
-  CLI::App* bench_command = cli.add_subcommand("bench", "Time the passes of a step and the stream's encoder");
+  CLI::App* bench_command =
+      cli.add_subcommand("bench", "Time the passes of a step, and what the stream's codecs make of real frames");
   bench_command->add_option("--suite", bench_options.suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "stream"}))
+      ->check(CLI::IsMember({"all", "step", "codec"}))
       ->capture_default_str();
   bench_command->add_option("--scene", bench_options.scene, "Scene file or name of a shipped scene")
       ->capture_default_str();

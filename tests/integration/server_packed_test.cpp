@@ -1,4 +1,5 @@
 // The packed streams over a real connection: every frame can be read, whoever comes when.
+#include <cmath>
 #include <map>
 
 #include "server_fixture.h"
@@ -140,6 +141,24 @@ TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotForNobody) {
   EXPECT_GE(server().encoder().encodeCount("main", packed), 15u);
   EXPECT_LE(server().encoder().encodeCount("main", packed), *end - *begin + 1);
   EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), 0u) << "nobody asked for plain frames";
+}
+
+class PackedParticles : public ServerTest {};
+
+TEST_F(PackedParticles, AreAsManyAndAsFiniteAsThePlainOnes) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_PARTICLES, 60.0, v1::PACKING_PACKED);
+  for (int i = 0; i < 10; ++i) {
+    const auto frame = one.nextFrame(v1::LAYER_PARTICLES);
+    ASSERT_TRUE(frame);
+    ASSERT_TRUE(frame->has_particles_by_cell());
+    EXPECT_LT(frame->payload().size(), 512u * 12 / 3) << "less than a third of the plain bytes";
+    const auto particles = stream::decodePackedParticles(*frame);
+    ASSERT_TRUE(particles) << particles.error().message;
+    EXPECT_EQ(particles->count, 512u);
+    for (const float x_m : particles->position_m) ASSERT_LE(std::abs(x_m), 8.0f);
+    for (const float v_mps : particles->velocity_mps) ASSERT_TRUE(std::isfinite(v_mps));
+  }
 }
 
 TEST_F(PackedFrames, ForALayerWithoutPackedFormAreThePlainOnes) {

@@ -3,7 +3,8 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
-import type { Malformed, SurfaceHeader } from "../src/codec/frames";
+import type { SurfaceHeader } from "../src/codec/frames";
+import type { Malformed } from "../src/codec/malformed";
 import { SurfaceUnpacker } from "../src/codec/packed_surface";
 import { parse, type ParsedMessage } from "../src/codec/parse";
 import { unpackBodies, type BodyPose } from "../src/scene/bodies";

@@ -1,4 +1,4 @@
-// Timings of the simulation's passes and of the stream's encoder, on the machine at hand.
+// Timings of the simulation's passes and of the stream's codecs, on the machine at hand.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -13,10 +13,10 @@
 #include <spindrift/gpu/context.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/stream/fidelity.h>
-#include <spindrift/stream/frame_encoder.h>
 #include <spindrift/stream/scene_loader.h>
 
 #include "../paths.h"
+#include "bench_codec.h"
 #include "commands.h"
 #include "output.h"
 
@@ -142,39 +142,6 @@ void print(std::FILE* out, const StepResult& r) {
   fmt::print(out, "\n");
 }
 
-/// Encodes real frames of the scene for `seconds`.
-core::Result<boost::json::object> measureStream(gpu::Context& ctx, const core::Scene& scene, double seconds,
-                                                std::FILE* out) {
-  auto sim = sim::WaterSim::create(ctx, scene);
-  if (!sim) return sim.error();
-  stream::FrameEncoder encoder;
-  double encode_s = 0.0;
-  std::size_t bytes = 0;
-  std::uint32_t frames = 0;
-  const auto begin = Clock::now();
-  while (since_s(begin) < seconds || frames == 0) {
-    (*sim)->step();
-    (void)(*sim)->requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
-    ctx.finish();
-    for (const core::FrameView& frame : (*sim)->takeFrames()) {
-      const auto start = Clock::now();
-      for (const auto& message : {encoder.encode(v1::LAYER_SURFACE, frame), encoder.encode(v1::LAYER_PARTICLES, frame),
-                                  encoder.encode(v1::LAYER_FOAM, frame), encoder.encode(v1::LAYER_BODIES, frame)})
-        bytes += message ? message->size() : 0;
-      encode_s += since_s(start);
-      ++frames;
-    }
-  }
-  const double frame_bytes = static_cast<double>(bytes) / frames;
-  const double rate_hz = scene.stream.frame_rate_hz;
-  fmt::print(out, "stream: {:.1f} kB a frame, {:.2f} Mbit/s at {:.0f} Hz, encode {:.3f} ms a frame ({} frames)\n",
-             frame_bytes / 1e3, frame_bytes * 8 * rate_hz / 1e6, rate_hz, encode_s * 1e3 / frames, frames);
-  return boost::json::object{{"frame_bytes", frame_bytes},
-                             {"mbit_per_s", frame_bytes * 8 * rate_hz / 1e6},
-                             {"encode_ms", encode_s * 1e3 / frames},
-                             {"frames", frames}};
-}
-
 }  // namespace
 
 int bench(const BenchOptions& options) {
@@ -197,7 +164,7 @@ int bench(const BenchOptions& options) {
                               {"device", (*ctx)->device().name},
                               {"gl_version", (*ctx)->device().gl_version},
                               {"scene", scene.name}};
-  if (options.suite != "stream") {
+  if (options.suite != "codec") {
     fmt::print(out, "{:<18} {:>9} {:>8} {:>9} {:>9} {:>11} {:>6}   ms a tick by pass\n", "case", "particles",
                "substeps", "tick ms", "substep ms", "us/particle", "rtf");
     boost::json::array results;
@@ -210,9 +177,9 @@ int bench(const BenchOptions& options) {
     json["step"] = std::move(results);
   }
   if (options.suite != "step") {
-    auto result = measureStream(**ctx, scene, options.seconds, out);
+    auto result = measureCodecs(**ctx, scene, options.seconds, out);
     if (!result) return fail(result.error());
-    json["stream"] = *std::move(result);
+    json["codec"] = *std::move(result);
   }
   if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
   return 0;

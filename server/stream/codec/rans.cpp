@@ -28,7 +28,7 @@ SymbolTable::SymbolTable(std::span<const std::uint32_t> frequencies) : slots_{} 
   std::uint32_t start = 0;
   for (std::size_t symbol = 0; symbol < frequencies.size(); ++symbol) {
     const std::uint32_t frequency = frequencies[symbol];
-    assert(frequency > 0 && frequency < kSlotCount && start + frequency <= kSlotCount);
+    assert(frequency < kSlotCount && start + frequency <= kSlotCount);
     ranges_.push_back({start, frequency});
     for (std::uint32_t k = 0; k < frequency; ++k)
       slots_[start + k] = static_cast<std::uint32_t>(symbol) | frequency << 8 | k << 20;

@@ -19,7 +19,7 @@ inline constexpr int kSlotBits = 12;
 inline constexpr std::uint32_t kSlotCount = 1u << kSlotBits;
 inline constexpr std::uint32_t kLaneCount = 4;
 
-/// How often each symbol is expected, of kSlotCount; every symbol at least once.
+/// How often each symbol is expected, of kSlotCount. One that is expected 0 times is not in the table.
 class SymbolTable {
  public:
   /// At most 256 frequencies, which sum up to kSlotCount, each below it.

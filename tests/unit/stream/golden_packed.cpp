@@ -54,7 +54,69 @@ GoldenCase damagedCase(const std::string& name, const std::string& why, const co
   return {name, GoldenVerdict::kBadFrame, "\"why\": \"" + why + "\"", std::move(bytes)};
 }
 
+/// A lattice in a corner, a pile in one place, lone drops, all at some speed.
+std::vector<std::uint32_t> particleWords() {
+  std::vector<std::uint32_t> words;
+  std::uint32_t noise = 1;
+  const auto add = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    noise = noise * 1664525u + 1013904223u;
+    words.push_back(x | z << 16);
+    words.push_back(y | (noise >> 27) << 16 | (0xF0u + (noise >> 29)) << 24);
+    words.push_back((noise >> 26 & 0x3Fu) | (200u + (noise >> 28)) << 8 | (noise >> 31) * 255u << 16);
+  };
+  for (std::uint32_t i = 0; i < 125; ++i) add(1000 + i % 5 * 820, 300 + i / 25 * 810, 700 + i / 5 % 5 * 830);
+  for (std::uint32_t i = 0; i < 9; ++i) add(40000 + i, 50000, 60000);
+  for (std::uint32_t i = 0; i < 20; ++i) add(i * 3276, 65535 - i * 3000, i * i * 160);
+  return words;
+}
+
+template <typename Values>
+std::string numbersOf(const Values& values) {
+  std::string text = "[";
+  for (const auto value : values) {
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%s%.9g", text.size() > 1 ? ", " : "", static_cast<double>(value));
+    text += buffer;
+  }
+  return text + "]";
+}
+
 }  // namespace
+
+std::vector<GoldenCase> goldenPackedParticles() {
+  const std::vector<std::uint32_t> words = particleWords();
+  core::ParticleView particles;
+  particles.count = static_cast<std::uint32_t>(words.size() / 3);
+  for (double& min : particles.min_m) min = -4.0;
+  for (double& max : particles.max_m) max = 4.0;
+  particles.max_speed_mps = 8.0;
+  particles.radius_m = 0.0625;
+  particles.words = words;
+  core::FrameView view;
+  view.tick = 1234;
+  view.time_s = 20.5;
+  view.particles = particles;
+  const core::Bytes bytes = *FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).whole;
+  const auto samples = *decodePackedParticles(parseServerMessage(bytes)->frame());
+  const std::string json =
+      "\"kind\": \"frame\", \"layer\": \"LAYER_PARTICLES\", \"packing\": \"PACKING_PACKED\", "
+      "\"tick\": \"1234\", \"time_s\": 20.5, \"keyframe\": true,\n    \"count\": " +
+      std::to_string(samples.count) + ", \"radius_m\": 0.0625,\n    \"position_m\": " + numbersOf(samples.position_m) +
+      ",\n    \"velocity_mps\": " + numbersOf(samples.velocity_mps) + ",\n    \"tint\": " + numbersOf(samples.tint) +
+      ", \"foam\": " + numbersOf(samples.foam);
+  std::vector<GoldenCase> cases = {{"particles_packed.bin", GoldenVerdict::kOk, json, bytes}};
+  cases.push_back(damagedCase("bad_particles_packed_cut.bin", "the packed payload is cut, checksum of what is there",
+                              bytes, [](v1::LayerFrame& f) { f.mutable_payload()->resize(f.payload().size() - 7); }));
+  cases.push_back(damagedCase(
+      "bad_particles_packed_count.bin", "count says one particle more than the payload holds", bytes,
+      [](v1::LayerFrame& f) { f.mutable_particles_by_cell()->set_count(f.particles_by_cell().count() + 1); }));
+  cases.push_back(damagedCase("bad_particles_packed_cells.bin", "2^27 cells", bytes, [](v1::LayerFrame& f) {
+    f.mutable_particles_by_cell()->set_cells_x_count(1024);
+    f.mutable_particles_by_cell()->set_cells_y_count(512);
+    f.mutable_particles_by_cell()->set_cells_z_count(256);
+  }));
+  return cases;
+}
 
 std::vector<GoldenCase> goldenPackedSurfaces() {
   FrameEncoder encoder;

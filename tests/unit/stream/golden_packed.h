@@ -1,4 +1,4 @@
-// The packed surface's golden frames: three in a row, the first of which is whole.
+// The packed golden frames: three surfaces in a row, the first of which is whole, and particles.
 #pragma once
 
 #include <vector>
@@ -8,5 +8,6 @@
 namespace spindrift::stream {
 
 std::vector<GoldenCase> goldenPackedSurfaces();
+std::vector<GoldenCase> goldenPackedParticles();
 
 }  // namespace spindrift::stream

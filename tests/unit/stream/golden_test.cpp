@@ -35,7 +35,7 @@ bool decodes(const v1::LayerFrame& frame, PackedSurfaceDecoder& packed) {
     case v1::LAYER_BODIES:
       return static_cast<bool>(decodeBodies(frame));
     default:
-      return static_cast<bool>(decodeParticles(frame));
+      return static_cast<bool>(frame.has_particles_by_cell() ? decodePackedParticles(frame) : decodeParticles(frame));
   }
 }
 

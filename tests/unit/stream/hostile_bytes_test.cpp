@@ -203,7 +203,8 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
       ++decoded_count;
       ASSERT_TRUE(allFinite(surface->elevation_m)) << "case " << i;
       ASSERT_EQ(surface->elevation_m.size(), std::size_t{surface->resolution_count} * surface->resolution_count);
-    } else if (const auto particles = decodeParticles(frame)) {
+    } else if (const auto particles =
+                   frame.has_particles_by_cell() ? decodePackedParticles(frame) : decodeParticles(frame)) {
       ++decoded_count;
       ASSERT_TRUE(allFinite(particles->position_m) && allFinite(particles->velocity_mps)) << "case " << i;
       ASSERT_EQ(particles->position_m.size(), std::size_t{3} * particles->count);

@@ -1,6 +1,8 @@
 // A LayerFrame → its header as plain data and its payload as a view, or the reason why it cannot be trusted. Pure.
 import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
 import { crc32c } from "./crc32c";
+import { malformed, type Malformed } from "./malformed";
+import { unpackParticles } from "./packed_particles";
 import { kWeightCount } from "./surface_predictor";
 
 /** Largest grid side and counts this client takes; all far above what a server sends. */
@@ -9,6 +11,10 @@ export const kMaxParticleCount = 4 * 1024 * 1024;
 export const kMaxBodyCount = 1024;
 export const kParticleBytes = 12;
 export const kBodyBytes = 28;
+/** Bits of a packed particle's place within its cell; places along an axis; cells. */
+const kMaxOffsetBits = 8;
+const kMaxPlaceCount = 65536;
+const kMaxCellCount = 2 ** 24;
 /** No size, place or speed on the wire is beyond this, in metres (a second). */
 const kLargest = 1e6;
 
@@ -62,15 +68,6 @@ export type ParsedFrame =
   | { kind: "particles"; header: ParticleHeader; payload: Uint8Array }
   | { kind: "foam"; header: FoamHeader; payload: Uint8Array }
   | { kind: "bodies"; header: BodiesHeader; payload: Uint8Array };
-
-export interface Malformed {
-  kind: "malformed";
-  reason: string;
-}
-
-export function malformed(reason: string): Malformed {
-  return { kind: "malformed", reason };
-}
 
 function isSize(value: number): boolean {
   return value > 0 && value <= kLargest;
@@ -152,6 +149,22 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Mal
       if (!isSize(radiusM)) return malformed(`particle radius ${radiusM} m has to be above 0`);
       const fault = plainFault(frame, Layer.PARTICLES, "particles", count * kParticleBytes);
       return fault ? malformed(fault) : { kind: "particles", header: { tick, timeS, count, minM, maxM, maxSpeedMps, radiusM }, payload };
+    }
+    case "particlesByCell": {
+      const { count, minXM, minYM, minZM, cellsXCount, cellsYCount, cellsZCount, cellM, offsetBits, velocityQuantumMps, radiusM } = codec.value;
+      const cellsCount: [number, number, number] = [cellsXCount, cellsYCount, cellsZCount];
+      const minM: ParticleHeader["minM"] = [minXM, minYM, minZM];
+      if (count > kMaxParticleCount) return malformed(`${count} particles, at most ${kMaxParticleCount} are taken`);
+      if (offsetBits < 1 || offsetBits > kMaxOffsetBits) return malformed(`particles with ${offsetBits} bits of offset`);
+      if (cellsCount.some((cells) => cells < 1 || cells > kMaxPlaceCount >> offsetBits) || cellsXCount * cellsYCount * cellsZCount > kMaxCellCount)
+        return malformed(`particles in ${cellsCount.join(" x ")} cells`);
+      if (minM.some((min) => !(Math.abs(min) <= kLargest)) || !isSize(cellM)) return malformed(`particles from ${minM.join(", ")} m on in cells of ${cellM} m`);
+      if (!(velocityQuantumMps >= 0 && velocityQuantumMps <= kLargest)) return malformed(`particle velocity quantum ${velocityQuantumMps} m/s`);
+      if (!isSize(radiusM)) return malformed(`particle radius ${radiusM} m has to be above 0`);
+      if (!frame.keyframe) return malformed("a frame on top of another one, but this codec has only keyframes");
+      const fault = frameFault(frame, Layer.PARTICLES, "particles");
+      if (fault) return malformed(fault);
+      return unpackParticles({ tick, timeS, count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM, payload });
     }
     case undefined:
       return malformed(`frame of layer ${frame.layer} in a codec this client does not know`);

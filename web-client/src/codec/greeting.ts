@@ -1,7 +1,7 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, no Protobuf objects.
 import { CouplingMode, type ParticleScene } from "../gen/spindrift/v1/scene_pb";
 import { Layer, type BoatList, type Greeting } from "../gen/spindrift/v1/wire_pb";
-import { malformed, type Malformed } from "./frames";
+import { malformed, type Malformed } from "./malformed";
 import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
 
 /** Major version of the wire that this client speaks. */

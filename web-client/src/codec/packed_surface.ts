@@ -1,5 +1,6 @@
 // The surface's packed form → the samples of its plain one. Keeps the last two frames, on which the next one builds.
-import type { Malformed, PackedSurface, SurfaceHeader } from "./frames";
+import type { PackedSurface, SurfaceHeader } from "./frames";
+import type { Malformed } from "./malformed";
 import { ResidualReader } from "./residual_reader";
 import { readPlane, SurfacePlane } from "./surface_predictor";
 

@@ -3,8 +3,9 @@
 import { fromBinary } from "@bufbuild/protobuf";
 
 import { RejectReason, RoomEventKind, ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
-import { malformed, parseFrame, type Malformed, type PackedSurface, type ParsedFrame } from "./frames";
+import { parseFrame, type PackedSurface, type ParsedFrame } from "./frames";
 import { readBoatList, readGreeting, type BoatDetail, type GreetingInfo } from "./greeting";
+import { malformed, type Malformed } from "./malformed";
 
 export interface DiagnosticsInfo {
   tick: bigint;

@@ -83,6 +83,9 @@ class PackedSurfaceDecoder {
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is fine).
 core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame);
 
+/// Decodes a packed frame of the particle layer; errors likewise. Tint and foam come in fewer steps than plain ones.
+core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame);
+
 /// Decodes a frame of the foam layer; errors as for the surface.
 core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame);
 

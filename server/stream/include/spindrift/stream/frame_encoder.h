@@ -39,6 +39,8 @@ std::unique_ptr<LayerCodec> makeBodiesFixed28Codec();
 std::unique_ptr<LayerCodec> makeDiagnosticsCodec();
 /// Packed: SurfacePredicted.
 std::unique_ptr<LayerCodec> makeSurfacePredictedCodec();
+/// Packed: ParticlesByCell.
+std::unique_ptr<LayerCodec> makeParticlesByCellCodec();
 
 /// A layer in one packing: what a client watches. A layer without a packed form has one stream.
 struct Stream {

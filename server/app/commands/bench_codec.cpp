@@ -1,0 +1,222 @@
+#include "bench_codec.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <spindrift/sim/water_sim.h>
+#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/stream/frame_encoder.h>
+
+namespace spindrift::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double sinceMs(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// Of one way to send one layer, over all frames.
+struct CodecRow {
+  std::string name;
+  std::size_t frame_count = 0;
+  double bytes = 0.0;
+  double most_bytes = 0.0;  ///< of a frame
+  double item_count = 0.0;  ///< samples, particles
+  double encode_ms = 0.0;
+  double decode_ms = 0.0;
+  double max_error = 0.0;  ///< over the quantum; of particles: distance along an axis
+  std::optional<double> bound_bits = {};
+
+  void add(std::size_t frame_bytes, std::size_t items) {
+    ++frame_count;
+    bytes += static_cast<double>(frame_bytes);
+    most_bytes = std::max(most_bytes, static_cast<double>(frame_bytes));
+    item_count += static_cast<double>(items);
+  }
+  [[nodiscard]] double itemBits() const { return item_count > 0 ? 8 * bytes / item_count : 0.0; }
+};
+
+std::size_t deflatedBytes(std::span<const std::uint32_t> words) {
+  uLongf size = compressBound(words.size_bytes());
+  core::Bytes out(size);
+  compress2(out.data(), &size, reinterpret_cast<const Bytef*>(words.data()), words.size_bytes(), 6);
+  return size;
+}
+
+v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
+  return stream::parseServerMessage(*bytes)->frame();
+}
+
+/// The surface's and the particles' rows of a scene, filled frame by frame.
+class CodecMeter {
+ public:
+  core::Result<void> add(const core::FrameView& frame) {
+    if (frame.surface) {
+      if (auto done = addSurface(frame); !done) return done;
+    }
+    if (frame.particles && frame.particles->count > 0) {
+      if (auto done = addParticles(frame); !done) return done;
+    }
+    return {};
+  }
+  [[nodiscard]] std::vector<CodecRow> rows() const {
+    std::vector<CodecRow> rows;
+    for (const CodecRow& row : {surface_plain_, surface_deflated_, surface_whole_, surface_, particles_plain_,
+                                particles_deflated_, particles_}) {
+      if (row.frame_count > 0) rows.push_back(row);
+    }
+    return rows;
+  }
+
+ private:
+  core::Result<void> addSurface(const core::FrameView& frame) {
+    const core::SurfaceView& view = *frame.surface;
+    const std::size_t samples = 2 * view.words.size();
+    auto begin = Clock::now();
+    const core::SharedBytes plain = encoder_.encode(v1::LAYER_SURFACE, frame);
+    surface_plain_.encode_ms += sinceMs(begin);
+    begin = Clock::now();
+    const auto plain_samples = stream::decodeSurface(frameOf(plain));
+    surface_plain_.decode_ms += sinceMs(begin);
+    surface_plain_.add(plain->size(), samples);
+    begin = Clock::now();
+    const std::size_t deflated = deflatedBytes(view.words);
+    surface_deflated_.encode_ms += sinceMs(begin);
+    surface_deflated_.add(deflated, samples);
+
+    // The continuing frame as a room makes it; the whole one from an encoder of its own, so that times do not mix.
+    const stream::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
+    begin = Clock::now();
+    const stream::EncodedFrame encoded = encoder_.encode(packed, frame, false);
+    const double encode_ms = sinceMs(begin);
+    stream::FrameEncoder fresh;
+    begin = Clock::now();
+    const stream::EncodedFrame whole = fresh.encode(packed, frame, true);
+    surface_whole_.encode_ms += sinceMs(begin);
+    surface_whole_.add(whole.whole->size(), samples);
+    const v1::LayerFrame message = frameOf(encoded.continuing ? encoded.continuing : encoded.whole);
+    begin = Clock::now();
+    const auto packed_samples = decoder_.decode(message);
+    const double decode_ms = sinceMs(begin);
+    if (!packed_samples) return packed_samples.error();
+    if (!encoded.continuing) return {};
+    surface_.encode_ms += encode_ms;
+    surface_.decode_ms += decode_ms;
+    surface_.add(encoded.continuing->size(), samples);
+    for (std::size_t i = 0; i < samples; ++i) {
+      const double error_m = std::abs(packed_samples->elevation_m[i] - plain_samples->elevation_m[i]);
+      surface_.max_error = std::max(surface_.max_error, error_m / view.quantum_m);
+    }
+    return {};
+  }
+
+  core::Result<void> addParticles(const core::FrameView& frame) {
+    const core::ParticleView& view = *frame.particles;
+    auto begin = Clock::now();
+    const core::SharedBytes plain = encoder_.encode(v1::LAYER_PARTICLES, frame);
+    particles_plain_.encode_ms += sinceMs(begin);
+    begin = Clock::now();
+    const auto plain_samples = stream::decodeParticles(frameOf(plain));
+    particles_plain_.decode_ms += sinceMs(begin);
+    particles_plain_.add(plain->size(), view.count);
+    begin = Clock::now();
+    const std::size_t deflated = deflatedBytes(view.words);
+    particles_deflated_.encode_ms += sinceMs(begin);
+    particles_deflated_.add(deflated, view.count);
+
+    begin = Clock::now();
+    const stream::EncodedFrame encoded = encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, frame, true);
+    particles_.encode_ms += sinceMs(begin);
+    const v1::LayerFrame message = frameOf(encoded.whole);
+    begin = Clock::now();
+    const auto samples = stream::decodePackedParticles(message);
+    particles_.decode_ms += sinceMs(begin);
+    if (!samples) return samples.error();
+    particles_.add(encoded.whole->size(), view.count);
+    const v1::ParticlesByCell& header = message.particles_by_cell();
+    const double quantum_m = header.cell_m() / (1 << header.offset_bits());
+    particles_.bound_bits = 3 * std::log2(2 * view.radius_m / quantum_m) + std::log2(std::exp(1.0));
+    particles_.max_error = std::max(particles_.max_error, largestShift(*plain_samples, *samples) / quantum_m);
+    return {};
+  }
+
+  /// Orders differ: along each axis the sorted coordinates of both lie as far apart as some pairing of particles does.
+  static double largestShift(const stream::ParticleSamples& a, const stream::ParticleSamples& b) {
+    double largest = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::vector<float> left, right;
+      for (std::size_t i = axis; i < a.position_m.size(); i += 3) left.push_back(a.position_m[i]);
+      for (std::size_t i = axis; i < b.position_m.size(); i += 3) right.push_back(b.position_m[i]);
+      std::ranges::sort(left);
+      std::ranges::sort(right);
+      for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i)
+        largest = std::max<double>(largest, std::abs(left[i] - right[i]));
+    }
+    return largest;
+  }
+
+  stream::FrameEncoder encoder_;
+  stream::PackedSurfaceDecoder decoder_;
+  CodecRow surface_plain_{.name = "surface, plain"};
+  CodecRow surface_deflated_{.name = "surface, plain + deflate"};
+  CodecRow surface_whole_{.name = "surface, packed, keyframe"};
+  CodecRow surface_{.name = "surface, packed"};
+  CodecRow particles_plain_{.name = "particles, plain"};
+  CodecRow particles_deflated_{.name = "particles, plain + deflate"};
+  CodecRow particles_{.name = "particles, packed"};
+};
+
+}  // namespace
+
+core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::Scene& scene, double seconds,
+                                                std::FILE* out) {
+  constexpr double kBegin_s = 1.0;  // the shipped scenes' first effect
+  auto sim = sim::WaterSim::create(ctx, scene);
+  if (!sim) return sim.error();
+  CodecMeter meter;
+  double next_s = kBegin_s;
+  std::size_t frame_count = 0;
+  while ((*sim)->time_s() < kBegin_s + seconds) {
+    (*sim)->step();
+    if ((*sim)->time_s() + 1e-9 < next_s) continue;
+    next_s += 1.0 / scene.stream.frame_rate_hz;
+    (void)(*sim)->requestFrame({.surface = scene.wave.has_value(), .particles = scene.particles.has_value()});
+    ctx.finish();
+    for (const core::FrameView& frame : (*sim)->takeFrames()) {
+      if (auto added = meter.add(frame); !added) return added.error();
+      ++frame_count;
+    }
+  }
+  fmt::print(out, "codecs: {} frames at {:.0f} Hz from {:.0f} s on\n", frame_count, scene.stream.frame_rate_hz,
+             kBegin_s);
+  fmt::print(out, "{:<27} {:>9} {:>10} {:>9} {:>9} {:>8} {:>10} {:>10} {:>11}\n", "stream", "items", "bits/item",
+             "bound", "kB/frame", "largest", "encode ms", "decode ms", "error/quantum");
+  boost::json::array json;
+  for (const CodecRow& row : meter.rows()) {
+    const auto frames = static_cast<double>(row.frame_count);
+    fmt::print(out, "{:<27} {:>9.0f} {:>10.2f} {:>9} {:>9.2f} {:>8.2f} {:>10.3f} {:>10.3f} {:>11.3f}\n", row.name,
+               row.item_count / frames, row.itemBits(),
+               row.bound_bits ? fmt::format("{:.2f}", *row.bound_bits) : std::string("-"), row.bytes / frames / 1e3,
+               row.most_bytes / 1e3, row.encode_ms / frames, row.decode_ms / frames, row.max_error);
+    json.push_back({{"name", row.name},
+                    {"items", row.item_count / frames},
+                    {"bits_per_item", row.itemBits()},
+                    {"bound_bits", row.bound_bits ? boost::json::value(*row.bound_bits) : boost::json::value()},
+                    {"frame_bytes", row.bytes / frames},
+                    {"largest_frame_bytes", row.most_bytes},
+                    {"mbit_per_s", row.bytes / frames * 8e-6 * scene.stream.frame_rate_hz},
+                    {"encode_ms", row.encode_ms / frames},
+                    {"decode_ms", row.decode_ms / frames},
+                    {"max_error_quanta", row.max_error}});
+  }
+  return boost::json::object{{"frames", frame_count}, {"rows", std::move(json)}};
+}
+
+}  // namespace spindrift::app

@@ -1,0 +1,63 @@
+// Particles as what each cell of a grid holds. A cell is cut into eight; the counts of its eighths take the place of
+// the highest bit of every coordinate, and since the order of particles means nothing they cost less than those bits.
+// Empty cells cost a run length. The other bits of a place are as good as random and go out as they are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "residual_coder.h"
+
+namespace spindrift::stream {
+
+/// Cells along x, y, z; the linear index of a cell is (x * cells z + z) * cells y + y, so that columns lie together.
+struct CellGrid {
+  std::array<std::uint32_t, 3> cells_count{};
+  std::uint32_t offset_bits = 5;  ///< a cell's side is 2^offset_bits quanta; 1..8
+
+  [[nodiscard]] std::uint64_t totalCount() const {
+    return std::uint64_t{cells_count[0]} * cells_count[1] * cells_count[2];
+  }
+};
+inline constexpr std::uint32_t kOffsetBitsMax = 8;
+/// Coordinates fit into 16 bits, cell numbers into 24.
+inline constexpr std::uint32_t kCoordinateMaxCount = 1u << 16;
+inline constexpr std::uint64_t kCellMaxCount = 1u << 24;
+
+/// One particle in quanta.
+struct CellParticle {
+  std::array<std::uint16_t, 3> place{};  ///< x, y, z, below cells_count << offset_bits
+  std::array<std::int16_t, 3> velocity{};
+  std::uint8_t foam = 0;  ///< 0..3
+  std::uint8_t tint = 0;  ///< 0..7
+};
+
+/// Sorts the particles into the order of the wire and writes them: places cell by cell, then in groups of 64 particles
+/// the velocities along x, y, z, foam, tint. Keeps its memory from frame to frame.
+class ParticleCellsEncoder {
+ public:
+  void encode(std::span<const CellParticle> particles, const CellGrid& grid, ResidualEncoder& out);
+
+ private:
+  struct Entry {
+    std::uint32_t key;  ///< cell * 8 + eighth
+    std::uint32_t particle;
+  };
+  struct Cell {
+    std::uint32_t gap;                   ///< empty cells before it
+    std::uint32_t end;                   ///< of its entries
+    std::array<std::uint8_t, 2> halves;  ///< counts of its eighths, two bits each
+  };
+  void sortByCell(std::span<const CellParticle> particles, const CellGrid& grid);
+
+  std::vector<Entry> entries_, scratch_;
+  std::vector<Cell> cells_;
+};
+
+/// `count` particles in the order of the wire. False: a cell lies outside of the grid or holds more than are left; the
+/// bytes are damaged.
+bool decodeParticleCells(ResidualDecoder& in, const CellGrid& grid, std::span<CellParticle> particles);
+
+}  // namespace spindrift::stream

@@ -1,0 +1,173 @@
+// The particles' packed form, both ways: ParticlesByCell in wire.proto.
+#include <algorithm>
+#include <cmath>
+
+#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/stream/frame_encoder.h>
+
+#include "codec/particle_cells.h"
+#include "frame_checks.h"
+#include "frame_message.h"
+
+namespace spindrift::stream {
+namespace {
+
+/// Of the particles' spacing: a cell holds about eight of them, and a quantum is a sixteenth.
+constexpr double kCellSpacings = 2.0;
+constexpr std::uint32_t kOffsetBits = 5;
+/// A page moves particles on by their velocity for some frames; over this time the velocity's quantum is two of the
+/// place's.
+constexpr double kAdvance_s = 1.0 / 30.0;
+
+struct Grid {
+  CellGrid cells;
+  double cell_m = 0.0;
+  [[nodiscard]] double quantum_m() const { return cell_m / (1u << cells.offset_bits); }
+};
+
+/// A grid over the particles' domain, coarser where theirs would have too many cells or places.
+Grid gridOf(const core::ParticleView& particles) {
+  Grid grid{.cells = {.cells_count = {}, .offset_bits = kOffsetBits}, .cell_m = kCellSpacings * 2 * particles.radius_m};
+  const auto fits = [&] {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double cells = std::ceil((particles.max_m[axis] - particles.min_m[axis]) / grid.cell_m);
+      if (!(cells <= kCoordinateMaxCount >> grid.cells.offset_bits)) return false;
+      grid.cells.cells_count[axis] = std::max(static_cast<std::uint32_t>(cells), 1u);
+    }
+    return grid.cells.totalCount() <= kCellMaxCount;
+  };
+  while (!fits()) {
+    if (grid.cells.offset_bits > 1)
+      --grid.cells.offset_bits;
+    else
+      grid.cell_m *= 2;
+  }
+  return grid;
+}
+
+class ParticlesByCellCodec final : public LayerCodec {
+ public:
+  v1::Layer layer() const override { return v1::LAYER_PARTICLES; }
+  v1::Packing packing() const override { return v1::PACKING_PACKED; }
+
+  EncodedFrame encode(const core::FrameView& frame, bool) override {
+    if (!frame.particles) return {};
+    const core::ParticleView& particles = *frame.particles;
+    const Grid grid = gridOf(particles);
+    const double velocity_quantum_mps = std::max(2 * grid.quantum_m() / kAdvance_s, particles.max_speed_mps / 127);
+    v1::LayerFrame codec;
+    v1::ParticlesByCell& header = *codec.mutable_particles_by_cell();
+    header.set_count(particles.count);
+    header.set_min_x_m(particles.min_m[0]);
+    header.set_min_y_m(particles.min_m[1]);
+    header.set_min_z_m(particles.min_m[2]);
+    header.set_cells_x_count(grid.cells.cells_count[0]);
+    header.set_cells_y_count(grid.cells.cells_count[1]);
+    header.set_cells_z_count(grid.cells.cells_count[2]);
+    header.set_cell_m(grid.cell_m);
+    header.set_offset_bits(grid.cells.offset_bits);
+    header.set_velocity_quantum_mps(velocity_quantum_mps);
+    header.set_radius_m(particles.radius_m);
+
+    quantize(particles, grid, velocity_quantum_mps);
+    cells_.encode(quantized_, grid.cells, residuals_);
+    payload_.clear();
+    residuals_.finish(payload_);
+    return {serializeFrame(frame, v1::LAYER_PARTICLES, std::nullopt, codec, payload_), nullptr};
+  }
+
+ private:
+  /// From the words of core::ParticleView.
+  void quantize(const core::ParticleView& particles, const Grid& grid, double velocity_quantum_mps) {
+    std::array<float, 3> scale{};
+    std::array<std::uint32_t, 3> last{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      scale[axis] = static_cast<float>((particles.max_m[axis] - particles.min_m[axis]) / (65535.0 * grid.quantum_m()));
+      last[axis] = (grid.cells.cells_count[axis] << grid.cells.offset_bits) - 1;
+    }
+    const auto speed_scale = static_cast<float>(particles.max_speed_mps / (127.0 * velocity_quantum_mps));
+    const auto velocity = [&](std::uint32_t byte) {
+      return static_cast<std::int16_t>(std::lrintf(static_cast<float>(static_cast<std::int8_t>(byte)) * speed_scale));
+    };
+    quantized_.resize(particles.count);
+    for (std::size_t i = 0; i < particles.count; ++i) {
+      const std::uint32_t* words = particles.words.data() + 3 * i;
+      const auto place = [&](std::uint32_t word, std::size_t axis) {
+        const auto at = static_cast<std::uint32_t>(static_cast<float>(word & 0xffffu) * scale[axis]);
+        return static_cast<std::uint16_t>(std::min(at, last[axis]));
+      };
+      CellParticle& p = quantized_[i];
+      p.place = {place(words[0], 0), place(words[1], 1), place(words[0] >> 16, 2)};
+      p.velocity = {velocity(words[1] >> 16), velocity(words[1] >> 24), velocity(words[2])};
+      p.tint = static_cast<std::uint8_t>(((words[2] >> 8 & 0xffu) * 7 + 127) / 255);
+      p.foam = static_cast<std::uint8_t>(((words[2] >> 16 & 0xffu) * 3 + 127) / 255);
+    }
+  }
+
+  std::vector<CellParticle> quantized_;
+  ParticleCellsEncoder cells_;
+  ResidualEncoder residuals_;
+  core::Bytes payload_;
+};
+
+core::Result<Grid> checkedGrid(const v1::ParticlesByCell& header) {
+  const Grid grid{.cells = {.cells_count = {header.cells_x_count(), header.cells_y_count(), header.cells_z_count()},
+                            .offset_bits = header.offset_bits()},
+                  .cell_m = header.cell_m()};
+  if (grid.cells.offset_bits < 1 || grid.cells.offset_bits > kOffsetBitsMax)
+    return invalid("offset_bits: " + std::to_string(grid.cells.offset_bits) + " is not from 1 to 8");
+  for (const std::uint32_t cells : grid.cells.cells_count) {
+    if (cells < 1 || cells > kCoordinateMaxCount >> grid.cells.offset_bits)
+      return invalid("cells: " + std::to_string(cells) + " along an axis, at least 1 and at most " +
+                     std::to_string(kCoordinateMaxCount >> grid.cells.offset_bits) + " are allowed");
+  }
+  if (grid.cells.totalCount() > kCellMaxCount)
+    return invalid("cells: " + std::to_string(grid.cells.totalCount()) + " in all is above " +
+                   std::to_string(kCellMaxCount));
+  return grid;
+}
+
+}  // namespace
+
+std::unique_ptr<LayerCodec> makeParticlesByCellCodec() {
+  return std::make_unique<ParticlesByCellCodec>();
+}
+
+core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame) {
+  if (!frame.has_particles_by_cell()) return invalid("codec: not particles_by_cell");
+  const v1::ParticlesByCell& header = frame.particles_by_cell();
+  if (header.count() > kParticleMaxCount) {
+    return invalid("count: " + std::to_string(header.count()) + " is above " + std::to_string(kParticleMaxCount));
+  }
+  const double min_m[3] = {header.min_x_m(), header.min_y_m(), header.min_z_m()};
+  for (const double min : min_m) {
+    if (auto error = checkRange("min_m", min, -kMaxMagnitude)) return *error;
+  }
+  if (auto error = checkRange("cell_m", header.cell_m(), 1e-6)) return *error;
+  if (auto error = checkRange("velocity_quantum_mps", header.velocity_quantum_mps(), 0.0)) return *error;
+  if (auto error = checkRange("radius_m", header.radius_m(), 0.0)) return *error;
+  const auto grid = checkedGrid(header);
+  if (!grid) return grid.error();
+  if (!frame.keyframe()) return invalid("keyframe: false, but frames of this codec always stand by themselves");
+  if (auto error = checkFrame(frame, v1::LAYER_PARTICLES)) return *error;
+
+  std::vector<CellParticle> particles(header.count());
+  ResidualDecoder in(viewOf(frame.payload()));
+  if (!decodeParticleCells(in, grid->cells, particles) || !in.isAtEnd())
+    return invalid("payload: it does not hold " + std::to_string(header.count()) + " particles; the frame is damaged");
+
+  ParticleSamples out;
+  out.count = header.count();
+  out.radius_m = header.radius_m();
+  for (const CellParticle& p : particles) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out.position_m.push_back(static_cast<float>(min_m[axis] + (p.place[axis] + 0.5) * grid->quantum_m()));
+      out.velocity_mps.push_back(static_cast<float>(p.velocity[axis] * header.velocity_quantum_mps()));
+    }
+    out.tint.push_back(static_cast<std::uint8_t>(p.tint * 255 / 7));
+    out.foam.push_back(static_cast<std::uint8_t>(p.foam * 85));
+  }
+  return out;
+}
+
+}  // namespace spindrift::stream
