@@ -343,12 +343,12 @@ RecordErrors compare(const WaterRecord& run, const WaterRecord& reference, const
   return out;
 }
 
-std::vector<bool> paretoFront(const std::vector<CostAndError>& points, double resolution) {
-  const double less = 1 - resolution;
+std::vector<bool> paretoFront(const std::vector<CostAndError>& points, const CostAndError& chance) {
   std::vector<bool> front;
   for (const CostAndError& p : points) {
     front.push_back(std::ranges::none_of(points, [&](const CostAndError& q) {
-      return q.cost <= p.cost && q.error <= p.error && (q.cost < less * p.cost || q.error < less * p.error);
+      return q.cost <= p.cost && q.error <= p.error &&
+             (q.cost < (1 - chance.cost) * p.cost || q.error < (1 - chance.error) * p.error);
     }));
   }
   return front;

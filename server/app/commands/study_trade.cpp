@@ -41,8 +41,10 @@ constexpr const char* kLevelKnob = "fidelity";
 /// Each of the shipped effects as it is, as the wave alone, and as particles alone (thesis, section 3.8.1).
 constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
 
-/// Differences of less than this share are chance: the same scene with another seed is off by so much more or less.
+/// Differences of less than this share are chance at least: the same scene with another seed is off by so much more or
+/// less, and costs so much more or less when the machine is quiet.
 constexpr double kChance = 0.05;
+constexpr const char* kSeedKnob = "seed";
 /// Simulated seconds of the quick form, whose yardstick is REFERENCE itself.
 constexpr double kQuickSeconds = 1.4;
 
@@ -165,17 +167,30 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
 
 /// Whether it is another way to the same water: not another chance, nor less water to be right about.
 bool isComparable(const auto& choice) {
-  return choice.knob != "seed" && choice.knob != "coupling";
+  return choice.knob != kSeedKnob && choice.knob != "coupling";
+}
+
+/// What chance does to a cost and an error: as much as it did to those of another seed beside `balanced`, in the same
+/// run.
+study::CostAndError chanceOf(const study::CostAndError& seed, const study::CostAndError& balanced) {
+  const auto share = [](double a, double b) { return std::max(kChance, 1 - std::min(a / b, b / a)); };
+  return {share(seed.cost, balanced.cost), share(seed.error, balanced.error)};
 }
 
 void markFront(std::vector<TradeRow>& rows) {
+  study::CostAndError chance{kChance, kChance};
+  for (const TradeRow& row : rows) {
+    if (row.knob == kSeedKnob && row.refused.empty())
+      chance = chanceOf({row.wall_ms_per_s, row.errors.height_rms_ratio},
+                        {rows[1].wall_ms_per_s, rows[1].errors.height_rms_ratio});
+  }
   std::vector<study::CostAndError> points;
   for (const TradeRow& row : rows) {
     const bool counts = row.refused.empty() && isComparable(row);
     points.push_back(counts ? study::CostAndError{row.wall_ms_per_s, row.errors.height_rms_ratio}
                             : study::CostAndError{HUGE_VAL, HUGE_VAL});
   }
-  const std::vector<bool> front = study::paretoFront(points, kChance);
+  const std::vector<bool> front = study::paretoFront(points, chance);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i] && std::isfinite(points[i].cost);
 }
 
@@ -353,11 +368,14 @@ std::vector<MeanChoice> meansOver(const std::vector<std::vector<TradeRow>>& scen
       mean->error *= std::pow(row.errors.height_rms_ratio / balanced.errors.height_rms_ratio, share);
     }
   }
+  study::CostAndError chance{kChance, kChance};
   std::vector<study::CostAndError> points;
-  for (const MeanChoice& mean : means)
+  for (const MeanChoice& mean : means) {
+    if (mean.knob == kSeedKnob) chance = chanceOf({mean.cost, mean.error}, {1.0, 1.0});
     points.push_back(isComparable(mean) ? study::CostAndError{mean.cost, mean.error}
                                         : study::CostAndError{HUGE_VAL, HUGE_VAL});
-  const std::vector<bool> front = study::paretoFront(points, kChance);
+  }
+  const std::vector<bool> front = study::paretoFront(points, chance);
   for (std::size_t i = 0; i < means.size(); ++i) means[i].is_on_front = front[i] && std::isfinite(points[i].cost);
   return means;
 }

@@ -61,7 +61,7 @@ TEST(ParetoFront, KeepsWhatNobodyBeatsInBoth) {
 
 TEST(ParetoFront, MindsNoDifferenceBelowItsResolution) {
   const std::vector<CostAndError> points = {{1.00, 1.00}, {1.03, 1.02}, {1.10, 1.00}};
-  EXPECT_EQ(paretoFront(points, 0.05), (std::vector<bool>{true, true, false}));
+  EXPECT_EQ(paretoFront(points, {0.05, 0.05}), (std::vector<bool>{true, true, false}));
 }
 
 TEST(SingleKnobs, ChangeOneThingEach) {
@@ -84,6 +84,7 @@ TEST(SingleKnobs, ChangeOneThingEach) {
       changes += choice.scene.particles->kernel_set != scene.particles->kernel_set;
       changes += choice.scene.particles->solver != scene.particles->solver;
       changes += choice.scene.particles->pressure_force != scene.particles->pressure_force;
+      changes += choice.scene.coupling->mode != scene.coupling->mode;
       changes += choice.scene.coupling->lattice_count != scene.coupling->lattice_count;
       changes += choice.scene.coupling->downforce_per_m_s2 != scene.coupling->downforce_per_m_s2;
     } else {

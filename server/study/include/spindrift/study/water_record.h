@@ -77,11 +77,11 @@ struct RecordErrors {
 RecordErrors compare(const WaterRecord& run, const WaterRecord& reference, const core::Scene& scene);
 
 /// Which points have no other that is at most as dear and at most as far off, and better in one of the two by more than
-/// `resolution`, a share: smaller differences are chance.
+/// that one's share in `chance`: smaller differences say nothing.
 struct CostAndError {
   double cost = 0.0;
   double error = 0.0;
 };
-std::vector<bool> paretoFront(const std::vector<CostAndError>& points, double resolution = 0.0);
+std::vector<bool> paretoFront(const std::vector<CostAndError>& points, const CostAndError& chance = {});
 
 }  // namespace spindrift::study
