@@ -86,6 +86,9 @@ describe("golden bytes", () => {
     if (parsed.kind !== "particles") throw new Error(JSON.stringify(parsed));
     const { header, payload } = parsed;
     expect(header).toMatchObject({ tick: BigInt(golden["tick"] as string), count: golden["count"], radiusM: golden["radius_m"] });
+    // A camera frames these bounds: particles are inside, and a packed grid reaches less than a cell beyond the water's.
+    expect(header.minM.every((min, axis) => min <= header.wordMinM[axis]!)).toBe(true);
+    expect(header.maxM.every((max) => max <= 8 + 4 * header.radiusM)).toBe(true);
     // The vertex shader's arithmetic on the six u16 of a particle.
     const words = new Uint16Array(payload.slice().buffer);
     const signedByte = (bits: number): number => ((bits << 24) >> 24) / 127;
@@ -94,8 +97,8 @@ describe("golden bytes", () => {
     for (let i = 0; i < header.count; ++i) {
       const [x, z, y, vxy, vzTint, foam] = words.subarray(6 * i, 6 * i + 6) as unknown as [number, number, number, number, number, number];
       [x, y, z].forEach((word, axis) => {
-        const min = header.minM[axis]!;
-        const max = header.maxM[axis]!;
+        const min = header.wordMinM[axis]!;
+        const max = header.wordMaxM[axis]!;
         expect(Math.abs(min + (word / 65535) * (max - min) - positions[3 * i + axis]!)).toBeLessThan(1e-6 * (max - min));
       });
       [vxy & 255, vxy >> 8, vzTint & 255].forEach((bits, axis) => {

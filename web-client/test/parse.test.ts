@@ -71,7 +71,7 @@ describe("parse", () => {
   it("reads particles with their bounds", () => {
     const parsed = parse(encode(particleFrame(Uint8Array.from({ length: 24 }, (_, i) => i))));
     if (parsed.kind !== "particles") throw new Error(parsed.kind);
-    expect(parsed.header).toEqual({ tick: 8n, timeS: 0.5, count: 2, minM: [-8, -1.5, -8], maxM: [8, 5, 8], maxSpeedMps: 9, radiusM: 0.15 });
+    expect(parsed.header).toEqual({ tick: 8n, timeS: 0.5, count: 2, minM: [-8, -1.5, -8], maxM: [8, 5, 8], wordMinM: [-8, -1.5, -8], wordMaxM: [8, 5, 8], maxSpeedMps: 9, radiusM: 0.15 });
     expect(parsed.payload.length).toBe(24);
   });
 

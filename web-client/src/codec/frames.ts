@@ -33,11 +33,15 @@ export interface SurfaceHeader extends FrameHeader {
   quantumM: number;
 }
 
-/** Position = min + u16 / 65535 (max - min) a axis; velocity = i8 / 127 maxSpeedMps. Metres, axes x, y, z. */
+/** Position = wordMin + u16 / 65535 (wordMax - wordMin) a axis; velocity = i8 / 127 maxSpeedMps. Metres, axes x, y, z. */
 export interface ParticleHeader extends FrameHeader {
   count: number;
+  /** Where particles can be. */
   minM: [number, number, number];
   maxM: [number, number, number];
+  /** The places of the words 0 and 65535. */
+  wordMinM: [number, number, number];
+  wordMaxM: [number, number, number];
   maxSpeedMps: number;
   radiusM: number;
 }
@@ -148,7 +152,7 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Mal
       if (!(maxSpeedMps >= 0 && maxSpeedMps <= kLargest)) return malformed(`particle speed bound ${maxSpeedMps} m/s`);
       if (!isSize(radiusM)) return malformed(`particle radius ${radiusM} m has to be above 0`);
       const fault = plainFault(frame, Layer.PARTICLES, "particles", count * kParticleBytes);
-      return fault ? malformed(fault) : { kind: "particles", header: { tick, timeS, count, minM, maxM, maxSpeedMps, radiusM }, payload };
+      return fault ? malformed(fault) : { kind: "particles", header: { tick, timeS, count, minM, maxM, wordMinM: minM, wordMaxM: maxM, maxSpeedMps, radiusM }, payload };
     }
     case "particlesByCell": {
       const { count, minXM, minYM, minZM, cellsXCount, cellsYCount, cellsZCount, cellM, offsetBits, velocityQuantumMps, radiusM } = codec.value;

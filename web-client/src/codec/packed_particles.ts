@@ -123,13 +123,15 @@ export function unpackParticles(packed: PackedParticles): { kind: "particles"; h
   if (!reader.isAtEnd()) return damaged;
   // Places are whole quanta, so that the largest u16 lies 65,535 of them above the first; likewise speeds.
   const quantumM = cellM / 2 ** offsetBits;
-  const first = minM.map((min) => min + quantumM / 2) as ParticleHeader["minM"];
+  const first = minM.map((min) => min + quantumM / 2) as ParticleHeader["wordMinM"];
   const header: ParticleHeader = {
     tick,
     timeS,
     count,
-    minM: first,
-    maxM: first.map((min) => min + 65535 * quantumM) as ParticleHeader["maxM"],
+    minM,
+    maxM: minM.map((min, axis) => min + cellsCount[axis]! * cellM) as ParticleHeader["maxM"],
+    wordMinM: first,
+    wordMaxM: first.map((min) => min + 65535 * quantumM) as ParticleHeader["wordMaxM"],
     maxSpeedMps: kMaxSignedByte * velocityQuantumMps,
     radiusM,
   };

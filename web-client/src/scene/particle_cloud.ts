@@ -74,8 +74,8 @@ export class ParticleCloud {
     words.addUpdateRange(0, wordsCount);
     words.needsUpdate = true;
     this.mesh.geometry.setDrawRange(0, frame.count);
-    (this.uniforms["u_min_m"]!.value as Vector3).set(...frame.minM);
-    (this.uniforms["u_max_m"]!.value as Vector3).set(...frame.maxM);
+    (this.uniforms["u_min_m"]!.value as Vector3).set(...frame.wordMinM);
+    (this.uniforms["u_max_m"]!.value as Vector3).set(...frame.wordMaxM);
     this.uniforms["u_max_speed_mps"]!.value = frame.maxSpeedMps;
     this.uniforms["u_radius_m"]!.value = frame.radiusM;
   }
