@@ -117,21 +117,22 @@ std::unique_ptr<LayerCodec> makeDiagnosticsCodec() {
 }
 
 Stream streamOf(v1::Layer layer, v1::Packing packing) {
-  const bool has_packed = layer == v1::LAYER_SURFACE || layer == v1::LAYER_PARTICLES;
+  const bool has_packed = layer == v1::LAYER_SURFACE || layer == v1::LAYER_PARTICLES || layer == v1::LAYER_FOAM;
   return {layer, has_packed ? packing : v1::PACKING_PLAIN};
 }
 
 std::span<const Stream> allStreams() {
-  static constexpr std::array kStreams = {Stream{v1::LAYER_SURFACE},    Stream{v1::LAYER_SURFACE, v1::PACKING_PACKED},
-                                          Stream{v1::LAYER_PARTICLES},  Stream{v1::LAYER_PARTICLES, v1::PACKING_PACKED},
-                                          Stream{v1::LAYER_FOAM},       Stream{v1::LAYER_BODIES},
-                                          Stream{v1::LAYER_DIAGNOSTICS}};
+  static constexpr std::array kStreams = {Stream{v1::LAYER_SURFACE},   Stream{v1::LAYER_SURFACE, v1::PACKING_PACKED},
+                                          Stream{v1::LAYER_PARTICLES}, Stream{v1::LAYER_PARTICLES, v1::PACKING_PACKED},
+                                          Stream{v1::LAYER_FOAM},      Stream{v1::LAYER_FOAM, v1::PACKING_PACKED},
+                                          Stream{v1::LAYER_BODIES},    Stream{v1::LAYER_DIAGNOSTICS}};
   return kStreams;
 }
 
 FrameEncoder::FrameEncoder() {
-  for (auto make : {makeSurfaceFixed16Codec, makeSurfacePredictedCodec, makeParticlesFixed12Codec,
-                    makeParticlesByCellCodec, makeFoamFixed8Codec, makeBodiesFixed28Codec, makeDiagnosticsCodec})
+  for (auto make :
+       {makeSurfaceFixed16Codec, makeSurfacePredictedCodec, makeParticlesFixed12Codec, makeParticlesByCellCodec,
+        makeFoamFixed8Codec, makeFoamPredictedCodec, makeBodiesFixed28Codec, makeDiagnosticsCodec})
     add(make());
 }
 

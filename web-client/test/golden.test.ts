@@ -3,9 +3,8 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
-import type { SurfaceHeader } from "../src/codec/frames";
 import type { Malformed } from "../src/codec/malformed";
-import { SurfaceUnpacker } from "../src/codec/packed_surface";
+import { PlaneUnpacker } from "../src/codec/packed_planes";
 import { parse, type ParsedMessage } from "../src/codec/parse";
 import { unpackBodies, type BodyPose } from "../src/scene/bodies";
 import { elevationAtM } from "../src/scene/height_field";
@@ -30,14 +29,12 @@ function camel(name: string): string {
   return name.replace(/_([a-z0-9])/g, (_, letter: string) => letter.toUpperCase());
 }
 
-type PlainSurface = { kind: "surface"; header: SurfaceHeader; payload: Uint8Array };
-
 /** As the connection does: packed surfaces become plain ones, with the golden frames that they build on read before. */
-function unpacked(golden: GoldenCase, unpacker = new SurfaceUnpacker()): ParsedMessage | PlainSurface | Malformed {
+function unpacked(golden: GoldenCase, unpacker = new PlaneUnpacker()): Exclude<ParsedMessage, { kind: "packedSurface" | "packedFoam" }> | Malformed {
   const before = cases.find((c) => c.file !== "" && c.file === golden["follows"]);
   if (before) unpacked(before, unpacker);
   const parsed = parse(read(golden.file));
-  if (parsed.kind !== "packedSurface") return parsed;
+  if (parsed.kind !== "packedSurface" && parsed.kind !== "packedFoam") return parsed;
   const plain = unpacker.unpack(parsed);
   return plain.kind === "missingBase" ? { kind: "malformed", reason: "the frame before is missing" } : plain;
 }
@@ -110,7 +107,7 @@ describe("golden bytes", () => {
   });
 
   it.each(cases.filter((c) => c["layer"] === "LAYER_FOAM"))("reads the foam of $file to the last byte", (golden) => {
-    const parsed = parse(read(golden.file));
+    const parsed = unpacked(golden);
     if (parsed.kind !== "foam") throw new Error(JSON.stringify(parsed));
     expect(parsed.header).toEqual({
       tick: BigInt(golden["tick"] as string), timeS: golden["time_s"], resolutionCount: golden["resolution_count"], sideM: golden["side_m"],

@@ -374,6 +374,7 @@ std::vector<GoldenCase> goldenCases() {
       {"bad_kind.bin", kBadMessage, because("a kind of message of the future: field 15"), {0x7A, 0x02, 0x08, 0x01}},
   };
   for (GoldenCase& packed : goldenPackedSurfaces()) cases.push_back(std::move(packed));
+  for (GoldenCase& packed : goldenPackedFoam()) cases.push_back(std::move(packed));
   for (GoldenCase& packed : goldenPackedParticles()) cases.push_back(std::move(packed));
   return cases;
 }

@@ -83,6 +83,38 @@ std::string numbersOf(const Values& values) {
 
 }  // namespace
 
+std::vector<GoldenCase> goldenPackedFoam() {
+  FrameEncoder encoder;
+  PackedFoamDecoder decoder;
+  std::vector<GoldenCase> cases;
+  for (std::uint32_t step = 0; step < 2; ++step) {
+    // Fading streaks with white spots, 12 samples a side.
+    std::vector<std::uint32_t> words(36);
+    for (std::uint32_t i = 0; i < 144; ++i) {
+      const std::uint32_t white = i % 31 == step ? 255u : (i / 12 % 4 == 0 ? 180u - 20u * step : i % 12 * 3);
+      words[i / 4] |= white << (8 * (i % 4));
+    }
+    core::FrameView view;
+    view.tick = 100 + 2 * step;
+    view.time_s = 20.5;
+    view.foam = core::FoamView{12, 8.0, words};
+    const EncodedFrame encoded = encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false);
+    const core::Bytes& bytes = encoded.whole ? *encoded.whole : *encoded.continuing;
+    const v1::LayerFrame frame = parseServerMessage(bytes)->frame();
+    const std::string follows = step > 0 ? cases.back().file : "";
+    const std::string json =
+        "\"kind\": \"frame\", \"layer\": \"LAYER_FOAM\", \"packing\": \"PACKING_PACKED\", \"tick\": \"" +
+        std::to_string(frame.tick()) + "\", \"time_s\": 20.5, \"keyframe\": " + (frame.keyframe() ? "true" : "false") +
+        ",\n    \"follows\": \"" + follows +
+        "\", \"resolution_count\": 12, \"side_m\": 8,\n    \"foam\": " + numbersOf(decoder.decode(frame)->foam);
+    cases.push_back({"foam_packed_" + std::to_string(step) + ".bin", GoldenVerdict::kOk, json, bytes});
+  }
+  cases.push_back(damagedCase("bad_foam_packed_cut.bin", "the packed payload is cut, checksum of what is there",
+                              cases.front().bytes,
+                              [](v1::LayerFrame& f) { f.mutable_payload()->resize(f.payload().size() - 3); }));
+  return cases;
+}
+
 std::vector<GoldenCase> goldenPackedParticles() {
   const std::vector<std::uint32_t> words = particleWords();
   core::ParticleView particles;

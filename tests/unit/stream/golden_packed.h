@@ -1,4 +1,4 @@
-// The packed golden frames: three surfaces in a row, the first of which is whole, and particles.
+// The packed golden frames: three surfaces in a row, the first of which is whole, likewise two of foam, and particles.
 #pragma once
 
 #include <vector>
@@ -8,6 +8,7 @@
 namespace spindrift::stream {
 
 std::vector<GoldenCase> goldenPackedSurfaces();
+std::vector<GoldenCase> goldenPackedFoam();
 std::vector<GoldenCase> goldenPackedParticles();
 
 }  // namespace spindrift::stream

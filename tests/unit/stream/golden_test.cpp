@@ -26,12 +26,12 @@ std::string readFile(const std::filesystem::path& file) {
 }
 
 /// `packed` has read the packed frames before it.
-bool decodes(const v1::LayerFrame& frame, PackedSurfaceDecoder& packed) {
+bool decodes(const v1::LayerFrame& frame, PackedSurfaceDecoder& packed, PackedFoamDecoder& packed_foam) {
   switch (frame.layer()) {
     case v1::LAYER_SURFACE:
       return static_cast<bool>(frame.has_surface_predicted() ? packed.decode(frame) : decodeSurface(frame));
     case v1::LAYER_FOAM:
-      return static_cast<bool>(decodeFoam(frame));
+      return static_cast<bool>(frame.has_foam_predicted() ? packed_foam.decode(frame) : decodeFoam(frame));
     case v1::LAYER_BODIES:
       return static_cast<bool>(decodeBodies(frame));
     default:
@@ -71,13 +71,14 @@ TEST_F(Golden, FolderHoldsNoOtherBytes) {
 
 TEST_F(Golden, FilesGetTheVerdictTheyAreNamedFor) {
   PackedSurfaceDecoder packed;
+  PackedFoamDecoder packed_foam;
   for (const GoldenCase& golden : goldenCases()) {
     const std::string frozen = readFile(goldenFolder() / golden.file);
     const auto message = parseServerMessage({reinterpret_cast<const std::uint8_t*>(frozen.data()), frozen.size()});
     ASSERT_EQ(static_cast<bool>(message), golden.verdict != GoldenVerdict::kBadMessage) << golden.file;
     if (!message || !message->has_frame()) continue;
     const v1::LayerFrame& frame = message->frame();
-    EXPECT_EQ(decodes(frame, packed), golden.verdict == GoldenVerdict::kOk) << golden.file;
+    EXPECT_EQ(decodes(frame, packed, packed_foam), golden.verdict == GoldenVerdict::kOk) << golden.file;
   }
 }
 

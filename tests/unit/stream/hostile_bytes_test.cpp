@@ -199,6 +199,7 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
       frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
     }
     PackedSurfaceDecoder packed;
+    PackedFoamDecoder packed_foam;
     if (const auto surface = frame.has_surface_predicted() ? packed.decode(frame) : decodeSurface(frame)) {
       ++decoded_count;
       ASSERT_TRUE(allFinite(surface->elevation_m)) << "case " << i;
@@ -208,7 +209,7 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
       ++decoded_count;
       ASSERT_TRUE(allFinite(particles->position_m) && allFinite(particles->velocity_mps)) << "case " << i;
       ASSERT_EQ(particles->position_m.size(), std::size_t{3} * particles->count);
-    } else if (const auto foam = decodeFoam(frame)) {
+    } else if (const auto foam = frame.has_foam_predicted() ? packed_foam.decode(frame) : decodeFoam(frame)) {
       ++decoded_count;
       ASSERT_EQ(foam->foam.size(), std::size_t{foam->resolution_count} * foam->resolution_count);
     } else if (const auto bodies = decodeBodies(frame)) {

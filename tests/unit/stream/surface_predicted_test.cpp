@@ -166,6 +166,39 @@ TEST(SurfacePredicted, SaysThatTheFrameBeforeIsMissingUntilAWholeOneComes) {
   EXPECT_TRUE(decoder.decode(frameOf(encoded[4].continuing)));
 }
 
+TEST(FoamPredicted, IsThePlainFoamToTheByte) {
+  FrameEncoder encoder;
+  PackedFoamDecoder decoder;
+  std::mt19937 random(4);
+  std::size_t packed_bytes = 0;
+  for (std::uint64_t tick = 1; tick < 12; ++tick) {
+    std::vector<std::uint32_t> words(32 * 32 / 4, 0u);
+    for (std::size_t i = 0; i < 40; ++i)
+      words[i] = tick == 5 ? static_cast<std::uint32_t>(random()) : 0xFFF0'A050u >> tick;
+    core::FrameView view;
+    view.tick = tick;
+    view.foam = core::FoamView{32, 16.0, words};
+    const EncodedFrame encoded = encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, tick == 1);
+    const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+    packed_bytes += bytes->size();
+    const auto packed = decoder.decode(frameOf(bytes));
+    ASSERT_TRUE(packed) << packed.error().message;
+    const auto plain = decodeFoam(frameOf(encoder.encode(v1::LAYER_FOAM, view)));
+    ASSERT_TRUE(plain);
+    EXPECT_EQ(packed->foam, plain->foam) << "tick " << tick;
+    EXPECT_EQ(packed->side_m, 16.0);
+  }
+  EXPECT_LT(packed_bytes, 11u * 32 * 32 / 2);
+  PackedFoamDecoder late;
+  core::FrameView view;
+  const std::vector<std::uint32_t> words(32 * 32 / 4, 0u);
+  view.foam = core::FoamView{32, 16.0, words};
+  const auto missing =
+      late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).continuing));
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, core::ErrorCode::kUnavailable);
+}
+
 TEST(SurfacePredicted, RefusesDamagedFrames) {
   FrameEncoder encoder;
   const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), true).whole);

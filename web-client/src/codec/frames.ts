@@ -3,6 +3,7 @@ import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
 import { crc32c } from "./crc32c";
 import { malformed, type Malformed } from "./malformed";
 import { unpackParticles } from "./packed_particles";
+import type { PackedFoam, PackedSurface } from "./packed_planes";
 import { kWeightCount } from "./surface_predictor";
 
 /** Largest grid side and counts this client takes; all far above what a server sends. */
@@ -56,17 +57,6 @@ export interface BodiesHeader extends FrameHeader {
   count: number;
 }
 
-/** A surface that takes the frames before it to be read: see SurfaceUnpacker. */
-export interface PackedSurface {
-  kind: "packedSurface";
-  header: SurfaceHeader;
-  /** The frame that it builds on; undefined: a keyframe. */
-  baseTick: bigint | undefined;
-  weights: number[];
-  earlierWeights: number[];
-  payload: Uint8Array;
-}
-
 export type ParsedFrame =
   | { kind: "surface"; header: SurfaceHeader; payload: Uint8Array }
   | { kind: "particles"; header: ParticleHeader; payload: Uint8Array }
@@ -100,7 +90,16 @@ function gridFault(what: string, resolutionCount: number, sideM: number): string
   return isSize(sideM) ? undefined : `${what} side ${sideM} m has to be above 0`;
 }
 
-export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Malformed {
+function weightsFault(frame: LayerFrame, weights: number[], earlierWeights: number[]): string | undefined {
+  if (weights.length === kWeightCount && (!frame.keyframe || earlierWeights.length === kWeightCount)) return undefined;
+  return `a plane of ${weights.length} and ${earlierWeights.length} weights, there have to be ${kWeightCount}`;
+}
+
+function baseTickOf(frame: LayerFrame): bigint | undefined {
+  return frame.keyframe ? undefined : frame.baseTick;
+}
+
+export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | PackedFoam | Malformed {
   const { tick, timeS, payload, codec } = frame;
   switch (codec.case) {
     case "surfaceFixed16": {
@@ -113,19 +112,22 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Mal
     }
     case "surfacePredicted": {
       const { resolutionCount, sideM, quantumM, weights, earlierWeights } = codec.value;
-      const weightsFault =
-        weights.length !== kWeightCount || (frame.keyframe && earlierWeights.length !== kWeightCount)
-          ? `surface of ${weights.length} and ${earlierWeights.length} weights, there have to be ${kWeightCount}`
-          : undefined;
       const fault =
         gridFault("surface", resolutionCount, sideM) ??
         (isSize(quantumM) ? undefined : `surface quantum ${quantumM} m has to be above 0`) ??
-        weightsFault ??
+        weightsFault(frame, weights, earlierWeights) ??
         frameFault(frame, Layer.SURFACE, "a surface");
       if (fault) return malformed(fault);
-      const baseTick = frame.keyframe ? undefined : frame.baseTick;
       const header = { tick, timeS, resolutionCount, sideM, quantumM };
-      return { kind: "packedSurface", header, baseTick, weights, earlierWeights, payload };
+      return { kind: "packedSurface", header, resolutionCount, baseTick: baseTickOf(frame), weights, earlierWeights, payload };
+    }
+    case "foamPredicted": {
+      const { resolutionCount, sideM, weights, earlierWeights } = codec.value;
+      const fault =
+        gridFault("foam", resolutionCount, sideM) ?? weightsFault(frame, weights, earlierWeights) ?? frameFault(frame, Layer.FOAM, "foam");
+      if (fault) return malformed(fault);
+      const header = { tick, timeS, resolutionCount, sideM };
+      return { kind: "packedFoam", header, resolutionCount, baseTick: baseTickOf(frame), weights, earlierWeights, payload };
     }
     case "foamFixed8": {
       const { resolutionCount, sideM } = codec.value;

@@ -3,9 +3,10 @@
 import { fromBinary } from "@bufbuild/protobuf";
 
 import { RejectReason, RoomEventKind, ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
-import { parseFrame, type PackedSurface, type ParsedFrame } from "./frames";
+import { parseFrame, type ParsedFrame } from "./frames";
 import { readBoatList, readGreeting, type BoatDetail, type GreetingInfo } from "./greeting";
 import { malformed, type Malformed } from "./malformed";
+import type { PackedFoam, PackedSurface } from "./packed_planes";
 
 export interface DiagnosticsInfo {
   tick: bigint;
@@ -39,6 +40,7 @@ export type ParsedMessage =
   | { kind: "greeting"; greeting: GreetingInfo }
   | ParsedFrame
   | PackedSurface
+  | PackedFoam
   | { kind: "diagnostics"; diagnostics: DiagnosticsInfo }
   | { kind: "ack"; commandId: bigint; appliedTick: bigint; boatId: number }
   | { kind: "reject"; commandId: bigint; reason: string; field: string; message: string }

@@ -4,7 +4,7 @@ import { create, toBinary } from "@bufbuild/protobuf";
 
 import type { ParsedFrame } from "../codec/frames";
 import { kLayers, kWireMajor, kWireMinor, type BoatDetail, type GreetingInfo } from "../codec/greeting";
-import { SurfaceUnpacker } from "../codec/packed_surface";
+import { PlaneUnpacker } from "../codec/packed_planes";
 import { parse, type DiagnosticsInfo, type RoomEventName } from "../codec/parse";
 import { ClientMessageSchema, Packing, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
@@ -76,7 +76,7 @@ export class Connection {
   private visible = true;
   private readonly pendingSinceMs = new Map<number, number>();
   private readonly meter: LinkMeter;
-  private readonly unpacker = new SurfaceUnpacker();
+  private readonly unpacker = new PlaneUnpacker();
   private askedForKeyframeMs = -Infinity;
 
   constructor(
@@ -163,9 +163,10 @@ export class Connection {
         return;
       case "greeting":
         return this.greeted(parsed.greeting);
-      case "packedSurface": {
+      case "packedSurface":
+      case "packedFoam": {
         const unpacked = this.unpacker.unpack(parsed);
-        if (unpacked.kind === "surface") return this.gotFrame(unpacked);
+        if (unpacked.kind === "surface" || unpacked.kind === "foam") return this.gotFrame(unpacked);
         if (unpacked.kind === "malformed") this.meter.malformed(unpacked.reason);
         return this.askForKeyframe();
       }

@@ -63,21 +63,31 @@ core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes);
 /// of 0 or over kSurfaceMaxResolutionCount, payload length, checksum, numbers not finite or out of bounds.
 core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame);
 
-/// Reads the packed surface, whose frames build on those before: keeps the last two. One instance a subscription.
-class PackedSurfaceDecoder {
+/// Keeps what the next packed frame of a plane builds on: the last two. One instance a subscription.
+class PackedPlaneDecoder {
  public:
-  PackedSurfaceDecoder();
-  ~PackedSurfaceDecoder();
-  PackedSurfaceDecoder(const PackedSurfaceDecoder&) = delete;
-  PackedSurfaceDecoder& operator=(const PackedSurfaceDecoder&) = delete;
+  PackedPlaneDecoder(const PackedPlaneDecoder&) = delete;
+  PackedPlaneDecoder& operator=(const PackedPlaneDecoder&) = delete;
 
-  /// Errors as decodeSurface()'s; kUnavailable: the frame builds on one that is not here. After an error only a
-  /// keyframe helps: subscribe again.
-  core::Result<SurfaceSamples> decode(const v1::LayerFrame& frame);
+ protected:
+  PackedPlaneDecoder();
+  ~PackedPlaneDecoder();
 
- private:
   struct History;
   std::unique_ptr<History> history_;
+};
+
+/// Reads the packed surface. Errors as decodeSurface()'s; kUnavailable: the frame builds on one that is not here. After
+/// an error only a keyframe helps: subscribe again.
+class PackedSurfaceDecoder : public PackedPlaneDecoder {
+ public:
+  core::Result<SurfaceSamples> decode(const v1::LayerFrame& frame);
+};
+
+/// Reads the packed foam; errors likewise.
+class PackedFoamDecoder : public PackedPlaneDecoder {
+ public:
+  core::Result<FoamSamples> decode(const v1::LayerFrame& frame);
 };
 
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is fine).

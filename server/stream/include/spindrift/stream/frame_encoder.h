@@ -39,6 +39,8 @@ std::unique_ptr<LayerCodec> makeBodiesFixed28Codec();
 std::unique_ptr<LayerCodec> makeDiagnosticsCodec();
 /// Packed: SurfacePredicted.
 std::unique_ptr<LayerCodec> makeSurfacePredictedCodec();
+/// Packed: FoamPredicted.
+std::unique_ptr<LayerCodec> makeFoamPredictedCodec();
 /// Packed: ParticlesByCell.
 std::unique_ptr<LayerCodec> makeParticlesByCellCodec();
 
