@@ -73,7 +73,7 @@ void addSteps(bool quick, std::vector<Sweep>& sweeps) {
                         [](sim::WaterSim& water, double) {
                           (void)water.start(core::Splash{0, 0, 0.3, 0.4, 0.1});
                         },
-                        3.0, kMovingShare, kSqueezed});
+                        quick ? 2.0 : 3.0, kMovingShare, kSqueezed});
     }
   }
   sweeps.push_back({"step of thick water (1,000 Pa s)",
@@ -88,7 +88,7 @@ void addSteps(bool quick, std::vector<Sweep>& sweeps) {
                       return withStep(scene, factor);
                     },
                     {},
-                    3.0,
+                    quick ? 2.0 : 3.0,
                     kBoilingShare});
 }
 

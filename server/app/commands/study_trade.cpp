@@ -46,7 +46,7 @@ constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
 constexpr double kChance = 0.05;
 constexpr const char* kSeedKnob = "seed";
 /// Simulated seconds of the quick form, whose yardstick is REFERENCE itself.
-constexpr double kQuickSeconds = 1.4;
+constexpr double kQuickSeconds = 1.2;
 
 /// What is kept of a run.
 struct TradeRow {
