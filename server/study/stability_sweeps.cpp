@@ -58,6 +58,8 @@ std::vector<double> pick(bool quick, std::vector<double> few, std::vector<double
   return quick ? std::move(few) : std::move(many);
 }
 
+constexpr double kQuickSecondsAfter = 1.0;
+
 void addSteps(bool quick, std::vector<Sweep>& sweeps) {
   const std::vector<double> factors = pick(quick, {0.75, 1, 1.5, 4}, {0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 4});
   for (const PressureSolver solver : kSolvers) {
@@ -320,6 +322,9 @@ std::vector<Sweep> stabilitySweeps(bool quick) {
   addWaves(quick, sweeps);
   addParticles(quick, sweeps);
   addCommands(quick, sweeps);
+  if (quick) {
+    for (Sweep& sweep : sweeps) sweep.seconds_after = std::min(sweep.seconds_after, kQuickSecondsAfter);
+  }
   return sweeps;
 }
 
