@@ -49,7 +49,7 @@ Outcome stillWater(gpu::Context& ctx, bool quick) {
   scene.coupling.emplace();
   auto water = sim::WaterSim::create(ctx, scene);
   if (!water) return water.error();
-  const double seconds = quick ? 5.0 : 60.0;
+  const double seconds = quick ? 3.0 : 60.0;
   const sim::StateCopy before = (*water)->copyState();
   double fastest_mps = 0.0;
   double highest_m = 0.0;
@@ -87,7 +87,7 @@ Outcome hydrostaticColumn(gpu::Context& ctx, bool quick) {
       // Slices as thick as the support radius, below which SPH resolves nothing; mean of the last two seconds.
       const auto slices = static_cast<std::size_t>(l.layers_count * l.spacing_m / l.support_radius_m);
       std::vector<double> pressure_pa(slices + 1), height_m(slices + 1), count(slices + 1);
-      const int ticks = quick ? 480 : 1200;
+      const int ticks = quick ? 330 : 1200;
       for (int tick = 0; tick < ticks; ++tick) {
         water.step();
         if (tick < ticks - 120 || tick % 6) continue;
