@@ -146,7 +146,7 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
                       (void)water.start(core::Splash{0.5, 0.3, 1.5, share * 1.5, 0.05});
                     },
                     4.0, kGrowingWave});
-  sweeps.push_back({"wave in two-way water", "depths", pick(quick, {0.1, 3}, {0.1, 0.3, 1, 3, 10}), std::nullopt,
+  sweeps.push_back({"wave in two-way water", "depths", pick(quick, {3}, {0.1, 0.3, 1, 3, 10}), std::nullopt,
                     [](double) {
                       core::Scene scene = twoWayWater(96);
                       scene.wave->steepening_ratio = 1.0;
@@ -240,7 +240,7 @@ void addCommands(bool quick, std::vector<Sweep>& sweeps) {
 void addParticles(bool quick, std::vector<Sweep>& sweeps) {
   sweeps.push_back({"sound speed, the rules' own steps",
                     "m/s",
-                    pick(quick, {5, 20, 100}, {3, 5, 10, 20, 50, 100}),
+                    pick(quick, {5, 100}, {3, 5, 10, 20, 50, 100}),
                     std::nullopt,
                     [](double sound_mps) {
                       core::Scene scene = box(1000);
@@ -252,7 +252,7 @@ void addParticles(bool quick, std::vector<Sweep>& sweeps) {
                     kBoilingShare});
   sweeps.push_back({"viscosity, the rules' own steps",
                     "Pa s",
-                    pick(quick, {0, 10, 1000}, {0, 1, 10, 100, 1000}),
+                    pick(quick, {0, 1000}, {0, 1, 10, 100, 1000}),
                     std::nullopt,
                     [](double viscosity_pas) {
                       core::Scene scene = box(1000);

@@ -30,11 +30,11 @@ struct TradeScene {
   double seconds;
   double quick_seconds;  ///< of the quick form, whose yardstick is REFERENCE itself; 0: no part of it
 };
-constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.2},
+constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.1},
                                        {"breaking_wave", 4.5, 0.0},
                                        {"boat_wake", 4.0, 0.0},
                                        {"thesis", 3.0, 0.0},
-                                       {"dam_break", 1.4, 0.6}};
+                                       {"dam_break", 1.4, 0.4}};
 constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
                                     v1::FIDELITY_REFERENCE};
 constexpr const char* kLevelKnob = "fidelity";
