@@ -38,7 +38,7 @@ class BitWriter {
   int pending_count_ = 0;
 };
 
-/// Reads what BitWriter wrote. Beyond the end there are zeros; isPastEnd() tells.
+/// Reads what BitWriter wrote. Beyond the end there are zeros, and isAtEnd() is false then.
 class BitReader {
  public:
   explicit BitReader(core::ByteView bytes) : bytes_(bytes) {}
@@ -56,7 +56,6 @@ class BitReader {
     available_count_ -= bit_count;
     return value;
   }
-  [[nodiscard]] bool isPastEnd() const { return at_ > bytes_.size(); }
   /// Whether everything but the filling was read.
   [[nodiscard]] bool isAtEnd() const { return at_ == bytes_.size() && pending_ == 0; }
 

@@ -1,7 +1,6 @@
 #include "fitted_table.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace spindrift::stream {

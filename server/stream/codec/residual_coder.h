@@ -52,7 +52,6 @@ class ResidualDecoder {
 
   /// Whether both streams were read to their ends, no more and no less: else the bytes are damaged.
   [[nodiscard]] bool isAtEnd() const { return coder_.isAtEnd() && raw_.isAtEnd(); }
-  [[nodiscard]] bool isPastEnd() const { return raw_.isPastEnd(); }
 
  private:
   struct Parts {
