@@ -1,6 +1,7 @@
 // The encoder's thread: finished frames in, one shared message a layer out, to whoever watches.
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <map>
@@ -25,12 +26,22 @@ class EncoderThread {
 
   /// Any thread; never blocks on encoding.
   void submit(const std::string& room, core::FrameView frame);
+  /// The room is no more.
+  void forget(const std::string& room);
   /// Ends the thread; frames still waiting are dropped. Idempotent.
   void stop();
 
   [[nodiscard]] std::uint64_t replacedCount() const;
   /// Messages encoded for a layer of a room so far: one a frame, however many clients watch.
   [[nodiscard]] std::uint64_t encodeCount(const std::string& room, stream::Stream stream) const;
+
+  /// Of one stream, over all rooms since the start.
+  struct StreamCost {
+    std::uint64_t frame_count = 0;
+    std::uint64_t bytes_count = 0;
+    double encode_s = 0.0;
+  };
+  [[nodiscard]] std::array<StreamCost, stream::kStreamCount> costs() const;
 
  private:
   void loop();
@@ -41,7 +52,9 @@ class EncoderThread {
   std::map<std::string, core::FrameView> waiting_;
   std::uint64_t replaced_count_ = 0;
   bool stopping_ = false;
-  std::map<std::string, std::unique_ptr<stream::FrameEncoder>> encoders_;  ///< grows under mutex_; used by the thread
+  /// Grows and shrinks under mutex_; used by the thread.
+  std::map<std::string, std::shared_ptr<stream::FrameEncoder>> encoders_;
+  std::array<StreamCost, stream::kStreamCount> costs_{};
   std::thread thread_;
 };
 

@@ -2,11 +2,12 @@
 
 #include <chrono>
 
-#include <boost/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/stream/client_message.h>
 #include <spindrift/stream/server_message.h>
+
+#include "overloaded.h"
 
 namespace spindrift::app {
 namespace {
@@ -27,17 +28,17 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
   return layers;
 }
 
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
-
 }  // namespace
 
-Gateway::Gateway(const SimulationThread& rooms, std::size_t message_max_bytes, double messages_per_s)
-    : rooms_(rooms), message_max_bytes_(message_max_bytes), messages_per_s_(messages_per_s) {}
+Gateway::Gateway(SimulationThread& rooms, GatewayOptions options, const MetricsSources& sources)
+    : rooms_(rooms),
+      options_(std::move(options)),
+      rest_(rooms, options_.access, counters_, sources, [this](const Room& room) { dismiss(room); }) {}
+
+void Gateway::serverStarts(net::Hub& served) {
+  hub_ = &served;
+  rest_.serverStarts(served);
+}
 
 core::Result<void> Gateway::acceptSession(const std::string& room) {
   if (rooms_.find(room)) return {};
@@ -47,16 +48,19 @@ core::Result<void> Gateway::acceptSession(const std::string& room) {
 }
 
 void Gateway::sessionOpened(net::SessionId session, const std::string& room_name, const std::string& peer) {
-  Room* room = rooms_.find(room_name);
+  const std::shared_ptr<Room> room = rooms_.find(room_name);
+  if (!room) return refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
   {
     const std::lock_guard lock(mutex_);
-    sessions_[session] = {.room = room};
+    sessions_[session].room = room;
   }
   spdlog::info("session {} from {} joins room {}", session, peer, room->name());
   // The greeting comes first; a change that fell between it and joining makes a second one.
   const auto greeted = greet(session, *room);
   hub().join(session, room->name());
   if (room->snapshot() != greeted) greet(session, *room);
+  // Closed since: dismiss() may have passed by before this session was on its list.
+  if (rooms_.find(room->name()) != room) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 
 std::shared_ptr<const RoomSnapshot> Gateway::greet(net::SessionId session, const Room& room) {
@@ -67,14 +71,14 @@ std::shared_ptr<const RoomSnapshot> Gateway::greet(net::SessionId session, const
   facts.room = room.name();
   facts.session_id = session;
   facts.layers = layersOf(snapshot->scene);
-  facts.message_max_bytes = static_cast<std::uint32_t>(message_max_bytes_);
-  facts.commands_per_s = messages_per_s_;
+  facts.message_max_bytes = static_cast<std::uint32_t>(options_.message_max_bytes);
+  facts.commands_per_s = options_.messages_per_s;
   facts.frame_rate_max_hz = kFrameRateMax_hz;
   facts.server_time_s = monotonic_s();
   facts.paused = snapshot->paused;
   facts.speed = snapshot->speed;
   facts.boats = snapshot->boats;
-  facts.scenes = rooms_.scenes().names();
+  facts.scenes = rooms_.rules().scenes.names();
   hub().sendControl(session, stream::greeting(facts, snapshot->scene));
   return snapshot;
 }
@@ -84,10 +88,27 @@ void Gateway::sceneChanged(const Room& room) {
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [session, state] : sessions_) {
-      if (state.room == &room) members.push_back(session);
+      if (state.room.get() == &room) members.push_back(session);
     }
   }
   for (const net::SessionId session : members) greet(session, room);
+}
+
+void Gateway::dismiss(const Room& room) {
+  std::vector<net::SessionId> members;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [session, state] : sessions_) {
+      if (state.room.get() == &room) members.push_back(session);
+    }
+  }
+  for (const net::SessionId session : members) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+}
+
+void Gateway::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {
+  constexpr std::size_t kReasonMaxBytes = 120;
+  hub().sendControl(session, stream::refusal(why));
+  hub().close(session, code, why.substr(0, kReasonMaxBytes));
 }
 
 void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
@@ -98,82 +119,110 @@ void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
     if (it == sessions_.end()) return;
     state = it->second;
   }
-  const auto refuse = [&](const std::string& why) {
-    hub().sendControl(session, stream::refusal(why));
-    hub().close(session, net::CloseCode::kPolicy, why.substr(0, 120));
-  };
   std::visit(
       Overloaded{
-          [&](const stream::Hello& hello) {
-            if (auto why = stream::checkVersion(hello)) return refuse(*why);
-            spdlog::debug("session {} is {}", session, hello.client);
-            const std::lock_guard lock(mutex_);
-            sessions_[session].said_hello = true;
-          },
-          [&](const stream::Subscribe& subscribe) {
-            if (!state.said_hello) return refuse("subscribe before hello: send ClientMessage.hello first");
-            // One packing at a time: asking for the other one stops this one.
-            const stream::Stream wanted = stream::streamOf(subscribe.layer, subscribe.packing);
-            for (const stream::Stream stream : stream::allStreams()) {
-              if (stream.layer != wanted.layer) continue;
-              const bool is_wanted = stream.packing == wanted.packing;
-              hub().watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
-                          is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0);
-            }
-          },
-          [&](const core::Command& parsed) {
-            core::Command command = parsed;
-            command.session_id = session;
-            if (!state.said_hello) {
-              hub().sendControl(session, stream::reject(command.command_id, v1::REJECT_REASON_NO_HELLO, "",
-                                                        "say hello before the first command"));
-              return;
-            }
-            if (auto rejection = stream::checkAgainstScene(command, state.room->snapshot()->scene)) {
-              rejection->command_id = command.command_id;
-              hub().sendControl(session, stream::reject(*rejection));
-              return;
-            }
-            const auto id = command.command_id;
-            if (!state.room->submit(std::move(command))) {
-              hub().sendControl(session, stream::reject(id, v1::REJECT_REASON_BUSY, "",
-                                                        "the room's command queue is full: try again"));
-            }
-          },
+          [&](const stream::Hello& said) { hello(session, state, said); },
+          [&](const stream::Subscribe& asked) { subscribe(session, state, asked); },
+          [&](const core::Command& parsed) { command(session, state, parsed); },
           [&](const stream::Ping& ping) {
             hub().sendControl(session, stream::pong(ping.client_time_s, monotonic_s()));
           },
-          [&](const stream::CommandRejection& rejection) { hub().sendControl(session, stream::reject(rejection)); },
-          [&](const stream::Malformed& malformed) { refuse(malformed.message); },
+          [&](const stream::CommandRejection& rejection) {
+            counters_.rejected(rejection.reason);
+            hub().sendControl(session, stream::reject(rejection));
+          },
+          [&](const stream::Malformed& malformed) { refuse(session, net::CloseCode::kPolicy, malformed.message); },
       },
       stream::parseClientMessage(message));
 }
 
-void Gateway::sessionClosed(net::SessionId session, const net::SessionEnd& end) {
+void Gateway::hello(net::SessionId session, const Session& state, const stream::Hello& hello) {
+  if (auto why = stream::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
+  if (state.said_hello) return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
+  const auto now = std::chrono::system_clock::now();
+  const auto grant = options_.access.resolve(hello.token, now);
+  if (!grant) return refuse(session, net::CloseCode::kUnauthorized, grant.error().message);
+  if (grant->expires) {
+    const auto left = std::chrono::duration_cast<std::chrono::steady_clock::duration>(*grant->expires - now);
+    hub().closeAt(session, std::chrono::steady_clock::now() + left, net::CloseCode::kUnauthorized,
+                  "the token has expired: ask for a new one");
+  }
+  const Admission admission = state.room->roster().arrive({.session = session,
+                                                           .role = grant->role,
+                                                           .name = hello.name,
+                                                           .color_rgb = hello.color_rgb,
+                                                           .resume_key = hello.resume_key});
+  if (admission.displaced) {
+    refuse(*admission.displaced, net::CloseCode::kResumedElsewhere, "another connection goes on in your place");
+  }
   {
     const std::lock_guard lock(mutex_);
-    sessions_.erase(session);
+    Session& kept = sessions_[session];
+    kept.said_hello = true;
+    kept.role = grant->role;
+    kept.person_id = admission.person_id;
   }
+  spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, roleName(grant->role), hello.client,
+               admission.resumed ? "resumed" : "");
+  v1::Welcome welcome;
+  welcome.set_role(static_cast<v1::Role>(static_cast<int>(v1::ROLE_VIEWER) + static_cast<int>(grant->role)));
+  welcome.set_person_id(admission.person_id);
+  welcome.set_resume_key(admission.resume_key);
+  welcome.set_grace_s(std::chrono::duration<double>(state.room->roster().grace()).count());
+  welcome.set_resumed(admission.resumed);
+  hub().sendControl(session, stream::welcome(welcome));
+  hub().sendControl(session, stream::people(state.room->roster().people()));
+}
+
+void Gateway::subscribe(net::SessionId session, const Session& state, const stream::Subscribe& subscribe) {
+  if (!state.said_hello) {
+    return refuse(session, net::CloseCode::kPolicy, "subscribe before hello: send ClientMessage.hello first");
+  }
+  // One packing at a time: asking for the other one stops this one.
+  const stream::Stream wanted = stream::streamOf(subscribe.layer, subscribe.packing);
+  for (const stream::Stream stream : stream::allStreams()) {
+    if (stream.layer != wanted.layer) continue;
+    const bool is_wanted = stream.packing == wanted.packing;
+    hub().watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
+                is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0);
+  }
+}
+
+void Gateway::command(net::SessionId session, const Session& state, core::Command command) {
+  command.sender = {.session_id = session, .person_id = state.person_id, .role = state.role};
+  if (!state.said_hello) {
+    return commandRejected(command, {.command_id = command.command_id,
+                                     .reason = v1::REJECT_REASON_NO_HELLO,
+                                     .field = "",
+                                     .message = "say hello before the first command"});
+  }
+  if (auto rejection = admitCommand(command, *state.room)) return commandRejected(command, *rejection);
+}
+
+void Gateway::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+  counters_.applied();
+  if (command.sender.request_id != 0) return rest_.commandApplied(command, tick, boat_id);
+  hub().sendControl(command.sender.session_id, stream::ack(command.command_id, tick, boat_id));
+}
+
+void Gateway::commandRejected(const core::Command& command, const stream::CommandRejection& rejection) {
+  counters_.rejected(rejection.reason);
+  if (command.sender.request_id != 0) return rest_.commandRejected(command, rejection);
+  hub().sendControl(command.sender.session_id, stream::reject(rejection));
+}
+
+void Gateway::sessionClosed(net::SessionId session, const net::SessionEnd& end) {
+  std::shared_ptr<Room> room;
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto node = sessions_.extract(session)) room = std::move(node.mapped().room);
+  }
+  if (room) room->roster().leave(session, Roster::Clock::now());
   spdlog::info("session {} ended: {} {}", session, end.code, end.reason);
 }
 
-std::optional<net::HttpReply> Gateway::httpRequest(const net::HttpRequest& request) {
-  if (request.path == "/healthz" || request.path == "/readyz")
-    return net::HttpReply{.status = 200, .content_type = "text/plain", .body = "ok\n"};
-  if (request.path == "/api/v1/rooms" && request.method == "GET") {
-    boost::json::array rooms;
-    for (const auto& room : rooms_.rooms()) {
-      const auto snapshot = room->snapshot();
-      rooms.push_back(boost::json::object{{"name", room->name()},
-                                          {"scene", snapshot->scene.name()},
-                                          {"title", snapshot->scene.title()},
-                                          {"paused", snapshot->paused},
-                                          {"speed", snapshot->speed}});
-    }
-    return net::HttpReply{
-        .status = 200, .content_type = "application/json", .body = boost::json::serialize(rooms) + "\n"};
-  }
-  return std::nullopt;
+void Gateway::httpRequest(const net::HttpRequest& request, net::HttpResponder respond) {
+  rest_.answer(request, std::move(respond));
 }
 
 }  // namespace spindrift::app

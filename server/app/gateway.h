@@ -9,38 +9,58 @@
 
 #include <spindrift/net/server.h>
 
+#include "access.h"
+#include "metrics.h"
+#include "rest_api.h"
 #include "simulation_thread.h"
 
 namespace spindrift::app {
 
+struct GatewayOptions {
+  Access access;
+  std::size_t message_max_bytes = 16 * 1024;  ///< as the network has it; told in greetings
+  double messages_per_s = 200.0;              ///< likewise
+};
+
 class Gateway final : public net::Application, public RoomObserver {
  public:
-  /// `rooms` outlives the gateway, though its thread may have ended.
-  Gateway(const SimulationThread& rooms, std::size_t message_max_bytes, double messages_per_s);
+  /// `rooms` and `sources` outlive the gateway, though the rooms' thread may have ended.
+  Gateway(SimulationThread& rooms, GatewayOptions options, const MetricsSources& sources);
 
-  void serverStarts(net::Hub& hub) override { hub_ = &hub; }
+  void serverStarts(net::Hub& hub) override;
   core::Result<void> acceptSession(const std::string& room) override;
   void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override;
   void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
-  std::optional<net::HttpReply> httpRequest(const net::HttpRequest& request) override;
+  void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
   /// Greets everybody in the room again; their layers go on.
   void sceneChanged(const Room& room) override;
+  void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
+  void commandRejected(const core::Command& command, const stream::CommandRejection& rejection) override;
 
  private:
   struct Session {
-    Room* room = nullptr;
+    std::shared_ptr<Room> room;
     bool said_hello = false;
+    core::Role role = core::Role::kViewer;
+    std::uint32_t person_id = 0;
   };
 
   net::Hub& hub() { return *hub_; }
   /// Sends a greeting and returns the state that it described.
   std::shared_ptr<const RoomSnapshot> greet(net::SessionId session, const Room& room);
+  void hello(net::SessionId session, const Session& state, const stream::Hello& hello);
+  void subscribe(net::SessionId session, const Session& state, const stream::Subscribe& subscribe);
+  void command(net::SessionId session, const Session& state, core::Command command);
+  void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
+  /// Sends everybody away: the room closes.
+  void dismiss(const Room& room);
 
-  const SimulationThread& rooms_;
-  const std::size_t message_max_bytes_;
-  const double messages_per_s_;
+  SimulationThread& rooms_;
+  const GatewayOptions options_;
+  CommandCounters counters_;
+  RestApi rest_;
   net::Hub* hub_ = nullptr;  ///< set before any session exists
   std::mutex mutex_;
   std::map<net::SessionId, Session> sessions_;

@@ -63,6 +63,34 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
 
+  serve_command->add_option("--max-rooms", serve_options.max_room_count, "Rooms at most, those opened later included")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  serve_command->add_option("--tokens", serve_options.token_file,
+                            "File with lines of ROLE TOKEN (default: the environment's SPINDRIFT_TOKENS)");
+  serve_command
+      ->add_option("--guests", serve_options.guest_role,
+                   "What somebody without a token is (default: operator, or viewer where there are tokens)")
+      ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
+  serve_command->add_option("--origin", serve_options.origins,
+                            "A page elsewhere that may connect, https://HOST; * = any; may be repeated");
+  serve_command->add_option("--grace", serve_options.grace_s, "Seconds that a lost connection's boat is kept")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  serve_command->add_option("--record", serve_options.record_folder, "Write the log of every room into this folder");
+  serve_command
+      ->add_option("--hash-every", serve_options.hash_interval_ticks,
+                   "Ticks from one state hash of the log to the next")
+      ->check(CLI::Range(1, 36000))
+      ->capture_default_str();
+
+  ReplayOptions replay_options;
+  CLI::App* replay_command = cli.add_subcommand("replay", "Run a room's log again and compare the states");
+  replay_command->add_option("file", replay_options.file, "A log that serve --record wrote")->required();
+  replay_command->add_option("--device", replay_options.device, "auto, software, or a device's number")
+      ->capture_default_str();
+  replay_command->add_option("--json", replay_options.json_file, "Write JSON to this file, - = standard output");
+
   InfoOptions info_options;
   CLI::App* info_command =
       cli.add_subcommand("info", "Devices, OpenGL and driver versions, limits, versions of program and wire");
@@ -121,6 +149,7 @@ int run(int argc, char** argv) {
   }
   setUpLogging(log_level);
   if (serve_command->parsed()) return serve(serve_options);
+  if (replay_command->parsed()) return replay(replay_options);
   if (info_command->parsed()) return info(info_options);
   if (check_command->parsed()) return check(check_options);
   if (bench_command->parsed()) return bench(bench_options);

@@ -6,7 +6,6 @@
 
 #include <spindrift/stream/frame_encoder.h>
 #include <spindrift/stream/scene_loader.h>
-
 namespace spindrift::app {
 namespace {
 
@@ -20,6 +19,9 @@ constexpr auto kPausedFrameInterval = 500ms;
 constexpr auto kDroppedFrameRetry = 10ms;
 /// While the device works on a frame, look for it this often.
 constexpr auto kReadbackPollInterval = 1ms;
+/// A room whose scene sleeps unwatched still shows the last of a splash to somebody who comes right back.
+constexpr auto kSleepPatience = 2s;
+constexpr auto kVitalsInterval = 250ms;
 constexpr double kSlowFactor = 0.9;
 constexpr auto kSlowPatience = 5s;
 constexpr auto kSlowWarningInterval = 60s;
@@ -33,40 +35,43 @@ bool isWatched(const net::Hub& hub, const std::string& room, v1::Layer layer) {
 
 }  // namespace
 
-core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene) {
-  // A step's shaders are compiled when they first run, which takes a software device seconds; diagnostics run every
-  // fourth tick, so as many ticks leave their rhythm as it was.
-  constexpr int kWarmUpTickCount = 4;
-  auto sim = sim::WaterSim::create(ctx, stream::toCore(scene));
-  if (!sim) return sim;
-  for (int i = 0; i < kWarmUpTickCount; ++i) (*sim)->step();
-  (void)(*sim)->requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
-  ctx.finish();
-  (void)(*sim)->takeFrames();
-  (void)(*sim)->takePassCosts();
-  (*sim)->reset();
-  return sim;
-}
-
-Room::Room(gpu::Context& ctx, std::string name, v1::Scene scene, const SceneCatalog& scenes,
-           std::unique_ptr<sim::WaterSim> sim)
-    : ctx_(ctx),
-      name_(std::move(name)),
-      scenes_(scenes),
-      scene_(std::move(scene)),
-      sim_(std::move(sim)),
+Room::Room(std::string name, const RoomRules& rules, std::unique_ptr<Stage> stage,
+           std::unique_ptr<CommandLogWriter> log)
+    : name_(std::move(name)),
+      rules_(rules),
+      stage_(std::move(stage)),
+      log_(std::move(log)),
       commands_(kCommandQueueCount),
-      clock_(sim_->derived().tick_s),
-      tick_shift_(0 - sim_->tick()) {
-  recovery_news_.restart(sim_->recoveredCount());
-  readBoats();
+      roster_(rules.grace),
+      clock_(stage_->water().derived().tick_s),
+      boats_(stage_->boats()) {
+  recovery_news_.restart(stage_->water().recoveredCount());
   publishSnapshot();
+  publishVitals({});
 }
 
-core::Result<std::unique_ptr<Room>> Room::create(gpu::Context& ctx, RoomSetup setup, const SceneCatalog& scenes) {
-  auto sim = createWarm(ctx, setup.scene);
-  if (!sim) return core::Error{sim.error().code, "room " + setup.name + ": " + sim.error().message};
-  return std::unique_ptr<Room>(new Room(ctx, std::move(setup.name), std::move(setup.scene), scenes, *std::move(sim)));
+core::Result<std::shared_ptr<Room>> Room::create(gpu::Context& ctx, RoomSetup setup, const RoomRules& rules) {
+  auto stage = Stage::create(ctx, std::move(setup.scene));
+  if (!stage) return core::Error{stage.error().code, "room " + setup.name + ": " + stage.error().message};
+  std::unique_ptr<CommandLogWriter> log;
+  if (!rules.record_folder.empty()) {
+    v1::RecordHeader header;
+    header.set_server("spindrift " SPINDRIFT_VERSION);
+    header.set_device(ctx.device().name);
+    header.set_room(setup.name);
+    *header.mutable_scene() = (*stage)->scene();
+    header.set_hash_interval_ticks(rules.hash_interval_ticks);
+    auto opened = CommandLogWriter::create(rules.record_folder, header);
+    if (!opened) return opened.error();
+    log = *std::move(opened);
+    spdlog::info("room {}: recorded to {}", setup.name, log->file().string());
+  }
+  return std::shared_ptr<Room>(new Room(std::move(setup.name), rules, *std::move(stage), std::move(log)));
+}
+
+bool isRoomName(const std::string& name) {
+  constexpr std::size_t kNameMaxBytes = 32;
+  return stream::isSceneName(name) && name.size() <= kNameMaxBytes;
 }
 
 std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
@@ -75,57 +80,85 @@ std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
 }
 
 void Room::publishSnapshot() {
-  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{scene_, paused_, clock_.speed(), boats_});
+  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{stage_->scene(), paused_, clock_.speed(), boats_});
   const std::lock_guard lock(snapshot_mutex_);
   snapshot_ = std::move(fresh);
 }
 
-void Room::readBoats() {
-  boats_.Clear();
-  for (const sim::BoatRecord& boat : sim_->boats()) {
-    v1::BoatInfo& info = *boats_.add_boats();
-    info.set_boat_id(boat.boat_id);
-    info.set_length_m(boat.length_m);
-    info.set_beam_m(boat.beam_m);
-    info.set_height_m(boat.height_m);
-    info.set_draught_m(boat.draught_m);
-  }
+std::shared_ptr<const RoomVitals> Room::vitals() const {
+  const std::lock_guard lock(snapshot_mutex_);
+  return vitals_;
+}
+
+void Room::publishVitals(TimePoint now) {
+  next_vitals_ = now + kVitalsInterval;
+  auto fresh = std::make_shared<RoomVitals>();
+  fresh->tick = tick();
+  fresh->time_s = stage_->water().time_s();
+  fresh->asleep = asleep_;
+  fresh->waiting_command_count = static_cast<std::uint32_t>(commands_.size());
+  fresh->dropped_frame_count = dropped_frames_;
+  fresh->diagnostics = diagnostics();
+  const std::lock_guard lock(snapshot_mutex_);
+  vitals_ = std::move(fresh);
+}
+
+void Room::record(v1::Record record) {
+  if (!log_) return;
+  record.set_tick(tick());
+  log_->write(record);
 }
 
 // One tick
 
 void Room::start(TimePoint now) {
   clock_.restart(now);
-  last_run_ = now;
+  last_run_ = last_watched_ = now;
 }
 
 Room::TimePoint Room::due(TimePoint now) const {
   if (pending_tick_count_ > 0) return now;
-  const TimePoint next = paused_ ? now + 10ms : clock_.due();
+  const TimePoint next = paused_ || asleep_ ? now + 10ms : clock_.due();
   return frames_in_flight_ > 0 ? std::min(next, now + kReadbackPollInterval) : next;
 }
 
 void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
-  if (!paused_) unpaused_wall_s_ += duration<double>(now - last_run_).count();
+  const bool stands_still = paused_ || asleep_;
+  if (!stands_still) unpaused_wall_s_ += duration<double>(now - last_run_).count();
   last_run_ = now;
   handOverFrames(encoder);
-  if (paused_ || now >= clock_.due()) applyCommands(hub, observer);
+  watchOverSleep(now, hub);
+  settlePeople(now, hub);
+  if (paused_ || asleep_ || now >= clock_.due()) applyCommands(hub, observer);
   if (paused_) {
     advancePaused(now, hub);
-  } else if (now >= clock_.due()) {
+  } else if (!asleep_ && now >= clock_.due()) {
     step(now, hub);
   }
   announceRecovery(now, hub);
   handOverFrames(encoder);
+  if (now >= next_vitals_) publishVitals(now);
+}
+
+void Room::watchOverSleep(TimePoint now, const net::Hub& hub) {
+  if (stage_->scene().unwatched() != v1::UNWATCHED_SLEEP || hub.sessionCount(name_) > 0) {
+    last_watched_ = now;
+    if (!asleep_) return;
+    asleep_ = false;
+    clock_.restart(now);
+  } else if (!asleep_ && now - last_watched_ >= kSleepPatience) {
+    asleep_ = true;
+    publishVitals(now);
+  }
 }
 
 void Room::step(TimePoint now, net::Hub& hub) {
   const TimePoint end = timedStep();
-  run_s_ += sim_->derived().tick_s;
+  run_s_ += stage_->water().derived().tick_s;
   unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
   last_run_ = end;
   clock_.ticked(end);
-  if (sim_->time_s() + 1e-9 >= next_frame_s_) requestFrame(end, hub);
+  if (stage_->water().time_s() + 1e-9 >= next_frame_s_) requestFrame(end, hub);
   watchRealTime(end);
 }
 
@@ -140,27 +173,41 @@ void Room::advancePaused(TimePoint now, net::Hub& hub) {
 
 Room::TimePoint Room::timedStep() {
   const auto begin = std::chrono::steady_clock::now();
-  sim_->step();
+  stage_->step();
   const auto end = std::chrono::steady_clock::now();
   step_ms_sum_ += duration<double, std::milli>(end - begin).count();
   ++step_count_;
+  if (log_ && !log_->ended()) {
+    if (const std::uint64_t count = stage_->water().recoveredCount(); count != logged_recovery_count_) {
+      logged_recovery_count_ = count;
+      v1::Record recovered;
+      recovered.set_recovered(true);
+      record(std::move(recovered));
+    }
+    if (tick() % log_->hashInterval_ticks() == 0) {
+      v1::Record hash;
+      hash.set_state_hash(stage_->water().stateHash());
+      record(std::move(hash));
+    }
+  }
   return end;
 }
 
 // Frames
 
 void Room::requestFrame(TimePoint now, net::Hub& hub) {
-  const double interval_s = clock_.speed() / scene_.stream().frame_rate_hz();  // frames keep their rate in wall time
-  if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, sim_->time_s());
+  const double interval_s =
+      clock_.speed() / stage_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
+  if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, stage_->water().time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
   wants_diagnostics_ = wants_diagnostics_ || isWatched(hub, name_, v1::LAYER_DIAGNOSTICS);
   const auto wanted = [&](bool has_it, v1::Layer layer) { return has_it && isWatched(hub, name_, layer); };
-  const sim::FrameRequest request{.surface = wanted(scene_.has_wave(), v1::LAYER_SURFACE),
-                                  .particles = wanted(scene_.has_particles(), v1::LAYER_PARTICLES),
-                                  .foam = wanted(scene_.foam().surface(), v1::LAYER_FOAM),
-                                  .bodies = wanted(scene_.has_boats(), v1::LAYER_BODIES)};
+  const sim::FrameRequest request{.surface = wanted(stage_->scene().has_wave(), v1::LAYER_SURFACE),
+                                  .particles = wanted(stage_->scene().has_particles(), v1::LAYER_PARTICLES),
+                                  .foam = wanted(stage_->scene().foam().surface(), v1::LAYER_FOAM),
+                                  .bodies = wanted(stage_->scene().has_boats(), v1::LAYER_BODIES)};
   if (!request.surface && !request.particles && !request.foam && !request.bodies) return;
-  if (sim_->requestFrame(request)) {
+  if (stage_->water().requestFrame(request)) {
     ++frames_in_flight_;
   } else {
     ++dropped_frames_;
@@ -169,9 +216,9 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
 }
 
 void Room::handOverFrames(EncoderThread& encoder) {
-  for (core::FrameView& frame : sim_->takeFrames()) {
+  for (core::FrameView& frame : stage_->water().takeFrames()) {
     if (frames_in_flight_ > 0) --frames_in_flight_;
-    frame.tick += tick_shift_;
+    frame.tick = stage_->tickOf(frame.tick);
     if (wants_diagnostics_) frame.diagnostics = diagnostics();
     wants_diagnostics_ = false;
     encoder.submit(name_, std::move(frame));
@@ -180,7 +227,7 @@ void Room::handOverFrames(EncoderThread& encoder) {
     wants_diagnostics_ = false;
     core::FrameView frame;
     frame.tick = tick();
-    frame.time_s = sim_->time_s();
+    frame.time_s = stage_->water().time_s();
     frame.diagnostics = diagnostics();
     encoder.submit(name_, std::move(frame));
   }
@@ -188,13 +235,14 @@ void Room::handOverFrames(EncoderThread& encoder) {
 
 core::DiagnosticsView Room::diagnostics() {
   if (step_count_ > 0) last_step_ms_ = step_ms_sum_ / step_count_;
-  const sim::Health& h = sim_->health();
-  const sim::Derived& d = sim_->derived();
+  sim::WaterSim& water = stage_->water();
+  const sim::Health& h = water.health();
+  const sim::Derived& d = water.derived();
   core::DiagnosticsView out;
   out.step_ms = last_step_ms_;
-  out.real_time_factor = paused_ ? 0.0 : clock_.realTimeFactor();
+  out.real_time_factor = paused_ || asleep_ ? 0.0 : clock_.realTimeFactor();
   out.substeps_count = d.substeps_count;
-  out.particle_count = sim_->particleCount();
+  out.particle_count = water.particleCount();
   out.max_particle_speed_mps = h.max_speed_mps;
   out.max_elevation_m = h.max_elevation_m;
   out.kinetic_energy_j = h.kinetic_energy_j;
@@ -202,17 +250,17 @@ core::DiagnosticsView Room::diagnostics() {
   out.wave_energy_j = h.wave_energy_j;
   out.mean_density_ratio = h.mean_density_ratio;
   out.max_density_ratio = h.max_density_ratio;
-  out.nonfinite_count = sim_->nonfiniteCount();
-  out.escaped_count = sim_->escapedCount();
-  out.recovered_count = sim_->recoveredCount();
-  out.boat_count = sim_->boatCount();
+  out.nonfinite_count = water.nonfiniteCount();
+  out.escaped_count = water.escapedCount();
+  out.recovered_count = water.recoveredCount();
+  out.boat_count = water.boatCount();
   out.volume_error_units = h.volume_error_units;
   out.emitted_m3 = h.emitted_m3;
   out.absorbed_m3 = h.absorbed_m3;
   out.breaking_ratio = h.breaking_ratio;
   if (step_count_ > 0) {
     last_passes_.clear();
-    for (const gpu::PassCost& pass : sim_->takePassCosts())
+    for (const gpu::PassCost& pass : water.takePassCosts())
       last_passes_.push_back({pass.name, pass.total_ms / step_count_});
   }
   out.passes = last_passes_;
@@ -237,7 +285,7 @@ void Room::watchRealTime(TimePoint now) {
 }
 
 double Room::meanRealTimeFactor(TimePoint now) const {
-  const double open_s = paused_ ? 0.0 : duration<double>(now - last_run_).count();
+  const double open_s = paused_ || asleep_ ? 0.0 : duration<double>(now - last_run_).count();
   const double wall_s = unpaused_wall_s_ + open_s;
   return wall_s > 0 ? run_s_ / wall_s : 0.0;
 }

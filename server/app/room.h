@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,21 +16,34 @@
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/net/server.h>
-#include <spindrift/sim/water_sim.h>
 #include <spindrift/stream/client_message.h>
 #include <spindrift/v1/scene.pb.h>
 
+#include "command_log.h"
 #include "encoder_thread.h"
 #include "growth_news.h"
 #include "real_time_clock.h"
+#include "roster.h"
 #include "scene_catalog.h"
+#include "stage.h"
 
 namespace spindrift::app {
+
+/// 1 to 32 letters, digits, '_' or '-'.
+bool isRoomName(const std::string& name);
 
 /// Name in the URL (letters, digits, '_', '-') and the checked scene with its defaults filled in.
 struct RoomSetup {
   std::string name;
   v1::Scene scene;
+};
+
+/// What every room of a server has in common. Outlives the rooms.
+struct RoomRules {
+  SceneCatalog scenes;                      ///< what rooms can be changed to
+  std::chrono::milliseconds grace{20'000};  ///< a lost connection's person and boats are kept so long
+  std::filesystem::path record_folder;      ///< logs go here; empty: none are written
+  std::uint32_t hash_interval_ticks = 60;   ///< of the logs
 };
 
 /// What other threads may know of a room: immutable, replaced when it changes.
@@ -40,30 +54,45 @@ struct RoomSnapshot {
   v1::BoatList boats;  ///< on the water now
 };
 
+/// How a room does, for /metrics and lists; renewed a few times a second.
+struct RoomVitals {
+  std::uint64_t tick = 0;
+  double time_s = 0.0;
+  bool asleep = false;
+  std::uint32_t waiting_command_count = 0;
+  std::uint64_t dropped_frame_count = 0;
+  core::DiagnosticsView diagnostics;
+};
+
 class Room;
 
-/// Who has to know that a room is another one now. Called on the simulation thread; must not block.
+/// Who has to know what became of commands and scenes. Called on the simulation thread; must not block.
 class RoomObserver {
  public:
   virtual ~RoomObserver() = default;
   /// The room's scene was replaced; its snapshot is the new one already.
   virtual void sceneChanged(const Room& room) = 0;
+  /// `boat_id`: of SpawnBoat, the new boat; 0 otherwise.
+  virtual void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
+  /// The rejection has the command's number.
+  virtual void commandRejected(const core::Command& command, const stream::CommandRejection& rejection) = 0;
 };
-
-/// A simulation whose shaders are compiled, put back to its start. Its ticks have begun to count.
-core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene);
 
 class Room {
  public:
   using TimePoint = RealTimeClock::TimePoint;
 
-  /// The simulation is warm when this returns: every shader was compiled, and time stands at the start. `scenes` is
-  /// what the room can be changed to; it and the context outlive the room.
-  static core::Result<std::unique_ptr<Room>> create(gpu::Context& ctx, RoomSetup setup, const SceneCatalog& scenes);
+  /// The simulation is warm when this returns: every shader was compiled, and time stands at the start. The context
+  /// lives until releaseDevice().
+  static core::Result<std::shared_ptr<Room>> create(gpu::Context& ctx, RoomSetup setup, const RoomRules& rules);
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::shared_ptr<const RoomSnapshot> snapshot() const;
+  [[nodiscard]] std::shared_ptr<const RoomVitals> vitals() const;
+  /// Who is here.
+  [[nodiscard]] Roster& roster() { return roster_; }
+  [[nodiscard]] const Roster& roster() const { return roster_; }
   /// False when the queue is full (BUSY); nothing is kept then.
   [[nodiscard]] bool submit(core::Command command) { return commands_.tryPush(std::move(command)); }
 
@@ -71,66 +100,78 @@ class Room {
   void start(TimePoint now);
   /// When the room wants to run again.
   [[nodiscard]] TimePoint due(TimePoint now) const;
-  /// Drains commands, steps if not paused, asks for a frame when one is due and watched, hands over finished ones. At
-  /// most one tick a call, so that rooms share the thread.
+  /// Drains commands, steps if neither paused nor asleep, asks for a frame when one is due and watched, hands over
+  /// finished ones. At most one tick a call, so that rooms share the thread.
   void run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer);
 
   /// For the summary at the end.
-  [[nodiscard]] const sim::WaterSim& water() const { return *sim_; }
+  [[nodiscard]] const sim::WaterSim& water() const { return stage_->water(); }
   /// Ticks since the room began, whatever its scenes: never goes back.
-  [[nodiscard]] std::uint64_t tick() const { return sim_->tick() + tick_shift_; }
+  [[nodiscard]] std::uint64_t tick() const { return stage_->tick(); }
+  /// Tells whoever still waits for an answer that there will be none.
+  void abandonCommands(RoomObserver& observer);
   /// Ends the simulation while the context still lives; only the any-thread functions may be called afterwards.
-  void releaseDevice() { sim_.reset(); }
+  void releaseDevice() { stage_.reset(); }
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
   [[nodiscard]] std::uint64_t droppedFrameCount() const { return dropped_frames_; }
 
  private:
-  /// Empty: applied.
-  using Outcome = std::optional<stream::CommandRejection>;
+  using Outcome = Stage::Outcome;
 
-  Room(gpu::Context& ctx, std::string name, v1::Scene scene, const SceneCatalog& scenes,
-       std::unique_ptr<sim::WaterSim> sim);
+  Room(std::string name, const RoomRules& rules, std::unique_ptr<Stage> stage, std::unique_ptr<CommandLogWriter> log);
 
   void step(TimePoint now, net::Hub& hub);
+  void watchOverSleep(TimePoint now, const net::Hub& hub);
   TimePoint timedStep();
   void advancePaused(TimePoint now, net::Hub& hub);
 
   // room_commands.cpp
   void applyCommands(net::Hub& hub, RoomObserver& observer);
   Outcome apply(const core::Command& command, net::Hub& hub, RoomObserver& observer);
-  Outcome applyEffect(const core::Effect& effect);
-  Outcome setParameter(const core::SetParameter& change, net::Hub& hub);
-  Outcome reset(net::Hub& hub);
-  Outcome spawnBoat(const core::SpawnBoat& spawn, net::Hub& hub);
-  Outcome controlBoat(const core::ControlBoat& control);
-  Outcome removeBoat(const core::RemoveBoat& remove, net::Hub& hub);
+  /// The stage's part of a command, and its line in the log.
+  Outcome applyToWater(const core::Command& command);
+  Outcome setParameter(const core::Command& command, const core::SetParameter& change, net::Hub& hub);
+  Outcome reset(const core::Command& command, net::Hub& hub);
+  Outcome spawnBoat(const core::Command& command, net::Hub& hub);
+  Outcome controlBoat(const core::Command& command, std::uint32_t boat_id);
+  Outcome removeBoat(const core::Command& command, std::uint32_t boat_id, net::Hub& hub);
+  Outcome takeBoat(const core::Sender& sender, std::uint32_t boat_id);
+  Outcome setPaused(bool paused, net::Hub& hub);
   Outcome advance(const core::Step& step);
   Outcome changeScene(const core::ChangeScene& change, RoomObserver& observer);
+  /// Boats whose people went away stop; news of people go out.
+  void settlePeople(TimePoint now, net::Hub& hub);
   void announceState(net::Hub& hub);
+  [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const;
   /// Where the boats on the water are others than those announced last.
   void announceBoats(net::Hub& hub);
   void announceRecovery(TimePoint now, net::Hub& hub);
 
   void requestFrame(TimePoint now, net::Hub& hub);
-  void readBoats();
   void handOverFrames(EncoderThread& encoder);
   core::DiagnosticsView diagnostics();
   void watchRealTime(TimePoint now);
   void publishSnapshot();
+  void publishVitals(TimePoint now);
+  void record(v1::Record record);
 
-  gpu::Context& ctx_;
   const std::string name_;
-  const SceneCatalog& scenes_;
-  v1::Scene scene_;
-  std::unique_ptr<sim::WaterSim> sim_;
+  const RoomRules& rules_;
+  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<CommandLogWriter> log_;  ///< null: no log
   core::BoundedQueue<core::Command> commands_;
+  Roster roster_;
   RealTimeClock clock_;
-  std::uint64_t tick_shift_ = 0;  ///< from the simulation's ticks to the room's, modulo 2^64
   bool paused_ = false;
+  bool asleep_ = false;
+  TimePoint last_watched_{};
   std::uint32_t pending_tick_count_ = 0;  ///< of Step: ticks that the paused room still advances
   v1::BoatList boats_;                    ///< as announced last
-  std::uint32_t spawned_boat_id_ = 0;     ///< of the command being applied
   GrowthNews recovery_news_{std::chrono::seconds(1)};
+  std::uint64_t logged_recovery_count_ = 0;
+  bool has_people_news_ = false;
+  TimePoint next_people_news_{};
+  TimePoint next_vitals_{};
   TimePoint next_scene_change_{};
   double next_frame_s_ = 0.0;    ///< simulation time
   TimePoint next_idle_frame_{};  ///< wall time, while paused
@@ -150,6 +191,7 @@ class Room {
 
   mutable std::mutex snapshot_mutex_;
   std::shared_ptr<const RoomSnapshot> snapshot_;
+  std::shared_ptr<const RoomVitals> vitals_;
 };
 
 }  // namespace spindrift::app

@@ -1,14 +1,14 @@
-// What a room does with each command. Answers: one Ack or Reject a command; news go to everybody in the room.
+// What a room does with each command. Every command gets one answer; news go to everybody in the room.
+#include <set>
 #include <variant>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/stream/client_message.h>
-#include <spindrift/stream/parameters.h>
-#include <spindrift/stream/scene_loader.h>
 #include <spindrift/stream/server_message.h>
 
+#include "overloaded.h"
 #include "room.h"
 
 namespace spindrift::app {
@@ -20,97 +20,79 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t kPendingTickMaxCount = 600;
 /// A new scene builds buffers and programs while every room of the thread waits.
 constexpr auto kSceneChangeInterval = 1s;
+/// A crowd that joins is announced in a few lists, not in one a head.
+constexpr auto kPeopleNewsInterval = 200ms;
 
-stream::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message) {
-  return {.command_id = 0, .reason = reason, .field = std::move(field), .message = std::move(message)};
+/// A boat that somebody else has, or nobody.
+stream::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::uint32_t owner_id) {
+  return rejection(v1::REJECT_REASON_NOT_YOURS, std::move(field),
+                   owner_id == 0 ? fmt::format("boat {} is nobody's: take it first", boat_id)
+                                 : fmt::format("boat {} is person {}'s", boat_id, owner_id));
 }
-
-/// Errors of several lines (one a field) in one.
-std::string firstLine(const std::string& text) {
-  const std::size_t end = text.find('\n');
-  return end == std::string::npos ? text : text.substr(0, end) + " (and more)";
-}
-
-/// Why a running room does not take a scene.
-v1::RejectReason whyNot(core::Scene wanted) {
-  // What could be started afresh only needs other buffers or programs than the room has.
-  if (sim::derive(wanted)) return v1::REJECT_REASON_NEEDS_RESTART;
-  wanted.allow_unstable = true;
-  wanted.fixed_substeps_count = 1;
-  return sim::derive(wanted) ? v1::REJECT_REASON_BREAKS_STEP_RULE : v1::REJECT_REASON_OUT_OF_RANGE;
-}
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
 
 }  // namespace
 
 void Room::applyCommands(net::Hub& hub, RoomObserver& observer) {
   for (const core::Command& command : commands_.drain()) {
-    spawned_boat_id_ = 0;
     if (auto rejected = apply(command, hub, observer)) {
       rejected->command_id = command.command_id;
-      hub.sendControl(command.session_id, stream::reject(*rejected));
+      observer.commandRejected(command, *rejected);
     } else {
-      hub.sendControl(command.session_id, stream::ack(command.command_id, tick(), spawned_boat_id_));
+      const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
+      observer.commandApplied(command, tick(), is_spawn ? stage_->spawnedBoatId() : 0);
     }
+  }
+}
+
+void Room::abandonCommands(RoomObserver& observer) {
+  for (const core::Command& command : commands_.drain()) {
+    stream::CommandRejection closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
+    closed.command_id = command.command_id;
+    observer.commandRejected(command, closed);
   }
 }
 
 Room::Outcome Room::apply(const core::Command& command, net::Hub& hub, RoomObserver& observer) {
   // Checked against the scene when it arrived; the scene may be another one since.
-  if (auto rejected = stream::checkAgainstScene(command, scene_)) return rejected;
-  return std::visit(Overloaded{[&](const core::Splash& splash) { return applyEffect(splash); },
-                               [&](const core::BreakingWave& wave) { return applyEffect(wave); },
-                               [&](const core::SetParameter& change) { return setParameter(change, hub); },
-                               [&](const core::Reset&) { return reset(hub); },
-                               [&](const core::SetPaused& pause) -> Outcome {
-                                 if (paused_ && !pause.paused) clock_.restart(std::chrono::steady_clock::now());
-                                 paused_ = pause.paused;
-                                 pending_tick_count_ = 0;
-                                 announceState(hub);
-                                 return {};
-                               },
+  if (auto rejected = stream::checkAgainstScene(command, stage_->scene())) return rejected;
+  return std::visit(Overloaded{[&](const core::Splash&) { return applyToWater(command); },
+                               [&](const core::BreakingWave&) { return applyToWater(command); },
+                               [&](const core::SetParameter& change) { return setParameter(command, change, hub); },
+                               [&](const core::Reset&) { return reset(command, hub); },
+                               [&](const core::SetPaused& pause) { return setPaused(pause.paused, hub); },
                                [&](const core::SetSpeed& speed) -> Outcome {
                                  clock_.setSpeed(speed.speed);
                                  announceState(hub);
                                  return {};
                                },
-                               [&](const core::SpawnBoat& spawn) { return spawnBoat(spawn, hub); },
-                               [&](const core::ControlBoat& control) { return controlBoat(control); },
-                               [&](const core::RemoveBoat& remove) { return removeBoat(remove, hub); },
+                               [&](const core::SpawnBoat&) { return spawnBoat(command, hub); },
+                               [&](const core::ControlBoat& control) { return controlBoat(command, control.boat_id); },
+                               [&](const core::RemoveBoat& remove) { return removeBoat(command, remove.boat_id, hub); },
+                               [&](const core::TakeBoat& take) { return takeBoat(command.sender, take.boat_id); },
                                [&](const core::Step& step) { return advance(step); },
                                [&](const core::ChangeScene& change) { return changeScene(change, observer); }},
                     command.action);
 }
 
-Room::Outcome Room::applyEffect(const core::Effect& effect) {
-  const auto started = sim_->start(effect);
-  if (started) return {};
-  const bool busy = started.error().code == core::ErrorCode::kUnavailable;
-  return rejection(busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "", started.error().message);
+Room::Outcome Room::applyToWater(const core::Command& command) {
+  if (auto rejected = stage_->apply(command.action)) return rejected;
+  if (log_) {
+    v1::Record line;
+    *line.mutable_command() = stream::toWire(command);
+    record(std::move(line));
+  }
+  return {};
 }
 
-Room::Outcome Room::setParameter(const core::SetParameter& change, net::Hub& hub) {
-  v1::Scene changed = scene_;
-  if (auto error = stream::setParameter(changed, change.path, change.value)) {
-    return rejection(error->reason, error->field, error->message);
-  }
-  const core::Scene wanted = stream::toCore(changed);
-  if (auto applied = sim_->setScene(wanted); !applied)
-    return rejection(whyNot(wanted), change.path, applied.error().message);
-  scene_ = std::move(changed);
+Room::Outcome Room::setParameter(const core::Command& command, const core::SetParameter& change, net::Hub& hub) {
+  if (auto rejected = applyToWater(command)) return rejected;
   publishSnapshot();
   hub.broadcastControl(name_, stream::parameterChanged(change.path, change.value, tick()));
   return {};
 }
 
-Room::Outcome Room::reset(net::Hub& hub) {
-  sim_->reset();
+Room::Outcome Room::reset(const core::Command& command, net::Hub& hub) {
+  if (auto rejected = applyToWater(command)) return rejected;
   next_frame_s_ = 0.0;
   next_idle_frame_ = {};
   pending_tick_count_ = 0;
@@ -119,31 +101,87 @@ Room::Outcome Room::reset(net::Hub& hub) {
   return {};
 }
 
-Room::Outcome Room::spawnBoat(const core::SpawnBoat& spawn, net::Hub& hub) {
-  const auto boat_id = sim_->spawnBoat(spawn.boat);
-  if (!boat_id) {
-    const bool full = boat_id.error().code == core::ErrorCode::kUnavailable;
-    return rejection(full ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "spawn_boat",
-                     boat_id.error().message);
+Room::Outcome Room::setPaused(bool paused, net::Hub& hub) {
+  if (paused_ && !paused) clock_.restart(std::chrono::steady_clock::now());
+  paused_ = paused;
+  pending_tick_count_ = 0;
+  announceState(hub);
+  return {};
+}
+
+// Boats
+
+Room::Outcome Room::spawnBoat(const core::Command& command, net::Hub& hub) {
+  const core::Sender& sender = command.sender;
+  if (sender.role < core::Role::kOperator && roster_.hasBoat(sender.person_id)) {
+    return rejection(v1::REJECT_REASON_HAS_BOAT, "spawn_boat", "you have a boat: remove it before you launch another");
   }
-  spawned_boat_id_ = *boat_id;
+  if (auto rejected = applyToWater(command)) return rejected;
+  roster_.give(stage_->spawnedBoatId(), sender.person_id);
   announceBoats(hub);
   return {};
 }
 
-Room::Outcome Room::controlBoat(const core::ControlBoat& control) {
-  const auto done = sim_->controlBoat(control.boat_id, control.throttle_ratio, control.rudder_ratio);
-  if (done) return {};
-  return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "control_boat.boat_id", done.error().message);
+Room::Outcome Room::controlBoat(const core::Command& command, std::uint32_t boat_id) {
+  const std::uint32_t owner_id = roster_.ownerOf(boat_id);
+  const bool is_free_to_operators = owner_id == 0 && command.sender.role >= core::Role::kOperator;
+  const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
+  if (!is_own && !is_free_to_operators && isOnTheWater(boat_id)) {
+    return notYours("control_boat.boat_id", boat_id, owner_id);
+  }
+  return applyToWater(command);
 }
 
-Room::Outcome Room::removeBoat(const core::RemoveBoat& remove, net::Hub& hub) {
-  if (const auto done = sim_->removeBoat(remove.boat_id); !done) {
-    return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "remove_boat.boat_id", done.error().message);
+Room::Outcome Room::removeBoat(const core::Command& command, std::uint32_t boat_id, net::Hub& hub) {
+  const std::uint32_t owner_id = roster_.ownerOf(boat_id);
+  const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
+  if (!is_own && command.sender.role < core::Role::kOperator && isOnTheWater(boat_id)) {
+    return notYours("remove_boat.boat_id", boat_id, owner_id);
   }
+  if (auto rejected = applyToWater(command)) return rejected;
   announceBoats(hub);
   return {};
 }
+
+Room::Outcome Room::takeBoat(const core::Sender& sender, std::uint32_t boat_id) {
+  const char* const kField = "take_boat.boat_id";
+  if (!isOnTheWater(boat_id)) {
+    return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, kField, fmt::format("there is no boat {} on the water", boat_id));
+  }
+  if (sender.person_id == 0) {
+    return rejection(v1::REJECT_REASON_FORBIDDEN, kField, "only somebody in the room can take a boat: connect first");
+  }
+  const std::uint32_t owner_id = roster_.ownerOf(boat_id);
+  if (owner_id == sender.person_id) return {};
+  const bool is_operator = sender.role >= core::Role::kOperator;
+  if (owner_id != 0 && !is_operator) return notYours(kField, boat_id, owner_id);
+  if (!is_operator && roster_.hasBoat(sender.person_id)) {
+    return rejection(v1::REJECT_REASON_HAS_BOAT, kField, "you have a boat: remove it before you take another");
+  }
+  roster_.give(boat_id, sender.person_id);
+  return {};
+}
+
+bool Room::isOnTheWater(std::uint32_t boat_id) const {
+  for (const v1::BoatInfo& boat : boats_.boats()) {
+    if (boat.boat_id() == boat_id) return true;
+  }
+  return false;
+}
+
+void Room::settlePeople(TimePoint now, net::Hub& hub) {
+  const Roster::Turn turn = roster_.settle(now);
+  for (const std::uint32_t boat_id : turn.boats_to_stop) {
+    (void)applyToWater({.action = core::ControlBoat{.boat_id = boat_id}});  // it may be gone already
+  }
+  has_people_news_ = has_people_news_ || turn.is_news;
+  if (!has_people_news_ || now < next_people_news_) return;
+  has_people_news_ = false;
+  next_people_news_ = now + kPeopleNewsInterval;
+  hub.broadcastControl(name_, stream::people(roster_.people()));
+}
+
+// Time and scenes
 
 Room::Outcome Room::advance(const core::Step& step) {
   if (!paused_) {
@@ -161,31 +199,28 @@ Room::Outcome Room::advance(const core::Step& step) {
 Room::Outcome Room::changeScene(const core::ChangeScene& change, RoomObserver& observer) {
   const char* const kField = "change_scene.name";
   const auto now = std::chrono::steady_clock::now();
-  if (!scenes_.has(change.name)) {
+  if (!rules_.scenes.has(change.name)) {
     return rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField,
                      "there is no scene '" + change.name + "'; the greeting lists what there is");
   }
   if (now < next_scene_change_) {
     return rejection(v1::REJECT_REASON_BUSY, kField, "the scene was changed a moment ago; try again in a second");
   }
-  auto scene = scenes_.load(change.name);
+  auto scene = rules_.scenes.load(change.name);
   if (!scene) return rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField, firstLine(scene.error().message));
-  auto sim = createWarm(ctx_, *scene);
-  if (!sim) {
-    return rejection(v1::REJECT_REASON_OUT_OF_RANGE, kField,
-                     "scene '" + change.name + "': " + firstLine(sim.error().message));
+  if (auto rejected = stage_->replaceScene(*std::move(scene))) return rejected;
+  if (log_) {
+    v1::Record line;
+    *line.mutable_scene() = stage_->scene();
+    record(std::move(line));
   }
-  // The new scene begins at a tick that no frame of the old one has.
-  const std::uint64_t first_tick = tick() + 1;
-  sim_ = *std::move(sim);
-  scene_ = *std::move(scene);
-  tick_shift_ = first_tick - sim_->tick();
   const double speed = clock_.speed();
-  clock_ = RealTimeClock(sim_->derived().tick_s);
+  clock_ = RealTimeClock(stage_->water().derived().tick_s);
   clock_.setSpeed(speed);
   const auto ready = std::chrono::steady_clock::now();
   clock_.restart(ready);
-  last_run_ = ready;
+  last_run_ = last_watched_ = ready;
+  asleep_ = false;
   next_scene_change_ = ready + kSceneChangeInterval;
   next_frame_s_ = 0.0;
   next_idle_frame_ = {};
@@ -196,10 +231,12 @@ Room::Outcome Room::changeScene(const core::ChangeScene& change, RoomObserver& o
   step_count_ = 0;
   last_passes_.clear();
   slow_since_ = {};
-  recovery_news_.restart(sim_->recoveredCount());
-  readBoats();
+  recovery_news_.restart(stage_->water().recoveredCount());
+  logged_recovery_count_ = stage_->water().recoveredCount();
+  boats_ = stage_->boats();
+  roster_.keepOnly({});  // the new scene's boats are nobody's yet, whatever their numbers
   publishSnapshot();
-  spdlog::info("room {}: scene {}", name_, scene_.name());
+  spdlog::info("room {}: scene {}", name_, stage_->scene().name());
   observer.sceneChanged(*this);
   return {};
 }
@@ -211,14 +248,17 @@ void Room::announceState(net::Hub& hub) {
 
 void Room::announceBoats(net::Hub& hub) {
   const std::string before = boats_.SerializeAsString();
-  readBoats();
+  boats_ = stage_->boats();
   if (boats_.SerializeAsString() == before) return;
+  std::set<std::uint32_t> boat_ids;
+  for (const v1::BoatInfo& boat : boats_.boats()) boat_ids.insert(boat.boat_id());
+  roster_.keepOnly(boat_ids);
   publishSnapshot();
   hub.broadcastControl(name_, stream::boatList(boats_));
 }
 
 void Room::announceRecovery(TimePoint now, net::Hub& hub) {
-  const std::uint64_t count = sim_->recoveredCount();
+  const std::uint64_t count = stage_->water().recoveredCount();
   if (!recovery_news_.tell(count, now)) return;
   hub.broadcastControl(
       name_,

@@ -31,9 +31,9 @@ bool SceneCatalog::has(const std::string& name) const {
   return std::ranges::binary_search(names_, name);
 }
 
-core::Result<v1::Scene> SceneCatalog::load(const std::string& name) const {
+core::Result<v1::Scene> SceneCatalog::load(const std::string& name, std::optional<v1::Fidelity> fidelity) const {
   if (!has(name)) return core::Error{core::ErrorCode::kUnavailable, "scene '" + name + "' is not listed"};
-  auto scene = stream::loadSceneFile(folder_ / (name + kEnding), fidelity_);
+  auto scene = stream::loadSceneFile(folder_ / (name + kEnding), fidelity ? fidelity : fidelity_);
   if (scene) scene->set_name(name);
   return scene;
 }

@@ -24,9 +24,10 @@ class SceneCatalog {
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] bool has(const std::string& name) const;
-  /// Reads the file anew, so that an edited scene comes as it is now. The scene is called as it is listed. kUnavailable
-  /// for a name that is not listed, otherwise the loader's errors.
-  [[nodiscard]] core::Result<v1::Scene> load(const std::string& name) const;
+  /// Reads the file anew, so that an edited scene comes as it is now. The scene is called as it is listed. `fidelity`
+  /// takes the place of the catalog's. kUnavailable for a name that is not listed, otherwise the loader's errors.
+  [[nodiscard]] core::Result<v1::Scene> load(const std::string& name,
+                                             std::optional<v1::Fidelity> fidelity = std::nullopt) const;
 
  private:
   std::filesystem::path folder_;

@@ -5,12 +5,22 @@
 #include <fmt/format.h>
 
 namespace spindrift::app {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+/// Openings and closings that may wait.
+constexpr std::size_t kChangeMaxCount = 16;
+
+}  // namespace
 
 core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gpu::DeviceChoice& device,
-                                                                        std::vector<RoomSetup> setups,
-                                                                        SceneCatalog scenes) {
+                                                                        std::vector<RoomSetup> setups, RoomRules rules,
+                                                                        std::size_t max_room_count) {
   auto self = std::unique_ptr<SimulationThread>(new SimulationThread);
-  self->scenes_ = std::move(scenes);
+  self->rules_ = std::move(rules);
+  self->max_room_count_ = std::max(max_room_count, setups.size());
   std::promise<core::Result<void>> built;
   auto outcome = built.get_future();
   self->thread_ = std::thread([raw = self.get(), device, &built, setups = std::move(setups)]() mutable {
@@ -41,9 +51,7 @@ core::Result<void> SimulationThread::build(const gpu::DeviceChoice& device, std:
   context_ = *std::move(context);
   device_line_ = context_->device().name;
   for (RoomSetup& setup : setups) {
-    auto room = Room::create(*context_, std::move(setup), scenes_);
-    if (!room) return room.error();
-    rooms_.push_back(*std::move(room));
+    if (auto opened = open(std::move(setup)); !opened) return opened.error();
   }
   return {};
 }
@@ -67,10 +75,95 @@ void SimulationThread::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-Room* SimulationThread::find(const std::string& name) const {
-  if (name.empty()) return rooms_.empty() ? nullptr : rooms_.front().get();
+std::vector<std::shared_ptr<Room>> SimulationThread::rooms() const {
+  const std::lock_guard lock(rooms_mutex_);
+  return rooms_;
+}
+
+std::shared_ptr<Room> SimulationThread::find(const std::string& name) const {
+  const std::lock_guard lock(rooms_mutex_);
+  if (name.empty()) return rooms_.empty() ? nullptr : rooms_.front();
   const auto it = std::ranges::find_if(rooms_, [&](const auto& room) { return room->name() == name; });
-  return it == rooms_.end() ? nullptr : it->get();
+  return it == rooms_.end() ? nullptr : *it;
+}
+
+double SimulationThread::sinceLastRound_s() const {
+  const std::lock_guard lock(mutex_);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_round_).count();
+}
+
+// Opening and closing
+
+void SimulationThread::openRoom(RoomSetup setup, Done done) {
+  auto shared = std::make_shared<RoomSetup>(std::move(setup));
+  carryOut(
+      [this, shared, done](bool runs) {
+        done(runs ? open(std::move(*shared)) : Error{ErrorCode::kUnavailable, "the server shuts down"});
+      },
+      done);
+}
+
+void SimulationThread::closeRoom(std::string name, std::function<void(const Room&)> before, Done done) {
+  carryOut(
+      [this, name = std::move(name), before = std::move(before), done](bool runs) {
+        done(runs ? close(name, before) : Error{ErrorCode::kUnavailable, "the server shuts down"});
+      },
+      done);
+}
+
+void SimulationThread::carryOut(Change change, const Done& done) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!stopping_ && changes_.size() < kChangeMaxCount) {
+      changes_.push_back(std::move(change));
+      wake_.notify_one();
+      return;
+    }
+  }
+  done(Error{ErrorCode::kUnavailable, "too many rooms are being opened or closed: try again"});
+}
+
+core::Result<void> SimulationThread::open(RoomSetup setup) {
+  if (rooms().size() >= max_room_count_) {
+    return Error{ErrorCode::kUnavailable,
+                 fmt::format("there are {} rooms, as many as may be: close one, or start the server with more "
+                             "--max-rooms",
+                             max_room_count_)};
+  }
+  if (!rooms().empty() && find(setup.name)) {
+    return Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"};
+  }
+  auto room = Room::create(*context_, std::move(setup), rules_);
+  if (!room) return room.error();
+  (*room)->start(std::chrono::steady_clock::now());
+  const std::lock_guard lock(rooms_mutex_);
+  rooms_.push_back(*std::move(room));
+  return {};
+}
+
+core::Result<void> SimulationThread::close(const std::string& name, const std::function<void(const Room&)>& before) {
+  const auto room = find(name);
+  if (!room) return Error{ErrorCode::kInvalidInput, "there is no room '" + name + "'"};
+  if (room == find("")) {
+    return Error{ErrorCode::kInvalidInput, "room '" + name + "' is the default room: it stays as long as the server"};
+  }
+  {
+    const std::lock_guard lock(rooms_mutex_);
+    std::erase(rooms_, room);
+  }
+  before(*room);
+  room->abandonCommands(*observer_);
+  summarise(*room);
+  room->releaseDevice();
+  encoder_->forget(name);
+  return {};
+}
+
+void SimulationThread::summarise(const Room& room) {
+  summary_.push_back(
+      fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, guard stepped in {} times",
+                  room.name(), room.tick(), room.meanRealTimeFactor(std::chrono::steady_clock::now()),
+                  room.droppedFrameCount(), room.water().recoveredCount()));
 }
 
 void SimulationThread::loop() {
@@ -79,20 +172,24 @@ void SimulationThread::loop() {
   wake_.wait(lock, [&] { return stopping_ || hub_; });
   for (const auto& room : rooms_) room->start(Clock::now());
   while (!stopping_) {
+    last_round_ = Clock::now();
+    const auto changes = std::exchange(changes_, {});
     lock.unlock();
-    for (const auto& room : rooms_) room->run(Clock::now(), *hub_, *encoder_, *observer_);
+    for (const Change& change : changes) change(true);
+    auto due = Clock::now() + std::chrono::milliseconds(100);
+    for (const auto& room : rooms_) {
+      room->run(Clock::now(), *hub_, *encoder_, *observer_);
+    }
     const auto now = Clock::now();
-    auto due = now + std::chrono::milliseconds(100);
     for (const auto& room : rooms_) due = std::min(due, room->due(now));
     lock.lock();
-    wake_.wait_until(lock, due, [&] { return stopping_; });
+    wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty(); });
   }
+  const auto changes = std::exchange(changes_, {});
   lock.unlock();
+  for (const Change& change : changes) change(false);
   for (const auto& room : rooms_) {
-    const sim::WaterSim& water = room->water();
-    summary_.push_back(fmt::format(
-        "room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, guard stepped in {} times", room->name(),
-        room->tick(), room->meanRealTimeFactor(Clock::now()), room->droppedFrameCount(), water.recoveredCount()));
+    summarise(*room);
     room->releaseDevice();
   }
   context_.reset();

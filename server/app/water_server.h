@@ -19,7 +19,9 @@ struct WaterServerOptions {
   gpu::DeviceChoice device;
   net::ServerOptions network;
   std::vector<RoomSetup> rooms;  ///< at least one; the first is the default room
-  SceneCatalog scenes;           ///< what rooms can be changed to
+  RoomRules rules;               ///< what they have in common
+  std::size_t max_room_count = 8;
+  Access access;
 };
 
 class WaterServer {
@@ -43,6 +45,7 @@ class WaterServer {
  private:
   WaterServer() = default;
 
+  MetricsSources sources_;
   std::unique_ptr<SimulationThread> simulation_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<net::Server> network_;

@@ -6,6 +6,7 @@
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/ip/network_v6.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http.hpp>
@@ -13,6 +14,7 @@
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
+#include "origin.h"
 #include "url.h"
 
 namespace spindrift::net {
@@ -42,6 +44,16 @@ void tune(asio::ip::tcp::socket& socket) {
   socket.set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
   using UnsentLowWater = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
   socket.set_option(UnsentLowWater(kUnsentLowWaterBytes), ignored);
+}
+
+/// What limits go by: the address, of IPv6 the network that a household gets.
+std::string addressOf(const asio::ip::tcp::socket& socket) {
+  constexpr unsigned kNetworkBits = 64;
+  boost::system::error_code error;
+  const auto address = socket.remote_endpoint(error).address();
+  if (error) return "";
+  if (!address.is_v6() || address.to_v6().is_v4_mapped()) return address.to_string();
+  return asio::ip::network_v6(address.to_v6(), kNetworkBits).canonical().to_string();
 }
 
 std::string peerName(const asio::ip::tcp::socket& socket) {
@@ -80,7 +92,12 @@ std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, s
 }  // namespace
 
 Connection::Connection(std::uint64_t id, asio::ip::tcp::socket socket, ServerContext& context)
-    : id_(id), context_(context), strand_(socket.get_executor()), peer_(peerName(socket)), stream_(std::move(socket)) {
+    : id_(id),
+      context_(context),
+      strand_(socket.get_executor()),
+      peer_(peerName(socket)),
+      address_(addressOf(socket)),
+      stream_(std::move(socket)) {
   tune(stream_.socket());
 }
 
@@ -102,6 +119,7 @@ void Connection::shutDown() {
       self->session_->close(CloseCode::kGoingAway, "server is shutting down");
     } else {
       self->stream_.close();
+      if (self->pending_) self->pending_->cancel();
     }
   });
 }
@@ -112,6 +130,7 @@ void Connection::cut() {
       self->session_->cut();
     } else {
       self->stream_.close();
+      if (self->pending_) self->pending_->cancel();
     }
   });
 }
@@ -127,7 +146,14 @@ asio::awaitable<void> Connection::run() {
     if (error) {
       spdlog::debug("{}: no whole request: {}", peer_, error.message());
       auto reply = replyToBadRequest(error, context_.options.request_body_max_bytes);
-      if (reply) co_await sendLast(std::move(*reply), false);
+      if (reply) {
+        context_.counters.refused(Refused::kRequest);
+        co_await sendLast(std::move(*reply), false);
+      }
+      co_return;
+    }
+    if (auto reply = refuseAny(parser.get())) {
+      co_await sendLast(std::move(*reply), parser.get().method() == http::verb::head);
       co_return;
     }
     if (beast::websocket::is_upgrade(parser.get())) {
@@ -137,15 +163,80 @@ asio::awaitable<void> Connection::run() {
     const auto& request = parser.get();
     const RequestHead head{std::string(request.method_string()), std::string(request.target()),
                            std::string(request[http::field::if_none_match])};
-    const std::string& body = request.body();
-    const core::ByteView body_view(reinterpret_cast<const std::uint8_t*>(body.data()), body.size());
-    const Reply reply = routeRequest(head, body_view, context_.files, context_.application);
+    auto routed = routeRequest(head, context_.files);
+    Reply reply;
+    if (auto* target = std::get_if<Target>(&routed)) {
+      const std::string& body = request.body();
+      // HEAD is GET without the body, for every path alike; send() leaves the body out.
+      HttpRequest question;
+      question.method = head.method == "HEAD" ? "GET" : head.method;
+      question.path = std::move(target->path);
+      question.query = std::move(target->query);
+      question.body = {reinterpret_cast<const std::uint8_t*>(body.data()), body.size()};
+      question.authorization = std::string(request[http::field::authorization]);
+      question.content_type = std::string(request[http::field::content_type]);
+      std::optional<Reply> answer = co_await ask(question);
+      if (!answer) break;
+      reply = *std::move(answer);
+    } else {
+      reply = std::get<Reply>(std::move(routed));
+    }
     const bool keep_alive = request.keep_alive() && !stopping_;
     const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
     if (!sent || !keep_alive) break;
   }
   boost::system::error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {
+  if (!context_.addresses.takeRequest(address_, Clock::now())) {
+    context_.counters.refused(Refused::kRate);
+    Reply reply = textReply(429, "Too many requests from your address: slow down.");
+    reply.headers.emplace_back("Retry-After", "1");
+    return reply;
+  }
+  // A page may look at what is public from anywhere; what acts, or opens a stream, is for the pages on the list.
+  const bool acts = request.method() != http::verb::get && request.method() != http::verb::head;
+  if (!acts && !beast::websocket::is_upgrade(request)) return std::nullopt;
+  const auto origin = request[http::field::origin];
+  const auto host = request[http::field::host];
+  if (isOriginAllowed({origin.data(), origin.size()}, {host.data(), host.size()}, context_.listens_on_loopback,
+                      context_.options.allowed_origins)) {
+    return std::nullopt;
+  }
+  context_.counters.refused(Refused::kOrigin);
+  return textReply(
+      403,
+      "The page's origin is not allowed here: start the server with --origin and what the page's address begins with.");
+}
+
+asio::awaitable<std::optional<Reply>> Connection::ask(const HttpRequest& request) {
+  constexpr const char* kFailed = "The server failed on this request; its log says why.";
+  PendingAnswer pending(strand_);
+  try {
+    context_.application.httpRequest(request, pending.responder());
+  } catch (const std::exception& error) {
+    spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
+    co_return textReply(500, kFailed);
+  }
+  pending_ = &pending;
+  PendingAnswer::Outcome outcome = co_await pending.wait(context_.options.answer_timeout);
+  pending_ = nullptr;
+  switch (outcome.end) {
+    case PendingAnswer::End::kAnswered:
+      co_return applicationReply(request.path, std::move(outcome.reply));
+    case PendingAnswer::End::kUnknown:
+      co_return applicationReply(request.path, std::nullopt);
+    case PendingAnswer::End::kDropped:
+      spdlog::error("{} {} was never answered", request.method, request.path);
+      co_return textReply(500, kFailed);
+    case PendingAnswer::End::kCancelled:
+      co_return std::nullopt;
+    case PendingAnswer::End::kTimeout:
+      break;
+  }
+  co_return textReply(504, "The server did not answer in time; what was asked for may still happen.");
 }
 
 asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
@@ -162,6 +253,7 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
   const Place place(context_);
   std::string room;
   bool echo_subprotocol = false;
+  if (!place.granted) context_.counters.refused(Refused::kFull);
   auto refusal = place.granted ? refuseUpgrade(request, room, echo_subprotocol)
                                : std::make_unique<Reply>(textReply(
                                      503, "The server is full: " + std::to_string(context_.options.max_session_count) +
@@ -172,33 +264,40 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
   }
   session_ = std::make_shared<Session>(std::move(stream_), context_);
   if (stopping_) session_->close(CloseCode::kGoingAway, "server is shutting down");
-  co_await session_->run(request, std::move(room), peer_, echo_subprotocol);
+  co_await session_->run(request, std::move(room), peer_, address_, echo_subprotocol);
 }
 
 std::unique_ptr<Reply> Connection::refuseUpgrade(const UpgradeRequest& request, std::string& room,
                                                  bool& echo_subprotocol) {
+  const auto refuse = [this](Refused why, unsigned status, std::string line) {
+    context_.counters.refused(why);
+    return std::make_unique<Reply>(textReply(status, std::move(line)));
+  };
   // RFC 6455 section 4.1: the client waits for the answer. The bytes would get lost between the two protocols.
   if (buffer_.size() > 0) {
-    return std::make_unique<Reply>(textReply(400, "Nothing may follow an upgrade request before it is answered."));
+    return refuse(Refused::kHandshake, 400, "Nothing may follow an upgrade request before it is answered.");
   }
   const auto target = parseTarget(std::string_view(request.target().data(), request.target().size()));
-  if (!target) return std::make_unique<Reply>(textReply(400, "The request's path is not a plain absolute path."));
+  if (!target) return refuse(Refused::kHandshake, 400, "The request's path is not a plain absolute path.");
+  // A query ends up in logs and histories; nothing of ours belongs there.
+  if (target->query.find("token") != std::string::npos) {
+    return refuse(Refused::kHandshake, 400, "Tokens do not belong into addresses: send it in Hello.token.");
+  }
   auto named = roomOfPath(target->path);
   if (!named) {
-    return std::make_unique<Reply>(
-        textReply(404, "There is no WebSocket at " + target->path + ": use /ws or /ws/ROOM."));
+    return refuse(Refused::kHandshake, 404, "There is no WebSocket at " + target->path + ": use /ws or /ws/ROOM.");
   }
   room = std::move(*named);
 
   const auto offered = request[http::field::sec_websocket_protocol];
   for (const auto& protocol : http::token_list(offered)) echo_subprotocol |= protocol == kSubprotocol;
   if (!offered.empty() && !echo_subprotocol) {
-    return std::make_unique<Reply>(
-        textReply(400, std::string("No offered subprotocol is known here: offer ") + kSubprotocol + "."));
+    return refuse(Refused::kHandshake, 400,
+                  std::string("No offered subprotocol is known here: offer ") + kSubprotocol + ".");
   }
   try {
     const core::Result<void> accepted = context_.application.acceptSession(room);
-    if (!accepted) return std::make_unique<Reply>(textReply(404, accepted.error().message));
+    if (!accepted) return refuse(Refused::kRoom, 404, accepted.error().message);
   } catch (const std::exception& error) {
     spdlog::error("{}: acceptSession failed: {}", peer_, error.what());
     return std::make_unique<Reply>(textReply(500, "The server failed on this request; its log says why."));

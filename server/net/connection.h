@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <boost/asio/awaitable.hpp>
@@ -11,6 +12,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 
 #include "http_routes.h"
+#include "pending_answer.h"
 #include "server_context.h"
 #include "session.h"
 
@@ -29,7 +31,11 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
 
  private:
   boost::asio::awaitable<void> run();
+  /// Asks the application. Nothing to send where the connection was closed meanwhile.
+  boost::asio::awaitable<std::optional<Reply>> ask(const HttpRequest& request);
   boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
+  /// The reply to a request that is not heard, upgrade or not: too many from its address, or from a foreign page.
+  std::optional<Reply> refuseAny(const UpgradeRequest& request);
   /// Null, or the reply that refuses the upgrade.
   std::unique_ptr<Reply> refuseUpgrade(const UpgradeRequest& request, std::string& room, bool& echo_subprotocol);
   /// False if the connection is gone.
@@ -40,10 +46,12 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   const std::uint64_t id_;
   ServerContext& context_;
   const boost::asio::any_io_executor strand_;
-  const std::string peer_;
+  const std::string peer_;     ///< address and port, for the log
+  const std::string address_;  ///< what AddressLimits knows it by
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_;
   std::shared_ptr<Session> session_;  ///< owns the stream after the upgrade
+  PendingAnswer* pending_ = nullptr;  ///< while a request waits for the application
   bool stopping_ = false;
 };
 

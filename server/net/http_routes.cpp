@@ -1,12 +1,7 @@
 #include "http_routes.h"
 
 #include <array>
-#include <exception>
 #include <optional>
-
-#include <spdlog/spdlog.h>
-
-#include "url.h"
 
 namespace spindrift::net {
 namespace {
@@ -18,29 +13,6 @@ bool isApplicationPath(std::string_view path) {
 Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
   Reply reply = textReply(405, "The method " + method + " is not allowed here: use " + std::string(allowed) + ".");
   reply.headers.emplace_back("Allow", allowed);
-  return reply;
-}
-
-Reply applicationReply(const RequestHead& head, Target target, core::ByteView body, Application& application) {
-  if (head.method == "TRACE" || head.method == "CONNECT") {
-    return methodNotAllowed(head.method, "GET, HEAD, POST, PUT, PATCH, DELETE");
-  }
-  // HEAD is GET without the body, for every path alike; the connection leaves the body out.
-  HttpRequest request{head.method == "HEAD" ? "GET" : head.method, std::move(target.path), std::move(target.query),
-                      body};
-  std::optional<HttpReply> answer;
-  try {
-    answer = application.httpRequest(request);
-  } catch (const std::exception& error) {
-    spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
-    return textReply(500, "The server failed on this request; its log says why.");
-  }
-  if (!answer) return textReply(404, "There is nothing at " + request.path + ".");
-  Reply reply;
-  reply.status = answer->status;
-  reply.content_type = std::move(answer->content_type);
-  reply.body = std::make_shared<const std::string>(std::move(answer->body));
-  reply.headers.emplace_back("Cache-Control", "no-store");
   return reply;
 }
 
@@ -88,10 +60,15 @@ Reply textReply(unsigned status, std::string line) {
   return reply;
 }
 
-Reply routeRequest(const RequestHead& head, core::ByteView body, StaticFiles& files, Application& application) {
+std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files) {
   std::optional<Target> target = parseTarget(head.target);
   if (!target) return textReply(400, "The request's path is not a plain absolute path.");
-  if (isApplicationPath(target->path)) return applicationReply(head, std::move(*target), body, application);
+  if (isApplicationPath(target->path)) {
+    if (head.method == "TRACE" || head.method == "CONNECT") {
+      return methodNotAllowed(head.method, "GET, HEAD, POST, PUT, PATCH, DELETE");
+    }
+    return *std::move(target);
+  }
   if (roomOfPath(target->path)) {
     Reply reply = textReply(426, "This is a WebSocket address: connect with the subprotocol spindrift.v1.");
     reply.headers.emplace_back("Upgrade", "websocket");
@@ -99,6 +76,16 @@ Reply routeRequest(const RequestHead& head, core::ByteView body, StaticFiles& fi
   }
   if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, "GET, HEAD");
   return fileReply(head, target->path, files);
+}
+
+Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {
+  if (!answer) return textReply(404, "There is nothing at " + std::string(path) + ".");
+  Reply reply;
+  reply.status = answer->status;
+  reply.content_type = std::move(answer->content_type);
+  reply.body = std::make_shared<const std::string>(std::move(answer->body));
+  reply.headers.emplace_back("Cache-Control", "no-store");
+  return reply;
 }
 
 std::span<const std::pair<std::string_view, std::string_view>> securityHeaders() {

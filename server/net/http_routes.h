@@ -2,16 +2,19 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <spindrift/core/bytes.h>
 #include <spindrift/net/server.h>
 
 #include "static_files.h"
+#include "url.h"
 
 namespace spindrift::net {
 
@@ -32,8 +35,12 @@ struct Reply {
 /// One plain line of text (the newline is added here), not cached.
 Reply textReply(unsigned status, std::string line);
 
-/// The reply to a whole request: application paths, the web client's files, or an error with one line.
-Reply routeRequest(const RequestHead& head, core::ByteView body, StaticFiles& files, Application& application);
+/// What a whole request gets: a reply at once (the web client's files, or an error with one line), or, for its paths,
+/// what the application says.
+std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files);
+
+/// The application's answer as a reply; nullopt is 404.
+Reply applicationReply(std::string_view path, std::optional<HttpReply> answer);
 
 /// Sent with every response, the WebSocket handshake included: what the page may load, and that it may not be framed.
 std::span<const std::pair<std::string_view, std::string_view>> securityHeaders();

@@ -100,6 +100,13 @@ Outbox::Next Outbox::next() {
   return {};
 }
 
+Outbox::Waiting Outbox::waiting() const {
+  const std::lock_guard lock(mutex_);
+  Waiting out{.control_count = control_.size()};
+  for (const Slot& slot : slots_) out.frame_count += slot.frame ? 1 : 0;
+  return out;
+}
+
 bool Outbox::closing() const {
   const std::lock_guard lock(mutex_);
   return close_.has_value();

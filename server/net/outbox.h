@@ -64,6 +64,12 @@ class Outbox {
   /// The next thing to do. kIdle means the writer goes to sleep: the next producer gets `wake`.
   Next next();
 
+  struct Waiting {
+    std::size_t control_count = 0;
+    std::size_t frame_count = 0;
+  };
+  Waiting waiting() const;
+
   bool closing() const;
   /// Code and line of the first requestClose(); nullopt before.
   std::optional<SessionEnd> closeRequest() const;

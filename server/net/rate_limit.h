@@ -55,6 +55,15 @@ class TokenBucket {
     return true;
   }
 
+  /// Takes a token that may have yet to come; how long until it is there.
+  Clock::duration reserve(Clock::time_point now) {
+    const double elapsed_s = std::chrono::duration<double>(now - updated_).count();
+    updated_ = now;
+    tokens_ = std::min(burst_count_, tokens_ + rate_per_s_ * elapsed_s) - 1.0;
+    if (tokens_ >= 0.0) return {};
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(-tokens_ / rate_per_s_));
+  }
+
  private:
   double rate_per_s_;
   double burst_count_;

@@ -86,6 +86,30 @@ void RoomHub::close(SessionId session, CloseCode code, std::string reason) {
   if (found != members_.end()) found->second.link->close(code, std::move(reason));
 }
 
+void RoomHub::closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
+                      std::string reason) {
+  const std::lock_guard lock(mutex_);
+  const auto found = members_.find(session);
+  if (found != members_.end()) found->second.link->closeAt(when, code, std::move(reason));
+}
+
+std::size_t RoomHub::sessionCount(const std::string& room) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room);
+  return found == rooms_.end() ? 0 : found->second.session_count;
+}
+
+Outbox::Waiting RoomHub::waiting() const {
+  const std::lock_guard lock(mutex_);
+  Outbox::Waiting out;
+  for (const auto& [session, member] : members_) {
+    const Outbox::Waiting waits = member.link->waiting();
+    out.control_count += waits.control_count;
+    out.frame_count += waits.frame_count;
+  }
+  return out;
+}
+
 std::size_t RoomHub::roomCount() const {
   const std::lock_guard lock(mutex_);
   return rooms_.size();

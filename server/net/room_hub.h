@@ -12,6 +12,8 @@
 
 #include <spindrift/net/server.h>
 
+#include "outbox.h"
+
 namespace spindrift::net {
 
 /// The sending side of one session. Every call is thread-safe, returns at once and never calls back into the hub.
@@ -24,7 +26,9 @@ class SessionLink {
   /// nullopt stops the layer.
   virtual void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) = 0;
   virtual void clearFrames() = 0;
+  virtual Outbox::Waiting waiting() const = 0;
   virtual void close(CloseCode code, std::string reason) = 0;
+  virtual void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) = 0;
 };
 
 /// The Hub of a Server. One mutex; publish() walks only the watchers of that room and layer. A session's watches follow
@@ -40,10 +44,15 @@ class RoomHub final : public Hub {
   void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) override;
   bool wantsWhole(const std::string& room, LayerIndex layer) const override;
   void join(SessionId session, const std::string& room) override;
+  std::size_t sessionCount(const std::string& room) const override;
   void watch(SessionId session, LayerIndex layer, double max_rate_hz) override;
   std::size_t watcherCount(const std::string& room, LayerIndex layer) const override;
   void close(SessionId session, CloseCode code, std::string reason) override;
+  void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
+               std::string reason) override;
 
+  /// Over all sessions.
+  Outbox::Waiting waiting() const;
   /// Rooms with at least one session.
   std::size_t roomCount() const;
 

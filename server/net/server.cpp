@@ -139,6 +139,7 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
     if (context_.connections.add(id, connection)) {
       connection->start();
     } else {
+      context_.counters.refused(Refused::kConnection);
       spdlog::debug("a connection was closed unheard: too many are open");
     }
   }
@@ -146,12 +147,19 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
 
 ServerStats ServerImpl::stats() const {
   const Counters& counters = context_.counters;
-  return {.open_session_count = counters.open_session_count,
-          .accepted_session_count = counters.accepted_session_count,
-          .sent_bytes_count = counters.sent_bytes_count,
-          .sent_frame_count = counters.sent_frame_count,
-          .dropped_frame_count = counters.dropped_frame_count,
-          .evicted_session_count = counters.evicted_session_count};
+  ServerStats out{.open_session_count = counters.open_session_count,
+                  .accepted_session_count = counters.accepted_session_count,
+                  .sent_bytes_count = counters.sent_bytes_count,
+                  .sent_frame_count = counters.sent_frame_count,
+                  .dropped_frame_count = counters.dropped_frame_count,
+                  .evicted_session_count = counters.evicted_session_count,
+                  .delayed_message_count = counters.delayed_message_count,
+                  .closed_by_code = counters.closedByCode()};
+  const Outbox::Waiting waiting = context_.hub.waiting();
+  out.waiting_control_count = waiting.control_count;
+  out.waiting_frame_count = waiting.frame_count;
+  for (std::size_t k = 0; k < kRefusedCount; ++k) out.refused_count[k] = counters.refused_count[k];
+  return out;
 }
 
 void ServerImpl::stop() {

@@ -1,11 +1,15 @@
 // What every connection of one server shares. It outlives them all.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
+#include <map>
+#include <mutex>
 
 #include <spindrift/net/server.h>
 
+#include "address_limits.h"
 #include "connection_set.h"
 #include "room_hub.h"
 #include "static_files.h"
@@ -19,7 +23,29 @@ struct Counters {
   std::atomic<std::uint64_t> sent_frame_count{0};
   std::atomic<std::uint64_t> dropped_frame_count{0};
   std::atomic<std::uint64_t> evicted_session_count{0};
+  std::atomic<std::uint64_t> delayed_message_count{0};
+  std::array<std::atomic<std::uint64_t>, kRefusedCount> refused_count{};
+
+  void refused(Refused why) { ++refused_count[static_cast<std::size_t>(why)]; }
+  void closed(std::uint16_t code);
+  std::map<std::uint16_t, std::uint64_t> closedByCode() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::uint16_t, std::uint64_t> closed_by_code_;
 };
+
+inline void Counters::closed(std::uint16_t code) {
+  // Peers choose their codes: those nobody has registered count together.
+  const bool is_known = code == 0 || (code >= 1000 && code < 1016) || (code >= 4400 && code < 4410);
+  const std::lock_guard lock(mutex_);
+  ++closed_by_code_[is_known ? code : std::uint16_t{4000}];
+}
+
+inline std::map<std::uint16_t, std::uint64_t> Counters::closedByCode() const {
+  const std::lock_guard lock(mutex_);
+  return closed_by_code_;
+}
 
 /// TCP connections beyond the sessions: pages being loaded, probes, strangers. More are closed unheard.
 inline constexpr std::size_t kSpareConnectionCount = 512;
@@ -27,18 +53,27 @@ inline constexpr std::size_t kSpareConnectionCount = 512;
 /// The subprotocol of proto/spindrift/v1.
 inline constexpr const char* kSubprotocol = "spindrift.v1";
 
+/// Of an address as ServerOptions has it.
+inline bool isLoopback(std::string_view address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
 struct ServerContext {
   ServerContext(const ServerOptions& chosen, Application& served)
       : options(chosen),
         application(served),
         files(chosen.web_root),
-        connections(chosen.max_session_count + kSpareConnectionCount) {}
+        connections(chosen.max_session_count + kSpareConnectionCount),
+        addresses(chosen),
+        listens_on_loopback(isLoopback(chosen.address)) {}
 
   const ServerOptions options;
   Application& application;
   RoomHub hub;
   StaticFiles files;
   ConnectionSet connections;
+  AddressLimits addresses;
+  const bool listens_on_loopback;
   Counters counters;
   std::atomic<std::uint64_t> last_session_id{0};
   /// Sessions open or in their handshake, against max_session_count.

@@ -44,11 +44,14 @@ Session::Session(beast::tcp_stream stream, ServerContext& context)
       message_tokens_(context.options.messages_per_s, context.options.message_burst_count, Clock::now()),
       wake_timer_(strand_),
       stall_timer_(strand_),
-      close_timer_(strand_) {}
+      close_timer_(strand_),
+      end_timer_(strand_),
+      end_of_delay_(strand_) {}
 
 asio::awaitable<void> Session::run(const UpgradeRequest& request, std::string room, std::string peer,
-                                   bool echo_subprotocol) {
+                                   std::string address, bool echo_subprotocol) {
   using asio::experimental::awaitable_operators::operator&&;
+  address_ = std::move(address);
   configure(echo_subprotocol);
   const auto [accept_error] = co_await ws_.async_accept(request, kToken);
   if (accept_error) {
@@ -70,8 +73,11 @@ asio::awaitable<void> Session::run(const UpgradeRequest& request, std::string ro
   wake_timer_.cancel();
   stall_timer_.cancel();
   close_timer_.cancel();
+  end_timer_.cancel();
+  end_of_delay_.cancel();
   --context_.counters.open_session_count;
   const SessionEnd end = end_.value_or(SessionEnd{});
+  context_.counters.closed(end.code);
   spdlog::debug("session {} closed: {} {}", id_, end.code, end.reason);
   callApplication("sessionClosed", [&] { context_.application.sessionClosed(id_, end); });
 }
@@ -126,6 +132,13 @@ asio::awaitable<void> Session::readLoop() {
     if (!message_tokens_.take(Clock::now())) {
       close(CloseCode::kPolicy, "too many messages: slow down");
       co_return;
+    }
+    // Everybody behind the address shares its rate; who comes too soon waits, and TCP holds back what follows.
+    if (const auto delay = context_.addresses.reserveMessage(address_, Clock::now()); delay > Clock::duration{}) {
+      ++context_.counters.delayed_message_count;
+      end_of_delay_.expires_after(delay);
+      (void)co_await end_of_delay_.async_wait(kToken);
+      if (outbox_.closing()) co_return;
     }
     const core::ByteView message(static_cast<const std::uint8_t*>(read_buffer_.data().data()), bytes_count);
     callApplication("sessionMessage", [&] { context_.application.sessionMessage(id_, message); });
@@ -220,7 +233,18 @@ void Session::close(CloseCode code, std::string reason) {
   wakeWriter();
 }
 
+void Session::closeAt(Clock::time_point when, CloseCode code, std::string reason) {
+  asio::post(strand_, [self = shared_from_this(), when, code, reason = std::move(reason)]() mutable {
+    self->end_timer_.expires_at(when);
+    self->end_timer_.async_wait(
+        [self, code, reason = std::move(reason)](const boost::system::error_code& error) mutable {
+          if (!error) self->close(code, std::move(reason));
+        });
+  });
+}
+
 void Session::cut() {
+  end_of_delay_.cancel();
   beast::get_lowest_layer(ws_).close();
 }
 

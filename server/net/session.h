@@ -30,14 +30,16 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   /// Answers the upgrade, serves until the connection is gone, then returns. Calls sessionOpened first and
   /// sessionClosed last (neither, if the handshake fails). On the strand.
   boost::asio::awaitable<void> run(const UpgradeRequest& request, std::string room, std::string peer,
-                                   bool echo_subprotocol);
+                                   std::string address, bool echo_subprotocol);
 
   void sendControl(core::SharedBytes message) override;
   void offerFrame(LayerIndex layer, const LayerBytes& frame) override;
   bool wantsWhole(LayerIndex layer) const override;
   void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) override;
   void clearFrames() override;
+  Outbox::Waiting waiting() const override { return outbox_.waiting(); }
   void close(CloseCode code, std::string reason) override;
+  void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) override;
 
   /// Closes the socket now; every pending operation ends. On the strand.
   void cut();
@@ -69,6 +71,9 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   boost::asio::steady_timer wake_timer_;   ///< the writer sleeps on it
   boost::asio::steady_timer stall_timer_;  ///< runs while a write is out
   boost::asio::steady_timer close_timer_;
+  boost::asio::steady_timer end_timer_;     ///< of closeAt()
+  boost::asio::steady_timer end_of_delay_;  ///< a message waits for its address's bucket
+  std::string address_;                     ///< what AddressLimits knows the peer by
   std::optional<SessionEnd> end_;
 };
 

@@ -51,6 +51,8 @@ core::Action actionOf(const v1::Command& command) {
       return core::Step{command.step().has_tick_count() ? command.step().tick_count() : core::Step{}.tick_count};
     case v1::Command::kChangeScene:
       return core::ChangeScene{command.change_scene().name()};
+    case v1::Command::kTakeBoat:
+      return core::TakeBoat{command.take_boat().boat_id()};
     case v1::Command::kReset:
     case v1::Command::ACTION_NOT_SET:
       break;
@@ -58,7 +60,9 @@ core::Action actionOf(const v1::Command& command) {
   return core::Reset{};
 }
 
-ClientMessage parseCommand(const v1::Command& command) {
+}  // namespace
+
+std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& command) {
   const std::uint64_t id = command.command_id();
   if (command.action_case() == v1::Command::ACTION_NOT_SET) {
     return CommandRejection{id, v1::REJECT_REASON_MALFORMED, "",
@@ -84,8 +88,10 @@ ClientMessage parseCommand(const v1::Command& command) {
                             "\"" + cleanText(command.change_scene().name(), kNameEchoMaxBytes) +
                                 "\" is no scene; the greeting lists what there is"};
   }
-  return core::Command{0, id, actionOf(command)};
+  return core::Command{{}, id, actionOf(command)};
 }
+
+namespace {
 
 ClientMessage parseSubscribe(const v1::Subscribe& subscribe) {
   if (!v1::Layer_IsValid(subscribe.layer()) || subscribe.layer() == v1::LAYER_UNSPECIFIED) {
@@ -117,12 +123,19 @@ ClientMessage parseChecked(core::ByteView bytes) {
   switch (message.message_case()) {
     case v1::ClientMessage::kHello: {
       const v1::Hello& hello = message.hello();
-      return Hello{hello.version().major(), hello.version().minor(), cleanText(hello.client(), kClientNameMaxBytes)};
+      return Hello{hello.version().major(),
+                   hello.version().minor(),
+                   cleanText(hello.client(), kClientNameMaxBytes),
+                   hello.token().substr(0, kSecretMaxBytes),
+                   cleanText(hello.name(), kPersonNameMaxBytes),
+                   hello.color_rgb() & 0xFFFFFFu,
+                   hello.resume_key().substr(0, kSecretMaxBytes)};
     }
     case v1::ClientMessage::kSubscribe:
       return parseSubscribe(message.subscribe());
     case v1::ClientMessage::kCommand:
-      return parseCommand(message.command());
+      return std::visit([](auto&& checked) -> ClientMessage { return std::move(checked); },
+                        checkCommand(message.command()));
     case v1::ClientMessage::kPing:
       if (!std::isfinite(message.ping().client_time_s())) {
         return Malformed{"ping.client_time_s: " + formatNumber(message.ping().client_time_s()) +
@@ -173,6 +186,8 @@ std::optional<CommandRejection> checkAgainstScene(const core::Command& command, 
     addAbsent(issues, "control_boat", kNoBoats);
   } else if (std::holds_alternative<core::RemoveBoat>(command.action) && !scene.has_boats()) {
     addAbsent(issues, "remove_boat", kNoBoats);
+  } else if (std::holds_alternative<core::TakeBoat>(command.action) && !scene.has_boats()) {
+    addAbsent(issues, "take_boat", kNoBoats);
   }
   if (issues.empty()) return std::nullopt;
   return rejection(command.command_id, std::move(issues.front()));

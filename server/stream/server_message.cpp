@@ -93,6 +93,18 @@ core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::str
   return serialize(message);
 }
 
+core::SharedBytes welcome(const v1::Welcome& welcome) {
+  v1::ServerMessage message;
+  *message.mutable_welcome() = welcome;
+  return serialize(message);
+}
+
+core::SharedBytes people(const v1::People& people) {
+  v1::ServerMessage message;
+  *message.mutable_people() = people;
+  return serialize(message);
+}
+
 core::SharedBytes pong(double client_time_s, double server_time_s) {
   v1::ServerMessage message;
   message.mutable_pong()->set_client_time_s(client_time_s);

@@ -63,6 +63,12 @@ v1::Command controlBoat(std::uint32_t boat_id, double throttle_ratio, double rud
   return command;
 }
 
+v1::Command takeBoat(std::uint32_t boat_id) {
+  v1::Command command;
+  command.mutable_take_boat()->set_boat_id(boat_id);
+  return command;
+}
+
 v1::Command removeBoat(std::uint32_t boat_id) {
   v1::Command command;
   command.mutable_remove_boat()->set_boat_id(boat_id);
@@ -88,11 +94,23 @@ ScriptedClient::ScriptedClient(std::uint16_t port, const std::string& room) {
   if (auto message = stream::parseServerMessage(*first)) greeting_ = message->greeting();
 }
 
-void ScriptedClient::hello(std::uint32_t major) {
+void ScriptedClient::hello(const Person& who) {
   v1::ClientMessage message;
-  message.mutable_hello()->mutable_version()->set_major(major);
-  message.mutable_hello()->set_client("scripted client");
+  v1::Hello& hello = *message.mutable_hello();
+  hello.mutable_version()->set_major(who.major);
+  hello.set_client("scripted client");
+  hello.set_name(who.name);
+  hello.set_token(who.token);
+  hello.set_resume_key(who.resume_key);
   send(message);
+}
+
+const v1::Welcome& ScriptedClient::welcome() {
+  if (!welcome_) {
+    const auto message = waitFor(v1::ServerMessage::kWelcome);
+    welcome_ = message ? message->welcome() : v1::Welcome{};
+  }
+  return *welcome_;
 }
 
 void ScriptedClient::subscribe(v1::Layer layer, double max_rate_hz, v1::Packing packing) {

@@ -20,9 +20,18 @@ v1::Command setSpeed(double speed);
 v1::Command reset();
 v1::Command spawnBoat(double x_m, double z_m);
 v1::Command controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
+v1::Command takeBoat(std::uint32_t boat_id);
 v1::Command removeBoat(std::uint32_t boat_id);
 v1::Command step(std::uint32_t tick_count);
 v1::Command changeScene(const std::string& name);
+
+/// Who says hello.
+struct Person {
+  std::string name{};
+  std::string token{};
+  std::string resume_key{};
+  std::uint32_t major = 1;
+};
 
 class ScriptedClient {
  public:
@@ -33,7 +42,9 @@ class ScriptedClient {
   const v1::Greeting& greeting() const { return greeting_; }
   WsClient& ws() { return ws_; }
 
-  void hello(std::uint32_t major = 1);
+  void hello(const Person& who = {});
+  /// The answer to hello(); empty if there was none. Waits for it the first time.
+  const v1::Welcome& welcome();
   void subscribe(v1::Layer layer, double max_rate_hz = 60.0, v1::Packing packing = v1::PACKING_PLAIN);
   void unsubscribe(v1::Layer layer) { subscribe(layer, 0.0); }
   void send(const v1::ClientMessage& message);
@@ -62,6 +73,7 @@ class ScriptedClient {
  private:
   WsClient ws_;
   v1::Greeting greeting_;
+  std::optional<v1::Welcome> welcome_;
   std::deque<v1::ServerMessage> kept_;
   std::uint64_t last_command_id_ = 0;
   double last_ping_s_ = 0.0;

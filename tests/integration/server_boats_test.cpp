@@ -52,7 +52,7 @@ TEST_F(Boats, ComeAndGoForEverybody) {
   EXPECT_THAT(nextList(two), ElementsAre(1u, 2u));
   EXPECT_THAT(idsOf(client().greeting().boat_list()), ElementsAre(1u, 2u)) << "newcomers learn it from the greeting";
 
-  EXPECT_TRUE(two.apply(controlBoat(2, 1, -0.5)));
+  EXPECT_TRUE(one.apply(controlBoat(2, 1, -0.5)));
   ASSERT_TRUE(two.apply(removeBoat(1)));
   EXPECT_THAT(nextList(one), ElementsAre(2u));
   EXPECT_THAT(nextList(two), ElementsAre(2u));

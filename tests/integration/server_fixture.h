@@ -42,17 +42,20 @@ class ServerTest : public testing::Test {
 
   /// What rooms can be changed to.
   virtual app::SceneCatalog scenes() const { return {}; }
+  /// Everything else that a test wants otherwise.
+  virtual void adjust(app::WaterServerOptions& /*options*/) const {}
 
   void SetUp() override {
     app::WaterServerOptions options;
     options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
     options.network.port = 0;
-    options.scenes = scenes();
+    options.rules.scenes = scenes();
     for (const RoomText& room : rooms()) {
       auto scene = stream::parseSceneText(room.scene, room.name);
       ASSERT_TRUE(scene) << scene.error().message;
       options.rooms.push_back({room.name, *std::move(scene)});
     }
+    adjust(options);
     auto started = app::WaterServer::start(std::move(options));
     if (!started && started.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << started.error().message;
     ASSERT_TRUE(started) << started.error().message;
@@ -62,10 +65,13 @@ class ServerTest : public testing::Test {
   app::WaterServer& server() { return *server_; }
 
   /// A client that has said hello.
-  ScriptedClient client(const std::string& room = "") {
+  ScriptedClient client(const std::string& room = "") { return person({}, room); }
+
+  /// A client that has said hello as somebody, and was welcomed (or not: welcome() is empty then).
+  ScriptedClient person(const Person& who, const std::string& room = "") {
     ScriptedClient made(server_->port(), room);
     EXPECT_TRUE(made.isOpen());
-    made.hello();
+    made.hello(who);
     return made;
   }
 

@@ -53,7 +53,7 @@ class Hostile : public WaveServerTest {
 
 TEST_F(Hostile, WrongMajorVersionIsRefusedWithBothVersions) {
   ScriptedClient one(server().port());
-  one.hello(2);
+  one.hello({.major = 2});
   expectRefusal(one, "client speaks wire version 2.0, this server 1.0");
 }
 

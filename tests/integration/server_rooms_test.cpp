@@ -88,11 +88,12 @@ TEST_F(Rooms, AreListedOverHttpAsTheyAreNow) {
   const HttpAnswer answer = httpRequest(server().port(), "GET", "/api/v1/rooms");
   EXPECT_EQ(answer.status, 200u);
   const boost::json::value list = boost::json::parse(answer.body);
-  ASSERT_EQ(list.as_array().size(), 2u);
-  EXPECT_EQ(list.at(0).at("name").as_string(), "lake");
-  EXPECT_FALSE(list.at(0).at("paused").as_bool());
-  EXPECT_EQ(list.at(1).at("name").as_string(), "pond");
-  EXPECT_TRUE(list.at(1).at("paused").as_bool());
+  const boost::json::array& rooms = list.at("rooms").as_array();
+  ASSERT_EQ(rooms.size(), 2u);
+  EXPECT_EQ(rooms[0].at("name").as_string(), "lake");
+  EXPECT_FALSE(rooms[0].at("paused").as_bool());
+  EXPECT_EQ(rooms[1].at("name").as_string(), "pond");
+  EXPECT_TRUE(rooms[1].at("paused").as_bool());
 }
 
 TEST_F(Rooms, ServerAnswersProbes) {

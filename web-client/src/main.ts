@@ -3,6 +3,8 @@ import { Vector3, WebGLRenderer } from "three";
 
 import "./style.css";
 import type { GreetingInfo } from "./codec/greeting";
+import type { RoleName } from "./codec/people";
+import { IdentityStore } from "./net/identity_store";
 import type { CommandAction, ConnectionState, LinkStats } from "./net/messages";
 import { socketUrl, WaterClient, type WorkerLike } from "./net/water_client";
 import { CameraViews, type Followed, type ViewName } from "./scene/camera_views";
@@ -17,6 +19,7 @@ import { BoatPanel } from "./ui/boat_panel";
 import { EffectsPanel } from "./ui/effects_panel";
 import { describeState, Hud } from "./ui/hud";
 import { ParametersPanel } from "./ui/parameters_panel";
+import { PeoplePanel } from "./ui/people_panel";
 import { RoomPanel } from "./ui/room_panel";
 import { TapDetector, toDeviceCoordinates } from "./ui/tap";
 import { Toast } from "./ui/toast";
@@ -28,6 +31,15 @@ const notice = byId("notice");
 const kNarrowPx = 760;
 const kHelmLabel = "Helm";
 const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+/** Reading it throws where the browser forbids it. */
+function sessionStorageIfAny(): Storage | undefined {
+  try {
+    return window.sessionStorage;
+  } catch {
+    return undefined;
+  }
+}
 
 function showNotice(text: string): void {
   setText(byId("notice-text"), text);
@@ -66,7 +78,12 @@ function main(): void {
 
   const hud = new Hud();
   const toast = new Toast(byId("toast"));
+  const url = socketUrl(location);
+  const identities = new IdentityStore(sessionStorageIfAny(), url);
+  let identity = identities.load();
   let greeting: GreetingInfo | undefined;
+  /** Unknown until the server's welcome: nothing is offered before. */
+  let role: RoleName = "viewer";
   let state: ConnectionState = { name: "connecting" };
   let link: LinkStats | undefined;
   let simTimeS = 0;
@@ -80,10 +97,9 @@ function main(): void {
     state: (message) => {
       state = message.state;
       hud.connection(state);
-      const isLive = state.name === "live";
-      for (const button of effectButtons) button.disabled = !isLive || !effects.available;
-      // A greeting follows and turns the rest on: what they do depends on the scene.
-      if (isLive) return;
+      // Greeting and welcome follow and turn everything on: what there is to do depends on scene and role.
+      showEffectButtons();
+      if (state.name === "live") return;
       room.setLive(false);
       boats.setLive(false);
     },
@@ -107,13 +123,26 @@ function main(): void {
       // Twenty a second would say nothing to anybody.
       if (label !== kHelmLabel) toast.show(`${label}: applied at tick ${appliedTick}`, "good");
     },
-    reject: ({ commandId, message }) => {
+    reject: ({ commandId, reason, message }) => {
+      boats.reject(commandId, reason);
       parameters.reject(commandId, message);
       room.reject(commandId, message);
       toast.show(`${takeLabel(commandId)}: ${message}`, "bad");
     },
     parameterChanged: ({ path, value }) => parameters.serverSays(path, value),
     roomState: (message) => room.roomState(message.paused, message.speed),
+    welcome: ({ welcome }) => {
+      identity = { ...identity, resumeKey: welcome.resumeKey };
+      identities.save(identity);
+      role = welcome.role;
+      people.welcomed(welcome);
+      boats.welcomed(welcome.personId, welcome.resumed);
+      showRole();
+    },
+    people: (message) => {
+      people.setPeople(message.people);
+      boats.setPeople(message.people);
+    },
     boatList: (message) => {
       scene.setBoats(message.boats);
       boats.setBoats(message.boats);
@@ -136,8 +165,25 @@ function main(): void {
     if (boats.mineId === 0 && views.view === "boat") showView("overview");
     showPressed();
   });
+  const people = new PeoplePanel(identity, (name, token) => {
+    identity = { ...identity, name, token };
+    identities.save(identity);
+    client.introduce(name, token);
+  });
   const effectButtons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
   const viewNames: ViewName[] = ["splash", "wave", "overview", "boat"];
+
+  function showEffectButtons(): void {
+    for (const button of effectButtons) button.disabled = state.name !== "live" || !effects.available || role === "viewer";
+  }
+
+  function showRole(): void {
+    showEffectButtons();
+    boats.setAllowed(role !== "viewer");
+    room.setAllowed(role === "operator");
+    byId("parameters-box").hidden = !parameters.hasRows || role !== "operator";
+    byId("storm").hidden = role !== "operator";
+  }
 
   function send(action: CommandAction | undefined, label: string): number {
     if (!action) return 0;
@@ -187,7 +233,6 @@ function main(): void {
     }
     effects.enter(entered);
     parameters.enter(entered.parameters);
-    byId("parameters-box").hidden = !parameters.hasRows;
     byId("effects-box").hidden = byId("effect-buttons").hidden = !effects.available;
     setText(byId("title"), entered.title);
     setText(byId("description"), entered.description);
@@ -196,7 +241,7 @@ function main(): void {
     room.enter(entered);
     boats.enter(entered);
     byId("view-boat").hidden = !boats.available;
-    for (const button of effectButtons) button.disabled = !effects.available;
+    showRole();
     showPressed();
     // The card has this scene's text now, and its height.
     resize();
@@ -324,6 +369,7 @@ function main(): void {
         pixelRatio: governor.pixelRatio,
         paused: room.paused,
         boats: drawnBoats(),
+        role,
         myBoat: boats.mineId,
         view: views.view ?? null,
       };
@@ -333,7 +379,7 @@ function main(): void {
 
   hud.connection(state);
   resize();
-  client.start(socketUrl(location));
+  client.start(url, identity);
 }
 
 main();

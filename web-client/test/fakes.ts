@@ -102,7 +102,7 @@ export class Rig {
       state: (state) => this.states.push(state),
       greeting: note("greeting"), frame: note("frame"), diagnostics: note("diagnostics"), ack: note("ack"), reject: note("reject"),
       parameterChanged: note("parameterChanged"), roomState: note("roomState"), boatList: note("boatList"),
-      roomEvent: note("roomEvent"), stats: note("stats"),
+      roomEvent: note("roomEvent"), welcome: note("welcome"), people: note("people"), stats: note("stats"),
     };
     this.connection = new Connection("ws://host/ws", world, events);
     this.connection.start();

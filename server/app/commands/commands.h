@@ -19,6 +19,13 @@ struct ServeOptions {
   std::string device = "auto";
   std::string web_root;  ///< empty: found beside the program
   std::size_t thread_count = 1;
+  std::size_t max_room_count = 8;
+  std::string token_file;            ///< empty: the environment's SPINDRIFT_TOKENS, if it is set
+  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with
+  std::vector<std::string> origins;  ///< pages of other servers that may connect; "*" = any
+  double grace_s = 20.0;             ///< a lost connection's boat is kept so long
+  std::string record_folder;         ///< logs of the rooms go here; empty: none
+  std::uint32_t hash_interval_ticks = 60;
 };
 int serve(const ServeOptions& options);
 
@@ -54,6 +61,13 @@ struct StudyOptions {
   bool quick = false;
 };
 int study(const StudyOptions& options);
+
+struct ReplayOptions {
+  std::string file;
+  std::string device = "auto";
+  std::string json_file;
+};
+int replay(const ReplayOptions& options);
 
 /// Prints the error's line on standard error and returns its exit code.
 int fail(const core::Error& error);

@@ -1,6 +1,8 @@
 #include <csignal>
 #include <cstdio>
-#include <regex>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
@@ -19,7 +21,7 @@ using core::Error;
 using core::ErrorCode;
 
 core::Result<RoomSetup> loadRoom(const std::string& name, const std::string& scene, const std::string& fidelity) {
-  if (!std::regex_match(name, std::regex("[A-Za-z0-9_-]{1,32}"))) {
+  if (!isRoomName(name)) {
     return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
   }
   auto file = findScene(scene);
@@ -48,6 +50,33 @@ core::Result<std::vector<RoomSetup>> loadRooms(const ServeOptions& options) {
     rooms.push_back(*std::move(room));
   }
   return rooms;
+}
+
+/// The tokens of the file, or of the environment, and what guests are.
+core::Result<Access> loadAccess(const ServeOptions& options) {
+  std::string text;
+  std::string label = "SPINDRIFT_TOKENS";
+  bool has_tokens = false;
+  if (!options.token_file.empty()) {
+    std::ifstream file(options.token_file);
+    if (!file) return Error{ErrorCode::kUnavailable, "--tokens " + options.token_file + ": the file cannot be read"};
+    text.assign(std::istreambuf_iterator<char>(file), {});
+    label = options.token_file;
+    has_tokens = true;
+  } else if (const char* const set = std::getenv("SPINDRIFT_TOKENS")) {
+    text = set;
+    has_tokens = true;
+  }
+  std::optional<core::Role> guest = has_tokens ? core::Role::kViewer : core::Role::kOperator;
+  if (!options.guest_role.empty()) guest = parseRole(options.guest_role);  // "none" is no role
+  auto access = Access::parse(text, label, guest);
+  if (access && has_tokens && access->tokenCount() == 0) {
+    return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
+  }
+  if (access && !guest && access->tokenCount() == 0) {
+    return Error{ErrorCode::kInvalidInput, "--guests none lets nobody in without tokens: give --tokens FILE"};
+  }
+  return access;
 }
 
 /// Blocks SIGINT and SIGTERM in this thread and those it starts, so that wait() gets them.
@@ -83,10 +112,22 @@ int serve(const ServeOptions& options) {
   auto rooms = loadRooms(options);
   if (!rooms) return fail(rooms.error());
 
+  auto access = loadAccess(options);
+  if (!access) return fail(access.error());
+  const bool is_open_to_all =
+      access->guest() == core::Role::kOperator && !options.address.starts_with("127.") && options.address != "::1";
+
   WaterServerOptions server_options;
   server_options.device = *device;
   server_options.rooms = *std::move(rooms);
-  server_options.scenes = SceneCatalog(findSceneFolder(), stream::parseFidelity(options.fidelity));
+  server_options.rules.scenes = SceneCatalog(findSceneFolder(), stream::parseFidelity(options.fidelity));
+  server_options.rules.grace =
+      std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(options.grace_s * 1e3));
+  server_options.rules.record_folder = options.record_folder;
+  server_options.rules.hash_interval_ticks = options.hash_interval_ticks;
+  server_options.max_room_count = options.max_room_count;
+  server_options.access = *std::move(access);
+  server_options.network.allowed_origins = options.origins;
   server_options.network.address = options.address;
   server_options.network.port = options.port;
   server_options.network.thread_count = options.thread_count;
@@ -97,6 +138,12 @@ int serve(const ServeOptions& options) {
 
   spdlog::info("simulation runs on {}", (*server)->deviceLine());
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
+  if (is_open_to_all) {
+    spdlog::warn(
+        "whoever reaches {} may do everything here, close rooms included: give --tokens, or --guests player, to change "
+        "that",
+        options.address);
+  }
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
   std::fflush(stdout);
   const int signal = signals.wait();

@@ -17,13 +17,16 @@ struct RecordingLink final : SessionLink {
   bool wants_whole = false;
   std::optional<double> rate_hz;
   std::optional<CloseCode> closed;
+  std::optional<CloseCode> closing_later;
 
   void sendControl(core::SharedBytes) override { ++control_count; }
   void offerFrame(LayerIndex, const LayerBytes&) override { ++frame_count; }
   bool wantsWhole(LayerIndex) const override { return wants_whole; }
   void setWatch(LayerIndex, std::optional<double> max_rate_hz) override { rate_hz = max_rate_hz; }
   void clearFrames() override { ++clear_count; }
+  Outbox::Waiting waiting() const override { return {1, 2}; }
   void close(CloseCode code, std::string) override { closed = code; }
+  void closeAt(std::chrono::steady_clock::time_point, CloseCode code, std::string) override { closing_later = code; }
 };
 
 struct RoomHubTest : testing::Test {

@@ -108,14 +108,26 @@ class TestApplication final : public net::Application {
     closed_.push_back({session, end});
   }
 
-  std::optional<net::HttpReply> httpRequest(const net::HttpRequest& request) override {
-    if (request.path == "/healthz") return net::HttpReply{200, "text/plain", "ok\n"};
+  /// "/api/keep" keeps the responder in `kept`, "/api/forget" drops it.
+  void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override {
+    if (request.path == "/healthz") return respond(net::HttpReply{200, "text/plain", "ok\n"});
     if (request.path == "/api/throw") throw std::runtime_error("httpRequest was asked to throw");
-    if (request.path != "/api/echo") return std::nullopt;
-    return net::HttpReply{
+    if (request.path == "/api/forget") return;
+    if (request.path == "/api/keep") {
+      const std::lock_guard lock(mutex_);
+      kept.push_back(std::move(respond));
+      return;
+    }
+    if (request.path != "/api/echo") return respond(std::nullopt);
+    respond(net::HttpReply{
         200, "text/plain",
-        request.method + " " + request.query + " " + std::string(request.body.begin(), request.body.end())};
+        request.method + " " + request.query + " " + std::string(request.body.begin(), request.body.end())});
   }
+  std::size_t keptCount() const {
+    const std::lock_guard lock(mutex_);
+    return kept.size();
+  }
+  std::vector<net::HttpResponder> kept;
 
   std::vector<net::SessionId> opened() const {
     const std::lock_guard lock(mutex_);

@@ -114,18 +114,18 @@ TEST(BoatCommands, NeedASceneWithBoats) {
   const std::pair<core::Action, std::string> cases[] = {
       {core::SpawnBoat{}, "spawn_boat"}, {core::ControlBoat{}, "control_boat"}, {core::RemoveBoat{}, "remove_boat"}};
   for (const auto& [action, field] : cases) {
-    const auto rejection = checkAgainstScene(core::Command{1, 2, action}, *scene);
+    const auto rejection = checkAgainstScene(core::Command{{}, 2, action}, *scene);
     ASSERT_TRUE(rejection) << field;
     EXPECT_EQ(rejection->command_id, 2u);
     EXPECT_EQ(rejection->reason, v1::REJECT_REASON_ABSENT_PART);
     EXPECT_EQ(rejection->field, field);
-    EXPECT_FALSE(checkAgainstScene(core::Command{1, 2, action}, harbour()));
+    EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, action}, harbour()));
   }
 }
 
 TEST(BoatCommands, ThatPutABoatWhereTheSceneForbidsItAreRejected) {
   const auto rejectionFor = [](const core::Boat& boat) {
-    return checkAgainstScene(core::Command{1, 2, core::SpawnBoat{boat}}, harbour()).value_or(CommandRejection{});
+    return checkAgainstScene(core::Command{{}, 2, core::SpawnBoat{boat}}, harbour()).value_or(CommandRejection{});
   };
   EXPECT_EQ(rejectionFor({.x_m = 7.5}).field, "spawn_boat.boat.x_m");
   EXPECT_EQ(rejectionFor({.z_m = -8.0}).field, "spawn_boat.boat.z_m");
@@ -140,19 +140,19 @@ TEST(BoatCommands, ThatPutABoatWhereTheSceneForbidsItAreRejected) {
 
 TEST(SceneCommands, AndStepsAreLeftToTheRoom) {
   for (const core::Action& action : {core::Action(core::Step{5}), core::Action(core::ChangeScene{"anything"})}) {
-    EXPECT_FALSE(checkAgainstScene(core::Command{1, 2, action}, harbour()));
+    EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, action}, harbour()));
   }
 }
 
 TEST(WavesInADirection, AreBoundLikeThoseOfASide) {
   const core::BreakingWave fine{.side = core::Side::kDirection, .amplitude_m = 0.5, .direction_deg = 33};
-  EXPECT_FALSE(checkAgainstScene(core::Command{1, 2, fine}, harbour()));
+  EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, fine}, harbour()));
   core::BreakingWave high = fine;
   high.amplitude_m = 0.95;
-  EXPECT_EQ(checkAgainstScene(core::Command{1, 2, high}, harbour())->field, "breaking_wave.amplitude_m");
+  EXPECT_EQ(checkAgainstScene(core::Command{{}, 2, high}, harbour())->field, "breaking_wave.amplitude_m");
   core::BreakingWave longer = fine;
   longer.length_m = 17;
-  EXPECT_EQ(checkAgainstScene(core::Command{1, 2, longer}, harbour())->field, "breaking_wave.length_m");
+  EXPECT_EQ(checkAgainstScene(core::Command{{}, 2, longer}, harbour())->field, "breaking_wave.length_m");
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ core::Command expectCommand(const std::function<void(v1::Command&)>& fill) {
   const ClientMessage message = parseCommand(fill);
   if (const auto* command = std::get_if<core::Command>(&message)) {
     EXPECT_EQ(command->command_id, 42u);
-    EXPECT_EQ(command->session_id, 0u);
+    EXPECT_EQ(command->sender.session_id, 0u);
     return *command;
   }
   ADD_FAILURE() << "no command";
@@ -253,7 +253,7 @@ struct SceneLimit {
 class ForbiddenByTheScene : public testing::TestWithParam<SceneLimit> {};
 
 TEST_P(ForbiddenByTheScene, IsRejectedWithItsField) {
-  const auto rejection = checkAgainstScene(core::Command{5, 6, GetParam().action}, smallPool());
+  const auto rejection = checkAgainstScene(core::Command{{}, 6, GetParam().action}, smallPool());
   ASSERT_TRUE(rejection);
   EXPECT_EQ(rejection->command_id, 6u);
   EXPECT_EQ(rejection->field, GetParam().field);
@@ -284,12 +284,12 @@ TEST(ClientMessages, WithoutAWaveTheBoxOfParticlesLimitsEffects) {
   const auto scene =
       parseSceneText("particles { count: 8000 layers_count: 20 box_side_m: 4 box_width_m: 2 }", "box.textproto");
   ASSERT_TRUE(scene);
-  EXPECT_FALSE(checkAgainstScene(core::Command{1, 2, core::Splash{0, 0, 0.9, 2.5, 0.2}}, *scene));
-  const auto deep = checkAgainstScene(core::Command{1, 2, core::Splash{0, 0, 0.9, 2.6, 0.2}}, *scene);
+  EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, core::Splash{0, 0, 0.9, 2.5, 0.2}}, *scene));
+  const auto deep = checkAgainstScene(core::Command{{}, 2, core::Splash{0, 0, 0.9, 2.6, 0.2}}, *scene);
   ASSERT_TRUE(deep);
   EXPECT_EQ(deep->field, "splash.depth_m");
   EXPECT_THAT(deep->message, HasSubstr("2.8284"));
-  const auto wide = checkAgainstScene(core::Command{1, 2, core::Splash{0, 0, 1.1, 0.5, 0.2}}, *scene);
+  const auto wide = checkAgainstScene(core::Command{{}, 2, core::Splash{0, 0, 1.1, 0.5, 0.2}}, *scene);
   ASSERT_TRUE(wide);
   EXPECT_EQ(wide->field, "splash.radius_m");
 }
@@ -302,7 +302,7 @@ TEST(ClientMessages, WhatTheSceneAllowsPasses) {
                                core::SetPaused{true},
                                core::SetSpeed{2}};
   for (const core::Action& action : fine) {
-    const auto rejection = checkAgainstScene(core::Command{1, 2, action}, smallPool());
+    const auto rejection = checkAgainstScene(core::Command{{}, 2, action}, smallPool());
     EXPECT_FALSE(rejection) << "action " << action.index() << ": " << rejection->message;
   }
 }

@@ -6,6 +6,7 @@ import { RejectReason, RoomEventKind, ServerMessageSchema } from "../gen/spindri
 import { parseFrame, type ParsedFrame } from "./frames";
 import { readBoatList, readGreeting, type BoatDetail, type GreetingInfo } from "./greeting";
 import { malformed, type Malformed } from "./malformed";
+import { readPeople, readWelcome, type PersonInfo, type WelcomeInfo } from "./people";
 import type { PackedFoam, PackedSurface } from "./packed_planes";
 
 export interface DiagnosticsInfo {
@@ -48,6 +49,8 @@ export type ParsedMessage =
   | { kind: "roomState"; paused: boolean; speed: number }
   | { kind: "boatList"; boats: BoatDetail[] }
   | { kind: "roomEvent"; event: RoomEventName; tick: bigint; message: string }
+  | { kind: "welcome"; welcome: WelcomeInfo }
+  | { kind: "people"; people: PersonInfo[] }
   | { kind: "pong"; clientTimeS: number; serverTimeS: number }
   | { kind: "refusal"; message: string }
   | { kind: "unknown" }
@@ -94,6 +97,10 @@ export function parse(buffer: ArrayBuffer): ParsedMessage {
         const { kind, tick, message: text } = message.value;
         return { kind: "roomEvent", event: roomEventName(kind), tick, message: text };
       }
+      case "welcome":
+        return { kind: "welcome", welcome: readWelcome(message.value) };
+      case "people":
+        return { kind: "people", people: readPeople(message.value) };
       case "pong":
         return { kind: "pong", clientTimeS: message.value.clientTimeS, serverTimeS: message.value.serverTimeS };
       case "refusal":

@@ -6,10 +6,11 @@ import type { ParsedFrame } from "../codec/frames";
 import { kLayers, kWireMajor, kWireMinor, type BoatDetail, type GreetingInfo } from "../codec/greeting";
 import { PlaneUnpacker } from "../codec/packed_planes";
 import { parse, type DiagnosticsInfo, type RoomEventName } from "../codec/parse";
+import type { PersonInfo, WelcomeInfo } from "../codec/people";
 import { ClientMessageSchema, Packing, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import { LinkMeter } from "./link_meter";
-import type { CommandAction, ConnectionState, LinkStats } from "./messages";
+import type { CommandAction, ConnectionState, Identity, LinkStats } from "./messages";
 
 export const kSubprotocol = "spindrift.v1";
 const kClientName = "spindrift-web 0.1.0";
@@ -58,6 +59,8 @@ export interface ConnectionEvents {
   reject(commandId: number, reason: string, field: string, message: string): void;
   parameterChanged(path: string, value: number): void;
   roomState(paused: boolean, speed: number): void;
+  welcome(welcome: WelcomeInfo): void;
+  people(people: PersonInfo[]): void;
   boatList(boats: BoatDetail[]): void;
   roomEvent(event: RoomEventName, message: string): void;
   stats(stats: Omit<LinkStats, "overtakenCount">): void;
@@ -83,6 +86,7 @@ export class Connection {
     private readonly url: string,
     private readonly world: ConnectionWorld,
     private readonly events: ConnectionEvents,
+    private identity: Identity = { name: "", token: "", resumeKey: "" },
   ) {
     this.meter = new LinkMeter(world.nowMs());
   }
@@ -105,6 +109,14 @@ export class Connection {
   retryNow(): void {
     if (this.state.name !== "retrying" && this.state.name !== "refused") return;
     this.failedCount = 0;
+    this.connect();
+  }
+
+  /** Another name or token: comes back under it, as the same person where the server still knows them. */
+  introduce(name: string, token: string): void {
+    this.identity = { ...this.identity, name, token };
+    this.failedCount = 0;
+    this.failPending("the page connects anew under another name");
     this.connect();
   }
 
@@ -143,7 +155,7 @@ export class Connection {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       const version = { major: kWireMajor, minor: kWireMinor };
-      this.send(create(ClientMessageSchema, { message: { case: "hello", value: { version, client: kClientName } } }));
+      this.send(create(ClientMessageSchema, { message: { case: "hello", value: { version, client: kClientName, ...this.identity } } }));
     };
     socket.onmessage = (event) => this.receive(event.data);
     socket.onclose = (event) => this.lost(event.reason || `closed by the server or the network (code ${event.code})`);
@@ -190,6 +202,12 @@ export class Connection {
         return this.events.parameterChanged(parsed.path, parsed.value);
       case "roomState":
         return this.events.roomState(parsed.paused, parsed.speed);
+      case "welcome":
+        // The next connection goes on as this person.
+        this.identity = { ...this.identity, resumeKey: parsed.welcome.resumeKey };
+        return this.events.welcome(parsed.welcome);
+      case "people":
+        return this.events.people(parsed.people);
       case "boatList":
         return this.events.boatList(parsed.boats);
       case "roomEvent":

@@ -5,6 +5,7 @@ import type { MessageInitShape } from "@bufbuild/protobuf";
 import type { BodiesHeader, FoamHeader, ParticleHeader, SurfaceHeader } from "../codec/frames";
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo, RoomEventName } from "../codec/parse";
+import type { PersonInfo, WelcomeInfo } from "../codec/people";
 import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";
 
 /** A command's action as plain data, one member of the oneof in wire.proto. */
@@ -12,6 +13,15 @@ export type CommandAction = Exclude<
   NonNullable<MessageInitShape<typeof CommandSchema>["action"]>,
   { case: undefined }
 >;
+
+/** Who says hello. */
+export interface Identity {
+  name: string;
+  /** Gives a role; empty: a guest. */
+  token: string;
+  /** Of an earlier welcome, or empty. */
+  resumeKey: string;
+}
 
 export type ConnectionState =
   | { name: "connecting" }
@@ -61,7 +71,8 @@ export interface LinkStats {
 }
 
 export type PageToWorker =
-  | { type: "start"; url: string }
+  | { type: "start"; url: string; identity: Identity }
+  | { type: "introduce"; name: string; token: string }
   | { type: "command"; commandId: number; action: CommandAction }
   | { type: "release"; layer: FrameLayer; buffer: ArrayBuffer }
   | { type: "visible"; visible: boolean }
@@ -76,6 +87,8 @@ export type WorkerToPage =
   | { type: "reject"; commandId: number; reason: string; field: string; message: string }
   | { type: "parameterChanged"; path: string; value: number }
   | { type: "roomState"; paused: boolean; speed: number }
+  | { type: "welcome"; welcome: WelcomeInfo }
+  | { type: "people"; people: PersonInfo[] }
   | { type: "boatList"; boats: BoatDetail[] }
   | { type: "roomEvent"; event: RoomEventName; message: string }
   | { type: "stats"; stats: LinkStats };

@@ -1,5 +1,5 @@
 // The page's end of the worker: typed events in, commands out. Gives command ids and owns the worker.
-import type { CommandAction, Frame, FrameLayer, PageToWorker, WorkerToPage } from "./messages";
+import type { CommandAction, Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
 
 /** The part of Worker that is used. */
 export interface WorkerLike {
@@ -22,8 +22,13 @@ export class WaterClient {
     worker.onmessage = ({ data }) => (events[data.type] as (message: WorkerToPage) => void)(data);
   }
 
-  start(url: string): void {
-    this.worker.postMessage({ type: "start", url }, []);
+  start(url: string, identity: Identity): void {
+    this.worker.postMessage({ type: "start", url, identity }, []);
+  }
+
+  /** Connects anew under this name and token. */
+  introduce(name: string, token: string): void {
+    this.worker.postMessage({ type: "introduce", name, token }, []);
   }
 
   /** Sends and returns the id that its ack or reject will carry. */

@@ -2,7 +2,7 @@
 // into an aligned buffer, and travel to the page and back by transfer.
 import { Connection, type ConnectionWorld, type SocketLike } from "./connection";
 import { FrameHandover } from "./handover";
-import type { Frame, FrameLayer, PageToWorker, WorkerToPage } from "./messages";
+import type { Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
 
 /** The page's ring holds four; one more may be on its way. */
 const kMaxFramesUnderWay = 5;
@@ -38,7 +38,7 @@ const world: ConnectionWorld = {
 
 let connection: Connection | undefined;
 
-function start(url: string): void {
+function start(url: string, identity: Identity): void {
   connection?.stop();
   connection = new Connection(url, world, {
     state: (state) => toPage({ type: "state", state }),
@@ -55,13 +55,15 @@ function start(url: string): void {
     reject: (commandId, reason, field, message) => toPage({ type: "reject", commandId, reason, field, message }),
     parameterChanged: (path, value) => toPage({ type: "parameterChanged", path, value }),
     roomState: (paused, speed) => toPage({ type: "roomState", paused, speed }),
+    welcome: (welcome) => toPage({ type: "welcome", welcome }),
+    people: (people) => toPage({ type: "people", people }),
     boatList: (boats) => toPage({ type: "boatList", boats }),
     roomEvent: (event, message) => toPage({ type: "roomEvent", event, message }),
     stats: (stats) => {
       const overtakenCount = Object.values(handovers).reduce((sum, layer) => sum + layer.overtakenCount, 0);
       toPage({ type: "stats", stats: { ...stats, overtakenCount } });
     },
-  });
+  }, identity);
   connection.start();
 }
 
@@ -69,7 +71,9 @@ self.addEventListener("message", (event: MessageEvent<PageToWorker>) => {
   const message = event.data;
   switch (message.type) {
     case "start":
-      return start(message.url);
+      return start(message.url, message.identity);
+    case "introduce":
+      return connection?.introduce(message.name, message.token);
     case "command":
       return connection?.command(message.commandId, message.action);
     case "release":

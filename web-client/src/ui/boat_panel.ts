@@ -1,5 +1,6 @@
 // Boats: launch one, choose which is mine, steer it by sliders or keys, take it away.
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { PersonInfo } from "../codec/people";
 import type { CommandAction } from "../net/messages";
 import { byId, make } from "./dom";
 import { boatLimits, boatOfLength, clampTo, type BoatLimits } from "./effect_limits";
@@ -35,7 +36,12 @@ export class BoatPanel {
   private boats: readonly BoatDetail[] = [];
   private lengthM = 0;
   private spawnId = 0;
+  private takeId = 0;
+  private takeBoatId = 0;
   private isLive = false;
+  private isAllowed = false;
+  private myPersonId = 0;
+  private owners = new Map<number, number>();
   private lastS = 0;
   private readonly root = byId("boats-box");
   private readonly spawn = byId<HTMLButtonElement>("spawn");
@@ -55,7 +61,7 @@ export class BoatPanel {
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
     }, kHelmEveryMs);
-    this.mine = new SelectRow("my-boat", "My boat", "The boat that the helm steers and the boat view follows.", (value) => this.choose(Number(value)));
+    this.mine = new SelectRow("my-boat", "My boat", "The boat that the helm steers and the boat view follows.", (value) => this.want(Number(value)));
     byId("my-boat-row").append(this.mine.element);
     this.spawn.addEventListener("click", () => this.launch());
     for (const button of document.querySelectorAll<HTMLElement>("#pad [data-helm]")) {
@@ -100,7 +106,41 @@ export class BoatPanel {
     this.refresh();
   }
 
+  /** Whether this page's role may drive. */
+  setAllowed(isAllowed: boolean): void {
+    this.isAllowed = isAllowed;
+    this.refresh();
+  }
+
+  /** Who this page is in the room; `resumed`: the boat of an earlier connection is mine again. */
+  welcomed(personId: number, resumed: boolean): void {
+    if (personId !== this.myPersonId && !resumed) this.choose(0);
+    this.myPersonId = personId;
+  }
+
+  /** Whose boat is whose. */
+  setPeople(people: readonly PersonInfo[]): void {
+    this.owners = new Map(people.flatMap(({ personId, boatIds }) => boatIds.map((boatId): [number, number] => [boatId, personId])));
+    const owner = this.owners.get(this.mineId);
+    if (this.mineId && owner !== undefined && owner !== this.myPersonId) this.choose(0);
+    const own = this.boats.find(({ boatId }) => this.owners.get(boatId) === this.myPersonId);
+    if (!this.mineId && own && this.myPersonId) this.choose(own.boatId);
+    this.refresh();
+  }
+
+  reject(commandId: number, reason: string): void {
+    if (commandId === this.takeId) this.takeId = 0;
+    // Somebody else has the boat, or it became nobody's while this page was away.
+    if (reason === "NOT_YOURS" && this.mineId && this.owners.get(this.mineId) !== this.myPersonId) this.choose(0);
+    this.refresh();
+  }
+
   ack(commandId: number, boatId: number): void {
+    if (commandId === this.takeId) {
+      this.takeId = 0;
+      this.choose(this.takeBoatId);
+      return;
+    }
     if (commandId !== this.spawnId || boatId === 0) return;
     this.spawnId = 0;
     // The list with the new boat may come after its ack.
@@ -157,6 +197,13 @@ export class BoatPanel {
     this.chosen();
   }
 
+  /** My own at once, nobody's when the server has given it to me. */
+  private want(boatId: number): void {
+    if (boatId === 0 || this.owners.get(boatId) === this.myPersonId) return this.choose(boatId);
+    this.takeBoatId = boatId;
+    this.takeId = this.send({ case: "takeBoat", value: { boatId } }, `Take boat ${boatId}`);
+  }
+
   private launch(): void {
     if (!this.greeting || !this.limits) return;
     const boat = boatOfLength(this.lengthM);
@@ -198,14 +245,16 @@ export class BoatPanel {
   }
 
   private refresh(): void {
-    const choices = [{ value: "0", label: this.boats.length ? "none" : "no boats yet" }, ...this.boats.map(({ boatId, lengthM }) => ({ value: String(boatId), label: `Boat ${boatId} (${lengthM.toFixed(1)} m)` }))];
+    const open = this.boats.filter(({ boatId }) => boatId === this.mineId || [undefined, this.myPersonId].includes(this.owners.get(boatId)));
+    const choices = [{ value: "0", label: open.length ? "none" : "no free boat" }, ...open.map(({ boatId, lengthM }) => ({ value: String(boatId), label: `Boat ${boatId} (${lengthM.toFixed(1)} m)${this.owners.has(boatId) || boatId === this.mineId ? "" : ", free"}` }))];
     this.mine.setChoices(choices, String(this.mineId));
-    const hasMine = this.isLive && this.mineId !== 0;
-    this.mine.disabled = !this.isLive || this.boats.length === 0;
-    this.spawn.disabled = !this.isLive;
+    const isOn = this.isLive && this.isAllowed;
+    const hasMine = isOn && this.mineId !== 0;
+    this.mine.disabled = !isOn || open.length === 0;
+    this.spawn.disabled = !isOn;
     this.remove.disabled = !hasMine;
     if (!this.rows) return;
     this.rows.throttle.disabled = this.rows.rudder.disabled = !hasMine;
-    this.rows.length.disabled = !this.isLive;
+    this.rows.length.disabled = !isOn;
   }
 }

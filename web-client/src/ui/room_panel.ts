@@ -10,6 +10,7 @@ import { SliderRow } from "./slider_row";
 export class RoomPanel {
   paused = false;
   private isLive = false;
+  private isAllowed = false;
   private sceneName = "";
   private changeId = 0;
   private readonly pause = byId<HTMLButtonElement>("pause");
@@ -50,8 +51,19 @@ export class RoomPanel {
 
   setLive(isLive: boolean): void {
     this.isLive = isLive;
-    this.pause.disabled = this.reset.disabled = this.scenes.disabled = this.speedRow.disabled = !isLive;
-    this.step.disabled = !isLive || !this.paused;
+    this.refresh();
+  }
+
+  /** Whether this page's role may change the room. */
+  setAllowed(isAllowed: boolean): void {
+    this.isAllowed = isAllowed;
+    this.refresh();
+  }
+
+  private refresh(): void {
+    const isOff = !this.isLive || !this.isAllowed;
+    this.pause.disabled = this.reset.disabled = this.scenes.disabled = this.speedRow.disabled = isOff;
+    this.step.disabled = isOff || !this.paused;
     this.step.title = this.paused ? "One tick" : "Pause first";
   }
 

@@ -60,6 +60,9 @@ struct ControlBoat {
 struct RemoveBoat {
   std::uint32_t boat_id = 0;
 };
+struct TakeBoat {
+  std::uint32_t boat_id = 0;
+};
 
 using Effect = std::variant<Splash, BreakingWave>;
 
@@ -89,13 +92,27 @@ struct ChangeScene {
 };
 
 using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused, SetSpeed, SpawnBoat, ControlBoat,
-                            RemoveBoat, Step, ChangeScene>;
+                            RemoveBoat, Step, ChangeScene, TakeBoat>;
 
-/// A command on its way to a room. `session_id` 0 is the scene itself.
-struct Command {
+/// What somebody may do; each includes the ones before.
+enum class Role { kViewer, kPlayer, kOperator };
+
+/// The least that an action asks for.
+Role roleFor(const Action& action);
+
+/// Who asks: a session, or a request by HTTP. Exactly one id is not 0, unless the room itself asks.
+struct Sender {
   std::uint64_t session_id = 0;
+  std::uint64_t request_id = 0;
+  std::uint32_t person_id = 0;  ///< of the session, in its room; 0: nobody in particular
+  Role role = Role::kOperator;
+};
+
+/// A command on its way to a room.
+struct Command {
+  Sender sender{};
   std::uint64_t command_id = 0;  ///< the client's own number, echoed in Ack and Reject
-  Action action;
+  Action action{};
 };
 
 }  // namespace spindrift::core

@@ -3,6 +3,7 @@
 // comes from one of them, for one session never two at a time.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -40,6 +41,9 @@ enum class CloseCode : std::uint16_t {
   kTooBig = 1009,           ///< message over read_message_max_bytes
   kInternalError = 1011,    ///< an Application callback threw for this session
   kTryAgainLater = 1013,    ///< the control queue overflowed
+  kUnauthorized = 4401,     ///< a token that is unknown or has expired, or none where one is needed
+  kRoomClosed = 4404,       ///< the room is no more
+  kResumedElsewhere = 4409  ///< another connection goes on as this person
 };
 
 /// What a plain HTTP request to a path under /api/ or a probe gets.
@@ -50,11 +54,17 @@ struct HttpReply {
 };
 
 struct HttpRequest {
-  std::string method;   ///< "GET", "POST", ...; a HEAD request arrives as "GET" and its body is left out
-  std::string path;     ///< percent-decoded, without the query
-  std::string query;    ///< as sent, without the question mark
-  core::ByteView body;  ///< at most ServerOptions::request_body_max_bytes
+  std::string method;           ///< "GET", "POST", ...; a HEAD request arrives as "GET" and its body is left out
+  std::string path;             ///< percent-decoded, without the query
+  std::string query;            ///< as sent, without the question mark
+  core::ByteView body;          ///< at most ServerOptions::request_body_max_bytes; valid during the call
+  std::string authorization{};  ///< the header of that name, as sent
+  std::string content_type{};   ///< likewise
 };
+
+/// Answers one request; nullopt = 404. Callable once, from any thread; dropping every copy uncalled answers 500. An
+/// answer that comes after ServerOptions::answer_timeout is too late: 504 went out.
+using HttpResponder = std::function<void(std::optional<HttpReply>)>;
 
 /// Why a session ended, for the log: code (0 if the peer vanished) and one line.
 struct SessionEnd {
@@ -88,6 +98,9 @@ class Hub {
   /// Puts the session into a room (it leaves the one before; its watches follow, unsent frames do not).
   virtual void join(SessionId session, const std::string& room) = 0;
 
+  /// How many sessions are in the room.
+  virtual std::size_t sessionCount(const std::string& room) const = 0;
+
   /// Starts (or, with max_rate_hz 0, stops) a layer for a session.
   virtual void watch(SessionId session, LayerIndex layer, double max_rate_hz) = 0;
 
@@ -96,6 +109,10 @@ class Hub {
 
   /// Sends everything queued on the control plane, then closes; the socket is cut after close_timeout in any case.
   virtual void close(SessionId session, CloseCode code, std::string reason) = 0;
+
+  /// The same at a later time; the latest call counts.
+  virtual void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
+                       std::string reason) = 0;
 };
 
 /// What the server does for: implemented by app, outlives the Server. An exception from a callback is logged and ends
@@ -115,8 +132,8 @@ class Application {
   virtual void sessionMessage(SessionId session, core::ByteView message) = 0;
   /// The session is gone; last call for this id.
   virtual void sessionClosed(SessionId session, const SessionEnd& end) = 0;
-  /// A request under /api/, or /healthz, /readyz, /metrics; nullopt = 404.
-  virtual std::optional<HttpReply> httpRequest(const HttpRequest& request) = 0;
+  /// A request under /api/, or /healthz, /readyz, /metrics. Answers at once or later through `respond`.
+  virtual void httpRequest(const HttpRequest& request, HttpResponder respond) = 0;
 };
 
 struct ServerOptions {
@@ -132,9 +149,33 @@ struct ServerOptions {
   double message_burst_count = 400.0;
   std::chrono::milliseconds write_stall_timeout{10'000};  ///< a write that takes longer evicts the session
   std::chrono::milliseconds handshake_timeout{10'000};
-  std::chrono::milliseconds idle_timeout{60'000};  ///< pings half-way; silence beyond closes
-  std::chrono::milliseconds close_timeout{2'000};  ///< patience for the peer's close frame
+  std::chrono::milliseconds idle_timeout{60'000};    ///< pings half-way; silence beyond closes
+  std::chrono::milliseconds close_timeout{2'000};    ///< patience for the peer's close frame
+  std::chrono::milliseconds answer_timeout{30'000};  ///< patience for the application's answer to a request
+  /// Pages that may talk to this server ("https://water.example") besides its own; "*" = any. Programs send no Origin
+  /// and are not asked.
+  std::vector<std::string> allowed_origins{};
+  /// Token buckets for everybody behind one address (IPv6: one /64): requests beyond get 429, messages wait unread.
+  double address_requests_per_s = 50.0;
+  double address_request_burst_count = 1000.0;
+  double address_messages_per_s = 4000.0;
+  double address_message_burst_count = 8000.0;
 };
+
+/// Why a request or an upgrade was refused before the application saw it.
+enum class Refused : std::uint8_t {
+  kOrigin,      ///< 403: a page that is not on the list
+  kRate,        ///< 429: too many requests from one address
+  kFull,        ///< 503: max_session_count sessions are open
+  kRoom,        ///< 404: acceptSession said no
+  kHandshake,   ///< 400, 404, 426: no WebSocket upgrade that this server knows
+  kRequest,     ///< 400, 413, 431: no HTTP request, or too large a one
+  kConnection,  ///< closed unheard: too many connections
+};
+inline constexpr std::size_t kRefusedCount = 7;
+/// "origin", "rate", ... by Refused.
+inline constexpr std::array<std::string_view, kRefusedCount> kRefusedNames{"origin",    "rate",    "full",      "room",
+                                                                           "handshake", "request", "connection"};
 
 /// Counters since the start (open_session_count: now).
 struct ServerStats {
@@ -144,6 +185,11 @@ struct ServerStats {
   std::uint64_t sent_frame_count = 0;       ///< data plane only
   std::uint64_t dropped_frame_count = 0;    ///< replaced in their slot before they were sent
   std::uint64_t evicted_session_count = 0;  ///< sessions that did not read: write stall or control overflow
+  std::uint64_t waiting_control_count = 0;  ///< now, over all sessions
+  std::uint64_t waiting_frame_count = 0;    ///< now, over all sessions
+  std::uint64_t delayed_message_count = 0;  ///< messages that waited for their address's bucket
+  std::array<std::uint64_t, kRefusedCount> refused_count{};  ///< by Refused
+  std::map<std::uint16_t, std::uint64_t> closed_by_code{};   ///< sessions that ended; 0: the connection broke
 };
 
 /// Listens, serves, stops. Construct through start(); the destructor stops.

@@ -19,11 +19,19 @@ inline constexpr std::uint32_t kWireMajor = 1;
 inline constexpr std::uint32_t kWireMinor = 0;
 /// Bytes of Hello.client that are kept.
 inline constexpr std::size_t kClientNameMaxBytes = 64;
+/// Bytes of Hello.name that are kept.
+inline constexpr std::size_t kPersonNameMaxBytes = 32;
+/// Tokens and resume keys are shorter; more is not compared.
+inline constexpr std::size_t kSecretMaxBytes = 256;
 
 struct Hello {
   std::uint32_t major = 0;
   std::uint32_t minor = 0;
-  std::string client;  ///< at most kClientNameMaxBytes of UTF-8 without control characters; may be empty
+  std::string client;           ///< at most kClientNameMaxBytes of UTF-8 without control characters; may be empty
+  std::string token{};          ///< at most kSecretMaxBytes of anything; empty: a guest
+  std::string name{};           ///< at most kPersonNameMaxBytes of UTF-8 without control characters; may be empty
+  std::uint32_t color_rgb = 0;  ///< 24 bits; 0: the server chooses
+  std::string resume_key{};     ///< as token
 };
 
 struct Subscribe {
@@ -52,8 +60,14 @@ struct Malformed {
 using ClientMessage = std::variant<Hello, Subscribe, core::Command, Ping, CommandRejection, Malformed>;
 
 /// Parses and checks one client message. Numbers in the result are finite and within the ranges of their fields, fields
-/// left out have their defaults, session_id is 0 (the caller knows the session).
+/// left out have their defaults, the sender is empty (the caller knows the session).
 ClientMessage parseClientMessage(core::ByteView bytes);
+
+/// A command as parseClientMessage() takes it, wherever it came from.
+std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& command);
+
+/// The command in the words of the wire: what checkCommand() makes the same command of.
+v1::Command toWire(const core::Command& command);
 
 /// nullopt if this server can talk to the client, otherwise one line for a Refusal.
 std::optional<std::string> checkVersion(const Hello& hello);

@@ -1,0 +1,88 @@
+#include "replay.h"
+
+#include <variant>
+
+#include <fmt/format.h>
+
+#include <spindrift/stream/client_message.h>
+#include <spindrift/stream/scene_loader.h>
+
+#include "stage.h"
+
+namespace spindrift::app {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+core::Result<void> carryOut(Stage& stage, const v1::Record& record) {
+  const auto failed = [&](const std::string& why) {
+    return Error{ErrorCode::kCheckFailed,
+                 fmt::format("tick {}: a command of the log is not carried out now: {}", record.tick(), why)};
+  };
+  const auto checked = stream::checkCommand(record.command());
+  if (const auto* rejected = std::get_if<stream::CommandRejection>(&checked)) {
+    return failed(rejected->field + " " + rejected->message);
+  }
+  const auto& command = std::get<core::Command>(checked);
+  if (!Stage::takes(command.action)) return failed("it is of a kind that no log holds");
+  if (auto rejected = stage.apply(command.action)) return failed(rejected->field + " " + rejected->message);
+  return {};
+}
+
+}  // namespace
+
+core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
+                                      const std::function<void(std::uint64_t)>& progress) {
+  constexpr std::uint64_t kProgressInterval_ticks = 60;
+  v1::Scene start = log.header().scene();
+  stream::fillDefaults(start);
+  auto made = Stage::create(ctx, std::move(start));
+  if (!made) return made.error();
+  Stage& stage = **made;
+
+  ReplayOutcome out;
+  std::uint64_t last_equal_tick = 0;
+  while (const auto record = log.next()) {
+    while (stage.tick() < record->tick() && !record->has_scene()) {
+      stage.step();
+      if (progress && stage.tick() % kProgressInterval_ticks == 0) progress(stage.tick());
+    }
+    out.tick_count = record->tick();
+    switch (record->what_case()) {
+      case v1::Record::kCommand:
+        if (auto done = carryOut(stage, *record); !done) return done.error();
+        ++out.command_count;
+        break;
+      case v1::Record::kScene: {
+        // Written after the change, which takes one tick.
+        while (stage.tick() + 1 < record->tick()) stage.step();
+        v1::Scene scene = record->scene();
+        stream::fillDefaults(scene);
+        if (auto rejected = stage.replaceScene(std::move(scene)))
+          return Error{ErrorCode::kCheckFailed, rejected->message};
+        break;
+      }
+      case v1::Record::kStateHash: {
+        const std::uint64_t found = stage.water().stateHash();
+        ++out.hash_count;
+        if (found != record->state_hash()) {
+          out.difference = {record->tick(), last_equal_tick, record->state_hash(), found};
+          return out;
+        }
+        last_equal_tick = record->tick();
+        break;
+      }
+      case v1::Record::kRecovered:
+        if (!out.recovered_tick) out.recovered_tick = record->tick();
+        break;
+      case v1::Record::kHeader:
+      case v1::Record::WHAT_NOT_SET:
+        break;
+    }
+  }
+  out.truncation = log.truncation();
+  return out;
+}
+
+}  // namespace spindrift::app

@@ -1,0 +1,42 @@
+#include "address_limits.h"
+
+#include <algorithm>
+
+namespace spindrift::net {
+
+AddressLimits::AddressLimits(const ServerOptions& options)
+    : requests_per_s_(options.address_requests_per_s),
+      request_burst_count_(options.address_request_burst_count),
+      messages_per_s_(options.address_messages_per_s),
+      message_burst_count_(options.address_message_burst_count) {}
+
+bool AddressLimits::takeRequest(const std::string& address, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  return account(address, now).requests.take(now);
+}
+
+Clock::duration AddressLimits::reserveMessage(const std::string& address, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  return account(address, now).messages.reserve(now);
+}
+
+std::size_t AddressLimits::addressCount() const {
+  const std::lock_guard lock(mutex_);
+  return accounts_.size();
+}
+
+AddressLimits::Account& AddressLimits::account(const std::string& address, Clock::time_point now) {
+  auto found = accounts_.find(address);
+  if (found == accounts_.end()) {
+    if (accounts_.size() >= kMaxAddressCount) {
+      accounts_.erase(std::ranges::min_element(accounts_, {}, [](const auto& entry) { return entry.second.used; }));
+    }
+    const TokenBucket requests(requests_per_s_, request_burst_count_, now);
+    const TokenBucket messages(messages_per_s_, message_burst_count_, now);
+    found = accounts_.emplace(address, Account{requests, messages, now}).first;
+  }
+  found->second.used = now;
+  return found->second;
+}
+
+}  // namespace spindrift::net

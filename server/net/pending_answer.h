@@ -1,0 +1,50 @@
+// The answer that a request waits for: given by the application from any thread, awaited on the connection's strand.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <spindrift/net/server.h>
+
+namespace spindrift::net {
+
+/// One request's. Lives on the strand; its responders may live longer and then do nothing.
+class PendingAnswer {
+ public:
+  enum class End { kAnswered, kUnknown, kDropped, kTimeout, kCancelled };
+  struct Outcome {
+    End end = End::kTimeout;
+    HttpReply reply{};  ///< for kAnswered
+  };
+
+  explicit PendingAnswer(const boost::asio::any_io_executor& strand);
+  ~PendingAnswer();
+  PendingAnswer(const PendingAnswer&) = delete;
+  PendingAnswer& operator=(const PendingAnswer&) = delete;
+
+  HttpResponder responder();
+  boost::asio::awaitable<Outcome> wait(std::chrono::milliseconds timeout);
+  /// Ends wait() with kCancelled. On the strand.
+  void cancel();
+
+ private:
+  struct State {
+    std::mutex mutex;
+    std::optional<Outcome> outcome;
+    std::function<void()> wake;  ///< empty once nobody waits any more
+
+    void settle(Outcome settled);
+  };
+
+  std::shared_ptr<boost::asio::steady_timer> timer_;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace spindrift::net

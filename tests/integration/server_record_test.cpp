@@ -1,0 +1,119 @@
+// A room's log: recorded from a live server with people at work, run again, and compared.
+#include <filesystem>
+#include <fstream>
+
+#include "replay.h"
+#include "server_fixture.h"
+#include "temporary_folder.h"
+
+namespace spindrift::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Recorded : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override {
+    return {{"main", R"(
+      seed: 7
+      wave { resolution_count: 48 side_m: 12 depth_m: 1 }
+      particles { count: 1024 layers_count: 2 headroom_m: 2 }
+      coupling {}
+      foam {}
+      boats { capacity_count: 4 boats { x_m: 2 z_m: 0 } }
+    )"}};
+  }
+  app::SceneCatalog scenes() const override {
+    folder_.write("pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
+    return app::SceneCatalog(folder_.path());
+  }
+  void adjust(app::WaterServerOptions& options) const override {
+    options.rules.record_folder = folder_.path() / "logs";
+    options.rules.hash_interval_ticks = 5;
+  }
+
+  fs::path logFile() const {
+    for (const auto& entry : fs::directory_iterator(folder_.path() / "logs")) return entry.path();
+    return {};
+  }
+
+  static core::Result<app::ReplayOutcome> replayed(const fs::path& file) {
+    auto log = app::CommandLogReader::open(file);
+    if (!log) return log.error();
+    gpu::DeviceChoice device;
+    device.kind = gpu::DeviceChoice::Kind::kSoftware;
+    auto context = gpu::Context::create(device);
+    if (!context) return context.error();
+    return app::replayLog(**context, **log);
+  }
+
+  /// A session of everything that touches the water, recorded; the server has stopped.
+  void live() {
+    ScriptedClient one = client();
+    one.subscribe(v1::LAYER_SURFACE);
+    one.subscribe(v1::LAYER_PARTICLES, 60.0, v1::PACKING_PACKED);
+    ASSERT_TRUE(one.apply(splash(0.3)));
+    ASSERT_TRUE(one.runFor(10));
+    ASSERT_TRUE(one.apply(setParameter("wave.depth_m", 1.2)));
+    ASSERT_TRUE(one.apply(spawnBoat(-2, 1)));
+    ASSERT_TRUE(one.apply(controlBoat(2, 1, 0.3)));
+    ASSERT_TRUE(one.runFor(10));
+    ASSERT_TRUE(one.apply(reset()));
+    ASSERT_TRUE(one.apply(splash(0.2)));
+    ASSERT_TRUE(one.runFor(10));
+    ASSERT_TRUE(one.apply(changeScene("pond")));
+    ASSERT_TRUE(one.apply(splash(0.1, 0.4)));
+    ASSERT_TRUE(one.runFor(10));
+    server().stop();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Recorded, ARoomRunsAgainBitForBit) {
+  live();
+  const auto outcome = replayed(logFile());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->command_count, 7U);
+  EXPECT_GE(outcome->hash_count, 8U);
+  EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
+  EXPECT_FALSE(outcome->truncation);
+}
+
+TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndSaysSo) {
+  live();
+  fs::resize_file(logFile(), fs::file_size(logFile()) - 3);
+  const auto outcome = replayed(logFile());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_GE(outcome->hash_count, 7U);
+  EXPECT_FALSE(outcome->difference);
+  ASSERT_TRUE(outcome->truncation);
+}
+
+TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
+  live();
+  // The same log with the first splash left out.
+  const auto log = app::CommandLogReader::open(logFile());
+  ASSERT_TRUE(log);
+  v1::RecordHeader header = (*log)->header();
+  auto changed = app::CommandLogWriter::create(folder_.path() / "changed", header);
+  ASSERT_TRUE(changed);
+  std::uint64_t splash_tick = 0;
+  std::uint64_t next_hash_tick = 0;
+  while (const auto record = (*log)->next()) {
+    if (splash_tick == 0 && record->has_command() && record->command().has_splash()) {
+      splash_tick = record->tick();
+      continue;
+    }
+    if (splash_tick > 0 && next_hash_tick == 0 && record->has_state_hash()) next_hash_tick = record->tick();
+    (*changed)->write(*record);
+  }
+  const auto outcome = replayed((*changed)->file());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  ASSERT_TRUE(outcome->difference);
+  EXPECT_EQ(outcome->difference->tick, next_hash_tick);
+  EXPECT_LE(outcome->difference->last_equal_tick, splash_tick);
+}
+
+}  // namespace
+}  // namespace spindrift::test

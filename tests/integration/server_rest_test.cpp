@@ -1,0 +1,244 @@
+// The REST interface: rooms that come and go, commands from afar, what there is to read, and who may.
+#include <thread>
+
+#include <boost/json.hpp>
+
+#include "server_fixture.h"
+#include "temporary_folder.h"
+
+namespace spindrift::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kOperator = "operator-operator-1";
+constexpr const char* kPlayer = "player-player-player";
+
+struct Answer {
+  unsigned status = 0;
+  boost::json::value json;  ///< null where the body is none
+  std::string body;
+
+  std::string text(const char* member) const {
+    const auto* object = json.if_object();
+    const auto* found = object ? object->if_contains(member) : nullptr;
+    return found && found->is_string() ? std::string(found->as_string()) : "(no " + std::string(member) + ")";
+  }
+};
+
+class Rest : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kStillPool}}; }
+  app::SceneCatalog scenes() const override {
+    folder_.write("pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
+    folder_.write("bay.textproto", std::string(kSleepy));
+    folder_.write("broken.textproto", "wave { depth_m: 2000 }");
+    return app::SceneCatalog(folder_.path());
+  }
+  void adjust(app::WaterServerOptions& options) const override { options.max_room_count = 3; }
+
+  Answer ask(const std::string& method, const std::string& path, const std::string& body = "",
+             const std::string& token = "") {
+    std::string headers = body.empty() ? "" : "Content-Type: application/json\r\n";
+    if (!token.empty()) headers += "Authorization: Bearer " + token + "\r\n";
+    const HttpAnswer answer = httpRequest(server().port(), method, path, headers, body);
+    Answer out{answer.status, nullptr, answer.body};
+    boost::system::error_code ignored;
+    out.json = boost::json::parse(answer.body, ignored);
+    return out;
+  }
+
+  /// Asks now and then, within the rate of an address, until it holds; false only after kPatience.
+  static bool becomes(const std::function<bool()>& holds) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!holds()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    }
+    return true;
+  }
+
+  static constexpr const char* kSleepy = R"(
+    unwatched: UNWATCHED_SLEEP
+    wave { resolution_count: 32 side_m: 8 depth_m: 1 }
+  )";
+
+ private:
+  TemporaryFolder folder_;
+};
+
+class RestByRole : public Rest {
+  void adjust(app::WaterServerOptions& options) const override {
+    auto access =
+        app::Access::parse(std::string("operator ") + kOperator + "\nplayer " + kPlayer, "tokens", core::Role::kViewer);
+    ASSERT_TRUE(access);
+    options.access = *std::move(access);
+  }
+};
+
+TEST_F(Rest, ASplashIsAppliedAndAnsweredWithItsTick) {
+  ScriptedClient watcher = client();
+  watcher.subscribe(v1::LAYER_SURFACE);
+  const Answer answer = ask("POST", "/api/v1/rooms/main/commands", R"({"command_id": 5, "splash": {"depth_m": 0.4}})");
+  EXPECT_EQ(answer.status, 200U) << answer.body;
+  const auto& ack = answer.json.at("ack");
+  EXPECT_EQ(ack.at("command_id").as_string(), "5");
+  EXPECT_FALSE(ack.at("applied_tick").as_string().empty());
+  double highest_m = 0.0;
+  for (int k = 0; k < 600 && highest_m < 0.05; ++k) {
+    const auto frame = watcher.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(frame);
+    highest_m = maxElevation_m(*frame);
+  }
+  EXPECT_GE(highest_m, 0.05) << "everybody in the room sees it";
+}
+
+TEST_F(Rest, CommandsAreReadInBothSpellings) {
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", R"({"setPaused": {"paused": true}})").status, 200U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", R"({"set_paused": {"paused": false}})").status, 200U);
+}
+
+TEST_F(Rest, BadCommandsAreNamed) {
+  const auto post = [&](const std::string& body) { return ask("POST", "/api/v1/rooms/main/commands", body); };
+  for (const char* body : {"splash", "{", "[]", R"({"splosh": {}})", R"({"splash": {"depth_m": "deep"}})"}) {
+    const Answer answer = post(body);
+    EXPECT_EQ(answer.status, 400U) << body;
+    EXPECT_THAT(answer.text("message"), HasSubstr("Command")) << body;
+  }
+  EXPECT_EQ(post("{}").status, 400U);
+  const Answer deep = post(R"({"splash": {"depth_m": 49}})");
+  EXPECT_EQ(deep.status, 422U);
+  EXPECT_EQ(deep.json.at("reject").at("field").as_string(), "splash.depth_m");
+  EXPECT_EQ(post(R"({"splash": {"depth_m": "NaN"}})").status, 422U);
+  EXPECT_EQ(post(R"({"change_scene": {"name": "nowhere"}})").status, 404U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/sea/commands", R"({"reset": {}})").status, 404U);
+  EXPECT_EQ(ask("GET", "/api/v1/rooms/main/commands").status, 405U);
+  EXPECT_EQ(httpRequest(server().port(), "POST", "/api/v1/rooms/main/commands", "Content-Type: text/plain\r\n",
+                        R"({"reset": {}})")
+                .status,
+            415U)
+      << "what a foreign page's form can send";
+}
+
+TEST_F(Rest, TellsRoomsScenesParametersAndPeople) {
+  ScriptedClient ada = person({.name = "Ada"});
+  ASSERT_EQ(ada.welcome().person_id(), 1U);
+  const Answer room = ask("GET", "/api/v1/rooms/main");
+  EXPECT_EQ(room.status, 200U);
+  EXPECT_EQ(room.text("name"), "main");
+  EXPECT_EQ(room.json.at("session_count").to_number<int>(), 1);
+  EXPECT_THAT(ask("GET", "/api/v1/scenes").body, HasSubstr("\"pond\""));
+  ASSERT_TRUE(ada.apply(setParameter("wave.depth_m", 1.25)));
+  EXPECT_EQ(ask("GET", "/api/v1/rooms/main/scene").json.at("wave").at("depth_m").to_number<double>(), 1.25);
+  EXPECT_THAT(ask("GET", "/api/v1/rooms/main/parameters").body, HasSubstr("\"wave.depth_m\""));
+  EXPECT_THAT(ask("GET", "/api/v1/rooms/main/people").body, HasSubstr("\"Ada\""));
+  EXPECT_EQ(ask("GET", "/api/v1/rooms/main/weather").status, 404U);
+}
+
+TEST_F(Rest, RoomsOpenAndClose) {
+  const Answer opened = ask("POST", "/api/v1/rooms", R"({"name": "duck", "scene": "pond"})");
+  ASSERT_EQ(opened.status, 201U) << opened.body;
+  EXPECT_EQ(opened.text("scene"), "pond");
+  ScriptedClient one = client("duck");
+  EXPECT_EQ(one.greeting().scene().wave().side_m(), 4.0);
+  one.subscribe(v1::LAYER_SURFACE);
+  EXPECT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
+  EXPECT_TRUE(one.apply(splash(0.1, 0.5)));
+
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", R"({"name": "duck", "scene": "pond"})").status, 409U);
+  EXPECT_EQ(ask("DELETE", "/api/v1/rooms/duck").status, 204U);
+  const auto refusal = one.waitFor(v1::ServerMessage::kRefusal);
+  ASSERT_TRUE(refusal);
+  EXPECT_TRUE(one.ws().waitClosed());
+  EXPECT_EQ(one.ws().closeCode(), 4404);
+  EXPECT_EQ(ask("GET", "/api/v1/rooms/duck").status, 404U);
+  EXPECT_FALSE(ScriptedClient(server().port(), "duck").isOpen());
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", R"({"name": "duck", "scene": "pond"})").status, 201U)
+      << "the name is free again";
+}
+
+TEST_F(Rest, RoomsThatCannotBeAreRefusedWithTheReason) {
+  const auto post = [&](const std::string& body) { return ask("POST", "/api/v1/rooms", body); };
+  EXPECT_EQ(post(R"({"name": "no way", "scene": "pond"})").status, 422U);
+  EXPECT_EQ(post(R"({"name": "", "scene": "pond"})").status, 422U);
+  EXPECT_EQ(post(R"({"name": "a", "scene": "nowhere"})").status, 404U);
+  EXPECT_EQ(post(R"({"name": "a", "scene": "../../etc/passwd"})").status, 404U);
+  EXPECT_EQ(post(R"({"name": "a", "colour": "blue"})").status, 400U);
+  EXPECT_EQ(post(R"({"name": "a", "scene": "broken"})").status, 500U);
+  EXPECT_EQ(post(R"({"name": "a", "scene": "pond"})").status, 201U);
+  EXPECT_EQ(post(R"({"name": "b", "scene": "pond"})").status, 201U);
+  const Answer full = post(R"({"name": "c", "scene": "pond"})");
+  EXPECT_EQ(full.status, 503U);
+  EXPECT_THAT(full.text("message"), HasSubstr("--max-rooms"));
+  EXPECT_EQ(ask("DELETE", "/api/v1/rooms/main").status, 409U) << "the default room stays";
+  EXPECT_EQ(ask("DELETE", "/api/v1/rooms/zzz").status, 404U);
+}
+
+TEST_F(RestByRole, WhatActsAsksForAToken) {
+  const std::string splash = R"({"splash": {"depth_m": 0.3}})";
+  const std::string reset = R"({"reset": {}})";
+  const std::string room = R"({"name": "duck", "scene": "pond"})";
+  EXPECT_EQ(ask("GET", "/api/v1/rooms").status, 200U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", splash).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", splash, kPlayer).status, 200U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kOperator).status, 200U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kPlayer).status, 403U);
+  EXPECT_EQ(ask("DELETE", "/api/v1/rooms/main", "", kPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kOperator).status, 201U);
+  const Answer wrong = ask("GET", "/api/v1/rooms", "", "wrong-wrong-wrong-1");
+  EXPECT_EQ(wrong.status, 401U);
+  EXPECT_THAT(wrong.body, Not(HasSubstr("wrong-wrong")));
+}
+
+TEST_F(Rest, ARoomThatNobodyWatchesSleepsIfItsSceneSaysSo) {
+  ASSERT_EQ(ask("POST", "/api/v1/rooms", R"({"name": "bay", "scene": "bay"})").status, 201U);
+  const auto isAsleep = [&] { return ask("GET", "/api/v1/rooms/bay").json.at("asleep").as_bool(); };
+  const auto tickOf = [&](const char* room) {
+    return std::stoull(ask("GET", std::string("/api/v1/rooms/") + room).text("tick"));
+  };
+  ASSERT_TRUE(becomes(isAsleep));
+  const auto asleep_tick = tickOf("bay");
+  const auto main_tick = tickOf("main");
+  // Commands are carried out all the same, and do not wake it.
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/bay/commands", R"({"splash": {"depth_m": 0.2}})").status, 200U);
+  EXPECT_TRUE(becomes([&] { return tickOf("main") > main_tick; })) << "the others go on";
+  EXPECT_EQ(tickOf("bay"), asleep_tick);
+
+  ScriptedClient visitor = client("bay");
+  visitor.subscribe(v1::LAYER_SURFACE);
+  const auto frame = visitor.nextFrame(v1::LAYER_SURFACE);
+  ASSERT_TRUE(frame);
+  EXPECT_TRUE(visitor.runFor(3)) << "awake";
+  EXPECT_TRUE(becomes([&] { return !isAsleep(); }));
+}
+
+TEST_F(Rest, MetricsTellWhatIsGoingOn) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
+  ASSERT_TRUE(one.apply(splash()));
+  EXPECT_EQ(one.rejected(splash(49)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  (void)httpRequest(server().port(), "POST", "/api/v1/rooms", "Origin: http://evil.example\r\n", "{}");
+  const HttpAnswer answer = httpRequest(server().port(), "GET", "/metrics");
+  EXPECT_EQ(answer.status, 200U);
+  EXPECT_THAT(answer.headers.at("content-type"), HasSubstr("version=0.0.4"));
+  for (const char* line :
+       {"spindrift_room_ticks_total{room=\"main\"} ", "spindrift_room_real_time_factor{room=\"main\"} ",
+        "spindrift_room_sessions{room=\"main\"} 1\n", "spindrift_sessions 1\n",
+        "spindrift_room_particles{room=\"main\"} ", "spindrift_commands_applied_total 1\n",
+        "spindrift_commands_rejected_total{reason=\"out_of_range\"} 1\n",
+        "spindrift_refused_total{reason=\"origin\"} 1\n",
+        "spindrift_encoded_frames_total{layer=\"surface\",packing=\"plain\"} ",
+        "spindrift_encode_seconds_total{layer=\"surface\",packing=\"packed\"} 0\n",
+        "spindrift_room_nonfinite_total{room=\"main\"} 0\n", "spindrift_room_pass_seconds{room=\"main\",pass=\"",
+        "spindrift_room_command_queue{room=\"main\"} ", "spindrift_control_queue 0\n",
+        "# TYPE spindrift_sent_bytes_total counter\n"}) {
+    EXPECT_THAT(answer.body, HasSubstr(line));
+  }
+  EXPECT_EQ(ask("POST", "/metrics", "{}").status, 405U);
+}
+
+}  // namespace
+}  // namespace spindrift::test

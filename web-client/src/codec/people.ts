@@ -1,0 +1,45 @@
+// Who is in the room, as plain data that survives postMessage.
+import { Role, type People, type Welcome } from "../gen/spindrift/v1/wire_pb";
+
+/** What somebody may do; each includes the ones before. */
+export type RoleName = "viewer" | "player" | "operator";
+
+export interface PersonInfo {
+  personId: number;
+  name: string;
+  /** As CSS writes it. */
+  color: string;
+  role: RoleName;
+  /** Their boats; nobody else steers them. */
+  boatIds: number[];
+  /** The connection was lost; they may come back. */
+  away: boolean;
+}
+
+export interface WelcomeInfo {
+  role: RoleName;
+  personId: number;
+  /** Makes a later connection the same person. Secret. */
+  resumeKey: string;
+  resumed: boolean;
+}
+
+function roleName(role: Role): RoleName {
+  if (role === Role.OPERATOR) return "operator";
+  return role === Role.PLAYER ? "player" : "viewer";
+}
+
+export function readPeople({ people }: People): PersonInfo[] {
+  return people.map(({ personId, name, colorRgb, role, boatIds, away }) => ({
+    personId,
+    name,
+    color: `#${(colorRgb & 0xffffff).toString(16).padStart(6, "0")}`,
+    role: roleName(role),
+    boatIds: [...boatIds],
+    away,
+  }));
+}
+
+export function readWelcome({ role, personId, resumeKey, resumed }: Welcome): WelcomeInfo {
+  return { role: roleName(role), personId, resumeKey, resumed };
+}

@@ -1,0 +1,58 @@
+// Who is here: a list with colours, roles and boats, and what I call myself.
+import type { PersonInfo, WelcomeInfo } from "../codec/people";
+import type { Identity } from "../net/messages";
+import { byId, make } from "./dom";
+
+/** As the server keeps them. */
+const kNameMaxLength = 32;
+
+export class PeoplePanel {
+  private me: WelcomeInfo | undefined;
+  private people: readonly PersonInfo[] = [];
+  private readonly list = byId("people");
+  private readonly summary = byId("people-summary");
+  private readonly name = make("input", { id: "my-name", "data-testid": "my-name", maxlength: String(kNameMaxLength), autocomplete: "nickname" });
+  private readonly token = make("input", { id: "my-token", "data-testid": "my-token", type: "password", autocomplete: "off" });
+
+  constructor(identity: Identity, introduce: (name: string, token: string) => void) {
+    this.name.value = identity.name;
+    this.token.value = identity.token;
+    const form = make("form", { class: "me" }, [
+      make("label", { for: "my-name" }, ["My name"]),
+      this.name,
+      make("label", { for: "my-token", title: "Gives a role: viewer, player or operator. Without one you are a guest." }, ["Token"]),
+      this.token,
+      make("button", { type: "submit", "data-testid": "introduce" }, ["Join as this"]),
+    ]);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      introduce(this.name.value.trim(), this.token.value.trim());
+    });
+    byId("people-box").append(form);
+  }
+
+  welcomed(me: WelcomeInfo): void {
+    this.me = me;
+    this.show();
+  }
+
+  setPeople(people: readonly PersonInfo[]): void {
+    this.people = people;
+    const mine = people.find(({ personId }) => personId === this.me?.personId);
+    this.name.placeholder = mine?.name ?? "";
+    this.show();
+  }
+
+  private show(): void {
+    this.summary.textContent = this.people.length > 1 ? `People (${this.people.length})` : "People";
+    this.list.replaceChildren(
+      ...this.people.map((person) => {
+        const swatch = make("span", { class: "swatch", "aria-hidden": "true" });
+        swatch.style.background = person.color;
+        const isMe = person.personId === this.me?.personId;
+        const facts = [isMe ? "you" : "", person.role, person.boatIds.length ? `boat ${person.boatIds.join(", ")}` : "", person.away ? "away" : ""];
+        return make("li", person.away ? { class: "away" } : {}, [swatch, make("b", {}, [person.name]), ` ${facts.filter(Boolean).join(", ")}`]);
+      }),
+    );
+  }
+}

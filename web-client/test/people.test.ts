@@ -1,0 +1,78 @@
+import { describe, expect, it } from "vitest";
+
+import { parse } from "../src/codec/parse";
+import { Role } from "../src/gen/spindrift/v1/wire_pb";
+import { IdentityStore, type StorageLike } from "../src/net/identity_store";
+import { Rig } from "./fakes";
+import { encode } from "./wire";
+
+const welcome = { case: "welcome" as const, value: { role: Role.PLAYER, personId: 3, resumeKey: "key", graceS: 20, resumed: false } };
+
+function storage(): StorageLike & { map: Map<string, string> } {
+  const map = new Map<string, string>();
+  return { map, getItem: (key) => map.get(key) ?? null, setItem: (key, value) => void map.set(key, value) };
+}
+
+describe("people on the wire", () => {
+  it("are read with their colours as CSS has them", () => {
+    const person = { personId: 3, name: "Ada", colorRgb: 0x0a0b0c, role: Role.OPERATOR, boatIds: [2, 5], away: true };
+    expect(parse(encode({ case: "people", value: { people: [person] } }))).toEqual({
+      kind: "people",
+      people: [{ personId: 3, name: "Ada", color: "#0a0b0c", role: "operator", boatIds: [2, 5], away: true }],
+    });
+  });
+
+  it("of a role that this page does not know watch", () => {
+    expect(parse(encode({ case: "welcome", value: { ...welcome.value, role: 9 as Role } }))).toMatchObject({ kind: "welcome", welcome: { role: "viewer" } });
+  });
+});
+
+describe("who the page is", () => {
+  it("comes back after a loss with the key that the server gave it", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { name: "", token: "", resumeKey: "" } });
+    rig.socket.deliver(welcome);
+    expect(rig.logOf("welcome")).toEqual([[{ role: "player", personId: 3, resumeKey: "key", resumed: false }]]);
+    rig.socket.drop();
+    rig.time.advance(8000);
+    rig.socket.open();
+    expect(rig.sockets).toHaveLength(2);
+    expect(rig.socket.sent[0]).toMatchObject({ value: { resumeKey: "key" } });
+  });
+
+  it("connects anew under another name, also after a refusal, and stays the same person", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.socket.deliver(welcome);
+    rig.socket.deliver({ case: "refusal", value: { message: "the token has expired" } });
+    expect(rig.state).toEqual({ name: "refused", reason: "the token has expired" });
+    rig.connection.introduce("Ada", "secret");
+    rig.socket.open();
+    expect(rig.socket.sent[0]).toMatchObject({ value: { name: "Ada", token: "secret", resumeKey: "key" } });
+    expect(rig.socket.url).not.toContain("secret");
+  });
+
+  it("is kept for a reload, its key for the same room only", () => {
+    const kept = storage();
+    new IdentityStore(kept, "ws://host/ws").save({ name: "Ada", token: "secret", resumeKey: "key" });
+    expect(new IdentityStore(kept, "ws://host/ws").load()).toEqual({ name: "Ada", token: "secret", resumeKey: "key" });
+    expect(new IdentityStore(kept, "ws://host/ws/other").load()).toEqual({ name: "Ada", token: "secret", resumeKey: "" });
+  });
+
+  it("is nobody where nothing is kept, or nonsense", () => {
+    const nobody = { name: "", token: "", resumeKey: "" };
+    expect(new IdentityStore(undefined, "u").load()).toEqual(nobody);
+    for (const text of ["", "{", "null", "7", '{"name":7,"url":"u"}']) {
+      const kept = storage();
+      kept.map.set("spindrift-identity", text);
+      expect(new IdentityStore(kept, "u").load()).toEqual(nobody);
+    }
+    const forbidden: StorageLike = {
+      getItem: () => { throw new Error("forbidden"); },
+      setItem: () => { throw new Error("full"); },
+    };
+    expect(new IdentityStore(forbidden, "u").load()).toEqual(nobody);
+    expect(() => new IdentityStore(forbidden, "u").save(nobody)).not.toThrow();
+  });
+});
