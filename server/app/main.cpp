@@ -91,6 +91,13 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   replay_command->add_option("--json", replay_options.json_file, "Write JSON to this file, - = standard output");
 
+  ScriptOptions script_options;
+  CLI::App* script_command =
+      cli.add_subcommand("script", "Run scripted clients against a server and check what they see");
+  script_command->add_option("file", script_options.file, "The script, a .textproto of spindrift.v1.Script")->required();
+  script_command->add_option("--url", script_options.url, "The server, ws://HOST:PORT")->capture_default_str();
+  script_command->add_option("--json", script_options.json_file, "Write JSON to this file, - = standard output");
+
   InfoOptions info_options;
   CLI::App* info_command =
       cli.add_subcommand("info", "Devices, OpenGL and driver versions, limits, versions of program and wire");
@@ -149,6 +156,7 @@ int run(int argc, char** argv) {
   }
   setUpLogging(log_level);
   if (serve_command->parsed()) return serve(serve_options);
+  if (script_command->parsed()) return script(script_options);
   if (replay_command->parsed()) return replay(replay_options);
   if (info_command->parsed()) return info(info_options);
   if (check_command->parsed()) return check(check_options);

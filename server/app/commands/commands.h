@@ -69,6 +69,13 @@ struct ReplayOptions {
 };
 int replay(const ReplayOptions& options);
 
+struct ScriptOptions {
+  std::string url = "ws://127.0.0.1:8080";
+  std::string file;
+  std::string json_file;
+};
+int script(const ScriptOptions& options);
+
 /// Prints the error's line on standard error and returns its exit code.
 int fail(const core::Error& error);
 

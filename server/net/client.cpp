@@ -1,0 +1,241 @@
+#include <deque>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include <spindrift/net/client.h>
+
+namespace spindrift::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+using asio::ip::tcp;
+
+constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
+constexpr std::chrono::seconds kCloseTimeout{2};
+
+class ClientImpl final : public Client, public std::enable_shared_from_this<ClientImpl> {
+ public:
+  ClientImpl(asio::any_io_executor strand, ClientUrl url, const ClientOptions& options, ClientEvents events)
+      : strand_(std::move(strand)), ws_(strand_), wake_(strand_), url_(std::move(url)), options_(options),
+        events_(std::move(events)) {}
+
+  void start() {
+    asio::co_spawn(strand_, [self = shared_from_this()] { return self->run(); }, asio::detached);
+  }
+
+  bool send(core::SharedBytes message) override {
+    {
+      const std::lock_guard lock(mutex_);
+      if (queue_.size() >= kClientQueueMaxCount) return false;
+      queue_.push_back(std::move(message));
+    }
+    asio::post(strand_, [self = shared_from_this()] { self->wake_.cancel(); });
+    return true;
+  }
+
+  void close() override {
+    asio::post(strand_, [self = shared_from_this()] {
+      self->closing_ = true;
+      self->wake_.cancel();
+    });
+  }
+
+  void vanish() override {
+    asio::post(strand_, [self = shared_from_this()] { self->cut(); });
+  }
+
+ private:
+  asio::awaitable<void> run() {
+    std::string failure = co_await open();
+    if (!failure.empty()) {
+      events_.closed(0, failure);
+      co_return;
+    }
+    events_.opened();
+    asio::co_spawn(strand_, [self = shared_from_this()] { return self->writeLoop(); }, asio::detached);
+    if (options_.reads) {
+      co_await readLoop();
+    } else {
+      asio::steady_timer never(strand_, asio::steady_timer::time_point::max());
+      until_cut_ = &never;
+      if (!is_cut_) (void)co_await never.async_wait(kToken);
+      until_cut_ = nullptr;
+    }
+    is_over_ = true;
+    wake_.cancel();
+    events_.closed(code_, reason_);
+  }
+
+  /// Empty, or why there is no session.
+  asio::awaitable<std::string> open() {
+    tcp::resolver resolver(strand_);
+    const auto [resolve_error, places] = co_await resolver.async_resolve(url_.host, url_.port, kToken);
+    if (resolve_error) co_return url_.host + " is not known: " + resolve_error.message();
+    auto& stream = beast::get_lowest_layer(ws_);
+    stream.expires_after(options_.connect_timeout);
+    const auto [connect_error, place] = co_await stream.async_connect(places, kToken);
+    if (connect_error) co_return "no connection to " + url_.host + ":" + url_.port + ": " + connect_error.message();
+    boost::system::error_code ignored;
+    stream.socket().set_option(tcp::no_delay(true), ignored);
+    if (options_.receive_buffer_bytes > 0) {
+      stream.socket().set_option(asio::socket_base::receive_buffer_size(options_.receive_buffer_bytes), ignored);
+    }
+    stream.expires_never();
+    ws_.set_option(websocket::stream_base::timeout{options_.connect_timeout, websocket::stream_base::none(), false});
+    ws_.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+      request.set(beast::http::field::sec_websocket_protocol, "spindrift.v1");
+    }));
+    ws_.binary(true);
+    ws_.auto_fragment(false);
+    ws_.read_message_max(options_.message_max_bytes);
+    websocket::response_type response;
+    const auto [error] = co_await ws_.async_handshake(response, url_.host + ":" + url_.port, url_.path, kToken);
+    if (error == websocket::error::upgrade_declined) {
+      co_return "the server refused the connection with HTTP " + std::to_string(response.result_int()) + ": " +
+          std::string(response.body());
+    }
+    if (error) co_return "the handshake failed: " + error.message();
+    co_return std::string();
+  }
+
+  asio::awaitable<void> readLoop() {
+    beast::flat_buffer buffer;
+    while (true) {
+      const auto [error, bytes_count] = co_await ws_.async_read(buffer, kToken);
+      if (error) {
+        code_ = error == websocket::error::closed ? ws_.reason().code : std::uint16_t{0};
+        reason_ = error == websocket::error::closed ? std::string(ws_.reason().reason.c_str()) : error.message();
+        co_return;
+      }
+      events_.message({static_cast<const std::uint8_t*>(buffer.data().data()), bytes_count});
+      buffer.consume(buffer.size());
+    }
+  }
+
+  asio::awaitable<void> writeLoop() {
+    while (!is_over_ && !is_cut_) {
+      core::SharedBytes message = nextMessage();
+      if (message) {
+        const auto [error, bytes_count] = co_await ws_.async_write(asio::buffer(*message), kToken);
+        if (error) co_return cut();
+      } else if (closing_) {
+        ws_.set_option(websocket::stream_base::timeout{kCloseTimeout, websocket::stream_base::none(), false});
+        (void)co_await ws_.async_close(websocket::close_code::normal, kToken);
+        co_return;
+      } else {
+        // send() posts its wake to this strand, so it cannot run between the look and the wait.
+        wake_.expires_at(asio::steady_timer::time_point::max());
+        (void)co_await wake_.async_wait(kToken);
+      }
+    }
+  }
+
+  core::SharedBytes nextMessage() {
+    const std::lock_guard lock(mutex_);
+    if (queue_.empty()) return nullptr;
+    core::SharedBytes out = std::move(queue_.front());
+    queue_.pop_front();
+    return out;
+  }
+
+  void cut() {
+    is_cut_ = true;
+    beast::get_lowest_layer(ws_).close();
+    wake_.cancel();
+    if (until_cut_) until_cut_->cancel();
+  }
+
+  const asio::any_io_executor strand_;
+  websocket::stream<beast::tcp_stream> ws_;
+  asio::steady_timer wake_;
+  const ClientUrl url_;
+  const ClientOptions options_;
+  const ClientEvents events_;
+  asio::steady_timer* until_cut_ = nullptr;
+  bool closing_ = false;
+  bool is_cut_ = false;
+  bool is_over_ = false;
+  std::uint16_t code_ = 0;
+  std::string reason_;
+  std::mutex mutex_;
+  std::deque<core::SharedBytes> queue_;
+};
+
+class ClientPoolImpl final : public ClientPool {
+ public:
+  explicit ClientPoolImpl(std::size_t thread_count) : work_(io_.get_executor()) {
+    for (std::size_t k = 0; k < thread_count; ++k) threads_.emplace_back([this] { io_.run(); });
+  }
+  ClientPoolImpl(const ClientPoolImpl&) = delete;
+  ClientPoolImpl& operator=(const ClientPoolImpl&) = delete;
+  ~ClientPoolImpl() override {
+    io_.stop();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  std::shared_ptr<Client> connect(const ClientUrl& url, const ClientOptions& options, ClientEvents events) override {
+    auto client = std::make_shared<ClientImpl>(asio::make_strand(io_), url, options, std::move(events));
+    client->start();
+    return client;
+  }
+
+  void runFor(std::chrono::milliseconds duration, const std::function<bool()>& done) override {
+    const auto deadline = std::chrono::steady_clock::now() + duration;
+    while (!done() && std::chrono::steady_clock::now() < deadline) {
+      if (io_.run_one_until(deadline) == 0) return;
+    }
+  }
+
+ private:
+  asio::io_context io_;
+  asio::executor_work_guard<asio::io_context::executor_type> work_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace
+
+core::Result<ClientUrl> ClientUrl::parse(const std::string& url) {
+  const auto refuse = [&](const std::string& why) {
+    return core::Error{core::ErrorCode::kInvalidInput, "--url '" + url + "': " + why};
+  };
+  constexpr std::string_view kScheme = "ws://";
+  if (url.starts_with("wss://")) return refuse("TLS is not spoken here; connect to the server behind the proxy by ws://");
+  if (!url.starts_with(kScheme)) return refuse("write ws://HOST:PORT");
+  const std::string rest = url.substr(kScheme.size());
+  const std::size_t slash = rest.find('/');
+  const std::string authority = rest.substr(0, slash);
+  ClientUrl out{.host = authority, .port = "80", .path = slash == std::string::npos ? "/" : rest.substr(slash)};
+  const std::size_t bracket = authority.rfind(']');
+  const std::size_t colon = authority.rfind(':');
+  if (colon != std::string::npos && (bracket == std::string::npos || colon > bracket)) {
+    out.host = authority.substr(0, colon);
+    out.port = authority.substr(colon + 1);
+  }
+  if (out.host.starts_with('[') && out.host.ends_with(']')) out.host = out.host.substr(1, out.host.size() - 2);
+  const bool is_port = !out.port.empty() && out.port.size() <= 5 &&
+                       out.port.find_first_not_of("0123456789") == std::string::npos && std::stoi(out.port) <= 65535;
+  if (out.host.empty() || !is_port) return refuse("write ws://HOST:PORT");
+  return out;
+}
+
+std::unique_ptr<ClientPool> ClientPool::create(std::size_t thread_count) {
+  return std::make_unique<ClientPoolImpl>(thread_count);
+}
+
+}  // namespace spindrift::net

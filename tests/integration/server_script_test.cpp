@@ -1,0 +1,159 @@
+// Scripted clients against a live server: what a script expects holds, and what does not hold is told.
+#include "script/script_file.h"
+#include "script/script_runner.h"
+#include "server_fixture.h"
+
+namespace spindrift::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kLagoon = R"(
+  wave { resolution_count: 64 side_m: 24 depth_m: 2 }
+  particles { count: 512 layers_count: 2 headroom_m: 2 }
+  coupling {}
+  boats { capacity_count: 4 }
+  stream { frame_rate_hz: 60 }
+)";
+
+class Script : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kLagoon}, {"other", kStillWave}}; }
+  void adjust(app::WaterServerOptions& options) const override { options.rules.grace = std::chrono::hours(1); }
+
+  app::ScriptReport run(const std::string& text) {
+    auto script = app::parseScript(text, "test");
+    EXPECT_TRUE(script) << script.error().message;
+    const auto there = url();
+    return script ? app::runScript(*script, *there) : app::ScriptReport{};
+  }
+  core::Result<net::ClientUrl> url() {
+    return net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string(server().port()));
+  }
+  static std::string failures(const app::ScriptReport& report) {
+    std::string out;
+    for (const app::StepReport& step : report.steps) {
+      if (!step.passed) out += std::to_string(step.index) + " " + step.what + ": " + step.detail + "\n";
+    }
+    return out;
+  }
+};
+
+TEST_F(Script, ASplashIsSeenAtItsPlaceBySomebodyElse) {
+  const auto report = run(R"(
+    clients { name: "ada" }
+    clients { name: "bob" subscribe { layer: LAYER_SURFACE max_rate_hz: 60 } }
+    steps { client: "bob" frames { layer: LAYER_SURFACE min_count: 3 } }
+    steps { client: "bob" surface { x_m: 3 z_m: -2 min_m: -0.001 max_m: 0.001 } }
+    steps { client: "ada" command { command { splash { x_m: 3 z_m: -2 depth_m: 0.5 radius_m: 2 duration_s: 0.3 } } } }
+    steps { client: "bob" surface { x_m: 3 z_m: -2 max_m: -0.1 within_s: 20 } }
+    steps { client: "bob" particles { min_count: 512 max_count: 512 } }
+    steps { client: "bob" gap { layer: LAYER_SURFACE longest_s: 20 } }
+  )");
+  EXPECT_TRUE(report.passed()) << failures(report);
+  ASSERT_EQ(report.clients.size(), 2u);
+  EXPECT_EQ(report.clients[0].answer_count, 1u);
+  EXPECT_GT(report.clients[1].received_bytes, 1000u);
+  EXPECT_EQ(report.clients[1].malformed_count, 0u);
+}
+
+TEST_F(Script, PeopleDriveTheirBoatsAndComeBackToThem) {
+  const auto report = run(R"(
+    clients { name: "ada" person: "Ada" }
+    clients { name: "bob" person: "Bob" }
+    steps { client: "ada" command { command { spawn_boat { boat { x_m: 0 z_m: 4 } } } save_boat: "a" } }
+    steps { client: "bob" people { count: 2 within_s: 20 } }
+    steps { client: "bob" boat { boat: "a" x_m: 0 z_m: 4 radius_m: 2 within_s: 20 } }
+    steps { client: "bob" command { boat: "a" command { control_boat { throttle_ratio: 1 } } rejected: REJECT_REASON_NOT_YOURS } }
+    steps { client: "ada" command { boat: "a" command { control_boat { throttle_ratio: 1 } } } }
+    steps { client: "bob" boat { boat: "a" x_m: 6 z_m: 4 radius_m: 3 within_s: 20 } }
+    steps { client: "ada" disconnect { vanish: true } }
+    steps { client: "bob" people { count: 1 within_s: 20 } }
+    steps { client: "bob" command { boat: "a" command { control_boat { throttle_ratio: 1 } } rejected: REJECT_REASON_NOT_YOURS
+                                    rejected_field: "control_boat.boat_id" } }
+    steps { client: "ada" connect {} }
+    steps { client: "ada" command { boat: "a" command { control_boat { throttle_ratio: -1 } } } }
+    steps { client: "bob" people { count: 2 within_s: 20 } }
+    steps { client: "ada" command { boat: "a" command { remove_boat {} } } }
+  )");
+  EXPECT_TRUE(report.passed()) << failures(report);
+}
+
+TEST_F(Script, WhatDoesNotHoldIsToldAndEndsTheScript) {
+  const auto report = run(R"(
+    steps { command { command { splash { depth_m: 49 } } } }
+    steps { command { command { splash { depth_m: 0.2 } } } }
+  )");
+  EXPECT_FALSE(report.passed());
+  ASSERT_EQ(report.steps.size(), 1u);
+  EXPECT_THAT(report.steps[0].detail, HasSubstr("OUT_OF_RANGE splash.depth_m"));
+  EXPECT_EQ(report.step_count, 2);
+}
+
+TEST_F(Script, GoesOnWhereItIsToldToAndNamesEveryFailure) {
+  const auto report = run(R"(
+    keep_going: true
+    steps { command { command { splash { depth_m: 0.2 } } rejected: REJECT_REASON_BUSY } }
+    steps { surface { x_m: 0 z_m: 0 min_m: 10 within_s: 0.1 } }
+    steps { surface { x_m: 100 z_m: 0 min_m: -10 within_s: 0.1 } }
+    steps { boat { boat_id: 7 within_s: 0.3 } }
+    steps { boat { boat: "nobodys" } }
+    steps { particles { min_count: 513 within_s: 0.1 } }
+    steps { frames { layer: LAYER_FOAM min_count: 1 within_s: 0.1 } }
+    steps { people { count: 9 within_s: 0.1 } }
+    steps { event { kind: ROOM_EVENT_KIND_RESET within_s: 0.1 } }
+    steps { closed { code: 1008 within_s: 0.1 } }
+    steps { gap { layer: LAYER_SURFACE longest_s: 0 } }
+    steps { command { command { reset {} } } }
+  )");
+  ASSERT_EQ(report.steps.size(), 12u);
+  for (std::size_t k = 0; k < 11; ++k) EXPECT_FALSE(report.steps[k].passed) << k << report.steps[k].detail;
+  EXPECT_TRUE(report.steps[11].passed) << report.steps[11].detail;
+  EXPECT_THAT(report.steps[0].detail, HasSubstr("wanted REJECT_REASON_BUSY"));
+  EXPECT_THAT(report.steps[3].detail, HasSubstr("boat 7"));
+}
+
+TEST_F(Script, SeesEventsAndRefusals) {
+  const auto report = run(R"(
+    clients { name: "ada" }
+    clients { name: "lost" room: "nowhere" }
+    clients { name: "rude" room: "other" }
+    steps { client: "ada" command { command { reset {} } } }
+    steps { client: "ada" event { kind: ROOM_EVENT_KIND_RESET within_s: 20 } }
+    steps { client: "lost" closed { within_s: 20 } }
+    steps { client: "rude" subscribe { layer: LAYER_UNSPECIFIED } }
+    steps { client: "rude" closed { code: 1008 within_s: 20 } }
+  )");
+  EXPECT_TRUE(report.passed()) << failures(report);
+}
+
+TEST_F(Script, BadScriptsAreNamedWithTheirPlace) {
+  const auto error = [](const std::string& text) {
+    const auto script = app::parseScript(text, "test");
+    return script ? std::string("(accepted)") : script.error().message;
+  };
+  EXPECT_THAT(error("steps {"), HasSubstr("test:1:"));
+  EXPECT_THAT(error("steps { surfaces {} }"), HasSubstr("surfaces"));
+  EXPECT_THAT(error(""), HasSubstr("no steps"));
+  EXPECT_THAT(error("steps {}"), HasSubstr("steps[0]"));
+  EXPECT_THAT(error("steps { client: \"x\" wait {} }"), HasSubstr("no client \"x\""));
+  EXPECT_THAT(error("clients { } steps { wait {} }"), HasSubstr("needs a name"));
+  EXPECT_THAT(error("steps { boat { } }"), HasSubstr("name the boat"));
+  EXPECT_THAT(error("steps { surface { } }"), HasSubstr("min_m or max_m"));
+  EXPECT_THAT(error("steps { command { } }"), HasSubstr("command.command"));
+  EXPECT_THAT(error("steps { at_s: -1 wait {} }"), HasSubstr("at_s"));
+}
+
+TEST_F(Script, AddressesAreRead) {
+  const auto parse = [](const char* url) { return net::ClientUrl::parse(url); };
+  EXPECT_EQ(parse("ws://localhost:8080")->port, "8080");
+  EXPECT_EQ(parse("ws://localhost")->port, "80");
+  EXPECT_EQ(parse("ws://[::1]:9/ws/pond")->host, "::1");
+  EXPECT_EQ(parse("ws://[::1]:9/ws/pond")->path, "/ws/pond");
+  for (const char* bad : {"", "localhost:8080", "http://localhost", "wss://localhost", "ws://", "ws://h:99999", "ws://h:x"}) {
+    EXPECT_FALSE(parse(bad)) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace spindrift::test
