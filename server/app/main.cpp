@@ -94,7 +94,8 @@ int run(int argc, char** argv) {
   ScriptOptions script_options;
   CLI::App* script_command =
       cli.add_subcommand("script", "Run scripted clients against a server and check what they see");
-  script_command->add_option("file", script_options.file, "The script, a .textproto of spindrift.v1.Script")->required();
+  script_command->add_option("file", script_options.file, "The script, a .textproto of spindrift.v1.Script")
+      ->required();
   script_command->add_option("--url", script_options.url, "The server, ws://HOST:PORT")->capture_default_str();
   script_command->add_option("--json", script_options.json_file, "Write JSON to this file, - = standard output");
 
@@ -112,10 +113,10 @@ int run(int argc, char** argv) {
   addFidelity(*check_command, check_options.fidelity);
 
   BenchOptions bench_options;
-  CLI::App* bench_command =
-      cli.add_subcommand("bench", "Time the passes of a step, and what the stream's codecs make of real frames");
+  CLI::App* bench_command = cli.add_subcommand(
+      "bench", "Time the passes of a step, the stream's codecs on real frames, and a crowd of clients");
   bench_command->add_option("--suite", bench_options.suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "codec"}))
+      ->check(CLI::IsMember({"all", "step", "codec", "fanout"}))
       ->capture_default_str();
   bench_command->add_option("--scene", bench_options.scene, "Scene file or name of a shipped scene")
       ->capture_default_str();

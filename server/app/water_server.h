@@ -37,6 +37,8 @@ class WaterServer {
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const std::string& deviceLine() const { return simulation_->deviceLine(); }
+  /// Of the default room, over the last second.
+  [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
   [[nodiscard]] const EncoderThread& encoder() const { return *encoder_; }
   /// One line a room; filled by stop().

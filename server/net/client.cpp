@@ -32,11 +32,16 @@ constexpr std::chrono::seconds kCloseTimeout{2};
 class ClientImpl final : public Client, public std::enable_shared_from_this<ClientImpl> {
  public:
   ClientImpl(asio::any_io_executor strand, ClientUrl url, const ClientOptions& options, ClientEvents events)
-      : strand_(std::move(strand)), ws_(strand_), wake_(strand_), url_(std::move(url)), options_(options),
+      : strand_(std::move(strand)),
+        ws_(strand_),
+        wake_(strand_),
+        url_(std::move(url)),
+        options_(options),
         events_(std::move(events)) {}
 
   void start() {
-    asio::co_spawn(strand_, [self = shared_from_this()] { return self->run(); }, asio::detached);
+    asio::co_spawn(
+        strand_, [self = shared_from_this()] { return self->run(); }, asio::detached);
   }
 
   bool send(core::SharedBytes message) override {
@@ -68,7 +73,8 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
       co_return;
     }
     events_.opened();
-    asio::co_spawn(strand_, [self = shared_from_this()] { return self->writeLoop(); }, asio::detached);
+    asio::co_spawn(
+        strand_, [self = shared_from_this()] { return self->writeLoop(); }, asio::detached);
     if (options_.reads) {
       co_await readLoop();
     } else {
@@ -215,7 +221,8 @@ core::Result<ClientUrl> ClientUrl::parse(const std::string& url) {
     return core::Error{core::ErrorCode::kInvalidInput, "--url '" + url + "': " + why};
   };
   constexpr std::string_view kScheme = "ws://";
-  if (url.starts_with("wss://")) return refuse("TLS is not spoken here; connect to the server behind the proxy by ws://");
+  if (url.starts_with("wss://"))
+    return refuse("TLS is not spoken here; connect to the server behind the proxy by ws://");
   if (!url.starts_with(kScheme)) return refuse("write ws://HOST:PORT");
   const std::string rest = url.substr(kScheme.size());
   const std::size_t slash = rest.find('/');

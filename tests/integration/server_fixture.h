@@ -63,6 +63,7 @@ class ServerTest : public testing::Test {
   }
 
   app::WaterServer& server() { return *server_; }
+  const app::EncoderThread& encoder() const { return server_->encoder(); }
 
   /// A client that has said hello.
   ScriptedClient client(const std::string& room = "") { return person({}, room); }

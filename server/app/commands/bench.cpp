@@ -17,6 +17,7 @@
 
 #include "../paths.h"
 #include "bench_codec.h"
+#include "bench_fanout.h"
 #include "commands.h"
 #include "output.h"
 
@@ -142,6 +143,14 @@ void print(std::FILE* out, const StepResult& r) {
   fmt::print(out, "\n");
 }
 
+/// Apart from the others: the server that it measures has a context of its own.
+int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
+  auto result = measureFanout(scene, options.device, options.seconds, options.json_file == "-" ? stderr : stdout);
+  if (!result) return fail(result.error());
+  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
+  return 0;
+}
+
 }  // namespace
 
 int bench(const BenchOptions& options) {
@@ -151,6 +160,7 @@ int bench(const BenchOptions& options) {
   if (!file) return fail(file.error());
   auto loaded = stream::loadSceneFile(*file, stream::parseFidelity(options.fidelity));
   if (!loaded) return fail(loaded.error());
+  if (options.suite == "fanout") return benchFanout(options, *loaded);
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());
   const core::Scene scene = stream::toCore(*loaded);

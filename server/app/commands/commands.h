@@ -42,7 +42,7 @@ struct CheckOptions {
 int check(const CheckOptions& options);
 
 struct BenchOptions {
-  std::string suite = "all";  ///< step, stream, all
+  std::string suite = "all";  ///< step, codec, fanout; all: step and codec
   std::string scene = "harbor";
   std::string fidelity;  ///< as in ServeOptions
   std::string device = "auto";

@@ -52,7 +52,9 @@ boost::json::object toJson(const ScriptReport& report) {
                                           {"answer_p50_ms", client.answer_p50_ms},
                                           {"answer_p99_ms", client.answer_p99_ms}});
   }
-  return {{"passed", report.passed()}, {"step_count", report.step_count}, {"steps", std::move(steps)},
+  return {{"passed", report.passed()},
+          {"step_count", report.step_count},
+          {"steps", std::move(steps)},
           {"clients", std::move(clients)}};
 }
 

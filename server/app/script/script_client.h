@@ -1,4 +1,5 @@
-// One client of a script: its connection, and what it has seen so far. Everything runs on the thread that drives the pool.
+// One client of a script: its connection, and what it has seen so far. Everything runs on the thread that drives the
+// pool.
 #pragma once
 
 #include <array>

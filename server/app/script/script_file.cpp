@@ -91,7 +91,8 @@ core::Result<v1::Script> loadScript(const std::filesystem::path& file) {
   }
   constexpr std::uintmax_t kFileMaxBytes = 4u << 20;
   if (std::filesystem::file_size(file, error) > kFileMaxBytes) {
-    return Error{ErrorCode::kInvalidInput, fmt::format("{}: a script has at most {} bytes", file.string(), kFileMaxBytes)};
+    return Error{ErrorCode::kInvalidInput,
+                 fmt::format("{}: a script has at most {} bytes", file.string(), kFileMaxBytes)};
   }
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -54,8 +54,8 @@ class Runner {
       wait(step.at_s() - since_s(begin_), [] { return false; });
       const auto step_begin = Clock::now();
       const Outcome outcome = carryOut(step, *clients_.at(step.client()));
-      out.steps.push_back({k, step.client(), describe(step), step.note(), outcome.passed, outcome.detail,
-                           since_s(step_begin)});
+      out.steps.push_back(
+          {k, step.client(), describe(step), step.note(), outcome.passed, outcome.detail, since_s(step_begin)});
       if (!outcome.passed && !script_.keep_going()) break;
     }
     for (const v1::ScriptClient& setup : script_.clients()) out.clients.push_back(reportOf(*clients_.at(setup.name())));
@@ -64,9 +64,7 @@ class Runner {
   }
 
  private:
-  static double since_s(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-  }
+  static double since_s(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
   static std::string describe(const v1::ScriptStep& step) {
     const auto* descriptor = v1::ScriptStep::descriptor();
@@ -93,7 +91,8 @@ class Runner {
     const bool held = wait(duration_s, [&] { return holds() || client.end(); });
     const bool passed = held && holds();
     std::string detail = seen();
-    if (!passed) detail += client.end() ? "; the connection ended: " + endOf(client) : fmt::format("; waited {} s", duration_s);
+    if (!passed)
+      detail += client.end() ? "; the connection ended: " + endOf(client) : fmt::format("; waited {} s", duration_s);
     return {passed, std::move(detail)};
   }
 
@@ -103,8 +102,9 @@ class Runner {
 
   Outcome connected(ScriptClient& client) {
     if (!client.wasConnected()) client.connect();
-    return await(client, kConnectPatience_s, [&] { return client.isWelcome(); },
-                 [&] { return std::string(client.isWelcome() ? "connected" : "not connected"); });
+    return await(
+        client, kConnectPatience_s, [&] { return client.isWelcome(); },
+        [&] { return std::string(client.isWelcome() ? "connected" : "not connected"); });
   }
 
   Outcome carryOut(const v1::ScriptStep& step, ScriptClient& client) {
@@ -159,8 +159,8 @@ class Runner {
       if (command.has_remove_boat()) command.mutable_remove_boat()->set_boat_id(saved->second);
     }
     const std::uint64_t id = client.command(std::move(command));
-    const Outcome answered = await(client, patience_s(step), [&] { return client.answerTo(id) != nullptr; },
-                                   [] { return std::string(); });
+    const Outcome answered = await(
+        client, patience_s(step), [&] { return client.answerTo(id) != nullptr; }, [] { return std::string(); });
     if (!answered.passed) return {false, "no answer" + answered.detail};
     const ScriptClient::Answer& answer = *client.answerTo(id);
     if (answer.ack) {
@@ -174,8 +174,10 @@ class Runner {
                         (step.rejected_field().empty() || reject.field() == step.rejected_field());
     return {wanted, fmt::format("rejected: {} {} {}{}", v1::RejectReason_Name(reject.reason()), reject.field(),
                                 reject.message(),
-                                wanted ? "" : "; wanted " + (step.rejected() ? v1::RejectReason_Name(step.rejected()) + " " + step.rejected_field()
-                                                                             : std::string("an ack")))};
+                                wanted ? ""
+                                       : "; wanted " + (step.rejected() ? v1::RejectReason_Name(step.rejected()) + " " +
+                                                                              step.rejected_field()
+                                                                        : std::string("an ack")))};
   }
 
   Outcome expectSurface(const v1::ExpectSurface& step, ScriptClient& client) {
@@ -189,16 +191,18 @@ class Runner {
       return seen_m && (!step.has_min_m() || *seen_m >= step.min_m()) && (!step.has_max_m() || *seen_m <= step.max_m());
     };
     bool held = false;
-    return await(client, patience_s(step), [&] { return held = held || holds(); }, [&] {
-      return seen_m ? fmt::format("elevation {:.4f} m", *seen_m) : std::string("no surface there");
-    });
+    return await(
+        client, patience_s(step), [&] { return held = held || holds(); },
+        [&] { return seen_m ? fmt::format("elevation {:.4f} m", *seen_m) : std::string("no surface there"); });
   }
 
   static std::optional<double> elevation_m(const v1::LayerFrame& frame, double x_m, double z_m) {
     const auto surface = stream::decodeSurface(frame);
     if (!surface) return std::nullopt;
     const double n = surface->resolution_count;
-    const auto index = [&](double at_m) { return static_cast<std::int64_t>(std::floor((at_m / surface->side_m + 0.5) * n)); };
+    const auto index = [&](double at_m) {
+      return static_cast<std::int64_t>(std::floor((at_m / surface->side_m + 0.5) * n));
+    };
     const std::int64_t i = index(x_m);
     const std::int64_t k = index(z_m);
     if (i < 0 || k < 0 || i >= surface->resolution_count || k >= surface->resolution_count) return std::nullopt;
@@ -243,15 +247,17 @@ class Runner {
       count = frame->has_particles_fixed12() ? frame->particles_fixed12().count() : frame->particles_by_cell().count();
       return *count >= step.min_count() && (!step.has_max_count() || *count <= step.max_count());
     };
-    return await(client, patience_s(step), holds,
-                 [&] { return count ? fmt::format("{} particles", *count) : std::string("no frame of the particles"); });
+    return await(client, patience_s(step), holds, [&] {
+      return count ? fmt::format("{} particles", *count) : std::string("no frame of the particles");
+    });
   }
 
   Outcome expectFrames(const v1::ExpectFrames& step, ScriptClient& client) {
     const std::uint64_t before_count = client.tally(step.layer()).frame_count;
     const auto came = [&] { return client.tally(step.layer()).frame_count - before_count; };
-    return await(client, patience_s(step), [&] { return came() >= step.min_count(); },
-                 [&] { return fmt::format("{} frames", came()); });
+    return await(
+        client, patience_s(step), [&] { return came() >= step.min_count(); },
+        [&] { return fmt::format("{} frames", came()); });
   }
 
   Outcome expectGap(const v1::ExpectGap& step, ScriptClient& client) {
@@ -265,21 +271,24 @@ class Runner {
     const auto count = [&] {
       return std::ranges::count_if(client.people().people(), [](const v1::Person& person) { return !person.away(); });
     };
-    return await(client, patience_s(step), [&] { return count() == step.count(); },
-                 [&] { return fmt::format("{} people", count()); });
+    return await(
+        client, patience_s(step), [&] { return count() == step.count(); },
+        [&] { return fmt::format("{} people", count()); });
   }
 
   Outcome expectEvent(const v1::ExpectEvent& step, ScriptClient& client) {
     // Events that came since the last such step of this client count: they may well come before it is reached.
     std::uint64_t& used_count = used_events_[{client.name(), step.kind()}];
-    const Outcome out = await(client, patience_s(step), [&] { return client.eventCount(step.kind()) > used_count; },
-                              [&] { return v1::RoomEventKind_Name(step.kind()); });
+    const Outcome out = await(
+        client, patience_s(step), [&] { return client.eventCount(step.kind()) > used_count; },
+        [&] { return v1::RoomEventKind_Name(step.kind()); });
     if (out.passed) ++used_count;
     return out;
   }
 
   Outcome expectClosed(const v1::ExpectClosed& step, ScriptClient& client) {
-    if (!wait(patience_s(step), [&] { return client.end().has_value(); })) return {false, "the connection is still open"};
+    if (!wait(patience_s(step), [&] { return client.end().has_value(); }))
+      return {false, "the connection is still open"};
     const bool passed = step.code() == 0 || client.end()->code == step.code();
     return {passed, endOf(client) + (passed ? "" : fmt::format("; wanted {}", step.code()))};
   }
@@ -302,7 +311,8 @@ class Runner {
     for (int k = v1::Layer_MIN + 1; k < v1::Layer_ARRAYSIZE; ++k) {
       const auto layer = static_cast<v1::Layer>(k);
       const ScriptClient::LayerTally& tally = client.tally(layer);
-      if (tally.frame_count > 0) out.layers.push_back({v1::Layer_Name(layer), tally.frame_count, tally.longest_gap_ever_s});
+      if (tally.frame_count > 0)
+        out.layers.push_back({v1::Layer_Name(layer), tally.frame_count, tally.longest_gap_ever_s});
     }
     return out;
   }

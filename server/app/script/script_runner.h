@@ -12,12 +12,12 @@
 namespace spindrift::app {
 
 struct StepReport {
-  int index = 0;          ///< of the script's steps
+  int index = 0;  ///< of the script's steps
   std::string client;
-  std::string what;       ///< "command splash", "surface", ...
-  std::string note;       ///< the script's own
+  std::string what;  ///< "command splash", "surface", ...
+  std::string note;  ///< the script's own
   bool passed = false;
-  std::string detail;     ///< what was seen; for a failure also what was wanted
+  std::string detail;  ///< what was seen; for a failure also what was wanted
   double took_s = 0.0;
 };
 
@@ -39,7 +39,7 @@ struct ClientReport {
 struct ScriptReport {
   std::vector<StepReport> steps;  ///< those that were run
   std::vector<ClientReport> clients;
-  int step_count = 0;             ///< those that there are
+  int step_count = 0;  ///< those that there are
   [[nodiscard]] bool passed() const;
 };
 

@@ -1,4 +1,5 @@
-// WebSocket connections from the other side: for the scripted client and the load generator. Moves bytes and never parses.
+// WebSocket connections from the other side: for the scripted client and the load generator. Moves bytes and never
+// parses.
 #pragma once
 
 #include <chrono>

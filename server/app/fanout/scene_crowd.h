@@ -1,0 +1,14 @@
+// The crowd of a real room: everybody says hello, watches every layer packed at 20 Hz, and splashes now and then.
+#pragma once
+
+#include <cstddef>
+
+#include <spindrift/v1/scene.pb.h>
+
+#include "crowd.h"
+
+namespace spindrift::app {
+
+CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double seconds);
+
+}  // namespace spindrift::app
