@@ -13,7 +13,7 @@
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
-#include "url.h"
+#include "http_request.h"
 
 namespace spindrift::net {
 namespace {
@@ -24,7 +24,6 @@ namespace http = boost::beast::http;
 
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
-constexpr std::uint32_t kHeaderMaxBytes = 16 * 1024;
 /// The kernel takes this much from us ahead of the wire; the rest of a backlog stays in the outbox, where it is
 /// dropped.
 constexpr int kUnsentLowWaterBytes = 128 * 1024;
@@ -60,21 +59,6 @@ void fillHead(Fields& response, const Reply& reply, bool keep_alive) {
     response.content_length(reply.body->size());
   }
   response.keep_alive(keep_alive);
-}
-
-/// What a request that Beast's parser refused gets; nullopt if there is nobody to answer.
-std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, std::size_t body_max_bytes) {
-  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return textReply(431, "The request's header is larger than " + std::to_string(kHeaderMaxBytes) + " bytes.");
-  }
-  if (error == http::error::body_limit) {
-    return textReply(413, "The request's body is larger than " + std::to_string(body_max_bytes) + " bytes.");
-  }
-  if (error == http::error::end_of_stream || error == http::error::partial_message) return std::nullopt;
-  if (error.category() == make_error_code(http::error::bad_method).category()) {
-    return textReply(400, "This is not an HTTP request: " + error.message() + ".");
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -118,9 +102,8 @@ void Connection::cut() {
 
 asio::awaitable<void> Connection::run() {
   while (!stopping_) {
-    http::request_parser<http::string_body> parser;
-    parser.header_limit(kHeaderMaxBytes);
-    parser.body_limit(context_.options.request_body_max_bytes);
+    RequestParser parser;
+    bound(parser, context_.options.request_body_max_bytes);
     // One deadline for the whole request: a byte now and then does not extend it.
     stream_.expires_after(context_.options.handshake_timeout);
     const auto [error, bytes_count] = co_await http::async_read(stream_, buffer_, parser, kToken);
@@ -135,11 +118,8 @@ asio::awaitable<void> Connection::run() {
       co_return;
     }
     const auto& request = parser.get();
-    const RequestHead head{std::string(request.method_string()), std::string(request.target()),
-                           std::string(request[http::field::if_none_match])};
-    const std::string& body = request.body();
-    const core::ByteView body_view(reinterpret_cast<const std::uint8_t*>(body.data()), body.size());
-    const Reply reply = routeRequest(head, body_view, context_.files, context_.application);
+    const RequestHead head = headOf(request);
+    const Reply reply = routeRequest(head, bodyOf(request), context_.files, context_.application);
     const bool keep_alive = request.keep_alive() && !stopping_;
     const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
     if (!sent || !keep_alive) break;
@@ -160,50 +140,20 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
     ~Place() { --context.reserved_session_count; }
   };
   const Place place(context_);
-  std::string room;
-  bool echo_subprotocol = false;
-  auto refusal = place.granted ? refuseUpgrade(request, room, echo_subprotocol)
-                               : std::make_unique<Reply>(textReply(
-                                     503, "The server is full: " + std::to_string(context_.options.max_session_count) +
-                                              " sessions are open; try again later."));
-  if (refusal) {
-    co_await sendLast(std::move(*refusal), false);
+  UpgradeDecision decision;
+  if (place.granted) {
+    decision = decideUpgrade(request, buffer_.size(), context_.application);
+  } else {
+    decision.refusal = textReply(503, "The server is full: " + std::to_string(context_.options.max_session_count) +
+                                          " sessions are open; try again later.");
+  }
+  if (decision.refusal) {
+    co_await sendLast(std::move(*decision.refusal), false);
     co_return;
   }
   session_ = std::make_shared<Session>(std::move(stream_), context_);
   if (stopping_) session_->close(CloseCode::kGoingAway, "server is shutting down");
-  co_await session_->run(request, std::move(room), peer_, echo_subprotocol);
-}
-
-std::unique_ptr<Reply> Connection::refuseUpgrade(const UpgradeRequest& request, std::string& room,
-                                                 bool& echo_subprotocol) {
-  // RFC 6455 section 4.1: the client waits for the answer. The bytes would get lost between the two protocols.
-  if (buffer_.size() > 0) {
-    return std::make_unique<Reply>(textReply(400, "Nothing may follow an upgrade request before it is answered."));
-  }
-  const auto target = parseTarget(std::string_view(request.target().data(), request.target().size()));
-  if (!target) return std::make_unique<Reply>(textReply(400, "The request's path is not a plain absolute path."));
-  auto named = roomOfPath(target->path);
-  if (!named) {
-    return std::make_unique<Reply>(
-        textReply(404, "There is no WebSocket at " + target->path + ": use /ws or /ws/ROOM."));
-  }
-  room = std::move(*named);
-
-  const auto offered = request[http::field::sec_websocket_protocol];
-  for (const auto& protocol : http::token_list(offered)) echo_subprotocol |= protocol == kSubprotocol;
-  if (!offered.empty() && !echo_subprotocol) {
-    return std::make_unique<Reply>(
-        textReply(400, std::string("No offered subprotocol is known here: offer ") + kSubprotocol + "."));
-  }
-  try {
-    const core::Result<void> accepted = context_.application.acceptSession(room);
-    if (!accepted) return std::make_unique<Reply>(textReply(404, accepted.error().message));
-  } catch (const std::exception& error) {
-    spdlog::error("{}: acceptSession failed: {}", peer_, error.what());
-    return std::make_unique<Reply>(textReply(500, "The server failed on this request; its log says why."));
-  }
-  return nullptr;
+  co_await session_->run(request, std::move(decision.room), peer_, decision.echo_subprotocol);
 }
 
 asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsigned version, bool keep_alive) {
