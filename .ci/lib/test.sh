@@ -23,10 +23,11 @@ run_part() {
   reports+=("$name:$code:$root/build/reports/$name.xml")
 }
 
+# test_native NAME PRESET [LABEL]
 test_native() {
   local name="$1" filter=()
-  [[ -z "${2:-}" ]] || filter=(--label-regex "^$2\$")
-  run_part "$name" "$ctest_limit_s" ctest --test-dir "build/$preset" --parallel 2 --output-on-failure --timeout 600 \
+  [[ -z "${3:-}" ]] || filter=(--label-regex "^$3\$")
+  run_part "$name" "$ctest_limit_s" ctest --test-dir "build/$2" --parallel 2 --output-on-failure --timeout 600 \
     --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
 }
 
@@ -51,7 +52,8 @@ usage: ./dev test [--preset release|debug|asan|tsan] [PART…]
 
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
 native (all of those), web (the client's own tests), browser (the page in Chromium against the real server),
-tools (./dev itself and the bundle). The last line is `N passed, N failed, N skipped`; exit code 1 when
+tools (./dev itself and the bundle), fuzz (parsers and decoders under hostile input, some seconds each; it has a
+preset of its own). The last line is `N passed, N failed, N skipped`; exit code 1 when
 anything failed. Reports: build/reports/*.xml, logs: build/logs.
 TEXT
     return
@@ -59,10 +61,10 @@ TEXT
   local preset rest part parts reports=()
   take_preset "$@"
   parts=("${rest[@]}")
-  ((${#parts[@]} > 0)) || parts=(native web browser tools)
+  ((${#parts[@]} > 0)) || parts=(native web browser tools fuzz)
   for part in "${parts[@]}"; do
     case "$part" in
-      native | unit | integration | accuracy | stability | gpu | web | browser | tools) ;;
+      native | unit | integration | accuracy | stability | gpu | web | browser | tools | fuzz) ;;
       *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
     esac
   done
@@ -72,11 +74,12 @@ TEXT
   prepare_tests "${parts[@]}"
   for part in "${parts[@]}"; do
     case "$part" in
-      native) test_native native ;;
+      native) test_native native "$preset" ;;
+      fuzz) test_native fuzz fuzz ;;
       web) test_web ;;
       browser) node_tests browser "$browser_limit_s" tests/browser/*.test.mjs ;;
       tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs ;;
-      *) test_native "$part" "$part" ;;
+      *) test_native "$part" "$preset" "$part" ;;
     esac
   done
   trap - EXIT
@@ -100,6 +103,7 @@ prepare_tests() {
   elif [[ "$wanted" =~ \ (browser|tools)\  ]]; then
     build_server "$preset" spindrift
   fi
+  [[ "$wanted" != *" fuzz "* ]] || build_fuzz
   [[ "$wanted" != *" web "* ]] || npm_install web-client web
   [[ ! "$wanted" =~ \ (browser|tools)\  ]] || build_web
   [[ "$wanted" != *" browser "* ]] || npm_install tests/browser browser

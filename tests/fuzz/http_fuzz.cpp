@@ -1,0 +1,138 @@
+// Bytes of a new connection, as connection.cpp reads them: requests one after another out of one buffer, each routed or
+// judged as an upgrade. The first byte says in which pieces they come.
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <spdlog/spdlog.h>
+
+#include "fuzz.h"
+#include "http_request.h"
+#include "http_routes.h"
+#include "static_files.h"
+#include "temporary_folder.h"
+#include "url.h"
+
+namespace spindrift::fuzz {
+namespace {
+
+constexpr std::size_t kBodyMaxBytes = 256;
+
+class Application final : public net::Application {
+ public:
+  core::Result<void> acceptSession(const std::string& room) override {
+    if (room.empty() || room == "pool") return {};
+    return core::Error{core::ErrorCode::kInvalidInput, "there is no such room"};
+  }
+  void sessionOpened(net::SessionId, const std::string&, const std::string&) override {}
+  void sessionMessage(net::SessionId, core::ByteView) override {}
+  void sessionClosed(net::SessionId, const net::SessionEnd&) override {}
+  std::optional<net::HttpReply> httpRequest(const net::HttpRequest& request) override {
+    must(request.path.starts_with('/'), "the application sees absolute paths");
+    must(request.method != "HEAD", "HEAD arrives as GET");
+    must(request.body.size() <= kBodyMaxBytes, "the body keeps its bound");
+    if (request.path != "/healthz") return std::nullopt;
+    return net::HttpReply{200, "text/plain", "ok\n"};
+  }
+};
+
+/// A small web root beside a file that must never be served.
+struct Site {
+  test::TemporaryFolder folder;
+  net::StaticFiles files;
+
+  Site() : files(write(folder)) {}
+  static std::string write(const test::TemporaryFolder& folder) {
+    folder.write("secret.txt", "secret");
+    folder.write("web/index.html", "<h1>water</h1>");
+    folder.write("web/assets/a.js", ";");
+    folder.write("web/.hidden", "secret");
+    std::filesystem::create_symlink("../secret.txt", folder.path() / "web/out.txt");
+    return (folder.path() / "web").string();
+  }
+};
+
+void checkReply(const net::Reply& reply) {
+  must(reply.body != nullptr, "a reply has a body");
+  must(reply.body->find("secret") == std::string::npos || reply.status >= 400,
+       "nothing outside the web root is served");
+  must(reply.status >= 200 && reply.status < 600, "a reply has a status");
+  for (const auto& [name, value] : reply.headers) {
+    must(value.find_first_of("\r\n") == std::string::npos, "no header of a reply can be split");
+  }
+}
+
+/// One request out of the buffer; false when the connection ends. `more` hands over the next piece, empty at the end.
+template <typename More>
+bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Application& application) {
+  net::RequestParser parser;
+  net::bound(parser, kBodyMaxBytes);
+  parser.eager(true);
+  boost::system::error_code error;
+  while (!parser.is_done()) {
+    const std::size_t used = buffer.size() > 0 ? parser.put(buffer.data(), error) : 0;
+    buffer.consume(used);
+    if (error == boost::beast::http::error::need_more) error = {};
+    if (error || parser.is_done()) break;
+    if (used > 0 && buffer.size() > 0) continue;
+    if (more(buffer)) continue;
+    if (!parser.got_some()) return false;
+    parser.put_eof(error);
+    break;
+  }
+  if (error) {
+    if (const auto reply = net::replyToBadRequest(error, kBodyMaxBytes)) checkReply(*reply);
+    return false;
+  }
+  must(parser.is_done(), "a request without an error is whole");
+  const net::Request& request = parser.get();
+  if (boost::beast::websocket::is_upgrade(request)) {
+    const net::UpgradeDecision decision = net::decideUpgrade(request, buffer.size(), application);
+    if (decision.refusal) {
+      must(decision.refusal->status >= 400, "a refusal is an error");
+      checkReply(*decision.refusal);
+    } else {
+      must(decision.room.empty() || decision.room == "pool", "sessions join rooms that there are");
+    }
+    return false;
+  }
+  checkReply(net::routeRequest(net::headOf(request), net::bodyOf(request), site.files, application));
+  return request.keep_alive();
+}
+
+}  // namespace
+}  // namespace spindrift::fuzz
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace spindrift;
+  static fuzz::Site site;
+  static fuzz::Application application;
+  spdlog::set_level(spdlog::level::off);
+  if (size == 0) return 0;
+  const std::size_t piece_bytes = std::size_t{1} + 7 * data[0];
+  const std::uint8_t* at = data + 1;
+  const std::uint8_t* const end = data + size;
+  // The seeds are whole requests, so the text itself is looked at as a target too.
+  if (const auto target = net::parseTarget({reinterpret_cast<const char*>(at), size - 1})) {
+    fuzz::must(target->path.starts_with('/'), "a path is absolute");
+    fuzz::must(target->path.find('\0') == std::string::npos, "a path holds no NUL");
+    (void)net::roomOfPath(target->path);
+  }
+  const auto more = [&](boost::beast::flat_buffer& buffer) {
+    const std::size_t count = std::min(piece_bytes, static_cast<std::size_t>(end - at));
+    if (count == 0) return false;
+    std::memcpy(buffer.prepare(count).data(), at, count);
+    buffer.commit(count);
+    at += count;
+    return true;
+  };
+  boost::beast::flat_buffer buffer;
+  while (fuzz::serveOne(buffer, more, site, application)) {
+    if (buffer.size() == 0 && at == end) break;
+  }
+  return 0;
+}
