@@ -52,8 +52,8 @@ usage: ./dev test [--preset release|debug|asan|tsan] [PART…]
 
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
 native (all of those), web (the client's own tests), browser (the page in Chromium against the real server),
-tools (./dev itself and the bundle), fuzz (parsers and decoders under hostile input, some seconds each; it has a
-preset of its own). The last line is `N passed, N failed, N skipped`; exit code 1 when
+tools (./dev itself and the bundle), fuzz (parsers and decoders under hostile input, some seconds each), threads
+(network and encoder under the thread sanitizer); the last two have presets of their own. The last line is `N passed, N failed, N skipped`; exit code 1 when
 anything failed. Reports: build/reports/*.xml, logs: build/logs.
 TEXT
     return
@@ -61,10 +61,10 @@ TEXT
   local preset rest part parts reports=()
   take_preset "$@"
   parts=("${rest[@]}")
-  ((${#parts[@]} > 0)) || parts=(native web browser tools fuzz)
+  ((${#parts[@]} > 0)) || parts=(native web browser tools fuzz threads)
   for part in "${parts[@]}"; do
     case "$part" in
-      native | unit | integration | accuracy | stability | gpu | web | browser | tools | fuzz) ;;
+      native | unit | integration | accuracy | stability | gpu | web | browser | tools | fuzz | threads) ;;
       *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
     esac
   done
@@ -76,6 +76,7 @@ TEXT
     case "$part" in
       native) test_native native "$preset" ;;
       fuzz) test_native fuzz fuzz ;;
+      threads) test_native threads tsan threads ;;
       web) test_web ;;
       browser) node_tests browser "$browser_limit_s" tests/browser/*.test.mjs ;;
       tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs ;;
@@ -104,6 +105,7 @@ prepare_tests() {
     build_server "$preset" spindrift
   fi
   [[ "$wanted" != *" fuzz "* ]] || build_fuzz
+  [[ "$wanted" != *" threads "* ]] || build_server tsan net_test join_leave_test
   [[ "$wanted" != *" web "* ]] || npm_install web-client web
   [[ ! "$wanted" =~ \ (browser|tools)\  ]] || build_web
   [[ "$wanted" != *" browser "* ]] || npm_install tests/browser browser
