@@ -42,6 +42,18 @@ core::ByteView bodyOf(const Request& request) {
   return {reinterpret_cast<const std::uint8_t*>(request.body().data()), request.body().size()};
 }
 
+namespace {
+
+/// RFC 6455 section 4.2.1: 16 bytes in base64. What they are is the client's business.
+bool isKey(std::string_view key) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::size_t kDigitCount = 22;
+  return key.size() == kDigitCount + 2 && key.ends_with("==") &&
+         key.substr(0, kDigitCount).find_first_not_of(kDigits) == std::string_view::npos;
+}
+
+}  // namespace
+
 UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_count, Application& application) {
   // RFC 6455 section 4.1: the client waits for the answer. The bytes would get lost between the two protocols.
   if (more_bytes_count > 0) {
@@ -49,6 +61,11 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
   }
   const auto target = parseTarget(std::string_view(request.target().data(), request.target().size()));
   if (!target) return {textReply(400, "The request's path is not a plain absolute path.")};
+  if (request[http::field::sec_websocket_version] != kWebSocketVersion) return {webSocketReply()};
+  const auto key = request[http::field::sec_websocket_key];
+  if (!isKey({key.data(), key.size()})) {
+    return {textReply(400, "An upgrade needs a Sec-WebSocket-Key of 16 bytes in base64.")};
+  }
   auto named = roomOfPath(target->path);
   if (!named) return {textReply(404, "There is no WebSocket at " + target->path + ": use /ws or /ws/ROOM.")};
 

@@ -32,6 +32,12 @@ struct Reply {
 /// One plain line of text (the newline is added here), not cached.
 Reply textReply(unsigned status, std::string line);
 
+/// RFC 6455.
+inline constexpr std::string_view kWebSocketVersion = "13";
+
+/// 426: what a request to a WebSocket address gets that is no upgrade, or one to another version.
+Reply webSocketReply();
+
 /// The reply to a whole request: application paths, the web client's files, or an error with one line.
 Reply routeRequest(const RequestHead& head, core::ByteView body, StaticFiles& files, Application& application);
 

@@ -115,17 +115,6 @@ TEST_F(ConnectionTest, SaysWhatIsWrongWithARequest) {
   EXPECT_EQ(httpRequest(port, "GET", "/ws").status, 426U);
 }
 
-TEST_F(ConnectionTest, RefusesAnUpgradeWithoutAKey) {
-  const TestServer served(options());
-  const HttpAnswer answer = httpRequest(served.server->port(), "GET", "/ws");
-  EXPECT_EQ(answer.status, 426U);
-  const HttpAnswer keyless = httpExchange(
-      served.server->port(),
-      "GET /ws HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\r\n");
-  EXPECT_EQ(keyless.status, 400U);
-  EXPECT_TRUE(served.application.opened().empty());
-}
-
 TEST_F(ConnectionTest, RandomBytesHurtNobody) {
   const TestServer served(options());
   std::mt19937 random(42);
