@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <boost/asio/as_tuple.hpp>
@@ -24,6 +25,8 @@ namespace http = boost::beast::http;
 
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
+/// What was read and not yet parsed: a header and as much as one read brings. A bound of our own beside the parser's.
+constexpr std::size_t kReadBufferMaxBytes = 128 * 1024;
 /// The kernel takes this much from us ahead of the wire; the rest of a backlog stays in the outbox, where it is
 /// dropped.
 constexpr int kUnsentLowWaterBytes = 128 * 1024;
@@ -64,7 +67,12 @@ void fillHead(Fields& response, const Reply& reply, bool keep_alive) {
 }  // namespace
 
 Connection::Connection(std::uint64_t id, asio::ip::tcp::socket socket, ServerContext& context)
-    : id_(id), context_(context), strand_(socket.get_executor()), peer_(peerName(socket)), stream_(std::move(socket)) {
+    : id_(id),
+      context_(context),
+      strand_(socket.get_executor()),
+      peer_(peerName(socket)),
+      stream_(std::move(socket)),
+      buffer_(kReadBufferMaxBytes) {
   tune(stream_.socket());
 }
 
@@ -106,13 +114,17 @@ asio::awaitable<void> Connection::run() {
     bound(parser, context_.options.request_body_max_bytes);
     // One deadline for the whole request: a byte now and then does not extend it.
     stream_.expires_after(context_.options.handshake_timeout);
-    const auto [error, bytes_count] = co_await http::async_read(stream_, buffer_, parser, kToken);
+    auto [error, bytes_count] = co_await http::async_read_header(stream_, buffer_, parser, kToken);
+    auto refusal = error ? std::nullopt : refuseHead(parser);
+    if (!error && !refusal) {
+      std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
+    }
     if (error) {
       spdlog::debug("{}: no whole request: {}", peer_, error.message());
-      auto reply = replyToBadRequest(error, context_.options.request_body_max_bytes);
-      if (reply) co_await sendLast(std::move(*reply), false);
-      co_return;
+      refusal = replyToBadRequest(error, context_.options.request_body_max_bytes);
     }
+    if (refusal) co_await sendLast(std::move(*refusal), false);
+    if (error || refusal) co_return;
     if (beast::websocket::is_upgrade(parser.get())) {
       co_await upgrade(parser.get());
       co_return;

@@ -19,6 +19,11 @@ void bound(RequestParser& parser, std::size_t body_max_bytes) {
   parser.body_limit(body_max_bytes);
 }
 
+std::optional<Reply> refuseHead(const RequestParser& parser) {
+  if (!parser.chunked()) return std::nullopt;
+  return textReply(411, "A body needs a Content-Length here; it may not come in chunks.");
+}
+
 std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, std::size_t body_max_bytes) {
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     return textReply(431, "The request's header is larger than " + std::to_string(kHeaderMaxBytes) + " bytes.");

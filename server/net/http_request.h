@@ -25,6 +25,11 @@ using RequestParser = boost::beast::http::request_parser<boost::beast::http::str
 /// Sets the parser's bounds; before its first byte.
 void bound(RequestParser& parser, std::size_t body_max_bytes);
 
+/// What a request gets whose body is not to be read, once its head is there; nullopt if it may go on. Chunked bodies
+/// are refused: nothing here takes one, Boost 1.81's parser keeps a chunk's line however long it grows, and it fails an
+/// assertion when the last chunk of an empty body comes byte by byte (boostorg/beast pull request 2861).
+std::optional<Reply> refuseHead(const RequestParser& parser);
+
 /// What a request gets that the parser refused; nullopt if there is nobody to answer.
 std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, std::size_t body_max_bytes);
 

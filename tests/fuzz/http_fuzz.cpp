@@ -66,26 +66,47 @@ void checkReply(const net::Reply& reply) {
   }
 }
 
-/// One request out of the buffer; false when the connection ends. `more` hands over the next piece, empty at the end.
+/// Feeds the parser until `is_done()`, as Beast's read operations do. False if the connection ends before.
+template <typename More, typename Done>
+bool read(net::RequestParser& parser, boost::beast::flat_buffer& buffer, More more, Done is_done,
+          boost::system::error_code& error) {
+  while (!is_done()) {
+    bool needs_more = buffer.size() == 0;
+    if (!needs_more) {
+      buffer.consume(parser.put(buffer.data(), error));
+      needs_more = error == boost::beast::http::error::need_more;
+    }
+    if (needs_more) {
+      error = {};
+      if (more(buffer)) continue;
+      if (!parser.got_some()) return false;
+      parser.put_eof(error);
+    }
+    if (error) return false;
+  }
+  return true;
+}
+
+/// One request out of the buffer; false when the connection ends. `more` hands over the next piece, false at the end.
 template <typename More>
 bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Application& application) {
   net::RequestParser parser;
   net::bound(parser, kBodyMaxBytes);
-  parser.eager(true);
   boost::system::error_code error;
-  while (!parser.is_done()) {
-    const std::size_t used = buffer.size() > 0 ? parser.put(buffer.data(), error) : 0;
-    buffer.consume(used);
-    if (error == boost::beast::http::error::need_more) error = {};
-    if (error || parser.is_done()) break;
-    if (used > 0 && buffer.size() > 0) continue;
-    if (more(buffer)) continue;
-    if (!parser.got_some()) return false;
-    parser.put_eof(error);
-    break;
+  parser.eager(false);
+  bool is_read = read(
+      parser, buffer, more, [&] { return parser.is_header_done(); }, error);
+  if (is_read) {
+    if (const auto refusal = net::refuseHead(parser)) {
+      checkReply(*refusal);
+      return false;
+    }
+    parser.eager(true);
+    is_read = read(
+        parser, buffer, more, [&] { return parser.is_done(); }, error);
   }
-  if (error) {
-    if (const auto reply = net::replyToBadRequest(error, kBodyMaxBytes)) checkReply(*reply);
+  if (!is_read) {
+    if (const auto reply = error ? net::replyToBadRequest(error, kBodyMaxBytes) : std::nullopt) checkReply(*reply);
     return false;
   }
   must(parser.is_done(), "a request without an error is whole");

@@ -89,6 +89,7 @@ REQUESTS = {
     "upgrade_other": UPGRADE.format(target="/ws/pool", more="Sec-WebSocket-Protocol: spindrift.v2\r\n"),
     "upgrade_nowhere": UPGRADE.format(target="/ws/%2e%2e%2fpool", more=""),
     "upgrade_early_frame": UPGRADE.format(target="/ws", more="") + "\u0082\u0080\0\0\0\0",
+    "chunked_empty": "POST /api/x HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
     "not_http": "hello water\r\n\r\n",
     "endless": "GET / HTTP/1.1\r\nHost: " + "a" * 300,
 }
