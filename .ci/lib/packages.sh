@@ -10,6 +10,7 @@ declare -rA package_groups=(
   [format]="clang-format"
   [tidy]="clang-tidy"
   [lint]="shellcheck"
+  [fuzz]="clang libclang-rt-dev"
   [bundle]="patchelf binutils"
   [npm]="nodejs npm"
 )
@@ -20,6 +21,7 @@ declare -rA package_reasons=(
   [format]="formatting"
   [tidy]="static analysis"
   [lint]="checking shell scripts"
+  [fuzz]="fuzzing"
   [bundle]="packing libraries"
   [npm]="fetching the web client's libraries and a newer Node"
 )

@@ -3,7 +3,7 @@
 # Sourced by ./dev.
 
 # No part may hang: far above what each takes on two cores without a GPU.
-readonly ctest_limit_s=3600 web_limit_s=600 browser_limit_s=1200 tools_limit_s=1800
+readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=1200 tools_limit_s=1800
 
 # run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, remembers its exit code. The command writes
 # build/reports/NAME.xml.
@@ -23,16 +23,23 @@ run_part() {
   reports+=("$name:$code:$root/build/reports/$name.xml")
 }
 
+# test_native NAME PRESET [LABEL]
 test_native() {
   local name="$1" filter=()
-  [[ -z "${2:-}" ]] || filter=(--label-regex "^$2\$")
-  run_part "$name" "$ctest_limit_s" ctest --test-dir "build/$preset" --parallel 2 --output-on-failure --timeout 600 \
+  [[ -z "${3:-}" ]] || filter=(--label-regex "^$3\$")
+  run_part "$name" "$ctest_limit_s" ctest --test-dir "build/$2" --parallel 2 --output-on-failure --timeout 600 \
     --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
 }
 
 test_web() {
   run_part web "$web_limit_s" npm run --silent --prefix web-client test -- \
     --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/web.xml"
+}
+
+# The npm package ws and the messages of the web client, whose Vitest runs them.
+test_wire() {
+  run_part wire "$wire_limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" node web-client/node_modules/vitest/vitest.mjs run \
+    --root tests/wire --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/wire.xml"
 }
 
 # node_tests NAME SECONDS FILE…
@@ -50,8 +57,10 @@ command_test() {
 usage: ./dev test [--preset release|debug|asan|tsan] [PART…]
 
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
-native (all of those), web (the client's own tests), browser (the page in Chromium against the real server),
-tools (./dev itself and the bundle). The last line is `N passed, N failed, N skipped`; exit code 1 when
+native (all of those), web (the client's own tests), wire (the npm package ws against the real server), browser
+(the page in Chromium against it), tools (./dev itself and the bundle), fuzz (parsers and decoders under hostile
+input, some seconds each), threads (network and encoder under the thread sanitizer). The last two have presets of
+their own. The last line is `N passed, N failed, N skipped`; exit code 1 when
 anything failed. Reports: build/reports/*.xml, logs: build/logs.
 TEXT
     return
@@ -59,10 +68,10 @@ TEXT
   local preset rest part parts reports=()
   take_preset "$@"
   parts=("${rest[@]}")
-  ((${#parts[@]} > 0)) || parts=(native web browser tools)
+  ((${#parts[@]} > 0)) || parts=(native web wire browser tools fuzz threads)
   for part in "${parts[@]}"; do
     case "$part" in
-      native | unit | integration | accuracy | stability | gpu | web | browser | tools) ;;
+      native | unit | integration | accuracy | stability | gpu | web | wire | browser | tools | fuzz | threads) ;;
       *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
     esac
   done
@@ -72,11 +81,14 @@ TEXT
   prepare_tests "${parts[@]}"
   for part in "${parts[@]}"; do
     case "$part" in
-      native) test_native native ;;
+      native) test_native native "$preset" ;;
+      fuzz) test_native fuzz fuzz ;;
+      threads) test_native threads tsan threads ;;
       web) test_web ;;
+      wire) test_wire ;;
       browser) node_tests browser "$browser_limit_s" tests/browser/*.test.mjs ;;
       tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs ;;
-      *) test_native "$part" "$part" ;;
+      *) test_native "$part" "$preset" "$part" ;;
     esac
   done
   trap - EXIT
@@ -89,7 +101,7 @@ prepare_tests() {
   [[ "$wanted" != *" browser "* ]] || groups+=(browser)
   [[ "$wanted" != *" tools "* ]] || groups+=(bundle lint)
   [[ ! "$wanted" =~ \ (native|unit|integration|accuracy|stability|gpu)\  ]] || with_native=true
-  [[ ! "$wanted" =~ \ (web|browser|tools)\  ]] || with_node=true
+  [[ ! "$wanted" =~ \ (web|wire|browser|tools)\  ]] || with_node=true
 
   need_packages "${groups[@]}"
   lock_build
@@ -97,11 +109,14 @@ prepare_tests() {
   ! "$with_node" || need_node
   if "$with_native"; then
     build_server "$preset"
-  elif [[ "$wanted" =~ \ (browser|tools)\  ]]; then
+  elif [[ "$wanted" =~ \ (wire|browser|tools)\  ]]; then
     build_server "$preset" spindrift
   fi
+  [[ "$wanted" != *" fuzz "* ]] || build_fuzz
+  [[ "$wanted" != *" threads "* ]] || build_server tsan net_test join_leave_test
   [[ "$wanted" != *" web "* ]] || npm_install web-client web
-  [[ ! "$wanted" =~ \ (browser|tools)\  ]] || build_web
+  [[ ! "$wanted" =~ \ (wire|browser|tools)\  ]] || build_web
   [[ "$wanted" != *" browser "* ]] || npm_install tests/browser browser
+  [[ "$wanted" != *" wire "* ]] || npm_install tests/wire wire
   unlock_build
 }

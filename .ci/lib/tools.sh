@@ -106,7 +106,7 @@ TEXT
   fi
   case "${1:-}" in
     "") [[ ! -d build ]] || find build -mindepth 1 -maxdepth 1 -not -name tools -exec rm -rf {} + ;;
-    --all) rm -rf build web-client/node_modules tests/browser/node_modules ;;
+    --all) rm -rf build web-client/node_modules tests/browser/node_modules tests/wire/node_modules ;;
     *) fail 2 "clean does not know '$1'; see ./dev clean --help" ;;
   esac
   rm -rf dist "$web_dist" web-client/src/gen

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <boost/asio/as_tuple.hpp>
@@ -14,8 +15,8 @@
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
+#include "http_request.h"
 #include "origin.h"
-#include "url.h"
 
 namespace spindrift::net {
 namespace {
@@ -26,7 +27,8 @@ namespace http = boost::beast::http;
 
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
-constexpr std::uint32_t kHeaderMaxBytes = 16 * 1024;
+/// What was read and not yet parsed: a header and as much as one read brings. A bound of our own beside the parser's.
+constexpr std::size_t kReadBufferMaxBytes = 128 * 1024;
 /// The kernel takes this much from us ahead of the wire; the rest of a backlog stays in the outbox, where it is
 /// dropped.
 constexpr int kUnsentLowWaterBytes = 128 * 1024;
@@ -74,21 +76,6 @@ void fillHead(Fields& response, const Reply& reply, bool keep_alive) {
   response.keep_alive(keep_alive);
 }
 
-/// What a request that Beast's parser refused gets; nullopt if there is nobody to answer.
-std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, std::size_t body_max_bytes) {
-  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return textReply(431, "The request's header is larger than " + std::to_string(kHeaderMaxBytes) + " bytes.");
-  }
-  if (error == http::error::body_limit) {
-    return textReply(413, "The request's body is larger than " + std::to_string(body_max_bytes) + " bytes.");
-  }
-  if (error == http::error::end_of_stream || error == http::error::partial_message) return std::nullopt;
-  if (error.category() == make_error_code(http::error::bad_method).category()) {
-    return textReply(400, "This is not an HTTP request: " + error.message() + ".");
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 Connection::Connection(std::uint64_t id, asio::ip::tcp::socket socket, ServerContext& context)
@@ -97,7 +84,8 @@ Connection::Connection(std::uint64_t id, asio::ip::tcp::socket socket, ServerCon
       strand_(socket.get_executor()),
       peer_(peerName(socket)),
       address_(addressOf(socket)),
-      stream_(std::move(socket)) {
+      stream_(std::move(socket)),
+      buffer_(kReadBufferMaxBytes) {
   tune(stream_.socket());
 }
 
@@ -137,21 +125,24 @@ void Connection::cut() {
 
 asio::awaitable<void> Connection::run() {
   while (!stopping_) {
-    http::request_parser<http::string_body> parser;
-    parser.header_limit(kHeaderMaxBytes);
-    parser.body_limit(context_.options.request_body_max_bytes);
+    RequestParser parser;
+    bound(parser, context_.options.request_body_max_bytes);
     // One deadline for the whole request: a byte now and then does not extend it.
     stream_.expires_after(context_.options.handshake_timeout);
-    const auto [error, bytes_count] = co_await http::async_read(stream_, buffer_, parser, kToken);
+    auto [error, bytes_count] = co_await http::async_read_header(stream_, buffer_, parser, kToken);
+    auto refusal = error ? std::nullopt : refuseHead(parser);
+    if (!error && !refusal) {
+      std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
+    }
     if (error) {
       spdlog::debug("{}: no whole request: {}", peer_, error.message());
-      auto reply = replyToBadRequest(error, context_.options.request_body_max_bytes);
-      if (reply) {
-        context_.counters.refused(Refused::kRequest);
-        co_await sendLast(std::move(*reply), false);
-      }
-      co_return;
+      refusal = replyToBadRequest(error, context_.options.request_body_max_bytes);
     }
+    if (refusal) {
+      context_.counters.refused(Refused::kRequest);
+      co_await sendLast(std::move(*refusal), false);
+    }
+    if (error || refusal) co_return;
     if (auto reply = refuseAny(parser.get())) {
       co_await sendLast(std::move(*reply), parser.get().method() == http::verb::head);
       co_return;
@@ -161,18 +152,16 @@ asio::awaitable<void> Connection::run() {
       co_return;
     }
     const auto& request = parser.get();
-    const RequestHead head{std::string(request.method_string()), std::string(request.target()),
-                           std::string(request[http::field::if_none_match])};
+    const RequestHead head = headOf(request);
     auto routed = routeRequest(head, context_.files);
     Reply reply;
     if (auto* target = std::get_if<Target>(&routed)) {
-      const std::string& body = request.body();
       // HEAD is GET without the body, for every path alike; send() leaves the body out.
       HttpRequest question;
       question.method = head.method == "HEAD" ? "GET" : head.method;
       question.path = std::move(target->path);
       question.query = std::move(target->query);
-      question.body = {reinterpret_cast<const std::uint8_t*>(body.data()), body.size()};
+      question.body = bodyOf(request);
       question.authorization = std::string(request[http::field::authorization]);
       question.content_type = std::string(request[http::field::content_type]);
       std::optional<Reply> answer = co_await ask(question);
@@ -251,58 +240,22 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
     ~Place() { --context.reserved_session_count; }
   };
   const Place place(context_);
-  std::string room;
-  bool echo_subprotocol = false;
-  if (!place.granted) context_.counters.refused(Refused::kFull);
-  auto refusal = place.granted ? refuseUpgrade(request, room, echo_subprotocol)
-                               : std::make_unique<Reply>(textReply(
-                                     503, "The server is full: " + std::to_string(context_.options.max_session_count) +
-                                              " sessions are open; try again later."));
-  if (refusal) {
-    co_await sendLast(std::move(*refusal), false);
+  UpgradeDecision decision;
+  if (place.granted) {
+    decision = decideUpgrade(request, buffer_.size(), context_.application);
+  } else {
+    decision.why = Refused::kFull;
+    decision.refusal = textReply(503, "The server is full: " + std::to_string(context_.options.max_session_count) +
+                                          " sessions are open; try again later.");
+  }
+  if (decision.refusal) {
+    context_.counters.refused(decision.why);
+    co_await sendLast(std::move(*decision.refusal), false);
     co_return;
   }
   session_ = std::make_shared<Session>(std::move(stream_), context_);
   if (stopping_) session_->close(CloseCode::kGoingAway, "server is shutting down");
-  co_await session_->run(request, std::move(room), peer_, address_, echo_subprotocol);
-}
-
-std::unique_ptr<Reply> Connection::refuseUpgrade(const UpgradeRequest& request, std::string& room,
-                                                 bool& echo_subprotocol) {
-  const auto refuse = [this](Refused why, unsigned status, std::string line) {
-    context_.counters.refused(why);
-    return std::make_unique<Reply>(textReply(status, std::move(line)));
-  };
-  // RFC 6455 section 4.1: the client waits for the answer. The bytes would get lost between the two protocols.
-  if (buffer_.size() > 0) {
-    return refuse(Refused::kHandshake, 400, "Nothing may follow an upgrade request before it is answered.");
-  }
-  const auto target = parseTarget(std::string_view(request.target().data(), request.target().size()));
-  if (!target) return refuse(Refused::kHandshake, 400, "The request's path is not a plain absolute path.");
-  // A query ends up in logs and histories; nothing of ours belongs there.
-  if (target->query.find("token") != std::string::npos) {
-    return refuse(Refused::kHandshake, 400, "Tokens do not belong into addresses: send it in Hello.token.");
-  }
-  auto named = roomOfPath(target->path);
-  if (!named) {
-    return refuse(Refused::kHandshake, 404, "There is no WebSocket at " + target->path + ": use /ws or /ws/ROOM.");
-  }
-  room = std::move(*named);
-
-  const auto offered = request[http::field::sec_websocket_protocol];
-  for (const auto& protocol : http::token_list(offered)) echo_subprotocol |= protocol == kSubprotocol;
-  if (!offered.empty() && !echo_subprotocol) {
-    return refuse(Refused::kHandshake, 400,
-                  std::string("No offered subprotocol is known here: offer ") + kSubprotocol + ".");
-  }
-  try {
-    const core::Result<void> accepted = context_.application.acceptSession(room);
-    if (!accepted) return refuse(Refused::kRoom, 404, accepted.error().message);
-  } catch (const std::exception& error) {
-    spdlog::error("{}: acceptSession failed: {}", peer_, error.what());
-    return std::make_unique<Reply>(textReply(500, "The server failed on this request; its log says why."));
-  }
-  return nullptr;
+  co_await session_->run(request, std::move(decision.room), peer_, address_, decision.echo_subprotocol);
 }
 
 asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsigned version, bool keep_alive) {

@@ -36,8 +36,6 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
   /// The reply to a request that is not heard, upgrade or not: too many from its address, or from a foreign page.
   std::optional<Reply> refuseAny(const UpgradeRequest& request);
-  /// Null, or the reply that refuses the upgrade.
-  std::unique_ptr<Reply> refuseUpgrade(const UpgradeRequest& request, std::string& room, bool& echo_subprotocol);
   /// False if the connection is gone.
   boost::asio::awaitable<bool> send(const Reply& reply, bool head_only, unsigned version, bool keep_alive);
   /// Sends the last reply of this connection and hangs up so that the peer can still read it.

@@ -60,6 +60,13 @@ Reply textReply(unsigned status, std::string line) {
   return reply;
 }
 
+Reply webSocketReply() {
+  Reply reply = textReply(426, "This is a WebSocket address: connect with the subprotocol spindrift.v1.");
+  reply.headers.emplace_back("Upgrade", "websocket");
+  reply.headers.emplace_back("Sec-WebSocket-Version", kWebSocketVersion);
+  return reply;
+}
+
 std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files) {
   std::optional<Target> target = parseTarget(head.target);
   if (!target) return textReply(400, "The request's path is not a plain absolute path.");
@@ -69,11 +76,7 @@ std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& f
     }
     return *std::move(target);
   }
-  if (roomOfPath(target->path)) {
-    Reply reply = textReply(426, "This is a WebSocket address: connect with the subprotocol spindrift.v1.");
-    reply.headers.emplace_back("Upgrade", "websocket");
-    return reply;
-  }
+  if (roomOfPath(target->path)) return webSocketReply();
   if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, "GET, HEAD");
   return fileReply(head, target->path, files);
 }

@@ -35,6 +35,12 @@ struct Reply {
 /// One plain line of text (the newline is added here), not cached.
 Reply textReply(unsigned status, std::string line);
 
+/// RFC 6455.
+inline constexpr std::string_view kWebSocketVersion = "13";
+
+/// 426: what a request to a WebSocket address gets that is no upgrade, or one to another version.
+Reply webSocketReply();
+
 /// What a whole request gets: a reply at once (the web client's files, or an error with one line), or, for its paths,
 /// what the application says.
 std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files);

@@ -15,7 +15,7 @@
 namespace spindrift::test {
 
 /// Long enough for a loaded machine; reached only by a test that fails.
-inline constexpr std::chrono::milliseconds kPatience{20'000};
+inline constexpr std::chrono::milliseconds kPatience{60'000};
 
 class WsClient {
  public:

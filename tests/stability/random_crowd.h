@@ -37,7 +37,7 @@ class Crowd {
   /// Sends one command; whether the scene allowed it.
   bool send(sim::WaterSim& water) {
     const core::Action action = any(water);
-    if (stream::checkAgainstScene(core::Command{1, 1, action}, scene_)) return false;
+    if (stream::checkAgainstScene(core::Command{{}, 1, action}, scene_)) return false;
     if (const auto* splash = std::get_if<core::Splash>(&action)) return static_cast<bool>(water.start(*splash));
     if (const auto* wave = std::get_if<core::BreakingWave>(&action)) return static_cast<bool>(water.start(*wave));
     if (const auto* spawn = std::get_if<core::SpawnBoat>(&action))

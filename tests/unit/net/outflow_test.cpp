@@ -47,7 +47,7 @@ TEST(Outflow, SharesOneBufferAmongAllClients) {
 }
 
 TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
-  TestServer served;
+  TestServer served({.write_stall_timeout = 3 * test::kPatience});  // however slowly it reads in the end
   WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
   WsClient lively = served.watcher(1);
   // The first frame can never be written to the stuck client; it is in flight before the small ones come.

@@ -81,7 +81,10 @@ TEST(Stop, WorksUnderLoad) {
     });
   }
   crowd.emplace_back([&served, &done] {
-    while (!done) served.server->hub().publish("pool", 1, {core::share(core::Bytes(100'000)), {}});
+    while (!done) {
+      served.server->hub().publish("pool", 1, {core::share(core::Bytes(100'000)), {}});
+      std::this_thread::yield();
+    }
   });
   EXPECT_TRUE(eventually([&] { return served.server->stats().sent_frame_count > 100; }));
   served.server->stop();

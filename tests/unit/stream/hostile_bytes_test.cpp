@@ -13,9 +13,13 @@
 #include <spindrift/stream/scene_loader.h>
 
 #include "golden_cases.h"
+#include "invariants.h"
 
 namespace spindrift::stream {
 namespace {
+
+using test::isHarmless;
+using test::isWhole;
 
 constexpr int kCaseCount = 20'000;
 
@@ -99,50 +103,6 @@ std::vector<core::Bytes> validClientMessages() {
   return out;
 }
 
-bool isFinite(const core::Action& action) {
-  if (const auto* splash = std::get_if<core::Splash>(&action)) {
-    return std::isfinite(splash->x_m + splash->z_m + splash->radius_m + splash->depth_m + splash->duration_s);
-  }
-  if (const auto* wave = std::get_if<core::BreakingWave>(&action)) {
-    return std::isfinite(wave->amplitude_m + wave->length_m + wave->duration_s);
-  }
-  if (const auto* set = std::get_if<core::SetParameter>(&action)) return std::isfinite(set->value);
-  if (const auto* speed = std::get_if<core::SetSpeed>(&action)) return std::isfinite(speed->speed);
-  if (const auto* spawn = std::get_if<core::SpawnBoat>(&action)) {
-    const core::Boat& boat = spawn->boat;
-    return std::isfinite(boat.x_m + boat.z_m + boat.heading_deg + boat.length_m + boat.beam_m + boat.height_m +
-                         boat.density_ratio + boat.max_speed_mps + boat.throttle_ratio + boat.rudder_ratio);
-  }
-  if (const auto* control = std::get_if<core::ControlBoat>(&action)) {
-    return std::abs(control->throttle_ratio) <= 1 && std::abs(control->rudder_ratio) <= 1;
-  }
-  if (const auto* step = std::get_if<core::Step>(&action)) return step->tick_count >= 1 && step->tick_count <= 600;
-  if (const auto* change = std::get_if<core::ChangeScene>(&action)) {
-    return !change->name.empty() && change->name.size() <= 64 && change->name.find('/') == std::string::npos;
-  }
-  return true;
-}
-
-bool isHarmless(const ClientMessage& message) {
-  if (const auto* hello = std::get_if<Hello>(&message)) return hello->client.size() <= kClientNameMaxBytes;
-  if (const auto* subscribe = std::get_if<Subscribe>(&message)) {
-    return subscribe->max_rate_hz >= 0 && subscribe->max_rate_hz <= 240 && v1::Layer_IsValid(subscribe->layer);
-  }
-  if (const auto* ping = std::get_if<Ping>(&message)) return std::isfinite(ping->client_time_s);
-  if (const auto* command = std::get_if<core::Command>(&message)) return isFinite(command->action);
-  if (const auto* rejection = std::get_if<CommandRejection>(&message)) {
-    return rejection->reason != v1::REJECT_REASON_UNSPECIFIED && !rejection->message.empty();
-  }
-  return !std::get<Malformed>(message).message.empty();
-}
-
-bool allFinite(const std::vector<float>& values) {
-  for (const float value : values) {
-    if (!std::isfinite(value)) return false;
-  }
-  return true;
-}
-
 v1::Scene fullScene() {
   const auto scene = parseSceneText("wave {} particles {} coupling {} foam {} boats {} obstacles { rock { x_m: 4 } }",
                                     "hostile.textproto");
@@ -202,16 +162,14 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
     PackedFoamDecoder packed_foam;
     if (const auto surface = frame.has_surface_predicted() ? packed.decode(frame) : decodeSurface(frame)) {
       ++decoded_count;
-      ASSERT_TRUE(allFinite(surface->elevation_m)) << "case " << i;
-      ASSERT_EQ(surface->elevation_m.size(), std::size_t{surface->resolution_count} * surface->resolution_count);
+      ASSERT_TRUE(isWhole(*surface)) << "case " << i;
     } else if (const auto particles =
                    frame.has_particles_by_cell() ? decodePackedParticles(frame) : decodeParticles(frame)) {
       ++decoded_count;
-      ASSERT_TRUE(allFinite(particles->position_m) && allFinite(particles->velocity_mps)) << "case " << i;
-      ASSERT_EQ(particles->position_m.size(), std::size_t{3} * particles->count);
+      ASSERT_TRUE(isWhole(*particles)) << "case " << i;
     } else if (const auto foam = frame.has_foam_predicted() ? packed_foam.decode(frame) : decodeFoam(frame)) {
       ++decoded_count;
-      ASSERT_EQ(foam->foam.size(), std::size_t{foam->resolution_count} * foam->resolution_count);
+      ASSERT_TRUE(isWhole(*foam)) << "case " << i;
     } else if (const auto bodies = decodeBodies(frame)) {
       ++decoded_count;
       ASSERT_EQ(bodies->size(), frame.bodies_fixed28().count());

@@ -1,0 +1,67 @@
+// Bytes from a client, up to the point where a command is handed to a room. Two scenes: one with every part, one with
+// the wave alone.
+#include <optional>
+#include <string>
+#include <variant>
+
+#include <spindrift/stream/api_message.h>
+#include <spindrift/stream/client_message.h>
+#include <spindrift/stream/parameters.h>
+#include <spindrift/stream/scene_loader.h>
+
+#include "fuzz.h"
+#include "invariants.h"
+
+namespace spindrift::fuzz {
+namespace {
+
+v1::Scene sceneOf(const char* text) {
+  const auto scene = stream::parseSceneText(text, "fuzz.textproto");
+  must(static_cast<bool>(scene), "the target's own scenes load");
+  return *scene;
+}
+
+void checkCommand(const core::Command& command, const v1::Scene& scene) {
+  const auto rejection = stream::checkAgainstScene(command, scene);
+  if (rejection) {
+    must(rejection->reason != v1::REJECT_REASON_UNSPECIFIED, "a rejection has a reason");
+    must(!rejection->message.empty() && rejection->message.find('\n') == std::string::npos, "a rejection has one line");
+    must(rejection->command_id == command.command_id, "a rejection names its command");
+  } else if (const auto* set = std::get_if<core::SetParameter>(&command.action)) {
+    v1::Scene changed = scene;
+    must(!stream::setParameter(changed, set->path, set->value), "a parameter that is accepted can be set");
+    must(!stream::checkAgainstScene(command, changed), "and set again");
+  }
+}
+
+}  // namespace
+}  // namespace spindrift::fuzz
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace spindrift;
+  using fuzz::must;
+  static const v1::Scene full = fuzz::sceneOf(
+      "wave { resolution_count: 64 } particles { count: 100 } coupling {} foam {} boats {} "
+      "obstacles { rock { x_m: 4 } } storm {}");
+  static const v1::Scene wave_only = fuzz::sceneOf("wave { resolution_count: 64 depth_m: 0.5 }");
+  const stream::ClientMessage message = stream::parseClientMessage({data, size});
+  must(test::isHarmless(message), "what comes out is finite and in range");
+  if (const auto* hello = std::get_if<stream::Hello>(&message)) {
+    const auto refusal = stream::checkVersion(*hello);
+    must(refusal.has_value() == (hello->major != stream::kWireMajor), "another major version is refused, no other");
+  }
+  if (const auto* command = std::get_if<core::Command>(&message)) {
+    fuzz::checkCommand(*command, full);
+    fuzz::checkCommand(*command, wave_only);
+  }
+  // The same commands as text, from the REST interface.
+  const auto parsed = stream::parseCommandJson({reinterpret_cast<const char*>(data), size});
+  if (const auto* command = std::get_if<core::Command>(&parsed)) {
+    must(test::isHarmless(*command), "what comes out of JSON is finite and in range");
+    fuzz::checkCommand(*command, full);
+    const auto again = stream::checkCommand(stream::toWire(*command));
+    must(std::holds_alternative<core::Command>(again), "a command that was taken is taken again from a log");
+  }
+  (void)stream::parseCreateRoomJson({reinterpret_cast<const char*>(data), size});
+  return 0;
+}

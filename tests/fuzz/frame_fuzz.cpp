@@ -1,0 +1,130 @@
+// Frames as a client reads them. An input is one serialized ServerMessage or several with a mark between them; the
+// decoders of packed planes keep their state from one to the next. The mutator of this target damages payloads inside
+// of messages that stay whole; lengths and checksums would stop almost every blind change before it reached a decoder.
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/stream/crc32c.h>
+#include <spindrift/stream/frame_decoder.h>
+
+#include "fuzz.h"
+#include "invariants.h"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed);
+
+namespace spindrift::fuzz {
+namespace {
+
+constexpr std::string_view kMark = "\xff\xff====";
+/// A larger plane or count is only slower: decoders are tested at their bounds elsewhere.
+constexpr std::uint32_t kResolutionMaxCount = 128;
+constexpr std::uint32_t kParticleMaxCount = 4096;
+
+std::vector<std::string> split(std::string_view input) {
+  std::vector<std::string> out;
+  while (true) {
+    const std::size_t mark = input.find(kMark);
+    out.emplace_back(input.substr(0, mark));
+    if (mark == std::string_view::npos) return out;
+    input.remove_prefix(mark + kMark.size());
+  }
+}
+
+bool isSmall(const v1::LayerFrame& frame) {
+  return frame.surface_predicted().resolution_count() <= kResolutionMaxCount &&
+         frame.foam_predicted().resolution_count() <= kResolutionMaxCount &&
+         frame.particles_by_cell().count() <= kParticleMaxCount;
+}
+
+void setChecksum(v1::LayerFrame& frame) {
+  frame.set_crc32c(
+      stream::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+}
+
+template <typename Decoded>
+void check(const Decoded& decoded) {
+  must(decoded ? test::isWhole(*decoded) : !decoded.error().message.empty(),
+       "a frame decodes to finite values, as many as it says, or not at all");
+}
+
+/// A frame with a wrong checksum is refused, whatever else it says.
+void checkRefused(const v1::LayerFrame& frame) {
+  must(!stream::decodeSurface(frame) && !stream::decodeParticles(frame) && !stream::decodeFoam(frame) &&
+           !stream::decodeBodies(frame) && !stream::decodePackedParticles(frame) &&
+           !stream::PackedSurfaceDecoder().decode(frame) && !stream::PackedFoamDecoder().decode(frame),
+       "a wrong checksum is noticed");
+}
+
+class Client {
+ public:
+  void read(const v1::LayerFrame& frame) {
+    check(stream::decodeSurface(frame));
+    check(stream::decodeParticles(frame));
+    check(stream::decodeFoam(frame));
+    if (const auto bodies = stream::decodeBodies(frame)) {
+      must(bodies->size() == frame.bodies_fixed28().count(), "as many bodies as the frame says");
+    }
+    check(packed_surface_.decode(frame));
+    check(packed_foam_.decode(frame));
+    check(stream::decodePackedParticles(frame));
+  }
+
+ private:
+  stream::PackedSurfaceDecoder packed_surface_;
+  stream::PackedFoamDecoder packed_foam_;
+};
+
+/// Another payload for one of the frames, and the checksum that belongs to it. False: there is no frame to change.
+bool damagePayload(std::string& message_bytes, std::size_t growth_max_bytes) {
+  auto message =
+      stream::parseServerMessage({reinterpret_cast<const std::uint8_t*>(message_bytes.data()), message_bytes.size()});
+  if (!message || !message->has_frame()) return false;
+  v1::LayerFrame& frame = *message->mutable_frame();
+  std::string& payload = *frame.mutable_payload();
+  const std::size_t before = payload.size();
+  payload.resize(before + growth_max_bytes);
+  payload.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(payload.data()), before, payload.size()));
+  setChecksum(frame);
+  message_bytes = message->SerializeAsString();
+  return true;
+}
+
+}  // namespace
+}  // namespace spindrift::fuzz
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace spindrift;
+  fuzz::Client client;
+  for (const std::string& bytes : fuzz::split({reinterpret_cast<const char*>(data), size})) {
+    const auto message =
+        stream::parseServerMessage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    if (!message || !message->has_frame() || !fuzz::isSmall(message->frame())) continue;
+    const v1::LayerFrame& frame = message->frame();
+    v1::LayerFrame whole = frame;
+    fuzz::setChecksum(whole);
+    if (whole.crc32c() != frame.crc32c()) fuzz::checkRefused(frame);
+    client.read(whole);
+  }
+  return 0;
+}
+
+std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed) {
+  using namespace spindrift;
+  std::minstd_rand random(seed);
+  if (random() % 2 == 0) return LLVMFuzzerMutate(data, size, max_size);
+  std::vector<std::string> messages = fuzz::split({reinterpret_cast<const char*>(data), size});
+  std::string& chosen = messages[random() % messages.size()];
+  constexpr std::size_t kGrowthMaxBytes = 64;
+  if (!fuzz::damagePayload(chosen, kGrowthMaxBytes)) return LLVMFuzzerMutate(data, size, max_size);
+  std::string joined = messages.front();
+  for (std::size_t i = 1; i < messages.size(); ++i) joined.append(fuzz::kMark).append(messages[i]);
+  if (joined.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
+  std::memcpy(data, joined.data(), joined.size());
+  return joined.size();
+}

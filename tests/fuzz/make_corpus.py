@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Writes the seeds of the fuzz targets below corpus/ from messages and requests in words.
+
+usage: make_corpus.py            (needs protoc)
+
+Frames: rows of golden messages that build on each other. Whole scenes and single golden messages are seeds where they
+lie, see CMakeLists.txt.
+"""
+
+import subprocess
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+PROTO = ROOT / "proto"
+
+CLIENT_MESSAGES = {
+    "hello": 'hello { version { major: 1 } client: "seed \\303\\251" }',
+    "hello_other_major": 'hello { version { major: 2 minor: 7 } client: "seed" }',
+    "subscribe_plain": "subscribe { layer: LAYER_SURFACE max_rate_hz: 30 }",
+    "subscribe_packed": "subscribe { layer: LAYER_PARTICLES max_rate_hz: 240 packing: PACKING_PACKED }",
+    "unsubscribe": "subscribe { layer: LAYER_FOAM }",
+    "subscribe_nan": "subscribe { layer: LAYER_SURFACE max_rate_hz: nan }",
+    "ping": "ping { client_time_s: 12.5 }",
+    "ping_infinite": "ping { client_time_s: inf }",
+    "splash": "command { command_id: 1 splash { x_m: 1 z_m: -1 radius_m: 1.2 depth_m: 0.3 duration_s: 0.2 } }",
+    "splash_defaults": "command { command_id: 1 splash { } }",
+    "splash_outside": "command { command_id: 2 splash { x_m: 1e5 } }",
+    "splash_deep": "command { command_id: 3 splash { depth_m: 9 radius_m: 0.01 } }",
+    "wave": "command { command_id: 4 breaking_wave { side: SIDE_MINUS_Z amplitude_m: 0.5 length_m: 3 duration_s: 0.5 } }",
+    "swell": "command { command_id: 5 breaking_wave { side: SIDE_DIRECTION direction_deg: 30 shape: WAVE_SHAPE_SWELL } }",
+    "parameter": 'command { command_id: 6 set_parameter { path: "particles.viscosity_pas" value: 20 } }',
+    "parameter_depth": 'command { command_id: 7 set_parameter { path: "wave.depth_m" value: 0.3 } }',
+    "parameter_restart": 'command { command_id: 8 set_parameter { path: "wave.resolution_count" value: 64 } }',
+    "parameter_storm": 'command { command_id: 9 set_parameter { path: "storm.level_ratio" value: 0.5 } }',
+    "parameter_unknown": 'command { command_id: 10 set_parameter { path: "wave.depth_m.deep" value: 1 } }',
+    "parameter_nan": 'command { command_id: 11 set_parameter { path: "gravity_mps2" value: nan } }',
+    "reset": "command { command_id: 12 reset { } }",
+    "pause": "command { command_id: 13 set_paused { paused: true } }",
+    "speed": "command { command_id: 14 set_speed { speed: 2 } }",
+    "spawn_boat": "command { command_id: 15 spawn_boat { boat { x_m: 3 heading_deg: -90 length_m: 2.4 } } }",
+    "spawn_boat_in_rock": "command { command_id: 16 spawn_boat { boat { x_m: 4 } } }",
+    "control_boat": "command { command_id: 17 control_boat { boat_id: 1 throttle_ratio: 0.5 rudder_ratio: -1 } }",
+    "remove_boat": "command { command_id: 18 remove_boat { boat_id: 1 } }",
+    "step": "command { command_id: 19 step { tick_count: 10 } }",
+    "change_scene": 'command { command_id: 20 change_scene { name: "harbor" } }',
+    "change_scene_path": 'command { command_id: 21 change_scene { name: "../harbor" } }',
+    "no_action": "command { command_id: 22 }",
+}
+
+FRAME_ROWS = {
+    "surface_row": ["surface_packed_0.bin", "surface_packed_1.bin", "surface_packed_2.bin"],
+    "surface_gap": ["surface_packed_0.bin", "surface_packed_2.bin"],
+    "foam_row": ["foam_packed_0.bin", "foam_packed_1.bin"],
+    "mixed": ["surface_packed_0.bin", "foam_packed_0.bin", "particles_packed.bin", "surface_packed_1.bin", "foam_packed_1.bin"],
+    "broken_then_whole": ["surface_packed_0.bin", "bad_surface_packed_cut.bin", "surface_packed_1.bin", "surface_packed_0.bin"],
+}
+MARK = b"\xff\xff===="
+
+UPGRADE = (
+    "GET {target} HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+    "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3RzIQ==\r\n{more}\r\n"
+)
+REQUESTS = {
+    "page": "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "head": "HEAD /index.html HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "asset": "GET /assets/a.js?v=1 HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: \"1-2\", W/\"3\"\r\n\r\n",
+    "any_etag": "GET /assets/a.js HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: *\r\n\r\n",
+    "hidden": "GET /.hidden HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "link": "GET /out.txt HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "above": "GET /assets/%2e%2e/../%2e./secret.txt HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "escapes": "GET /%41%00%zz%5c HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "health_two": "GET /healthz HTTP/1.1\r\nHost: a\r\n\r\nGET /readyz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n",
+    "old": "GET /metrics HTTP/1.0\r\n\r\n",
+    "old_kept": "GET /healthz HTTP/1.0\r\nConnection: keep-alive\r\n\r\nGET / HTTP/1.0\r\n\r\n",
+    "post": "POST /api/v1/rooms HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\n\r\nbody",
+    "post_big": "POST /api/v1/rooms HTTP/1.1\r\nHost: a\r\nContent-Length: 4000000000\r\n\r\nbody",
+    "chunked": "POST /api/v1/rooms HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n4;x=y\r\nbody\r\n0\r\nA: b\r\n\r\n",
+    "chunked_and_length": "POST /api/x HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+    "folded": "GET / HTTP/1.1\r\nHost: a\r\nX-Long: a\r\n  b\r\n\r\n",
+    "expect": "PUT /api/x HTTP/1.1\r\nHost: a\r\nExpect: 100-continue\r\nContent-Length: 1\r\n\r\nx",
+    "trace": "TRACE /api/x HTTP/1.1\r\nHost: a\r\n\r\n",
+    "connect": "CONNECT localhost:1 HTTP/1.1\r\nHost: a\r\n\r\n",
+    "star": "OPTIONS * HTTP/1.1\r\nHost: a\r\n\r\n",
+    "absolute": "GET http://localhost/ HTTP/1.1\r\nHost: a\r\n\r\n",
+    "plain_ws": "GET /ws HTTP/1.1\r\nHost: a\r\n\r\n",
+    "upgrade": UPGRADE.format(target="/ws", more=""),
+    "upgrade_room": UPGRADE.format(target="/ws/pool", more="Sec-WebSocket-Protocol: chat, spindrift.v1\r\n"),
+    "upgrade_other": UPGRADE.format(target="/ws/pool", more="Sec-WebSocket-Protocol: spindrift.v2\r\n"),
+    "upgrade_nowhere": UPGRADE.format(target="/ws/%2e%2e%2fpool", more=""),
+    "upgrade_early_frame": UPGRADE.format(target="/ws", more="") + "\u0082\u0080\0\0\0\0",
+    "chunked_empty": "POST /api/x HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+    "not_http": "hello water\r\n\r\n",
+    "endless": "GET / HTTP/1.1\r\nHost: " + "a" * 300,
+}
+
+SCENES = {
+    "wave": "wave {}\n",
+    "particles": "particles { count: 100 boundary_x: BOUNDARY_WALL }\n",
+    "every_part": "name: 'full' gravity_mps2: 9.81\nwave { resolution_count: 64 depth_m: 1.5 stencil: STENCIL_NINE_POINT }\n"
+    "particles { count: 100 boundary_x: BOUNDARY_WALL }\ncoupling { lattice_count: 3 }\nfoam { lifetime_s: 1e0 }\n"
+    "events { at_s: 1 effect { splash { x_m: -2 depth_m: 0.4 } } }\n"
+    "obstacles { rock { x_m: 5 } }\nboats { boats { z_m: -3 } }\nstorm { level_ratio: 0.5 }\n",
+    "fine": "fidelity: FIDELITY_FINE wave { resolution_count: 64 }\n",
+    "wrong": "wave { depth_m: -1 colour: 'blue' }\nparticles { count: 1e9 }\nnonsense: 1\nname: 'a b'\n",
+    "wrong_types": "wave: 3\ngravity_mps2: 'nine'\nevents { at_s: nan }\nwave { stencil: STENCIL_TEN }\n",
+    "braces": "wave { { { [ < > } }\n",
+    "comment": "# nothing but words\n",
+    "repeated": "wave {} wave {} gravity_mps2: 1 gravity_mps2: 2\n",
+    "unknown": "[type.googleapis.com/spindrift.v1.Scene] { wave {} }\n\tx: \"\\x00\\n\"\n",
+}
+
+
+def encoded(text):
+    command = ["protoc", f"--proto_path={PROTO}", "--encode=spindrift.v1.ClientMessage", "spindrift/v1/wire.proto"]
+    return subprocess.run(command, input=text.encode(), stdout=subprocess.PIPE, check=True).stdout
+
+
+def write(target, seeds):
+    folder = HERE / "corpus" / target
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.iterdir():
+        old.unlink()
+    for name, content in seeds.items():
+        (folder / name).write_bytes(content)
+
+
+def main():
+    golden = ROOT / "tests" / "golden"
+    write("client_message", {name: encoded(text) for name, text in CLIENT_MESSAGES.items()})
+    write("frame", {name: MARK.join((golden / file).read_bytes() for file in row) for name, row in FRAME_ROWS.items()})
+    # The first byte says how large the pieces are that a request arrives in.
+    pieces = (b"\xff", b"\x00", b"\x03")
+    write("http", {name: pieces[i % 3] + text.encode("latin-1") for i, (name, text) in enumerate(REQUESTS.items())})
+    write("scene", {name: text.encode() for name, text in SCENES.items()})
+
+
+if __name__ == "__main__":
+    main()

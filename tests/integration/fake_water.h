@@ -1,0 +1,159 @@
+// The network and the encoder with no water behind them: a thread makes frames of random samples and hands them to the
+// server's own EncoderThread. Needs no device, so sanitizers see every thread there is.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <spindrift/net/server.h>
+#include <spindrift/stream/client_message.h>
+#include <spindrift/stream/frame_encoder.h>
+#include <spindrift/stream/scene_loader.h>
+#include <spindrift/stream/server_message.h>
+
+#include "encoder_thread.h"
+
+namespace spindrift::test {
+
+inline constexpr std::uint32_t kFakeResolutionCount = 32;
+inline constexpr double kFakeQuantum_m = 1.0 / 1024;
+/// The first sample of every frame, so that a reader can tell whether the samples belong to the tick.
+inline std::int16_t markOf(std::uint64_t tick) {
+  return static_cast<std::int16_t>(tick % 30'000);
+}
+
+/// One frame; the spans live in what the lease owns, as a readback slot does.
+inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
+  struct Slot {
+    std::vector<std::uint32_t> surface = std::vector<std::uint32_t>(kFakeResolutionCount * kFakeResolutionCount / 2);
+    std::vector<std::uint32_t> foam = std::vector<std::uint32_t>(kFakeResolutionCount * kFakeResolutionCount / 4);
+    std::vector<std::uint32_t> particles;
+  };
+  const auto slot = std::make_shared<Slot>();
+  for (std::uint32_t& word : slot->surface) word = random() & 0x003f003fU;
+  slot->surface[0] = static_cast<std::uint16_t>(markOf(tick));
+  for (std::uint32_t& word : slot->foam) word = random() & 0x0f000f00U;
+  slot->particles.resize(3 * (random() % 300));
+  for (std::uint32_t& word : slot->particles) word = static_cast<std::uint32_t>(random()) & 0x00ffffffU;
+
+  core::FrameView frame;
+  frame.tick = tick;
+  frame.time_s = static_cast<double>(tick) / 60;
+  frame.surface = core::SurfaceView{kFakeResolutionCount, 8.0, kFakeQuantum_m, slot->surface};
+  frame.foam = core::FoamView{kFakeResolutionCount, 8.0, slot->foam};
+  core::ParticleView particles;
+  particles.count = static_cast<std::uint32_t>(slot->particles.size() / 3);
+  for (double& min : particles.min_m) min = -4.0;
+  for (double& max : particles.max_m) max = 4.0;
+  particles.max_speed_mps = 8.0;
+  particles.radius_m = 0.0625;
+  particles.words = slot->particles;
+  frame.particles = particles;
+  frame.diagnostics.emplace();
+  frame.lease = slot;
+  return frame;
+}
+
+/// What a client meets: greets, takes subscriptions as the real gateway does, answers every command with an Ack.
+class FakeGateway final : public net::Application {
+ public:
+  FakeGateway() {
+    auto scene = stream::parseSceneText("wave {} particles { count: 100 } coupling {} foam {}", "fake.textproto");
+    scene_ = *scene;
+  }
+
+  void serverStarts(net::Hub& hub) override { hub_ = &hub; }
+  core::Result<void> acceptSession(const std::string&) override { return {}; }
+  void sessionOpened(net::SessionId session, const std::string& room, const std::string&) override {
+    ++opened_count;
+    hub_->join(session, room);
+    stream::GreetingFacts facts;
+    facts.room = room;
+    facts.session_id = session;
+    hub_->sendControl(session, stream::greeting(facts, scene_));
+  }
+  void sessionMessage(net::SessionId session, core::ByteView bytes) override {
+    const stream::ClientMessage message = stream::parseClientMessage(bytes);
+    if (const auto* subscribe = std::get_if<stream::Subscribe>(&message)) {
+      const stream::Stream wanted = stream::streamOf(subscribe->layer, subscribe->packing);
+      for (const stream::Stream stream : stream::allStreams()) {
+        if (stream.layer != wanted.layer) continue;
+        hub_->watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
+                    stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0);
+      }
+    } else if (const auto* ping = std::get_if<stream::Ping>(&message)) {
+      hub_->sendControl(session, stream::pong(ping->client_time_s, 0.0));
+    } else if (const auto* command = std::get_if<core::Command>(&message)) {
+      hub_->broadcastControl(kRooms[command->command_id % 2], stream::roomState(false, 1.0));
+      if (std::holds_alternative<core::Reset>(command->action)) hub_->join(session, kRooms[1]);
+      hub_->sendControl(session, stream::ack(command->command_id, 0));
+    }
+  }
+  void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }
+  void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
+
+  /// The rooms that frames are made for.
+  static inline const std::array<std::string, 2> kRooms{"", "pool"};
+
+  std::atomic<int> opened_count{0};
+  std::atomic<int> closed_count{0};
+
+ private:
+  net::Hub* hub_ = nullptr;
+  v1::Scene scene_;
+};
+
+/// A server, its encoder, and one thread a room that makes frames until the end.
+class FakeWater {
+ public:
+  explicit FakeWater(net::ServerOptions options) {
+    options.port = 0;
+    auto started = net::Server::start(options, gateway);
+    if (!started) throw std::runtime_error(started.error().message);
+    server = std::move(*started);
+    encoder = std::make_unique<app::EncoderThread>(server->hub());
+    for (std::size_t room = 0; room < makers_.size(); ++room) {
+      makers_[room] = std::thread([this, room] { makeFrames(room); });
+    }
+  }
+  ~FakeWater() {
+    stopping_ = true;
+    for (std::thread& maker : makers_) maker.join();
+    encoder->stop();
+    server->stop();
+  }
+  FakeWater(const FakeWater&) = delete;
+  FakeWater& operator=(const FakeWater&) = delete;
+
+  std::uint64_t tick(std::size_t room) const { return ticks_[room]; }
+  /// Returns once the room has made so many more frames.
+  void waitFrames(std::size_t room, std::uint64_t count) const {
+    const std::uint64_t end = ticks_[room] + count;
+    while (ticks_[room] < end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
+  FakeGateway gateway;
+  std::unique_ptr<net::Server> server;
+  std::unique_ptr<app::EncoderThread> encoder;
+
+ private:
+  void makeFrames(std::size_t room) {
+    std::minstd_rand random(static_cast<unsigned>(room) + 1);
+    while (!stopping_) {
+      encoder->submit(FakeGateway::kRooms[room], fakeFrame(++ticks_[room], random));
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+  std::atomic<bool> stopping_{false};
+  std::array<std::atomic<std::uint64_t>, 2> ticks_{};
+  std::array<std::thread, 2> makers_;
+};
+
+}  // namespace spindrift::test

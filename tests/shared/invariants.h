@@ -1,0 +1,78 @@
+// What holds for anything that hostile bytes may be taken for: the claims of the headers of stream, as questions.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <spindrift/stream/client_message.h>
+#include <spindrift/stream/frame_decoder.h>
+
+namespace spindrift::test {
+
+/// Every number of the action is finite and, where it has bounds of its own, inside them.
+inline bool isFinite(const core::Action& action) {
+  if (const auto* splash = std::get_if<core::Splash>(&action)) {
+    return std::isfinite(splash->x_m + splash->z_m + splash->radius_m + splash->depth_m + splash->duration_s);
+  }
+  if (const auto* wave = std::get_if<core::BreakingWave>(&action)) {
+    return std::isfinite(wave->amplitude_m + wave->length_m + wave->duration_s);
+  }
+  if (const auto* set = std::get_if<core::SetParameter>(&action)) return std::isfinite(set->value);
+  if (const auto* speed = std::get_if<core::SetSpeed>(&action)) return std::isfinite(speed->speed);
+  if (const auto* spawn = std::get_if<core::SpawnBoat>(&action)) {
+    const core::Boat& boat = spawn->boat;
+    return std::isfinite(boat.x_m + boat.z_m + boat.heading_deg + boat.length_m + boat.beam_m + boat.height_m +
+                         boat.density_ratio + boat.max_speed_mps + boat.throttle_ratio + boat.rudder_ratio);
+  }
+  if (const auto* control = std::get_if<core::ControlBoat>(&action)) {
+    return std::abs(control->throttle_ratio) <= 1 && std::abs(control->rudder_ratio) <= 1;
+  }
+  if (const auto* step = std::get_if<core::Step>(&action)) return step->tick_count >= 1 && step->tick_count <= 600;
+  if (const auto* change = std::get_if<core::ChangeScene>(&action)) {
+    return !change->name.empty() && change->name.size() <= 64 && change->name.find('/') == std::string::npos;
+  }
+  return true;
+}
+
+/// What parseClientMessage() promises about its result.
+inline bool isHarmless(const stream::ClientMessage& message) {
+  if (const auto* hello = std::get_if<stream::Hello>(&message)) {
+    return hello->client.size() <= stream::kClientNameMaxBytes && hello->name.size() <= stream::kPersonNameMaxBytes;
+  }
+  if (const auto* subscribe = std::get_if<stream::Subscribe>(&message)) {
+    return subscribe->max_rate_hz >= 0 && subscribe->max_rate_hz <= 240 && v1::Layer_IsValid(subscribe->layer);
+  }
+  if (const auto* ping = std::get_if<stream::Ping>(&message)) return std::isfinite(ping->client_time_s);
+  if (const auto* command = std::get_if<core::Command>(&message)) return isFinite(command->action);
+  if (const auto* rejection = std::get_if<stream::CommandRejection>(&message)) {
+    return rejection->reason != v1::REJECT_REASON_UNSPECIFIED && !rejection->message.empty();
+  }
+  return !std::get<stream::Malformed>(message).message.empty();
+}
+
+inline bool allFinite(const std::vector<float>& values) {
+  for (const float value : values) {
+    if (!std::isfinite(value)) return false;
+  }
+  return true;
+}
+
+/// As many values as the frame's numbers say, all finite.
+inline bool isWhole(const stream::SurfaceSamples& surface) {
+  return surface.elevation_m.size() == std::size_t{surface.resolution_count} * surface.resolution_count &&
+         allFinite(surface.elevation_m);
+}
+inline bool isWhole(const stream::ParticleSamples& particles) {
+  return particles.position_m.size() == std::size_t{3} * particles.count &&
+         particles.velocity_mps.size() == std::size_t{3} * particles.count &&
+         particles.tint.size() == particles.count && particles.foam.size() == particles.count &&
+         allFinite(particles.position_m) && allFinite(particles.velocity_mps);
+}
+inline bool isWhole(const stream::FoamSamples& foam) {
+  return foam.foam.size() == std::size_t{foam.resolution_count} * foam.resolution_count;
+}
+
+}  // namespace spindrift::test

@@ -1,0 +1,112 @@
+// The opening handshake as RFC 6455 section 4 wants it: what a server refuses, with which answer, and how long it
+// waits.
+#include <gtest/gtest.h>
+
+#include "test_application.h"
+#include "ws_frames.h"
+
+namespace spindrift::net {
+namespace {
+
+using test::bytesOf;
+using test::eventually;
+using test::FrameClient;
+using test::HttpAnswer;
+using test::httpExchange;
+using test::RawTcp;
+using test::TestServer;
+using test::upgradeRequest;
+
+const std::string kVersion = "Sec-WebSocket-Version: 13\r\n";
+const std::string kKey = "Sec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3RzIQ==\r\n";
+
+TEST(Upgrade, SaysWhichVersionItSpeaksToOtherVersions) {
+  const TestServer served;
+  for (const std::string version : {"", "Sec-WebSocket-Version: 8\r\n", "Sec-WebSocket-Version: 14\r\n",
+                                    "Sec-WebSocket-Version: thirteen\r\n", "Sec-WebSocket-Version:\r\n"}) {
+    const HttpAnswer answer = httpExchange(served.server->port(), upgradeRequest(version + kKey));
+    EXPECT_EQ(answer.status, 426U) << version;
+    EXPECT_EQ(answer.headers.at("sec-websocket-version"), "13") << version;
+    EXPECT_EQ(answer.headers.at("upgrade"), "websocket") << version;
+    EXPECT_EQ(answer.headers.at("x-content-type-options"), "nosniff") << version;
+  }
+  EXPECT_TRUE(served.application.opened().empty());
+  EXPECT_TRUE(served.serves());
+}
+
+TEST(Upgrade, RefusesKeysThatAreNotSixteenBytesInBase64) {
+  const TestServer served;
+  for (const std::string key :
+       {"", "Sec-WebSocket-Key:\r\n", "Sec-WebSocket-Key: c2hvcnQ=\r\n",
+        "Sec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3RzISE=\r\n", "Sec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3R*IQ==\r\n",
+        "Sec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3RzIQ==c3BpbmRyaWZ0IHRlc3RzIQ==\r\n"}) {
+    const HttpAnswer answer = httpExchange(served.server->port(), upgradeRequest(kVersion + key));
+    EXPECT_EQ(answer.status, 400U) << key;
+    EXPECT_EQ(answer.body, "An upgrade needs a Sec-WebSocket-Key of 16 bytes in base64.\n") << key;
+  }
+  EXPECT_TRUE(served.application.opened().empty());
+  EXPECT_TRUE(served.serves());
+}
+
+TEST(Upgrade, IsNoUpgradeWithAnotherMethodVersionOrWithoutItsHeaders) {
+  const TestServer served;
+  const std::string rest = "Host: localhost\r\nConnection: close\r\n" + kVersion + kKey;
+  for (const std::string& request :
+       {"POST /ws HTTP/1.1\r\nUpgrade: websocket\r\n" + rest, "GET /ws HTTP/1.1\r\nUpgrade: h2c\r\n" + rest,
+        "GET /ws HTTP/1.1\r\n" + rest, "GET /ws HTTP/1.0\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n" + kKey}) {
+    const HttpAnswer answer = httpExchange(served.server->port(), request + "\r\n");
+    EXPECT_EQ(answer.status, 426U) << request;
+    EXPECT_EQ(answer.headers.at("upgrade"), "websocket") << request;
+  }
+  EXPECT_TRUE(served.application.opened().empty());
+}
+
+TEST(Upgrade, TakesHeadersInAnyCaseAndAmongOthers) {
+  const TestServer served;
+  RawTcp tcp;
+  ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+  ASSERT_TRUE(
+      tcp.send("GET /ws HTTP/1.1\r\nhost: localhost\r\nCONNECTION: keep-alive, UpGrade\r\n"
+               "upgrade: WebSocket\r\nsec-websocket-version: 13\r\n"
+               "sec-websocket-key: c3BpbmRyaWZ0IHRlc3RzIQ==\r\n\r\n"));
+  const HttpAnswer answer = test::parseAnswer(tcp.receiveUntil("\r\n\r\n"));
+  EXPECT_EQ(answer.status, 101U);
+  // SHA-1 of the key and RFC 6455's GUID, in base64.
+  EXPECT_EQ(answer.headers.at("sec-websocket-accept"), "PJOazg5CsVYYcpdEKqexTJxLdz8=");
+  EXPECT_FALSE(answer.headers.contains("sec-websocket-extensions"));
+}
+
+TEST(Upgrade, TakesAHeaderThatComesByteByByte) {
+  const TestServer served;
+  RawTcp tcp;
+  ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+  for (const char byte : upgradeRequest()) ASSERT_TRUE(tcp.send({&byte, 1}));
+  EXPECT_TRUE(tcp.receiveUntil("hello ").starts_with("HTTP/1.1 101 "));
+}
+
+TEST(Upgrade, IsCutWhenItsHeaderTricklesOnForever) {
+  const TestServer served({.handshake_timeout = std::chrono::milliseconds(300)});
+  RawTcp tcp;
+  ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+  ASSERT_TRUE(tcp.send("GET /ws HTTP/1.1\r\nX-Long: "));
+  // Each byte comes well within the limit; the limit is on the whole.
+  EXPECT_TRUE(eventually([&] {
+    (void)tcp.receive(1, std::chrono::milliseconds(20));
+    return tcp.closed() || !tcp.send("x");
+  }));
+  EXPECT_TRUE(served.application.opened().empty());
+  EXPECT_TRUE(served.serves());
+}
+
+TEST(Upgrade, ASessionThatNeverEndsItsFirstFrameIsEvicted) {
+  TestServer served({.idle_timeout = std::chrono::milliseconds(400)});
+  FrameClient client;
+  ASSERT_TRUE(client.connect(served.server->port()));
+  ASSERT_TRUE(client.tcp().send(bytesOf({.payload = "echo half"}).substr(0, 9)));
+  EXPECT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
+  EXPECT_EQ(served.application.message_count, 0);
+  EXPECT_TRUE(served.serves());
+}
+
+}  // namespace
+}  // namespace spindrift::net

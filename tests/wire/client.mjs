@@ -1,0 +1,79 @@
+// A client made of the npm package `ws` and the messages generated from proto/: nothing of the page's own connection.
+import { create, fromBinary, toBinary } from "../../web-client/node_modules/@bufbuild/protobuf";
+import WebSocket from "ws";
+
+import { parse } from "../../web-client/src/codec/parse";
+import { ClientMessageSchema, ServerMessageSchema } from "../../web-client/src/gen/spindrift/v1/wire_pb";
+
+/** Far above what anything takes; reached only by a test that fails. */
+const kPatienceMs = 60_000;
+
+export class Client {
+  /** Everything received and not yet asked for, parsed. */
+  #inbox = [];
+  #wake = () => {};
+  #first;
+
+  constructor(port, path = "/ws") {
+    this.ws = new WebSocket(`ws://127.0.0.1:${port}${path}`, "spindrift.v1");
+    this.ws.binaryType = "arraybuffer";
+    this.closed = new Promise((resolve) => this.ws.on("close", (code, reason) => resolve({ code, reason: String(reason) })));
+    this.ws.on("message", (data, is_binary) => {
+      this.#first ??= data;
+      this.#inbox.push(is_binary ? parse(data) : { kind: "text" });
+      this.#wake();
+    });
+    this.ws.on("error", () => {}); // "close" follows
+  }
+
+  /** The first message that `accept` takes; the ones before it are forgotten. Rejects once closed or out of patience. */
+  async next(accept) {
+    const deadline_ms = Date.now() + kPatienceMs;
+    for (;;) {
+      while (this.#inbox.length > 0) {
+        const message = this.#inbox.shift();
+        if (accept(message)) return message;
+      }
+      const news = new Promise((resolve) => {
+        this.#wake = () => resolve(true);
+      });
+      let timer;
+      const patience = new Promise((resolve) => {
+        timer = setTimeout(() => resolve(false), Math.max(0, deadline_ms - Date.now()));
+      });
+      const more = await Promise.race([news, patience, this.closed.then(() => this.#inbox.length > 0)]);
+      clearTimeout(timer);
+      if (!more) throw new Error(`what was waited for did not come (socket state ${this.ws.readyState})`);
+    }
+  }
+  nextOf(kind) {
+    return this.next((message) => message.kind === kind);
+  }
+
+  /** What the greeting says; the page has no use for it, so parse() leaves it out. */
+  messageMaxBytes() {
+    return fromBinary(ServerMessageSchema, new Uint8Array(this.#first)).message.value.limits.messageMaxBytes;
+  }
+
+  send(message) {
+    this.ws.send(Client.bytesOf(message));
+  }
+  static bytesOf(message) {
+    return toBinary(ClientMessageSchema, create(ClientMessageSchema, { message }));
+  }
+  hello(major = 1) {
+    this.send({ case: "hello", value: { version: { major, minor: 0 }, client: "ws" } });
+  }
+  subscribe(layer, packing, maxRateHz = 60) {
+    this.send({ case: "subscribe", value: { layer, packing, maxRateHz } });
+  }
+  command(commandId, action) {
+    this.send({ case: "command", value: { commandId, action } });
+  }
+
+  /** The closing handshake; what the server said. */
+  async close(code = 1000) {
+    this.ws.close(code);
+    return this.closed;
+  }
+}
