@@ -47,18 +47,22 @@ bool ParticleOrder::sortByCounting(std::span<const std::uint32_t> keys, std::spa
   items_.resize(keys.size());
   auto* bytes = reinterpret_cast<std::uint8_t*>(counts_.data());
   std::uint8_t* ranks = ranks_.data();
-  std::uint32_t highest = 0;
+  std::uint32_t overflow = 0;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::uint8_t rank = bytes[keys[i]]++;
     ranks[i] = rank;
-    highest = std::max<std::uint32_t>(highest, rank);
+    overflow |= (rank + 1u) & 0x100u;
   }
-  if (highest == 255) return false;
+  if (overflow != 0) return false;
   cells_.clear();
   extras_.clear();
   std::uint32_t begin = 0, next_cell = 0;
+  const std::uint64_t* words = counts_.data();
   for (std::uint32_t cell = 0; cell < cell_count; ++cell) {
-    std::uint64_t counts = counts_[cell];
+    while (cell + 4 <= cell_count && (words[cell] | words[cell + 1] | words[cell + 2] | words[cell + 3]) == 0)
+      cell += 4;
+    if (cell == cell_count) break;
+    std::uint64_t counts = words[cell];
     if (counts == 0) continue;
     const std::uint64_t sum = sumOfBytes(counts);
     if (sum > 255) return false;

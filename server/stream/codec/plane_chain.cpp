@@ -6,12 +6,6 @@
 #include "surface_fit.h"
 
 namespace spindrift::stream {
-namespace {
-
-/// Samples that a fit looks at: 4,096 instead of 2,048 save less than 1 % of the bits.
-constexpr std::size_t kFitCount = 2048;
-
-}  // namespace
 
 PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_whole) {
   const bool is_first = before_.resolution() != next_.resolution();
@@ -27,7 +21,7 @@ PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_whole) {
 PlaneChainEncoder::Form PlaneChainEncoder::continuing() {
   Form out;
   const SurfaceHistory history{&before_, &earlier_};
-  out.weights = fitWeights(next_, history, kFitCount);
+  out.weights = fitWeights(next_, history);
   encodePlane(next_, history, out.weights, residuals_);
   residuals_.finish(out.payload);
   return out;
@@ -35,10 +29,10 @@ PlaneChainEncoder::Form PlaneChainEncoder::continuing() {
 
 PlaneChainEncoder::Form PlaneChainEncoder::whole() {
   Form out;
-  out.weights = fitWeights(next_, {}, kFitCount);
+  out.weights = fitWeights(next_, {});
   encodePlane(next_, {}, out.weights, residuals_);
   const SurfaceHistory history{&next_, nullptr};
-  out.earlier_weights = fitWeights(before_, history, kFitCount);
+  out.earlier_weights = fitWeights(before_, history);
   encodePlane(before_, history, out.earlier_weights, residuals_);
   residuals_.finish(out.payload);
   return out;

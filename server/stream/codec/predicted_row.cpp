@@ -92,9 +92,9 @@ SPINDRIFT_AVX2 __m256i shifted(__m256i sum) {
   return _mm256_srai_epi32(_mm256_slli_epi32(sum, 16 - kWeightBits), 16);
 }
 
-/// From sample 1 on in steps of 16; returns where it ended. Not for row 0, where not all neighbours are known.
-__attribute__((target("avx2"))) std::size_t residualsInSixteens(const std::int16_t* here, const std::int16_t* above,
-                                                                const Rows& rows, std::span<std::int16_t> out) {
+/// Residuals from sample 1 on, at least 16 of them. Not for row 0, where not all neighbours are known.
+__attribute__((target("avx2"))) void residualsInSixteens(const std::int16_t* here, const std::int16_t* above,
+                                                         const Rows& rows, std::span<std::int16_t> out) {
   const auto [b0, bn, bs, bnn, bss, e0, en, es, weights] = rows;
   const auto& w = weights.of;
   const __m256i own = pairOf(w[W::kBefore], w[W::kEarlier]);
@@ -105,8 +105,9 @@ __attribute__((target("avx2"))) std::size_t residualsInSixteens(const std::int16
   const __m256i e_diagonal = pairOf(w[W::kEarlierDiagonal], w[W::kEarlierDiagonal]);
   const __m256i known = pairOf(w[W::kWest], w[W::kNorth]);
   const __m256i north_west = pairOf(w[W::kNorthWest], 0);
-  std::size_t x = 1;
-  for (; x + 16 <= out.size(); x += 16) {
+  // The last sixteen overlap those before them.
+  const std::size_t last = out.size() - 16;
+  for (std::size_t x = 1;; x = std::min(x + 16, last)) {
     Sums sums{_mm256_set1_epi32(kHalf), _mm256_set1_epi32(kHalf)};
     add(sums, b0 + x, e0 + x, own);
     add(sums, b0 + x - 1, b0 + x + 1, nearest);
@@ -124,8 +125,8 @@ __attribute__((target("avx2"))) std::size_t residualsInSixteens(const std::int16
     const __m256i prediction = _mm256_packs_epi32(shifted(sums.low), shifted(sums.high));
     const __m256i samples = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(here + x));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.data() + x), _mm256_sub_epi16(samples, prediction));
+    if (x == last) break;
   }
-  return x;
 }
 
 bool hasSixteens(const SurfaceWeights& weights) {
@@ -135,9 +136,7 @@ bool hasSixteens(const SurfaceWeights& weights) {
 
 #else
 
-std::size_t residualsInSixteens(const std::int16_t*, const std::int16_t*, const Rows&, std::span<std::int16_t>) {
-  return 1;
-}
+void residualsInSixteens(const std::int16_t*, const std::int16_t*, const Rows&, std::span<std::int16_t>) {}
 bool hasSixteens(const SurfaceWeights&) {
   return false;
 }
@@ -161,7 +160,10 @@ void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, co
   const std::int16_t* here = plane.row(at);
   const std::int16_t* above = plane.row(at - 1);
   std::size_t begin = 1;
-  if (z > 0 && hasSixteens(weights)) begin = residualsInSixteens(here, above, rows, out);
+  if (z > 0 && out.size() > 16 && hasSixteens(weights)) {
+    residualsInSixteens(here, above, rows, out);
+    begin = out.size();
+  }
   fromHistory(rows, 0, sums.first(1));
   fromHistory(rows, begin, sums);
   const std::int32_t first = z > 0 ? above[0] : 0;

@@ -5,8 +5,8 @@
 
 namespace spindrift::stream {
 
-/// The weights that fit about samples_count samples of the plane best, spread over all of it. Each weight fits into 16
-/// bits; those of frames that `history` lacks are 0.
-SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history, std::size_t samples_count);
+/// The weights that fit some 4,096 samples of the plane best, spread over all of it. Each weight fits into 16 bits;
+/// those of frames that `history` lacks are 0.
+SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history);
 
 }  // namespace spindrift::stream
