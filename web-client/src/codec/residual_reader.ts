@@ -81,13 +81,13 @@ export class ResidualReader extends BitReader {
     return this.bits(kSumBits) === (this.sum & ((1 << kSumBits) - 1)) && super.isAtEnd();
   }
 
-  /** The next `count` residuals to out[at] and on, and anything up to out[at + 63]. `left`, `above`: classes of the groups before
+  /** The next `count` residuals to out[at] and on, and, of damaged bytes, anything up to out[at + 63]. `left`, `above`: classes of the groups before
    *  it. Returns the group's class. */
   group(out: Int16Array, at: number, count: number, left: number, above: number): number {
     this.prepare();
     const groupClass = this.readClass(left, above);
     if (groupClass <= kLastSparseClass) {
-      for (let i = at; i < at + kGroupCount; ++i) out[i] = 0;
+      out.fill(0, at, at + count);
       for (let k = 0; k < groupClass; ++k) {
         const place = this.bits(kPlaceBits);
         this.sum -= out[at + place]!; // named twice, it counts once
