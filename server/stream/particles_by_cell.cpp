@@ -69,42 +69,19 @@ class ParticlesByCellCodec final : public LayerCodec {
     header.set_velocity_quantum_mps(velocity_quantum_mps);
     header.set_radius_m(particles.radius_m);
 
-    quantize(particles, grid, velocity_quantum_mps);
-    cells_.encode(quantized_, grid.cells, residuals_);
+    ParticleScale scale;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      scale.place[axis] =
+          static_cast<float>((particles.max_m[axis] - particles.min_m[axis]) / (65535.0 * grid.quantum_m()));
+    }
+    scale.speed = static_cast<float>(particles.max_speed_mps / (127.0 * velocity_quantum_mps));
+    cells_.encode(particles.words, scale, grid.cells, residuals_);
     payload_.clear();
     residuals_.finish(payload_);
     return {serializeFrame(frame, v1::LAYER_PARTICLES, std::nullopt, codec, payload_), nullptr};
   }
 
  private:
-  /// From the words of core::ParticleView.
-  void quantize(const core::ParticleView& particles, const Grid& grid, double velocity_quantum_mps) {
-    std::array<float, 3> scale{};
-    std::array<std::uint32_t, 3> last{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      scale[axis] = static_cast<float>((particles.max_m[axis] - particles.min_m[axis]) / (65535.0 * grid.quantum_m()));
-      last[axis] = (grid.cells.cells_count[axis] << grid.cells.offset_bits) - 1;
-    }
-    const auto speed_scale = static_cast<float>(particles.max_speed_mps / (127.0 * velocity_quantum_mps));
-    const auto velocity = [&](std::uint32_t byte) {
-      return static_cast<std::int16_t>(std::lrintf(static_cast<float>(static_cast<std::int8_t>(byte)) * speed_scale));
-    };
-    quantized_.resize(particles.count);
-    for (std::size_t i = 0; i < particles.count; ++i) {
-      const std::uint32_t* words = particles.words.data() + 3 * i;
-      const auto place = [&](std::uint32_t word, std::size_t axis) {
-        const auto at = static_cast<std::uint32_t>(static_cast<float>(word & 0xffffu) * scale[axis]);
-        return static_cast<std::uint16_t>(std::min(at, last[axis]));
-      };
-      CellParticle& p = quantized_[i];
-      p.place = {place(words[0], 0), place(words[1], 1), place(words[0] >> 16, 2)};
-      p.velocity = {velocity(words[1] >> 16), velocity(words[1] >> 24), velocity(words[2])};
-      p.tint = static_cast<std::uint8_t>(((words[2] >> 8 & 0xffu) * 7 + 127) / 255);
-      p.foam = static_cast<std::uint8_t>(((words[2] >> 16 & 0xffu) * 3 + 127) / 255);
-    }
-  }
-
-  std::vector<CellParticle> quantized_;
   ParticleCellsEncoder cells_;
   ResidualEncoder residuals_;
   core::Bytes payload_;

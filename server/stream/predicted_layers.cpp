@@ -17,9 +17,8 @@ namespace {
 class PlaneMessages {
  public:
   template <typename Header>
-  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, SurfacePlane plane, bool wants_whole,
-                      Header header_of) {
-    const PlaneChainEncoder::Forms forms = chain_.encode(std::move(plane), wants_whole);
+  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, bool wants_whole, Header header_of) {
+    const PlaneChainEncoder::Forms forms = chain_.encode(wants_whole);
     const auto message = [&](const std::optional<PlaneChainEncoder::Form>& form,
                              std::optional<std::uint64_t> base_tick) -> core::SharedBytes {
       if (!form) return nullptr;
@@ -35,6 +34,8 @@ class PlaneMessages {
     return out;
   }
   void restart() { chain_.restart(); }
+  /// The plane that encode() is about.
+  SurfacePlane& plane() { return chain_.next(); }
 
  private:
   PlaneChainEncoder chain_;
@@ -52,16 +53,16 @@ class SurfacePredictedCodec final : public LayerCodec {
     if (side_m_ != surface.side_m || quantum_m_ != surface.quantum_m) messages_.restart();
     side_m_ = surface.side_m;
     quantum_m_ = surface.quantum_m;
-    SurfacePlane plane(surface.resolution_count);
-    plane.assign({reinterpret_cast<const std::int16_t*>(surface.words.data()), 2 * surface.words.size()});
-    return messages_.encode(frame, layer(), std::move(plane), wants_whole,
-                            [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
-                              v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
-                              header.set_resolution_count(surface.resolution_count);
-                              header.set_side_m(surface.side_m);
-                              header.set_quantum_m(surface.quantum_m);
-                              return header;
-                            });
+    messages_.plane().resize(surface.resolution_count);
+    messages_.plane().assign(
+        std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), 2 * surface.words.size()));
+    return messages_.encode(frame, layer(), wants_whole, [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
+      v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
+      header.set_resolution_count(surface.resolution_count);
+      header.set_side_m(surface.side_m);
+      header.set_quantum_m(surface.quantum_m);
+      return header;
+    });
   }
 
  private:
@@ -80,22 +81,19 @@ class FoamPredictedCodec final : public LayerCodec {
     const core::FoamView& foam = *frame.foam;
     if (side_m_ != foam.side_m) messages_.restart();
     side_m_ = foam.side_m;
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(foam.words.data());
-    samples_.assign(bytes, bytes + foam.words.size_bytes());
-    SurfacePlane plane(foam.resolution_count);
-    plane.assign(samples_);
-    return messages_.encode(frame, layer(), std::move(plane), wants_whole,
-                            [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
-                              v1::FoamPredicted& header = *codec.mutable_foam_predicted();
-                              header.set_resolution_count(foam.resolution_count);
-                              header.set_side_m(foam.side_m);
-                              return header;
-                            });
+    messages_.plane().resize(foam.resolution_count);
+    messages_.plane().assign(
+        std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.words.size_bytes()));
+    return messages_.encode(frame, layer(), wants_whole, [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
+      v1::FoamPredicted& header = *codec.mutable_foam_predicted();
+      header.set_resolution_count(foam.resolution_count);
+      header.set_side_m(foam.side_m);
+      return header;
+    });
   }
 
  private:
   PlaneMessages messages_;
-  std::vector<std::int16_t> samples_;
   double side_m_ = 0.0;
 };
 

@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/stream/frame_decoder.h>
 #include <spindrift/stream/frame_encoder.h>
+
+#include "bench_baselines.h"
 
 namespace spindrift::app {
 namespace {
@@ -33,6 +35,7 @@ struct CodecRow {
   double decode_ms = 0.0;
   double max_error = 0.0;  ///< over the quantum; of particles: distance along an axis
   std::optional<double> bound_bits = {};
+  bool is_installed = true;
 
   void add(std::size_t frame_bytes, std::size_t items) {
     ++frame_count;
@@ -40,15 +43,17 @@ struct CodecRow {
     most_bytes = std::max(most_bytes, static_cast<double>(frame_bytes));
     item_count += static_cast<double>(items);
   }
+  /// Of a codec that may not be installed. `error`: over the quantum, where what came back is what went in.
+  void add(const std::optional<BaselineResult>& result, std::size_t items, double error) {
+    is_installed = result.has_value();
+    add(result ? result->bytes : 0, items);
+    if (!result) return;
+    encode_ms += result->encode_ms;
+    decode_ms += result->decode_ms;
+    max_error = std::max(max_error, result->is_exact ? error : std::numeric_limits<double>::infinity());
+  }
   [[nodiscard]] double itemBits() const { return item_count > 0 ? 8 * bytes / item_count : 0.0; }
 };
-
-std::size_t deflatedBytes(std::span<const std::uint32_t> words) {
-  uLongf size = compressBound(words.size_bytes());
-  core::Bytes out(size);
-  compress2(out.data(), &size, reinterpret_cast<const Bytef*>(words.data()), words.size_bytes(), 6);
-  return size;
-}
 
 v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
   return stream::parseServerMessage(*bytes)->frame();
@@ -68,8 +73,9 @@ class CodecMeter {
   }
   [[nodiscard]] std::vector<CodecRow> rows() const {
     std::vector<CodecRow> rows;
-    for (const CodecRow& row : {surface_plain_, surface_deflated_, surface_whole_, surface_, particles_plain_,
-                                particles_deflated_, particles_}) {
+    for (const CodecRow& row :
+         {surface_plain_, surface_deflated_, surface_zstd_, surface_whole_, surface_, particles_plain_,
+          particles_deflated_, particles_zstd_, particles_, places_meshoptimizer_, places_draco_, places_}) {
       if (row.frame_count > 0) rows.push_back(row);
     }
     return rows;
@@ -86,10 +92,8 @@ class CodecMeter {
     const auto plain_samples = stream::decodeSurface(frameOf(plain));
     surface_plain_.decode_ms += sinceMs(begin);
     surface_plain_.add(plain->size(), samples);
-    begin = Clock::now();
-    const std::size_t deflated = deflatedBytes(view.words);
-    surface_deflated_.encode_ms += sinceMs(begin);
-    surface_deflated_.add(deflated, samples);
+    surface_deflated_.add(deflate(view.words), samples, 0.0);
+    surface_zstd_.add(zstd(view.words), samples, 0.0);
 
     // The continuing frame as a room makes it; the whole one from an encoder of its own, so that times do not mix.
     const stream::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
@@ -126,10 +130,8 @@ class CodecMeter {
     const auto plain_samples = stream::decodeParticles(frameOf(plain));
     particles_plain_.decode_ms += sinceMs(begin);
     particles_plain_.add(plain->size(), view.count);
-    begin = Clock::now();
-    const std::size_t deflated = deflatedBytes(view.words);
-    particles_deflated_.encode_ms += sinceMs(begin);
-    particles_deflated_.add(deflated, view.count);
+    particles_deflated_.add(deflate(view.words), view.count, 0.0);
+    particles_zstd_.add(zstd(view.words), view.count, 0.0);
 
     begin = Clock::now();
     const stream::EncodedFrame encoded = encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, frame, true);
@@ -143,17 +145,61 @@ class CodecMeter {
     const v1::ParticlesByCell& header = message.particles_by_cell();
     const double quantum_m = header.cell_m() / (1 << header.offset_bits());
     particles_.bound_bits = 3 * std::log2(2 * view.radius_m / quantum_m) + std::log2(std::exp(1.0));
-    particles_.max_error = std::max(particles_.max_error, largestShift(*plain_samples, *samples) / quantum_m);
+    particles_.max_error =
+        std::max(particles_.max_error, largestShift(plain_samples->position_m, samples->position_m) / quantum_m);
+    addPlaces(frame, header, plain_samples->position_m);
     return {};
   }
 
+  /// Positions alone: what other codecs for points are made for.
+  void addPlaces(const core::FrameView& frame, const v1::ParticlesByCell& header,
+                 const std::vector<float>& position_m) {
+    const std::size_t count = frame.particles->count;
+    const double quantum_m = header.cell_m() / (1 << header.offset_bits());
+    std::vector<std::uint32_t> words(frame.particles->words.begin(), frame.particles->words.end());
+    for (std::size_t i = 0; i < words.size(); i += 3) {
+      words[i + 1] &= 0xffffu;
+      words[i + 2] = 0;
+    }
+    core::FrameView places = frame;
+    places.particles->words = words;
+    auto begin = Clock::now();
+    const core::SharedBytes packed =
+        places_encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, places, true).whole;
+    places_.encode_ms += sinceMs(begin);
+    const v1::LayerFrame message = frameOf(packed);
+    begin = Clock::now();
+    const auto samples = stream::decodePackedParticles(message);
+    places_.decode_ms += sinceMs(begin);
+    places_.add(packed->size(), count);
+    places_.bound_bits = particles_.bound_bits;
+    if (samples)
+      places_.max_error = std::max(places_.max_error, largestShift(position_m, samples->position_m) / quantum_m);
+
+    const double min_m[] = {header.min_x_m(), header.min_y_m(), header.min_z_m()};
+    std::vector<std::uint16_t> quanta(4 * count);
+    double error = 0.0;
+    for (std::size_t i = 0; i < position_m.size(); ++i) {
+      const double at = (position_m[i] - min_m[i % 3]) / quantum_m;
+      quanta[i / 3 * 4 + i % 3] = static_cast<std::uint16_t>(std::clamp(std::lround(at - 0.5), 0l, 65535l));
+      error = std::max(error, std::abs(at - 0.5 - quanta[i / 3 * 4 + i % 3]));
+    }
+    places_meshoptimizer_.add(meshoptimizer(quanta), count, error);
+    auto cloud = draco(position_m, quantum_m);
+    if (cloud) {
+      cloud->is_exact = true;  // to what is measured
+      error = largestShift(position_m, cloud->position_m) / quantum_m;
+    }
+    places_draco_.add(cloud, count, error);
+  }
+
   /// Orders differ: along each axis the sorted coordinates of both lie as far apart as some pairing of particles does.
-  static double largestShift(const stream::ParticleSamples& a, const stream::ParticleSamples& b) {
+  static double largestShift(const std::vector<float>& a, const std::vector<float>& b) {
     double largest = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::vector<float> left, right;
-      for (std::size_t i = axis; i < a.position_m.size(); i += 3) left.push_back(a.position_m[i]);
-      for (std::size_t i = axis; i < b.position_m.size(); i += 3) right.push_back(b.position_m[i]);
+      for (std::size_t i = axis; i < a.size(); i += 3) left.push_back(a[i]);
+      for (std::size_t i = axis; i < b.size(); i += 3) right.push_back(b[i]);
       std::ranges::sort(left);
       std::ranges::sort(right);
       for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i)
@@ -162,14 +208,19 @@ class CodecMeter {
     return largest;
   }
 
-  stream::FrameEncoder encoder_;
+  stream::FrameEncoder encoder_, places_encoder_;
   stream::PackedSurfaceDecoder decoder_;
   CodecRow surface_plain_{.name = "surface, plain"};
   CodecRow surface_deflated_{.name = "surface, plain + deflate"};
+  CodecRow surface_zstd_{.name = "surface, plain + zstd"};
   CodecRow surface_whole_{.name = "surface, packed, keyframe"};
   CodecRow surface_{.name = "surface, packed"};
   CodecRow particles_plain_{.name = "particles, plain"};
   CodecRow particles_deflated_{.name = "particles, plain + deflate"};
+  CodecRow particles_zstd_{.name = "particles, plain + zstd"};
+  CodecRow places_meshoptimizer_{.name = "places, meshoptimizer"};
+  CodecRow places_draco_{.name = "places, Draco kd-tree"};
+  CodecRow places_{.name = "places, packed"};
   CodecRow particles_{.name = "particles, packed"};
 };
 
@@ -201,6 +252,11 @@ core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::S
   boost::json::array json;
   for (const CodecRow& row : meter.rows()) {
     const auto frames = static_cast<double>(row.frame_count);
+    if (!row.is_installed) {
+      fmt::print(out, "{:<27} not installed when this was built\n", row.name);
+      json.push_back({{"name", row.name}, {"installed", false}});
+      continue;
+    }
     fmt::print(out, "{:<27} {:>9.0f} {:>10.2f} {:>9} {:>9.2f} {:>8.2f} {:>10.3f} {:>10.3f} {:>11.3f}\n", row.name,
                row.item_count / frames, row.itemBits(),
                row.bound_bits ? fmt::format("{:.2f}", *row.bound_bits) : std::string("-"), row.bytes / frames / 1e3,

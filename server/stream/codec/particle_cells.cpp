@@ -1,199 +1,184 @@
 #include "particle_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
-#include <cmath>
-#include <utility>
 
-#include "fitted_table.h"
+#include "particle_quanta.h"
+#include "prefix_code.h"
 
 namespace spindrift::stream {
 namespace {
 
 constexpr std::size_t kHalfSymbolCount = 256;  ///< counts of four eighths, two bits each
 constexpr std::size_t kGapSymbolCount = 25;    ///< bits of the number of empty cells
-constexpr std::uint32_t kManyCount = 3;        ///< this many in an eighth, or more: the rest is in the raw bits
-constexpr int kRadixBits = 11;
-constexpr int kMaxGammaBits = 23;
+constexpr std::uint32_t kMaxGammaBits = 23;
 
 /// A whole number from 0 on, small ones in few bits (Elias gamma).
-void putGamma(std::uint32_t value, ResidualEncoder& out) {
-  const int bits = static_cast<int>(std::bit_width(value + 1)) - 1;
-  out.putRaw(0, bits);
-  out.putRaw(1, 1);
-  out.putRaw((value + 1) & ((1u << bits) - 1), bits);
+void putGamma(std::uint32_t value, BitCursor& out) {
+  const auto bits = static_cast<std::uint32_t>(std::bit_width(value + 1)) - 1;
+  out.put(1u << bits, bits + 1);
+  out.flush();
+  out.put((value + 1) & ((1u << bits) - 1), bits);
+  out.flush();
 }
-std::uint32_t getGamma(ResidualDecoder& in) {
-  int bits = 0;
-  while (bits < kMaxGammaBits && in.getRaw(1) == 0) ++bits;
-  return ((1u << bits) | in.getRaw(bits)) - 1;
-}
-
-/// Which eighth of its cell a place lies in: x, z, y from the highest bit on.
-std::uint32_t eighthOf(const CellParticle& p, std::uint32_t offset_bits) {
-  const std::uint32_t high = offset_bits - 1;
-  return (p.place[0] >> high & 1u) << 2 | (p.place[2] >> high & 1u) << 1 | (p.place[1] >> high & 1u);
-}
-
-std::uint32_t lowBits(const CellParticle& p, std::uint32_t bits) {
-  const std::uint32_t mask = (1u << bits) - 1;
-  return (p.place[0] & mask) | (p.place[2] & mask) << bits | (p.place[1] & mask) << (2 * bits);
+std::uint32_t getGamma(BitReader& in) {
+  std::uint32_t bits = 0;
+  while (bits < kMaxGammaBits && in.get(1) == 0) ++bits;
+  return ((1u << bits) | in.get(bits)) - 1;
 }
 
 /// One attribute of the particles, group after group: each group's mean as its difference from the one before, then
 /// what each particle differs from it.
 struct AttributeState {
-  std::int16_t mean = 0;
+  int mean = 0;
   std::uint32_t mean_class = 0;
   std::uint32_t group_class = 0;
 };
 
-void putAttribute(std::span<std::int16_t> values, AttributeState& state, ResidualEncoder& out) {
+void putAttribute(ResidualGroup& values, std::size_t count, AttributeState& state, ResidualEncoder& out) {
   int sum = 0;
-  for (const std::int16_t value : values) sum += value;
-  const auto mean = static_cast<std::int16_t>(std::lround(static_cast<float>(sum) / static_cast<float>(values.size())));
-  const std::array step = {static_cast<std::int16_t>(mean - state.mean)};
-  state.mean_class = out.putGroup(step, state.mean_class, state.mean_class);
+  for (const std::int16_t value : values.of) sum += value;
+  const auto doubled = static_cast<int>(2 * count);
+  const int raised = 2 * sum + static_cast<int>(count);
+  const int mean = raised / doubled - (raised % doubled < 0 ? 1 : 0);  // to the nearest
+  ResidualGroup step;
+  step.of[0] = static_cast<std::int16_t>(mean - state.mean);
+  state.mean_class = out.putGroup(step, 1, state.mean_class, state.mean_class);
   state.mean = mean;
-  for (std::int16_t& value : values) value = static_cast<std::int16_t>(value - mean);
-  state.group_class = out.putGroup(values, state.group_class, state.group_class);
+  for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value - mean);
+  for (std::size_t k = count; k < kGroupMaxCount; ++k) values.of[k] = 0;
+  state.group_class = out.putGroup(values, count, state.group_class, state.group_class);
 }
 
-void getAttribute(std::span<std::int16_t> values, AttributeState& state, ResidualDecoder& in) {
-  std::array<std::int16_t, 1> step{};
-  state.mean_class = in.getGroup(step, state.mean_class, state.mean_class);
-  state.mean = static_cast<std::int16_t>(state.mean + step[0]);
-  state.group_class = in.getGroup(values, state.group_class, state.group_class);
-  for (std::int16_t& value : values) value = static_cast<std::int16_t>(value + state.mean);
+void getAttribute(ResidualGroup& values, std::size_t count, AttributeState& state, ResidualDecoder& in) {
+  ResidualGroup step;
+  state.mean_class = in.getGroup(step, 1, state.mean_class, state.mean_class);
+  state.mean = static_cast<std::int16_t>(state.mean + step.of[0]);
+  state.group_class = in.getGroup(values, count, state.group_class, state.group_class);
+  for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value + state.mean);
 }
 
 constexpr std::size_t kAttributeCount = 5;  ///< velocity along x, y, z, foam, tint
 
 }  // namespace
 
-void ParticleCellsEncoder::sortByCell(std::span<const CellParticle> particles, const CellGrid& grid) {
-  const std::uint32_t bits = grid.offset_bits;
-  entries_.resize(particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    const CellParticle& p = particles[i];
-    const std::uint32_t cell =
-        ((p.place[0] >> bits) * grid.cells_count[2] + (p.place[2] >> bits)) * grid.cells_count[1] +
-        (p.place[1] >> bits);
-    entries_[i] = {cell * 8 + eighthOf(p, bits), static_cast<std::uint32_t>(i)};
-  }
-  // From the lowest digit to the highest; each pass keeps the order of equal digits.
-  scratch_.resize(entries_.size());
-  for (int shift = 0; (grid.totalCount() * 8 - 1) >> shift != 0; shift += kRadixBits) {
-    std::array<std::uint32_t, 1 << kRadixBits> begin{};
-    const auto digit = [shift](const Entry& e) { return e.key >> shift & ((1u << kRadixBits) - 1); };
-    for (const Entry& e : entries_) ++begin[digit(e)];
-    std::uint32_t sum = 0;
-    for (std::uint32_t& b : begin) sum += std::exchange(b, sum);
-    for (const Entry& e : entries_) scratch_[begin[digit(e)]++] = e;
-    std::swap(entries_, scratch_);
-  }
+void ParticleCellsEncoder::encode(std::span<const std::uint32_t> words, const ParticleScale& scale,
+                                  const CellGrid& grid, ResidualEncoder& out) {
+  assert(grid.totalCount() <= kCellMaxCount && grid.offset_bits >= 1 && grid.offset_bits <= kOffsetBitsMax);
+  keys_.resize(words.size() / 3);
+  items_.resize(words.size() / 3);
+  quantizeParticles(words, scale, grid, keys_, items_);
+  order_.sort(keys_, items_, grid.totalCount());
+  putCells(out.bits());
+  putPlaces(3 * (grid.offset_bits - 1), out.bits());
+  putAttributes(out);
 }
 
-void ParticleCellsEncoder::encode(std::span<const CellParticle> particles, const CellGrid& grid, ResidualEncoder& out) {
-  assert(grid.totalCount() <= kCellMaxCount && grid.offset_bits >= 1 && grid.offset_bits <= kOffsetBitsMax);
-  sortByCell(particles, grid);
-
-  // Once over the cells for their symbols and how often each occurs, once more to write.
-  cells_.clear();
+void ParticleCellsEncoder::putCells(BitWriter& out) const {
   std::array<std::uint32_t, kHalfSymbolCount> half_counts{};
   std::array<std::uint32_t, kGapSymbolCount> gap_counts{};
-  std::uint32_t next_cell = 0;
-  for (std::size_t i = 0; i < entries_.size();) {
-    Cell cell{.gap = (entries_[i].key >> 3) - next_cell, .end = 0, .halves = {0, 0}};
-    next_cell += cell.gap + 1;
-    for (std::uint32_t eighth = 0; eighth < 8; ++eighth) {
-      std::uint32_t count = 0;
-      while (i + count < entries_.size() && entries_[i + count].key == (next_cell - 1) * 8 + eighth) ++count;
-      cell.halves[eighth / 4] |= static_cast<std::uint8_t>(std::min(count, kManyCount) << (2 * (eighth % 4)));
-      i += count;
-    }
-    cell.end = static_cast<std::uint32_t>(i);
-    ++gap_counts[std::bit_width(cell.gap)];
-    for (const std::uint8_t half : cell.halves) ++half_counts[half];
-    cells_.push_back(cell);
+  for (const OccupiedCell& cell : order_.cells()) {
+    ++gap_counts[static_cast<std::size_t>(std::bit_width(cell.gap))];
+    ++half_counts[cell.halves & 0xffu];
+    ++half_counts[cell.halves >> 8];
   }
-  const SymbolTable half_table = putFittedTable(half_counts, out);
-  const SymbolTable gap_table = putFittedTable(gap_counts, out);
-
-  const std::uint32_t low = grid.offset_bits - 1;
-  std::size_t i = 0;
-  for (const Cell& cell : cells_) {
-    const auto gap_bits = static_cast<int>(std::bit_width(cell.gap));
-    out.put(gap_table, static_cast<std::size_t>(gap_bits));
-    if (gap_bits > 1) out.putRaw(cell.gap & ((1u << (gap_bits - 1)) - 1), gap_bits - 1);
-    for (const std::uint8_t half : cell.halves) out.put(half_table, half);
-    while (i < cell.end) {
-      const std::uint32_t key = entries_[i].key;
-      std::size_t end = i;
-      while (end < cell.end && entries_[end].key == key) ++end;
-      if (end - i >= kManyCount) putGamma(static_cast<std::uint32_t>(end - i) - kManyCount, out);
-      for (; i < end; ++i) out.putRaw(lowBits(particles[entries_[i].particle], low), static_cast<int>(3 * low));
-    }
+  const PrefixWriter half_code = putFittedCode(half_counts, out);
+  const PrefixWriter gap_code = putFittedCode(gap_counts, out);
+  constexpr std::size_t kCellMaxBytes = 8, kExtraMaxBytes = 8;
+  BitCursor cursor = out.begin(kCellMaxBytes * order_.cells().size() + kExtraMaxBytes * order_.extras().size());
+  const std::uint32_t* extra = order_.extras().data();
+  for (const OccupiedCell& cell : order_.cells()) {
+    const auto gap_bits = static_cast<std::uint32_t>(std::bit_width(cell.gap));
+    gap_code.put(gap_bits, cursor);
+    if (gap_bits > 1) cursor.put(cell.gap & ((1u << (gap_bits - 1)) - 1), gap_bits - 1);
+    cursor.flush();
+    half_code.put(cell.halves & 0xffu, cursor);
+    half_code.put(cell.halves >> 8, cursor);
+    cursor.flush();
+    std::uint32_t many = cell.halves & cell.halves >> 1 & 0x5555u;
+    for (; many != 0; many &= many - 1) putGamma(*extra++, cursor);
   }
+  out.end(cursor);
+}
 
-  std::array<AttributeState, kAttributeCount> attributes;
-  std::array<std::array<std::int16_t, kGroupMaxCount>, kAttributeCount> group{};
-  for (std::size_t begin = 0; begin < entries_.size(); begin += kGroupMaxCount) {
-    const std::size_t count = std::min(kGroupMaxCount, entries_.size() - begin);
+void ParticleCellsEncoder::putPlaces(std::uint32_t bit_count, BitWriter& out) const {
+  const std::span<const std::uint64_t> items = order_.items();
+  BitCursor cursor = out.begin(items.size() * bit_count / 8);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    cursor.put(placeBitsOf(items[i]), bit_count);
+    if (i % 2 != 0) cursor.flush();
+  }
+  out.end(cursor);
+}
+
+void ParticleCellsEncoder::putAttributes(ResidualEncoder& out) const {
+  const std::span<const std::uint64_t> items = order_.items();
+  std::array<AttributeState, kAttributeCount> states;
+  std::array<ResidualGroup, kAttributeCount> groups;
+  for (std::size_t begin = 0; begin < items.size(); begin += kGroupMaxCount) {
+    const std::size_t count = std::min(kGroupMaxCount, items.size() - begin);
+    if (count < kGroupMaxCount) groups = {};
     for (std::size_t k = 0; k < count; ++k) {
-      const CellParticle& p = particles[entries_[begin + k].particle];
-      for (std::size_t axis = 0; axis < 3; ++axis) group[axis][k] = p.velocity[axis];
-      group[3][k] = p.foam;
-      group[4][k] = p.tint;
+      const std::uint32_t word = attributesOf(items[begin + k]);
+      groups[0].of[k] = static_cast<std::int8_t>(word);
+      groups[1].of[k] = static_cast<std::int8_t>(word >> 8);
+      groups[2].of[k] = static_cast<std::int8_t>(word >> 16);
+      groups[3].of[k] = static_cast<std::int16_t>(word >> 24 & 3);
+      groups[4].of[k] = static_cast<std::int16_t>(word >> 26);
     }
-    for (std::size_t a = 0; a < kAttributeCount; ++a)
-      putAttribute(std::span(group[a]).first(count), attributes[a], out);
+    for (std::size_t a = 0; a < kAttributeCount; ++a) putAttribute(groups[a], count, states[a], out);
   }
 }
 
 bool decodeParticleCells(ResidualDecoder& in, const CellGrid& grid, std::span<CellParticle> particles) {
-  const SymbolTable half_table = getFittedTable(kHalfSymbolCount, in);
-  const SymbolTable gap_table = getFittedTable(kGapSymbolCount, in);
+  BitReader& bits = in.bits();
+  const auto half_code = getFittedCode(kHalfSymbolCount, bits);
+  if (!half_code) return false;
+  const auto gap_code = getFittedCode(kGapSymbolCount, bits);
+  if (!gap_code) return false;
   const std::uint32_t low = grid.offset_bits - 1;
-  const std::uint32_t mask = (1u << low) - 1;
   const std::uint64_t cell_count = grid.totalCount();
   std::uint64_t cell = 0;
   for (std::size_t i = 0; i < particles.size(); ++cell) {
-    const auto gap_bits = static_cast<int>(in.get(gap_table));
-    cell += gap_bits > 1 ? (1u << (gap_bits - 1)) | in.getRaw(gap_bits - 1) : static_cast<std::uint32_t>(gap_bits);
+    const std::uint32_t gap_bits = gap_code->get(bits);
+    cell += gap_bits > 1 ? (1u << (gap_bits - 1)) | bits.get(gap_bits - 1) : gap_bits;
     if (cell >= cell_count) return false;
     const std::uint32_t y = static_cast<std::uint32_t>(cell) % grid.cells_count[1];
     const std::uint32_t column = static_cast<std::uint32_t>(cell) / grid.cells_count[1];
-    const std::uint32_t z = column % grid.cells_count[2], x = column / grid.cells_count[2];
-    const std::size_t begin = i;
-    std::uint32_t halves = in.get(half_table);
-    halves |= in.get(half_table) << 8;
+    const std::uint32_t x = column % grid.cells_count[0], z = column / grid.cells_count[0];
+    std::uint32_t halves = half_code->get(bits);
+    halves |= half_code->get(bits) << 8;
+    if (halves == 0) return false;  // a cell that is named holds something
     for (std::uint32_t eighth = 0; eighth < 8; ++eighth) {
       std::size_t count = halves >> (2 * eighth) & 3u;
-      if (count == kManyCount) count += getGamma(in);
+      if (count == kManyCount) count += getGamma(bits);
       if (count > particles.size() - i) return false;
-      for (const std::size_t end = i + count; i < end; ++i) {
-        const std::uint32_t bits = in.getRaw(static_cast<int>(3 * low));
-        const auto place = [&](std::uint32_t at, std::uint32_t half, std::uint32_t offset) {
-          return static_cast<std::uint16_t>((at * 2 + half) << low | (offset & mask));
-        };
-        particles[i].place = {place(x, eighth >> 2, bits), place(y, eighth & 1u, bits >> (2 * low)),
-                              place(z, eighth >> 1 & 1u, bits >> low)};
-      }
+      const auto place = [&](std::uint32_t at, std::uint32_t half) {
+        return static_cast<std::uint16_t>((at * 2 + (half & 1u)) << low);
+      };
+      const std::array places = {place(x, eighth >> 2), place(y, eighth), place(z, eighth >> 1)};
+      for (const std::size_t end = i + count; i < end; ++i) particles[i].place = places;
     }
-    if (i == begin) return false;  // a cell that is named holds something
   }
-  std::array<AttributeState, kAttributeCount> attributes;
-  std::array<std::array<std::int16_t, kGroupMaxCount>, kAttributeCount> group{};
+  const std::uint32_t mask = (1u << low) - 1;
+  for (CellParticle& p : particles) {
+    const std::uint32_t offsets = bits.get(3 * low);
+    p.place[0] = static_cast<std::uint16_t>(p.place[0] | (offsets & mask));
+    p.place[2] = static_cast<std::uint16_t>(p.place[2] | (offsets >> low & mask));
+    p.place[1] = static_cast<std::uint16_t>(p.place[1] | offsets >> (2 * low));
+  }
+  std::array<AttributeState, kAttributeCount> states;
+  std::array<ResidualGroup, kAttributeCount> groups;
   for (std::size_t begin = 0; begin < particles.size(); begin += kGroupMaxCount) {
     const std::size_t count = std::min(kGroupMaxCount, particles.size() - begin);
-    for (std::size_t a = 0; a < kAttributeCount; ++a) getAttribute(std::span(group[a]).first(count), attributes[a], in);
+    for (std::size_t a = 0; a < kAttributeCount; ++a) getAttribute(groups[a], count, states[a], in);
     for (std::size_t k = 0; k < count; ++k) {
       CellParticle& p = particles[begin + k];
-      for (std::size_t axis = 0; axis < 3; ++axis) p.velocity[axis] = group[axis][k];
-      p.foam = static_cast<std::uint8_t>(std::clamp<int>(group[3][k], 0, 3));
-      p.tint = static_cast<std::uint8_t>(std::clamp<int>(group[4][k], 0, 7));
+      for (std::size_t axis = 0; axis < 3; ++axis) p.velocity[axis] = groups[axis].of[k];
+      p.foam = static_cast<std::uint8_t>(std::clamp<int>(groups[3].of[k], 0, 3));
+      p.tint = static_cast<std::uint8_t>(std::clamp<int>(groups[4].of[k], 0, 7));
     }
   }
   return true;

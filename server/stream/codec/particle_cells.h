@@ -8,11 +8,13 @@
 #include <span>
 #include <vector>
 
+#include "particle_order.h"
 #include "residual_coder.h"
 
 namespace spindrift::stream {
 
-/// Cells along x, y, z; the linear index of a cell is (x * cells z + z) * cells y + y, so that columns lie together.
+/// Cells along x, y, z; the linear index of a cell is (z * cells x + x) * cells y + y, so that columns lie together, in
+/// the order in which the simulation has them.
 struct CellGrid {
   std::array<std::uint32_t, 3> cells_count{};
   std::uint32_t offset_bits = 5;  ///< a cell's side is 2^offset_bits quanta; 1..8
@@ -34,26 +36,28 @@ struct CellParticle {
   std::uint8_t tint = 0;  ///< 0..7
 };
 
-/// Sorts the particles into the order of the wire and writes them: places cell by cell, then in groups of 64 particles
-/// the velocities along x, y, z, foam, tint. Keeps its memory from frame to frame.
+/// From the words of core::ParticleView to quanta, place = u16 * scale along each axis, velocity = i8 * speed_scale.
+struct ParticleScale {
+  std::array<float, 3> place{};
+  float speed = 0.0f;  ///< 0..1
+};
+
+/// Sorts the particles into the order of the wire and writes them: cells, places within them, then in groups of 64
+/// particles the velocities along x, y, z, foam, tint. Keeps its memory from frame to frame.
 class ParticleCellsEncoder {
  public:
-  void encode(std::span<const CellParticle> particles, const CellGrid& grid, ResidualEncoder& out);
+  /// Three words a particle, as in core::ParticleView.
+  void encode(std::span<const std::uint32_t> words, const ParticleScale& scale, const CellGrid& grid,
+              ResidualEncoder& out);
 
  private:
-  struct Entry {
-    std::uint32_t key;  ///< cell * 8 + eighth
-    std::uint32_t particle;
-  };
-  struct Cell {
-    std::uint32_t gap;                   ///< empty cells before it
-    std::uint32_t end;                   ///< of its entries
-    std::array<std::uint8_t, 2> halves;  ///< counts of its eighths, two bits each
-  };
-  void sortByCell(std::span<const CellParticle> particles, const CellGrid& grid);
+  void putCells(BitWriter& out) const;
+  void putPlaces(std::uint32_t bit_count, BitWriter& out) const;
+  void putAttributes(ResidualEncoder& out) const;
 
-  std::vector<Entry> entries_, scratch_;
-  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> keys_;
+  std::vector<std::uint64_t> items_;
+  ParticleOrder order_;
 };
 
 /// `count` particles in the order of the wire. False: a cell lies outside of the grid or holds more than are left; the

@@ -3,32 +3,35 @@
 #include <cassert>
 #include <utility>
 
+#include "surface_fit.h"
+
 namespace spindrift::stream {
 
-PlaneChainEncoder::Forms PlaneChainEncoder::encode(SurfacePlane plane, bool wants_whole) {
-  const bool is_first = before_.resolution() != plane.resolution();
-  if (is_first) before_ = earlier_ = plane;
+PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_whole) {
+  const bool is_first = before_.resolution() != next_.resolution();
+  if (is_first) before_ = earlier_ = next_;
   Forms out;
-  if (!is_first) out.continuing = continuing(plane);
-  if (is_first || wants_whole) out.whole = whole(plane);
-  earlier_ = std::exchange(before_, std::move(plane));
+  if (!is_first) out.continuing = continuing();
+  if (is_first || wants_whole) out.whole = whole();
+  std::swap(earlier_, before_);
+  std::swap(before_, next_);
   return out;
 }
 
-PlaneChainEncoder::Form PlaneChainEncoder::continuing(const SurfacePlane& now) {
+PlaneChainEncoder::Form PlaneChainEncoder::continuing() {
   Form out;
   const SurfaceHistory history{&before_, &earlier_};
-  out.weights = fitWeights(now, history);
-  encodePlane(now, history, out.weights, residuals_);
+  out.weights = fitWeights(next_, history);
+  encodePlane(next_, history, out.weights, residuals_);
   residuals_.finish(out.payload);
   return out;
 }
 
-PlaneChainEncoder::Form PlaneChainEncoder::whole(const SurfacePlane& now) {
+PlaneChainEncoder::Form PlaneChainEncoder::whole() {
   Form out;
-  out.weights = fitWeights(now, {});
-  encodePlane(now, {}, out.weights, residuals_);
-  const SurfaceHistory history{&now, nullptr};
+  out.weights = fitWeights(next_, {});
+  encodePlane(next_, {}, out.weights, residuals_);
+  const SurfaceHistory history{&next_, nullptr};
   out.earlier_weights = fitWeights(before_, history);
   encodePlane(before_, history, out.earlier_weights, residuals_);
   residuals_.finish(out.payload);
@@ -38,8 +41,8 @@ PlaneChainEncoder::Form PlaneChainEncoder::whole(const SurfacePlane& now) {
 bool PlaneChainDecoder::readWhole(core::ByteView payload, std::size_t resolution_count, const SurfaceWeights& weights,
                                   const SurfaceWeights& earlier_weights) {
   ResidualDecoder residuals(payload);
-  before_ = SurfacePlane(resolution_count);
-  earlier_ = SurfacePlane(resolution_count);
+  before_.resize(resolution_count);
+  earlier_.resize(resolution_count);
   decodePlane(residuals, {}, weights, before_);
   decodePlane(residuals, {&before_, nullptr}, earlier_weights, earlier_);
   if (!residuals.isAtEnd()) restart();
@@ -49,9 +52,10 @@ bool PlaneChainDecoder::readWhole(core::ByteView payload, std::size_t resolution
 bool PlaneChainDecoder::readContinuing(core::ByteView payload, const SurfaceWeights& weights) {
   assert(before_.resolution() > 0);
   ResidualDecoder residuals(payload);
-  SurfacePlane now(before_.resolution());
-  decodePlane(residuals, {&before_, &earlier_}, weights, now);
-  earlier_ = std::exchange(before_, std::move(now));
+  next_.resize(before_.resolution());
+  decodePlane(residuals, {&before_, &earlier_}, weights, next_);
+  std::swap(earlier_, before_);
+  std::swap(before_, next_);
   if (!residuals.isAtEnd()) restart();
   return before_.resolution() > 0;
 }

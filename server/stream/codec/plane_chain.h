@@ -22,16 +22,18 @@ class PlaneChainEncoder {
     std::optional<Form> continuing;  ///< absent at the beginning of a row
     std::optional<Form> whole;       ///< at the beginning of a row, or when it was wanted
   };
-  /// The next plane. Another resolution begins a new row.
-  Forms encode(SurfacePlane plane, bool wants_whole);
+  /// Where the next plane's samples go.
+  SurfacePlane& next() { return next_; }
+  /// The forms of the plane that was put there. Another resolution begins a new row.
+  Forms encode(bool wants_whole);
   /// The next plane begins a new row.
-  void restart() { before_ = {}; }
+  void restart() { before_.resize(0); }
 
  private:
-  Form continuing(const SurfacePlane& now);
-  Form whole(const SurfacePlane& now);
+  Form continuing();
+  Form whole();
 
-  SurfacePlane before_, earlier_;
+  SurfacePlane next_, before_, earlier_;
   ResidualEncoder residuals_;
 };
 
@@ -43,13 +45,13 @@ class PlaneChainDecoder {
   /// The payload of a form that continues the row; there has to be one. False as above.
   bool readContinuing(core::ByteView payload, const SurfaceWeights& weights);
   /// Forgets the row.
-  void restart() { before_ = {}; }
+  void restart() { before_.resize(0); }
 
   /// The plane read last; of resolution 0 where there is no row.
   [[nodiscard]] const SurfacePlane& plane() const { return before_; }
 
  private:
-  SurfacePlane before_, earlier_;
+  SurfacePlane next_, before_, earlier_;
 };
 
 }  // namespace spindrift::stream

@@ -4,202 +4,288 @@
 #include <bit>
 #include <cassert>
 #include <cstdlib>
-#include <vector>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "residual_codes.h"
 
 namespace spindrift::stream {
 namespace {
 
-constexpr int kRawResidualBits = 16;
-constexpr std::uint32_t kFirstShiftedClass = 18;
+/// Room for a class and 64 residuals behind an escape each.
+constexpr std::size_t kGroupMaxBytes = 4 + kGroupMaxCount * 5;
+constexpr std::uint32_t kPlaceBits = 6;
 
-/// Of a class with its own table: 2^32 times the weight of 1 over that of 0, and the largest value in the table.
-struct Normal {
-  std::uint32_t weight_ratio;
-  int largest;
+struct Magnitudes {
+  std::uint32_t sum = 0;
+  int largest = 0;  ///< -32768 counts as 32767
+  int signed_sum = 0;
 };
-constexpr Normal kNormals[] = {{33048663, 4},    {47037629, 4},   {67129970, 4},   {96180043, 4},   {138583811, 4},
-                               {201340740, 4},   {296102537, 4},  {443370733, 4},  {681172609, 4},  {1077842265, 4},
-                               {1704127699, 4},  {2475875289, 4}, {3169595364, 6}, {3659567669, 8}, {3955829142, 12},
-                               {4119551104, 16}, {4205730481, 24}};
-constexpr std::size_t kNormalCount = std::size(kNormals);
 
-/// weights[k] / 2^32 = ratio^(k^2), or ratio^(k^2 + k) half-way between whole numbers.
-std::vector<std::uint64_t> weightsOf(const Normal& normal, bool is_halfway) {
-  const std::uint64_t ratio = normal.weight_ratio;
-  const std::uint64_t squared = ratio * ratio >> 32;
-  std::vector<std::uint64_t> weights = {std::uint64_t{1} << 32};
-  for (std::uint64_t step = is_halfway ? squared : ratio; weights.size() <= static_cast<std::size_t>(normal.largest);
-       step = step * squared >> 32)
-    weights.push_back(weights.back() * step >> 32);
-  return weights;
+#if defined(__SSE2__)
+
+/// Sums of neighbouring products, four at a time.
+__m128i sumsOfPairs(const std::int16_t* r, __m128i factors) {
+  return _mm_madd_epi16(_mm_load_si128(reinterpret_cast<const __m128i*>(r)), factors);
+}
+int sumOf(__m128i fours) {
+  fours = _mm_add_epi32(fours, _mm_shuffle_epi32(fours, _MM_SHUFFLE(1, 0, 3, 2)));
+  fours = _mm_add_epi32(fours, _mm_shuffle_epi32(fours, _MM_SHUFFLE(2, 3, 0, 1)));
+  return _mm_cvtsi128_si32(fours);
 }
 
-/// Values -largest..largest (half-way: one more below), then the escape.
-SymbolTable tableOf(const Normal& normal, bool is_halfway) {
-  const std::vector<std::uint64_t> weights = weightsOf(normal, is_halfway);
-  std::vector<std::uint64_t> by_symbol;
-  for (int k = normal.largest; k >= (is_halfway ? 0 : 1); --k)
-    by_symbol.push_back(weights[static_cast<std::size_t>(k)]);
-  by_symbol.insert(by_symbol.end(), weights.begin(), weights.end());
-  std::uint64_t sum = 0;
-  for (const std::uint64_t weight : by_symbol) sum += weight;
-  std::vector<std::uint32_t> frequencies;
-  std::uint32_t used = 0;
-  for (const std::uint64_t weight : by_symbol) {
-    frequencies.push_back(std::max(static_cast<std::uint32_t>((weight * (2 * kSlotCount) + sum) / (2 * sum)), 1u));
-    used += frequencies.back();
+Magnitudes magnitudesOf(const ResidualGroup& residuals) {
+  const __m128i ones = _mm_set1_epi16(1);
+  __m128i sum = _mm_setzero_si128(), largest = sum, signed_sum = sum;
+  for (std::size_t i = 0; i < kGroupMaxCount; i += 8) {
+    const __m128i r = _mm_load_si128(reinterpret_cast<const __m128i*>(residuals.of.data() + i));
+    const __m128i magnitude = _mm_max_epi16(r, _mm_subs_epi16(_mm_setzero_si128(), r));
+    sum = _mm_add_epi32(sum, _mm_madd_epi16(magnitude, ones));
+    signed_sum = _mm_add_epi32(signed_sum, _mm_madd_epi16(r, ones));
+    largest = _mm_max_epi16(largest, magnitude);
   }
-  frequencies.push_back(1);
-  // What rounding left over or took too much goes to the most frequent value.
-  frequencies[static_cast<std::size_t>(normal.largest) + (is_halfway ? 1 : 0)] += kSlotCount - used - 1;
-  return SymbolTable(frequencies);
+  largest = _mm_max_epi16(largest, _mm_shuffle_epi32(largest, _MM_SHUFFLE(1, 0, 3, 2)));
+  largest = _mm_max_epi16(largest, _mm_shuffle_epi32(largest, _MM_SHUFFLE(2, 3, 0, 1)));
+  largest = _mm_max_epi16(largest, _mm_srli_epi32(largest, 16));
+  return {static_cast<std::uint32_t>(sumOf(sum)), static_cast<std::int16_t>(_mm_cvtsi128_si32(largest)),
+          sumOf(signed_sum)};
 }
 
-/// How the residuals of a class are coded.
-struct ClassCode {
-  const SymbolTable* table;
-  int shift;   ///< low bits that stand raw
-  int offset;  ///< symbol = (residual >> shift) + offset
-  std::size_t escape;
-};
-
-class ClassCodes {
- public:
-  ClassCodes() {
-    tables_.reserve(kNormalCount + 2);
-    for (const Normal& normal : kNormals) tables_.push_back(tableOf(normal, false));
-    for (const std::size_t k : {kNormalCount - 2, kNormalCount - 1}) tables_.push_back(tableOf(kNormals[k], true));
-    codes_.push_back({});
-    for (std::size_t k = 0; k < kNormalCount; ++k) {
-      const int largest = kNormals[k].largest;
-      codes_.push_back({&tables_[k], 0, largest, static_cast<std::size_t>(2 * largest + 1)});
-    }
-    for (std::uint32_t c = kFirstShiftedClass; c < kResidualClassCount; ++c) {
-      const std::size_t k = kNormalCount - 2 + c % 2;
-      const int largest = kNormals[k].largest;
-      codes_.push_back(
-          {&tables_[k + 2], static_cast<int>(c - 16) / 2, largest + 1, static_cast<std::size_t>(2 * largest + 2)});
-    }
+/// One for each four residuals, all of them from -1 to 1; two apart.
+void symbolsOfFours(const ResidualGroup& residuals, std::array<std::uint32_t, kGroupMaxCount / 2>& out) {
+  const __m128i factors = _mm_setr_epi16(1, 3, 9, 27, 1, 3, 9, 27);
+  for (std::size_t i = 0; i < kGroupMaxCount; i += 8) {
+    const __m128i pairs = sumsOfPairs(residuals.of.data() + i, factors);
+    const __m128i fours =
+        _mm_add_epi32(_mm_add_epi32(pairs, _mm_srli_epi64(pairs, 32)), _mm_set1_epi32(1 + 3 + 9 + 27));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.data() + i / 2), fours);
   }
-  const ClassCode& operator[](std::uint32_t group_class) const { return codes_[group_class]; }
-
- private:
-  std::vector<SymbolTable> tables_;
-  std::vector<ClassCode> codes_;
-};
-
-const ClassCodes& classCodes() {
-  static const ClassCodes codes;
-  return codes;
+}
+/// One for each two, all of them from -4 to 4.
+void symbolsOfPairs(const ResidualGroup& residuals, std::array<std::uint32_t, kGroupMaxCount / 2>& out) {
+  const __m128i factors = _mm_setr_epi16(1, 9, 1, 9, 1, 9, 1, 9);
+  for (std::size_t i = 0; i < kGroupMaxCount; i += 8) {
+    const __m128i pairs = _mm_add_epi32(sumsOfPairs(residuals.of.data() + i, factors), _mm_set1_epi32(4 + 36));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out.data() + i / 2), pairs);
+  }
 }
 
-/// A group's class is coded as its difference from the expected one, with the table of a class.
-struct ClassExpectation {
-  int expected;
-  std::uint32_t coded_as;
-};
-ClassExpectation expectClass(std::uint32_t left, std::uint32_t above) {
-  if (left == 0 && above == 0) return {0, 7};
-  if (left == 0 || above == 0) return {static_cast<int>(left + above) / 2, 16};
-  return {static_cast<int>(left + above + 1) / 2, 13};
+#else
+
+Magnitudes magnitudesOf(const ResidualGroup& residuals) {
+  Magnitudes out;
+  for (const std::int16_t r : residuals.of) {
+    const int magnitude = std::min(std::abs(int{r}), 32767);
+    out.sum += static_cast<std::uint32_t>(magnitude);
+    out.largest = std::max(out.largest, magnitude);
+    out.signed_sum += r;
+  }
+  return out;
 }
 
-/// The class whose mean magnitude is nearest to sum / count.
-std::uint32_t classOf(std::uint32_t sum, std::size_t count) {
-  if (sum == 0) return 0;
-  const std::uint64_t scaled = std::uint64_t{sum} * 1024 * kGroupMaxCount / count;  // 1024 * 64 * mean
+void symbolsOfFours(const ResidualGroup& residuals, std::array<std::uint32_t, kGroupMaxCount / 2>& out) {
+  for (std::size_t i = 0; i < kGroupMaxCount; i += 4) {
+    const std::int16_t* r = residuals.of.data() + i;
+    out[i / 2] = static_cast<std::uint32_t>(r[0] + 3 * r[1] + 9 * r[2] + 27 * r[3] + 40);
+  }
+}
+void symbolsOfPairs(const ResidualGroup& residuals, std::array<std::uint32_t, kGroupMaxCount / 2>& out) {
+  for (std::size_t i = 0; i < kGroupMaxCount; i += 2)
+    out[i / 2] = static_cast<std::uint32_t>(residuals.of[i] + 9 * residuals.of[i + 1] + 40);
+}
+
+#endif
+
+/// From class 5 on: the one whose mean magnitude is nearest to sum / count.
+std::uint32_t meanClassOf(std::uint32_t sum, std::size_t count) {
+  const std::uint64_t scaled = std::uint64_t{sum} * 1024 * kGroupMaxCount / count;  // 65536 * mean
   const int bits = static_cast<int>(std::bit_width(scaled)) - 1;
-  const double mantissa = static_cast<double>(scaled) / static_cast<double>(std::uint64_t{1} << bits);
-  const int doubled_log2 = 2 * bits + (mantissa > 1.189 ? 1 : 0) + (mantissa > 1.682 ? 1 : 0) - 2 * 16;
-  return static_cast<std::uint32_t>(std::clamp(doubled_log2 + 13, 1, static_cast<int>(kResidualClassCount) - 1));
+  const std::uint64_t thousands = scaled * 1000 >> bits;  // from 1000 to 1999
+  const int doubled_log2 = 2 * (bits - 16) + (thousands > 1189 ? 1 : 0) + (thousands > 1682 ? 1 : 0);
+  return static_cast<std::uint32_t>(std::clamp(doubled_log2 + 13, 5, static_cast<int>(kResidualClassCount) - 1));
+}
+
+std::uint32_t classOf(const Magnitudes& magnitudes, std::size_t count) {
+  if (magnitudes.largest <= 1 && magnitudes.sum <= kLastSparseClass) return magnitudes.sum;
+  return meanClassOf(magnitudes.sum, count);
+}
+
+void putClass(std::uint32_t group_class, std::uint32_t left, std::uint32_t above, BitCursor& out) {
+  const ClassExpectation expectation = expectClass(left, above);
+  const PrefixWriter& code = residualWriters().of_class_step[expectation.code];
+  const std::uint32_t step = group_class + kClassReach + 1 - expectation.expected;
+  if (group_class == 0) {
+    code.put(0, out);
+  } else if (step >= 1 && step < kClassEscape) {
+    code.put(step, out);
+  } else {
+    code.put(kClassEscape, out);
+    out.put(group_class, kRawClassBits);
+  }
+}
+
+void putSingle(int r, const SingleCode& single, const PrefixWriter& code, BitCursor& out) {
+  const int raised = r + (1 << single.shift >> 1);
+  const auto symbol = static_cast<std::uint32_t>((raised >> single.shift) + single.largest);
+  if (symbol < single.escape()) {
+    code.put(symbol, out);
+    out.put(static_cast<std::uint32_t>(raised) & ((1u << single.shift) - 1), single.shift);
+  } else {
+    code.put(single.escape(), out);
+    out.put(static_cast<std::uint16_t>(r), kRawResidualBits);
+  }
+}
+
+void putSingles(const std::int16_t* residuals, std::size_t count, std::uint32_t as_class, BitCursor& out) {
+  const SingleCode single = singleCodeOf(as_class);
+  const PrefixWriter& code = residualWriters().ofClass(single.coded_as);
+  for (std::size_t i = 0; i < count; ++i) {
+    putSingle(residuals[i], single, code, out);
+    if (i % 2 != 0) out.flush();
+  }
+  out.flush();
+}
+
+/// Fours (Count 4) or pairs.
+template <std::size_t Count, int Largest>
+void putJoint(const ResidualGroup& residuals, std::size_t count, bool has_larger, const PrefixWriter& code,
+              std::uint32_t escape_class, BitCursor& out) {
+  static_assert(kFourEscape == kPairEscape);
+  std::array<std::uint32_t, kGroupMaxCount / 2> symbols;
+  if constexpr (Count == 4)
+    symbolsOfFours(residuals, symbols);
+  else
+    symbolsOfPairs(residuals, symbols);
+  if (!has_larger) {
+    std::size_t i = 0;
+    for (; i + 4 * Count <= count; i += 4 * Count) {
+      for (std::size_t k = i; k < i + 4 * Count; k += Count) code.put(symbols[k / 2], out);
+      out.flush();
+    }
+    for (; i < count; i += Count) code.put(symbols[i / 2], out);
+    out.flush();
+    return;
+  }
+  for (std::size_t i = 0; i < count; i += Count) {
+    const std::int16_t* r = residuals.of.data() + i;
+    if (std::any_of(r, r + Count, [](std::int16_t v) { return v > Largest || v < -Largest; })) {
+      code.put(kFourEscape, out);
+      out.flush();
+      putSingles(r, Count, escape_class, out);
+    } else {
+      code.put(symbols[i / 2], out);
+      out.flush();
+    }
+  }
+}
+
+/// At most kLastSparseClass residuals that are not 0.
+void putPlaces(const ResidualGroup& residuals, BitCursor& out) {
+  for (std::uint32_t begin = 0; begin < kGroupMaxCount; begin += 4) {
+    std::uint64_t four;
+    std::memcpy(&four, residuals.of.data() + begin, sizeof four);
+    for (; four != 0;) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(four)) / 16;
+      const bool is_below = residuals.of[begin + k] < 0;
+      out.put((begin + k) | (is_below ? 1u << kPlaceBits : 0), kPlaceBits + 1);
+      four &= ~(std::uint64_t{0xffff} << (16 * k));
+    }
+  }
+  out.flush();
+}
+
+void getSingles(std::int16_t* residuals, std::size_t count, std::uint32_t as_class, BitReader& in) {
+  const SingleCode single = singleCodeOf(as_class);
+  const PrefixReader& code = residualReaders().ofClass(single.coded_as);
+  const int half = 1 << single.shift >> 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t symbol = code.get(in);
+    residuals[i] = symbol == single.escape()
+                       ? static_cast<std::int16_t>(in.get(kRawResidualBits))
+                       : static_cast<std::int16_t>((static_cast<int>(symbol) - single.largest) * (1 << single.shift) -
+                                                   half + static_cast<int>(in.get(single.shift)));
+  }
+}
+
+template <std::size_t Count, int Largest>
+void getJoint(ResidualGroup& residuals, std::size_t count, const PrefixReader& code, std::uint32_t escape_class,
+              BitReader& in) {
+  for (std::size_t i = 0; i < count; i += Count) {
+    std::uint32_t symbol = code.get(in);
+    std::int16_t* r = residuals.of.data() + i;
+    if (symbol == kFourEscape) {
+      getSingles(r, Count, escape_class, in);
+    } else {
+      for (std::size_t k = 0; k < Count; ++k, symbol /= 2 * Largest + 1)
+        r[k] = static_cast<std::int16_t>(static_cast<int>(symbol % (2 * Largest + 1)) - Largest);
+    }
+  }
+}
+
+std::uint32_t getClass(std::uint32_t left, std::uint32_t above, BitReader& in) {
+  const ClassExpectation expectation = expectClass(left, above);
+  const std::uint32_t symbol = residualReaders().of_class_step[expectation.code].get(in);
+  if (symbol == 0) return 0;
+  if (symbol == kClassEscape) return std::min(in.get(kRawClassBits), kResidualClassCount - 1);
+  const int group_class = static_cast<int>(expectation.expected + symbol) - static_cast<int>(kClassReach) - 1;
+  return static_cast<std::uint32_t>(std::clamp(group_class, 0, static_cast<int>(kResidualClassCount) - 1));
 }
 
 }  // namespace
 
-std::uint32_t ResidualEncoder::putGroup(std::span<const std::int16_t> residuals, std::uint32_t left,
+std::uint32_t ResidualEncoder::putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
                                         std::uint32_t above) {
-  assert(!residuals.empty() && residuals.size() <= kGroupMaxCount);
-  std::uint32_t sum = 0;
-  for (const std::int16_t r : residuals) sum += static_cast<std::uint32_t>(std::abs(static_cast<int>(r)));
-  const std::uint32_t group_class = classOf(sum, residuals.size());
-  putClass(group_class, left, above);
-  if (group_class == 0) return 0;
-  const ClassCode& code = classCodes()[group_class];
-  std::uint32_t lane = 0;
-  for (const std::int16_t r : residuals) {
-    const auto symbol = static_cast<std::size_t>((r >> code.shift) + code.offset);
-    if (symbol < code.escape) {
-      coder_.put(*code.table, symbol, lane);
-      if (code.shift > 0) raw_.put(static_cast<std::uint32_t>(r) & ((1u << code.shift) - 1), code.shift);
-    } else {
-      coder_.put(*code.table, code.escape, lane);
-      raw_.put(static_cast<std::uint16_t>(r), kRawResidualBits);
-    }
-    lane = (lane + 1) % kLaneCount;
-  }
-  return group_class;
-}
-
-void ResidualEncoder::putClass(std::uint32_t group_class, std::uint32_t left, std::uint32_t above) {
-  const ClassExpectation expectation = expectClass(left, above);
-  const ClassCode& code = classCodes()[expectation.coded_as];
-  const auto symbol = static_cast<std::size_t>(static_cast<int>(group_class) - expectation.expected + code.offset);
-  if (symbol < code.escape) {
-    coder_.put(*code.table, symbol, 0);
+  assert(count >= 1 && count <= kGroupMaxCount);
+  const Magnitudes magnitudes = magnitudesOf(residuals);
+  const std::uint32_t c = classOf(magnitudes, count);
+  BitCursor out = bits_.begin(kGroupMaxBytes);
+  putClass(c, left, above, out);
+  out.flush();
+  if (c == 0) {
+  } else if (c <= kLastSparseClass) {
+    putPlaces(residuals, out);
+  } else if (c <= kLastFourClass) {
+    putJoint<4, 1>(residuals, count, magnitudes.largest > 1, residualWriters().ofClass(c), kFourEscapeClass, out);
+  } else if (c <= kLastPairClass) {
+    putJoint<2, kPairLargest>(residuals, count, magnitudes.largest > kPairLargest, residualWriters().ofClass(c),
+                              kPairEscapeClass, out);
   } else {
-    coder_.put(*code.table, code.escape, 0);
-    raw_.put(group_class, 6);
+    putSingles(residuals.of.data(), count, c, out);
   }
+  bits_.end(out);
+  residual_sum_ += static_cast<std::uint32_t>(magnitudes.signed_sum);
+  return c;
 }
 
 void ResidualEncoder::finish(core::Bytes& out) {
-  const std::size_t length_at = out.size();
-  out.resize(length_at + 4);
-  coder_.finish(out);
-  const std::size_t coded_bytes = out.size() - length_at - 4;
-  for (std::size_t i = 0; i < 4; ++i) out[length_at + i] = static_cast<std::uint8_t>(coded_bytes >> (8 * i));
-  const core::Bytes raw = raw_.take();
-  out.insert(out.end(), raw.begin(), raw.end());
+  bits_.put(residual_sum_ & ((1u << ResidualDecoder::kSumBits) - 1), ResidualDecoder::kSumBits);
+  residual_sum_ = 0;
+  bits_.finish(out);
 }
 
-ResidualDecoder::ResidualDecoder(core::ByteView bytes) : ResidualDecoder(split(bytes)) {}
-
-ResidualDecoder::Parts ResidualDecoder::split(core::ByteView bytes) {
-  if (bytes.size() < 4) return {};
-  std::size_t coded_bytes = 0;
-  for (std::size_t i = 0; i < 4; ++i) coded_bytes |= std::size_t{bytes[i]} << (8 * i);
-  if (coded_bytes > bytes.size() - 4) return {};
-  return {bytes.subspan(4, coded_bytes), bytes.subspan(4 + coded_bytes)};
-}
-
-std::uint32_t ResidualDecoder::getGroup(std::span<std::int16_t> residuals, std::uint32_t left, std::uint32_t above) {
-  const std::uint32_t group_class = getClass(left, above);
-  if (group_class == 0) {
-    std::ranges::fill(residuals, std::int16_t{0});
-    return 0;
-  }
-  const ClassCode& code = classCodes()[group_class];
-  std::uint32_t lane = 0;
-  for (std::int16_t& r : residuals) {
-    const std::uint32_t symbol = coder_.get(*code.table, lane);
-    if (symbol < code.escape) {
-      const auto high = static_cast<std::uint32_t>(static_cast<int>(symbol) - code.offset) << code.shift;
-      r = static_cast<std::int16_t>(code.shift > 0 ? high | raw_.get(code.shift) : high);
-    } else {
-      r = static_cast<std::int16_t>(raw_.get(kRawResidualBits));
+std::uint32_t ResidualDecoder::getGroup(ResidualGroup& residuals, std::size_t count, std::uint32_t left,
+                                        std::uint32_t above) {
+  const std::uint32_t c = getClass(left, above, bits_);
+  if (c <= kLastSparseClass) {
+    residuals.of.fill(0);
+    for (std::uint32_t k = 0; k < c; ++k) {
+      const std::uint32_t place = bits_.get(kPlaceBits);
+      residuals.of[place] = bits_.get(1) != 0 ? -1 : 1;
     }
-    lane = (lane + 1) % kLaneCount;
+  } else if (c <= kLastFourClass) {
+    getJoint<4, 1>(residuals, count, residualReaders().ofClass(c), kFourEscapeClass, bits_);
+  } else if (c <= kLastPairClass) {
+    getJoint<2, kPairLargest>(residuals, count, residualReaders().ofClass(c), kPairEscapeClass, bits_);
+  } else {
+    getSingles(residuals.of.data(), count, c, bits_);
   }
-  return group_class;
-}
-
-std::uint32_t ResidualDecoder::getClass(std::uint32_t left, std::uint32_t above) {
-  const ClassExpectation expectation = expectClass(left, above);
-  const ClassCode& code = classCodes()[expectation.coded_as];
-  const std::uint32_t symbol = coder_.get(*code.table, 0);
-  if (symbol >= code.escape) return std::min(raw_.get(6), kResidualClassCount - 1);
-  const int group_class = static_cast<int>(symbol) - code.offset + expectation.expected;
-  return static_cast<std::uint32_t>(std::clamp(group_class, 0, static_cast<int>(kResidualClassCount) - 1));
+  const std::size_t padded =
+      c > kLastFourClass ? c > kLastPairClass ? count : (count + 1) / 2 * 2 : (count + 3) / 4 * 4;
+  const std::size_t end = c <= kLastSparseClass ? kGroupMaxCount : padded;
+  for (std::size_t i = 0; i < end; ++i) residual_sum_ += static_cast<std::uint32_t>(int{residuals.of[i]});
+  return c;
 }
 
 }  // namespace spindrift::stream

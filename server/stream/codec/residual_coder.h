@@ -1,68 +1,57 @@
 // What prediction left over, in groups of up to 64 neighbours: a group's class says how large its residuals are, and
-// each class has a fixed table. Nothing is learned on the way, so groups of any frame cost the same work.
+// each class has a fixed code. Nothing is learned on the way, so groups of any frame cost the same work.
 //
-// Classes: 0, all are zero and nothing follows; c = 1..17, mean magnitude about 2^((c - 13) / 2); c = 18..44 likewise,
-// of which the lowest (c - 16) / 2 bits stand in the raw bits and the rest is coded with the table of 2.8 or 4. Tables
-// are those of a normal distribution sampled at whole numbers (c >= 18: half-way between), with one slot at least for
-// every value of their range and one for everything else, which stands in the raw bits as 16 bits.
+// Classes: 0, all are zero and nothing follows; c = 1..4, c of them are 1 or -1 and the rest 0, and their places
+// follow; from 5 on mean magnitude about 2^((c - 13) / 2): fours together up to 9, pairs up to 12, one by one from 13
+// on, and from 18 on the lowest (c - 16) / 2 bits of each stand raw. Whatever is larger than a code has values for
+// follows an escape.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
-
-#include <spindrift/core/bytes.h>
 
 #include "bit_stream.h"
-#include "rans.h"
 
 namespace spindrift::stream {
 
 inline constexpr std::size_t kGroupMaxCount = 64;
 inline constexpr std::uint32_t kResidualClassCount = 45;
 
-/// Writes two streams: what the coder makes smaller, and raw bits.
+/// A group's residuals; those beyond its count are 0.
+struct alignas(32) ResidualGroup {
+  std::array<std::int16_t, kGroupMaxCount> of{};
+};
+
 class ResidualEncoder {
  public:
-  /// Up to kGroupMaxCount residuals. `left` and `above`: the classes of the groups before it in two directions, 0 where
-  /// there is none; along a line both are the one before. Returns the group's class.
-  std::uint32_t putGroup(std::span<const std::int16_t> residuals, std::uint32_t left, std::uint32_t above);
-  /// Any symbol of another table, in turn with the groups.
-  void put(const SymbolTable& table, std::size_t symbol) { coder_.put(table, symbol, 0); }
-  void putRaw(std::uint32_t value, int bit_count) { raw_.put(value, bit_count); }
-
-  /// Appends: u32 bytes of the coded stream, the coded stream, the raw bits. Empty afterwards.
+  /// `left` and `above`: the classes of the groups before it in two directions, 0 where there is none; along a line
+  /// both are the one before. Returns the group's class.
+  std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left, std::uint32_t above);
+  /// For what stands beside the groups.
+  BitWriter& bits() { return bits_; }
+  /// Appends everything, and the sum of all residuals, 16 bits of it. Empty afterwards.
   void finish(core::Bytes& out);
 
  private:
-  void putClass(std::uint32_t group_class, std::uint32_t left, std::uint32_t above);
-
-  RansEncoder coder_;
-  BitWriter raw_;
+  BitWriter bits_;
+  std::uint32_t residual_sum_ = 0;
 };
 
-/// Reads what ResidualEncoder wrote, in the same order.
 class ResidualDecoder {
  public:
-  /// `bytes` to its end; an impossible length reads as an empty stream, and isAtEnd() is false then.
-  explicit ResidualDecoder(core::ByteView bytes);
+  explicit ResidualDecoder(core::ByteView bytes) : bits_(bytes) {}
 
-  std::uint32_t getGroup(std::span<std::int16_t> residuals, std::uint32_t left, std::uint32_t above);
-  std::uint32_t get(const SymbolTable& table) { return coder_.get(table, 0); }
-  std::uint32_t getRaw(int bit_count) { return raw_.get(bit_count); }
+  /// Residuals beyond `count` are 0 in what an encoder wrote.
+  std::uint32_t getGroup(ResidualGroup& residuals, std::size_t count, std::uint32_t left, std::uint32_t above);
+  BitReader& bits() { return bits_; }
+  /// To be called last. Whether the sum fits and nothing is left over: else the bytes are damaged.
+  bool isAtEnd() { return bits_.get(kSumBits) == (residual_sum_ & ((1u << kSumBits) - 1)) && bits_.isAtEnd(); }
 
-  /// Whether both streams were read to their ends, no more and no less: else the bytes are damaged.
-  [[nodiscard]] bool isAtEnd() const { return coder_.isAtEnd() && raw_.isAtEnd(); }
+  static constexpr std::uint32_t kSumBits = 16;
 
  private:
-  struct Parts {
-    core::ByteView coded, raw;
-  };
-  static Parts split(core::ByteView bytes);
-  explicit ResidualDecoder(const Parts& parts) : coder_(parts.coded), raw_(parts.raw) {}
-  std::uint32_t getClass(std::uint32_t left, std::uint32_t above);
-
-  RansDecoder coder_;
-  BitReader raw_;
+  BitReader bits_;
+  std::uint32_t residual_sum_ = 0;
 };
 
 }  // namespace spindrift::stream

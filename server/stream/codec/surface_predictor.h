@@ -1,7 +1,7 @@
 // A heightfield from what is known of it: its two frames before and the samples already coded of this one. The wave
 // equation says how: eta(t + dt) depends on eta(t) around the place and on eta(t - dt). The weights are not derived
-// from the scene but fitted to each frame (least squares), which takes in depth, damping, the frame interval and the
-// noise of the quanta. Whole numbers only, so that every reader comes to the same.
+// from the scene but fitted to each frame (fitWeights), which takes in depth, damping, the frame interval and the noise
+// of the quanta. Whole numbers only, so that every reader comes to the same.
 #pragma once
 
 #include <array>
@@ -39,9 +39,8 @@ class SurfacePlane {
  public:
   static constexpr std::size_t kBorder = 2;
 
-  SurfacePlane() = default;
-  /// All samples 0.
-  explicit SurfacePlane(std::size_t resolution_count);
+  /// Another size; the samples are anything until they are written.
+  void resize(std::size_t resolution_count);
 
   [[nodiscard]] std::size_t resolution() const { return n_; }
   [[nodiscard]] std::size_t stride() const { return n_ + 2 * kBorder; }
@@ -50,6 +49,7 @@ class SurfacePlane {
   [[nodiscard]] const std::int16_t* row(std::ptrdiff_t z) const { return samples_.data() + offsetOf(z); }
   /// n * n samples into the plane, borders as well.
   void assign(std::span<const std::int16_t> samples);
+  void assign(std::span<const std::uint8_t> samples);
   /// Writes the border from the samples inside.
   void fillBorder();
 
@@ -67,9 +67,6 @@ struct SurfaceHistory {
   const SurfacePlane* before = nullptr;
   const SurfacePlane* earlier = nullptr;
 };
-
-/// The weights that fit `plane` best.
-SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history);
 
 /// Codes a plane, in tiles of 8 x 8, row by row.
 void encodePlane(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,

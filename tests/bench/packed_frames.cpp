@@ -1,0 +1,67 @@
+// Packed frames of a scene in a file: what a benchmark of their reader reads. Each is a ServerMessage with its length
+// before it, u32 little endian; surface and particles in turn, the first surface a keyframe.
+#include <cstdio>
+#include <cstdlib>
+
+#include <spindrift/gpu/context.h>
+#include <spindrift/sim/water_sim.h>
+#include <spindrift/stream/frame_encoder.h>
+#include <spindrift/stream/scene_loader.h>
+
+namespace {
+
+using namespace spindrift;
+
+int failWith(const core::Error& error) {
+  std::fprintf(stderr, "%s\n", error.message.c_str());
+  return 1;
+}
+
+bool write(const core::SharedBytes& bytes, std::FILE* out) {
+  const auto size = static_cast<std::uint32_t>(bytes->size());
+  return std::fwrite(&size, 1, sizeof size, out) == sizeof size && std::fwrite(bytes->data(), 1, size, out) == size;
+}
+
+int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
+  auto loaded = stream::loadSceneFile(scene_file, std::nullopt);
+  if (!loaded) return failWith(loaded.error());
+  const core::Scene scene = stream::toCore(*loaded);
+  auto ctx = gpu::Context::create(*gpu::parseDeviceChoice("auto"));
+  if (!ctx) return failWith(ctx.error());
+  auto sim = sim::WaterSim::create(**ctx, scene);
+  if (!sim) return failWith(sim.error());
+  stream::FrameEncoder encoder;
+  double next_s = 1.0;  // the first effect
+  for (std::size_t count = 0; count < frame_count;) {
+    (*sim)->step();
+    if ((*sim)->time_s() + 1e-9 < next_s) continue;
+    next_s += 1.0 / scene.stream.frame_rate_hz;
+    (void)(*sim)->requestFrame({.surface = scene.wave.has_value(), .particles = scene.particles.has_value()});
+    (*ctx)->finish();
+    for (const core::FrameView& frame : (*sim)->takeFrames()) {
+      for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES}) {
+        const stream::EncodedFrame encoded = encoder.encode({layer, v1::PACKING_PACKED}, frame, false);
+        const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+        if (bytes && !write(bytes, out)) return failWith({core::ErrorCode::kUnavailable, "cannot write"});
+      }
+      ++count;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::fprintf(stderr, "usage: packed_frames SCENE.textproto FRAMES OUT\n");
+    return 2;
+  }
+  std::FILE* out = std::fopen(argv[3], "wb");
+  if (out == nullptr) {
+    std::fprintf(stderr, "cannot write %s\n", argv[3]);
+    return 2;
+  }
+  const int code = record(argv[1], static_cast<std::size_t>(std::atoi(argv[2])), out);
+  return std::fclose(out) == 0 ? code : 1;
+}

@@ -1,0 +1,59 @@
+// How long the worker takes for a frame of the surface and one of the particles: `npm run bench`, in Node and, with --chromium,
+// in a worker of a browser.
+import { fromBinary } from "@bufbuild/protobuf";
+import { ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
+import { parseFrame } from "./frames";
+import { PlaneUnpacker } from "./packed_planes";
+
+export interface DecodeTimes {
+  frames: number;
+  particles: number;
+  resolution: number;
+  /** Milliseconds of a surface, of the particles, of both; sorted. */
+  surfaceMs: number[];
+  particlesMs: number[];
+  bothMs: number[];
+}
+
+/** The messages of a file of tests/bench/packed_frames, in turn surface and particles. */
+function messagesOf(file: Uint8Array): Uint8Array[] {
+  const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
+  const messages: Uint8Array[] = [];
+  for (let at = 0; at < file.length; ) {
+    const size = view.getUint32(at, true);
+    messages.push(file.slice(at + 4, at + 4 + size));
+    at += 4 + size;
+  }
+  return messages;
+}
+
+/** Reads all frames `rounds` times after three that do not count, the first frame of each, a keyframe, apart. */
+export function measureDecoding(file: Uint8Array, rounds: number): DecodeTimes {
+  const messages = messagesOf(file);
+  const times: DecodeTimes = { frames: messages.length / 2, particles: 0, resolution: 0, surfaceMs: [], particlesMs: [], bothMs: [] };
+  for (let round = -3; round < rounds; ++round) {
+    const unpacker = new PlaneUnpacker();
+    let surfaceMs = 0;
+    messages.forEach((bytes, k) => {
+      const begin = performance.now();
+      const message = fromBinary(ServerMessageSchema, bytes);
+      if (message.message.case !== "frame") throw new Error("not a frame");
+      const parsed = parseFrame(message.message.value);
+      const frame = parsed.kind === "packedSurface" || parsed.kind === "packedFoam" ? unpacker.unpack(parsed) : parsed;
+      const ms = performance.now() - begin;
+      if (frame.kind === "surface") times.resolution = frame.header.resolutionCount;
+      else if (frame.kind === "particles") times.particles = frame.header.count;
+      else throw new Error(`message ${k}: ${frame.kind === "malformed" ? frame.reason : frame.kind}`);
+      if (round < 0 || k < 2) return;
+      if (frame.kind === "surface") {
+        surfaceMs = ms;
+      } else {
+        times.surfaceMs.push(surfaceMs);
+        times.particlesMs.push(ms);
+        times.bothMs.push(surfaceMs + ms);
+      }
+    });
+  }
+  for (const list of [times.surfaceMs, times.particlesMs, times.bothMs]) list.sort((a, b) => a - b);
+  return times;
+}
