@@ -72,11 +72,11 @@ class FakeGateway final : public net::Application {
   core::Result<void> acceptSession(const std::string&) override { return {}; }
   void sessionOpened(net::SessionId session, const std::string& room, const std::string&) override {
     ++opened_count;
-    hub_->join(session, room);
     stream::GreetingFacts facts;
     facts.room = room;
     facts.session_id = session;
     hub_->sendControl(session, stream::greeting(facts, scene_));
+    hub_->join(session, room);  // afterwards, so that no news of the room comes before the greeting
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
     const stream::ClientMessage message = stream::parseClientMessage(bytes);

@@ -167,7 +167,7 @@ std::vector<GoldenCase> goldenPackedSurfaces() {
     cases.push_back({"surface_packed_" + std::to_string(step) + ".bin", GoldenVerdict::kOk,
                      jsonOf(frame, *decoder.decode(frame), follows), bytes});
   }
-  const core::Bytes& key = cases.front().bytes;
+  const core::Bytes key = cases.front().bytes;  // a copy: the row grows below
   cases.push_back(damagedCase("bad_surface_packed_cut.bin",
                               "the packed payload is cut in half, checksum of what is there", key,
                               [](v1::LayerFrame& f) { f.mutable_payload()->resize(f.payload().size() / 2); }));
