@@ -26,7 +26,7 @@ const complaints = [];
 /** While the server is down on purpose, a refused connection is no complaint. */
 let is_server_down = false;
 
-async function openPage() {
+async function openPage(room = "") {
   const opened = await context.newPage();
   opened.on("pageerror", (error) => complaints.push(`uncaught: ${error.stack ?? error.message}`));
   opened.on("console", (message) => {
@@ -34,7 +34,7 @@ async function openPage() {
     if (is_server_down && /WebSocket connection|ERR_CONNECTION/.test(message.text())) return;
     complaints.push(`console: ${message.text()} (${message.location().url})`);
   });
-  await opened.goto(`${server.url}?quality=low`, { timeout: WAIT_MS });
+  await opened.goto(`${server.url}?quality=low${room && `&room=${room}`}`, { timeout: WAIT_MS });
   await waitFor(opened, "the page to be live", (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 0);
   return opened;
 }
@@ -195,6 +195,29 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
       await sleep(100);
     }
     await other.close();
+  });
+
+  step("drives a boat of its own, which others cannot take, and finds it again after a reload", async () => {
+    const ada = await openPage("marina");
+    const bob = await openPage("marina");
+    const people = (target) => target.getByTestId("people").locator("li");
+    await ada.locator("#people-box > summary").click();
+    await ada.getByTestId("my-name").fill("Ada");
+    await ada.getByTestId("introduce").click();
+    await waitFor(ada, "the page to be live under its name", (stats) => stats.connectionState === "live" && stats.role === "operator");
+    await ada.getByTestId("spawn").click();
+    const { myBoat } = await waitFor(ada, "a boat of Ada's", (stats) => stats.myBoat > 0);
+    await bob.locator("#people-box > summary").click();
+    await people(bob).filter({ hasText: /Ada.*boat/ }).waitFor({ timeout: WAIT_MS });
+    assert.equal(await people(bob).count(), 2);
+    assert.equal(await bob.getByTestId("my-boat").locator(`option[value="${myBoat}"]`).count(), 0, "Bob may choose Ada's boat");
+
+    await ada.reload({ timeout: WAIT_MS });
+    await waitFor(ada, "Ada's boat after the reload", (stats) => stats.myBoat === myBoat);
+    assert.equal(await ada.getByTestId("my-name").inputValue(), "Ada");
+    await ada.close();
+    await people(bob).filter({ hasText: /Ada.*away/ }).waitFor({ timeout: WAIT_MS });
+    await bob.close();
   });
 
   step("comes back by itself after the server was killed and started again", async () => {

@@ -17,7 +17,8 @@ const STOP_LIMIT_MS = 30_000;
 export function startServer(port = 0) {
   const child = spawn(
     binary,
-    ["serve", "--port", String(port), "--web-root", `${repository}/web-client/dist`, "--scene", `${repository}/tests/browser/scene.textproto`],
+    ["serve", "--port", String(port), "--web-root", `${repository}/web-client/dist`, "--scene", `${repository}/tests/browser/scene.textproto`,
+      "--room", `marina=${repository}/tests/browser/marina.textproto`],
     { stdio: ["ignore", "pipe", "pipe"] },
   );
   let words = "";

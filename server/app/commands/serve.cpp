@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -63,8 +64,9 @@ core::Result<Access> loadAccess(const ServeOptions& options) {
     text.assign(std::istreambuf_iterator<char>(file), {});
     label = options.token_file;
     has_tokens = true;
-  } else if (const char* const set = std::getenv("SPINDRIFT_TOKENS")) {
+  } else if (const char* const set = std::getenv("SPINDRIFT_TOKENS"); set && *set) {
     text = set;
+    std::ranges::replace(text, ';', '\n');  // one line is what an environment can hold well
     has_tokens = true;
   }
   std::optional<core::Role> guest = has_tokens ? core::Role::kViewer : core::Role::kOperator;

@@ -69,6 +69,7 @@ TEST(Access, BadLinesAreNamedWithoutTheirToken) {
   EXPECT_THAT(refusal("operator short"), HasSubstr("at least 16"));
   EXPECT_THAT(refusal("operator secretsecretsecret for=ever"), HasSubstr("until="));
   EXPECT_THAT(refusal("operator secretsecretsecret until=2026-02-30T00:00:00Z"), HasSubstr("until="));
+  EXPECT_THAT(refusal("operator secretsecretsecret until=9999-02-03T00:00:00Z"), HasSubstr("until="));
   EXPECT_THAT(refusal("operator secretsecretsecret until=2026-02-03T00:00:00Z more"), Not(HasSubstr("secretsecret")));
   EXPECT_THAT(refusal("operator secretsecretsecret\nviewer secretsecretsecret"), HasSubstr("earlier line"));
 }

@@ -1,0 +1,126 @@
+// The program as its people use it: tokens, scripted clients, logs and their replay.
+#include <filesystem>
+
+#include <boost/json.hpp>
+#include <gmock/gmock.h>
+
+#include "program_fixture.h"
+#include "scripted_client.h"
+
+namespace spindrift::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+class People : public ProgramTest {
+ protected:
+  /// The server's URL; empty where no device is usable (the test is skipped then).
+  std::string serve(std::vector<std::string> more = {}, const std::vector<std::string>& environment = {}) {
+    std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    child_ = std::make_unique<ChildProcess>(SPINDRIFT_PROGRAM, arguments, environment);
+    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
+    if (!line) {
+      EXPECT_EQ(child_->wait(), 3) << child_->err();
+      return "";
+    }
+    port_ = line->substr(line->rfind(':') + 1);
+    if (port_.ends_with('/')) port_.pop_back();
+    return "ws://127.0.0.1:" + port_;
+  }
+  void stop() {
+    child_->signal(SIGINT);
+    EXPECT_EQ(child_->wait(), 0) << child_->err();
+  }
+  std::string script(const std::string& text) const { return scene(text, "script.textproto"); }
+  std::string logFile() const {
+    for (const auto& entry : fs::directory_iterator(folder().path() / "logs")) return entry.path().string();
+    return "";
+  }
+
+  std::unique_ptr<ChildProcess> child_;
+  std::string port_;
+};
+
+constexpr const char* kSplash = R"(
+  steps { command { command { splash { depth_m: 0.2 radius_m: 1 } } } }
+  steps { surface { x_m: 0 z_m: 0 max_m: -0.02 within_s: 30 } }
+)";
+
+TEST_F(People, AScriptThatHoldsEndsWith0AndOneThatDoesNotWith1) {
+  const std::string url = serve();
+  if (url.empty()) GTEST_SKIP() << "no device";
+  const Outcome good = runProgram({"script", "--url", url, script(kSplash)});
+  EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
+  EXPECT_THAT(good.out, HasSubstr("applied at tick"));
+  const std::string bad_script = script("steps { command { command { splash { depth_m: 49 } } } } steps { wait {} }");
+  const Outcome bad = runProgram({"script", "--url", url, bad_script});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.out, HasSubstr("FAILED"));
+  EXPECT_THAT(bad.out, HasSubstr("1 steps were not run"));
+  const Outcome json = runProgram({"script", "--url", url, "--json", "-", bad_script});
+  EXPECT_EQ(json.exit_code, 1);
+  EXPECT_FALSE(boost::json::parse(json.out).at("passed").as_bool());
+  stop();
+}
+
+TEST_F(People, AScriptWithoutAServerOrWithABadFileIsNamed) {
+  expectOneErrorLine(runProgram({"script", "--url", "http://x", script(kSplash)}), 2, {"--url", "ws://"});
+  expectOneErrorLine(runProgram({"script", "/nonexistent"}), 2, {"/nonexistent"});
+  expectOneErrorLine(runProgram({"script", script("steps { dance {} }")}), 2, {"script.textproto:1:", "dance"});
+  const Outcome alone = runProgram({"script", "--url", "ws://127.0.0.1:1", script(kSplash)});
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.out, HasSubstr("no connection to 127.0.0.1:1"));
+}
+
+TEST_F(People, TokensComeFromAFileOrTheEnvironmentAndAreNeverPrinted) {
+  const std::string tokens = scene("operator chief-chief-chief\nplayer crew-crew-crew-1\n", "tokens");
+  const std::string url = serve({"--tokens", tokens, "--guests", "none"});
+  if (url.empty()) GTEST_SKIP() << "no device";
+  EXPECT_EQ(runProgram({"script", "--url", url, script(kSplash)}).exit_code, 1) << "guests are turned away";
+  const std::string as_crew = script(std::string("clients { name: \"a\" token_env: \"CREW\" }") + kSplash);
+  EXPECT_EQ(runProgram({"script", "--url", url, as_crew}, {"CREW=crew-crew-crew-1"}).exit_code, 0);
+  EXPECT_EQ(runProgram({"script", "--url", url, as_crew}, {"CREW=wrong-wrong-wrong"}).exit_code, 1);
+  stop();
+  EXPECT_THAT(child_->err(), Not(HasSubstr("crew-crew")));
+  EXPECT_THAT(child_->err(), Not(HasSubstr("wrong-wrong")));
+
+  const std::string second = serve({}, {"SPINDRIFT_TOKENS=operator chief-chief-chief; player crew-crew-crew-1"});
+  EXPECT_EQ(runProgram({"script", "--url", second, as_crew}, {"CREW=crew-crew-crew-1"}).exit_code, 0);
+  EXPECT_EQ(runProgram({"script", "--url", second, script(kSplash)}).exit_code, 1) << "guests are viewers now";
+  stop();
+}
+
+TEST_F(People, TokensThatCannotBeReadAreNamed) {
+  const auto refused = [&](std::vector<std::string> more, const std::vector<std::string>& words) {
+    std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = runProgram(arguments);
+    if (outcome.exit_code == 3) return;
+    expectOneErrorLine(outcome, 2, words);
+  };
+  refused({"--tokens", "/nonexistent"}, {"--tokens /nonexistent"});
+  refused({"--tokens", scene("# nobody\n", "tokens")}, {"no token"});
+  refused({"--tokens", scene("king abcdefghijklmnop\n", "tokens")}, {"tokens:1:", "no role"});
+  refused({"--guests", "none"}, {"--guests none"});
+}
+
+TEST_F(People, ALogIsReplayedBitForBit) {
+  const std::string url = serve({"--record", (folder().path() / "logs").string(), "--hash-every", "10"});
+  if (url.empty()) GTEST_SKIP() << "no device";
+  EXPECT_EQ(runProgram({"script", "--url", url, script(kSplash)}).exit_code, 0);
+  stop();
+  const Outcome replay = runProgram({"replay", "--device", "software", logFile()});
+  EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;
+  EXPECT_THAT(replay.out, HasSubstr("1 commands carried out again"));
+  EXPECT_THAT(replay.out, HasSubstr("bit for bit"));
+  const Outcome json = runProgram({"replay", "--device", "software", "--json", "-", logFile()});
+  EXPECT_TRUE(boost::json::parse(json.out).at("same").as_bool());
+  expectOneErrorLine(runProgram({"replay", shippedScene("pool")}), 2, {"no log", "spinrec1"});
+  expectOneErrorLine(runProgram({"replay", "/nonexistent"}), 2, {"/nonexistent"});
+}
+
+}  // namespace
+}  // namespace spindrift::test
