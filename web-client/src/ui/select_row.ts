@@ -1,5 +1,5 @@
 // One labelled list to choose from.
-import { make } from "./dom";
+import { make, setText } from "./dom";
 
 export interface Choice {
   value: string;
@@ -20,6 +20,7 @@ export class SelectRow {
     const same = choices.length === this.select.options.length && choices.every((choice, i) => this.select.options[i]!.value === choice.value);
     // An open list is not torn away from under its user for nothing.
     if (!same) this.select.replaceChildren(...choices.map((choice) => make("option", { value: choice.value }, [choice.label])));
+    else choices.forEach((choice, i) => setText(this.select.options[i]!, choice.label));
     this.select.value = value;
   }
 
