@@ -184,10 +184,13 @@ core::Result<Row> measureServer(const v1::Scene& scene, const gpu::DeviceChoice&
 void print(std::FILE* out, const Row& row) {
   const CrowdReport& c = row.crowd;
   const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
-  fmt::print(out,
-             "{:<30} {:>6} {:>5}/{:>5}/{:>5} {:>8.1f} {:>8.1f} {:>8} {:>7} {:>8} {:>8.1f} {:>8.1f} {:>7.1f} {:>5}\n",
-             row.name, c.connected_count, c.fewest_frames, c.median_frames, c.most_frames, quantileOf(c.delays_ms, 0.5),
-             quantileOf(c.delays_ms, 0.99), row.io_cpu_s > 0 ? fmt::format("{:.1f}", 1e6 * row.io_cpu_s / sent) : "-",
+  // The layers of a real scene do not say when they were published.
+  const auto delay = [&](double ratio) {
+    return c.delays_ms.empty() ? std::string("-") : fmt::format("{:.1f}", quantileOf(c.delays_ms, ratio));
+  };
+  fmt::print(out, "{:<30} {:>6} {:>5}/{:>5}/{:>5} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8.1f} {:>8.1f} {:>7.1f} {:>5}\n",
+             row.name, c.connected_count, c.fewest_frames, c.median_frames, c.most_frames, delay(0.5), delay(0.99),
+             row.io_cpu_s > 0 ? fmt::format("{:.1f}", 1e6 * row.io_cpu_s / sent) : "-",
              row.after.dropped_frame_count - row.before.dropped_frame_count, row.after.evicted_session_count,
              quantileOf(c.answers_ms, 0.5), quantileOf(c.answers_ms, 0.99), row.resident_grown_mb,
              c.lost_count + c.unanswered_count);
