@@ -56,9 +56,11 @@ core::Result<std::unique_ptr<CommandLogWriter>> CommandLogWriter::create(const s
   self->hash_interval_ticks_ = header.hash_interval_ticks();
   self->out_.open(self->file_, std::ios::binary | std::ios::trunc);
   self->out_.write(kMagic.data(), kMagic.size());
-  v1::Record record;
-  *record.mutable_header() = header;
-  self->write(record);
+  if (self->out_.good()) {
+    v1::Record record;
+    *record.mutable_header() = header;
+    self->write(record);
+  }
   if (!self->out_.good()) {
     return Error{ErrorCode::kUnavailable, "the log " + self->file_.string() + " cannot be written (" +
                                               std::strerror(errno) + "): choose another folder with --record"};

@@ -165,7 +165,7 @@ void Gateway::hello(net::SessionId session, const Session& state, const stream::
   spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, roleName(grant->role), hello.client,
                admission.resumed ? "resumed" : "");
   v1::Welcome welcome;
-  welcome.set_role(static_cast<v1::Role>(static_cast<int>(v1::ROLE_VIEWER) + static_cast<int>(grant->role)));
+  welcome.set_role(stream::toWire(grant->role));
   welcome.set_person_id(admission.person_id);
   welcome.set_resume_key(admission.resume_key);
   welcome.set_grace_s(std::chrono::duration<double>(state.room->roster().grace()).count());
@@ -196,7 +196,7 @@ void Gateway::command(net::SessionId session, const Session& state, core::Comman
                                      .field = "",
                                      .message = "say hello before the first command"});
   }
-  if (auto rejection = admitCommand(command, *state.room)) return commandRejected(command, *rejection);
+  if (auto rejection = state.room->admit(command)) return commandRejected(command, *rejection);
 }
 
 void Gateway::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {

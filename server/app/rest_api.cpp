@@ -57,11 +57,7 @@ unsigned statusOf(v1::RejectReason reason) {
 
 HttpReply rejected(const stream::CommandRejection& rejection) {
   v1::CommandAnswer out;
-  v1::Reject& reject = *out.mutable_reject();
-  reject.set_command_id(rejection.command_id);
-  reject.set_reason(rejection.reason);
-  reject.set_field(rejection.field);
-  reject.set_message(rejection.message);
+  *out.mutable_reject() = stream::toWire(rejection);
   return json(statusOf(rejection.reason), out);
 }
 
@@ -80,24 +76,6 @@ bool isJson(const std::string& content_type) {
 }
 
 }  // namespace
-
-std::optional<stream::CommandRejection> admitCommand(const core::Command& command, Room& room) {
-  const auto reject = [&](v1::RejectReason reason, std::string message) {
-    return stream::CommandRejection{
-        .command_id = command.command_id, .reason = reason, .field = "", .message = std::move(message)};
-  };
-  if (const core::Role needed = core::roleFor(command.action); command.sender.role < needed) {
-    return reject(v1::REJECT_REASON_FORBIDDEN, "this takes the role of " + std::string(roleName(needed)) +
-                                                   "; yours is " + std::string(roleName(command.sender.role)));
-  }
-  if (auto rejection = stream::checkAgainstScene(command, room.snapshot()->scene)) {
-    rejection->command_id = command.command_id;
-    return rejection;
-  }
-  core::Command queued = command;
-  if (room.submit(std::move(queued))) return std::nullopt;
-  return reject(v1::REJECT_REASON_BUSY, "the room's command queue is full: try again");
-}
 
 RestApi::RestApi(SimulationThread& rooms, const Access& access, CommandCounters& counters,
                  const MetricsSources& sources, std::function<void(const Room&)> dismiss)
@@ -227,7 +205,7 @@ void RestApi::command(const Call& call, const std::shared_ptr<Room>& room, net::
     const std::lock_guard lock(mutex_);
     pending_[command.sender.request_id] = std::move(respond);
   }
-  if (const auto rejection = admitCommand(command, *room)) {
+  if (const auto rejection = room->admit(command)) {
     counters_.rejected(rejection->reason);
     commandRejected(command, *rejection);
   }

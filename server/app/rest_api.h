@@ -20,10 +20,6 @@
 
 namespace spindrift::app {
 
-/// Checks a command's role and its scene and puts it into the room's queue; or why not, with the command's number. The
-/// one way into a room, for sessions and requests alike.
-std::optional<stream::CommandRejection> admitCommand(const core::Command& command, Room& room);
-
 class RestApi {
  public:
   /// Everything given outlives it. `dismiss` sends a room's sessions away before it closes.

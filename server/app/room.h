@@ -93,8 +93,9 @@ class Room {
   /// Who is here.
   [[nodiscard]] Roster& roster() { return roster_; }
   [[nodiscard]] const Roster& roster() const { return roster_; }
-  /// False when the queue is full (BUSY); nothing is kept then.
-  [[nodiscard]] bool submit(core::Command command) { return commands_.tryPush(std::move(command)); }
+  /// The one way in, for sessions and requests alike: checks the sender's role and the scene, and queues the command.
+  /// Or why not, with the command's number; a full queue is BUSY.
+  [[nodiscard]] std::optional<stream::CommandRejection> admit(core::Command command);
 
   // Simulation thread.
   void start(TimePoint now);

@@ -8,6 +8,7 @@
 #include <spindrift/stream/client_message.h>
 #include <spindrift/stream/server_message.h>
 
+#include "access.h"
 #include "overloaded.h"
 #include "room.h"
 
@@ -31,6 +32,23 @@ stream::CommandRejection notYours(std::string field, std::uint32_t boat_id, std:
 }
 
 }  // namespace
+
+std::optional<stream::CommandRejection> Room::admit(core::Command command) {
+  const core::Sender& sender = command.sender;
+  Outcome refused;
+  if (const core::Role needed = core::roleFor(command.action); sender.role < needed) {
+    refused = rejection(v1::REJECT_REASON_FORBIDDEN, "",
+                        fmt::format("this takes the role of {}; yours is {}", roleName(needed), roleName(sender.role)));
+  } else {
+    refused = stream::checkAgainstScene(command, snapshot()->scene);
+  }
+  const std::uint64_t command_id = command.command_id;
+  if (!refused && !commands_.tryPush(std::move(command))) {
+    refused = rejection(v1::REJECT_REASON_BUSY, "", "the room's command queue is full: try again");
+  }
+  if (refused) refused->command_id = command_id;
+  return refused;
+}
 
 void Room::applyCommands(net::Hub& hub, RoomObserver& observer) {
   for (const core::Command& command : commands_.drain()) {

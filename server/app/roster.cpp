@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/stream/client_message.h>
+
 namespace spindrift::app {
 namespace {
 
@@ -19,10 +21,6 @@ std::string newSecret() {
   std::string out;
   for (int k = 0; k < 4; ++k) out += fmt::format("{:08x}", static_cast<std::uint32_t>(device()));
   return out;
-}
-
-v1::Role toWire(core::Role role) {
-  return static_cast<v1::Role>(static_cast<int>(v1::ROLE_VIEWER) + static_cast<int>(role));
 }
 
 }  // namespace
@@ -123,7 +121,7 @@ v1::People Roster::people() const {
     wire.set_person_id(id);
     wire.set_name(person.name);
     wire.set_color_rgb(person.color_rgb);
-    wire.set_role(toWire(person.role));
+    wire.set_role(stream::toWire(person.role));
     for (const std::uint32_t boat : person.boats) wire.add_boat_ids(boat);
     wire.set_away(person.session == 0);
   }

@@ -1,4 +1,4 @@
-// Domain commands back to the wire: for the log of a room and for clients of our own.
+// Domain values back to the wire: answers, roles, and commands for the log of a room.
 #include <variant>
 
 #include <spindrift/stream/client_message.h>
@@ -95,6 +95,27 @@ void write(v1::Command& out, const core::ChangeScene& change) {
 }
 
 }  // namespace
+
+v1::Role toWire(core::Role role) {
+  switch (role) {
+    case core::Role::kViewer:
+      return v1::ROLE_VIEWER;
+    case core::Role::kPlayer:
+      return v1::ROLE_PLAYER;
+    case core::Role::kOperator:
+      break;
+  }
+  return v1::ROLE_OPERATOR;
+}
+
+v1::Reject toWire(const CommandRejection& rejection) {
+  v1::Reject out;
+  out.set_command_id(rejection.command_id);
+  out.set_reason(rejection.reason);
+  out.set_field(rejection.field);
+  out.set_message(rejection.message);
+  return out;
+}
 
 v1::Command toWire(const core::Command& command) {
   v1::Command out;

@@ -48,17 +48,8 @@ core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std:
 }
 
 core::SharedBytes reject(const CommandRejection& rejection) {
-  return reject(rejection.command_id, rejection.reason, rejection.field, rejection.message);
-}
-
-core::SharedBytes reject(std::uint64_t command_id, v1::RejectReason reason, std::string_view field,
-                         std::string_view text) {
   v1::ServerMessage message;
-  v1::Reject& out = *message.mutable_reject();
-  out.set_command_id(command_id);
-  out.set_reason(reason);
-  out.set_field(std::string(field));
-  out.set_message(std::string(text));
+  *message.mutable_reject() = toWire(rejection);
   return serialize(message);
 }
 

@@ -105,6 +105,7 @@ TEST_F(CommandLogTest, AFolderThatCannotBeWrittenIsNamed) {
   const auto log = CommandLogWriter::create(folder.path() / "file", header());
   ASSERT_FALSE(log);
   EXPECT_THAT(log.error().message, HasSubstr("--record"));
+  EXPECT_EQ(log.error().message.find('\n'), std::string::npos);
 }
 
 }  // namespace

@@ -307,7 +307,7 @@ std::vector<GoldenCase> goldenCases() {
       {"reject.bin", kOk,
        "\"kind\": \"reject\", \"command_id\": \"301\", \"reason\": \"REJECT_REASON_OUT_OF_RANGE\", "
        "\"field\": \"splash.radius_m\", \"message\": \"too wide\"",
-       *reject(301, v1::REJECT_REASON_OUT_OF_RANGE, "splash.radius_m", "too wide")},
+       *reject({301, v1::REJECT_REASON_OUT_OF_RANGE, "splash.radius_m", "too wide"})},
       {"foam_16.bin", kOk, foamJson(foam), foam},
       {"bodies_2.bin", kOk, bodiesJson(bodies), bodies},
       {"ack_boat.bin", kOk, "\"kind\": \"ack\", \"command_id\": \"302\", \"applied_tick\": \"1234\", \"boat_id\": 7",

@@ -65,7 +65,7 @@ TEST(ServerMessages, AnswersCarryIdTickReasonAndField) {
   EXPECT_EQ(rejected.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
   EXPECT_EQ(rejected.field(), "splash.x_m");
   EXPECT_EQ(rejected.message(), "too far");
-  EXPECT_EQ(read(reject(9, v1::REJECT_REASON_BUSY, "", "try again")).reject().reason(), v1::REJECT_REASON_BUSY);
+  EXPECT_EQ(read(reject({9, v1::REJECT_REASON_BUSY, "", "try again"})).reject().reason(), v1::REJECT_REASON_BUSY);
 }
 
 TEST(ServerMessages, NewsOfTheRoomCarryTheirValues) {

@@ -68,6 +68,8 @@ std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& co
 
 /// The command in the words of the wire: what checkCommand() makes the same command of.
 v1::Command toWire(const core::Command& command);
+v1::Role toWire(core::Role role);
+v1::Reject toWire(const CommandRejection& rejection);
 
 /// nullopt if this server can talk to the client, otherwise one line for a Refusal.
 std::optional<std::string> checkVersion(const Hello& hello);

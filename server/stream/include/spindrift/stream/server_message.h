@@ -36,8 +36,6 @@ core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene);
 /// `boat_id` is the new boat's, for SpawnBoat.
 core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0);
 core::SharedBytes reject(const CommandRejection& rejection);
-core::SharedBytes reject(std::uint64_t command_id, v1::RejectReason reason, std::string_view field,
-                         std::string_view message);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
 core::SharedBytes roomState(bool paused, double speed);
 core::SharedBytes boatList(const v1::BoatList& boats);
