@@ -1,10 +1,11 @@
 #include "frame_packer.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <shared/bindings.h>
 #include <shared/boats.h>
-#include <shared/pool.h>
 
 #include "basin.h"
 #include "create_all.h"
@@ -13,8 +14,22 @@ namespace spindrift::sim {
 namespace {
 
 constexpr std::size_t kSlotCount = 4;  ///< one being filled, one in flight, one at the encoder, one spare
+/// How many were packed, how many there are.
+constexpr std::size_t kParticleHeaderWords = 2;
 constexpr std::size_t kWordsPerParticle = 3;
 constexpr std::size_t kWordsPerBoat = 7;
+constexpr std::size_t kBodyWords = std::size_t{MAX_BOATS} * kWordsPerBoat;
+constexpr std::array kLevels = {core::Level::kCoarse, core::Level::kMedium, core::Level::kFine, core::Level::kFull};
+
+std::size_t surfaceWords(std::uint32_t resolution_count) {
+  return std::size_t{resolution_count} * resolution_count / 2;
+}
+std::size_t foamWords(std::uint32_t resolution_count) {
+  return std::size_t{resolution_count} * resolution_count / 4;
+}
+std::size_t particleWords(std::uint32_t count) {
+  return kParticleHeaderWords + std::size_t{count} * kWordsPerParticle;
+}
 
 }  // namespace
 
@@ -23,100 +38,124 @@ core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx
   auto out = std::unique_ptr<FramePacker>(new FramePacker(ctx));
   Creation create;
   if (derived.wave) {
-    const std::size_t n = derived.wave->resolution_count;
-    out->surface_words_ = n * n / 2;
-    create(out->packed_surface_, gpu::Buffer::create(ctx, "packed surface", out->surface_words_ * 4));
+    out->resolution_ = derived.wave->resolution_count;
     create(out->pack_surface_, gpu::Program::create(ctx, "stream/pack_surface.comp", defines));
   }
-  if (derived.particles) {
-    create(out->pack_particles_, gpu::Program::create(ctx, "stream/pack_particles.comp", defines));
-    out->is_pooled_ = isTwoWay(scene);
-    out->pool_words_ = out->is_pooled_ ? POOL_WORDS : 0;
-  }
+  if (derived.particles) create(out->pack_particles_, gpu::Program::create(ctx, "stream/pack_particles.comp", defines));
   if (hasSurfaceFoam(scene)) {
-    const std::size_t n = derived.wave->resolution_count / 2;
-    out->foam_words_ = n * n / 4;
-    create(out->packed_foam_, gpu::Buffer::create(ctx, "packed foam", out->foam_words_ * 4));
+    out->has_foam_ = true;
     create(out->pack_foam_, gpu::Program::create(ctx, "stream/pack_foam.comp", defines));
   }
-  if (scene.boats) {
-    out->body_words_ = std::size_t{MAX_BOATS} * kWordsPerBoat;
-    create(out->packed_bodies_, gpu::Buffer::create(ctx, "packed bodies", out->body_words_ * 4));
-    create(out->pack_bodies_, gpu::Program::create(ctx, "stream/pack_bodies.comp", defines));
-  }
+  if (scene.boats) create(out->pack_bodies_, gpu::Program::create(ctx, "stream/pack_bodies.comp", defines));
   if (create.error()) return *create.error();
   if (auto sized = out->resize(derived); !sized) return sized.error();
   return out;
 }
 
 core::Result<void> FramePacker::resize(const Derived& derived) {
+  const std::uint32_t particles = derived.particles ? derived.particles->count : 0;
+  const core::ReducedCounts reduced_counts = core::reducedCounts(resolution_, particles);
+  // Room for every level at once.
+  std::size_t words = pack_bodies_ ? kBodyWords : 0;
+  for (const core::Level level : kLevels) {
+    const bool is_full = level == core::Level::kFull;
+    if (is_full || indexOf(level) < reduced_counts.planes) {
+      words += surfaceWords(surfaceResolution(level)) + (has_foam_ ? foamWords(foamResolution(level)) : 0);
+    }
+    if (particles > 0 && (is_full || indexOf(level) < reduced_counts.particles))
+      words += particleWords(is_full ? particles : core::kLevelBudgets[indexOf(level)].particle_count);
+  }
   gpu::Buffer packed;
   std::unique_ptr<gpu::ReadbackRing> ring;
-  const std::size_t particle_words = derived.particles ? std::size_t{derived.particles->count} * kWordsPerParticle : 0;
-  const std::size_t words = surface_words_ + particle_words + pool_words_ + foam_words_ + body_words_;
   Creation create;
-  if (particle_words > 0) create(packed, gpu::Buffer::create(ctx_, "packed particles", particle_words * 4));
+  create(packed, gpu::Buffer::create(ctx_, "packed frame", words * 4));
   create(ring, gpu::ReadbackRing::create(ctx_, "frames", words * 4, kSlotCount));
   if (create.error()) return *create.error();
-  packed_particles_ = std::move(packed);
+  packed_ = std::move(packed);
   ring_ = std::move(ring);
   pending_.clear();
-  particle_words_ = particle_words;
-  particles_ = derived.particles ? derived.particles->count : 0;
+  particles_ = particles;
+  reduced_counts_ = reduced_counts;
   return {};
 }
 
-bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts) {
+std::uint32_t FramePacker::surfaceResolution(core::Level level) const {
+  if (level == core::Level::kFull) return resolution_;
+  return std::min(resolution_, core::kLevelBudgets[indexOf(level)].surface_resolution_count);
+}
+
+std::uint32_t FramePacker::foamResolution(core::Level level) const {
+  return surfaceResolution(level) / 2;
+}
+
+std::uint32_t FramePacker::particleBudget(core::Level level) const {
+  if (level == core::Level::kFull) return particles_;
+  return std::min(particles_, core::kLevelBudgets[indexOf(level)].particle_count);
+}
+
+bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, const FrameRequest& request) {
   auto slot = ring_->begin();
   if (!slot) return false;
-  bool copied = true;
+  Pending pending;
+  pending.tick = tick;
+  pending.time_s = time_s;
   std::size_t at = 0;
-  const auto keep = [&](const gpu::Buffer& packed, std::size_t words) {
-    copied = copied && slot->copyFrom(packed, 0, words * 4, at);
-  };
-  if (parts.wave) {
-    parts.wave->elevation().bindTexel(ELEVATION);
-    packed_surface_.bindStorage(PACKED_WORDS);
-    pack_surface_.dispatch(static_cast<std::uint32_t>(surface_words_));
-    keep(packed_surface_, surface_words_);
+  packed_.bindStorage(PACKED_WORDS);
+  for (const core::Level level : kLevels) {
+    pending.places[indexOf(level)] = packLevel(level, request.at(level), parts, at);
   }
-  at += surface_words_ * 4;
-  if (parts.particles) {
+  if (parts.boats && request.bodies) {
+    parts.boats->bind();
+    pack_bodies_.setUniform("first_word", static_cast<std::uint32_t>(at));
+    pack_bodies_.dispatchGroups(1);
+    pending.bodies = at;
+    pending.boat_count = parts.boats->count();
+    at += kBodyWords;
+  }
+  if (at == 0 || !slot->copyFrom(packed_, 0, at * 4, 0)) return false;
+  slot->submit(tick);
+  pending_.push_back(pending);
+  return true;
+}
+
+FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest& wanted, const Parts& parts,
+                                           std::size_t& at) {
+  Places places;
+  const auto take = [&at](std::size_t words) { return std::exchange(at, at + words); };
+  // A level that leaves nothing out is the full one.
+  const bool has_planes = level == core::Level::kFull || indexOf(level) < reduced_counts_.planes;
+  const bool has_particles = level == core::Level::kFull || indexOf(level) < reduced_counts_.particles;
+  if (parts.wave && wanted.surface && has_planes) {
+    const std::size_t words = surfaceWords(surfaceResolution(level));
+    places.surface = take(words);
+    parts.wave->elevation().bindTexel(ELEVATION);
+    packPlane(pack_surface_, *places.surface, surfaceResolution(level), words);
+  }
+  if (parts.foam && wanted.foam && has_planes) {
+    const std::size_t words = foamWords(foamResolution(level));
+    places.foam = take(words);
+    parts.foam->field().bindTexel(FOAM_FIELD);
+    packPlane(pack_foam_, *places.foam, foamResolution(level), words);
+  }
+  if (parts.particles && wanted.particles && has_particles) {
+    places.particles = take(particleWords(particleBudget(level)));
+    packed_.clearRange(0, *places.particles * 4, kParticleHeaderWords * 4);
     parts.population->bind();
     parts.particles->position.bindTexel(POSITION);
     parts.particles->velocity.bindTexel(VELOCITY);
     parts.particles->acceleration.bindTexel(ACCELERATION);
-    packed_particles_.bindStorage(PACKED_WORDS);
+    pack_particles_.setUniform("first_word", static_cast<std::uint32_t>(*places.particles));
+    pack_particles_.setUniform("budget_count", particleBudget(level));
     parts.population->forParticles(pack_particles_);
-    keep(packed_particles_, particle_words_);
-    if (is_pooled_)
-      copied =
-          copied && slot->copyFrom(parts.population->pool()->words(), 0, pool_words_ * 4, at + particle_words_ * 4);
   }
-  at += (particle_words_ + pool_words_) * 4;
-  if (parts.foam) {
-    parts.foam->field().bindTexel(FOAM_FIELD);
-    packed_foam_.bindStorage(PACKED_WORDS);
-    pack_foam_.dispatch(static_cast<std::uint32_t>(foam_words_));
-    keep(packed_foam_, foam_words_);
-  }
-  at += foam_words_ * 4;
-  if (parts.boats) {
-    parts.boats->bind();
-    packed_bodies_.bindStorage(PACKED_WORDS);
-    pack_bodies_.dispatchGroups(1);
-    keep(packed_bodies_, body_words_);
-  }
-  if (!copied) return false;
-  slot->submit(tick);
-  pending_.push_back({.tick = tick,
-                      .time_s = time_s,
-                      .has_surface = parts.wave != nullptr,
-                      .has_particles = parts.particles != nullptr,
-                      .has_foam = parts.foam != nullptr,
-                      .boat_count = parts.boats ? parts.boats->count() : 0,
-                      .has_boats = parts.boats != nullptr});
-  return true;
+  return places;
+}
+
+void FramePacker::packPlane(gpu::Program& program, std::size_t at, std::uint32_t resolution_count,
+                            std::size_t word_count) {
+  program.setUniform("first_word", static_cast<std::uint32_t>(at));
+  program.setUniform("target_count", resolution_count);
+  program.dispatch(static_cast<std::uint32_t>(word_count));
 }
 
 std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const Derived& derived) {
@@ -127,44 +166,63 @@ std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const D
     core::FrameView frame;
     frame.tick = pending.tick;
     frame.time_s = pending.time_s;
+    frame.reduced_counts = reduced_counts_;
     frame.lease = slot;
     const auto words = slot->words();
-    std::size_t at = 0;
-    if (pending.has_surface) {
-      frame.surface = core::SurfaceView{.resolution_count = derived.wave->resolution_count,
-                                        .side_m = derived.wave->side_m,
-                                        .quantum_m = scene.stream.surface_quantum_m,
-                                        .words = words.subspan(at, surface_words_)};
+    for (const core::Level level : kLevels) {
+      const Places& places = pending.places[indexOf(level)];
+      core::ReducedView view;
+      if (places.surface) view.surface = surfaceView(words.subspan(*places.surface), level, scene, derived);
+      if (places.particles) view.particles = particleView(words.subspan(*places.particles), level, scene, derived);
+      if (places.foam) view.foam = foamView(words.subspan(*places.foam), level, derived);
+      if (level != core::Level::kFull) {
+        frame.reduced[indexOf(level)] = view;
+        continue;
+      }
+      frame.surface = view.surface;
+      frame.particles = view.particles;
+      frame.foam = view.foam;
     }
-    at += surface_words_;
-    if (pending.has_particles) {
-      const ParticleLayout& l = *derived.particles;
-      core::ParticleView view;
-      view.count = is_pooled_ ? std::min(words[at + particle_words_ + POOL_LIVE], particles_) : particles_;
-      const shared::SimUniforms& u = derived.uniforms;
-      const double low[3] = {u.frame_min_x_m, u.min_y_m, u.frame_min_z_m};
-      const double high[3] = {u.frame_max_x_m, u.max_y_m, u.frame_max_z_m};
-      std::ranges::copy(low, view.min_m);
-      std::ranges::copy(high, view.max_m);
-      view.max_speed_mps = scene.particles->max_speed_mps;
-      view.radius_m = l.spacing_m / 2;
-      view.words = words.subspan(at, std::size_t{view.count} * kWordsPerParticle);
-      frame.particles = view;
-    }
-    at += particle_words_ + pool_words_;
-    if (pending.has_foam) {
-      frame.foam = core::FoamView{.resolution_count = derived.wave->resolution_count / 2,
-                                  .side_m = derived.wave->side_m,
-                                  .words = words.subspan(at, foam_words_)};
-    }
-    at += foam_words_;
-    if (pending.has_boats) {
-      frame.bodies =
-          core::BodiesView{.count = pending.boat_count, .words = words.subspan(at, pending.boat_count * kWordsPerBoat)};
+    if (pending.bodies) {
+      frame.bodies = core::BodiesView{.count = pending.boat_count,
+                                      .words = words.subspan(*pending.bodies, pending.boat_count * kWordsPerBoat)};
     }
     out.push_back(std::move(frame));
   }
   return out;
+}
+
+core::SurfaceView FramePacker::surfaceView(std::span<const std::uint32_t> words, core::Level level,
+                                           const core::Scene& scene, const Derived& derived) const {
+  const std::uint32_t n = surfaceResolution(level);
+  return {.resolution_count = n,
+          .side_m = derived.wave->side_m,
+          .quantum_m = scene.stream.surface_quantum_m,
+          .words = words.first(surfaceWords(n))};
+}
+
+core::FoamView FramePacker::foamView(std::span<const std::uint32_t> words, core::Level level,
+                                     const Derived& derived) const {
+  const std::uint32_t n = foamResolution(level);
+  return {.resolution_count = n, .side_m = derived.wave->side_m, .words = words.first(foamWords(n))};
+}
+
+core::ParticleView FramePacker::particleView(std::span<const std::uint32_t> words, core::Level level,
+                                             const core::Scene& scene, const Derived& derived) const {
+  core::ParticleView view;
+  view.count = std::min(words[0], particleBudget(level));
+  const std::uint32_t live_count = words[1];
+  const shared::SimUniforms& u = derived.uniforms;
+  const double low[3] = {u.frame_min_x_m, u.min_y_m, u.frame_min_z_m};
+  const double high[3] = {u.frame_max_x_m, u.max_y_m, u.frame_max_z_m};
+  std::ranges::copy(low, view.min_m);
+  std::ranges::copy(high, view.max_m);
+  view.max_speed_mps = scene.particles->max_speed_mps;
+  // A part is drawn larger, so that it fills what all of them fill.
+  const double thinning = view.count > 0 ? std::max(1.0, static_cast<double>(live_count) / view.count) : 1.0;
+  view.radius_m = derived.particles->spacing_m / 2 * std::cbrt(thinning);
+  view.words = words.subspan(kParticleHeaderWords, std::size_t{view.count} * kWordsPerParticle);
+  return view;
 }
 
 }  // namespace spindrift::sim

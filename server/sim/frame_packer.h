@@ -2,9 +2,12 @@
 // says so.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <spindrift/core/frame_view.h>
@@ -13,6 +16,7 @@
 #include <spindrift/gpu/program.h>
 #include <spindrift/gpu/readback_ring.h>
 #include <spindrift/sim/derive.h>
+#include <spindrift/sim/water_sim.h>
 
 #include "boats.h"
 #include "particle_buffers.h"
@@ -31,7 +35,7 @@ class FramePacker {
   /// nothing.
   core::Result<void> resize(const Derived& derived);
 
-  /// What a frame should hold; parts that are null it does not. `population` goes with `particles`.
+  /// What there is to pack; parts that are null no frame holds. `population` goes with `particles`.
   struct Parts {
     Wave* wave = nullptr;
     const ParticleBuffers* particles = nullptr;
@@ -39,35 +43,45 @@ class FramePacker {
     SurfaceFoam* foam = nullptr;
     Boats* boats = nullptr;
   };
-  /// False when every slot is still in use: the frame is dropped.
-  bool pack(std::uint64_t tick, double time_s, const Parts& parts);
+  /// False when no frame will come: nothing of what was asked for is there, or every slot is still in use.
+  bool pack(std::uint64_t tick, double time_s, const Parts& parts, const FrameRequest& request);
   /// Frames whose copy has finished, oldest first.
   std::vector<core::FrameView> poll(const core::Scene& scene, const Derived& derived);
 
  private:
   explicit FramePacker(gpu::Context& ctx) : ctx_(ctx) {}
 
+  /// Where a slot has what, in words; absent parts are nowhere.
+  struct Places {
+    std::optional<std::size_t> surface, particles, foam;
+  };
   /// What a submitted slot holds.
   struct Pending {
-    std::uint64_t tick;
-    double time_s;
-    bool has_surface;
-    bool has_particles;
-    bool has_foam;
-    std::uint32_t boat_count;
-    bool has_boats;
+    std::uint64_t tick = 0;
+    double time_s = 0.0;
+    std::array<Places, core::kLevelCount> places{};
+    std::optional<std::size_t> bodies;
+    std::uint32_t boat_count = 0;
   };
 
+  [[nodiscard]] std::uint32_t surfaceResolution(core::Level level) const;
+  [[nodiscard]] std::uint32_t foamResolution(core::Level level) const;
+  [[nodiscard]] std::uint32_t particleBudget(core::Level level) const;
+  Places packLevel(core::Level level, const LayerRequest& wanted, const Parts& parts, std::size_t& at);
+  void packPlane(gpu::Program& program, std::size_t at, std::uint32_t resolution_count, std::size_t word_count);
+
+  core::SurfaceView surfaceView(std::span<const std::uint32_t> words, core::Level level, const core::Scene& scene,
+                                const Derived& derived) const;
+  core::ParticleView particleView(std::span<const std::uint32_t> words, core::Level level, const core::Scene& scene,
+                                  const Derived& derived) const;
+  core::FoamView foamView(std::span<const std::uint32_t> words, core::Level level, const Derived& derived) const;
+
   gpu::Context& ctx_;
+  std::uint32_t resolution_ = 0;  ///< of the surface; 0 without one
+  bool has_foam_ = false;
   std::uint32_t particles_ = 0;
-  bool is_pooled_ = false;
-  /// A slot holds surface, particles, pool, foam, boats, in this order; absent parts take no room.
-  std::size_t surface_words_ = 0;
-  std::size_t particle_words_ = 0;
-  std::size_t pool_words_ = 0;
-  std::size_t foam_words_ = 0;
-  std::size_t body_words_ = 0;
-  gpu::Buffer packed_surface_, packed_particles_, packed_foam_, packed_bodies_;
+  core::ReducedCounts reduced_counts_;
+  gpu::Buffer packed_;  ///< one frame, all its parts one behind the other
   gpu::Program pack_surface_, pack_particles_, pack_foam_, pack_bodies_;
   std::unique_ptr<gpu::ReadbackRing> ring_;
   std::deque<Pending> pending_;

@@ -82,15 +82,19 @@ void WaterSim::setCareful(bool careful) {
 bool WaterSim::requestFrame(const FrameRequest& request) {
   std::optional<Population> population;
   if (parts_->particles) population = parts_->population(derived_);
-  const FramePacker::Parts wanted{.wave = request.surface ? parts_->wave.get() : nullptr,
-                                  .particles = request.particles ? parts_->particlesOrNull() : nullptr,
-                                  .population = population ? &*population : nullptr,
-                                  .foam = request.foam ? parts_->foam.get() : nullptr,
-                                  .boats = request.bodies ? parts_->boats.get() : nullptr};
-  if (!wanted.wave && !wanted.particles && !wanted.foam && !wanted.boats) return false;
+  const FramePacker::Parts parts{.wave = parts_->wave.get(),
+                                 .particles = parts_->particlesOrNull(),
+                                 .population = population ? &*population : nullptr,
+                                 .foam = parts_->foam.get(),
+                                 .boats = parts_->boats.get()};
   const auto timer = timers_.scope("stream");
   parts_->uniforms.bindUniform(SIM_UNIFORMS);
-  return parts_->frames->pack(tick_, time_s(), wanted);
+  return parts_->frames->pack(tick_, time_s(), parts, request);
+}
+
+core::ReducedCounts WaterSim::reducedCounts() const {
+  return core::reducedCounts(derived_.wave ? derived_.wave->resolution_count : 0,
+                             derived_.particles ? derived_.particles->count : 0);
 }
 
 std::vector<core::FrameView> WaterSim::takeFrames() {

@@ -62,6 +62,8 @@ void main() {
   if (is_crown) v = vec3(0.0, crown_mps * (0.6 + 0.5 * r.z), 0.0) + vec3(broken.z, 0.0, broken.w) * (0.35 + 0.4 * t.z) + 0.3 * vec3(across_mps.x, 0.0, across_mps.y);
   v *= min(1.0, 0.9 * sim.max_speed_mps / max(length(v), 1e-3));
   const uint slot = atomicAdd(pool[POOL_NEXT], 1u);
-  position[slot] = vec4(place_m.x, surface.x + 0.25 * sim.spacing_m, place_m.y, float(i & 0xffff));
+  // Any number that tells particles apart; a float holds 24 bits of it.
+  const uint id = hashed(uvec3(uint(i), tick, sim.seed)).x >> 8;
+  position[slot] = vec4(place_m.x, surface.x + 0.25 * sim.spacing_m, place_m.y, float(id));
   velocity[slot] = vec4(v, 1.0);
 }

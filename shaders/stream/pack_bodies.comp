@@ -1,18 +1,19 @@
 // Quantizes boats for the stream, seven words each without gaps: BodiesFixed28 in wire.proto. One invocation: there are few.
-// Reads BOATS, BoatControls. Writes PACKED_WORDS.
+// Reads BOATS, BoatControls. Writes PACKED_WORDS from first_word on.
 #include "include/boat.glsl"
 
 layout(local_size_x = 1) in;
 
 layout(binding = BOATS) uniform samplerBuffer boats;
 layout(std430, binding = PACKED_WORDS) restrict writeonly buffer PackedWords { uint packed_words[]; };
+uniform uint first_word;
 
 uint millimetres(float x_m) { return isnan(x_m) ? 0u : uint(int(round(clamp(x_m, -1e6, 1e6) * 1000.0))); }
 /// -1..1 to -high..high, the low bits of the word.
 uint quantizedSigned(float unit, float high) { return isnan(unit) ? 0u : uint(int(round(clamp(unit, -1.0, 1.0) * high))); }
 
 void main() {
-  uint at = 0u;
+  uint at = first_word;
   for (int place = 0; place < int(boat_place_count); ++place) {
     vec4 t[BOAT_TEXELS];
     for (int k = 0; k < BOAT_TEXELS; ++k) t[k] = texelFetch(boats, place * BOAT_TEXELS + k);

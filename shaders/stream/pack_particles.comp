@@ -1,7 +1,11 @@
-// Quantizes particles for the stream: three words each, the layout of core::ParticleView.
-// Reads POSITION, VELOCITY, ACCELERATION.w (density) in cell order. Writes PACKED_WORDS, 3 a particle.
+// Quantizes particles for the stream: how many were packed, how many there are, then three words each, the layout of
+// core::ParticleView.
+// Reads POSITION, VELOCITY, ACCELERATION.w (density) in cell order. Writes PACKED_WORDS, 2 + 3 a particle, from first_word on; the
+// first word has to be 0 before. Where there are more than budget_count, a part goes out that a hash of their ids chooses: the same
+// particles in every frame while their number stays, and those of a smaller budget among them.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
+#include "include/hash.glsl"
 #include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
@@ -9,7 +13,9 @@ layout(local_size_x = PARTICLE_GROUP) in;
 layout(binding = POSITION) uniform samplerBuffer position;
 layout(binding = VELOCITY) uniform samplerBuffer velocity;
 layout(binding = ACCELERATION) uniform samplerBuffer acceleration;
-layout(std430, binding = PACKED_WORDS) restrict writeonly buffer PackedWords { uint packed_words[]; };
+layout(std430, binding = PACKED_WORDS) restrict buffer PackedWords { uint packed_words[]; };
+uniform uint first_word;
+uniform uint budget_count;
 
 /// 0..1 to 0..high; a NaN becomes 0.
 uint quantized(float unit, float high) {
@@ -21,17 +27,36 @@ uint quantizedSigned(float unit) {
   return isnan(unit) ? 0u : uint(int(round(clamp(unit, -1.0, 1.0) * 127.0))) & 0xffu;
 }
 
+/// Four standard deviations below the budget on average, so that it holds what the hash happens to choose.
+bool isChosen(float id, uint count) {
+  const float budget = float(budget_count);
+  const float share = (budget - 4.0 * sqrt(budget)) / float(count);
+  return float(hashed(uvec3(uint(id), 0u, 0u)).x >> 8) < share * 16777216.0;
+}
+
 void main() {
   const uint i = gl_GlobalInvocationID.x;
-  if (i >= particleCount()) return;
+  const uint count = particleCount();
+  if (i >= count) return;
+  const vec4 place = texelFetch(position, int(i));
+  uint slot = i;
+  if (count > budget_count) {
+    if (!isChosen(place.w, count)) return;
+    slot = atomicAdd(packed_words[first_word], 1u);
+    if (slot >= budget_count) return;
+  } else if (i == 0u) {
+    packed_words[first_word] = count;
+  }
+  if (slot == 0u) packed_words[first_word + 1u] = count;
   const vec3 low = vec3(sim.frame_min_x_m, sim.min_y_m, sim.frame_min_z_m);
   const vec3 high = vec3(sim.frame_max_x_m, sim.max_y_m, sim.frame_max_z_m);
-  const vec3 u = (texelFetch(position, int(i)).xyz - low) / (high - low);
+  const vec3 u = (place.xyz - low) / (high - low);
   const vec4 motion = texelFetch(velocity, int(i));
   const vec3 v = motion.xyz / sim.max_speed_mps;
   const float density_ratio = texelFetch(acceleration, int(i)).w / sim.rest_density_kgpm3;
-  packed_words[3u * i] = quantized(u.x, 65535.0) | quantized(u.z, 65535.0) << 16;
-  packed_words[3u * i + 1u] = quantized(u.y, 65535.0) | quantizedSigned(v.x) << 16 | quantizedSigned(v.y) << 24;
-  packed_words[3u * i + 2u] =
+  const uint word = first_word + 2u + 3u * slot;
+  packed_words[word] = quantized(u.x, 65535.0) | quantized(u.z, 65535.0) << 16;
+  packed_words[word + 1u] = quantized(u.y, 65535.0) | quantizedSigned(v.x) << 16 | quantizedSigned(v.y) << 24;
+  packed_words[word + 2u] =
       quantizedSigned(v.z) | quantized((density_ratio - 0.5) / 0.6, 255.0) << 8 | quantized(motion.w, 255.0) << 16;
 }

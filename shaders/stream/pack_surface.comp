@@ -1,22 +1,40 @@
-// Quantizes the elevation for the stream: two int16 a word, value = round(eta / quantum), saturating.
-// Reads ELEVATION [n x n, units]. Writes PACKED_WORDS [n * n / 2].
+// Quantizes the elevation for the stream: two int16 a word, value = round(eta / quantum), saturating. Where fewer samples are
+// wanted than there are cells, a sample is the mean over the square that it covers.
+// Reads ELEVATION [n x n, units]. Writes PACKED_WORDS [target_count^2 / 2 from first_word on].
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
+#include "include/cover.glsl"
 
 layout(local_size_x = WAVE_GROUP_X) in;
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(std430, binding = PACKED_WORDS) restrict writeonly buffer PackedWords { uint packed_words[]; };
+uniform uint first_word;
+uniform uint target_count;
+
+float meanUnits(int i) {
+  const int n = int(sim.wave_n);
+  if (target_count == sim.wave_n) return float(texelFetch(elevation, i).x);
+  const Cover x = coverOf(i % int(target_count), n, int(target_count));
+  const Cover z = coverOf(i / int(target_count), n, int(target_count));
+  float sum = 0.0;
+  for (int c = z.first; c <= z.last; ++c) {
+    float row = 0.0;
+    for (int a = x.first; a <= x.last; ++a) row += weightIn(x, a) * float(texelFetch(elevation, c * n + a).x);
+    sum += weightIn(z, c) * row;
+  }
+  return sum / (x.width * z.width);
+}
 
 uint quantized(int i) {
-  const float q = float(texelFetch(elevation, i).x) * (ELEVATION_UNIT_M / sim.surface_quantum_m);
+  const float q = meanUnits(i) * (ELEVATION_UNIT_M / sim.surface_quantum_m);
   return uint(int(round(clamp(q, -32767.0, 32767.0)))) & 0xffffu;
 }
 
 void main() {
   const uint word = gl_GlobalInvocationID.x;
-  if (word >= sim.wave_n * sim.wave_n / 2u) return;
+  if (word >= target_count * target_count / 2u) return;
   const int i = int(2u * word);
-  packed_words[word] = quantized(i) | quantized(i + 1) << 16;
+  packed_words[first_word + word] = quantized(i) | quantized(i + 1) << 16;
 }

@@ -1,12 +1,15 @@
 // What the simulation hands to the encoder: quantized integers as the GPU packed them, in memory that the view keeps.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <spindrift/core/level.h>
 
 namespace spindrift::core {
 
@@ -19,7 +22,7 @@ struct SurfaceView {
   std::span<const std::uint32_t> words;  ///< n*n/2 words
 };
 
-/// Particles in the simulation's cell order, three words each (little endian bytes):
+/// Particles in the simulation's cell order (of a reduced level: in any), three words each (little endian bytes):
 ///   word 0: x u16 | z u16 << 16                   position = min + (u16/65535) * (max - min), per axis
 ///   word 1: y u16 | velocity x i8 << 16 | velocity y i8 << 24
 ///   word 2: velocity z i8 | tint u8 << 8 | foam u8 << 16 | 0 << 24
@@ -75,16 +78,32 @@ struct DiagnosticsView {
   std::vector<PassTime> passes;
 };
 
+/// What a reduced level of a frame holds of the layers that come in levels: planes of fewer samples, each the mean of
+/// what it covers, and a part of the particles, drawn larger. Who is in a part depends on the particle alone, and each
+/// part is within the next.
+struct ReducedView {
+  std::optional<SurfaceView> surface;
+  std::optional<ParticleView> particles;
+  std::optional<FoamView> foam;
+};
+
 /// One frame of one room. The spans live as long as `lease` does; dropping the last copy frees the readback slot.
 struct FrameView {
   std::uint64_t tick = 0;
   double time_s = 0.0;  ///< simulation time
+  Level level = Level::kFull;
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;
   std::optional<FoamView> foam;
   std::optional<BodiesView> bodies;
   std::optional<DiagnosticsView> diagnostics;
+  std::array<ReducedView, kReducedLevelCount> reduced;  ///< by Level
+  ReducedCounts reduced_counts;                         ///< of the scene, whatever this frame holds
   std::shared_ptr<const void> lease;
 };
+
+/// A frame of one level: a reduced one takes the place of the full layers; bodies and diagnostics have no levels and
+/// stay with kFull.
+FrameView frameAt(const FrameView& frame, Level level);
 
 }  // namespace spindrift::core

@@ -1,6 +1,7 @@
 // The coupled simulation of one room. step() is the page to read first.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -18,12 +19,25 @@
 
 namespace spindrift::sim {
 
+/// Which of the layers that come in levels one level of a frame should hold.
+struct LayerRequest {
+  bool surface = false;
+  bool particles = false;
+  bool foam = false;
+};
+
 /// Which layers a frame should hold.
 struct FrameRequest {
   bool surface = false;
   bool particles = false;
   bool foam = false;
   bool bodies = false;
+  std::array<LayerRequest, core::kReducedLevelCount> reduced{};  ///< besides the full ones; by Level
+
+  [[nodiscard]] LayerRequest at(core::Level level) const {
+    if (level == core::Level::kFull) return {surface, particles, foam};
+    return reduced[indexOf(level)];
+  }
 };
 
 /// The state as plain numbers, for tests, hashes and checkpoints: positions and velocities 4 floats a particle (xyz +
@@ -75,6 +89,8 @@ class WaterSim {
   bool requestFrame(const FrameRequest& request);
   /// Frames that have arrived, oldest first. `diagnostics` is left empty.
   std::vector<core::FrameView> takeFrames();
+  /// How many levels of a frame have to leave something out: surfaces, particles.
+  [[nodiscard]] core::ReducedCounts reducedCounts() const;
 
   /// Newest health that has arrived.
   [[nodiscard]] const Health& health() const { return health_; }

@@ -1,0 +1,24 @@
+#include <spindrift/core/frame_view.h>
+
+namespace spindrift::core {
+
+FrameView frameAt(const FrameView& frame, Level level) {
+  if (level == Level::kFull) {
+    FrameView full = frame;
+    full.reduced = {};
+    return full;
+  }
+  const ReducedView& reduced = frame.reduced[indexOf(level)];
+  FrameView out;
+  out.tick = frame.tick;
+  out.time_s = frame.time_s;
+  out.level = level;
+  out.surface = reduced.surface;
+  out.particles = reduced.particles;
+  out.foam = reduced.foam;
+  out.reduced_counts = frame.reduced_counts;
+  out.lease = frame.lease;
+  return out;
+}
+
+}  // namespace spindrift::core

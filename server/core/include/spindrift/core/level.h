@@ -1,0 +1,50 @@
+// Levels of detail: what a client gets that cannot take everything. A level is chosen by a client, or for it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace spindrift::core {
+
+/// Coarsest first. The lower ones bound what a frame holds, kFull does not.
+enum class Level : std::uint8_t { kCoarse, kMedium, kFine, kFull };
+inline constexpr std::size_t kLevelCount = 4;
+/// Those below kFull: 0 .. kReducedLevelCount - 1.
+inline constexpr std::size_t kReducedLevelCount = 3;
+
+constexpr std::size_t indexOf(Level level) {
+  return static_cast<std::size_t>(level);
+}
+
+/// The most that a frame of a reduced level holds, and the rate at which its frames are made.
+struct LevelBudget {
+  std::uint32_t surface_resolution_count = 0;  ///< samples along each side; of the foam half as many
+  std::uint32_t particle_count = 0;
+  double rate_hz = 0.0;
+};
+inline constexpr std::array<LevelBudget, kReducedLevelCount> kLevelBudgets{
+    {{128, 8192, 20.0}, {256, 32768, 30.0}, {512, 131072, 30.0}}};
+
+/// How many levels have to leave something out: a layer's levels from this one on are all the same, and kFull.
+struct ReducedCounts {
+  std::uint32_t planes = 0;  ///< surface and foam
+  std::uint32_t particles = 0;
+};
+
+/// Of a surface with so many samples along each side, and of so many particles at most.
+constexpr ReducedCounts reducedCounts(std::uint32_t surface_resolution_count, std::uint32_t particle_count) {
+  ReducedCounts out;
+  for (const LevelBudget& budget : kLevelBudgets) {
+    out.planes += surface_resolution_count > budget.surface_resolution_count ? 1 : 0;
+    out.particles += particle_count > budget.particle_count ? 1 : 0;
+  }
+  return out;
+}
+
+/// The level that a layer has in its place: kFull where nothing has to be left out.
+constexpr Level effectiveLevel(Level wanted, std::uint32_t reduced_count) {
+  return indexOf(wanted) < reduced_count ? wanted : Level::kFull;
+}
+
+}  // namespace spindrift::core
