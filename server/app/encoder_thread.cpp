@@ -31,7 +31,7 @@ void EncoderThread::forget(const std::string& room) {
   encoders_.erase(room);
 }
 
-std::array<EncoderThread::StreamCost, stream::kStreamCount> EncoderThread::costs() const {
+EncoderThread::Costs EncoderThread::costs() const {
   const std::lock_guard lock(mutex_);
   return costs_;
 }
@@ -66,29 +66,48 @@ void EncoderThread::loop() {
     if (!kept) kept = std::make_shared<stream::FrameEncoder>();
     const auto encoder = kept;  // the room may be forgotten meanwhile
     lock.unlock();
-    std::array<StreamCost, stream::kStreamCount> spent{};
-    for (const stream::Stream stream : stream::allStreams()) {
-      const auto index = static_cast<net::LayerIndex>(stream::indexOf(stream));
-      if (hub_.watcherCount(node.key(), index) == 0) continue;
-      const bool wants_whole = hub_.wantsWhole(node.key(), index);
-      const auto begin = std::chrono::steady_clock::now();
-      const stream::EncodedFrame encoded = encoder->encode(stream, node.mapped(), wants_whole);
-      StreamCost& cost = spent[index];
-      cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      for (const core::SharedBytes& form : {encoded.whole, encoded.continuing}) {
-        if (form) cost.bytes_count += form->size();
-      }
-      cost.frame_count = encoded.whole || encoded.continuing ? 1 : 0;
-      if (encoded.whole || encoded.continuing) hub_.publish(node.key(), index, {encoded.whole, encoded.continuing});
-    }
+    const Costs spent = encode(node.key(), node.mapped(), *encoder);
     node.mapped() = {};  // frees the readback slot
     lock.lock();
     for (std::size_t k = 0; k < costs_.size(); ++k) {
-      costs_[k].frame_count += spent[k].frame_count;
-      costs_[k].bytes_count += spent[k].bytes_count;
-      costs_[k].encode_s += spent[k].encode_s;
+      for (std::size_t level = 0; level < core::kLevelCount; ++level) {
+        costs_[k][level].frame_count += spent[k][level].frame_count;
+        costs_[k][level].bytes_count += spent[k][level].bytes_count;
+        costs_[k][level].encode_s += spent[k][level].encode_s;
+      }
     }
   }
+}
+
+EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
+                                           stream::FrameEncoder& encoder) {
+  Costs spent{};
+  std::array<core::FrameView, core::kLevelCount> views;
+  for (const core::Level level : core::kLevels) views[core::indexOf(level)] = core::frameAt(frame, level);
+  for (const stream::Stream stream : stream::allStreams()) {
+    const auto index = static_cast<net::LayerIndex>(stream::indexOf(stream));
+    const std::uint32_t reduced_count = stream::reducedCountOf(stream.layer, frame.reduced_counts);
+    const net::LayerDemand demand = hub_.demand(room, index, reduced_count);
+    for (const core::FrameView& view : views) {
+      const net::LevelDemand& wanted = demand[core::indexOf(view.level)];
+      if (wanted.watcher_count == 0) continue;
+      const auto begin = std::chrono::steady_clock::now();
+      const stream::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_whole);
+      StreamCost& cost = spent[index][core::indexOf(view.level)];
+      cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (!encoded.whole && !encoded.continuing) continue;
+      cost.frame_count = 1;
+      for (const core::SharedBytes& form : {encoded.whole, encoded.continuing}) {
+        if (form) cost.bytes_count += form->size();
+      }
+      hub_.publish(room, index,
+                   {.whole = encoded.whole,
+                    .continuing = encoded.continuing,
+                    .level = view.level,
+                    .reduced_count = reduced_count});
+    }
+  }
+  return spent;
 }
 
 }  // namespace spindrift::app

@@ -32,19 +32,23 @@ class EncoderThread {
   void stop();
 
   [[nodiscard]] std::uint64_t replacedCount() const;
-  /// Messages encoded for a layer of a room so far: one a frame, however many clients watch.
+  /// Messages encoded for a stream of a room so far: one a frame and level, however many clients watch.
   [[nodiscard]] std::uint64_t encodeCount(const std::string& room, stream::Stream stream) const;
 
-  /// Of one stream, over all rooms since the start.
+  /// Of one level of a stream, over all rooms since the start.
   struct StreamCost {
     std::uint64_t frame_count = 0;
     std::uint64_t bytes_count = 0;
     double encode_s = 0.0;
   };
-  [[nodiscard]] std::array<StreamCost, stream::kStreamCount> costs() const;
+  /// By stream::indexOf() and core::indexOf().
+  using Costs = std::array<std::array<StreamCost, core::kLevelCount>, stream::kStreamCount>;
+  [[nodiscard]] Costs costs() const;
 
  private:
   void loop();
+  /// Encodes what somebody watches of a frame, and publishes it.
+  Costs encode(const std::string& room, const core::FrameView& frame, stream::FrameEncoder& encoder);
 
   net::Hub& hub_;
   mutable std::mutex mutex_;
@@ -54,7 +58,7 @@ class EncoderThread {
   bool stopping_ = false;
   /// Grows and shrinks under mutex_; used by the thread.
   std::map<std::string, std::shared_ptr<stream::FrameEncoder>> encoders_;
-  std::array<StreamCost, stream::kStreamCount> costs_{};
+  Costs costs_{};
   std::thread thread_;
 };
 

@@ -180,12 +180,20 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const stre
   }
   // One packing at a time: asking for the other one stops this one.
   const stream::Stream wanted = stream::streamOf(subscribe.layer, subscribe.packing);
+  const bool has_levels = stream::hasLevels(subscribe.layer);
   for (const stream::Stream stream : stream::allStreams()) {
     if (stream.layer != wanted.layer) continue;
     const bool is_wanted = stream.packing == wanted.packing;
     hub().watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
-                is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0);
+                {.max_rate_hz = is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0,
+                 .level = has_levels ? subscribe.level : core::Level::kFull,
+                 .adapts = has_levels && subscribe.adapts});
   }
+}
+
+void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
+  spdlog::info("session {} gets level {} now", session, stream::nameOf(level));
+  hub().sendControl(session, stream::levelChanged(level));
 }
 
 void Gateway::command(net::SessionId session, const Session& state, core::Command command) {

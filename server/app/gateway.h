@@ -31,6 +31,7 @@ class Gateway final : public net::Application, public RoomObserver {
   core::Result<void> acceptSession(const std::string& room) override;
   void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override;
+  void sessionLevelChanged(net::SessionId session, core::Level level) override;
   void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 

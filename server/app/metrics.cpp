@@ -90,6 +90,10 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
       stats.dropped_frame_count);
   one("evicted_sessions_total", "counter", "Sessions that did not read: a stalled write or a full control queue.",
       stats.evicted_session_count);
+  one("lowered_levels_total", "counter", "Times a session was given a lower level of detail.",
+      stats.lowered_level_count);
+  one("raised_levels_total", "counter", "Times a session was given a higher level of detail again.",
+      stats.raised_level_count);
   one("delayed_messages_total", "counter", "Messages that waited for the rate of their address.",
       stats.delayed_message_count);
   one("control_queue", "gauge", "Control messages that wait to be sent, over all sessions.",
@@ -108,9 +112,13 @@ void writeEncoder(Page& page, const EncoderThread& encoder) {
   const auto each = [&](const char* name, const char* help, auto&& value) {
     page.head(name, "counter", help);
     for (const stream::Stream stream : stream::allStreams()) {
-      page.sample(fmt::format("layer=\"{}\",packing=\"{}\"", shortName(v1::Layer_Name(stream.layer), sizeof("LAYER")),
-                              shortName(v1::Packing_Name(stream.packing), sizeof("PACKING"))),
-                  value(costs[stream::indexOf(stream)]));
+      for (const core::Level level : core::kLevels) {
+        if (level != core::Level::kFull && !stream::hasLevels(stream.layer)) continue;
+        page.sample(fmt::format("layer=\"{}\",packing=\"{}\",level=\"{}\"",
+                                shortName(v1::Layer_Name(stream.layer), sizeof("LAYER")),
+                                shortName(v1::Packing_Name(stream.packing), sizeof("PACKING")), stream::nameOf(level)),
+                    value(costs[stream::indexOf(stream)][core::indexOf(level)]));
+      }
     }
   };
   using Cost = const EncoderThread::StreamCost&;

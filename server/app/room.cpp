@@ -1,6 +1,8 @@
 #include "room.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <spdlog/spdlog.h>
 
@@ -26,11 +28,16 @@ constexpr double kSlowFactor = 0.9;
 constexpr auto kSlowPatience = 5s;
 constexpr auto kSlowWarningInterval = 60s;
 
-/// Whether somebody watches the layer, plain or packed.
-bool isWatched(const net::Hub& hub, const std::string& room, v1::Layer layer) {
-  return std::ranges::any_of(stream::allStreams(), [&](const stream::Stream& stream) {
-    return stream.layer == layer && hub.watcherCount(room, static_cast<net::LayerIndex>(stream::indexOf(stream))) > 0;
-  });
+/// Which levels of a layer somebody watches, plain or packed.
+std::array<bool, core::kLevelCount> watchedLevels(const net::Hub& hub, const std::string& room, v1::Layer layer,
+                                                  std::uint32_t reduced_count) {
+  std::array<bool, core::kLevelCount> out{};
+  for (const stream::Stream& stream : stream::allStreams()) {
+    if (stream.layer != layer) continue;
+    const auto demand = hub.demand(room, static_cast<net::LayerIndex>(stream::indexOf(stream)), reduced_count);
+    for (std::size_t level = 0; level < out.size(); ++level) out[level] |= demand[level].watcher_count > 0;
+  }
+  return out;
 }
 
 }  // namespace
@@ -195,18 +202,38 @@ Room::TimePoint Room::timedStep() {
 
 // Frames
 
+bool Room::isDue(core::Level level) const {
+  if (paused_ || level == core::Level::kFull) return true;
+  const double ratio = stage_->scene().stream().frame_rate_hz() / core::kLevelBudgets[core::indexOf(level)].rate_hz;
+  return frame_count_ % static_cast<std::uint64_t>(std::max(std::ceil(ratio - 1e-9), 1.0)) == 0;
+}
+
 void Room::requestFrame(TimePoint now, net::Hub& hub) {
   const double interval_s =
       clock_.speed() / stage_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
   if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, stage_->water().time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
-  wants_diagnostics_ = wants_diagnostics_ || isWatched(hub, name_, v1::LAYER_DIAGNOSTICS);
-  const auto wanted = [&](bool has_it, v1::Layer layer) { return has_it && isWatched(hub, name_, layer); };
-  const sim::FrameRequest request{.surface = wanted(stage_->scene().has_wave(), v1::LAYER_SURFACE),
-                                  .particles = wanted(stage_->scene().has_particles(), v1::LAYER_PARTICLES),
-                                  .foam = wanted(stage_->scene().foam().surface(), v1::LAYER_FOAM),
-                                  .bodies = wanted(stage_->scene().has_boats(), v1::LAYER_BODIES)};
-  if (!request.surface && !request.particles && !request.foam && !request.bodies) return;
+  wants_diagnostics_ = wants_diagnostics_ || watchedLevels(hub, name_, v1::LAYER_DIAGNOSTICS, 0).back();
+  const v1::Scene& scene = stage_->scene();
+  const core::ReducedCounts counts = stage_->water().reducedCounts();
+  const auto wanted = [&](bool has_it, v1::Layer layer) {
+    std::array<bool, core::kLevelCount> levels{};
+    if (has_it) levels = watchedLevels(hub, name_, layer, stream::reducedCountOf(layer, counts));
+    for (const core::Level level : core::kLevels) levels[core::indexOf(level)] &= isDue(level);
+    return levels;
+  };
+  const auto surface = wanted(scene.has_wave(), v1::LAYER_SURFACE);
+  const auto particles = wanted(scene.has_particles(), v1::LAYER_PARTICLES);
+  const auto foam = wanted(scene.foam().surface(), v1::LAYER_FOAM);
+  const auto bodies = wanted(scene.has_boats(), v1::LAYER_BODIES);
+  sim::FrameRequest request{.surface = surface.back(),
+                            .particles = particles.back(),
+                            .foam = foam.back(),
+                            .bodies = bodies.back()};
+  for (std::size_t level = 0; level < request.reduced.size(); ++level)
+    request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};
+  ++frame_count_;
+  if (request.isEmpty()) return;
   if (stage_->water().requestFrame(request)) {
     ++frames_in_flight_;
   } else {

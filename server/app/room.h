@@ -149,6 +149,8 @@ class Room {
   void announceRecovery(TimePoint now, net::Hub& hub);
 
   void requestFrame(TimePoint now, net::Hub& hub);
+  /// Whether the next frame holds the level: all do while the room is paused, then every so many.
+  [[nodiscard]] bool isDue(core::Level level) const;
   void handOverFrames(EncoderThread& encoder);
   core::DiagnosticsView diagnostics();
   void watchRealTime(TimePoint now);
@@ -174,7 +176,8 @@ class Room {
   TimePoint next_people_news_{};
   TimePoint next_vitals_{};
   TimePoint next_scene_change_{};
-  double next_frame_s_ = 0.0;    ///< simulation time
+  double next_frame_s_ = 0.0;      ///< simulation time
+  std::uint64_t frame_count_ = 0;  ///< that were due
   TimePoint next_idle_frame_{};  ///< wall time, while paused
   bool wants_diagnostics_ = false;
   std::uint32_t frames_in_flight_ = 0;

@@ -1,5 +1,6 @@
 #include "outbox.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace spindrift::net {
@@ -21,9 +22,14 @@ Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Cl
   const std::lock_guard lock(mutex_);
   if (close_ || shut_ || layer >= kMaxLayerCount) return {};
   Slot& slot = slots_[layer];
-  if (!slot.gate) return {};
+  if (!slot.watch) return {};
+  const core::Level wanted = levelOf(slot);
+  if (core::effectiveLevel(wanted, frame.reduced_count) != frame.level) return {};
+  slot.reduced_count = frame.reduced_count;
   const bool is_pending = slot.frame != nullptr;
-  const bool can_continue = slot.follows && !is_pending && frame.continuing;
+  const bool is_due = isOpen(slot, wanted, frame.level, now);
+  if (slot.watch->adapts && is_due) ladder_.noteFrame(is_pending || slot.lost_turn);
+  const bool can_continue = slot.follows && slot.level == frame.level && !is_pending && frame.continuing;
   const core::SharedBytes& message = can_continue ? frame.continuing : frame.whole;
   if (!message) {
     slot.follows = false;
@@ -32,28 +38,63 @@ Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Cl
     slot.lost_turn = turn_count_;
     return {.dropped = true};
   }
-  if (!slot.gate->pass(now)) {
+  if (!is_due) {
     slot.follows = false;  // an unsent frame goes out, this one does not
     return {};
   }
+  slot.gate.pass(now);
+  if (wanted != frame.level) slot.level_gates[indexOf(wanted)].pass(now);
   slot.frame = message;
+  slot.level = frame.level;
   slot.follows = true;
   slot.lost_turn.reset();
   return {.wake = takeWake(), .dropped = is_pending};
 }
 
-bool Outbox::wantsWhole(LayerIndex layer, Clock::time_point now) const {
+Outbox::Demand Outbox::demand(LayerIndex layer, std::uint32_t reduced_count, Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
-  if (close_ || shut_ || layer >= kMaxLayerCount) return false;
+  if (layer >= kMaxLayerCount || !slots_[layer].watch) return {};
   const Slot& slot = slots_[layer];
-  return slot.gate && !slot.frame && !slot.follows && slot.lost_turn != turn_count_ && slot.gate->isOpen(now);
+  const core::Level wanted = levelOf(slot);
+  const core::Level level = core::effectiveLevel(wanted, reduced_count);
+  if (close_ || shut_) return {.level = level};
+  const bool has_ground = slot.follows && slot.level == level;
+  return {.level = level,
+          .wants_whole =
+              !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
 }
 
-void Outbox::setWatch(LayerIndex layer, std::optional<double> max_rate_hz) {
+core::Level Outbox::levelOf(const Slot& slot) const {
+  return slot.watch->adapts ? std::min(slot.watch->level, ladder_.level()) : slot.watch->level;
+}
+
+bool Outbox::isOpen(const Slot& slot, core::Level wanted, core::Level effective, Clock::time_point now) {
+  return slot.gate.isOpen(now) && (wanted == effective || slot.level_gates[indexOf(wanted)].isOpen(now));
+}
+
+void Outbox::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
   const std::lock_guard lock(mutex_);
   if (layer >= kMaxLayerCount) return;
-  slots_[layer] = {};  // whoever asks again, perhaps for want of a frame, begins with a whole one
-  if (max_rate_hz) slots_[layer].gate.emplace(*max_rate_hz);
+  Slot& slot = slots_[layer];
+  slot = {};  // whoever asks again, perhaps for want of a frame, begins with a whole one
+  if (!watch) return;
+  slot.watch = watch;
+  slot.gate = RateGate(watch->max_rate_hz);
+  for (std::size_t k = 0; k < slot.level_gates.size(); ++k) slot.level_gates[k] = RateGate(core::kLevelBudgets[k].rate_hz);
+}
+
+std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  std::uint32_t reduced_count = 0;
+  for (const Slot& slot : slots_) {
+    if (slot.watch && slot.watch->adapts) reduced_count = std::max(reduced_count, slot.reduced_count);
+  }
+  return ladder_.review(now, reduced_count);
+}
+
+core::Level Outbox::level() const {
+  const std::lock_guard lock(mutex_);
+  return ladder_.level();
 }
 
 void Outbox::clearFrames() {

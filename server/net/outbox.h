@@ -13,6 +13,7 @@
 #include <spindrift/core/bytes.h>
 #include <spindrift/net/server.h>
 
+#include "level_ladder.h"
 #include "rate_limit.h"
 
 namespace spindrift::net {
@@ -35,15 +36,25 @@ class Outbox {
 
   /// Puts the frame into its layer's slot if the session watches the layer and its rate allows: the continuing form if
   /// the client has what it builds on, else the whole one. Without a whole one an unsent older frame is dropped and the
-  /// session waits. Ignored once a close was asked for.
+  /// session waits. Frames of another level than the session's are not for it. Ignored once a close was asked for.
   Outcome offerFrame(LayerIndex layer, const LayerBytes& frame, Clock::time_point now);
 
-  /// Whether the next frame of the layer would be taken, but only whole. False for a session that has read nothing
-  /// since it lost one: what it cannot take is not made for it.
-  bool wantsWhole(LayerIndex layer, Clock::time_point now) const;
+  /// What the session would take next of a layer that it watches.
+  struct Demand {
+    core::Level level = core::Level::kFull;
+    /// Only whole. False for a session that has read nothing since it lost one: what it cannot take is not made for it.
+    bool wants_whole = false;
+  };
+  Demand demand(LayerIndex layer, std::uint32_t reduced_count, Clock::time_point now) const;
 
-  /// Starts a layer at this rate, or stops it (nullopt) and forgets its unsent frame.
-  void setWatch(LayerIndex layer, std::optional<double> max_rate_hz);
+  /// Starts a layer anew or stops it (nullopt), and forgets its unsent frame.
+  void setWatch(LayerIndex layer, const std::optional<Watch>& watch);
+
+  /// Judges how the link does with what adapts, from time to time; the new level if it changed. For the writer, after
+  /// each message that went out.
+  std::optional<core::Level> reviewLevel(Clock::time_point now);
+  /// As judged last: what adapts gets at most this.
+  core::Level level() const;
 
   /// Forgets unsent frames (they belong to a room that the session left).
   void clearFrames();
@@ -75,12 +86,22 @@ class Outbox {
   std::optional<SessionEnd> closeRequest() const;
 
  private:
+  struct Slot;
   /// With the mutex held: true once after the writer said it sleeps.
   bool takeWake();
+  /// What the slot's watch may have now; it has one.
+  core::Level levelOf(const Slot& slot) const;
+  /// Whether the watch's rate, and that of a reduced level which comes as kFull, let the next frame through.
+  static bool isOpen(const Slot& slot, core::Level wanted, core::Level effective, Clock::time_point now);
 
   struct Slot {
-    std::optional<RateGate> gate;  ///< empty = not watched
+    std::optional<Watch> watch;  ///< empty = not watched
+    RateGate gate;
+    /// Frames of reduced levels are made at their rate; where a reduced level leaves nothing out, this holds it.
+    std::array<RateGate, core::kReducedLevelCount> level_gates;
     core::SharedBytes frame;
+    core::Level level = core::Level::kFull;  ///< of the newest frame that was taken
+    std::uint32_t reduced_count = 0;         ///< as the newest frame said
     bool follows = false;                    ///< the client has the last frame, or will have it with `frame`
     std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost for want of a whole one
   };
@@ -89,6 +110,7 @@ class Outbox {
   mutable std::mutex mutex_;
   std::deque<core::SharedBytes> control_;
   std::array<Slot, kMaxLayerCount> slots_;
+  LevelLadder ladder_;
   std::size_t turn_ = 0;          ///< the layer that is asked first
   std::uint64_t turn_count_ = 0;  ///< times the writer took something
   bool writer_sleeps_ = false;

@@ -41,12 +41,18 @@ void RoomHub::publish(const std::string& room, LayerIndex layer, const LayerByte
   for (const Watcher& watcher : found->second.watchers[layer]) watcher.link->offerFrame(layer, frame);
 }
 
-bool RoomHub::wantsWhole(const std::string& room, LayerIndex layer) const {
+LayerDemand RoomHub::demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const {
   const std::lock_guard lock(mutex_);
+  LayerDemand out;
   const auto found = rooms_.find(room);
-  if (found == rooms_.end() || layer >= kMaxLayerCount) return false;
-  return std::ranges::any_of(found->second.watchers[layer],
-                             [layer](const Watcher& watcher) { return watcher.link->wantsWhole(layer); });
+  if (found == rooms_.end() || layer >= kMaxLayerCount) return out;
+  for (const Watcher& watcher : found->second.watchers[layer]) {
+    const Outbox::Demand one = watcher.link->demand(layer, reduced_count);
+    LevelDemand& of_level = out[indexOf(one.level)];
+    ++of_level.watcher_count;
+    of_level.wants_whole = of_level.wants_whole || one.wants_whole;
+  }
+  return out;
 }
 
 void RoomHub::join(SessionId session, const std::string& room) {
@@ -57,14 +63,14 @@ void RoomHub::join(SessionId session, const std::string& room) {
   enterRoom(session, found->second, room);
 }
 
-void RoomHub::watch(SessionId session, LayerIndex layer, double max_rate_hz) {
+void RoomHub::watch(SessionId session, LayerIndex layer, const Watch& watch) {
   assert(layer < kMaxLayerCount);
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found == members_.end() || layer >= kMaxLayerCount) return;
   Member& member = found->second;
-  const bool wanted = std::isfinite(max_rate_hz) && max_rate_hz > 0.0;
-  member.link->setWatch(layer, wanted ? std::optional(max_rate_hz) : std::nullopt);
+  const bool wanted = std::isfinite(watch.max_rate_hz) && watch.max_rate_hz > 0.0;
+  member.link->setWatch(layer, wanted ? std::optional(watch) : std::nullopt);
   if (std::exchange(member.watches[layer], wanted) == wanted || !member.room) return;
   std::vector<Watcher>& watchers = rooms_[*member.room].watchers[layer];
   if (wanted) {

@@ -22,9 +22,9 @@ class SessionLink {
   virtual ~SessionLink() = default;
   virtual void sendControl(core::SharedBytes message) = 0;
   virtual void offerFrame(LayerIndex layer, const LayerBytes& frame) = 0;
-  virtual bool wantsWhole(LayerIndex layer) const = 0;
+  virtual Outbox::Demand demand(LayerIndex layer, std::uint32_t reduced_count) const = 0;
   /// nullopt stops the layer.
-  virtual void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) = 0;
+  virtual void setWatch(LayerIndex layer, const std::optional<Watch>& watch) = 0;
   virtual void clearFrames() = 0;
   virtual Outbox::Waiting waiting() const = 0;
   virtual void close(CloseCode code, std::string reason) = 0;
@@ -42,10 +42,10 @@ class RoomHub final : public Hub {
   void sendControl(SessionId session, core::SharedBytes message) override;
   void broadcastControl(const std::string& room, core::SharedBytes message) override;
   void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) override;
-  bool wantsWhole(const std::string& room, LayerIndex layer) const override;
+  LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const override;
   void join(SessionId session, const std::string& room) override;
   std::size_t sessionCount(const std::string& room) const override;
-  void watch(SessionId session, LayerIndex layer, double max_rate_hz) override;
+  void watch(SessionId session, LayerIndex layer, const Watch& watch) override;
   std::size_t watcherCount(const std::string& room, LayerIndex layer) const override;
   void close(SessionId session, CloseCode code, std::string reason) override;
   void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,

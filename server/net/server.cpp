@@ -154,6 +154,8 @@ ServerStats ServerImpl::stats() const {
                   .sent_bytes_count = counters.sent_bytes_count,
                   .sent_frame_count = counters.sent_frame_count,
                   .dropped_frame_count = counters.dropped_frame_count,
+                  .lowered_level_count = counters.lowered_level_count,
+                  .raised_level_count = counters.raised_level_count,
                   .evicted_session_count = counters.evicted_session_count,
                   .delayed_message_count = counters.delayed_message_count,
                   .closed_by_code = counters.closedByCode()};

@@ -22,6 +22,8 @@ struct Counters {
   std::atomic<std::uint64_t> sent_bytes_count{0};
   std::atomic<std::uint64_t> sent_frame_count{0};
   std::atomic<std::uint64_t> dropped_frame_count{0};
+  std::atomic<std::uint64_t> lowered_level_count{0};
+  std::atomic<std::uint64_t> raised_level_count{0};
   std::atomic<std::uint64_t> evicted_session_count{0};
   std::atomic<std::uint64_t> delayed_message_count{0};
   std::array<std::atomic<std::uint64_t>, kRefusedCount> refused_count{};

@@ -170,6 +170,7 @@ asio::awaitable<void> Session::writeLoop() {
         }
         context_.counters.sent_bytes_count += next.message->size();
         if (next.kind == Outbox::Kind::kFrame) ++context_.counters.sent_frame_count;
+        reviewLevel();
         break;
       }
     }
@@ -190,6 +191,14 @@ asio::awaitable<bool> Session::write(const core::Bytes& message) {
   stall_timer_.expires_at(Clock::time_point::max());
   if (error) noteEnd(0, error.message());
   co_return !error;
+}
+
+void Session::reviewLevel() {
+  const core::Level before = outbox_.level();
+  const auto level = outbox_.reviewLevel(Clock::now());
+  if (!level) return;
+  ++(*level < before ? context_.counters.lowered_level_count : context_.counters.raised_level_count);
+  callApplication("sessionLevelChanged", [&] { context_.application.sessionLevelChanged(id_, *level); });
 }
 
 asio::awaitable<void> Session::sayGoodbye() {
@@ -215,12 +224,12 @@ void Session::offerFrame(LayerIndex layer, const LayerBytes& frame) {
   if (outcome.wake) wakeWriter();
 }
 
-bool Session::wantsWhole(LayerIndex layer) const {
-  return outbox_.wantsWhole(layer, Clock::now());
+Outbox::Demand Session::demand(LayerIndex layer, std::uint32_t reduced_count) const {
+  return outbox_.demand(layer, reduced_count, Clock::now());
 }
 
-void Session::setWatch(LayerIndex layer, std::optional<double> max_rate_hz) {
-  outbox_.setWatch(layer, max_rate_hz);
+void Session::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
+  outbox_.setWatch(layer, watch);
 }
 
 void Session::clearFrames() {

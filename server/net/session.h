@@ -34,8 +34,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   void sendControl(core::SharedBytes message) override;
   void offerFrame(LayerIndex layer, const LayerBytes& frame) override;
-  bool wantsWhole(LayerIndex layer) const override;
-  void setWatch(LayerIndex layer, std::optional<double> max_rate_hz) override;
+  Outbox::Demand demand(LayerIndex layer, std::uint32_t reduced_count) const override;
+  void setWatch(LayerIndex layer, const std::optional<Watch>& watch) override;
   void clearFrames() override;
   Outbox::Waiting waiting() const override { return outbox_.waiting(); }
   void close(CloseCode code, std::string reason) override;
@@ -50,6 +50,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   boost::asio::awaitable<void> writeLoop();
   /// One message; false if the connection is gone.
   boost::asio::awaitable<bool> write(const core::Bytes& message);
+  /// After a message went out: whether the link carries what it is given.
+  void reviewLevel();
   /// Sends the close frame and waits for the peer's, within the close deadline.
   boost::asio::awaitable<void> sayGoodbye();
   /// Runs an application callback; an exception in it ends this session and no other.

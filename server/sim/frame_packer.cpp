@@ -19,7 +19,6 @@ constexpr std::size_t kParticleHeaderWords = 2;
 constexpr std::size_t kWordsPerParticle = 3;
 constexpr std::size_t kWordsPerBoat = 7;
 constexpr std::size_t kBodyWords = std::size_t{MAX_BOATS} * kWordsPerBoat;
-constexpr std::array kLevels = {core::Level::kCoarse, core::Level::kMedium, core::Level::kFine, core::Level::kFull};
 
 std::size_t surfaceWords(std::uint32_t resolution_count) {
   return std::size_t{resolution_count} * resolution_count / 2;
@@ -57,7 +56,7 @@ core::Result<void> FramePacker::resize(const Derived& derived) {
   const core::ReducedCounts reduced_counts = core::reducedCounts(resolution_, particles);
   // Room for every level at once.
   std::size_t words = pack_bodies_ ? kBodyWords : 0;
-  for (const core::Level level : kLevels) {
+  for (const core::Level level : core::kLevels) {
     const bool is_full = level == core::Level::kFull;
     if (is_full || indexOf(level) < reduced_counts.planes) {
       words += surfaceWords(surfaceResolution(level)) + (has_foam_ ? foamWords(foamResolution(level)) : 0);
@@ -101,7 +100,7 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, co
   pending.time_s = time_s;
   std::size_t at = 0;
   packed_.bindStorage(PACKED_WORDS);
-  for (const core::Level level : kLevels) {
+  for (const core::Level level : core::kLevels) {
     pending.places[indexOf(level)] = packLevel(level, request.at(level), parts, at);
   }
   if (parts.boats && request.bodies) {
@@ -169,7 +168,7 @@ std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const D
     frame.reduced_counts = reduced_counts_;
     frame.lease = slot;
     const auto words = slot->words();
-    for (const core::Level level : kLevels) {
+    for (const core::Level level : core::kLevels) {
       const Places& places = pending.places[indexOf(level)];
       core::ReducedView view;
       if (places.surface) view.surface = surfaceView(words.subspan(*places.surface), level, scene, derived);

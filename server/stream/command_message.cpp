@@ -108,6 +108,20 @@ v1::Role toWire(core::Role role) {
   return v1::ROLE_OPERATOR;
 }
 
+v1::Level toWire(core::Level level) {
+  switch (level) {
+    case core::Level::kCoarse:
+      return v1::LEVEL_COARSE;
+    case core::Level::kMedium:
+      return v1::LEVEL_MEDIUM;
+    case core::Level::kFine:
+      return v1::LEVEL_FINE;
+    case core::Level::kFull:
+      return v1::LEVEL_FULL;
+  }
+  return v1::LEVEL_FULL;
+}
+
 v1::Reject toWire(const CommandRejection& rejection) {
   v1::Reject out;
   out.set_command_id(rejection.command_id);

@@ -10,6 +10,7 @@
 #include <spindrift/stream/server_message.h>
 
 #include "frame_message.h"
+#include "layer_codec.h"
 
 namespace spindrift::stream {
 namespace {
@@ -26,8 +27,6 @@ EncodedFrame plain(const core::FrameView& frame, v1::Layer layer, const v1::Laye
 
 class SurfaceFixed16Codec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_SURFACE; }
-
   EncodedFrame encode(const core::FrameView& frame, bool) override {
     if (!frame.surface) return {};
     const core::SurfaceView& surface = *frame.surface;
@@ -43,8 +42,6 @@ class SurfaceFixed16Codec final : public LayerCodec {
 
 class ParticlesFixed12Codec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_PARTICLES; }
-
   EncodedFrame encode(const core::FrameView& frame, bool) override {
     if (!frame.particles) return {};
     const core::ParticleView& particles = *frame.particles;
@@ -66,8 +63,6 @@ class ParticlesFixed12Codec final : public LayerCodec {
 
 class FoamFixed8Codec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_FOAM; }
-
   EncodedFrame encode(const core::FrameView& frame, bool) override {
     if (!frame.foam) return {};
     const core::FoamView& foam = *frame.foam;
@@ -81,8 +76,6 @@ class FoamFixed8Codec final : public LayerCodec {
 
 class BodiesFixed28Codec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_BODIES; }
-
   EncodedFrame encode(const core::FrameView& frame, bool) override {
     if (!frame.bodies) return {};
     assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
@@ -94,31 +87,32 @@ class BodiesFixed28Codec final : public LayerCodec {
 
 class DiagnosticsCodec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_DIAGNOSTICS; }
   EncodedFrame encode(const core::FrameView& frame, bool) override { return {diagnostics(frame), nullptr}; }
 };
 
+/// Null for a stream that there is not.
+std::unique_ptr<LayerCodec> makeCodec(Stream stream) {
+  const bool is_packed = stream.packing == v1::PACKING_PACKED;
+  switch (stream.layer) {
+    case v1::LAYER_SURFACE:
+      return is_packed ? makeSurfacePredictedCodec() : std::make_unique<SurfaceFixed16Codec>();
+    case v1::LAYER_PARTICLES:
+      return is_packed ? makeParticlesByCellCodec() : std::make_unique<ParticlesFixed12Codec>();
+    case v1::LAYER_FOAM:
+      return is_packed ? makeFoamPredictedCodec() : std::make_unique<FoamFixed8Codec>();
+    case v1::LAYER_BODIES:
+      return is_packed ? nullptr : std::make_unique<BodiesFixed28Codec>();
+    case v1::LAYER_DIAGNOSTICS:
+      return is_packed ? nullptr : std::make_unique<DiagnosticsCodec>();
+    default:
+      return nullptr;
+  }
+}
+
 }  // namespace
 
-std::unique_ptr<LayerCodec> makeSurfaceFixed16Codec() {
-  return std::make_unique<SurfaceFixed16Codec>();
-}
-std::unique_ptr<LayerCodec> makeParticlesFixed12Codec() {
-  return std::make_unique<ParticlesFixed12Codec>();
-}
-std::unique_ptr<LayerCodec> makeFoamFixed8Codec() {
-  return std::make_unique<FoamFixed8Codec>();
-}
-std::unique_ptr<LayerCodec> makeBodiesFixed28Codec() {
-  return std::make_unique<BodiesFixed28Codec>();
-}
-std::unique_ptr<LayerCodec> makeDiagnosticsCodec() {
-  return std::make_unique<DiagnosticsCodec>();
-}
-
 Stream streamOf(v1::Layer layer, v1::Packing packing) {
-  const bool has_packed = layer == v1::LAYER_SURFACE || layer == v1::LAYER_PARTICLES || layer == v1::LAYER_FOAM;
-  return {layer, has_packed ? packing : v1::PACKING_PLAIN};
+  return {layer, hasLevels(layer) ? packing : v1::PACKING_PLAIN};  // the same layers have a packed form
 }
 
 std::span<const Stream> allStreams() {
@@ -129,26 +123,29 @@ std::span<const Stream> allStreams() {
   return kStreams;
 }
 
-FrameEncoder::FrameEncoder() {
-  for (auto make :
-       {makeSurfaceFixed16Codec, makeSurfacePredictedCodec, makeParticlesFixed12Codec, makeParticlesByCellCodec,
-        makeFoamFixed8Codec, makeFoamPredictedCodec, makeBodiesFixed28Codec, makeDiagnosticsCodec})
-    add(make());
+bool hasLevels(v1::Layer layer) {
+  return layer == v1::LAYER_SURFACE || layer == v1::LAYER_PARTICLES || layer == v1::LAYER_FOAM;
 }
 
-FrameEncoder::FrameEncoder(std::vector<std::unique_ptr<LayerCodec>> codecs) {
-  for (std::unique_ptr<LayerCodec>& codec : codecs) add(std::move(codec));
+std::string nameOf(core::Level level) {
+  static constexpr std::array<const char*, core::kLevelCount> kNames{"coarse", "medium", "fine", "full"};
+  return kNames[core::indexOf(level)];
 }
 
-void FrameEncoder::add(std::unique_ptr<LayerCodec> codec) {
-  const std::size_t index = indexOf({codec->layer(), codec->packing()});
-  slots_.at(index).codec = std::move(codec);
+std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts) {
+  if (layer == v1::LAYER_PARTICLES) return counts.particles;
+  return hasLevels(layer) ? counts.planes : 0;
 }
+
+FrameEncoder::FrameEncoder() = default;
+FrameEncoder::~FrameEncoder() = default;
 
 EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, bool wants_whole) {
   Slot& slot = slots_.at(indexOf(stream));
-  if (!slot.codec) return {};
-  EncodedFrame encoded = slot.codec->encode(frame, wants_whole);
+  std::unique_ptr<LayerCodec>& codec = slot.codecs[core::indexOf(frame.level)];
+  if (!codec) codec = makeCodec(stream);
+  if (!codec) return {};
+  EncodedFrame encoded = codec->encode(frame, wants_whole);
   if (encoded.whole || encoded.continuing) slot.encode_count.fetch_add(1, std::memory_order_relaxed);
   return encoded;
 }

@@ -6,6 +6,7 @@
 #include <google/protobuf/io/coded_stream.h>
 
 #include <spindrift/stream/crc32c.h>
+#include <spindrift/stream/client_message.h>
 
 namespace spindrift::stream {
 namespace {
@@ -41,10 +42,12 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   head.set_time_s(frame.time_s);
   head.set_keyframe(!base_tick);
   head.set_base_tick(base_tick.value_or(0));
+  v1::LayerFrame level;
+  level.set_level(toWire(frame.level));
 
   const auto payload_size = static_cast<std::uint32_t>(payload.size());
-  const std::size_t before_payload =
-      head.ByteSizeLong() + kCrcFieldBytes + codec.ByteSizeLong() + 1 + CodedOutputStream::VarintSize32(payload_size);
+  const std::size_t before_payload = head.ByteSizeLong() + kCrcFieldBytes + level.ByteSizeLong() +
+                                     codec.ByteSizeLong() + 1 + CodedOutputStream::VarintSize32(payload_size);
   const auto frame_size = static_cast<std::uint32_t>(before_payload + payload_size);
   const std::size_t prefix_size = 1 + CodedOutputStream::VarintSize32(frame_size) + before_payload;
 
@@ -61,6 +64,7 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   at = appendMessage(head, at);
   *at++ = static_cast<std::uint8_t>(kCrcTag);
   at = CodedOutputStream::WriteLittleEndian32ToArray(crc, at);
+  at = appendMessage(level, at);
   at = appendMessage(codec, at);
   *at++ = static_cast<std::uint8_t>(kPayloadTag);
   at = CodedOutputStream::WriteVarint32ToArray(payload_size, at);

@@ -8,6 +8,7 @@
 #include "codec/particle_cells.h"
 #include "frame_checks.h"
 #include "frame_message.h"
+#include "layer_codec.h"
 
 namespace spindrift::stream {
 namespace {
@@ -47,9 +48,6 @@ Grid gridOf(const core::ParticleView& particles) {
 
 class ParticlesByCellCodec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_PARTICLES; }
-  v1::Packing packing() const override { return v1::PACKING_PACKED; }
-
   EncodedFrame encode(const core::FrameView& frame, bool) override {
     if (!frame.particles) return {};
     const core::ParticleView& particles = *frame.particles;

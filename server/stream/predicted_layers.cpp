@@ -9,6 +9,7 @@
 #include "codec/plane_chain.h"
 #include "frame_checks.h"
 #include "frame_message.h"
+#include "layer_codec.h"
 
 namespace spindrift::stream {
 namespace {
@@ -44,9 +45,6 @@ class PlaneMessages {
 
 class SurfacePredictedCodec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_SURFACE; }
-  v1::Packing packing() const override { return v1::PACKING_PACKED; }
-
   EncodedFrame encode(const core::FrameView& frame, bool wants_whole) override {
     if (!frame.surface) return {};
     const core::SurfaceView& surface = *frame.surface;
@@ -56,7 +54,7 @@ class SurfacePredictedCodec final : public LayerCodec {
     messages_.plane().resize(surface.resolution_count);
     messages_.plane().assign(
         std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), 2 * surface.words.size()));
-    return messages_.encode(frame, layer(), wants_whole, [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
+    return messages_.encode(frame, v1::LAYER_SURFACE, wants_whole, [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
       v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
       header.set_resolution_count(surface.resolution_count);
       header.set_side_m(surface.side_m);
@@ -73,9 +71,6 @@ class SurfacePredictedCodec final : public LayerCodec {
 
 class FoamPredictedCodec final : public LayerCodec {
  public:
-  v1::Layer layer() const override { return v1::LAYER_FOAM; }
-  v1::Packing packing() const override { return v1::PACKING_PACKED; }
-
   EncodedFrame encode(const core::FrameView& frame, bool wants_whole) override {
     if (!frame.foam) return {};
     const core::FoamView& foam = *frame.foam;
@@ -84,7 +79,7 @@ class FoamPredictedCodec final : public LayerCodec {
     messages_.plane().resize(foam.resolution_count);
     messages_.plane().assign(
         std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.words.size_bytes()));
-    return messages_.encode(frame, layer(), wants_whole, [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
+    return messages_.encode(frame, v1::LAYER_FOAM, wants_whole, [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
       v1::FoamPredicted& header = *codec.mutable_foam_predicted();
       header.set_resolution_count(foam.resolution_count);
       header.set_side_m(foam.side_m);

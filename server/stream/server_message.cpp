@@ -96,6 +96,12 @@ core::SharedBytes people(const v1::People& people) {
   return serialize(message);
 }
 
+core::SharedBytes levelChanged(core::Level level) {
+  v1::ServerMessage message;
+  message.mutable_level_changed()->set_level(toWire(level));
+  return serialize(message);
+}
+
 core::SharedBytes pong(double client_time_s, double server_time_s) {
   v1::ServerMessage message;
   message.mutable_pong()->set_client_time_s(client_time_s);

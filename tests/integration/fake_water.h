@@ -85,7 +85,9 @@ class FakeGateway final : public net::Application {
       for (const stream::Stream stream : stream::allStreams()) {
         if (stream.layer != wanted.layer) continue;
         hub_->watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
-                    stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0);
+                    {.max_rate_hz = stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0,
+                     .level = subscribe->level,
+                     .adapts = subscribe->adapts});
       }
     } else if (const auto* ping = std::get_if<stream::Ping>(&message)) {
       hub_->sendControl(session, stream::pong(ping->client_time_s, 0.0));

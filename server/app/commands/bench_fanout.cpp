@@ -58,7 +58,7 @@ class EchoApplication final : public net::Application {
       io_clock_ = clock;
     });
     hub_->join(session, kRoom);
-    hub_->watch(session, 0, kWatchRate_hz);
+    hub_->watch(session, 0, {.max_rate_hz = kWatchRate_hz});
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
     std::uint64_t number = 0;

@@ -34,7 +34,7 @@ TEST(Outbox, SendsControlMessagesInOrder) {
 
 TEST(Outbox, SendsControlBeforeData) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.pushControl(shared("control"));
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
@@ -43,7 +43,7 @@ TEST(Outbox, SendsControlBeforeData) {
 
 TEST(Outbox, DropsTheOlderFrameOfALayer) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   const auto newest = shared("new");
   EXPECT_FALSE(outbox.offerFrame(1, {shared("old"), {}}, later()).dropped);
   EXPECT_TRUE(outbox.offerFrame(1, {newest, {}}, later()).dropped);
@@ -54,8 +54,8 @@ TEST(Outbox, DropsTheOlderFrameOfALayer) {
 TEST(Outbox, HoldsOneFrameALayerHoweverManyAreOffered) {
   Outbox outbox(8);
   std::vector<std::weak_ptr<const core::Bytes>> frames;
-  outbox.setWatch(1, kAnyRate_hz);
-  outbox.setWatch(2, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  outbox.setWatch(2, Watch{.max_rate_hz = kAnyRate_hz});
   for (int k = 0; k < 1000; ++k) {
     const auto frame = shared("frame");
     frames.push_back(frame);
@@ -66,29 +66,29 @@ TEST(Outbox, HoldsOneFrameALayerHoweverManyAreOffered) {
 
 TEST(Outbox, ContinuesWhereTheClientHasTheFrameBefore) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
-  EXPECT_TRUE(outbox.wantsWhole(1, later())) << "it has nothing yet";
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_whole) << "it has nothing yet";
   outbox.offerFrame(1, {{}, shared("2 on 1")}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "nothing that it could not read";
   const auto whole = shared("3");
   outbox.offerFrame(1, {whole, shared("3 on 2")}, later());
-  EXPECT_FALSE(outbox.wantsWhole(1, later()));
+  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_whole);
   EXPECT_EQ(outbox.next().message, whole);
   const auto continuing = shared("4 on 3");
   outbox.offerFrame(1, {shared("4"), continuing}, later());
   EXPECT_EQ(outbox.next().message, continuing);
-  EXPECT_FALSE(outbox.wantsWhole(1, later()));
+  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_whole);
 }
 
 TEST(Outbox, BeginsAgainWithAWholeFrameAfterALoss) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
   EXPECT_TRUE(outbox.offerFrame(1, {{}, shared("2 on 1")}, later()).dropped) << "1 was not sent: 2 has no ground";
-  EXPECT_FALSE(outbox.wantsWhole(1, later())) << "nobody reads";
+  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_whole) << "nobody reads";
   outbox.offerFrame(1, {{}, shared("3 on 2")}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-  EXPECT_TRUE(outbox.wantsWhole(1, later())) << "the writer is free again";
+  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_whole) << "the writer is free again";
   const auto whole = shared("4");
   outbox.offerFrame(1, {whole, shared("4 on 3")}, later());
   EXPECT_EQ(outbox.next().message, whole);
@@ -96,7 +96,7 @@ TEST(Outbox, BeginsAgainWithAWholeFrameAfterALoss) {
 
 TEST(Outbox, ReplacesAnUnsentFrameByAWholeOneNeverByOneThatBuildsOnIt) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
   const auto whole = shared("2");
   EXPECT_TRUE(outbox.offerFrame(1, {whole, shared("2 on 1")}, later()).dropped);
@@ -105,13 +105,13 @@ TEST(Outbox, ReplacesAnUnsentFrameByAWholeOneNeverByOneThatBuildsOnIt) {
 
 TEST(Outbox, ASlowerWatchTakesWholeFramesOnly) {
   Outbox outbox(8);
-  outbox.setWatch(1, 10.0);
+  outbox.setWatch(1, Watch{.max_rate_hz = 10.0});
   Clock::time_point now = later();
   std::vector<std::string> taken;
   int asked_count = 0;
   for (int k = 0; k < 30; ++k) {  // 30 frames a second, of which every third is taken
     now += std::chrono::microseconds(33'333);
-    const bool wants_whole = outbox.wantsWhole(1, now);
+    const bool wants_whole = outbox.demand(1, 0, now).wants_whole;
     asked_count += wants_whole ? 1 : 0;
     outbox.offerFrame(1, {wants_whole ? shared("w") : core::SharedBytes(), shared("c")}, now);
     if (const auto sent = outbox.next().message) taken.emplace_back(sent->begin(), sent->end());
@@ -122,19 +122,115 @@ TEST(Outbox, ASlowerWatchTakesWholeFramesOnly) {
   for (const std::string& frame : taken) EXPECT_EQ(frame, "w");
 }
 
+LayerBytes levelFrame(core::Level level, std::uint32_t reduced_count, bool is_whole = true) {
+  return {.whole = is_whole ? shared("whole") : nullptr,
+          .continuing = shared("continuing"),
+          .level = level,
+          .reduced_count = reduced_count};
+}
+
+std::string textOf(const core::SharedBytes& bytes) {
+  return bytes ? std::string(bytes->begin(), bytes->end()) : "nothing";
+}
+
+TEST(Outbox, TakesFramesOfItsOwnLevelOnly) {
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kMedium});
+  EXPECT_EQ(outbox.demand(1, 3, later()).level, core::Level::kMedium);
+  outbox.offerFrame(1, levelFrame(core::Level::kFull, 3), later());
+  outbox.offerFrame(1, levelFrame(core::Level::kCoarse, 3), later());
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+  outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
+  // A scene that has less than the level allows gives everything.
+  EXPECT_EQ(outbox.demand(1, 1, later()).level, core::Level::kFull);
+  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
+}
+
+TEST(Outbox, NeverContinuesAFrameOfAnotherLevel) {
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kMedium});
+  outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
+  EXPECT_EQ(textOf(outbox.next().message), "whole");
+  outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
+  EXPECT_EQ(textOf(outbox.next().message), "continuing");
+  // Another scene, in which the level is the full one.
+  EXPECT_TRUE(outbox.demand(1, 1, later()).wants_whole);
+  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
+  EXPECT_EQ(textOf(outbox.next().message), "whole");
+  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
+  EXPECT_EQ(textOf(outbox.next().message), "continuing");
+}
+
+TEST(Outbox, AReducedLevelThatIsTheFullOneKeepsItsRate) {
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = 60.0, .level = core::Level::kCoarse});
+  Clock::time_point now = later();
+  int taken_count = 0;
+  for (int k = 0; k < 120; ++k) {  // two seconds of 60 Hz
+    now += std::chrono::microseconds(16'667);
+    outbox.offerFrame(1, levelFrame(core::Level::kFull, 0), now);
+    taken_count += kind(outbox) == Outbox::Kind::kFrame ? 1 : 0;
+  }
+  EXPECT_NEAR(taken_count, 2 * core::kLevelBudgets[0].rate_hz, 5);
+}
+
+/// Offers 30 frames a second of whatever level the outbox is at; the writer takes one of `taken_of` of them.
+class LinkOf30Hz {
+ public:
+  LinkOf30Hz(Outbox& outbox, std::uint32_t reduced_count) : outbox_(outbox), reduced_count_(reduced_count) {}
+
+  std::vector<core::Level> run(int seconds, int taken_of) {
+    std::vector<core::Level> changes;
+    for (int k = 0; k < 30 * seconds; ++k) {
+      now_ += std::chrono::microseconds(33'333);
+      outbox_.offerFrame(1, levelFrame(outbox_.demand(1, reduced_count_, now_).level, reduced_count_), now_);
+      if (k % taken_of != 0) continue;
+      outbox_.next();
+      if (const auto level = outbox_.reviewLevel(now_)) changes.push_back(*level);
+    }
+    return changes;
+  }
+
+ private:
+  Outbox& outbox_;
+  const std::uint32_t reduced_count_;
+  Clock::time_point now_ = later();
+};
+
+TEST(Outbox, AnAdaptingSessionWhoseFramesWaitComesDownAndClimbsBack) {
+  using core::Level;
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .adapts = true});
+  LinkOf30Hz link(outbox, 2);
+  EXPECT_EQ(link.run(3, 1), std::vector<Level>{}) << "nothing waits";
+  EXPECT_EQ(link.run(4, 2), (std::vector{Level::kMedium, Level::kCoarse})) << "every other frame is lost";
+  EXPECT_EQ(link.run(4, 1), std::vector<Level>{}) << "patience";
+  EXPECT_EQ(link.run(10, 1), (std::vector{Level::kMedium, Level::kFull}));
+}
+
+TEST(Outbox, OneThatDoesNotAdaptKeepsItsLevel) {
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kFine});
+  LinkOf30Hz link(outbox, 3);
+  EXPECT_TRUE(link.run(10, 3).empty());
+  EXPECT_EQ(outbox.demand(1, 3, later()).level, core::Level::kFine);
+}
+
 TEST(Outbox, AskingForALayerAgainBeginsWithAWholeFrame) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
   outbox.next();
-  outbox.setWatch(1, kAnyRate_hz);
-  EXPECT_TRUE(outbox.wantsWhole(1, later()));
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_whole);
 }
 
 TEST(Outbox, TakesLayersInTurn) {
   Outbox outbox(8);
   std::vector<core::SharedBytes> last(4);
-  for (LayerIndex layer = 0; layer < 4; ++layer) outbox.setWatch(layer, kAnyRate_hz);
+  for (LayerIndex layer = 0; layer < 4; ++layer) outbox.setWatch(layer, Watch{.max_rate_hz = kAnyRate_hz});
   std::vector<std::size_t> order;
   // Every layer is refilled after every send: without turns the first layer would be sent alone.
   for (int k = 0; k < 8; ++k) {
@@ -153,8 +249,8 @@ TEST(Outbox, IgnoresFramesOfLayersThatNobodyWatches) {
 
 TEST(Outbox, KeepsToTheRateOfEachWatch) {
   Outbox outbox(8);
-  outbox.setWatch(1, 30.0);
-  outbox.setWatch(2, 60.0);
+  outbox.setWatch(1, Watch{.max_rate_hz = 30.0});
+  outbox.setWatch(2, Watch{.max_rate_hz = 60.0});
   const Clock::time_point start = later();
   int sent[3] = {};
   for (int k = 0; k < 60; ++k) {
@@ -170,7 +266,7 @@ TEST(Outbox, KeepsToTheRateOfEachWatch) {
 
 TEST(Outbox, ForgetsTheFrameOfALayerThatStops) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.setWatch(1, std::nullopt);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
@@ -200,7 +296,7 @@ TEST(Outbox, ClosesWhenTheControlQueueOverflows) {
 
 TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
   Outbox outbox(8);
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.pushControl(shared("last words"));
   EXPECT_TRUE(outbox.requestClose(CloseCode::kNormal, "first"));
@@ -215,7 +311,7 @@ TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
 TEST(Outbox, KeepsNothingOnceShut) {
   Outbox outbox(8);
   const auto message = shared("message");
-  outbox.setWatch(1, kAnyRate_hz);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.pushControl(message);
   outbox.offerFrame(1, {message, {}}, later());
   outbox.shut();

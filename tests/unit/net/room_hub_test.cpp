@@ -16,13 +16,19 @@ struct RecordingLink final : SessionLink {
   int clear_count = 0;
   bool wants_whole = false;
   std::optional<double> rate_hz;
+  core::Level level = core::Level::kFull;
   std::optional<CloseCode> closed;
   std::optional<CloseCode> closing_later;
 
   void sendControl(core::SharedBytes) override { ++control_count; }
   void offerFrame(LayerIndex, const LayerBytes&) override { ++frame_count; }
-  bool wantsWhole(LayerIndex) const override { return wants_whole; }
-  void setWatch(LayerIndex, std::optional<double> max_rate_hz) override { rate_hz = max_rate_hz; }
+  Outbox::Demand demand(LayerIndex, std::uint32_t reduced_count) const override {
+    return {.level = core::effectiveLevel(level, reduced_count), .wants_whole = wants_whole};
+  }
+  void setWatch(LayerIndex, const std::optional<Watch>& watch) override {
+    rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
+    if (watch) level = watch->level;
+  }
   void clearFrames() override { ++clear_count; }
   Outbox::Waiting waiting() const override { return {1, 2}; }
   void close(CloseCode code, std::string) override { closed = code; }
@@ -40,23 +46,34 @@ struct RoomHubTest : testing::Test {
   }
 };
 
-TEST_F(RoomHubTest, KnowsWhetherAnyWatcherNeedsAWholeFrame) {
+TEST_F(RoomHubTest, KnowsWhatEachLevelsWatchersNeed) {
+  using core::Level;
   hub.join(1, "pool");
   hub.join(2, "pool");
-  hub.watch(1, 3, 30.0);
+  hub.watch(1, 3, {.max_rate_hz = 30.0});
   bob->wants_whole = true;
-  EXPECT_FALSE(hub.wantsWhole("pool", 3)) << "he does not watch it";
-  hub.watch(2, 3, 30.0);
-  EXPECT_TRUE(hub.wantsWhole("pool", 3));
-  EXPECT_FALSE(hub.wantsWhole("pool", 4));
-  EXPECT_FALSE(hub.wantsWhole("pond", 3));
+  const auto at = [&](const char* room, LayerIndex layer, std::uint32_t reduced_count, Level level) {
+    return hub.demand(room, layer, reduced_count)[core::indexOf(level)];
+  };
+  EXPECT_EQ(at("pool", 3, 2, Level::kFull).watcher_count, 1U);
+  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_whole) << "he does not watch it";
+  hub.watch(2, 3, {.max_rate_hz = 30.0, .level = Level::kMedium});
+  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_whole) << "he watches another level";
+  EXPECT_EQ(at("pool", 3, 2, Level::kMedium).watcher_count, 1U);
+  EXPECT_TRUE(at("pool", 3, 2, Level::kMedium).wants_whole);
+  EXPECT_EQ(at("pool", 3, 2, Level::kCoarse).watcher_count, 0U);
+  // Where the medium level leaves nothing out, it is the full one.
+  EXPECT_EQ(at("pool", 3, 1, Level::kFull).watcher_count, 2U);
+  EXPECT_TRUE(at("pool", 3, 1, Level::kFull).wants_whole);
+  EXPECT_EQ(at("pool", 4, 2, Level::kFull).watcher_count, 0U);
+  EXPECT_EQ(at("pond", 3, 2, Level::kFull).watcher_count, 0U);
 }
 
 TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
   hub.join(1, "pool");
   hub.join(2, "sea");
-  hub.watch(1, 3, 30.0);
-  hub.watch(2, 3, 30.0);
+  hub.watch(1, 3, {.max_rate_hz = 30.0});
+  hub.watch(2, 3, {.max_rate_hz = 30.0});
   hub.publish("pool", 3, {shared("frame"), {}});
   hub.publish("pool", 4, {shared("frame"), {}});
   hub.publish("pond", 3, {shared("frame"), {}});
@@ -68,12 +85,12 @@ TEST_F(RoomHubTest, CountsWatchers) {
   hub.join(1, "pool");
   hub.join(2, "pool");
   EXPECT_EQ(hub.watcherCount("pool", 3), 0U);
-  hub.watch(1, 3, 30.0);
-  hub.watch(2, 3, 10.0);
-  hub.watch(2, 3, 20.0);
+  hub.watch(1, 3, {.max_rate_hz = 30.0});
+  hub.watch(2, 3, {.max_rate_hz = 10.0});
+  hub.watch(2, 3, {.max_rate_hz = 20.0});
   EXPECT_EQ(hub.watcherCount("pool", 3), 2U);
   EXPECT_EQ(bob->rate_hz, 20.0);
-  hub.watch(1, 3, 0.0);
+  hub.watch(1, 3, {.max_rate_hz = 0.0});
   EXPECT_EQ(hub.watcherCount("pool", 3), 1U);
   EXPECT_EQ(ada->rate_hz, std::nullopt);
   hub.remove(2);
@@ -85,13 +102,13 @@ TEST_F(RoomHubTest, TreatsARateThatIsNoRateAsStop) {
   hub.join(1, "pool");
   for (const double rate_hz :
        {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    hub.watch(1, 3, rate_hz);
+    hub.watch(1, 3, {.max_rate_hz = rate_hz});
     EXPECT_EQ(hub.watcherCount("pool", 3), 0U) << rate_hz;
   }
 }
 
 TEST_F(RoomHubTest, TakesWatchesAlongIntoTheNextRoomButNoFrames) {
-  hub.watch(1, 3, 30.0);
+  hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.join(1, "pool");
   EXPECT_EQ(hub.watcherCount("pool", 3), 1U);
   hub.join(1, "pool");
@@ -114,11 +131,11 @@ TEST_F(RoomHubTest, ForgetsEmptyRooms) {
 
 TEST_F(RoomHubTest, IgnoresSessionsThatAreGone) {
   hub.join(1, "pool");
-  hub.watch(1, 3, 30.0);
+  hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.remove(1);
   hub.remove(1);
   hub.join(1, "pool");
-  hub.watch(1, 3, 30.0);
+  hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.sendControl(1, shared("control"));
   hub.close(1, CloseCode::kNormal, "");
   hub.publish("pool", 3, {shared("frame"), {}});

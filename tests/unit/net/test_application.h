@@ -83,7 +83,7 @@ class TestApplication final : public net::Application {
       net::LayerIndex layer = 0;
       double rate_hz = 0.0;
       words >> layer >> rate_hz;
-      hub->watch(session, layer, rate_hz);
+      hub->watch(session, layer, {.max_rate_hz = rate_hz});
       hub->sendControl(session, shared("watching"));
     } else if (verb == "flood") {
       std::size_t count = 0;

@@ -196,25 +196,34 @@ TEST(FrameEncoding, CountsOneEncodeAFrameWhoeverSharesTheBytes) {
   EXPECT_EQ(encoder.encodeCount({v1::LAYER_PARTICLES}), 0u);
 }
 
-/// Says what it was asked for.
-class EchoingCodec final : public LayerCodec {
- public:
-  v1::Layer layer() const override { return v1::LAYER_SURFACE; }
-  EncodedFrame encode(const core::FrameView&, bool wants_whole) override {
-    return {wants_whole ? core::share({1}) : nullptr, core::share({0})};
+TEST(FrameEncoding, EachLevelIsEncodedForItselfAndSaysSo) {
+  const TestFrame test;
+  constexpr Stream kPacked{v1::LAYER_SURFACE, v1::PACKING_PACKED};
+  const std::vector<std::uint32_t> small(32, 0x00010002U);
+  FrameEncoder encoder;
+  PackedSurfaceDecoder full_reader, coarse_reader;
+  for (std::uint64_t tick = 1; tick <= 6; ++tick) {
+    core::FrameView frame = test.view;
+    frame.tick = tick;
+    frame.reduced_counts.planes = 1;
+    frame.reduced[0].surface = core::SurfaceView{8, 2.0, 0.001, small};
+    const EncodedFrame full = encoder.encode(kPacked, core::frameAt(frame, core::Level::kFull), tick == 1);
+    ASSERT_TRUE(full.whole || full.continuing);
+    const v1::LayerFrame sent = frameOf(tick == 1 ? full.whole : full.continuing);
+    EXPECT_EQ(sent.level(), v1::LEVEL_FULL);
+    const auto samples = full_reader.decode(sent);
+    ASSERT_TRUE(samples) << samples.error().message;
+    EXPECT_EQ(samples->resolution_count, test.view.surface->resolution_count);
+    if (tick % 3 == 2) continue;  // a coarse frame now and then
+    const EncodedFrame coarse = encoder.encode(kPacked, core::frameAt(frame, core::Level::kCoarse), tick == 1);
+    const v1::LayerFrame sent_coarse = frameOf(tick == 1 ? coarse.whole : coarse.continuing);
+    EXPECT_EQ(sent_coarse.level(), v1::LEVEL_COARSE);
+    const auto coarse_samples = coarse_reader.decode(sent_coarse);
+    ASSERT_TRUE(coarse_samples) << coarse_samples.error().message;
+    EXPECT_EQ(coarse_samples->resolution_count, 8u);
   }
-};
-
-TEST(FrameEncoding, LetsAnotherCodecInAndAsksItForWholeFrames) {
-  std::vector<std::unique_ptr<LayerCodec>> codecs;
-  codecs.push_back(makeSurfaceFixed16Codec());
-  codecs.push_back(std::make_unique<EchoingCodec>());
-  FrameEncoder encoder(std::move(codecs));
-  const core::FrameView frame;
-  EXPECT_EQ(encoder.encode({v1::LAYER_SURFACE}, frame, false).whole, nullptr);
-  EXPECT_EQ(*encoder.encode({v1::LAYER_SURFACE}, frame, true).whole, core::Bytes{1});
-  EXPECT_EQ(encoder.encodeCount({v1::LAYER_SURFACE}), 2u);
-  EXPECT_EQ(encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, frame, true).whole, nullptr) << "no codec for it";
+  EXPECT_EQ(encoder.encodeCount(kPacked), 6u + 4u);
+  EXPECT_FALSE(encoder.encode(kPacked, core::frameAt(test.view, core::Level::kMedium), true).whole) << "not in the frame";
 }
 
 using Damage = void (*)(v1::LayerFrame&);

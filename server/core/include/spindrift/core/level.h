@@ -10,6 +10,7 @@ namespace spindrift::core {
 /// Coarsest first. The lower ones bound what a frame holds, kFull does not.
 enum class Level : std::uint8_t { kCoarse, kMedium, kFine, kFull };
 inline constexpr std::size_t kLevelCount = 4;
+inline constexpr std::array kLevels = {Level::kCoarse, Level::kMedium, Level::kFine, Level::kFull};
 /// Those below kFull: 0 .. kReducedLevelCount - 1.
 inline constexpr std::size_t kReducedLevelCount = 3;
 

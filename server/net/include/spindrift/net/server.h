@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <spindrift/core/bytes.h>
+#include <spindrift/core/level.h>
 #include <spindrift/core/result.h>
 
 namespace spindrift::net {
@@ -29,8 +30,25 @@ inline constexpr LayerIndex kMaxLayerCount = 16;
 /// One frame of a layer in the forms that its watchers need; either may be null, not both.
 struct LayerBytes {
   core::SharedBytes whole;       ///< stands by itself
-  core::SharedBytes continuing;  ///< needs the frame that was published before it
+  core::SharedBytes continuing;  ///< needs the frame of this level that was published before it
+  core::Level level = core::Level::kFull;
+  std::uint32_t reduced_count = 0;  ///< levels of the layer from this one on are all kFull
 };
+
+/// What a session watches of a layer.
+struct Watch {
+  double max_rate_hz = 0.0;  ///< 0 stops the layer
+  core::Level level = core::Level::kFull;
+  bool adapts = false;  ///< it may be given a lower level while its link cannot carry this one
+};
+
+/// What the watchers of one level of a layer need.
+struct LevelDemand {
+  std::size_t watcher_count = 0;
+  /// One of them could take the next frame, but only whole: it just came, lost one, or takes only some.
+  bool wants_whole = false;
+};
+using LayerDemand = std::array<LevelDemand, core::kLevelCount>;
 
 /// WebSocket close codes that this server sends (RFC 6455 section 7.4).
 enum class CloseCode : std::uint16_t {
@@ -89,11 +107,12 @@ class Hub {
   /// counted. `room` is the group the sessions joined; only sessions that watch `layer` get it, no faster than the rate
   /// they asked for (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted). A
   /// session that has the frame before gets the continuing form where there is one, any other the whole one; where that
-  /// is missing it gets nothing, and wantsWhole() says so.
+  /// is missing it gets nothing, and demand() says so. Levels are published one by one; a session gets its own.
   virtual void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) = 0;
 
-  /// Whether a session that could take the next frame needs it whole: it just came, lost one, or takes only some.
-  virtual bool wantsWhole(const std::string& room, LayerIndex layer) const = 0;
+  /// Which levels of the layer somebody watches now, in which form: what nobody watches, nobody makes. Of
+  /// `reduced_count` levels that leave something out; who asked for one beyond them is counted at kFull.
+  virtual LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const = 0;
 
   /// Puts the session into a room (it leaves the one before; its watches follow, unsent frames do not).
   virtual void join(SessionId session, const std::string& room) = 0;
@@ -101,10 +120,10 @@ class Hub {
   /// How many sessions are in the room.
   virtual std::size_t sessionCount(const std::string& room) const = 0;
 
-  /// Starts (or, with max_rate_hz 0, stops) a layer for a session.
-  virtual void watch(SessionId session, LayerIndex layer, double max_rate_hz) = 0;
+  /// Starts, changes or stops a layer for a session.
+  virtual void watch(SessionId session, LayerIndex layer, const Watch& watch) = 0;
 
-  /// How many sessions of the room watch the layer: nobody watches, nobody encodes.
+  /// How many sessions of the room watch the layer, whatever the level.
   virtual std::size_t watcherCount(const std::string& room, LayerIndex layer) const = 0;
 
   /// Sends everything queued on the control plane, then closes; the socket is cut after close_timeout in any case.
@@ -128,6 +147,8 @@ class Application {
   virtual core::Result<void> acceptSession(const std::string& room) = 0;
   /// The session is open; the application greets it.
   virtual void sessionOpened(SessionId session, const std::string& room, const std::string& peer) = 0;
+  /// The session's adapting watches get at most this level from now on: its link could not carry more, or may again.
+  virtual void sessionLevelChanged(SessionId /*session*/, core::Level /*level*/) {}
   /// One whole binary message.
   virtual void sessionMessage(SessionId session, core::ByteView message) = 0;
   /// The session is gone; last call for this id.
@@ -184,6 +205,8 @@ struct ServerStats {
   std::uint64_t sent_bytes_count = 0;       ///< message bytes of both planes, without WebSocket headers
   std::uint64_t sent_frame_count = 0;       ///< data plane only
   std::uint64_t dropped_frame_count = 0;    ///< replaced in their slot before they were sent
+  std::uint64_t lowered_level_count = 0;    ///< times a session was given a lower level
+  std::uint64_t raised_level_count = 0;     ///< and a higher one again
   std::uint64_t evicted_session_count = 0;  ///< sessions that did not read: write stall or control overflow
   std::uint64_t waiting_control_count = 0;  ///< now, over all sessions
   std::uint64_t waiting_frame_count = 0;    ///< now, over all sessions

@@ -1,6 +1,7 @@
 // The coupled simulation of one room. step() is the page to read first.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -24,6 +25,8 @@ struct LayerRequest {
   bool surface = false;
   bool particles = false;
   bool foam = false;
+
+  [[nodiscard]] bool isEmpty() const { return !surface && !particles && !foam; }
 };
 
 /// Which layers a frame should hold.
@@ -34,6 +37,9 @@ struct FrameRequest {
   bool bodies = false;
   std::array<LayerRequest, core::kReducedLevelCount> reduced{};  ///< besides the full ones; by Level
 
+  [[nodiscard]] bool isEmpty() const {
+    return !surface && !particles && !foam && !bodies && std::ranges::all_of(reduced, &LayerRequest::isEmpty);
+  }
   [[nodiscard]] LayerRequest at(core::Level level) const {
     if (level == core::Level::kFull) return {surface, particles, foam};
     return reduced[indexOf(level)];

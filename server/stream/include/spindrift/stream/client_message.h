@@ -9,6 +9,7 @@
 
 #include <spindrift/core/bytes.h>
 #include <spindrift/core/command.h>
+#include <spindrift/core/level.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/v1/wire.pb.h>
 
@@ -38,6 +39,8 @@ struct Subscribe {
   v1::Layer layer = v1::LAYER_UNSPECIFIED;  ///< a declared layer, never UNSPECIFIED; the room may still not send it
   double max_rate_hz = 0.0;                 ///< 0..240; 0 = stop
   v1::Packing packing = v1::PACKING_PLAIN;
+  core::Level level = core::Level::kFull;
+  bool adapts = false;
 };
 
 struct Ping {
@@ -69,6 +72,7 @@ std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& co
 /// The command in the words of the wire: what checkCommand() makes the same command of.
 v1::Command toWire(const core::Command& command);
 v1::Role toWire(core::Role role);
+v1::Level toWire(core::Level level);
 v1::Reject toWire(const CommandRejection& rejection);
 
 /// nullopt if this server can talk to the client, otherwise one line for a Refusal.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <spindrift/core/bytes.h>
@@ -14,35 +15,13 @@
 
 namespace spindrift::stream {
 
+class LayerCodec;
+
 /// Serialized ServerMessages of one frame of a layer. Both null where the frame lacks the layer.
 struct EncodedFrame {
   core::SharedBytes whole;       ///< a keyframe
   core::SharedBytes continuing;  ///< for whoever has the frame that was encoded before it; null: no such form
 };
-
-/// How one layer becomes bytes. A new codec is a new implementation handed to FrameEncoder; nothing else changes.
-/// Owned and called by one thread; may keep state between frames.
-class LayerCodec {
- public:
-  virtual ~LayerCodec() = default;
-  virtual v1::Layer layer() const = 0;
-  virtual v1::Packing packing() const { return v1::PACKING_PLAIN; }
-  /// Keeps nothing of the frame's memory. Without `wants_whole` the whole form is left out where there is another one.
-  virtual EncodedFrame encode(const core::FrameView& frame, bool wants_whole) = 0;
-};
-
-/// Plain: the words as the GPU packed them, copied once into the message. Every frame is a keyframe.
-std::unique_ptr<LayerCodec> makeSurfaceFixed16Codec();
-std::unique_ptr<LayerCodec> makeParticlesFixed12Codec();
-std::unique_ptr<LayerCodec> makeFoamFixed8Codec();
-std::unique_ptr<LayerCodec> makeBodiesFixed28Codec();
-std::unique_ptr<LayerCodec> makeDiagnosticsCodec();
-/// Packed: SurfacePredicted.
-std::unique_ptr<LayerCodec> makeSurfacePredictedCodec();
-/// Packed: FoamPredicted.
-std::unique_ptr<LayerCodec> makeFoamPredictedCodec();
-/// Packed: ParticlesByCell.
-std::unique_ptr<LayerCodec> makeParticlesByCellCodec();
 
 /// A layer in one packing: what a client watches. A layer without a packed form has one stream.
 struct Stream {
@@ -59,27 +38,31 @@ Stream streamOf(v1::Layer layer, v1::Packing packing);
 /// Every stream that there is.
 std::span<const Stream> allStreams();
 
-/// The codecs of one room. Methods from one thread (the encoder's), except encodeCount(): any thread.
+/// Whether the layer comes in levels at all.
+bool hasLevels(v1::Layer layer);
+/// "full", "coarse", ...
+std::string nameOf(core::Level level);
+/// How many levels of a layer leave something out, of what a scene has.
+std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts);
+
+/// The codecs of one room: one for each stream and level, made when it is first asked for. Methods from one thread (the
+/// encoder's), except encodeCount(): any thread.
 class FrameEncoder {
  public:
-  /// A codec for every stream.
   FrameEncoder();
-  /// One codec a stream; of two for the same stream the later one counts.
-  explicit FrameEncoder(std::vector<std::unique_ptr<LayerCodec>> codecs);
+  ~FrameEncoder();
 
-  /// Nothing where the frame lacks the layer or no codec is there for it.
+  /// Encodes a frame of one level (core::frameAt). Nothing where it lacks the layer.
   EncodedFrame encode(Stream stream, const core::FrameView& frame, bool wants_whole);
   /// The plain form.
   core::SharedBytes encode(v1::Layer layer, const core::FrameView& frame) { return encode({layer}, frame, true).whole; }
 
-  /// Frames encoded for the stream so far: one a frame, however many clients watch.
+  /// Frames of the stream encoded so far: one a level and frame, however many clients watch.
   std::uint64_t encodeCount(Stream stream) const;
 
  private:
-  void add(std::unique_ptr<LayerCodec> codec);
-
   struct Slot {
-    std::unique_ptr<LayerCodec> codec;
+    std::array<std::unique_ptr<LayerCodec>, core::kLevelCount> codecs;
     std::atomic<std::uint64_t> encode_count{0};
   };
   std::array<Slot, kStreamCount> slots_;

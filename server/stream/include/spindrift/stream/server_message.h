@@ -42,6 +42,7 @@ core::SharedBytes boatList(const v1::BoatList& boats);
 core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view message);
 core::SharedBytes welcome(const v1::Welcome& welcome);
 core::SharedBytes people(const v1::People& people);
+core::SharedBytes levelChanged(core::Level level);
 core::SharedBytes pong(double client_time_s, double server_time_s);
 core::SharedBytes refusal(std::string_view message);
 /// The frame's diagnostics; null where the frame has none. Values pass unchanged, also non-finite ones: they are the
