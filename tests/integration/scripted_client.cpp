@@ -87,7 +87,8 @@ v1::Command changeScene(const std::string& name) {
   return command;
 }
 
-ScriptedClient::ScriptedClient(std::uint16_t port, const std::string& room) {
+ScriptedClient::ScriptedClient(std::uint16_t port, const std::string& room, int receive_buffer_bytes) {
+  ws_.setReceiveBuffer(receive_buffer_bytes);
   if (!ws_.connect("127.0.0.1", port, room.empty() ? "/ws" : "/ws/" + room)) return;
   const auto first = ws_.receive();
   if (!first) return;
@@ -114,10 +115,16 @@ const v1::Welcome& ScriptedClient::welcome() {
 }
 
 void ScriptedClient::subscribe(v1::Layer layer, double max_rate_hz, v1::Packing packing) {
+  v1::Subscribe wanted;
+  wanted.set_layer(layer);
+  wanted.set_max_rate_hz(max_rate_hz);
+  wanted.set_packing(packing);
+  subscribe(wanted);
+}
+
+void ScriptedClient::subscribe(const v1::Subscribe& subscribe) {
   v1::ClientMessage message;
-  message.mutable_subscribe()->set_layer(layer);
-  message.mutable_subscribe()->set_max_rate_hz(max_rate_hz);
-  message.mutable_subscribe()->set_packing(packing);
+  *message.mutable_subscribe() = subscribe;
   send(message);
 }
 

@@ -35,8 +35,9 @@ struct Person {
 
 class ScriptedClient {
  public:
-  /// Connects to a room ("" = the default one) and reads the greeting; isOpen() tells whether that worked.
-  explicit ScriptedClient(std::uint16_t port, const std::string& room = "");
+  /// Connects to a room ("" = the default one) and reads the greeting; isOpen() tells whether that worked. The kernel
+  /// holds about `receive_buffer_bytes` that were not read yet; 0 = its choice.
+  explicit ScriptedClient(std::uint16_t port, const std::string& room = "", int receive_buffer_bytes = 0);
 
   bool isOpen() const { return !ws_.closed() && greeting_.session_id() != 0; }
   const v1::Greeting& greeting() const { return greeting_; }
@@ -46,6 +47,7 @@ class ScriptedClient {
   /// The answer to hello(); empty if there was none. Waits for it the first time.
   const v1::Welcome& welcome();
   void subscribe(v1::Layer layer, double max_rate_hz = 60.0, v1::Packing packing = v1::PACKING_PLAIN);
+  void subscribe(const v1::Subscribe& subscribe);
   void unsubscribe(v1::Layer layer) { subscribe(layer, 0.0); }
   void send(const v1::ClientMessage& message);
 

@@ -21,7 +21,11 @@ class Crowd : public ServerTest {
 
   /// Frames of a layer encoded so far, packed.
   std::uint64_t encodedCount(v1::Layer layer) const {
-    return encoder().costs()[stream::indexOf(stream::streamOf(layer, v1::PACKING_PACKED))].frame_count;
+    std::uint64_t count = 0;
+    const app::EncoderThread::Costs costs = encoder().costs();
+    for (const auto& level : costs[stream::indexOf(stream::streamOf(layer, v1::PACKING_PACKED))])
+      count += level.frame_count;
+    return count;
   }
 };
 

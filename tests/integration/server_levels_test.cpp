@@ -1,0 +1,177 @@
+// Levels of detail over a real connection: chosen by the client, and by the server for one that cannot keep up.
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include "server_fixture.h"
+
+namespace spindrift::test {
+namespace {
+
+/// A surface of 256 x 256 samples has one level below the full one, 9,000 particles likewise.
+constexpr const char* kWidePool = R"(
+  wave { resolution_count: 256 side_m: 24 depth_m: 1 }
+  particles { count: 10000 layers_count: 2 headroom_m: 2 }
+  coupling {}
+  foam {}
+)";
+constexpr const char* kWideWave = R"(
+  wave { resolution_count: 256 side_m: 24 depth_m: 1 }
+  stream { frame_rate_hz: 60 }
+)";
+
+v1::Subscribe subscription(v1::Layer layer, v1::Level level, v1::Packing packing = v1::PACKING_PLAIN) {
+  v1::Subscribe out;
+  out.set_layer(layer);
+  out.set_max_rate_hz(60.0);
+  out.set_level(level);
+  out.set_packing(packing);
+  return out;
+}
+
+class LevelsOfAPool : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kWidePool}}; }
+};
+
+TEST_F(LevelsOfAPool, EachClientGetsTheLevelThatItAskedFor) {
+  std::map<v1::Level, std::uint32_t> resolution_count, particle_count;
+  for (const v1::Level level : {v1::LEVEL_COARSE, v1::LEVEL_MEDIUM, v1::LEVEL_FULL}) {
+    ScriptedClient one = client();
+    one.subscribe(subscription(v1::LAYER_SURFACE, level));
+    one.subscribe(subscription(v1::LAYER_PARTICLES, level));
+    // What a level leaves out nothing of is the full one, and says so.
+    const v1::Level expected = level == v1::LEVEL_COARSE ? v1::LEVEL_COARSE : v1::LEVEL_FULL;
+    const auto surface = one.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(surface);
+    EXPECT_EQ(surface->level(), expected);
+    const auto samples = stream::decodeSurface(*surface);
+    ASSERT_TRUE(samples) << samples.error().message;
+    resolution_count[level] = samples->resolution_count;
+    const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
+    ASSERT_TRUE(particles);
+    EXPECT_EQ(particles->level(), expected);
+    const auto places = stream::decodeParticles(*particles);
+    ASSERT_TRUE(places) << places.error().message;
+    particle_count[level] = places->count;
+  }
+  EXPECT_EQ(resolution_count[v1::LEVEL_COARSE], 128u);
+  EXPECT_EQ(resolution_count[v1::LEVEL_MEDIUM], 256u);
+  EXPECT_EQ(resolution_count[v1::LEVEL_FULL], 256u);
+  EXPECT_LE(particle_count[v1::LEVEL_COARSE], 8192u);
+  EXPECT_GT(particle_count[v1::LEVEL_COARSE], 7000u);
+  EXPECT_GT(particle_count[v1::LEVEL_FULL], 8192u);
+  EXPECT_EQ(particle_count[v1::LEVEL_MEDIUM], particle_count[v1::LEVEL_FULL]);
+}
+
+TEST_F(LevelsOfAPool, PackedLevelsCanAllBeReadWhileOneMovesBetweenThem) {
+  ScriptedClient one = client();
+  stream::PackedSurfaceDecoder decoder;
+  for (const v1::Level level : {v1::LEVEL_FULL, v1::LEVEL_COARSE, v1::LEVEL_FULL, v1::LEVEL_COARSE}) {
+    one.subscribe(subscription(v1::LAYER_SURFACE, level, v1::PACKING_PACKED));
+    one.subscribe(subscription(v1::LAYER_PARTICLES, level, v1::PACKING_PACKED));
+    bool is_first = true;
+    for (int frames_of_level = 0; frames_of_level < 5;) {
+      const auto frame = one.nextFrame(v1::LAYER_SURFACE);
+      ASSERT_TRUE(frame);
+      const auto samples = decoder.decode(*frame);
+      ASSERT_TRUE(samples) << samples.error().message;
+      if (frame->level() != level) continue;  // it was on its way
+      if (is_first) {
+        EXPECT_TRUE(frame->keyframe()) << "nothing to build on at another level";
+      }
+      is_first = false;
+      EXPECT_EQ(samples->resolution_count, level == v1::LEVEL_COARSE ? 128u : 256u);
+      ++frames_of_level;
+    }
+    const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
+    ASSERT_TRUE(particles);
+    EXPECT_TRUE(stream::decodePackedParticles(*particles));
+  }
+}
+
+TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
+  const auto frames = [this](core::Level level) {
+    const stream::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
+    return encoder().costs()[stream::indexOf(packed)][core::indexOf(level)].frame_count;
+  };
+  std::vector<ScriptedClient> full, coarse;
+  for (int k = 0; k < 3; ++k) {
+    full.push_back(client());
+    full.back().subscribe(subscription(v1::LAYER_SURFACE, v1::LEVEL_FULL, v1::PACKING_PACKED));
+  }
+  ASSERT_TRUE(full[0].nextFrame(v1::LAYER_SURFACE));
+  const std::uint64_t full_at_first = frames(core::Level::kFull);
+  for (int k = 0; k < 20; ++k) ASSERT_TRUE(full[0].nextFrame(v1::LAYER_SURFACE));
+  EXPECT_EQ(frames(core::Level::kCoarse), 0u) << "nobody watches it";
+  // Twenty frames, and some that are on their way; one a client would be sixty.
+  EXPECT_GE(frames(core::Level::kFull), full_at_first + 10);
+  EXPECT_LE(frames(core::Level::kFull), full_at_first + 40);
+  for (int k = 0; k < 3; ++k) {
+    coarse.push_back(client());
+    coarse.back().subscribe(subscription(v1::LAYER_SURFACE, v1::LEVEL_COARSE, v1::PACKING_PACKED));
+  }
+  const std::uint64_t full_before = frames(core::Level::kFull);
+  for (int k = 0; k < 10; ++k) ASSERT_TRUE(coarse[0].nextFrame(v1::LAYER_SURFACE));
+  const std::uint64_t full_count = frames(core::Level::kFull) - full_before;
+  // 15 of 30 frames a second, whoever watches besides.
+  EXPECT_LE(frames(core::Level::kCoarse), full_count / 2 + 2);
+  EXPECT_GE(frames(core::Level::kCoarse), 10u);
+}
+
+class LevelsOfAWave : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kWideWave}}; }
+};
+
+TEST_F(LevelsOfAWave, ASlowClientComesDownByItselfClimbsBackAndHarmsNobody) {
+  constexpr int kReceiveBufferBytes = 32 * 1024;
+  ScriptedClient slow(server().port(), "", kReceiveBufferBytes);
+  ASSERT_TRUE(slow.isOpen());
+  slow.hello();
+  v1::Subscribe wanted = subscription(v1::LAYER_SURFACE, v1::LEVEL_FULL);
+  wanted.set_adapts(true);
+  slow.subscribe(wanted);
+  ScriptedClient steady = client();
+  steady.subscribe(subscription(v1::LAYER_SURFACE, v1::LEVEL_FULL));
+  ASSERT_TRUE(slow.nextFrame(v1::LAYER_SURFACE));
+
+  const auto levelTold = [&](std::chrono::milliseconds between) -> std::optional<v1::Level> {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < end) {
+      const auto bytes = slow.ws().receive();
+      if (!bytes) return std::nullopt;
+      const auto message = stream::parseServerMessage(*bytes);
+      if (message && message->has_level_changed()) return message->level_changed().level();
+      std::this_thread::sleep_for(between);
+    }
+    return std::nullopt;
+  };
+  using namespace std::chrono_literals;
+  // Three frames a second of sixty.
+  EXPECT_EQ(levelTold(300ms), v1::LEVEL_COARSE);
+  EXPECT_EQ(server().networkStats().lowered_level_count, 1u);
+  // As fast as they come.
+  EXPECT_EQ(levelTold(0ms), v1::LEVEL_FULL);
+  EXPECT_EQ(server().networkStats().raised_level_count, 1u);
+  const auto frame = slow.waitFor([](const v1::ServerMessage& message) {
+    return message.has_frame() && message.frame().level() == v1::LEVEL_FULL;
+  });
+  EXPECT_TRUE(frame) << "the frames follow";
+  for (int k = 0; k < 10; ++k) {
+    const auto of_other = steady.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(of_other);
+    EXPECT_EQ(of_other->level(), v1::LEVEL_FULL) << "it did not ask for less";
+  }
+}
+
+TEST_F(LevelsOfAWave, OneThatIsNoLevelIsRefused) {
+  ScriptedClient one = client();
+  one.subscribe(subscription(v1::LAYER_SURFACE, static_cast<v1::Level>(9)));
+  const auto refusal = one.waitFor(v1::ServerMessage::kRefusal);
+  ASSERT_TRUE(refusal);
+  EXPECT_THAT(refusal->refusal().message(), testing::HasSubstr("subscribe.level: 9"));
+}
+
+}  // namespace
+}  // namespace spindrift::test
