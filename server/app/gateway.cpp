@@ -7,16 +7,13 @@
 #include <spindrift/stream/client_message.h>
 #include <spindrift/stream/server_message.h>
 
+#include "monotonic.h"
 #include "overloaded.h"
 
 namespace spindrift::app {
 namespace {
 
 constexpr double kFrameRateMax_hz = 60.0;
-
-double monotonic_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
   std::vector<v1::Layer> layers;

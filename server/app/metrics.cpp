@@ -113,11 +113,12 @@ void writeEncoder(Page& page, const EncoderThread& encoder) {
     page.head(name, "counter", help);
     for (const stream::Stream stream : stream::allStreams()) {
       for (const core::Level level : core::kLevels) {
-        if (level != core::Level::kFull && !stream::hasLevels(stream.layer)) continue;
+        const EncoderThread::StreamCost& cost = costs[stream::indexOf(stream)][core::indexOf(level)];
+        if (level != core::Level::kFull && cost.frame_count == 0) continue;  // nobody has asked for it so far
         page.sample(fmt::format("layer=\"{}\",packing=\"{}\",level=\"{}\"",
                                 shortName(v1::Layer_Name(stream.layer), sizeof("LAYER")),
                                 shortName(v1::Packing_Name(stream.packing), sizeof("PACKING")), stream::nameOf(level)),
-                    value(costs[stream::indexOf(stream)][core::indexOf(level)]));
+                    value(cost));
       }
     }
   };

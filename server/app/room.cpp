@@ -8,6 +8,9 @@
 
 #include <spindrift/stream/frame_encoder.h>
 #include <spindrift/stream/scene_loader.h>
+
+#include "monotonic.h"
+
 namespace spindrift::app {
 namespace {
 
@@ -229,7 +232,8 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
   sim::FrameRequest request{.surface = surface.back(),
                             .particles = particles.back(),
                             .foam = foam.back(),
-                            .bodies = bodies.back()};
+                            .bodies = bodies.back(),
+                            .asked_s = monotonic_s(now)};
   for (std::size_t level = 0; level < request.reduced.size(); ++level)
     request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};
   ++frame_count_;

@@ -12,6 +12,7 @@ FrameView frameAt(const FrameView& frame, Level level) {
   FrameView out;
   out.tick = frame.tick;
   out.time_s = frame.time_s;
+  out.asked_s = frame.asked_s;
   out.level = level;
   out.surface = reduced.surface;
   out.particles = reduced.particles;

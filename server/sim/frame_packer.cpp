@@ -98,6 +98,7 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, co
   Pending pending;
   pending.tick = tick;
   pending.time_s = time_s;
+  pending.asked_s = request.asked_s;
   std::size_t at = 0;
   packed_.bindStorage(PACKED_WORDS);
   for (const core::Level level : core::kLevels) {
@@ -165,6 +166,7 @@ std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const D
     core::FrameView frame;
     frame.tick = pending.tick;
     frame.time_s = pending.time_s;
+    frame.asked_s = pending.asked_s;
     frame.reduced_counts = reduced_counts_;
     frame.lease = slot;
     const auto words = slot->words();

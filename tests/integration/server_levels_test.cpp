@@ -116,7 +116,7 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
   const std::uint64_t full_count = frames(core::Level::kFull) - full_before;
   // 15 of 30 frames a second, whoever watches besides.
   EXPECT_LE(frames(core::Level::kCoarse), full_count / 2 + 2);
-  EXPECT_GE(frames(core::Level::kCoarse), 10u);
+  EXPECT_GE(frames(core::Level::kCoarse), 9u) << "the newest may not be counted yet";
 }
 
 class LevelsOfAWave : public ServerTest {

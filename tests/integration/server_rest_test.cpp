@@ -230,8 +230,8 @@ TEST_F(Rest, MetricsTellWhatIsGoingOn) {
         "spindrift_room_particles{room=\"main\"} ", "spindrift_commands_applied_total 1\n",
         "spindrift_commands_rejected_total{reason=\"out_of_range\"} 1\n",
         "spindrift_refused_total{reason=\"origin\"} 1\n",
-        "spindrift_encoded_frames_total{layer=\"surface\",packing=\"plain\"} ",
-        "spindrift_encode_seconds_total{layer=\"surface\",packing=\"packed\"} 0\n",
+        "spindrift_encoded_frames_total{layer=\"surface\",packing=\"plain\",level=\"full\"} ",
+        "spindrift_encode_seconds_total{layer=\"surface\",packing=\"packed\",level=\"full\"} 0\n",
         "spindrift_room_nonfinite_total{room=\"main\"} 0\n", "spindrift_room_pass_seconds{room=\"main\",pass=\"",
         "spindrift_room_command_queue{room=\"main\"} ", "spindrift_control_queue 0\n",
         "# TYPE spindrift_sent_bytes_total counter\n"}) {

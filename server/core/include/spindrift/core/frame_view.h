@@ -90,7 +90,8 @@ struct ReducedView {
 /// One frame of one room. The spans live as long as `lease` does; dropping the last copy frees the readback slot.
 struct FrameView {
   std::uint64_t tick = 0;
-  double time_s = 0.0;  ///< simulation time
+  double time_s = 0.0;   ///< simulation time
+  double asked_s = 0.0;  ///< when the frame was asked for, on the server's monotonic clock
   Level level = Level::kFull;
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;

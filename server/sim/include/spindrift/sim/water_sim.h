@@ -36,6 +36,7 @@ struct FrameRequest {
   bool foam = false;
   bool bodies = false;
   std::array<LayerRequest, core::kReducedLevelCount> reduced{};  ///< besides the full ones; by Level
+  double asked_s = 0.0;                                          ///< on the caller's clock: comes back with the frame
 
   [[nodiscard]] bool isEmpty() const {
     return !surface && !particles && !foam && !bodies && std::ranges::all_of(reduced, &LayerRequest::isEmpty);
