@@ -14,6 +14,7 @@ import { elevationRangeM } from "./scene/height_field";
 import { pickWater } from "./scene/pick";
 import { chooseQuality, type ChosenQuality } from "./scene/quality";
 import { WaterScene } from "./scene/water_scene";
+import { addDetailRow } from "./ui/detail_row";
 import { byId, isTyping, setText } from "./ui/dom";
 import { BoatPanel } from "./ui/boat_panel";
 import { EffectsPanel } from "./ui/effects_panel";
@@ -151,6 +152,7 @@ function main(): void {
       const said = message || { recovered: "The water was put back to its last good state.", reset: "The scene started again.", other: "Something happened." }[event];
       toast.show(said, event === "recovered" ? "warn" : "good");
     },
+    clock: ({ leadS }) => scene.clock.sync(leadS + performance.timeOrigin / 1000),
     stats: (message) => {
       link = message.stats;
       hud.link(link);
@@ -170,6 +172,7 @@ function main(): void {
     identities.save(identity);
     client.introduce(name, token);
   });
+  addDetailRow((detail) => client.setDetail(detail));
   const effectButtons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
   const viewNames: ViewName[] = ["splash", "wave", "overview", "boat"];
 
@@ -341,7 +344,7 @@ function main(): void {
       displayFps = (framesShown * 1000) / (lastFrameMs - fpsSinceMs);
       framesShown = 0;
       fpsSinceMs = lastFrameMs;
-      hud.display(displayFps, [quality.remark, governor.remark()].filter(Boolean).join("; "));
+      hud.display(displayFps, scene.clock.delayS(), [quality.remark, governor.remark()].filter(Boolean).join("; "));
     }
   });
 
@@ -360,6 +363,10 @@ function main(): void {
         malformedCount: link?.malformedCount ?? 0,
         overtakenCount: link?.overtakenCount ?? 0,
         latencyMs: link?.latencyMs ?? null,
+        level: link?.level ?? null,
+        levelHeldBy: link?.levelHeldBy ?? null,
+        surfaceResolutionCount: surface?.resolutionCount ?? null,
+        delayMs: 1000 * (scene.clock.delayS() ?? NaN),
         simTime: simTimeS,
         lastAck,
         minElevationM: range?.minM ?? null,

@@ -9,7 +9,7 @@ function frame(timeS: number, records: Partial<BodyRecord>[], spareBytes = 0): B
   const payload = bodiesPayload(records);
   const buffer = new ArrayBuffer(payload.length + spareBytes);
   new Uint8Array(buffer).set(payload);
-  return { layer: "bodies", tick: 1n, timeS, count: records.length, buffer };
+  return { layer: "bodies", tick: 1n, timeS, serverTimeS: timeS, level: "full", count: records.length, buffer };
 }
 
 function state(timeS: number, ...bodies: Partial<BodyPose>[]): BodiesState {

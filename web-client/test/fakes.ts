@@ -84,6 +84,8 @@ export class Rig {
   readonly states: ConnectionState[] = [];
   readonly log: [string, ...unknown[]][] = [];
   readonly connection: Connection;
+  /** The clock moves on by this once it has been looked at: a device that takes its time with the next message. */
+  slowReadMs = 0;
 
   constructor(random = 0.5) {
     const world: ConnectionWorld = {
@@ -92,7 +94,12 @@ export class Rig {
         this.sockets.push(socket);
         return socket;
       },
-      nowMs: () => this.time.nowMs,
+      nowMs: () => {
+        const { nowMs } = this.time;
+        this.time.nowMs += this.slowReadMs;
+        this.slowReadMs = 0;
+        return nowMs;
+      },
       random: () => random,
       setTimer: (callback, ms) => this.time.setTimer(callback, ms),
       clearTimer: (timer) => this.time.clearTimer(timer),
@@ -102,7 +109,7 @@ export class Rig {
       state: (state) => this.states.push(state),
       greeting: note("greeting"), frame: note("frame"), diagnostics: note("diagnostics"), ack: note("ack"), reject: note("reject"),
       parameterChanged: note("parameterChanged"), roomState: note("roomState"), boatList: note("boatList"),
-      roomEvent: note("roomEvent"), welcome: note("welcome"), people: note("people"), stats: note("stats"),
+      roomEvent: note("roomEvent"), welcome: note("welcome"), people: note("people"), clock: note("clock"), stats: note("stats"),
     };
     this.connection = new Connection("ws://host/ws", world, events);
     this.connection.start();

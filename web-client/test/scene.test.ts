@@ -4,7 +4,6 @@ import { describe, expect, it } from "vitest";
 import { FrameGovernor, kMinPixelRatio } from "../src/scene/frame_governor";
 import { elevationAtM, elevationRangeM } from "../src/scene/height_field";
 import { pickWater, type WaterShape } from "../src/scene/pick";
-import { PlayoutClock } from "../src/scene/playout_clock";
 import { chooseQuality } from "../src/scene/quality";
 import { TapDetector, toDeviceCoordinates } from "../src/ui/tap";
 
@@ -55,7 +54,7 @@ describe("a click on the water", () => {
 describe("the CPU's view of the surface", () => {
   const n = 4;
   const values = Int16Array.from({ length: n * n }, (_, at) => 100 * (at % n) + 10 * Math.floor(at / n));
-  const frame = { layer: "surface" as const, tick: 1n, timeS: 0, resolutionCount: n, sideM: 8, quantumM: 0.01, buffer: values.buffer };
+  const frame = { layer: "surface" as const, tick: 1n, timeS: 0, serverTimeS: 0, level: "full" as const, resolutionCount: n, sideM: 8, quantumM: 0.01, buffer: values.buffer };
 
   it("interpolates between samples and holds the edge", () => {
     expect(elevationAtM(frame, -3, -3)).toBeCloseTo(0, 9);
@@ -70,67 +69,6 @@ describe("the CPU's view of the surface", () => {
     const range = elevationRangeM(frame);
     expect(range.minM).toBe(0);
     expect(range.maxM).toBeCloseTo(3.3, 9);
-  });
-});
-
-describe("the playout clock", () => {
-  it("runs evenly, two frame intervals behind, however uneven the frames come", () => {
-    const clock = new PlayoutClock();
-    const jitter = [0, 0.012, -0.009, 0.004, 0.015, -0.006];
-    let frame = 0;
-    let before = -Infinity;
-    const lags: number[] = [];
-    for (let ms = 0; ms < 4000; ms += 16) {
-      const nowS = ms / 1000;
-      while (frame / 30 + jitter[frame % jitter.length]! <= nowS) {
-        clock.noteFrame(frame / 30, nowS);
-        ++frame;
-      }
-      const shownS = clock.displayTimeS(nowS);
-      if (shownS === undefined) continue;
-      expect(shownS).toBeGreaterThanOrEqual(before);
-      expect(shownS).toBeLessThanOrEqual((frame - 1) / 30 + 1e-9);
-      if (ms > 2000) {
-        expect(shownS - before).toBeGreaterThan(0.008);
-        expect(shownS - before).toBeLessThan(0.024);
-        lags.push(nowS - shownS);
-      }
-      before = shownS;
-    }
-    const meanLagS = lags.reduce((sum, lag) => sum + lag, 0) / lags.length;
-    expect(meanLagS).toBeGreaterThan(1.7 / 30);
-    expect(meanLagS).toBeLessThan(3 / 30);
-  });
-
-  it("follows a simulation at half speed", () => {
-    const clock = new PlayoutClock();
-    for (let frame = 0; frame < 60; ++frame) {
-      clock.noteFrame(frame / 30, frame / 15);
-      clock.displayTimeS(frame / 15);
-    }
-    expect(clock.rate()).toBeCloseTo(0.5, 3);
-    expect(clock.intervalS()).toBeCloseTo(1 / 30, 6);
-    const from = clock.displayTimeS(60 / 15)!;
-    expect(clock.displayTimeS(60 / 15 + 0.02)! - from).toBeCloseTo(0.01, 3);
-  });
-
-  it("comes to rest on the newest frame when the room is paused", () => {
-    const clock = new PlayoutClock();
-    for (let frame = 0; frame < 30; ++frame) clock.noteFrame(frame / 30, frame / 30);
-    for (let ms = 967; ms < 4000; ms += 16) clock.displayTimeS(ms / 1000);
-    expect(clock.displayTimeS(4)).toBeCloseTo(29 / 30, 6);
-  });
-
-  it("starts anew when the simulation does", () => {
-    const clock = new PlayoutClock();
-    for (let frame = 0; frame < 30; ++frame) clock.noteFrame(100 + frame / 30, frame / 30);
-    expect(clock.displayTimeS(1)).toBeGreaterThan(100);
-    clock.noteFrame(0, 1.03);
-    expect(clock.displayTimeS(1.04)).toBeLessThanOrEqual(0);
-  });
-
-  it("has nothing to show before the first frame", () => {
-    expect(new PlayoutClock().displayTimeS(5)).toBeUndefined();
   });
 });
 

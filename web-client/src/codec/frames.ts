@@ -1,6 +1,7 @@
 // A LayerFrame → its header as plain data and its payload as a view, or the reason why it cannot be trusted. Pure.
 import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
 import { crc32c } from "./crc32c";
+import { levelName, type LevelName } from "./level";
 import { malformed, type Malformed } from "./malformed";
 import { unpackParticles } from "./packed_particles";
 import type { PackedFoam, PackedSurface } from "./packed_planes";
@@ -21,10 +22,12 @@ const kLargest = 1e6;
 
 // 64-bit integers stay bigint: beyond 2^53 a number would round them.
 
-/** What every frame carries: tick, and simulation time in seconds. */
+/** What every frame carries: tick, simulation time, when that was on the server's clock, and how much of the layer it is. */
 export interface FrameHeader {
   tick: bigint;
   timeS: number;
+  serverTimeS: number;
+  level: LevelName;
 }
 
 /** Elevation of sample (i, k) = int16 value * quantumM; it lies at x = (i + 1/2) sideM / n - sideM / 2, z with k. */
@@ -80,6 +83,7 @@ function frameFault(frame: LayerFrame, layer: Layer, what: string): string | und
   const { payload } = frame;
   if (frame.layer !== layer) return `layer ${frame.layer} carries ${what}`;
   if (!Number.isFinite(frame.timeS)) return `time_s ${frame.timeS} is not finite`;
+  if (!Number.isFinite(frame.serverTimeS)) return `server_time_s ${frame.serverTimeS} is not finite`;
   const crc = crc32c(payload);
   return crc === frame.crc32c ? undefined : `crc32c 0x${crc.toString(16)}, frame says 0x${frame.crc32c.toString(16)}`;
 }
@@ -100,7 +104,8 @@ function baseTickOf(frame: LayerFrame): bigint | undefined {
 }
 
 export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | PackedFoam | Malformed {
-  const { tick, timeS, payload, codec } = frame;
+  const { tick, timeS, serverTimeS, payload, codec } = frame;
+  const of: FrameHeader = { tick, timeS, serverTimeS, level: levelName(frame.level) };
   switch (codec.case) {
     case "surfaceFixed16": {
       const { resolutionCount, sideM, quantumM } = codec.value;
@@ -108,7 +113,7 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Pac
         gridFault("surface", resolutionCount, sideM) ??
         (isSize(quantumM) ? undefined : `surface quantum ${quantumM} m has to be above 0`) ??
         plainFault(frame, Layer.SURFACE, "a surface", 2 * resolutionCount * resolutionCount);
-      return fault ? malformed(fault) : { kind: "surface", header: { tick, timeS, resolutionCount, sideM, quantumM }, payload };
+      return fault ? malformed(fault) : { kind: "surface", header: { ...of, resolutionCount, sideM, quantumM }, payload };
     }
     case "surfacePredicted": {
       const { resolutionCount, sideM, quantumM, weights, earlierWeights } = codec.value;
@@ -118,7 +123,7 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Pac
         weightsFault(frame, weights, earlierWeights) ??
         frameFault(frame, Layer.SURFACE, "a surface");
       if (fault) return malformed(fault);
-      const header = { tick, timeS, resolutionCount, sideM, quantumM };
+      const header = { ...of, resolutionCount, sideM, quantumM };
       return { kind: "packedSurface", header, resolutionCount, baseTick: baseTickOf(frame), weights, earlierWeights, payload };
     }
     case "foamPredicted": {
@@ -126,19 +131,19 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Pac
       const fault =
         gridFault("foam", resolutionCount, sideM) ?? weightsFault(frame, weights, earlierWeights) ?? frameFault(frame, Layer.FOAM, "foam");
       if (fault) return malformed(fault);
-      const header = { tick, timeS, resolutionCount, sideM };
+      const header = { ...of, resolutionCount, sideM };
       return { kind: "packedFoam", header, resolutionCount, baseTick: baseTickOf(frame), weights, earlierWeights, payload };
     }
     case "foamFixed8": {
       const { resolutionCount, sideM } = codec.value;
       const fault = gridFault("foam", resolutionCount, sideM) ?? plainFault(frame, Layer.FOAM, "foam", resolutionCount * resolutionCount);
-      return fault ? malformed(fault) : { kind: "foam", header: { tick, timeS, resolutionCount, sideM }, payload };
+      return fault ? malformed(fault) : { kind: "foam", header: { ...of, resolutionCount, sideM }, payload };
     }
     case "bodiesFixed28": {
       const { count } = codec.value;
       if (count > kMaxBodyCount) return malformed(`${count} bodies, at most ${kMaxBodyCount} are taken`);
       const fault = plainFault(frame, Layer.BODIES, "bodies", count * kBodyBytes);
-      return fault ? malformed(fault) : { kind: "bodies", header: { tick, timeS, count }, payload };
+      return fault ? malformed(fault) : { kind: "bodies", header: { ...of, count }, payload };
     }
     case "particlesFixed12": {
       const { count, minXM, minYM, minZM, maxXM, maxYM, maxZM, maxSpeedMps, radiusM } = codec.value;
@@ -154,7 +159,7 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Pac
       if (!(maxSpeedMps >= 0 && maxSpeedMps <= kLargest)) return malformed(`particle speed bound ${maxSpeedMps} m/s`);
       if (!isSize(radiusM)) return malformed(`particle radius ${radiusM} m has to be above 0`);
       const fault = plainFault(frame, Layer.PARTICLES, "particles", count * kParticleBytes);
-      return fault ? malformed(fault) : { kind: "particles", header: { tick, timeS, count, minM, maxM, wordMinM: minM, wordMaxM: maxM, maxSpeedMps, radiusM }, payload };
+      return fault ? malformed(fault) : { kind: "particles", header: { ...of, count, minM, maxM, wordMinM: minM, wordMaxM: maxM, maxSpeedMps, radiusM }, payload };
     }
     case "particlesByCell": {
       const { count, minXM, minYM, minZM, cellsXCount, cellsYCount, cellsZCount, cellM, offsetBits, velocityQuantumMps, radiusM } = codec.value;
@@ -170,7 +175,7 @@ export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | Pac
       if (!frame.keyframe) return malformed("a frame on top of another one, but this codec has only keyframes");
       const fault = frameFault(frame, Layer.PARTICLES, "particles");
       if (fault) return malformed(fault);
-      return unpackParticles({ tick, timeS, count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM, payload });
+      return unpackParticles({ ...of, count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM, payload });
     }
     case undefined:
       return malformed(`frame of layer ${frame.layer} in a codec this client does not know`);

@@ -48,6 +48,8 @@ export interface GreetingInfo {
   sessionId: string;
   layers: LayerName[];
   frameRateMaxHz: number;
+  /** On the server's own clock. */
+  serverTimeS: number;
   /** Of the scene; what ChangeScene calls it. */
   sceneName: string;
   title: string;
@@ -115,6 +117,7 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
       sessionId: greeting.sessionId.toString(),
       layers: (Object.keys(kLayers) as LayerName[]).filter((name) => greeting.layers.includes(kLayers[name])),
       frameRateMaxHz: greeting.limits?.frameRateMaxHz ?? 0,
+      serverTimeS: greeting.serverTimeS,
       sceneName: scene?.name ?? "",
       title: scene?.title || scene?.name || greeting.room,
       description: scene?.description ?? "",

@@ -1,7 +1,7 @@
 // The particles' packed form → the 12 bytes a particle of their plain one, in the quanta of the packed: the reading half of
 // server/stream/codec/particle_cells.
 import { readFittedCode, type BitReader } from "./bit_reader";
-import type { ParticleHeader } from "./frames";
+import type { FrameHeader, ParticleHeader } from "./frames";
 import { malformed, type Malformed } from "./malformed";
 import { kGroupCount, ResidualReader } from "./residual_reader";
 
@@ -18,9 +18,7 @@ function readGamma(reader: BitReader): number {
   return ((1 << bits) | reader.bits(bits)) - 1;
 }
 
-export interface PackedParticles {
-  tick: bigint;
-  timeS: number;
+export interface PackedParticles extends FrameHeader {
   count: number;
   minM: [number, number, number];
   /** Along x, y, z. */
@@ -124,7 +122,7 @@ function readAttributes(reader: ResidualReader, count: number, words: Uint16Arra
 
 /** Bounds were checked; what is left to find is damage of the payload. */
 export function unpackParticles(packed: PackedParticles): { kind: "particles"; header: ParticleHeader; payload: Uint8Array } | Malformed {
-  const { tick, timeS, count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM, payload } = packed;
+  const { tick, timeS, serverTimeS, level, count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM, payload } = packed;
   const reader = new ResidualReader(payload);
   const words = new Uint16Array(kWordsPerParticle * count);
   const hasCells = readCells(reader, packed, words);
@@ -139,6 +137,8 @@ export function unpackParticles(packed: PackedParticles): { kind: "particles"; h
   const header: ParticleHeader = {
     tick,
     timeS,
+    serverTimeS,
+    level,
     count,
     minM,
     maxM: minM.map((min, axis) => min + cellsCount[axis]! * cellM) as ParticleHeader["maxM"],

@@ -5,6 +5,7 @@ import { fromBinary } from "@bufbuild/protobuf";
 import { RejectReason, RoomEventKind, ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
 import { parseFrame, type ParsedFrame } from "./frames";
 import { readBoatList, readGreeting, type BoatDetail, type GreetingInfo } from "./greeting";
+import { levelName, type LevelName } from "./level";
 import { malformed, type Malformed } from "./malformed";
 import { readPeople, readWelcome, type PersonInfo, type WelcomeInfo } from "./people";
 import type { PackedFoam, PackedSurface } from "./packed_planes";
@@ -51,6 +52,7 @@ export type ParsedMessage =
   | { kind: "roomEvent"; event: RoomEventName; tick: bigint; message: string }
   | { kind: "welcome"; welcome: WelcomeInfo }
   | { kind: "people"; people: PersonInfo[] }
+  | { kind: "levelChanged"; level: LevelName }
   | { kind: "pong"; clientTimeS: number; serverTimeS: number }
   | { kind: "refusal"; message: string }
   | { kind: "unknown" }
@@ -101,6 +103,8 @@ export function parse(buffer: ArrayBuffer): ParsedMessage {
         return { kind: "welcome", welcome: readWelcome(message.value) };
       case "people":
         return { kind: "people", people: readPeople(message.value) };
+      case "levelChanged":
+        return { kind: "levelChanged", level: levelName(message.value.level) };
       case "pong":
         return { kind: "pong", clientTimeS: message.value.clientTimeS, serverTimeS: message.value.serverTimeS };
       case "refusal":

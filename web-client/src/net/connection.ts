@@ -4,17 +4,22 @@ import { create, toBinary } from "@bufbuild/protobuf";
 
 import type { ParsedFrame } from "../codec/frames";
 import { kLayers, kWireMajor, kWireMinor, type BoatDetail, type GreetingInfo } from "../codec/greeting";
+import { kLevels as kWireLevels, lowerLevel, type LevelName } from "../codec/level";
 import { PlaneUnpacker } from "../codec/packed_planes";
 import { parse, type DiagnosticsInfo, type RoomEventName } from "../codec/parse";
 import type { PersonInfo, WelcomeInfo } from "../codec/people";
 import { ClientMessageSchema, Packing, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import { LinkMeter } from "./link_meter";
-import type { CommandAction, ConnectionState, Identity, LinkStats } from "./messages";
+import { LoadGovernor } from "./load_governor";
+import type { CommandAction, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
+import { ServerClock } from "./server_clock";
 
 export const kSubprotocol = "spindrift.v1";
 const kClientName = "spindrift-web 0.1.0";
 const kPingEveryMs = 2000;
+/** So many come as fast as the housekeeping: until they are back, the server's clock is a guess. */
+const kFirstPings = 5;
 const kHousekeepingEveryMs = 500;
 /** No greeting, or no message at all, for this long: the connection counts as dead. */
 const kSilenceMs = 10_000;
@@ -63,6 +68,8 @@ export interface ConnectionEvents {
   people(people: PersonInfo[]): void;
   boatList(boats: BoatDetail[]): void;
   roomEvent(event: RoomEventName, message: string): void;
+  /** The server's clock minus that of ConnectionWorld.nowMs() [ms]. */
+  clock(leadMs: number): void;
   stats(stats: Omit<LinkStats, "overtakenCount">): void;
 }
 
@@ -73,6 +80,7 @@ export class Connection {
   private liveSinceMs = 0;
   private lastHeardMs = 0;
   private lastPingMs = 0;
+  private pingCount = 0;
   private retryTimer: number | undefined;
   private tickTimer: number | undefined;
   private greeting: GreetingInfo | undefined;
@@ -80,6 +88,11 @@ export class Connection {
   private readonly pendingSinceMs = new Map<number, number>();
   private readonly meter: LinkMeter;
   private readonly unpacker = new PlaneUnpacker();
+  private readonly clock = new ServerClock();
+  private readonly governor = new LoadGovernor();
+  private detail: DetailChoice = "auto";
+  /** What the server gives what adapts at most. */
+  private linkLevel: LevelName = "full";
   private askedForKeyframeMs = -Infinity;
 
   constructor(
@@ -118,6 +131,13 @@ export class Connection {
     this.failedCount = 0;
     this.failPending("the page connects anew under another name");
     this.connect();
+  }
+
+  /** How much of the layers to ask for. */
+  setDetail(detail: DetailChoice): void {
+    if (detail === this.detail) return;
+    this.detail = detail;
+    if (this.state.name === "live") this.subscribe();
   }
 
   /** A hidden page is sent no frames; coming back asks for them again. */
@@ -165,6 +185,11 @@ export class Connection {
 
   private receive(data: unknown): void {
     this.lastHeardMs = this.world.nowMs();
+    this.read(data);
+    this.meter.worked(this.world.nowMs() - this.lastHeardMs);
+  }
+
+  private read(data: unknown): void {
     if (!(data instanceof ArrayBuffer)) return this.meter.malformed("a text message");
     this.meter.bytes(data.byteLength);
     const parsed = parse(data);
@@ -212,8 +237,11 @@ export class Connection {
         return this.events.boatList(parsed.boats);
       case "roomEvent":
         return this.events.roomEvent(parsed.event, parsed.message);
+      case "levelChanged":
+        this.linkLevel = parsed.level;
+        return;
       case "pong":
-        return this.meter.roundTrip(this.world.nowMs() - parsed.clientTimeS * 1000);
+        return this.ponged(parsed.clientTimeS * 1000, parsed.serverTimeS);
       case "refusal":
         return this.refuse(parsed.message);
     }
@@ -222,6 +250,18 @@ export class Connection {
   private gotFrame(frame: ParsedFrame): void {
     this.meter.frame(frame.kind, frame.header.tick);
     this.events.frame(frame);
+  }
+
+  private ponged(sentMs: number, serverTimeS: number): void {
+    const nowMs = this.world.nowMs();
+    this.meter.roundTrip(nowMs - sentMs);
+    this.clock.answered(sentMs, serverTimeS, nowMs);
+    this.tellClock();
+  }
+
+  private tellClock(): void {
+    const leadMs = this.clock.leadMs();
+    if (leadMs !== undefined) this.events.clock(leadMs);
   }
 
   /** Subscribing again begins with one. */
@@ -236,10 +276,13 @@ export class Connection {
     if (greeting.versionMajor !== kWireMajor)
       return this.refuse(`the server speaks version ${greeting.versionMajor}.${greeting.versionMinor} of the wire, this page ${kWireMajor}.${kWireMinor}; reload the page`);
     this.greeting = greeting;
+    // A later one, of another scene, knows nothing new about the clock.
+    if (this.clock.leadMs() === undefined) this.clock.greeted(greeting.serverTimeS, this.world.nowMs());
     if (this.state.name !== "live") {
       this.liveSinceMs = this.world.nowMs();
       this.setState({ name: "live" });
     }
+    this.tellClock();
     this.events.greeting(greeting);
     this.subscribe();
     this.ping();
@@ -252,7 +295,9 @@ export class Connection {
     for (const layer of this.greeting.layers) {
       const rateHz = layer === "diagnostics" ? Math.min(kDiagnosticsRateHz, frameRateHz) : frameRateHz;
       const maxRateHz = this.visible || layer === "diagnostics" ? rateHz : 0;
-      const value = { layer: kLayers[layer], maxRateHz, packing: Packing.PACKED };
+      const isAuto = this.detail === "auto";
+      const level = kWireLevels[isAuto ? this.governor.level : (this.detail as LevelName)];
+      const value = { layer: kLayers[layer], maxRateHz, packing: Packing.PACKED, level, adapts: isAuto };
       this.send(create(ClientMessageSchema, { message: { case: "subscribe", value } }));
     }
   }
@@ -260,6 +305,7 @@ export class Connection {
   private ping(): void {
     this.lastPingMs = this.world.nowMs();
     if (this.socket!.bufferedAmount > kMaxUnsentBytes) return;
+    ++this.pingCount;
     this.send(create(ClientMessageSchema, { message: { case: "ping", value: { clientTimeS: this.lastPingMs / 1000 } } }));
   }
 
@@ -272,7 +318,8 @@ export class Connection {
 
   private tick(): void {
     const nowMs = this.world.nowMs();
-    this.events.stats(this.meter.measure(nowMs));
+    this.events.stats({ ...this.meter.measure(nowMs), ...this.levelNow() });
+    if (this.detail === "auto" && this.state.name === "live" && this.governor.note(this.meter.busyShare)) this.subscribe();
     for (const [commandId, sinceMs] of this.pendingSinceMs) {
       if (nowMs - sinceMs < kAnswerPatienceMs) continue;
       this.pendingSinceMs.delete(commandId);
@@ -280,7 +327,15 @@ export class Connection {
     }
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
     if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(`no word from the server for ${kSilenceMs / 1000} s`);
-    if (this.state.name === "live" && nowMs - this.lastPingMs >= kPingEveryMs) this.ping();
+    const pingEveryMs = this.pingCount < kFirstPings ? 0 : kPingEveryMs;
+    if (this.state.name === "live" && nowMs - this.lastPingMs >= pingEveryMs) this.ping();
+  }
+
+  private levelNow(): Pick<LinkStats, "level" | "levelHeldBy"> {
+    if (this.detail !== "auto") return { level: this.detail, levelHeldBy: this.detail === "full" ? "nobody" : "choice" };
+    const level = lowerLevel(this.governor.level, this.linkLevel);
+    if (level === "full") return { level, levelHeldBy: "nobody" };
+    return { level, levelHeldBy: level === this.linkLevel ? "link" : "device" };
   }
 
   private lost(why: string): void {
@@ -305,6 +360,9 @@ export class Connection {
     this.greeting = undefined;
     this.unpacker.forget();
     this.meter.forgetRoundTrips();
+    this.clock.forget();
+    this.pingCount = 0;
+    this.linkLevel = "full";
     if (!socket) return;
     socket.onopen = socket.onmessage = socket.onclose = socket.onerror = null;
     socket.close();

@@ -2,6 +2,9 @@
 import type { FrameLayer, LinkStats } from "./messages";
 
 const kRoundTripsKept = 5;
+/** What is counted here. */
+export type MeteredStats = Omit<LinkStats, "overtakenCount" | "level" | "levelHeldBy">;
+
 /** A frame older than the newest by less than this is a late part of one that was counted; by more, time began anew. */
 const kSameFrameTicks = 30n;
 
@@ -10,6 +13,9 @@ export class LinkMeter {
   private malformedCount = 0;
   private lastMalformed = "";
   private bytesCount = 0;
+  private busyMs = 0;
+  /** Share of the time between the last two measurements that messages took, 0..1. */
+  busyShare = 0;
   private frameCount = 0;
   private lastTick = -kSameFrameTicks;
   private kilobytesPerS = 0;
@@ -34,6 +40,11 @@ export class LinkMeter {
     ++this.receivedCount.diagnostics;
   }
 
+  /** The worker was busy with a message for so long. */
+  worked(ms: number): void {
+    this.busyMs += ms;
+  }
+
   malformed(reason: string): void {
     ++this.malformedCount;
     this.lastMalformed = reason;
@@ -50,12 +61,13 @@ export class LinkMeter {
   }
 
   /** Rates since the call before this one; both smoothed over about a second. */
-  measure(nowMs: number): Omit<LinkStats, "overtakenCount"> {
+  measure(nowMs: number): MeteredStats {
     const seconds = (nowMs - this.sinceMs) / 1000;
     if (seconds > 0) {
       this.kilobytesPerS += (this.bytesCount / 1000 / seconds - this.kilobytesPerS) * 0.6;
       this.framesPerS += (this.frameCount / seconds - this.framesPerS) * 0.6;
-      this.bytesCount = this.frameCount = 0;
+      this.busyShare = Math.min(this.busyMs / 1000 / seconds, 1);
+      this.bytesCount = this.frameCount = this.busyMs = 0;
       this.sinceMs = nowMs;
     }
     return {

@@ -4,6 +4,7 @@ import type { MessageInitShape } from "@bufbuild/protobuf";
 
 import type { BodiesHeader, FoamHeader, ParticleHeader, SurfaceHeader } from "../codec/frames";
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { LevelName } from "../codec/level";
 import type { DiagnosticsInfo, RoomEventName } from "../codec/parse";
 import type { PersonInfo, WelcomeInfo } from "../codec/people";
 import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";
@@ -28,6 +29,9 @@ export type ConnectionState =
   | { name: "live" }
   | { name: "retrying"; inS: number; why: string }
   | { name: "refused"; reason: string };
+
+/** What the person chose: a level of detail, or whatever link and device can carry. */
+export type DetailChoice = "auto" | LevelName;
 
 export type FrameLayer = "surface" | "particles" | "foam" | "bodies";
 
@@ -68,6 +72,9 @@ export interface LinkStats {
   lastMalformed: string;
   /** Frames that a newer one overtook because the page was busy. */
   overtakenCount: number;
+  /** The most that surface and particles come at now, and who holds it down. */
+  level: LevelName;
+  levelHeldBy: "nobody" | "choice" | "link" | "device";
 }
 
 export type PageToWorker =
@@ -75,6 +82,7 @@ export type PageToWorker =
   | { type: "introduce"; name: string; token: string }
   | { type: "command"; commandId: number; action: CommandAction }
   | { type: "release"; layer: FrameLayer; buffer: ArrayBuffer }
+  | { type: "detail"; detail: DetailChoice }
   | { type: "visible"; visible: boolean }
   | { type: "retry" };
 
@@ -91,4 +99,6 @@ export type WorkerToPage =
   | { type: "people"; people: PersonInfo[] }
   | { type: "boatList"; boats: BoatDetail[] }
   | { type: "roomEvent"; event: RoomEventName; message: string }
+  /** The server's clock minus Unix time [s], corrected. */
+  | { type: "clock"; leadS: number }
   | { type: "stats"; stats: LinkStats };

@@ -1,5 +1,5 @@
 // The page's end of the worker: typed events in, commands out. Gives command ids and owns the worker.
-import type { CommandAction, Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
+import type { CommandAction, DetailChoice, Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
 
 /** The part of Worker that is used. */
 export interface WorkerLike {
@@ -41,6 +41,11 @@ export class WaterClient {
   /** Gives a frame's buffer back; the frame must not be read afterwards. */
   release(frame: Frame): void {
     this.releaseBuffer(frame.layer, frame.buffer);
+  }
+
+  /** How much of the layers to ask for. */
+  setDetail(detail: DetailChoice): void {
+    this.worker.postMessage({ type: "detail", detail }, []);
   }
 
   setVisible(visible: boolean): void {

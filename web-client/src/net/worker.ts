@@ -2,7 +2,7 @@
 // into an aligned buffer, and travel to the page and back by transfer.
 import { Connection, type ConnectionWorld, type SocketLike } from "./connection";
 import { FrameHandover } from "./handover";
-import type { Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
+import type { DetailChoice, Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
 
 /** The page's ring holds four; one more may be on its way. */
 const kMaxFramesUnderWay = 5;
@@ -30,13 +30,15 @@ function copyInto(buffer: ArrayBuffer, payload: Uint8Array): ArrayBuffer {
 
 const world: ConnectionWorld = {
   openSocket: (url, subprotocol) => new WebSocket(url, subprotocol) as unknown as SocketLike,
-  nowMs: () => performance.now(),
+  // Unix time, which the page can convert to its own; it does not jump as Date.now() may.
+  nowMs: () => performance.timeOrigin + performance.now(),
   random: () => Math.random(),
   setTimer: (callback, ms) => self.setTimeout(callback, ms),
   clearTimer: (timer) => self.clearTimeout(timer),
 };
 
 let connection: Connection | undefined;
+let detail: DetailChoice = "auto";
 
 function start(url: string, identity: Identity): void {
   connection?.stop();
@@ -59,11 +61,13 @@ function start(url: string, identity: Identity): void {
     people: (people) => toPage({ type: "people", people }),
     boatList: (boats) => toPage({ type: "boatList", boats }),
     roomEvent: (event, message) => toPage({ type: "roomEvent", event, message }),
+    clock: (leadMs) => toPage({ type: "clock", leadS: leadMs / 1000 }),
     stats: (stats) => {
       const overtakenCount = Object.values(handovers).reduce((sum, layer) => sum + layer.overtakenCount, 0);
       toPage({ type: "stats", stats: { ...stats, overtakenCount } });
     },
   }, identity);
+  connection.setDetail(detail);
   connection.start();
 }
 
@@ -78,6 +82,9 @@ self.addEventListener("message", (event: MessageEvent<PageToWorker>) => {
       return connection?.command(message.commandId, message.action);
     case "release":
       return handovers[message.layer].release(message.buffer);
+    case "detail":
+      detail = message.detail;
+      return connection?.setDetail(detail);
     case "visible":
       return connection?.setVisible(message.visible);
     case "retry":

@@ -28,17 +28,18 @@ export class FieldPass {
   /** Elevation (m), slope x, slope z, curvature (1/m); u along x and v along z, the water's square is 0..1. */
   readonly texture: Texture;
   private readonly target: WebGLRenderTarget;
-  private readonly slots: [Slot, Slot];
+  private slots: [Slot, Slot];
   private readonly pass: FullscreenPass;
 
-  /** Surfaces of `resolutionCount` samples a side, drawn into `fieldCount` (at most as many) texels a side. */
+  /** Surfaces of `resolutionCount` samples a side at first, drawn into as many texels, at most `fieldCountMax` a side. */
   constructor(
-    private readonly resolutionCount: number,
-    fieldCount: number,
-    sideM: number,
+    private resolutionCount: number,
+    private readonly fieldCountMax: number,
+    private readonly sideM: number,
     periodicX: boolean,
     periodicZ: boolean,
   ) {
+    const fieldCount = Math.min(resolutionCount, fieldCountMax);
     this.target = new WebGLRenderTarget(fieldCount, fieldCount, {
       format: RGBAFormat,
       type: HalfFloatType,
@@ -49,16 +50,7 @@ export class FieldPass {
       depthBuffer: false,
     });
     this.texture = this.target.texture;
-    const makeSlot = (): Slot => {
-      const samples = new Int16Array(resolutionCount * resolutionCount);
-      const texture = new DataTexture(samples, resolutionCount, resolutionCount, RedIntegerFormat, ShortType);
-      texture.internalFormat = "R16I";
-      texture.minFilter = texture.magFilter = NearestFilter;
-      texture.unpackAlignment = 2;
-      texture.needsUpdate = true;
-      return { texture, frame: undefined };
-    };
-    this.slots = [makeSlot(), makeSlot()];
+    this.slots = [this.makeSlot(), this.makeSlot()];
     this.pass = new FullscreenPass(
       makeMaterial(
         "field",
@@ -67,21 +59,21 @@ export class FieldPass {
           u_to: { value: this.slots[1].texture },
           u_quantum_m: { value: new Vector2(1, 1) },
           u_mix: { value: 0 },
-          u_cell_m: { value: sideM / resolutionCount },
-          u_cells_per_texel: { value: resolutionCount / fieldCount },
+          u_cell_m: { value: 1 },
+          u_cells_per_texel: { value: 1 },
           u_periodic: { value: new Vector2(Number(periodicX), Number(periodicZ)) },
         },
         { depthTest: false, depthWrite: false },
       ),
     );
-  }
-
-  accepts(frame: SurfaceFrame): boolean {
-    return frame.resolutionCount === this.resolutionCount;
+    this.scale();
   }
 
   /** Draws the field `mix` of the way from one frame to the other; uploads only frames not on the GPU yet. */
   render(renderer: WebGLRenderer, from: SurfaceFrame, to: SurfaceFrame, mix: number): void {
+    // Another level of detail: its first frame stands for the last one of the other.
+    if (from.resolutionCount !== to.resolutionCount) from = to;
+    if (to.resolutionCount !== this.resolutionCount) this.resize(to.resolutionCount);
     const slotFrom = this.slotOf(from, to);
     const slotTo = from === to ? slotFrom : this.slotOf(to, from);
     const uniforms = this.pass.material.uniforms;
@@ -103,6 +95,31 @@ export class FieldPass {
     this.target.dispose();
     this.pass.dispose();
     for (const slot of this.slots) slot.texture.dispose();
+  }
+
+  private resize(resolutionCount: number): void {
+    for (const slot of this.slots) slot.texture.dispose();
+    this.resolutionCount = resolutionCount;
+    this.slots = [this.makeSlot(), this.makeSlot()];
+    const fieldCount = Math.min(resolutionCount, this.fieldCountMax);
+    this.target.setSize(fieldCount, fieldCount);
+    this.scale();
+  }
+
+  private scale(): void {
+    const uniforms = this.pass.material.uniforms;
+    uniforms["u_cell_m"]!.value = this.sideM / this.resolutionCount;
+    uniforms["u_cells_per_texel"]!.value = this.resolutionCount / this.target.width;
+  }
+
+  private makeSlot(): Slot {
+    const n = this.resolutionCount;
+    const texture = new DataTexture(new Int16Array(n * n), n, n, RedIntegerFormat, ShortType);
+    texture.internalFormat = "R16I";
+    texture.minFilter = texture.magFilter = NearestFilter;
+    texture.unpackAlignment = 2;
+    texture.needsUpdate = true;
+    return { texture, frame: undefined };
   }
 
   /** The slot that holds `frame`; uploads into the one that does not hold `other` where none does. */

@@ -104,7 +104,7 @@ export class WaterScene {
     const depthM = wave?.depthM ?? 1;
     if (wave) {
       const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
-      this.field = new FieldPass(resolutionCount, Math.min(resolutionCount, this.quality.fieldCountMax), sideM, wave.periodicX, wave.periodicZ);
+      this.field = new FieldPass(resolutionCount, this.quality.fieldCountMax, sideM, wave.periodicX, wave.periodicZ);
       this.field.renderStill(this.renderer);
       if (greeting.layers.includes("foam")) this.foam = new FoamField(wave.periodicX, wave.periodicZ);
       const bed = bedOf(greeting);
@@ -171,7 +171,7 @@ export class WaterScene {
         this.particleFrames.push(frame);
     }
     // One layer gives the time: those of one tick come apart, and a late one would look like time going back.
-    if (frame.layer === (this.greeting?.wave ? "surface" : "particles")) this.clock.noteFrame(frame.timeS, nowS);
+    if (frame.layer === (this.greeting?.wave ? "surface" : "particles")) this.clock.noteFrame(frame.timeS, frame.serverTimeS, nowS);
   }
 
   newestSurface(): SurfaceFrame | undefined {
@@ -230,8 +230,7 @@ export class WaterScene {
 
   private advanceTo(shownS: number): void {
     const surfaces = this.surfaces.around(shownS);
-    if (surfaces && this.field?.accepts(surfaces.from) && this.field.accepts(surfaces.to))
-      this.field.render(this.renderer, surfaces.from, surfaces.to, surfaces.mix);
+    if (surfaces) this.field?.render(this.renderer, surfaces.from, surfaces.to, surfaces.mix);
     const foam = this.foam && this.foamFrames.around(shownS);
     if (foam) this.foam!.show(foam.from, foam.to, foam.mix);
     const bodies = this.boats && this.bodyStates.around(shownS);

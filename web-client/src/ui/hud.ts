@@ -24,6 +24,8 @@ export class Hud {
   private readonly displayFps = byId("display-fps");
   private readonly kbps = byId("kbps");
   private readonly latency = byId("latency");
+  private readonly delay = byId("delay");
+  private readonly level = byId("level");
   private readonly particles = byId("particles");
   private readonly stepMs = byId("step-ms");
   private readonly substeps = byId("substeps");
@@ -80,9 +82,13 @@ export class Hud {
     setText(this.netFps, stats.framesPerS.toFixed(1));
     setText(this.kbps, stats.kilobytesPerS.toFixed(stats.kilobytesPerS < 10 ? 1 : 0));
     setText(this.latency, stats.latencyMs === undefined ? "–" : `${stats.latencyMs.toFixed(1)} ms`);
+    const why = { nobody: "", choice: "", link: " (slow link)", device: " (busy device)" }[stats.levelHeldBy];
+    setText(this.level, stats.level + why);
   }
 
-  display(framesPerS: number, remark: string): void {
+  /** `delayS`: how far the picture is behind the water. */
+  display(framesPerS: number, delayS: number | undefined, remark: string): void {
+    setText(this.delay, delayS === undefined ? "–" : `${(1000 * delayS).toFixed(0)} ms`);
     setText(this.displayFps, framesPerS.toFixed(0));
     setText(this.remark, remark);
     this.remark.hidden = remark === "";

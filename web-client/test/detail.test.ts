@@ -1,0 +1,119 @@
+import { describe, expect, it } from "vitest";
+
+import { Layer, Level } from "../src/gen/spindrift/v1/wire_pb";
+import { LoadGovernor } from "../src/net/load_governor";
+import { Rig } from "./fakes";
+import { greeting, surfaceFrame } from "./wire";
+
+function liveRig(): Rig {
+  const rig = new Rig();
+  rig.socket.open();
+  rig.socket.deliver(greeting());
+  return rig;
+}
+
+/** Level and freedom of the newest subscription to the surface. */
+function asked(rig: Rig): { level: Level; adapts: boolean } {
+  const { level, adapts } = rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.SURFACE).at(-1)!.value;
+  return { level, adapts };
+}
+
+describe("the level of detail", () => {
+  it("is the server's to lower unless a person chose one", () => {
+    const rig = liveRig();
+    expect(asked(rig)).toEqual({ level: Level.FULL, adapts: true });
+    rig.connection.setDetail("medium");
+    expect(asked(rig)).toEqual({ level: Level.MEDIUM, adapts: false });
+    const { length } = rig.socket.sent;
+    rig.connection.setDetail("medium");
+    expect(rig.socket.sent).toHaveLength(length);
+    rig.connection.setDetail("auto");
+    expect(asked(rig)).toEqual({ level: Level.FULL, adapts: true });
+  });
+
+  it("says what it is and who holds it down", () => {
+    const rig = liveRig();
+    rig.time.advance(500);
+    expect(rig.lastStats()).toMatchObject({ level: "full", levelHeldBy: "nobody" });
+    rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });
+    rig.time.advance(500);
+    expect(rig.lastStats()).toMatchObject({ level: "coarse", levelHeldBy: "link" });
+    rig.connection.setDetail("fine");
+    rig.time.advance(500);
+    expect(rig.lastStats()).toMatchObject({ level: "fine", levelHeldBy: "choice" });
+  });
+
+  it("forgets the link's level with the link", () => {
+    const rig = liveRig();
+    rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });
+    rig.socket.drop();
+    rig.time.advance(1000);
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    rig.time.advance(500);
+    expect(rig.lastStats()).toMatchObject({ level: "full", levelHeldBy: "nobody" });
+  });
+
+  it("falls where unpacking takes most of the time", () => {
+    const rig = liveRig();
+    // Each frame takes 40 ms to read, twenty come in a second.
+    for (let k = 0; k < 60; ++k) {
+      rig.slowReadMs = 40;
+      rig.socket.deliver(surfaceFrame([1, 2, 3, 4], { tick: BigInt(k) }));
+      rig.time.advance(10);
+    }
+    expect(asked(rig)).toEqual({ level: Level.FINE, adapts: true });
+    expect(rig.lastStats()).toMatchObject({ level: "fine", levelHeldBy: "device" });
+  });
+
+  it("tells the server's clock with the greeting and with every pong", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.socket.deliver(greeting({ serverTimeS: 70 }));
+    expect(rig.logOf("clock")).toEqual([[69_000]]);
+    rig.time.advance(100);
+    rig.socket.deliver({ case: "pong", value: { clientTimeS: 1, serverTimeS: 70.06 } });
+    expect(rig.logOf("clock").at(-1)).toEqual([expect.closeTo(69_010, 6)]);
+  });
+
+  it("pings often until the clock is known, then now and then", () => {
+    const rig = liveRig();
+    rig.time.advance(2500);
+    const early = rig.socket.sentOf("ping").length;
+    expect(early).toBeGreaterThanOrEqual(5);
+    rig.time.advance(4000);
+    expect(rig.socket.sentOf("ping").length - early).toBeLessThanOrEqual(3);
+  });
+});
+
+describe("the load governor", () => {
+  const run = (governor: LoadGovernor, busyShare: (level: string) => number, notes: number): string[] => {
+    const levels: string[] = [];
+    for (let k = 0; k < notes; ++k) if (governor.note(busyShare(governor.level))) levels.push(governor.level);
+    return levels;
+  };
+
+  it("steps down after two busy seconds, not for a moment", () => {
+    const governor = new LoadGovernor();
+    for (let k = 0; k < 30; ++k) expect(governor.note(k % 4 === 0 ? 0.1 : 0.9)).toBe(false);
+    expect(run(governor, () => 0.9, 8)).toEqual(["fine", "medium"]);
+  });
+
+  it("climbs when there is time for four times as much, and tries what failed less often", () => {
+    const governor = new LoadGovernor();
+    run(governor, () => 0.9, 4);
+    expect(governor.level).toBe("fine");
+    const changes: number[] = [];
+    for (let k = 0; k < 400; ++k) if (governor.note(governor.level === "full" ? 0.9 : 0.1)) changes.push(k);
+    const ups = changes.filter((_, k) => k % 2 === 0);
+    expect(ups.length).toBeGreaterThan(2);
+    expect(ups.length).toBeLessThan(6);
+    expect(run(governor, () => 0.05, 500).at(-1)).toBe("full");
+  });
+
+  it("has no level above the first and below the last", () => {
+    const governor = new LoadGovernor();
+    expect(run(governor, () => 0.0, 100)).toEqual([]);
+    expect(run(governor, () => 1, 100)).toEqual(["fine", "medium", "coarse"]);
+  });
+});

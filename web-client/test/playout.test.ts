@@ -1,0 +1,116 @@
+import { describe, expect, it } from "vitest";
+
+import { PlayoutClock } from "../src/scene/playout_clock";
+
+interface Stream {
+  frameRateHz: number;
+  /** What a frame takes to come, by its number [s]. */
+  transitS: (frame: number) => number;
+  /** Simulated seconds a second. */
+  speed?: number;
+  /** The server's clock minus the client's. */
+  leadS?: number;
+  durationS?: number;
+}
+
+interface Picture {
+  nowS: number;
+  shownS: number;
+  /** Simulation time of the newest frame that was there. */
+  newestS: number;
+  delayS: number;
+}
+
+/** What a display of 60 Hz shows of a stream, from its third second on. */
+function watch({ frameRateHz, transitS, speed = 1, leadS = 1000, durationS = 8 }: Stream): Picture[] {
+  const clock = new PlayoutClock();
+  clock.sync(leadS);
+  const frames: { timeS: number; stampS: number; arrivedS: number }[] = [];
+  for (let k = 0; k < durationS * frameRateHz; ++k) {
+    const sentS = k / frameRateHz;
+    frames.push({ timeS: speed * sentS, stampS: sentS + leadS, arrivedS: sentS + transitS(k) });
+  }
+  // TCP delivers in order: what comes late holds back what follows.
+  frames.forEach((frame, k) => (frame.arrivedS = Math.max(frame.arrivedS, frames[k - 1]?.arrivedS ?? 0)));
+  const pictures: Picture[] = [];
+  let next = 0;
+  for (let k = 0; k < 60 * durationS; ++k) {
+    const nowS = k / 60;
+    for (; next < frames.length && frames[next]!.arrivedS <= nowS; ++next) clock.noteFrame(frames[next]!.timeS, frames[next]!.stampS, frames[next]!.arrivedS);
+    const shownS = clock.displayTimeS(nowS);
+    if (shownS === undefined || nowS < 3) continue;
+    pictures.push({ nowS, shownS, newestS: frames[next - 1]!.timeS, delayS: clock.delayS()! });
+  }
+  return pictures;
+}
+
+/** The same numbers in every run, evenly in 0..1. */
+function noise(k: number): number {
+  const x = Math.sin(k * 12.9898) * 43758.5453;
+  return x - Math.floor(x);
+}
+
+function steps(pictures: Picture[]): number[] {
+  return pictures.slice(1).map((picture, k) => picture.shownS - pictures[k]!.shownS);
+}
+
+describe("the playout clock", () => {
+  it("makes 20 uneven frames a second one even motion at 60 pictures", () => {
+    const pictures = watch({ frameRateHz: 20, transitS: (k) => 0.03 + 0.025 * noise(k) });
+    for (const step of steps(pictures)) {
+      expect(step).toBeGreaterThan(0.88 / 60);
+      expect(step).toBeLessThan(1.12 / 60);
+    }
+    // There is a frame to interpolate to, nearly always.
+    expect(pictures.filter(({ shownS, newestS }) => shownS >= newestS).length).toBeLessThan(0.01 * pictures.length);
+  });
+
+  it("stays two frame intervals behind the fastest frames where they come evenly", () => {
+    for (const { delayS, nowS, shownS } of watch({ frameRateHz: 30, transitS: () => 0.04 })) {
+      expect(delayS).toBeCloseTo(0.04 + 2 / 30, 6);
+      expect(nowS - shownS).toBeCloseTo(delayS, 2);
+    }
+  });
+
+  it("stays further behind where the jitter needs it, and no longer than it does", () => {
+    // One frame in eight takes 0.2 s longer.
+    const pictures = watch({ frameRateHz: 30, transitS: (k) => 0.02 + (k % 8 === 0 && k < 240 ? 0.2 : 0), durationS: 16 });
+    const during = pictures.filter(({ nowS }) => nowS > 5 && nowS < 8);
+    const after = pictures.filter(({ nowS }) => nowS > 13);
+    for (const { delayS } of during) expect(delayS).toBeGreaterThan(0.15);
+    expect(during.filter(({ shownS, newestS }) => shownS >= newestS).length).toBeLessThan(0.06 * during.length);
+    for (const { delayS } of after) expect(delayS).toBeCloseTo(0.02 + 2 / 30, 6);
+    for (const step of steps(pictures)) expect(step).toBeLessThan(1.12 / 60);
+  });
+
+  it("shows the same time to clients near and far but for their delay", () => {
+    const near = watch({ frameRateHz: 30, transitS: (k) => 0.005 + 0.01 * noise(k), leadS: 5 });
+    const far = watch({ frameRateHz: 30, transitS: (k) => 0.105 + 0.01 * noise(k), leadS: -7000 });
+    near.forEach((picture, k) => expect(picture.shownS - far[k]!.shownS).toBeCloseTo(0.1, 2));
+  });
+
+  it("follows a simulation at half speed", () => {
+    const pictures = watch({ frameRateHz: 30, transitS: () => 0.02, speed: 0.5 });
+    for (const step of steps(pictures)) expect(step).toBeCloseTo(0.5 / 60, 4);
+  });
+
+  it("never runs back, never ahead, and rests on the newest frame when the room is paused", () => {
+    const pictures = watch({ frameRateHz: 30, transitS: (k) => 0.02 + (k >= 150 ? 1e6 : 0) + 0.1 * noise(k) });
+    for (const step of steps(pictures)) expect(step).toBeGreaterThanOrEqual(0);
+    for (const { shownS, newestS } of pictures) expect(shownS).toBeLessThanOrEqual(newestS + 1e-9);
+    expect(pictures.at(-1)!.shownS).toBeCloseTo(149 / 30, 6);
+  });
+
+  it("starts anew when the simulation does", () => {
+    const clock = new PlayoutClock();
+    for (let frame = 0; frame < 30; ++frame) clock.noteFrame(100 + frame / 30, frame / 30, frame / 30);
+    expect(clock.displayTimeS(1)).toBeGreaterThan(100);
+    clock.noteFrame(0, 1.03, 1.03);
+    expect(clock.displayTimeS(1.04)).toBeLessThanOrEqual(0);
+  });
+
+  it("has nothing to show before the first frame", () => {
+    expect(new PlayoutClock().displayTimeS(5)).toBeUndefined();
+    expect(new PlayoutClock().delayS()).toBeUndefined();
+  });
+});
