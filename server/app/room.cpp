@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include <spdlog/spdlog.h>
 
@@ -206,9 +205,7 @@ Room::TimePoint Room::timedStep() {
 // Frames
 
 bool Room::isDue(core::Level level) const {
-  if (paused_ || level == core::Level::kFull) return true;
-  const double ratio = stage_->scene().stream().frame_rate_hz() / core::kLevelBudgets[core::indexOf(level)].rate_hz;
-  return frame_count_ % static_cast<std::uint64_t>(std::max(std::ceil(ratio - 1e-9), 1.0)) == 0;
+  return paused_ || frame_count_ % core::frameStride(level, stage_->scene().stream().frame_rate_hz()) == 0;
 }
 
 void Room::requestFrame(TimePoint now, net::Hub& hub) {

@@ -178,7 +178,7 @@ class Room {
   TimePoint next_scene_change_{};
   double next_frame_s_ = 0.0;      ///< simulation time
   std::uint64_t frame_count_ = 0;  ///< that were due
-  TimePoint next_idle_frame_{};  ///< wall time, while paused
+  TimePoint next_idle_frame_{};    ///< wall time, while paused
   bool wants_diagnostics_ = false;
   std::uint32_t frames_in_flight_ = 0;
   std::uint64_t dropped_frames_ = 0;

@@ -59,9 +59,9 @@ Outbox::Demand Outbox::demand(LayerIndex layer, std::uint32_t reduced_count, Clo
   const core::Level level = core::effectiveLevel(wanted, reduced_count);
   if (close_ || shut_) return {.level = level};
   const bool has_ground = slot.follows && slot.level == level;
-  return {.level = level,
-          .wants_whole =
-              !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
+  return {
+      .level = level,
+      .wants_whole = !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
 }
 
 core::Level Outbox::levelOf(const Slot& slot) const {
@@ -80,7 +80,8 @@ void Outbox::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
   if (!watch) return;
   slot.watch = watch;
   slot.gate = RateGate(watch->max_rate_hz);
-  for (std::size_t k = 0; k < slot.level_gates.size(); ++k) slot.level_gates[k] = RateGate(core::kLevelBudgets[k].rate_hz);
+  for (std::size_t k = 0; k < slot.level_gates.size(); ++k)
+    slot.level_gates[k] = RateGate(core::kLevelBudgets[k].rate_hz);
 }
 
 std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {

@@ -5,8 +5,8 @@
 
 #include <google/protobuf/io/coded_stream.h>
 
-#include <spindrift/stream/crc32c.h>
 #include <spindrift/stream/client_message.h>
+#include <spindrift/stream/crc32c.h>
 
 namespace spindrift::stream {
 namespace {

@@ -3,6 +3,10 @@
 #include <map>
 #include <thread>
 
+#include <spindrift/gpu/context.h>
+#include <spindrift/sim/water_sim.h>
+
+#include "commands/bench_levels.h"
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -117,6 +121,43 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
   // 15 of 30 frames a second, whoever watches besides.
   EXPECT_LE(frames(core::Level::kCoarse), full_count / 2 + 2);
   EXPECT_GE(frames(core::Level::kCoarse), 9u) << "the newest may not be counted yet";
+}
+
+TEST(LevelBudgets, AreKeptByAPoolOfTheLargestOne) {
+  // Half a second after a splash, when the surface is at its busiest.
+  const auto parsed = stream::parseSceneText(R"(
+    tick_rate_hz: 60
+    wave { resolution_count: 512 side_m: 24 depth_m: 1.5 damping_per_s: 0.15 }
+    particles { count: 131072 layers_count: 3 headroom_m: 5 sound_speed_mps: 14 max_speed_mps: 8 viscosity_pas: 60 }
+    coupling {}
+    foam { surface: true }
+    events { at_s: 0.05 effect { splash { x_m: -2 z_m: 1.5 radius_m: 2.2 depth_m: 1.3 duration_s: 0.25 } } }
+  )",
+                                             "budget.textproto");
+  ASSERT_TRUE(parsed) << parsed.error().message;
+  auto context = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
+  if (!context) GTEST_SKIP() << "no software EGL device here: " << context.error().message;
+  const core::Scene scene = stream::toCore(*parsed);
+  auto sim = sim::WaterSim::create(**context, scene);
+  ASSERT_TRUE(sim) << sim.error().message;
+  app::LevelMeter meter(scene.stream.frame_rate_hz);
+  for (int tick = 0; tick < 20; ++tick) {
+    (*sim)->step();
+    if (tick % 2 != 0) continue;
+    ASSERT_TRUE((*sim)->requestFrame(app::LevelMeter::request(scene)));
+    (*context)->finish();
+    for (const core::FrameView& frame : (*sim)->takeFrames()) meter.add(frame);
+  }
+  const boost::json::array rows = meter.print(stderr);
+  ASSERT_EQ(rows.size(), 3u) << "the finest reduced level leaves nothing out";
+  double below = 0.0;
+  for (const auto& row : rows) {
+    const double mbitps = row.at("mbit_per_s").as_double();
+    EXPECT_GT(mbitps, below) << row.at("level");
+    EXPECT_LE(mbitps, row.at("budget_mbit_per_s").as_double()) << row.at("level");
+    EXPECT_LT(row.at("particle_bits").as_double(), row.at("particle_bits_if_added").as_double()) << row.at("level");
+    below = mbitps;
+  }
 }
 
 class LevelsOfAWave : public ServerTest {

@@ -14,6 +14,7 @@
 #include <spindrift/stream/frame_encoder.h>
 
 #include "bench_baselines.h"
+#include "bench_levels.h"
 
 namespace spindrift::app {
 namespace {
@@ -232,16 +233,18 @@ core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::S
   auto sim = sim::WaterSim::create(ctx, scene);
   if (!sim) return sim.error();
   CodecMeter meter;
+  LevelMeter levels(scene.stream.frame_rate_hz);
   double next_s = kBegin_s;
   std::size_t frame_count = 0;
   while ((*sim)->time_s() < kBegin_s + seconds) {
     (*sim)->step();
     if ((*sim)->time_s() + 1e-9 < next_s) continue;
     next_s += 1.0 / scene.stream.frame_rate_hz;
-    (void)(*sim)->requestFrame({.surface = scene.wave.has_value(), .particles = scene.particles.has_value()});
+    (void)(*sim)->requestFrame(LevelMeter::request(scene));
     ctx.finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) {
       if (auto added = meter.add(frame); !added) return added.error();
+      levels.add(frame);
       ++frame_count;
     }
   }
@@ -272,7 +275,8 @@ core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::S
                     {"decode_ms", row.decode_ms / frames},
                     {"max_error_quanta", row.max_error}});
   }
-  return boost::json::object{{"frames", frame_count}, {"rows", std::move(json)}};
+  boost::json::array level_rows = levels.print(out);
+  return boost::json::object{{"frames", frame_count}, {"rows", std::move(json)}, {"levels", std::move(level_rows)}};
 }
 
 }  // namespace spindrift::app

@@ -13,7 +13,9 @@ using std::chrono::seconds;
 /// A link that carries the levels up to `carries`, one second a call.
 class Link {
  public:
-  explicit Link(std::uint32_t reduced_count) : reduced_count_(reduced_count) { (void)ladder.review(now_, reduced_count_); }
+  explicit Link(std::uint32_t reduced_count) : reduced_count_(reduced_count) {
+    (void)ladder.review(now_, reduced_count_);
+  }
 
   /// Seconds at which the level changed, with the level.
   struct Change {

@@ -73,7 +73,8 @@ void ripple(WaterSim& sim, std::size_t n) {
   StateCopy state = sim.copyState();
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = 0; i < n; ++i) {
-      const double x = static_cast<double>(i) / static_cast<double>(n), z = static_cast<double>(k) / static_cast<double>(n);
+      const double x = static_cast<double>(i) / static_cast<double>(n),
+                   z = static_cast<double>(k) / static_cast<double>(n);
       state.elevation_m[k * n + i] = 0.3 * std::sin(9.0 * x + 4.0 * z) + 0.2 * x - 0.1 * z * z;
     }
   }

@@ -223,7 +223,8 @@ TEST(FrameEncoding, EachLevelIsEncodedForItselfAndSaysSo) {
     EXPECT_EQ(coarse_samples->resolution_count, 8u);
   }
   EXPECT_EQ(encoder.encodeCount(kPacked), 6u + 4u);
-  EXPECT_FALSE(encoder.encode(kPacked, core::frameAt(test.view, core::Level::kMedium), true).whole) << "not in the frame";
+  EXPECT_FALSE(encoder.encode(kPacked, core::frameAt(test.view, core::Level::kMedium), true).whole)
+      << "not in the frame";
 }
 
 using Damage = void (*)(v1::LayerFrame&);

@@ -48,4 +48,13 @@ constexpr Level effectiveLevel(Level wanted, std::uint32_t reduced_count) {
   return indexOf(wanted) < reduced_count ? wanted : Level::kFull;
 }
 
+/// Every so many frames of a room holds the level; 1 for kFull.
+constexpr std::uint32_t frameStride(Level level, double frame_rate_hz) {
+  if (level == Level::kFull) return 1;
+  const double ratio = frame_rate_hz / kLevelBudgets[indexOf(level)].rate_hz;
+  std::uint32_t stride = 1;
+  while (stride < ratio - 1e-9) ++stride;
+  return stride;
+}
+
 }  // namespace spindrift::core
