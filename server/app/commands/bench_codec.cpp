@@ -35,7 +35,9 @@ struct CodecRow {
   double encode_ms = 0.0;
   double decode_ms = 0.0;
   double max_error = 0.0;  ///< over the quantum; of particles: distance along an axis
+  /// Of unordered places: as dense as resting water, and of so few anywhere in their box (bits of all frames' items).
   std::optional<double> bound_bits = {};
+  double sparse_bits = 0.0;
   bool is_installed = true;
 
   void add(std::size_t frame_bytes, std::size_t items) {
@@ -146,10 +148,20 @@ class CodecMeter {
     const v1::ParticlesByCell& header = message.particles_by_cell();
     const double quantum_m = header.cell_m() / (1 << header.offset_bits());
     particles_.bound_bits = 3 * std::log2(2 * view.radius_m / quantum_m) + std::log2(std::exp(1.0));
+    particles_.sparse_bits += sparseBits(view, quantum_m);
     particles_.max_error =
         std::max(particles_.max_error, largestShift(plain_samples->position_m, samples->position_m) / quantum_m);
     addPlaces(frame, header, plain_samples->position_m);
     return {};
+  }
+
+  /// N log2(places in the box) - log2(N!): nothing that does not know where water is takes less.
+  static double sparseBits(const core::ParticleView& view, double quantum_m) {
+    const double count = view.count;
+    double place_bits = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      place_bits += std::log2((view.max_m[axis] - view.min_m[axis]) / quantum_m);
+    return count * place_bits - std::lgamma(count + 1.0) / std::log(2.0);
   }
 
   /// Positions alone: what other codecs for points are made for.
@@ -174,6 +186,7 @@ class CodecMeter {
     places_.decode_ms += sinceMs(begin);
     places_.add(packed->size(), count);
     places_.bound_bits = particles_.bound_bits;
+    places_.sparse_bits = particles_.sparse_bits;
     if (samples)
       places_.max_error = std::max(places_.max_error, largestShift(position_m, samples->position_m) / quantum_m);
 
@@ -250,8 +263,8 @@ core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::S
   }
   fmt::print(out, "codecs: {} frames at {:.0f} Hz from {:.0f} s on\n", frame_count, scene.stream.frame_rate_hz,
              kBegin_s);
-  fmt::print(out, "{:<27} {:>9} {:>10} {:>9} {:>9} {:>8} {:>10} {:>10} {:>11}\n", "stream", "items", "bits/item",
-             "bound", "kB/frame", "largest", "encode ms", "decode ms", "error/quantum");
+  fmt::print(out, "{:<27} {:>9} {:>10} {:>9} {:>9} {:>9} {:>8} {:>10} {:>10} {:>11}\n", "stream", "items", "bits/item",
+             "bound", "in box", "kB/frame", "largest", "encode ms", "decode ms", "error/quantum");
   boost::json::array json;
   for (const CodecRow& row : meter.rows()) {
     const auto frames = static_cast<double>(row.frame_count);
@@ -260,14 +273,17 @@ core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::S
       json.push_back({{"name", row.name}, {"installed", false}});
       continue;
     }
-    fmt::print(out, "{:<27} {:>9.0f} {:>10.2f} {:>9} {:>9.2f} {:>8.2f} {:>10.3f} {:>10.3f} {:>11.3f}\n", row.name,
+    fmt::print(out, "{:<27} {:>9.0f} {:>10.2f} {:>9} {:>9} {:>9.2f} {:>8.2f} {:>10.3f} {:>10.3f} {:>11.3f}\n", row.name,
                row.item_count / frames, row.itemBits(),
-               row.bound_bits ? fmt::format("{:.2f}", *row.bound_bits) : std::string("-"), row.bytes / frames / 1e3,
-               row.most_bytes / 1e3, row.encode_ms / frames, row.decode_ms / frames, row.max_error);
+               row.bound_bits ? fmt::format("{:.2f}", *row.bound_bits) : std::string("-"),
+               row.bound_bits ? fmt::format("{:.2f}", row.sparse_bits / row.item_count) : std::string("-"),
+               row.bytes / frames / 1e3, row.most_bytes / 1e3, row.encode_ms / frames, row.decode_ms / frames,
+               row.max_error);
     json.push_back({{"name", row.name},
                     {"items", row.item_count / frames},
                     {"bits_per_item", row.itemBits()},
                     {"bound_bits", row.bound_bits ? boost::json::value(*row.bound_bits) : boost::json::value()},
+                    {"box_bound_bits", row.sparse_bits / row.item_count},
                     {"frame_bytes", row.bytes / frames},
                     {"largest_frame_bytes", row.most_bytes},
                     {"mbit_per_s", row.bytes / frames * 8e-6 * scene.stream.frame_rate_hz},

@@ -55,7 +55,7 @@ void LevelMeter::add(const core::FrameView& frame) {
       const core::Level effective = core::effectiveLevel(level, stream::reducedCountOf(layer, counts_));
       const core::FrameView view = core::frameAt(frame, effective);
       if (layer == v1::LAYER_SURFACE && view.surface) row.resolution_count = view.surface->resolution_count;
-      if (layer == v1::LAYER_PARTICLES && view.particles) row.particle_count = view.particles->count;
+      if (layer == v1::LAYER_PARTICLES && view.particles) row.particle_sum += view.particles->count;
       const auto [known, is_new] = encoded_bytes.try_emplace({layer, effective}, 0.0);
       if (is_new) {
         known->second = static_cast<double>(bytesOf(encoder_.encode({layer, v1::PACKING_PACKED}, view, false)));
@@ -115,24 +115,25 @@ boost::json::array LevelMeter::print(std::FILE* out) const {
     const double rate_hz = frame_rate_hz_ / core::frameStride(level, frame_rate_hz_);
     const auto mbitps = [&](double bytes) { return bytes / frames * 8e-6 * rate_hz; };
     const double sum_mbitps = mbitps(row.surface_bytes + row.particle_bytes + row.foam_bytes);
-    const double bits = row.particle_count > 0 ? 8 * row.particle_bytes / frames / row.particle_count : 0.0;
+    const double particle_count = row.particle_sum / frames;
+    const double bits = row.particle_sum > 0 ? 8 * row.particle_bytes / row.particle_sum : 0.0;
     const double part_bits = part_counts_[k] > 0 ? part_bits_[k] / part_counts_[k] : 0.0;
     // What is full here may be within a reduced level's budget.
     double budget_mbitps = 0.0;
     for (std::size_t b = core::kReducedLevelCount; b-- > 0;) {
       const core::LevelBudget& budget = core::kLevelBudgets[b];
-      if (row.resolution_count <= budget.surface_resolution_count && row.particle_count <= budget.particle_count)
+      if (row.resolution_count <= budget.surface_resolution_count && particle_count <= budget.particle_count)
         budget_mbitps = kBudgets_mbitps[b];
     }
     fmt::print(out,
-               "{:<8} {:>8} {:>10} {:>5.0f} {:>9.2f} {:>10.2f} {:>6.2f} {:>8.2f} {:>8} {:>10.3f} {:>15.2f} {:>14}\n",
-               stream::nameOf(level), fmt::format("{0}^2", row.resolution_count), row.particle_count, rate_hz,
+               "{:<8} {:>8} {:>10.0f} {:>5.0f} {:>9.2f} {:>10.2f} {:>6.2f} {:>8.2f} {:>8} {:>10.3f} {:>15.2f} {:>14}\n",
+               stream::nameOf(level), fmt::format("{0}^2", row.resolution_count), particle_count, rate_hz,
                mbitps(row.surface_bytes), mbitps(row.particle_bytes), mbitps(row.foam_bytes), sum_mbitps,
                budget_mbitps > 0 ? fmt::format("{:.0f}", budget_mbitps) : std::string("-"), row.encode_ms / frames,
                bits, part_bits > 0 ? fmt::format("{:.2f}", part_bits) : std::string("-"));
     json.push_back({{"level", stream::nameOf(level)},
                     {"resolution_count", row.resolution_count},
-                    {"particle_count", row.particle_count},
+                    {"particle_count", particle_count},
                     {"rate_hz", rate_hz},
                     {"mbit_per_s", sum_mbitps},
                     {"budget_mbit_per_s", budget_mbitps},

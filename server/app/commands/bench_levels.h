@@ -30,7 +30,8 @@ class LevelMeter {
     std::uint64_t frame_count = 0;
     double surface_bytes = 0.0, particle_bytes = 0.0, foam_bytes = 0.0;
     double encode_ms = 0.0;
-    std::uint32_t resolution_count = 0, particle_count = 0;
+    double particle_sum = 0.0;  ///< over all frames
+    std::uint32_t resolution_count = 0;
   };
 
   void addParts(const core::FrameView& frame);
