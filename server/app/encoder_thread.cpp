@@ -3,6 +3,8 @@
 #include <chrono>
 #include <utility>
 
+#include "layer_index.h"
+
 namespace spindrift::app {
 
 EncoderThread::EncoderThread(net::Hub& hub) : hub_(hub), thread_([this] { loop(); }) {}
@@ -85,7 +87,7 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
   std::array<core::FrameView, core::kLevelCount> views;
   for (const core::Level level : core::kLevels) views[core::indexOf(level)] = core::frameAt(frame, level);
   for (const stream::Stream stream : stream::allStreams()) {
-    const auto index = static_cast<net::LayerIndex>(stream::indexOf(stream));
+    const auto index = layerIndex(stream);
     const std::uint32_t reduced_count = stream::reducedCountOf(stream.layer, frame.reduced_counts);
     const net::LayerDemand demand = hub_.demand(room, index, reduced_count);
     for (const core::FrameView& view : views) {

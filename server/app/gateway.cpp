@@ -7,6 +7,7 @@
 #include <spindrift/stream/client_message.h>
 #include <spindrift/stream/server_message.h>
 
+#include "layer_index.h"
 #include "monotonic.h"
 #include "overloaded.h"
 
@@ -181,7 +182,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const stre
   for (const stream::Stream stream : stream::allStreams()) {
     if (stream.layer != wanted.layer) continue;
     const bool is_wanted = stream.packing == wanted.packing;
-    hub().watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
+    hub().watch(session, layerIndex(stream),
                 {.max_rate_hz = is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0,
                  .level = has_levels ? subscribe.level : core::Level::kFull,
                  .adapts = has_levels && subscribe.adapts});

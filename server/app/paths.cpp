@@ -32,12 +32,14 @@ fs::path findWebRoot() {
 
 core::Result<fs::path> findScene(const std::string& given) {
   std::error_code error;
-  if (fs::exists(given, error)) return fs::path(given);
   const fs::path folder = findSceneFolder();
   const bool is_name = given.find('/') == std::string::npos && !given.empty();
+  // A name means the shipped scene, also where a file without an ending happens to be called so: ./NAME is that file.
   if (is_name && !folder.empty()) {
-    const fs::path shipped = folder / (given + ".textproto");
-    if (fs::exists(shipped, error)) return shipped;
+    if (const fs::path shipped = folder / (given + ".textproto"); fs::exists(shipped, error)) return shipped;
+  }
+  if (fs::exists(given, error)) return fs::path(given);
+  if (is_name && !folder.empty()) {
     std::string names;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       if (entry.path().extension() == ".textproto") names += (names.empty() ? "" : ", ") + entry.path().stem().string();

@@ -8,8 +8,7 @@
 
 namespace spindrift::app {
 
-/// `given` if it names a file, else the shipped scene of that name ("harbor", "splash"). kUnavailable names both
-/// places.
+/// The shipped scene of that name ("harbor", "splash"), else the file. kUnavailable names both places.
 core::Result<std::filesystem::path> findScene(const std::string& given);
 
 /// The built web client: share/spindrift/web above the program, or web-client/dist of the source tree. Empty when

@@ -8,6 +8,7 @@
 #include <spindrift/stream/frame_encoder.h>
 #include <spindrift/stream/scene_loader.h>
 
+#include "layer_index.h"
 #include "monotonic.h"
 
 namespace spindrift::app {
@@ -36,7 +37,7 @@ std::array<bool, core::kLevelCount> watchedLevels(const net::Hub& hub, const std
   std::array<bool, core::kLevelCount> out{};
   for (const stream::Stream& stream : stream::allStreams()) {
     if (stream.layer != layer) continue;
-    const auto demand = hub.demand(room, static_cast<net::LayerIndex>(stream::indexOf(stream)), reduced_count);
+    const auto demand = hub.demand(room, layerIndex(stream), reduced_count);
     for (std::size_t level = 0; level < out.size(); ++level) out[level] |= demand[level].watcher_count > 0;
   }
   return out;

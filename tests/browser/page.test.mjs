@@ -197,6 +197,17 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await other.close();
   });
 
+  step("shows less detail when a person asks for it, and all of it again", async () => {
+    await page.getByTestId("detail").selectOption("coarse");
+    const coarse = await waitFor(page, "a coarse surface", (stats) => stats.surfaceResolutionCount === 128);
+    await waitFor(page, "the coarse water to move on", (stats) => stats.level === "coarse" && stats.simTime > coarse.simTime);
+    assert.equal((await page.getByTestId("level").textContent()).trim(), "coarse");
+    await page.getByTestId("detail").selectOption("auto");
+    const full = await waitFor(page, "a full surface", (stats) => stats.surfaceResolutionCount === 144);
+    assert.equal(full.malformedCount, 0);
+    assert.ok(full.delayMs > 0 && full.delayMs < 10_000, `the picture is ${full.delayMs} ms behind`);
+  });
+
   step("drives a boat of its own, which others cannot take, and finds it again after a reload", async () => {
     const ada = await openPage("marina");
     const bob = await openPage("marina");

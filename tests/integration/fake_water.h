@@ -18,6 +18,7 @@
 #include <spindrift/stream/server_message.h>
 
 #include "encoder_thread.h"
+#include "layer_index.h"
 
 namespace spindrift::test {
 
@@ -84,7 +85,7 @@ class FakeGateway final : public net::Application {
       const stream::Stream wanted = stream::streamOf(subscribe->layer, subscribe->packing);
       for (const stream::Stream stream : stream::allStreams()) {
         if (stream.layer != wanted.layer) continue;
-        hub_->watch(session, static_cast<net::LayerIndex>(stream::indexOf(stream)),
+        hub_->watch(session, app::layerIndex(stream),
                     {.max_rate_hz = stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0,
                      .level = subscribe->level,
                      .adapts = subscribe->adapts});

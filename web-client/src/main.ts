@@ -134,7 +134,6 @@ function main(): void {
     roomState: (message) => room.roomState(message.paused, message.speed),
     welcome: ({ welcome }) => {
       identity = { ...identity, resumeKey: welcome.resumeKey };
-      identities.save(identity);
       role = welcome.role;
       people.welcomed(welcome);
       boats.welcomed(welcome.personId, welcome.resumed);
@@ -308,6 +307,9 @@ function main(): void {
     client.setVisible(!document.hidden);
     if (document.hidden) boats.leaveHelm();
   });
+  window.addEventListener("pagehide", () => identities.leave(identity));
+  // Back from the browser's memory of pages, not loaded anew: the key is this page's again.
+  window.addEventListener("pageshow", ({ persisted }) => persisted && identities.save(identity));
   window.addEventListener("blur", () => boats.leaveHelm());
   // The helm's keys, while the boat's view shows and nobody moves a slider or a list with them.
   window.addEventListener("keydown", (event) => {

@@ -55,9 +55,23 @@ describe("who the page is", () => {
 
   it("is kept for a reload, its key for the same room only", () => {
     const kept = storage();
-    new IdentityStore(kept, "ws://host/ws").save({ name: "Ada", token: "secret", resumeKey: "key" });
-    expect(new IdentityStore(kept, "ws://host/ws").load()).toEqual({ name: "Ada", token: "secret", resumeKey: "key" });
-    expect(new IdentityStore(kept, "ws://host/ws/other").load()).toEqual({ name: "Ada", token: "secret", resumeKey: "" });
+    const ada = { name: "Ada", token: "secret", resumeKey: "key" };
+    new IdentityStore(kept, "ws://host/ws").leave(ada);
+    expect(new IdentityStore(kept, "ws://host/ws").load()).toEqual(ada);
+    new IdentityStore(kept, "ws://host/ws").leave(ada);
+    expect(new IdentityStore(kept, "ws://host/ws/other").load()).toEqual({ ...ada, resumeKey: "" });
+  });
+
+  it("keeps its key to itself while it is there, so that a duplicated tab is somebody else", () => {
+    const kept = storage();
+    const ada = { name: "Ada", token: "secret", resumeKey: "key" };
+    const first = new IdentityStore(kept, "u");
+    first.leave(ada);
+    expect(first.load()).toEqual(ada);
+    first.save(ada);
+    expect(new IdentityStore(kept, "u").load()).toEqual({ ...ada, resumeKey: "" });
+    first.leave(ada);
+    expect(new IdentityStore(kept, "u").load()).toEqual(ada);
   });
 
   it("is nobody where nothing is kept, or nonsense", () => {

@@ -1,5 +1,6 @@
 // Who this page is, kept for the tab's life: a reload within the server's grace time finds its boat again. Never in the
-// address, which ends up in histories and logs.
+// address, which ends up in histories and logs. The key to one's place is in the store only while no page has it: a browser
+// that duplicates the tab copies the store, and two pages with one key would push each other out.
 import type { Identity } from "./messages";
 
 /** The part of Storage that is used. */
@@ -18,7 +19,24 @@ export class IdentityStore {
     private readonly url: string,
   ) {}
 
+  /** Takes the key out of the store. */
   load(): Identity {
+    const identity = this.read();
+    this.save(identity);
+    return identity;
+  }
+
+  /** Name and token. */
+  save(identity: Identity): void {
+    this.write({ ...identity, resumeKey: "" });
+  }
+
+  /** The page goes, perhaps to come back: the key stays for the next one. */
+  leave(identity: Identity): void {
+    this.write(identity);
+  }
+
+  private read(): Identity {
     const none = { name: "", token: "", resumeKey: "" };
     try {
       const kept: unknown = JSON.parse(this.storage?.getItem(kKey) ?? "null");
@@ -31,7 +49,7 @@ export class IdentityStore {
     }
   }
 
-  save(identity: Identity): void {
+  private write(identity: Identity): void {
     try {
       this.storage?.setItem(kKey, JSON.stringify({ ...identity, url: this.url }));
     } catch {
