@@ -178,19 +178,28 @@ asio::awaitable<void> Session::writeLoop() {
 }
 
 asio::awaitable<bool> Session::write(const core::Bytes& message) {
-  stall_timer_.expires_after(context_.options.write_stall_timeout);
+  write_deadline_ = Clock::now() + context_.options.write_stall_timeout;
+  if (!watches_writes_) watchWrites();
+  ws_.next_layer().setMessage(message);
+  const auto [error, bytes_count] = co_await ws_.async_write(asio::buffer(message), kToken);
+  ws_.next_layer().setMessage({});
+  write_deadline_.reset();
+  if (error) noteEnd(0, error.message());
+  co_return !error;
+}
+
+void Session::watchWrites() {
+  watches_writes_ = true;
+  stall_timer_.expires_at(*write_deadline_);
   stall_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& error) {
-    // A timer that had fired before its cancellation still runs; a later write has moved the expiry on.
-    if (error || self->stall_timer_.expiry() > Clock::now()) return;
+    self->watches_writes_ = false;
+    if (error || !self->write_deadline_) return;
+    if (*self->write_deadline_ > Clock::now()) return self->watchWrites();
     ++self->context_.counters.evicted_session_count;
     self->noteEnd(0, "evicted: a write took longer than " +
                          std::to_string(self->context_.options.write_stall_timeout.count()) + " ms");
     self->cut();
   });
-  const auto [error, bytes_count] = co_await ws_.async_write(asio::buffer(message), kToken);
-  stall_timer_.expires_at(Clock::time_point::max());
-  if (error) noteEnd(0, error.message());
-  co_return !error;
 }
 
 void Session::reviewLevel() {

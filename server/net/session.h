@@ -13,6 +13,7 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/websocket/stream.hpp>
 
+#include "message_stream.h"
 #include "outbox.h"
 #include "rate_limit.h"
 #include "room_hub.h"
@@ -52,6 +53,9 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   boost::asio::awaitable<bool> write(const core::Bytes& message);
   /// After a message went out: whether the link carries what it is given.
   void reviewLevel();
+  /// Cuts the connection when a write passes its deadline. One timer runs on from write to write and is set again only
+  /// when it expires: moving it for each frame was a tenth of what a frame costs.
+  void watchWrites();
   /// Sends the close frame and waits for the peer's, within the close deadline.
   boost::asio::awaitable<void> sayGoodbye();
   /// Runs an application callback; an exception in it ends this session and no other.
@@ -65,17 +69,19 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   ServerContext& context_;
   const SessionId id_;
-  boost::beast::websocket::stream<boost::beast::tcp_stream> ws_;
+  boost::beast::websocket::stream<MessageStream> ws_;
   const boost::asio::any_io_executor strand_;
   Outbox outbox_;
   TokenBucket message_tokens_;
   boost::beast::flat_buffer read_buffer_;
   boost::asio::steady_timer wake_timer_;   ///< the writer sleeps on it
-  boost::asio::steady_timer stall_timer_;  ///< runs while a write is out
+  boost::asio::steady_timer stall_timer_;  ///< looks whether a write takes too long; see watchWrites()
   boost::asio::steady_timer close_timer_;
-  boost::asio::steady_timer end_timer_;     ///< of closeAt()
-  boost::asio::steady_timer end_of_delay_;  ///< a message waits for its address's bucket
-  std::string address_;                     ///< what AddressLimits knows the peer by
+  boost::asio::steady_timer end_timer_;                                  ///< of closeAt()
+  boost::asio::steady_timer end_of_delay_;                               ///< a message waits for its address's bucket
+  std::optional<std::chrono::steady_clock::time_point> write_deadline_;  ///< while a write is out
+  bool watches_writes_ = false;
+  std::string address_;  ///< what AddressLimits knows the peer by
   std::optional<SessionEnd> end_;
 };
 

@@ -188,9 +188,11 @@ void print(std::FILE* out, const Row& row) {
   const auto delay = [&](double ratio) {
     return c.delays_ms.empty() ? std::string("-") : fmt::format("{:.1f}", quantileOf(c.delays_ms, ratio));
   };
-  fmt::print(out, "{:<30} {:>6} {:>5}/{:>5}/{:>5} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8.1f} {:>8.1f} {:>7.1f} {:>5}\n",
+  const std::string last = c.last_delays_ms.empty() ? "-" : fmt::format("{:.1f}", quantileOf(c.last_delays_ms, 0.99));
+  fmt::print(out,
+             "{:<30} {:>6} {:>5}/{:>5}/{:>5} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8.1f} {:>8.1f} {:>7.1f} {:>5}\n",
              row.name, c.connected_count, c.fewest_frames, c.median_frames, c.most_frames, delay(0.5), delay(0.99),
-             row.io_cpu_s > 0 ? fmt::format("{:.1f}", 1e6 * row.io_cpu_s / sent) : "-",
+             last, row.io_cpu_s > 0 ? fmt::format("{:.1f}", 1e6 * row.io_cpu_s / sent) : "-",
              row.after.dropped_frame_count - row.before.dropped_frame_count, row.after.evicted_session_count,
              quantileOf(c.answers_ms, 0.5), quantileOf(c.answers_ms, 0.99), row.resident_grown_mb,
              c.lost_count + c.unanswered_count);
@@ -207,6 +209,7 @@ boost::json::object toJson(const Row& row) {
           {"most_frames", c.most_frames},
           {"delay_p50_ms", quantileOf(c.delays_ms, 0.5)},
           {"delay_p99_ms", quantileOf(c.delays_ms, 0.99)},
+          {"last_delay_p99_ms", quantileOf(c.last_delays_ms, 0.99)},
           {"io_cpu_us_per_frame_sent", row.io_cpu_s > 0 ? boost::json::value(1e6 * row.io_cpu_s / sent) : nullptr},
           {"dropped_frames", row.after.dropped_frame_count - row.before.dropped_frame_count},
           {"evicted_count", row.after.evicted_session_count},
@@ -242,8 +245,9 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
       {"200 readers, 25 kB, visitors", 25'000, 20.0, crowd(200, 0, std::chrono::duration<double>(seconds))}};
   cases.back().crowd.visitors_per_s = 5.0;
   fmt::print(out, "fan-out, clients and server in this process\n");
-  fmt::print(out, "{:<30} {:>6} {:>17} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8} {:>8} {:>7} {:>5}\n", "case", "there",
-             "frames, each", "p50 ms", "p99 ms", "us/frame", "drops", "evicted", "ack p50", "ack p99", "+MB", "lost");
+  fmt::print(out, "{:<30} {:>6} {:>17} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8} {:>8} {:>7} {:>5}\n", "case", "there",
+             "frames, each", "p50 ms", "p99 ms", "last p99", "us/frame", "drops", "evicted", "ack p50", "ack p99",
+             "+MB", "lost");
   boost::json::array rows;
   for (const Case& test : cases) {
     auto row = measure(test);

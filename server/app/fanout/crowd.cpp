@@ -103,7 +103,12 @@ class Crowd {
     received_bytes_ += bytes.size();
     if (sighting.kind != Sighting::Kind::kFrame) return;
     ++spectator.frame_count;
-    if (sighting.published != Clock::time_point{}) delays_ms_.push_back(ms(now - sighting.published));
+    if (sighting.published == Clock::time_point{}) return;
+    delays_ms_.push_back(ms(now - sighting.published));
+    if (spectator.leaves) return;
+    Receipts& receipts = receipts_[sighting.published];
+    ++receipts.count;
+    receipts.last = now;
   }
 
   void runUntil(Clock::time_point deadline) {
@@ -130,6 +135,10 @@ class Crowd {
       out.most_frames = counts.back();
     }
     out.received_bytes = received_bytes_;
+    for (const auto& [published, receipts] : receipts_) {
+      if (receipts.count == counts.size()) out.last_delays_ms.push_back(ms(receipts.last - published));
+    }
+    std::ranges::sort(out.last_delays_ms);
     std::ranges::sort(delays_ms_);
     std::ranges::sort(answers_ms_);
     out.delays_ms = std::move(delays_ms_);
@@ -140,6 +149,11 @@ class Crowd {
   /// Small, so that a backlog shows at once.
   static constexpr int kDeafBufferBytes = 64 * 1024;
 
+  struct Receipts {
+    std::size_t count = 0;  ///< clients that have the frame, visitors left out
+    Clock::time_point last{};
+  };
+
   const net::ClientUrl url_;
   const CrowdOptions& options_;
   std::unique_ptr<net::ClientPool> pool_;  // outlives the clients
@@ -147,6 +161,7 @@ class Crowd {
   bool measures_ = false;
   std::uint64_t received_bytes_ = 0;
   std::vector<double> delays_ms_;
+  std::map<Clock::time_point, Receipts> receipts_;  ///< by publication
   std::vector<double> answers_ms_;
 };
 

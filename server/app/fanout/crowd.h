@@ -40,7 +40,9 @@ struct CrowdReport {
   std::uint64_t median_frames = 0;
   std::uint64_t most_frames = 0;
   std::uint64_t received_bytes = 0;
-  std::vector<double> delays_ms;   ///< of frames, from publication to receipt, sorted
+  std::vector<double> delays_ms;  ///< of frames, from publication to receipt, sorted
+  /// Likewise until the last one that reads had it; of frames that all of them got. Sorted.
+  std::vector<double> last_delays_ms;
   std::vector<double> answers_ms;  ///< of commands, from sending to the answer, sorted
   std::uint64_t unanswered_count =
       0;  ///< commands without an answer at the end, those of the last half second left out

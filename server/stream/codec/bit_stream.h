@@ -23,6 +23,11 @@ struct BitCursor {
     pending |= std::uint64_t{value} << count;
     count += bit_count;
   }
+  /// Likewise; bit_count <= 56.
+  void putLong(std::uint64_t value, std::uint32_t bit_count) {
+    pending |= value << count;
+    count += bit_count;
+  }
   void flush() {
     std::memcpy(at, &pending, sizeof pending);
     at += count / 8;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 
+#include "group_writer.h"
 #include "particle_quanta.h"
 #include "prefix_code.h"
 
@@ -19,7 +20,6 @@ constexpr std::uint32_t kMaxGammaBits = 23;
 void putGamma(std::uint32_t value, BitCursor& out) {
   const auto bits = static_cast<std::uint32_t>(std::bit_width(value + 1)) - 1;
   out.put(1u << bits, bits + 1);
-  out.flush();
   out.put((value + 1) & ((1u << bits) - 1), bits);
   out.flush();
 }
@@ -37,21 +37,6 @@ struct AttributeState {
   std::uint32_t group_class = 0;
 };
 
-void putAttribute(ResidualGroup& values, std::size_t count, AttributeState& state, ResidualEncoder& out) {
-  int sum = 0;
-  for (const std::int16_t value : values.of) sum += value;
-  const auto doubled = static_cast<int>(2 * count);
-  const int raised = 2 * sum + static_cast<int>(count);
-  const int mean = raised / doubled - (raised % doubled < 0 ? 1 : 0);  // to the nearest
-  ResidualGroup step;
-  step.of[0] = static_cast<std::int16_t>(mean - state.mean);
-  state.mean_class = out.putGroup(step, 1, state.mean_class, state.mean_class);
-  state.mean = mean;
-  for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value - mean);
-  for (std::size_t k = count; k < kGroupMaxCount; ++k) values.of[k] = 0;
-  state.group_class = out.putGroup(values, count, state.group_class, state.group_class);
-}
-
 void getAttribute(ResidualGroup& values, std::size_t count, AttributeState& state, ResidualDecoder& in) {
   ResidualGroup step;
   state.mean_class = in.getGroup(step, 1, state.mean_class, state.mean_class);
@@ -60,7 +45,51 @@ void getAttribute(ResidualGroup& values, std::size_t count, AttributeState& stat
   for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value + state.mean);
 }
 
+static_assert(kGroupMaxCount == 64, "twice as many are 1 << 7");
 constexpr std::size_t kAttributeCount = 5;  ///< velocity along x, y, z, foam, tint
+using AttributeStates = std::array<AttributeState, kAttributeCount>;
+
+/// Where an attribute stands in what attributesOf() gives: (word << up) >> down with its sign, and the mask.
+struct AttributeBits {
+  std::uint32_t up, down;
+  std::int32_t mask;
+};
+constexpr std::array<AttributeBits, kAttributeCount> kAttributes = {
+    {{24, 24, -1}, {16, 24, -1}, {8, 24, -1}, {0, 24, 3}, {0, 26, 7}}};
+
+/// Of up to 64 particles.
+SPINDRIFT_INLINE GroupWriter putAttributes(std::span<const std::uint64_t> items, AttributeStates& states,
+                                           GroupWriter out) {
+  const std::size_t count = items.size();
+  const auto doubled = static_cast<int>(2 * count);
+  std::array<std::uint32_t, kGroupMaxCount> words{};
+  for (std::size_t k = 0; k < count; ++k) words[k] = attributesOf(items[k]);
+#pragma GCC unroll 1
+  for (std::size_t attribute = 0; attribute < kAttributeCount; ++attribute) {
+    const AttributeBits bits = kAttributes[attribute];
+    AttributeState& state = states[attribute];
+    ResidualGroup values;
+    for (std::size_t k = 0; k < kGroupMaxCount; ++k)
+      values.of[k] =
+          static_cast<std::int16_t>((static_cast<std::int32_t>(words[k] << bits.up) >> bits.down) & bits.mask);
+    const int raised = 2 * GroupRows(values.of.data(), 8).sum() + static_cast<int>(count);
+    // To the nearest; a shift rounds down as the other does.
+    const int mean = count == kGroupMaxCount ? raised >> 7 : raised / doubled - (raised % doubled < 0 ? 1 : 0);
+    state.mean_class = out.putOne(static_cast<std::int16_t>(mean - state.mean), state.mean_class);
+    state.mean = mean;
+    for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value - mean);
+    for (std::size_t k = count; k < kGroupMaxCount; ++k) values.of[k] = 0;
+    state.group_class = out.putGroup(values, count, state.group_class, state.group_class);
+  }
+  return out;
+}
+GroupWriter putAttributesPlainly(std::span<const std::uint64_t> items, AttributeStates& states, GroupWriter out) {
+  return putAttributes(items, states, out);
+}
+SPINDRIFT_VECTORS GroupWriter putAttributesWithVectors(std::span<const std::uint64_t> items, AttributeStates& states,
+                                                       GroupWriter out) {
+  return putAttributes(items, states, out);
+}
 
 }  // namespace
 
@@ -92,8 +121,10 @@ void ParticleCellsEncoder::putCells(BitWriter& out) const {
   for (const OccupiedCell& cell : order_.cells()) {
     const auto gap_bits = static_cast<std::uint32_t>(std::bit_width(cell.gap));
     gap_code.put(gap_bits, cursor);
-    if (gap_bits > 1) cursor.put(cell.gap & ((1u << (gap_bits - 1)) - 1), gap_bits - 1);
-    cursor.flush();
+    if (gap_bits > 1) {
+      cursor.put(cell.gap & ((1u << (gap_bits - 1)) - 1), gap_bits - 1);
+      cursor.flush();
+    }
     half_code.put(cell.halves & 0xffu, cursor);
     half_code.put(cell.halves >> 8, cursor);
     cursor.flush();
@@ -106,29 +137,30 @@ void ParticleCellsEncoder::putCells(BitWriter& out) const {
 void ParticleCellsEncoder::putPlaces(std::uint32_t bit_count, BitWriter& out) const {
   const std::span<const std::uint64_t> items = order_.items();
   BitCursor cursor = out.begin(items.size() * bit_count / 8);
-  for (std::size_t i = 0; i < items.size(); ++i) {
+  std::size_t i = 0;
+  if (4 * bit_count <= 56) {
+    for (; i + 4 <= items.size(); i += 4) {
+      const std::uint64_t first = placeBitsOf(items[i]) | std::uint64_t{placeBitsOf(items[i + 1])} << bit_count;
+      const std::uint64_t second = placeBitsOf(items[i + 2]) | std::uint64_t{placeBitsOf(items[i + 3])} << bit_count;
+      cursor.putLong(first | second << (2 * bit_count), 4 * bit_count);
+      cursor.flush();
+    }
+  }
+  for (; i < items.size(); ++i) {
     cursor.put(placeBitsOf(items[i]), bit_count);
-    if (i % 2 != 0) cursor.flush();
+    cursor.flush();
   }
   out.end(cursor);
 }
 
 void ParticleCellsEncoder::putAttributes(ResidualEncoder& out) const {
-  const std::span<const std::uint64_t> items = order_.items();
-  std::array<AttributeState, kAttributeCount> states;
-  std::array<ResidualGroup, kAttributeCount> groups;
-  for (std::size_t begin = 0; begin < items.size(); begin += kGroupMaxCount) {
-    const std::size_t count = std::min(kGroupMaxCount, items.size() - begin);
-    if (count < kGroupMaxCount) groups = {};
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t word = attributesOf(items[begin + k]);
-      groups[0].of[k] = static_cast<std::int8_t>(word);
-      groups[1].of[k] = static_cast<std::int8_t>(word >> 8);
-      groups[2].of[k] = static_cast<std::int8_t>(word >> 16);
-      groups[3].of[k] = static_cast<std::int16_t>(word >> 24 & 3);
-      groups[4].of[k] = static_cast<std::int16_t>(word >> 26);
-    }
-    for (std::size_t a = 0; a < kAttributeCount; ++a) putAttribute(groups[a], count, states[a], out);
+  const auto put = usesVectors() ? putAttributesWithVectors : putAttributesPlainly;
+  std::span<const std::uint64_t> items = order_.items();
+  AttributeStates states;
+  while (!items.empty()) {
+    const std::size_t count = std::min(kGroupMaxCount, items.size());
+    out.end(put(items.first(count), states, out.begin(2 * kAttributeCount)));
+    items = items.subspan(count);
   }
 }
 
@@ -169,7 +201,7 @@ bool decodeParticleCells(ResidualDecoder& in, const CellGrid& grid, std::span<Ce
     p.place[2] = static_cast<std::uint16_t>(p.place[2] | (offsets >> low & mask));
     p.place[1] = static_cast<std::uint16_t>(p.place[1] | offsets >> (2 * low));
   }
-  std::array<AttributeState, kAttributeCount> states;
+  AttributeStates states;
   std::array<ResidualGroup, kAttributeCount> groups;
   for (std::size_t begin = 0; begin < particles.size(); begin += kGroupMaxCount) {
     const std::size_t count = std::min(kGroupMaxCount, particles.size() - begin);

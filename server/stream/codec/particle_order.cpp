@@ -5,6 +5,12 @@
 #include <bit>
 #include <utility>
 
+#include "processor.h"
+
+#if SPINDRIFT_HAS_VECTORS
+#include <immintrin.h>
+#endif
+
 namespace spindrift::stream {
 namespace {
 
@@ -25,9 +31,37 @@ std::uint64_t sumOfBytes(std::uint64_t bytes) {
   return ((bytes & kEven) + (bytes >> 8 & kEven)) * 0x0001000100010001u >> 48;
 }
 
-bool hasMany(std::uint64_t bytes) {
-  return ((((bytes & 0x7f * kEveryByte) + (0x80 - kManyCount) * kEveryByte) | bytes) & 0x80 * kEveryByte) != 0;
+/// The highest bit of each byte that is kManyCount or more.
+std::uint64_t whereMany(std::uint64_t bytes) {
+  return (((bytes & 0x7f * kEveryByte) + (0x80 - kManyCount) * kEveryByte) | bytes) & 0x80 * kEveryByte;
 }
+
+/// Bit k: word k of 64 is not 0.
+std::uint64_t notZero(std::span<const std::uint64_t> words) {
+  std::uint64_t out = 0;
+  for (std::size_t k = 0; k < 64; k += 8) {
+    std::uint64_t eight = 0;
+    for (std::size_t j = 0; j < 8; ++j) eight |= std::uint64_t{words[k + j] != 0} << j;
+    out |= eight << k;
+  }
+  return out;
+}
+
+#if SPINDRIFT_HAS_VECTORS
+__attribute__((target("avx2"))) std::uint64_t notZeroWithVectors(std::span<const std::uint64_t> words) {
+  std::uint64_t zero = 0;
+  for (std::size_t k = 0; k < 64; k += 4) {
+    const __m256i four = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words.data() + k));
+    const __m256d is_zero = _mm256_castsi256_pd(_mm256_cmpeq_epi64(four, _mm256_setzero_si256()));
+    zero |= std::uint64_t{static_cast<std::uint32_t>(_mm256_movemask_pd(is_zero))} << k;
+  }
+  return ~zero;
+}
+#else
+std::uint64_t notZeroWithVectors(std::span<const std::uint64_t> words) {
+  return notZero(words);
+}
+#endif
 
 }  // namespace
 
@@ -41,8 +75,8 @@ void ParticleOrder::sort(std::span<const std::uint32_t> keys, std::span<const st
 bool ParticleOrder::sortByCounting(std::span<const std::uint32_t> keys, std::span<const std::uint64_t> items,
                                    std::uint64_t cell_count) {
   static_assert(std::endian::native == std::endian::little, "byte e of a cell's word is its eighth e");
-  counts_.assign(cell_count, 0);
-  begins_.resize(cell_count);
+  if (counts_.size() < cell_count) counts_.resize((cell_count + 63) / 64 * 64);
+  begins_.resize(counts_.size());
   ranks_.resize(keys.size());
   items_.resize(keys.size());
   auto* bytes = reinterpret_cast<std::uint8_t*>(counts_.data());
@@ -53,35 +87,45 @@ bool ParticleOrder::sortByCounting(std::span<const std::uint32_t> keys, std::spa
     ranks[i] = rank;
     overflow |= (rank + 1u) & 0x100u;
   }
-  if (overflow != 0) return false;
+  if (overflow != 0) {
+    std::ranges::fill(counts_, 0);
+    return false;
+  }
   cells_.clear();
   extras_.clear();
+  const auto find = usesVectors() ? notZeroWithVectors : notZero;
   std::uint32_t begin = 0, next_cell = 0;
-  const std::uint64_t* words = counts_.data();
-  for (std::uint32_t cell = 0; cell < cell_count; ++cell) {
-    while (cell + 4 <= cell_count && (words[cell] | words[cell + 1] | words[cell + 2] | words[cell + 3]) == 0)
-      cell += 4;
-    if (cell == cell_count) break;
-    std::uint64_t counts = words[cell];
-    if (counts == 0) continue;
-    const std::uint64_t sum = sumOfBytes(counts);
-    if (sum > 255) return false;
-    begins_[cell] = begin;
-    counts_[cell] = (counts * kEveryByte) << 8;
-    begin += static_cast<std::uint32_t>(sum);
-    if (hasMany(counts)) {
-      for (int shift = 0; shift < 64; shift += 8) {
-        const auto count = static_cast<std::uint32_t>(counts >> shift & 0xffu);
-        if (count < kManyCount) continue;
-        extras_.push_back(count - kManyCount);
-        counts -= std::uint64_t{count - kManyCount} << shift;
+  for (std::uint64_t first = 0; first < cell_count; first += 64) {
+    const std::span<std::uint64_t> some = std::span(counts_).subspan(first, 64);
+    for (std::uint64_t occupied = find(some); occupied != 0; occupied &= occupied - 1) {
+      const auto cell = static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(occupied));
+      std::uint64_t counts = counts_[cell];
+      const std::uint64_t sum = sumOfBytes(counts);
+      if (sum > 255) {
+        std::ranges::fill(counts_, 0);
+        return false;
       }
+      begins_[cell] = begin;
+      counts_[cell] = (counts * kEveryByte) << 8;
+      begin += static_cast<std::uint32_t>(sum);
+      for (std::uint64_t many = whereMany(counts); many != 0; many &= many - 1) {
+        const int shift = std::countr_zero(many) - 7;
+        const std::uint64_t extra = (counts >> shift & 0xffu) - kManyCount;
+        extras_.push_back(static_cast<std::uint32_t>(extra));
+        counts -= extra << shift;
+      }
+      cells_.push_back({cell - next_cell, packedPairs(counts)});
+      next_cell = cell + 1;
     }
-    cells_.push_back({cell - next_cell, packedPairs(counts)});
-    next_cell = cell + 1;
   }
   std::uint64_t* sorted = items_.data();
   for (std::size_t i = 0; i < keys.size(); ++i) sorted[begins_[keys[i] >> 3] + bytes[keys[i]] + ranks[i]] = items[i];
+  // The next frame finds zeros.
+  std::uint32_t used = 0;
+  for (const OccupiedCell& cell : cells_) {
+    used += cell.gap;
+    counts_[used++] = 0;
+  }
   return true;
 }
 

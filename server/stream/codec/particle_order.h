@@ -39,7 +39,9 @@ class ParticleOrder {
   std::vector<std::uint64_t> items_;
   std::vector<OccupiedCell> cells_;
   std::vector<std::uint32_t> extras_;
-  std::vector<std::uint64_t> counts_;  ///< of a cell's eighths, a byte each; later how many particles come before
+  /// Of a cell's eighths, a byte each; later how many particles come before. All zero between two frames; a multiple
+  /// of 64.
+  std::vector<std::uint64_t> counts_;
   std::vector<std::uint32_t> begins_;  ///< of cells
   std::vector<std::uint8_t> ranks_;    ///< of particles in their eighths
   std::vector<Entry> entries_, scratch_;

@@ -6,7 +6,9 @@
 #include <array>
 #include <limits>
 
-#if defined(__x86_64__)
+#include "processor.h"
+
+#if SPINDRIFT_HAS_VECTORS
 #include <immintrin.h>
 #endif
 
@@ -60,7 +62,7 @@ std::int16_t residualAt(const std::int16_t* here, const KnownSamples& known, std
   return static_cast<std::int16_t>(here[x] - predictionOf(from_history, known, weights));
 }
 
-#if defined(__x86_64__)
+#if SPINDRIFT_HAS_VECTORS
 
 bool fits16Bits(const SurfaceWeights& weights) {
   return std::ranges::all_of(weights.of, [](std::int32_t w) {
@@ -129,14 +131,52 @@ __attribute__((target("avx2"))) void residualsInSixteens(const std::int16_t* her
   }
 }
 
+SPINDRIFT_AVX2 __m256i load(const std::int16_t* p) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
+}
+SPINDRIFT_AVX2 __m256i sumOf(const std::int16_t* a, const std::int16_t* b, const std::int16_t* c,
+                             const std::int16_t* d) {
+  return _mm256_add_epi16(_mm256_add_epi16(load(a), load(b)), _mm256_add_epi16(load(c), load(d)));
+}
+SPINDRIFT_AVX2 void add(Sums& sums, __m256i a, __m256i b, __m256i weights) {
+  sums.low = _mm256_add_epi32(sums.low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a, b), weights));
+  sums.high = _mm256_add_epi32(sums.high, _mm256_madd_epi16(_mm256_unpackhi_epi16(a, b), weights));
+}
+
+/// The same where sums of four samples fit into 16 bits: neighbours are added before they are weighed.
+__attribute__((target("avx2"))) void smallResidualsInSixteens(const std::int16_t* here, const std::int16_t* above,
+                                                              const Rows& rows, std::span<std::int16_t> out) {
+  const auto [b0, bn, bs, bnn, bss, e0, en, es, weights] = rows;
+  const auto& w = weights.of;
+  const __m256i before_nearest = pairOf(w[W::kBefore], w[W::kBeforeNearest]);
+  const __m256i diagonal_far = pairOf(w[W::kBeforeDiagonal], w[W::kBeforeFar]);
+  const __m256i earlier_nearest = pairOf(w[W::kEarlier], w[W::kEarlierNearest]);
+  const __m256i diagonal_corner = pairOf(w[W::kEarlierDiagonal], w[W::kNorthWest]);
+  const __m256i west_north = pairOf(w[W::kWest], w[W::kNorth]);
+  // The last sixteen overlap those before them.
+  const std::size_t last = out.size() - 16;
+  for (std::size_t x = 1;; x = std::min(x + 16, last)) {
+    Sums sums{_mm256_set1_epi32(kHalf), _mm256_set1_epi32(kHalf)};
+    add(sums, load(b0 + x), sumOf(b0 + x - 1, b0 + x + 1, bn + x, bs + x), before_nearest);
+    add(sums, sumOf(bn + x - 1, bn + x + 1, bs + x - 1, bs + x + 1), sumOf(b0 + x - 2, b0 + x + 2, bnn + x, bss + x),
+        diagonal_far);
+    add(sums, load(e0 + x), sumOf(e0 + x - 1, e0 + x + 1, en + x, es + x), earlier_nearest);
+    add(sums, sumOf(en + x - 1, en + x + 1, es + x - 1, es + x + 1), load(above + x - 1), diagonal_corner);
+    add(sums, load(here + x - 1), load(above + x), west_north);
+    const __m256i prediction = _mm256_packs_epi32(shifted(sums.low), shifted(sums.high));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.data() + x), _mm256_sub_epi16(load(here + x), prediction));
+    if (x == last) break;
+  }
+}
+
 bool hasSixteens(const SurfaceWeights& weights) {
-  static const bool kHasAvx2 = __builtin_cpu_supports("avx2") != 0;
-  return kHasAvx2 && fits16Bits(weights);
+  return usesVectors() && fits16Bits(weights);
 }
 
 #else
 
 void residualsInSixteens(const std::int16_t*, const std::int16_t*, const Rows&, std::span<std::int16_t>) {}
+void smallResidualsInSixteens(const std::int16_t*, const std::int16_t*, const Rows&, std::span<std::int16_t>) {}
 bool hasSixteens(const SurfaceWeights&) {
   return false;
 }
@@ -161,7 +201,9 @@ void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, co
   const std::int16_t* above = plane.row(at - 1);
   std::size_t begin = 1;
   if (z > 0 && out.size() > 16 && hasSixteens(weights)) {
-    residualsInSixteens(here, above, rows, out);
+    const bool is_small = plane.isSmall() && (history.before == nullptr || history.before->isSmall()) &&
+                          (history.earlier == nullptr || history.earlier->isSmall());
+    (is_small ? smallResidualsInSixteens : residualsInSixteens)(here, above, rows, out);
     begin = out.size();
   }
   fromHistory(rows, 0, sums.first(1));

@@ -21,6 +21,14 @@ class PrefixWriter {
   explicit PrefixWriter(std::span<const std::uint8_t> lengths);
 
   void put(std::size_t symbol, BitCursor& out) const { out.put(words_[symbol] & 0xffffu, words_[symbol] >> 16); }
+  /// One behind the other, 44 bits at most. Joined in pairs, so that only one step of three waits for the bits before.
+  void putFour(std::size_t a, std::size_t b, std::size_t c, std::size_t d, BitCursor& out) const {
+    const std::uint32_t wa = words_[a], wb = words_[b], wc = words_[c], wd = words_[d];
+    const std::uint64_t ab = (wa & 0xffffu) | std::uint64_t{wb & 0xffffu} << (wa >> 16);
+    const std::uint64_t cd = (wc & 0xffffu) | std::uint64_t{wd & 0xffffu} << (wc >> 16);
+    const std::uint32_t ab_bits = (wa >> 16) + (wb >> 16), cd_bits = (wc >> 16) + (wd >> 16);
+    out.putLong(ab | cd << ab_bits, ab_bits + cd_bits);
+  }
 
  private:
   std::array<std::uint32_t, kMaxSymbolCount> words_{};  ///< code | length << 16

@@ -22,8 +22,13 @@ struct alignas(32) ResidualGroup {
   std::array<std::int16_t, kGroupMaxCount> of{};
 };
 
+struct GroupWriter;
+
 class ResidualEncoder {
  public:
+  /// To write up to so many groups with; end() takes note of them.
+  GroupWriter begin(std::size_t group_count);
+  void end(const GroupWriter& writer);
   /// `left` and `above`: the classes of the groups before it in two directions, 0 where there is none; along a line
   /// both are the one before. Returns the group's class.
   std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left, std::uint32_t above);

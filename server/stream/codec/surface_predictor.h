@@ -52,6 +52,8 @@ class SurfacePlane {
   void assign(std::span<const std::uint8_t> samples);
   /// Writes the border from the samples inside.
   void fillBorder();
+  /// Whether sums of four samples fit into 16 bits for sure: known of planes that were assigned.
+  [[nodiscard]] bool isSmall() const { return is_small_; }
 
  private:
   [[nodiscard]] std::size_t offsetOf(std::ptrdiff_t z) const {
@@ -59,6 +61,7 @@ class SurfacePlane {
   }
 
   std::size_t n_ = 0;
+  bool is_small_ = false;
   std::vector<std::int16_t> samples_;
 };
 

@@ -72,6 +72,22 @@ TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
   EXPECT_EQ(stuck.receive(), core::Bytes(1000, kFrameCount - 1));
 }
 
+TEST(Outflow, PutsNothingIntoAFrameThatGoesOutInPieces) {
+  TestServer served;
+  WsClient slow = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  core::Bytes frame(kHugeFrameBytes);
+  for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<std::uint8_t>(k * 13 + k / 65'521);
+  served.server->hub().publish("pool", 1, {core::share(frame), {}});
+  ASSERT_TRUE(eventually([&] { return served.server->stats().waiting_frame_count == 0; }));
+  // The write is out and cannot end; its rest is offered to the kernel again and again while these are answered.
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_TRUE(slow.sendPing());
+    ASSERT_TRUE(slow.sendBinary(bytes("echo " + std::to_string(k))));
+  }
+  EXPECT_TRUE(slow.receive() == frame);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(text(slow.receive()), "echo " + std::to_string(k));
+}
+
 TEST(Outflow, EvictsAClientWhoseWriteStalls) {
   TestServer served({.write_stall_timeout = std::chrono::milliseconds(200)});
   const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);

@@ -1,0 +1,171 @@
+// How long the encoder takes for recorded frames of a scene, on one core. Recording and measuring are apart, so that
+// two builds can be measured in turn on the same frames; the check sum says whether they wrote the same bytes.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/gpu/context.h>
+#include <spindrift/sim/water_sim.h>
+#include <spindrift/stream/crc32c.h>
+#include <spindrift/stream/frame_encoder.h>
+#include <spindrift/stream/scene_loader.h>
+
+#include "codec/processor.h"
+
+namespace {
+
+using namespace spindrift;
+
+int failWith(const char* message) {
+  std::fprintf(stderr, "%s\n", message);
+  return 1;
+}
+
+/// What a FrameView points to, and the numbers beside it.
+struct RecordedFrame {
+  core::SurfaceView surface{};
+  core::ParticleView particles{};
+  std::vector<std::uint32_t> surface_words, particle_words;
+
+  [[nodiscard]] core::FrameView view(std::uint64_t tick) const {
+    core::FrameView out;
+    out.tick = tick;
+    out.surface = surface;
+    out.surface->words = surface_words;
+    out.particles = particles;
+    out.particles->words = particle_words;
+    return out;
+  }
+};
+
+/// Views as they lie in memory, their words behind them: a file for this machine and this build's layout only.
+int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
+  auto loaded = stream::loadSceneFile(scene_file, std::nullopt);
+  if (!loaded) return failWith(loaded.error().message.c_str());
+  const core::Scene scene = stream::toCore(*loaded);
+  auto ctx = gpu::Context::create(*gpu::parseDeviceChoice("auto"));
+  if (!ctx) return failWith(ctx.error().message.c_str());
+  auto sim = sim::WaterSim::create(**ctx, scene);
+  if (!sim) return failWith(sim.error().message.c_str());
+  if (!scene.wave || !scene.particles) return failWith("the scene has to have a surface and particles");
+  double next_s = 1.0;  // the first effect
+  for (std::size_t count = 0; count < frame_count;) {
+    (*sim)->step();
+    if ((*sim)->time_s() + 1e-9 < next_s) continue;
+    next_s += 1.0 / scene.stream.frame_rate_hz;
+    (void)(*sim)->requestFrame({.surface = true, .particles = true});
+    (*ctx)->finish();
+    for (const core::FrameView& frame : (*sim)->takeFrames()) {
+      const auto surface = std::as_bytes(frame.surface->words), particles = std::as_bytes(frame.particles->words);
+      if (std::fwrite(&*frame.surface, sizeof *frame.surface, 1, out) != 1 ||
+          std::fwrite(&*frame.particles, sizeof *frame.particles, 1, out) != 1 ||
+          std::fwrite(surface.data(), 1, surface.size(), out) != surface.size() ||
+          std::fwrite(particles.data(), 1, particles.size(), out) != particles.size())
+        return failWith("cannot write");
+      ++count;
+    }
+  }
+  return 0;
+}
+
+std::vector<RecordedFrame> read(std::FILE* in) {
+  std::vector<RecordedFrame> frames;
+  RecordedFrame frame;
+  while (std::fread(&frame.surface, sizeof frame.surface, 1, in) == 1 &&
+         std::fread(&frame.particles, sizeof frame.particles, 1, in) == 1) {
+    const std::size_t n = frame.surface.resolution_count;
+    frame.surface_words.resize(n * n / 2);
+    frame.particle_words.resize(3 * std::size_t{frame.particles.count});
+    if (std::fread(frame.surface_words.data(), 4, frame.surface_words.size(), in) != frame.surface_words.size() ||
+        std::fread(frame.particle_words.data(), 4, frame.particle_words.size(), in) != frame.particle_words.size())
+      break;
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+double threadCpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+/// CPU time of each layer's frames that continue, over the rounds: a frame's least, its mean, both averaged over
+/// frames.
+int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
+  if (frames.size() < 2) return failWith("no frames in that file");
+  constexpr std::array kLayers = {v1::LAYER_SURFACE, v1::LAYER_PARTICLES};
+  struct Times {
+    std::vector<double> least_ms;
+    double sum_ms = 0.0, bytes = 0.0;
+  };
+  std::array<Times, kLayers.size()> times;
+  core::Bytes sums;
+  for (Times& t : times) t.least_ms.assign(frames.size(), 1e9);
+  for (std::size_t round = 0; round < rounds; ++round) {
+    stream::FrameEncoder encoder;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const core::FrameView view = frames[i].view(i + 1);
+      for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
+        const double begin_ms = threadCpu_ms();
+        const stream::EncodedFrame encoded = encoder.encode({kLayers[layer], v1::PACKING_PACKED}, view, false);
+        const double ms = threadCpu_ms() - begin_ms;
+        const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+        if (round == 0) {
+          const std::uint32_t crc = stream::crc32c(*bytes);
+          sums.insert(sums.end(), reinterpret_cast<const std::uint8_t*>(&crc),
+                      reinterpret_cast<const std::uint8_t*>(&crc) + sizeof crc);
+        }
+        if (i == 0) continue;
+        times[layer].least_ms[i] = std::min(times[layer].least_ms[i], ms);
+        times[layer].sum_ms += ms;
+        times[layer].bytes += static_cast<double>(bytes->size());
+      }
+    }
+  }
+  const auto measured = static_cast<double>(frames.size() - 1);
+  double least_ms = 0.0, mean_ms = 0.0;
+  for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
+    double sum = 0.0;
+    for (std::size_t i = 1; i < frames.size(); ++i) sum += times[layer].least_ms[i];
+    const double mean = times[layer].sum_ms / measured / static_cast<double>(rounds);
+    std::printf("%-16s least %.3f ms, mean %.3f ms, %.0f bytes a frame\n", v1::Layer_Name(kLayers[layer]).c_str(),
+                sum / measured, mean, times[layer].bytes / measured / static_cast<double>(rounds));
+    least_ms += sum / measured;
+    mean_ms += mean;
+  }
+  std::printf("both             least %.3f ms, mean %.3f ms; %zu frames, %zu rounds, check sum %08x\n", least_ms,
+              mean_ms, frames.size() - 1, rounds, static_cast<unsigned>(stream::crc32c(sums)));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view verb = argc > 1 ? argv[1] : "";
+  const bool records = verb == "record" && argc == 5;
+  const bool measures = verb == "measure" && (argc == 4 || (argc == 5 && std::string_view(argv[4]) == "plain"));
+  if (!records && !measures) {
+    std::fprintf(stderr,
+                 "usage: encode_times record SCENE.textproto FRAMES FILE\n"
+                 "       encode_times measure FILE ROUNDS [plain]   (plain: without AVX2)\n");
+    return 2;
+  }
+  std::FILE* file = std::fopen(records ? argv[4] : argv[2], records ? "wb" : "rb");
+  if (file == nullptr) return failWith("cannot open that file");
+  if (records) {
+    const int code = record(argv[2], static_cast<std::size_t>(std::atoi(argv[3])), file);
+    return std::fclose(file) == 0 ? code : 1;
+  }
+  if (argc == 5) stream::useVectors(false);
+  const std::vector<RecordedFrame> frames = read(file);
+  (void)std::fclose(file);
+  return measure(frames, static_cast<std::size_t>(std::atoi(argv[3])));
+}
