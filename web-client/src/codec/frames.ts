@@ -4,7 +4,6 @@ import { crc32c } from "./crc32c";
 import { malformed, type Malformed } from "./malformed";
 import { unpackParticles } from "./packed_particles";
 import type { PackedFoam, PackedSurface } from "./packed_planes";
-import { kWeightCount } from "./surface_predictor";
 
 /** Largest grid side and counts this client takes; all far above what a server sends. */
 export const kMaxResolutionCount = 4096;
@@ -12,6 +11,8 @@ export const kMaxParticleCount = 4 * 1024 * 1024;
 export const kMaxBodyCount = 1024;
 export const kParticleBytes = 12;
 export const kBodyBytes = 28;
+/** Of a packed plane. */
+export const kWeightCount = 10;
 /** Bits of a packed particle's place within its cell; places along an axis; cells. */
 const kMaxOffsetBits = 8;
 const kMaxPlaceCount = 65536;

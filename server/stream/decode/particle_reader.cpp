@@ -1,0 +1,199 @@
+#include "particle_reader.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "codec/particle_format.h"
+#include "prefix_slots.h"
+#include "residual_reader.h"
+
+namespace spindrift::stream {
+namespace {
+
+bool isWithinBounds(const ParticleShape& shape) {
+  if (shape.count > kParticleReadMaxCount || shape.offset_bits < 1 || shape.offset_bits > kOffsetBitsMax) return false;
+  std::uint64_t total = 1;
+  for (const std::uint32_t cells : shape.cells_count) {
+    if (cells < 1 || cells > kCoordinateMaxCount >> shape.offset_bits) return false;
+    total *= cells;
+  }
+  return total <= kCellMaxCount;
+}
+
+std::uint32_t getGamma(BitSource& in) {
+  std::uint32_t bits = 0;
+  while (bits < kMaxGammaBits && in.get(1) == 0) ++bits;
+  return ((1u << bits) | in.get(bits)) - 1;
+}
+
+/// x, z, y of 16 bits each, as they stand in a particle's words.
+constexpr std::uint64_t placeOf(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  return x | z << 16 | y << 32;
+}
+
+/// Writes what cells hold: for each particle the place of its eighth.
+class CellReader {
+ public:
+  CellReader(const ParticleShape& shape, std::uint8_t* out) : shape_(shape), out_(out), left_(shape.count) {
+    const std::uint32_t low = shape.offset_bits - 1;
+    for (std::size_t e = 0; e < 8; ++e) eighths_[e] = placeOf(e >> 2, e & 1, e >> 1 & 1) << low;
+  }
+
+  bool read(BitSource& from) {
+    PrefixSlots half_code, gap_code;
+    if (!half_code.read(kHalfSymbolCount, from) || !gap_code.read(kGapSymbolCount, from)) return false;
+    BitSource bits = from;  // a copy stays in registers
+    const auto [cells_x, cells_y, cells_z] = shape_.cells_count;
+    std::uint32_t x = 0, y = 0, z = 0;
+    for (; left_ > 0; ++y) {
+      // At most 11 bits of the gap, 23 that are raw, 22 of the halves.
+      bits.prepare();
+      std::uint64_t window = bits.peek();
+      const Slot gap = gap_code[window];
+      window >>= gap.length;
+      std::uint32_t taken = gap.length;
+      if (gap.symbol > 1) {
+        const std::uint32_t raw_bits = gap.symbol - 1u;
+        y += 1u << raw_bits | (static_cast<std::uint32_t>(window) & ((1u << raw_bits) - 1));
+        window >>= raw_bits;
+        taken += raw_bits;
+      } else {
+        y += gap.symbol;
+      }
+      if (y >= cells_y) {
+        x += y / cells_y;
+        y %= cells_y;
+        z += x / cells_x;
+        x %= cells_x;
+        if (z >= cells_z) return false;
+      }
+      const Slot low_half = half_code[window], high_half = half_code[window >> low_half.length];
+      bits.take(taken + low_half.length + high_half.length);
+      const std::uint32_t halves = low_half.symbol | static_cast<std::uint32_t>(high_half.symbol) << 8;
+      if (halves == 0) return false;  // a cell that is named holds something
+      const std::uint64_t corner = placeOf(x, y, z) << shape_.offset_bits;
+      const bool has_many = (halves & halves >> 1 & 0x5555u) != 0;
+      if (!has_many && left_ >= kSureCount)
+        putFew(corner, halves);
+      else if (!putMany(corner, halves, bits))
+        return false;
+    }
+    from = bits;
+    return true;
+  }
+
+ private:
+  /// As many as eight eighths of at most two hold.
+  static constexpr std::uint32_t kSureCount = 16;
+
+  void put(std::uint8_t* at, std::uint64_t place) { std::memcpy(at, &place, sizeof place); }
+  /// No eighth holds more than two: both are written, and the second counts where it is there.
+  void putFew(std::uint64_t corner, std::uint32_t halves) {
+    std::uint8_t* at = out_;
+    for (std::size_t e = 0; e < 8; ++e, halves >>= 2) {
+      put(at, corner + eighths_[e]);
+      put(at + kParticleWordBytes, corner + eighths_[e]);
+      at += kParticleWordBytes * (halves & 3u);
+    }
+    left_ -= static_cast<std::uint32_t>(static_cast<std::size_t>(at - out_) / kParticleWordBytes);
+    out_ = at;
+  }
+  bool putMany(std::uint64_t corner, std::uint32_t halves, BitSource& bits) {
+    for (std::size_t e = 0; e < 8; ++e, halves >>= 2) {
+      std::uint32_t count = halves & 3u;
+      if (count == kManyCount) count += getGamma(bits);
+      if (count > left_) return false;
+      left_ -= count;
+      for (; count > 0; --count, out_ += kParticleWordBytes) put(out_, corner + eighths_[e]);
+    }
+    return true;
+  }
+
+  const ParticleShape& shape_;
+  std::uint8_t* out_;
+  std::uint32_t left_;
+  std::array<std::uint64_t, 8> eighths_;
+};
+
+/// One attribute of the particles from group to group: values are the mean plus what differs from it.
+struct Attribute {
+  ResidualGroup values;
+  std::int16_t mean = 0;
+  std::uint32_t mean_class = 0;
+  std::uint32_t group_class = 0;
+
+  void read(ResidualReader& in, std::size_t count) {
+    ResidualGroup& step = values;
+    mean_class = in.group(step, 1, mean_class, mean_class);
+    mean = static_cast<std::int16_t>(mean + step.of[0]);
+    group_class = in.group(values, count, group_class, group_class);
+    for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value + mean);
+  }
+};
+
+constexpr std::uint32_t byteOf(std::int16_t velocity) {
+  return static_cast<std::uint8_t>(std::clamp<std::int16_t>(velocity, -127, 127));
+}
+/// floor(255 / 7 tint) in whole numbers.
+constexpr std::uint32_t tintOf(std::int16_t tint) {
+  return static_cast<std::uint32_t>(std::clamp<std::int16_t>(tint, 0, 7)) * 1166u >> 5;
+}
+static_assert(tintOf(1) == 36 && tintOf(2) == 72 && tintOf(3) == 109 && tintOf(4) == 145 && tintOf(5) == 182 &&
+              tintOf(6) == 218 && tintOf(7) == 255);
+constexpr std::uint32_t foamOf(std::int16_t foam) {
+  return static_cast<std::uint32_t>(std::clamp<std::int16_t>(foam, 0, 3)) * 85u;
+}
+
+/// The low bits of places, and velocity, foam and tint behind them.
+class WordWriter {
+ public:
+  WordWriter(std::uint32_t offset_bits, const BitSource& bits)
+      : bits_(bits), at_(bits.place()), low_(offset_bits - 1) {}
+
+  void write(ResidualReader& in, std::size_t count, std::uint8_t* out) {
+    for (Attribute* attribute : {&vx_, &vy_, &vz_, &foam_, &tint_}) attribute->read(in, count);
+    alignas(16) std::array<std::uint16_t, kGroupMaxCount> head;
+    alignas(16) std::array<std::uint32_t, kGroupMaxCount> tail;
+    for (std::size_t k = 0; k < kGroupMaxCount; ++k) {
+      head[k] = static_cast<std::uint16_t>(byteOf(vx_.values.of[k]) | byteOf(vy_.values.of[k]) << 8);
+      tail[k] = byteOf(vz_.values.of[k]) | tintOf(tint_.values.of[k]) << 8 | foamOf(foam_.values.of[k]) << 16;
+    }
+    const BitSource bits = bits_;  // copies stay in registers
+    const std::uint32_t low = low_;
+    const std::uint64_t mask = (1u << low) - 1;
+    std::uint32_t place = at_;
+    for (std::size_t k = 0; k < count; ++k, out += kParticleWordBytes, place += 3 * low) {
+      const std::uint64_t offsets = bits.peekAt(place);
+      std::uint64_t word = 0;
+      std::memcpy(&word, out, sizeof word);
+      word |= (offsets & mask) | (offsets >> low & mask) << 16 | (offsets >> 2 * low & mask) << 32 |
+              std::uint64_t{head[k]} << 48;
+      std::memcpy(out, &word, sizeof word);
+      std::memcpy(out + sizeof word, &tail[k], sizeof tail[k]);
+    }
+    at_ = place;
+  }
+
+ private:
+  const BitSource bits_;
+  std::uint32_t at_;  ///< of the next particle's offsets
+  std::uint32_t low_;
+  Attribute vx_, vy_, vz_, foam_, tint_;
+};
+
+}  // namespace
+
+bool readParticles(const std::uint8_t* payload, std::uint32_t byte_count, const ParticleShape& shape,
+                   std::uint8_t* out) {
+  if (!isWithinBounds(shape) || byte_count > BitSource::kMaxBytes) return false;
+  ResidualReader in(payload, byte_count);
+  if (!CellReader(shape, out).read(in.bits())) return false;
+  WordWriter words(shape.offset_bits, in.bits());
+  if (!in.bits().skip(std::uint64_t{shape.count} * 3 * (shape.offset_bits - 1))) return false;
+  for (std::size_t begin = 0; begin < shape.count; begin += kGroupMaxCount)
+    words.write(in, std::min(kGroupMaxCount, shape.count - begin), out + begin * kParticleWordBytes);
+  return in.isAtEnd();
+}
+
+}  // namespace spindrift::stream
