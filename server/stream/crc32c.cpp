@@ -8,6 +8,8 @@
 #include <nmmintrin.h>
 #endif
 
+#include "decode/checksum.h"
+
 namespace spindrift::stream {
 namespace {
 

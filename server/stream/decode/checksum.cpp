@@ -11,7 +11,7 @@ static_assert(std::endian::native == std::endian::little, "eight bytes are loade
 
 constexpr std::uint32_t kReflectedPolynomial = 0x82F63B78u;
 
-using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
+using Tables = std::array<std::array<std::uint32_t, 256>, 16>;
 
 /// tables[k][b]: the checksum of byte b followed by k zero bytes.
 constexpr Tables makeTables() {
@@ -36,12 +36,14 @@ constexpr Tables kTables = makeTables();
 
 std::uint32_t crc32cByTables(const std::uint8_t* at, std::size_t byte_count) {
   std::uint32_t crc = ~0u;
-  for (; byte_count >= 8; byte_count -= 8, at += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, at, sizeof word);
-    word ^= crc;
+  for (; byte_count >= 16; byte_count -= 16, at += 16) {
+    std::uint64_t low = 0, high = 0;
+    std::memcpy(&low, at, sizeof low);
+    std::memcpy(&high, at + sizeof low, sizeof high);
+    low ^= crc;
     crc = 0;
-    for (unsigned k = 0; k < 8; ++k) crc ^= kTables[7 - k][(word >> (8 * k)) & 0xFFu];
+    for (unsigned k = 0; k < 8; ++k)
+      crc ^= kTables[15 - k][(low >> (8 * k)) & 0xFFu] ^ kTables[7 - k][(high >> (8 * k)) & 0xFFu];
   }
   for (; byte_count > 0; --byte_count, ++at) crc = (crc >> 8) ^ kTables[0][(crc ^ *at) & 0xFFu];
   return ~crc;

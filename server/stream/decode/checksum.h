@@ -1,4 +1,4 @@
-// CRC-32C by tables, eight bytes a turn: where the machine has no instruction for it.
+// CRC-32C by tables, sixteen bytes a turn: where the machine has no instruction for it.
 #pragma once
 
 #include <cstddef>

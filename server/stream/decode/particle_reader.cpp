@@ -7,9 +7,12 @@
 #include "codec/particle_format.h"
 #include "prefix_slots.h"
 #include "residual_reader.h"
+#include "short_vectors.h"
 
 namespace spindrift::stream {
 namespace {
+
+constexpr std::uint32_t kUsualOffsetBits = 5;
 
 bool isWithinBounds(const ParticleShape& shape) {
   if (shape.count > kParticleReadMaxCount || shape.offset_bits < 1 || shape.offset_bits > kOffsetBitsMax) return false;
@@ -32,6 +35,19 @@ constexpr std::uint64_t placeOf(std::uint64_t x, std::uint64_t y, std::uint64_t 
   return x | z << 16 | y << 32;
 }
 
+/// For the counts of four eighths, two bits each: how many particles lie before the end of each, a byte each.
+constexpr std::array<std::uint32_t, kHalfSymbolCount> makeEnds() {
+  std::array<std::uint32_t, kHalfSymbolCount> ends{};
+  for (std::uint32_t symbol = 0; symbol < ends.size(); ++symbol) {
+    for (std::uint32_t e = 0, count = 0; e < 4; ++e) {
+      count += symbol >> (2 * e) & 3u;
+      ends[symbol] |= count << (8 * e);
+    }
+  }
+  return ends;
+}
+constexpr std::array<std::uint32_t, kHalfSymbolCount> kEnds = makeEnds();
+
 /// Writes what cells hold: for each particle the place of its eighth.
 class CellReader {
  public:
@@ -51,31 +67,32 @@ class CellReader {
       bits.prepare();
       std::uint64_t window = bits.peek();
       const Slot gap = gap_code[window];
+      const std::uint32_t raw_bits = gap.symbol - (gap.symbol > 0 ? 1u : 0u);
       window >>= gap.length;
-      std::uint32_t taken = gap.length;
-      if (gap.symbol > 1) {
-        const std::uint32_t raw_bits = gap.symbol - 1u;
-        y += 1u << raw_bits | (static_cast<std::uint32_t>(window) & ((1u << raw_bits) - 1));
-        window >>= raw_bits;
-        taken += raw_bits;
-      } else {
-        y += gap.symbol;
-      }
+      const std::uint32_t one = gap.symbol > 0 ? 1u : 0u;
+      y += (one << raw_bits) + (static_cast<std::uint32_t>(window) & ((1u << raw_bits) - 1));
+      window >>= raw_bits;
+      // Mostly the next column, if another at all: no branch to foresee.
+      const std::uint32_t is_beyond = y >= cells_y ? 1 : 0;
+      y -= cells_y & (0 - is_beyond);
+      x += is_beyond;
       if (y >= cells_y) {
         x += y / cells_y;
         y %= cells_y;
+      }
+      if (x >= cells_x) {
         z += x / cells_x;
         x %= cells_x;
         if (z >= cells_z) return false;
       }
       const Slot low_half = half_code[window], high_half = half_code[window >> low_half.length];
-      bits.take(taken + low_half.length + high_half.length);
+      bits.take(gap.length + raw_bits + low_half.length + high_half.length);
       const std::uint32_t halves = low_half.symbol | static_cast<std::uint32_t>(high_half.symbol) << 8;
       if (halves == 0) return false;  // a cell that is named holds something
       const std::uint64_t corner = placeOf(x, y, z) << shape_.offset_bits;
       const bool has_many = (halves & halves >> 1 & 0x5555u) != 0;
       if (!has_many && left_ >= kSureCount)
-        putFew(corner, halves);
+        putFew(corner, low_half.symbol, high_half.symbol);
       else if (!putMany(corner, halves, bits))
         return false;
     }
@@ -87,17 +104,22 @@ class CellReader {
   /// As many as eight eighths of at most two hold.
   static constexpr std::uint32_t kSureCount = 16;
 
-  void put(std::uint8_t* at, std::uint64_t place) { std::memcpy(at, &place, sizeof place); }
-  /// No eighth holds more than two: both are written, and the second counts where it is there.
-  void putFew(std::uint64_t corner, std::uint32_t halves) {
-    std::uint8_t* at = out_;
-    for (std::size_t e = 0; e < 8; ++e, halves >>= 2) {
-      put(at, corner + eighths_[e]);
-      put(at + kParticleWordBytes, corner + eighths_[e]);
-      at += kParticleWordBytes * (halves & 3u);
+  static void put(std::uint8_t* at, std::uint64_t place) { std::memcpy(at, &place, sizeof place); }
+  /// No eighth holds more than two: two are written for each, and the next eighth begins behind those that are there.
+  void putFew(std::uint64_t corner, std::size_t low_half, std::size_t high_half) {
+    const std::uint32_t low_ends = kEnds[low_half];
+    const std::uint32_t high_ends = kEnds[high_half] + (low_ends >> 24) * 0x01010101u;
+    const std::uint64_t ends = low_ends | std::uint64_t{high_ends} << 32;
+    const std::uint64_t begins = ends << 8;
+    std::uint8_t* const out = out_;
+    for (std::size_t e = 0; e < 8; ++e) {
+      std::uint8_t* const at = out + kParticleWordBytes * (begins >> (8 * e) & 0xffu);
+      const std::uint64_t place = corner + eighths_[e];
+      put(at, place);
+      put(at + kParticleWordBytes, place);
     }
-    left_ -= static_cast<std::uint32_t>(static_cast<std::size_t>(at - out_) / kParticleWordBytes);
-    out_ = at;
+    left_ -= high_ends >> 24;
+    out_ = out + kParticleWordBytes * (high_ends >> 24);
   }
   bool putMany(std::uint64_t corner, std::uint32_t halves, BitSource& bits) {
     for (std::size_t e = 0; e < 8; ++e, halves >>= 2) {
@@ -110,7 +132,7 @@ class CellReader {
     return true;
   }
 
-  const ParticleShape& shape_;
+  const ParticleShape shape_;
   std::uint8_t* out_;
   std::uint32_t left_;
   std::array<std::uint64_t, 8> eighths_;
@@ -128,6 +150,7 @@ struct Attribute {
     mean_class = in.group(step, 1, mean_class, mean_class);
     mean = static_cast<std::int16_t>(mean + step.of[0]);
     group_class = in.group(values, count, group_class, group_class);
+    if (group_class == 0) return fill64(values.of.data(), mean);
     for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value + mean);
   }
 };
@@ -145,42 +168,65 @@ constexpr std::uint32_t foamOf(std::int16_t foam) {
   return static_cast<std::uint32_t>(std::clamp<std::int16_t>(foam, 0, 3)) * 85u;
 }
 
-/// The low bits of places, and velocity, foam and tint behind them.
-class WordWriter {
- public:
-  WordWriter(std::uint32_t offset_bits, const BitSource& bits)
-      : bits_(bits), at_(bits.place()), low_(offset_bits - 1) {}
+/// Velocity, tint and foam of a group: the last six bytes of each particle, two and four of them.
+struct Tails {
+  alignas(16) std::array<std::uint16_t, kGroupMaxCount> first;
+  alignas(16) std::array<std::uint32_t, kGroupMaxCount> second;
+};
 
-  void write(ResidualReader& in, std::size_t count, std::uint8_t* out) {
+class AttributeReader {
+ public:
+  void read(ResidualReader& in, std::size_t count, Tails& out) {
     for (Attribute* attribute : {&vx_, &vy_, &vz_, &foam_, &tint_}) attribute->read(in, count);
-    alignas(16) std::array<std::uint16_t, kGroupMaxCount> head;
-    alignas(16) std::array<std::uint32_t, kGroupMaxCount> tail;
     for (std::size_t k = 0; k < kGroupMaxCount; ++k) {
-      head[k] = static_cast<std::uint16_t>(byteOf(vx_.values.of[k]) | byteOf(vy_.values.of[k]) << 8);
-      tail[k] = byteOf(vz_.values.of[k]) | tintOf(tint_.values.of[k]) << 8 | foamOf(foam_.values.of[k]) << 16;
+      out.first[k] = static_cast<std::uint16_t>(byteOf(vx_.values.of[k]) | byteOf(vy_.values.of[k]) << 8);
+      out.second[k] = byteOf(vz_.values.of[k]) | tintOf(tint_.values.of[k]) << 8 | foamOf(foam_.values.of[k]) << 16;
     }
-    const BitSource bits = bits_;  // copies stay in registers
-    const std::uint32_t low = low_;
-    const std::uint64_t mask = (1u << low) - 1;
-    std::uint32_t place = at_;
-    for (std::size_t k = 0; k < count; ++k, out += kParticleWordBytes, place += 3 * low) {
-      const std::uint64_t offsets = bits.peekAt(place);
-      std::uint64_t word = 0;
-      std::memcpy(&word, out, sizeof word);
-      word |= (offsets & mask) | (offsets >> low & mask) << 16 | (offsets >> 2 * low & mask) << 32 |
-              std::uint64_t{head[k]} << 48;
-      std::memcpy(out, &word, sizeof word);
-      std::memcpy(out + sizeof word, &tail[k], sizeof tail[k]);
-    }
-    at_ = place;
   }
 
  private:
-  const BitSource bits_;
-  std::uint32_t at_;  ///< of the next particle's offsets
-  std::uint32_t low_;
   Attribute vx_, vy_, vz_, foam_, tint_;
 };
+
+/// Adds a group's low bits of places and its tails to what the cells gave. `place` is that of its bits.
+void putGroup(const BitSource& bits, std::uint32_t place, std::uint32_t low, const Tails& tails, std::size_t count,
+              std::uint8_t* out) {
+  const std::uint64_t mask = (1u << low) - 1;
+  for (std::size_t k = 0; k < count; ++k, out += kParticleWordBytes, place += 3 * low) {
+    const std::uint64_t offsets = bits.peekAt(place);
+    std::uint64_t word = 0;
+    std::memcpy(&word, out, sizeof word);
+    word |= (offsets & mask) | (offsets >> low & mask) << 16 | (offsets >> 2 * low & mask) << 32 |
+            std::uint64_t{tails.first[k]} << 48;
+    std::memcpy(out, &word, sizeof word);
+    std::memcpy(out + sizeof word, &tails.second[k], sizeof tails.second[k]);
+  }
+}
+
+/// The same for cells of 32 quanta, as the server makes them: shifts by constants.
+void putUsualGroup(const BitSource& bits, std::uint32_t place, const Tails& tails, std::size_t count,
+                   std::uint8_t* out) {
+  constexpr std::uint32_t kLow = kUsualOffsetBits - 1, kAtOnce = 4;
+  static_assert(kAtOnce * 3 * kLow <= 57);
+  std::size_t k = 0;
+  for (; k + kAtOnce <= count; k += kAtOnce, place += kAtOnce * 3 * kLow) {
+    const std::uint64_t window = bits.peekAt(place);
+    for (std::size_t i = k; i < k + kAtOnce; ++i, out += kParticleWordBytes) {
+      const std::uint64_t offsets = window >> (i - k) * 3 * kLow;
+      std::uint64_t word = 0;
+      std::memcpy(&word, out, sizeof word);
+      word |=
+          (offsets & 0xfu) | (offsets & 0xf0u) << 12 | (offsets & 0xf00u) << 24 | std::uint64_t{tails.first[i]} << 48;
+      std::memcpy(out, &word, sizeof word);
+      std::memcpy(out + sizeof word, &tails.second[i], sizeof tails.second[i]);
+    }
+  }
+  if (k == count) return;
+  Tails rest;
+  std::copy(tails.first.begin() + k, tails.first.begin() + count, rest.first.begin());
+  std::copy(tails.second.begin() + k, tails.second.begin() + count, rest.second.begin());
+  putGroup(bits, place, kLow, rest, count - k, out);
+}
 
 }  // namespace
 
@@ -189,10 +235,21 @@ bool readParticles(const std::uint8_t* payload, std::uint32_t byte_count, const 
   if (!isWithinBounds(shape) || byte_count > BitSource::kMaxBytes) return false;
   ResidualReader in(payload, byte_count);
   if (!CellReader(shape, out).read(in.bits())) return false;
-  WordWriter words(shape.offset_bits, in.bits());
-  if (!in.bits().skip(std::uint64_t{shape.count} * 3 * (shape.offset_bits - 1))) return false;
-  for (std::size_t begin = 0; begin < shape.count; begin += kGroupMaxCount)
-    words.write(in, std::min(kGroupMaxCount, shape.count - begin), out + begin * kParticleWordBytes);
+  const BitSource offsets = in.bits();
+  const std::uint32_t low = shape.offset_bits - 1;
+  if (!in.bits().skip(std::uint64_t{shape.count} * 3 * low)) return false;
+  AttributeReader attributes;
+  Tails tails;
+  std::uint32_t place = offsets.place();
+  for (std::size_t begin = 0; begin < shape.count; begin += kGroupMaxCount) {
+    const std::size_t count = std::min(kGroupMaxCount, shape.count - begin);
+    attributes.read(in, count, tails);
+    if (shape.offset_bits == kUsualOffsetBits)
+      putUsualGroup(offsets, place, tails, count, out + begin * kParticleWordBytes);
+    else
+      putGroup(offsets, place, low, tails, count, out + begin * kParticleWordBytes);
+    place += std::uint32_t{kGroupMaxCount} * 3 * low;
+  }
   return in.isAtEnd();
 }
 

@@ -11,7 +11,7 @@ namespace spindrift::stream {
 class ResidualReader {
  public:
   /// As of a BitSource.
-  ResidualReader(const std::uint8_t* bytes, std::uint32_t byte_count) : bits_(bytes, byte_count) {}
+  ResidualReader(const std::uint8_t* bytes, std::uint32_t byte_count) : codes_(codes()), bits_(bytes, byte_count) {}
 
   /// The next `count` residuals; those behind are 0 in what an encoder wrote. `left` and `above`: the classes of the
   /// groups before it, below kResidualClassCount. Returns the group's class.
@@ -22,11 +22,15 @@ class ResidualReader {
   bool isAtEnd();
 
  private:
+  struct Codes;
+  static const Codes& codes();
+
   std::uint32_t readClass(std::uint32_t left, std::uint32_t above);
-  void fours(std::int16_t* out, std::size_t count, std::uint32_t group_class);
-  void pairs(std::int16_t* out, std::size_t count, std::uint32_t group_class);
+  template <typename Code>
+  void joint(std::int16_t* out, std::size_t count, const Code& code, std::uint32_t escape_class);
   void singles(std::int16_t* out, std::size_t count, std::uint32_t group_class);
 
+  const Codes& codes_;
   BitSource bits_;
   std::uint16_t sum_ = 0;  ///< of all residuals
 };

@@ -29,6 +29,21 @@ void storeVector(Element* to, Vector vector) {
   std::memcpy(to, &vector, sizeof vector);
 }
 
+/// 64 times the same number. Stores and nothing else: a compiler that sees the number makes a call of them, which takes
+/// WebAssembly out of its own code and costs more than all else here.
+inline void fill64(std::int16_t* to, std::int16_t value) {
+  asm("" : "+r"(value));
+  const Shorts v{value, value, value, value, value, value, value, value};
+  storeVector(to, v);
+  storeVector(to + 8, v);
+  storeVector(to + 16, v);
+  storeVector(to + 24, v);
+  storeVector(to + 32, v);
+  storeVector(to + 40, v);
+  storeVector(to + 48, v);
+  storeVector(to + 56, v);
+}
+
 /// a[0], b[0], a[1], b[1], ... of the lower or the upper halves.
 inline Shorts interleaveLow(Shorts a, Shorts b) {
   return __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);

@@ -110,7 +110,10 @@ SPINDRIFT_EXPORT(foamSamples) std::uint8_t* foamSamples() {
   return plain_samples;
 }
 
-/// Of the payload that was prepared for.
-SPINDRIFT_EXPORT(payloadChecksum) std::uint32_t payloadChecksum() {
+/// Room for any payload whose checksum is wanted. 0: there is none.
+SPINDRIFT_EXPORT(prepareChecksum) std::uint8_t* prepareChecksum(std::uint32_t byte_count) {
+  return makeRoom(0, byte_count);
+}
+SPINDRIFT_EXPORT(checksum) std::uint32_t checksum() {
   return crc32cByTables(payload, payload_bytes);
 }

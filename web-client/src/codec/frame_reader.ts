@@ -1,6 +1,8 @@
 // The readers of packed frames: server/stream/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance a layer.
 import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
-import { kWeightCount } from "./frames";
+
+/** Of a packed plane. */
+export const kWeightCount = 10;
 
 /** server/stream/wasm/frame_reader.cpp; places in memory, counts, truth as 0 and 1. */
 interface Exports {
@@ -14,7 +16,8 @@ interface Exports {
   readContinuingPlane(): number;
   surfaceSamples(): number;
   foamSamples(): number;
-  payloadChecksum(): number;
+  prepareChecksum(payloadBytes: number): number;
+  checksum(): number;
 }
 
 let compiled: WebAssembly.Module | undefined;
@@ -34,7 +37,7 @@ export function readerFault(): string | undefined {
   }
 }
 
-/** What is read lies in the instance's memory: it holds until the next frame is read, and has to be copied by then. */
+/** An instance. What is read lies in the instance's memory: it holds until the next frame is read, and has to be copied by then. */
 class Reader {
   protected readonly exports = instantiate();
 
@@ -47,6 +50,14 @@ class Reader {
 
   protected view(at: number, bytesCount: number): Uint8Array {
     return new Uint8Array(this.exports.memory.buffer, at, bytesCount);
+  }
+}
+
+export class ChecksumReader extends Reader {
+  /** CRC-32C; undefined: there is no memory for so many bytes. */
+  read(payload: Uint8Array): number | undefined {
+    if (!this.put(payload, this.exports.prepareChecksum(payload.length))) return undefined;
+    return this.exports.checksum() >>> 0;
   }
 }
 

@@ -1,6 +1,7 @@
 // A LayerFrame → its header as plain data and its payload as a view, or the reason why it cannot be trusted. Pure.
 import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
 import { crc32c } from "./crc32c";
+import { kWeightCount } from "./frame_reader";
 import { malformed, type Malformed } from "./malformed";
 import { unpackParticles } from "./packed_particles";
 import type { PackedFoam, PackedSurface } from "./packed_planes";
@@ -11,8 +12,6 @@ export const kMaxParticleCount = 4 * 1024 * 1024;
 export const kMaxBodyCount = 1024;
 export const kParticleBytes = 12;
 export const kBodyBytes = 28;
-/** Of a packed plane. */
-export const kWeightCount = 10;
 /** Bits of a packed particle's place within its cell; places along an axis; cells. */
 const kMaxOffsetBits = 8;
 const kMaxPlaceCount = 65536;

@@ -1,5 +1,6 @@
 // The worker's root: a Connection on one side, postMessage on the other. Payloads are copied once, out of the message
 // into an aligned buffer, and travel to the page and back by transfer.
+import { readerFault } from "../codec/frame_reader";
 import { Connection, type ConnectionWorld, type SocketLike } from "./connection";
 import { FrameHandover } from "./handover";
 import type { Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
@@ -40,6 +41,8 @@ let connection: Connection | undefined;
 
 function start(url: string, identity: Identity): void {
   connection?.stop();
+  const fault = readerFault();
+  if (fault) return toPage({ type: "state", state: { name: "refused", reason: fault } });
   connection = new Connection(url, world, {
     state: (state) => toPage({ type: "state", state }),
     greeting: (greeting) => {
