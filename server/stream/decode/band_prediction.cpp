@@ -93,8 +93,9 @@ struct NarrowKnown {
     west_and_north[1] = 0;
     north_west[0] = 0;
   }
-  Words operator()(Words west, Words north, Words diagonal) const {
-    return sumsOfProducts(Shorts(diagonal), north_west) +
+  /// What is known last is added last.
+  Words operator()(Words sums, Words west, Words north, Words diagonal) const {
+    return sums + sumsOfProducts(Shorts(diagonal), north_west) +
            sumsOfProducts(Shorts((west & 0xffffu) | north << 16), west_and_north);
   }
 };
@@ -108,8 +109,8 @@ struct WideKnown {
     west_weights[0] += north_weights[0] + diagonal_weights[0];
     north_weights[0] = diagonal_weights[0] = 0;
   }
-  Words operator()(Words west, Words north, Words diagonal) const {
-    return west * west_weights + north * north_weights + diagonal * diagonal_weights;
+  Words operator()(Words sums, Words west, Words north, Words diagonal) const {
+    return sums + diagonal * diagonal_weights + north * north_weights + west * west_weights;
   }
 };
 
@@ -201,8 +202,8 @@ class BandPredictor {
             diagonal_lower = chosen(onlyLane(k), now.above_lower, diagonal_lower);
           }
         }
-        now.upper = sampleOf(upper[k] + upper_(west_upper, now.above_upper, diagonal_upper));
-        now.lower = sampleOf(lower[k] + lower_(west_lower, now.above_lower, diagonal_lower));
+        now.upper = sampleOf(upper_(upper[k], west_upper, now.above_upper, diagonal_upper));
+        now.lower = sampleOf(lower_(lower[k], west_lower, now.above_lower, diagonal_lower));
         out[4 * half + k] = narrowed(SignedWords(now.upper), SignedWords(now.lower));
         last_ = now;
       }

@@ -155,17 +155,27 @@ struct Attribute {
   }
 };
 
-constexpr std::uint32_t byteOf(std::int16_t velocity) {
-  return static_cast<std::uint8_t>(std::clamp<std::int16_t>(velocity, -127, 127));
+Shorts clamped(Shorts v, std::int16_t least, std::int16_t most) {
+  const Shorts low = Shorts{} + least, high = Shorts{} + most;
+  v = v < low ? low : v;
+  return v > high ? high : v;
 }
-/// floor(255 / 7 tint) in whole numbers.
-constexpr std::uint32_t tintOf(std::int16_t tint) {
-  return static_cast<std::uint32_t>(std::clamp<std::int16_t>(tint, 0, 7)) * 1166u >> 5;
+Shorts bytesOf(Shorts velocities) {
+  return clamped(velocities, -127, 127) & 0xff;
 }
-static_assert(tintOf(1) == 36 && tintOf(2) == 72 && tintOf(3) == 109 && tintOf(4) == 145 && tintOf(5) == 182 &&
-              tintOf(6) == 218 && tintOf(7) == 255);
-constexpr std::uint32_t foamOf(std::int16_t foam) {
-  return static_cast<std::uint32_t>(std::clamp<std::int16_t>(foam, 0, 3)) * 85u;
+/// 255 / 7 of a tint, rounded down, is this much over 32.
+constexpr int kTintScale = 1166;
+static_assert([] {
+  for (int tint = 0; tint < 8; ++tint) {
+    if (tint * kTintScale / 32 != tint * 255 / 7) return false;
+  }
+  return true;
+}());
+Shorts tintsOf(Shorts tints) {
+  return clamped(tints, 0, 7) * kTintScale >> 5;
+}
+Shorts foamsOf(Shorts foams) {
+  return clamped(foams, 0, 3) * 85;
 }
 
 /// Velocity, tint and foam of a group: the last six bytes of each particle, two and four of them.
@@ -178,9 +188,14 @@ class AttributeReader {
  public:
   void read(ResidualReader& in, std::size_t count, Tails& out) {
     for (Attribute* attribute : {&vx_, &vy_, &vz_, &foam_, &tint_}) attribute->read(in, count);
-    for (std::size_t k = 0; k < kGroupMaxCount; ++k) {
-      out.first[k] = static_cast<std::uint16_t>(byteOf(vx_.values.of[k]) | byteOf(vy_.values.of[k]) << 8);
-      out.second[k] = byteOf(vz_.values.of[k]) | tintOf(tint_.values.of[k]) << 8 | foamOf(foam_.values.of[k]) << 16;
+    for (std::size_t k = 0; k < kGroupMaxCount; k += 8) {
+      const auto valuesOf = [k](const Attribute& attribute) {
+        return loadVector<Shorts>(attribute.values.of.data() + k);
+      };
+      storeVector(out.first.data() + k, bytesOf(valuesOf(vx_)) | bytesOf(valuesOf(vy_)) << 8);
+      const Shorts low = bytesOf(valuesOf(vz_)) | tintsOf(valuesOf(tint_)) << 8, high = foamsOf(valuesOf(foam_));
+      storeVector(out.second.data() + k, interleaveLow(low, high));
+      storeVector(out.second.data() + k + 4, interleaveHigh(low, high));
     }
   }
 

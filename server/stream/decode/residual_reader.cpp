@@ -88,7 +88,7 @@ const ResidualReader::Codes& ResidualReader::codes() {
   return kCodes;
 }
 
-std::uint32_t ResidualReader::readClass(std::uint32_t left, std::uint32_t above) {
+inline std::uint32_t ResidualReader::readClass(std::uint32_t left, std::uint32_t above) {
   const ClassExpectation expectation = expectClass(left, above);
   const std::uint32_t symbol = codes_.class_steps[expectation.code].get(bits_);
   if (symbol == 0) return 0;
@@ -100,6 +100,10 @@ std::uint32_t ResidualReader::readClass(std::uint32_t left, std::uint32_t above)
 std::uint32_t ResidualReader::group(ResidualGroup& out, std::size_t count, std::uint32_t left, std::uint32_t above) {
   bits_.prepare();
   const std::uint32_t c = readClass(left, above);
+  if (c == 0 && count == 1) {
+    out.of[0] = 0;
+    return c;
+  }
   if (c <= kLastSparseClass || count < kGroupMaxCount) fill64(out.of.data(), 0);
   if (c == 0) return c;
   if (c <= kLastSparseClass) {
