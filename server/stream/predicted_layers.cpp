@@ -179,10 +179,12 @@ core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& 
   out.side_m = header.side_m();
   out.quantum_m = header.quantum_m();
   const PlaneRow& plane = history_->memory.row();
-  for (std::size_t z = 0; z < plane.resolution(); ++z) {
-    const std::int16_t* row = plane.row(z);
-    for (std::size_t x = 0; x < plane.resolution(); ++x)
-      out.elevation_m.push_back(static_cast<float>(row[x] * header.quantum_m()));
+  const std::size_t n = plane.resolution();
+  const double quantum_m = header.quantum_m();
+  out.elevation_m.resize(n * n);
+  for (std::size_t z = 0; z < n; ++z) {
+    std::transform(plane.row(z), plane.row(z) + n, out.elevation_m.begin() + static_cast<std::ptrdiff_t>(z * n),
+                   [quantum_m](std::int16_t sample) { return static_cast<float>(sample * quantum_m); });
   }
   return out;
 }
@@ -196,10 +198,11 @@ core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame)
   out.resolution_count = header.resolution_count();
   out.side_m = header.side_m();
   const PlaneRow& plane = history_->memory.row();
-  for (std::size_t z = 0; z < plane.resolution(); ++z) {
-    const std::int16_t* row = plane.row(z);
-    for (std::size_t x = 0; x < plane.resolution(); ++x)
-      out.foam.push_back(static_cast<std::uint8_t>(std::clamp<int>(row[x], 0, 255)));
+  const std::size_t n = plane.resolution();
+  out.foam.resize(n * n);
+  for (std::size_t z = 0; z < n; ++z) {
+    std::transform(plane.row(z), plane.row(z) + n, out.foam.begin() + static_cast<std::ptrdiff_t>(z * n),
+                   [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); });
   }
   return out;
 }

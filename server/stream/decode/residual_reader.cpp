@@ -29,7 +29,7 @@ struct JointCode {
 
   std::array<JointSlot, 1 << kMaxCodeBits> slots;
 
-  void assign(const PrefixSlots& code) {
+  [[gnu::noinline]] void assign(const PrefixSlots& code) {
     for (std::size_t window = 0; window < slots.size(); ++window) {
       const Slot first = code[window], second = code[window >> first.length];
       const std::uint32_t both = first.length + std::uint32_t{second.length};
@@ -54,7 +54,7 @@ struct JointCode {
 using FourCode = JointCode<std::uint64_t, 3>;
 using PairCode = JointCode<std::uint32_t, 2 * kPairLargest + 1>;
 
-PrefixSlots slotsOf(std::string_view digits) {
+[[gnu::noinline]] PrefixSlots slotsOf(std::string_view digits) {
   std::array<std::uint8_t, kMaxSymbolCount> lengths{};
   std::transform(digits.begin(), digits.end(), lengths.begin(), codeLengthOf);
   PrefixSlots slots;
