@@ -38,11 +38,17 @@ npm_install() {
   write_stamp "npm-$name" "$digest"
 }
 
+# need_web: what the web client is built, checked and tested with.
+need_web() {
+  need_node
+  need_packages wasm
+}
+
 # build_web: web-client/dist, only when something it is made of changed.
 build_web() {
   local digest
   npm_install web-client web
-  digest="$(files_digest web-client proto) $(node --version)"
+  digest="$(files_digest web-client proto server/stream/codec server/stream/decode server/stream/wasm) $(node --version)"
   if [[ -f "$web_dist/index.html" ]] && stamp_is web-dist "$digest"; then return; fi
   step web-build "building the web client ($web_dist)" npm run --prefix web-client build
   write_stamp web-dist "$digest"
@@ -81,7 +87,7 @@ TEXT
   lock_build
   [[ "$only" == web ]] || build_server "$preset" "${targets[@]}"
   if [[ "$only" != server ]]; then
-    need_node
+    need_web
     build_web
   fi
   say "built: $([[ "$only" == web ]] || printf '%s ' "build/$preset/bin/spindrift")$([[ "$only" == server ]] || printf '%s' "$web_dist")"
@@ -102,7 +108,7 @@ TEXT
   take_preset "$@"
   need_packages server driver
   lock_build
-  need_node
+  need_web
   build_server "$preset" spindrift
   build_web
   unlock_build

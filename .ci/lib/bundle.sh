@@ -130,7 +130,7 @@ TEXT
   done
   need_packages server driver bundle
   lock_build
-  need_node
+  need_web
   build_server "$preset" spindrift
   build_web
   unlock_build

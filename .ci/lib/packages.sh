@@ -13,6 +13,7 @@ declare -rA package_groups=(
   [fuzz]="clang libclang-rt-dev"
   [bundle]="patchelf binutils"
   [npm]="nodejs npm"
+  [wasm]="clang lld libc++-14-dev-wasm32"
 )
 declare -rA package_reasons=(
   [server]="building the server and its tests"
@@ -24,6 +25,7 @@ declare -rA package_reasons=(
   [fuzz]="fuzzing"
   [bundle]="packing libraries"
   [npm]="fetching the web client's libraries and a newer Node"
+  [wasm]="compiling the page's reader of frames to WebAssembly"
 )
 
 # Once a start is enough.

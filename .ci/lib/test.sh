@@ -106,7 +106,7 @@ prepare_tests() {
   need_packages "${groups[@]}"
   lock_build
   mkdir -p build/reports build/logs
-  ! "$with_node" || need_node
+  ! "$with_node" || need_web
   if "$with_native"; then
     build_server "$preset"
   elif [[ "$wanted" =~ \ (wire|browser|tools)\  ]]; then

@@ -94,7 +94,8 @@ Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {
 std::span<const std::pair<std::string_view, std::string_view>> securityHeaders() {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeaders{{
       {"Content-Security-Policy",
-       "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+       "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; img-src 'self' "
+       "data: blob:; "
        "worker-src 'self' blob:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action "
        "'none'"},
       {"X-Content-Type-Options", "nosniff"},

@@ -1,14 +1,18 @@
 // The particles' packed form, both ways: ParticlesByCell in wire.proto.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 
 #include <spindrift/stream/frame_decoder.h>
 #include <spindrift/stream/frame_encoder.h>
 
 #include "codec/particle_cells.h"
+#include "decode/particle_reader.h"
 #include "frame_checks.h"
 #include "frame_message.h"
 #include "layer_codec.h"
+#include "packed_payload.h"
 
 namespace spindrift::stream {
 namespace {
@@ -126,21 +130,32 @@ core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame)
   if (!frame.keyframe()) return invalid("keyframe: false, but frames of this codec always stand by themselves");
   if (auto error = checkFrame(frame, v1::LAYER_PARTICLES)) return *error;
 
-  std::vector<CellParticle> particles(header.count());
-  ResidualDecoder in(viewOf(frame.payload()));
-  if (!decodeParticleCells(in, grid->cells, particles) || !in.isAtEnd())
-    return invalid("payload: it does not hold " + std::to_string(header.count()) + " particles; the frame is damaged");
+  const PackedPayload payload(viewOf(frame.payload()));
+  const std::size_t count = header.count();
+  std::vector<std::uint8_t> words(count * kParticleWordBytes + kParticleSlackBytes);
+  const ParticleShape shape{header.count(), grid->cells.cells_count, grid->cells.offset_bits};
+  if (!readParticles(payload.data(), payload.size(), shape, words.data()))
+    return invalid("payload: it does not hold " + std::to_string(count) + " particles; the frame is damaged");
 
   ParticleSamples out;
   out.count = header.count();
   out.radius_m = header.radius_m();
-  for (const CellParticle& p : particles) {
+  out.position_m.resize(3 * count);
+  out.velocity_mps.resize(3 * count);
+  out.tint.resize(count);
+  out.foam.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* at = words.data() + i * kParticleWordBytes;
+    std::array<std::uint16_t, 3> place;  // x, z, y
+    std::memcpy(place.data(), at, sizeof place);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      out.position_m.push_back(static_cast<float>(min_m[axis] + (p.place[axis] + 0.5) * grid->quantum_m()));
-      out.velocity_mps.push_back(static_cast<float>(p.velocity[axis] * header.velocity_quantum_mps()));
+      const std::size_t at_axis = axis == 0 ? 0 : 3 - axis;
+      out.position_m[3 * i + axis] = static_cast<float>(min_m[axis] + (place[at_axis] + 0.5) * grid->quantum_m());
+      out.velocity_mps[3 * i + axis] =
+          static_cast<float>(static_cast<std::int8_t>(at[6 + axis]) * header.velocity_quantum_mps());
     }
-    out.tint.push_back(static_cast<std::uint8_t>(p.tint * 255 / 7));
-    out.foam.push_back(static_cast<std::uint8_t>(p.foam * 85));
+    out.tint[i] = at[9];
+    out.foam[i] = at[10];
   }
   return out;
 }

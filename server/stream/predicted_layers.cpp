@@ -10,6 +10,7 @@
 #include "frame_checks.h"
 #include "frame_message.h"
 #include "layer_codec.h"
+#include "packed_payload.h"
 
 namespace spindrift::stream {
 namespace {
@@ -111,17 +112,17 @@ std::unique_ptr<LayerCodec> makeFoamPredictedCodec() {
 
 /// The row of planes that a client has read, and of what it is.
 struct PackedPlaneDecoder::History {
-  PlaneChainDecoder chain;
+  PlaneMemory memory;
   double side_m = 0.0;
   double quantum_m = 0.0;
   std::uint64_t tick = 0;
 
-  /// Reads a frame's plane; `chain` holds it afterwards, and nothing after an error.
+  /// Reads a frame's plane; `memory` holds it afterwards, and nothing after an error.
   template <typename Header>
   std::optional<core::Error> read(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
                                   double header_quantum_m) {
     const auto error = check(frame, layer, header, header_quantum_m);
-    if (error) chain.restart();
+    if (error) memory.row().forget();
     side_m = header.side_m();
     quantum_m = header_quantum_m;
     tick = frame.tick();
@@ -139,20 +140,22 @@ struct PackedPlaneDecoder::History {
     SurfaceWeights weights, earlier_weights;
     if (!takeWeights(header.weights(), weights))
       return invalid("weights: " + std::to_string(header.weights_size()) + ", there have to be 10");
-    const core::ByteView payload = viewOf(frame.payload());
+    const PackedPayload payload(viewOf(frame.payload()));
+    PlaneRow& row = memory.row();
     bool is_read = false;
     if (frame.keyframe()) {
       if (!takeWeights(header.earlier_weights(), earlier_weights))
         return invalid("earlier_weights: " + std::to_string(header.earlier_weights_size()) + ", there have to be 10");
-      is_read = chain.readWhole(payload, header.resolution_count(), weights, earlier_weights);
+      memory.resize(header.resolution_count());
+      is_read = row.readWhole(payload.data(), payload.size(), weights, earlier_weights);
     } else {
-      if (chain.plane().resolution() != header.resolution_count() || frame.base_tick() != tick ||
+      if (!row.hasRow() || row.resolution() != header.resolution_count() || frame.base_tick() != tick ||
           header.side_m() != side_m || header_quantum_m != quantum_m) {
         return core::Error{core::ErrorCode::kUnavailable, "base_tick: the frame builds on tick " +
                                                               std::to_string(frame.base_tick()) +
                                                               ", which is not here: subscribe again for a keyframe"};
       }
-      is_read = chain.readContinuing(payload, weights);
+      is_read = row.readContinuing(payload.data(), payload.size(), weights);
     }
     if (!is_read) return invalid("payload: its end does not fit its beginning; the frame is damaged");
     return std::nullopt;
@@ -170,11 +173,13 @@ core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& 
   out.resolution_count = header.resolution_count();
   out.side_m = header.side_m();
   out.quantum_m = header.quantum_m();
-  const SurfacePlane& plane = history_->chain.plane();
-  for (std::size_t z = 0; z < plane.resolution(); ++z) {
-    const std::int16_t* row = plane.row(static_cast<std::ptrdiff_t>(z));
-    for (std::size_t x = 0; x < plane.resolution(); ++x)
-      out.elevation_m.push_back(static_cast<float>(row[x] * header.quantum_m()));
+  const PlaneRow& plane = history_->memory.row();
+  const std::size_t n = plane.resolution();
+  const double quantum_m = header.quantum_m();
+  out.elevation_m.resize(n * n);
+  for (std::size_t z = 0; z < n; ++z) {
+    std::transform(plane.row(z), plane.row(z) + n, out.elevation_m.begin() + static_cast<std::ptrdiff_t>(z * n),
+                   [quantum_m](std::int16_t sample) { return static_cast<float>(sample * quantum_m); });
   }
   return out;
 }
@@ -187,11 +192,12 @@ core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame)
   FoamSamples out;
   out.resolution_count = header.resolution_count();
   out.side_m = header.side_m();
-  const SurfacePlane& plane = history_->chain.plane();
-  for (std::size_t z = 0; z < plane.resolution(); ++z) {
-    const std::int16_t* row = plane.row(static_cast<std::ptrdiff_t>(z));
-    for (std::size_t x = 0; x < plane.resolution(); ++x)
-      out.foam.push_back(static_cast<std::uint8_t>(std::clamp<int>(row[x], 0, 255)));
+  const PlaneRow& plane = history_->memory.row();
+  const std::size_t n = plane.resolution();
+  out.foam.resize(n * n);
+  for (std::size_t z = 0; z < n; ++z) {
+    std::transform(plane.row(z), plane.row(z) + n, out.foam.begin() + static_cast<std::ptrdiff_t>(z * n),
+                   [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); });
   }
   return out;
 }

@@ -9,8 +9,7 @@
 
 namespace spindrift::stream {
 
-static_assert(std::endian::native == std::endian::little,
-              "eight bytes are stored and loaded as one little-endian word");
+static_assert(std::endian::native == std::endian::little, "eight bytes are stored as one little-endian word");
 
 /// Where a BitWriter goes on writing. Between two flush() at most 56 bits.
 struct BitCursor {
@@ -68,47 +67,6 @@ class BitWriter {
  private:
   core::Bytes bytes_;
   std::size_t used_ = 0;
-  std::uint64_t pending_ = 0;
-  std::uint32_t count_ = 0;
-};
-
-/// Reads what BitWriter wrote. Beyond the end there are zeros, and isAtEnd() is false then.
-class BitReader {
- public:
-  explicit BitReader(core::ByteView bytes) : bytes_(bytes) {}
-
-  /// The next bits without taking them; at least 32 are there.
-  std::uint32_t peek() {
-    if (count_ < 32) refill();
-    return static_cast<std::uint32_t>(pending_);
-  }
-  /// Of those that were peeked at.
-  void take(std::uint32_t bit_count) {
-    pending_ >>= bit_count;
-    count_ -= bit_count;
-  }
-  /// bit_count <= 31.
-  std::uint32_t get(std::uint32_t bit_count) {
-    const std::uint32_t value = peek() & ((1u << bit_count) - 1);
-    take(bit_count);
-    return value;
-  }
-  /// Whether everything but the filling was read, and nothing beyond.
-  [[nodiscard]] bool isAtEnd() const {
-    return at_ >= bytes_.size() && count_ >= 8 * (at_ - bytes_.size()) && count_ - 8 * (at_ - bytes_.size()) < 8 &&
-           pending_ == 0;
-  }
-
- private:
-  void refill() {
-    for (; count_ <= 56; count_ += 8, ++at_) {
-      const std::uint64_t byte = at_ < bytes_.size() ? bytes_[at_] : 0;
-      pending_ |= byte << count_;
-    }
-  }
-
-  core::ByteView bytes_;
-  std::size_t at_ = 0;  ///< of the byte read next, also beyond the end
   std::uint64_t pending_ = 0;
   std::uint32_t count_ = 0;
 };

@@ -179,7 +179,7 @@ struct GroupWriter {
   static constexpr std::size_t kGroupMaxBytes = 4 + kGroupMaxCount * 5;
   static constexpr std::uint32_t kPlaceBits = 6;
 
-  const ResidualCodes<PrefixWriter>& codes;
+  const ResidualWriters& codes;
   BitCursor out;
   std::uint32_t residual_sum = 0;
 

@@ -12,21 +12,12 @@
 namespace spindrift::stream {
 namespace {
 
-constexpr std::size_t kHalfSymbolCount = 256;  ///< counts of four eighths, two bits each
-constexpr std::size_t kGapSymbolCount = 25;    ///< bits of the number of empty cells
-constexpr std::uint32_t kMaxGammaBits = 23;
-
 /// A whole number from 0 on, small ones in few bits (Elias gamma).
 void putGamma(std::uint32_t value, BitCursor& out) {
   const auto bits = static_cast<std::uint32_t>(std::bit_width(value + 1)) - 1;
   out.put(1u << bits, bits + 1);
   out.put((value + 1) & ((1u << bits) - 1), bits);
   out.flush();
-}
-std::uint32_t getGamma(BitReader& in) {
-  std::uint32_t bits = 0;
-  while (bits < kMaxGammaBits && in.get(1) == 0) ++bits;
-  return ((1u << bits) | in.get(bits)) - 1;
 }
 
 /// One attribute of the particles, group after group: each group's mean as its difference from the one before, then
@@ -36,14 +27,6 @@ struct AttributeState {
   std::uint32_t mean_class = 0;
   std::uint32_t group_class = 0;
 };
-
-void getAttribute(ResidualGroup& values, std::size_t count, AttributeState& state, ResidualDecoder& in) {
-  ResidualGroup step;
-  state.mean_class = in.getGroup(step, 1, state.mean_class, state.mean_class);
-  state.mean = static_cast<std::int16_t>(state.mean + step.of[0]);
-  state.group_class = in.getGroup(values, count, state.group_class, state.group_class);
-  for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value + state.mean);
-}
 
 static_assert(kGroupMaxCount == 64, "twice as many are 1 << 7");
 constexpr std::size_t kAttributeCount = 5;  ///< velocity along x, y, z, foam, tint
@@ -162,58 +145,6 @@ void ParticleCellsEncoder::putAttributes(ResidualEncoder& out) const {
     out.end(put(items.first(count), states, out.begin(2 * kAttributeCount)));
     items = items.subspan(count);
   }
-}
-
-bool decodeParticleCells(ResidualDecoder& in, const CellGrid& grid, std::span<CellParticle> particles) {
-  BitReader& bits = in.bits();
-  const auto half_code = getFittedCode(kHalfSymbolCount, bits);
-  if (!half_code) return false;
-  const auto gap_code = getFittedCode(kGapSymbolCount, bits);
-  if (!gap_code) return false;
-  const std::uint32_t low = grid.offset_bits - 1;
-  const std::uint64_t cell_count = grid.totalCount();
-  std::uint64_t cell = 0;
-  for (std::size_t i = 0; i < particles.size(); ++cell) {
-    const std::uint32_t gap_bits = gap_code->get(bits);
-    cell += gap_bits > 1 ? (1u << (gap_bits - 1)) | bits.get(gap_bits - 1) : gap_bits;
-    if (cell >= cell_count) return false;
-    const std::uint32_t y = static_cast<std::uint32_t>(cell) % grid.cells_count[1];
-    const std::uint32_t column = static_cast<std::uint32_t>(cell) / grid.cells_count[1];
-    const std::uint32_t x = column % grid.cells_count[0], z = column / grid.cells_count[0];
-    std::uint32_t halves = half_code->get(bits);
-    halves |= half_code->get(bits) << 8;
-    if (halves == 0) return false;  // a cell that is named holds something
-    for (std::uint32_t eighth = 0; eighth < 8; ++eighth) {
-      std::size_t count = halves >> (2 * eighth) & 3u;
-      if (count == kManyCount) count += getGamma(bits);
-      if (count > particles.size() - i) return false;
-      const auto place = [&](std::uint32_t at, std::uint32_t half) {
-        return static_cast<std::uint16_t>((at * 2 + (half & 1u)) << low);
-      };
-      const std::array places = {place(x, eighth >> 2), place(y, eighth), place(z, eighth >> 1)};
-      for (const std::size_t end = i + count; i < end; ++i) particles[i].place = places;
-    }
-  }
-  const std::uint32_t mask = (1u << low) - 1;
-  for (CellParticle& p : particles) {
-    const std::uint32_t offsets = bits.get(3 * low);
-    p.place[0] = static_cast<std::uint16_t>(p.place[0] | (offsets & mask));
-    p.place[2] = static_cast<std::uint16_t>(p.place[2] | (offsets >> low & mask));
-    p.place[1] = static_cast<std::uint16_t>(p.place[1] | offsets >> (2 * low));
-  }
-  AttributeStates states;
-  std::array<ResidualGroup, kAttributeCount> groups;
-  for (std::size_t begin = 0; begin < particles.size(); begin += kGroupMaxCount) {
-    const std::size_t count = std::min(kGroupMaxCount, particles.size() - begin);
-    for (std::size_t a = 0; a < kAttributeCount; ++a) getAttribute(groups[a], count, states[a], in);
-    for (std::size_t k = 0; k < count; ++k) {
-      CellParticle& p = particles[begin + k];
-      for (std::size_t axis = 0; axis < 3; ++axis) p.velocity[axis] = groups[axis].of[k];
-      p.foam = static_cast<std::uint8_t>(std::clamp<int>(groups[3].of[k], 0, 3));
-      p.tint = static_cast<std::uint8_t>(std::clamp<int>(groups[4].of[k], 0, 7));
-    }
-  }
-  return true;
 }
 
 }  // namespace spindrift::stream

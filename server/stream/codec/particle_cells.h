@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "particle_format.h"
 #include "particle_order.h"
 #include "residual_coder.h"
 
@@ -22,18 +23,6 @@ struct CellGrid {
   [[nodiscard]] std::uint64_t totalCount() const {
     return std::uint64_t{cells_count[0]} * cells_count[1] * cells_count[2];
   }
-};
-inline constexpr std::uint32_t kOffsetBitsMax = 8;
-/// Coordinates fit into 16 bits, cell numbers into 24.
-inline constexpr std::uint32_t kCoordinateMaxCount = 1u << 16;
-inline constexpr std::uint64_t kCellMaxCount = 1u << 24;
-
-/// One particle in quanta.
-struct CellParticle {
-  std::array<std::uint16_t, 3> place{};  ///< x, y, z, below cells_count << offset_bits
-  std::array<std::int16_t, 3> velocity{};
-  std::uint8_t foam = 0;  ///< 0..3
-  std::uint8_t tint = 0;  ///< 0..7
 };
 
 /// From the words of core::ParticleView to quanta, place = u16 * scale along each axis, velocity = i8 * speed_scale.
@@ -59,9 +48,5 @@ class ParticleCellsEncoder {
   std::vector<std::uint64_t> items_;
   ParticleOrder order_;
 };
-
-/// `count` particles in the order of the wire. False: a cell lies outside of the grid or holds more than are left; the
-/// bytes are damaged.
-bool decodeParticleCells(ResidualDecoder& in, const CellGrid& grid, std::span<CellParticle> particles);
 
 }  // namespace spindrift::stream

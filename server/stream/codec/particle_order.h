@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-namespace spindrift::stream {
+#include "particle_format.h"
 
-inline constexpr std::uint32_t kManyCount = 3;  ///< this many in an eighth, or more: the rest stands by itself
+namespace spindrift::stream {
 
 /// A cell that holds something.
 struct OccupiedCell {

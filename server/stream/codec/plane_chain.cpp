@@ -1,6 +1,5 @@
 #include "plane_chain.h"
 
-#include <cassert>
 #include <utility>
 
 #include "surface_fit.h"
@@ -36,28 +35,6 @@ PlaneChainEncoder::Form PlaneChainEncoder::whole() {
   encodePlane(before_, history, out.earlier_weights, residuals_);
   residuals_.finish(out.payload);
   return out;
-}
-
-bool PlaneChainDecoder::readWhole(core::ByteView payload, std::size_t resolution_count, const SurfaceWeights& weights,
-                                  const SurfaceWeights& earlier_weights) {
-  ResidualDecoder residuals(payload);
-  before_.resize(resolution_count);
-  earlier_.resize(resolution_count);
-  decodePlane(residuals, {}, weights, before_);
-  decodePlane(residuals, {&before_, nullptr}, earlier_weights, earlier_);
-  if (!residuals.isAtEnd()) restart();
-  return before_.resolution() > 0;
-}
-
-bool PlaneChainDecoder::readContinuing(core::ByteView payload, const SurfaceWeights& weights) {
-  assert(before_.resolution() > 0);
-  ResidualDecoder residuals(payload);
-  next_.resize(before_.resolution());
-  decodePlane(residuals, {&before_, &earlier_}, weights, next_);
-  std::swap(earlier_, before_);
-  std::swap(before_, next_);
-  if (!residuals.isAtEnd()) restart();
-  return before_.resolution() > 0;
 }
 
 }  // namespace spindrift::stream

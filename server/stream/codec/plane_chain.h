@@ -1,4 +1,4 @@
-// Planes in a row, each predicted from the two before it, both ways. A plane can be had in two forms: one that
+// Planes in a row, each predicted from the two before it. A plane can be had in two forms: one that
 // continues the row, and one that stands by itself and brings the plane before it along, so that a reader can go on
 // from there.
 #pragma once
@@ -35,23 +35,6 @@ class PlaneChainEncoder {
 
   SurfacePlane next_, before_, earlier_;
   ResidualEncoder residuals_;
-};
-
-class PlaneChainDecoder {
- public:
-  /// The payload of a whole form. False: it is damaged, and there is no row to continue any more.
-  bool readWhole(core::ByteView payload, std::size_t resolution_count, const SurfaceWeights& weights,
-                 const SurfaceWeights& earlier_weights);
-  /// The payload of a form that continues the row; there has to be one. False as above.
-  bool readContinuing(core::ByteView payload, const SurfaceWeights& weights);
-  /// Forgets the row.
-  void restart() { before_.resize(0); }
-
-  /// The plane read last; of resolution 0 where there is no row.
-  [[nodiscard]] const SurfacePlane& plane() const { return before_; }
-
- private:
-  SurfacePlane next_, before_, earlier_;
 };
 
 }  // namespace spindrift::stream

@@ -2,41 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <vector>
 
 namespace spindrift::stream {
-namespace {
-
-constexpr std::uint32_t kLengthBits = 4;
-
-/// Calls use(symbol, code, length) for each symbol of a code, the code with its highest bit lowest. False: the lengths
-/// belong to no complete code.
-template <typename Use>
-bool forEachCode(std::span<const std::uint8_t> lengths, Use use) {
-  std::array<std::uint32_t, kMaxCodeBits + 1> count_of{};
-  for (const std::uint8_t length : lengths) {
-    if (length > kMaxCodeBits) return false;
-    ++count_of[length];
-  }
-  std::array<std::uint32_t, kMaxCodeBits + 1> next{};
-  std::uint32_t code = 0;
-  count_of[0] = 0;
-  for (std::uint32_t length = 1; length <= kMaxCodeBits; ++length) {
-    code = (code + count_of[length - 1]) << 1;
-    next[length] = code;
-  }
-  if (code + count_of[kMaxCodeBits] != 1u << kMaxCodeBits) return false;
-  for (std::size_t symbol = 0; symbol < lengths.size(); ++symbol) {
-    const std::uint32_t length = lengths[symbol];
-    if (length == 0) continue;
-    std::uint32_t reversed = 0;
-    for (std::uint32_t bit = 0, c = next[length]++; bit < length; ++bit, c >>= 1) reversed = reversed << 1 | (c & 1u);
-    use(symbol, reversed, length);
-  }
-  return true;
-}
-
-}  // namespace
 
 PrefixWriter::PrefixWriter(std::span<const std::uint8_t> lengths) {
   assert(lengths.size() <= kMaxSymbolCount);
@@ -44,16 +11,6 @@ PrefixWriter::PrefixWriter(std::span<const std::uint8_t> lengths) {
       lengths,
       [&](std::size_t symbol, std::uint32_t code, std::uint32_t length) { words_[symbol] = code | length << 16; });
   assert(is_complete);
-}
-
-std::optional<PrefixReader> PrefixReader::create(std::span<const std::uint8_t> lengths) {
-  PrefixReader reader;
-  const bool is_complete = forEachCode(lengths, [&](std::size_t symbol, std::uint32_t code, std::uint32_t length) {
-    for (std::uint32_t slot = code; slot < reader.slots_.size(); slot += 1u << length)
-      reader.slots_[slot] = static_cast<std::uint16_t>(symbol | length << 8);
-  });
-  if (!is_complete) return std::nullopt;
-  return reader;
 }
 
 // Huffman's code, two queues instead of a heap; lengths above the limit are cut, and what that costs in code space is
@@ -121,14 +78,6 @@ PrefixWriter putFittedCode(std::span<const std::uint32_t> counts, BitWriter& out
   }
   out.end(cursor);
   return PrefixWriter(lengths);
-}
-
-std::optional<PrefixReader> getFittedCode(std::size_t symbol_count, BitReader& in) {
-  std::vector<std::uint8_t> lengths(symbol_count);
-  for (std::size_t symbol = 0; symbol < symbol_count; ++symbol) {
-    if (symbol < 2 || in.get(1) != 0) lengths[symbol] = static_cast<std::uint8_t>(in.get(kLengthBits));
-  }
-  return PrefixReader::create(lengths);
 }
 
 }  // namespace spindrift::stream

@@ -1,18 +1,14 @@
-// Prefix codes of at most 11 bits, canonical: the lengths say everything. Codes are numbered by length, then symbol,
-// and stand in the stream with their highest bit first, as in deflate (RFC 1951, 3.2.2).
+// Prefix codes of at most 11 bits to write with, canonical: the lengths say everything.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "bit_stream.h"
+#include "prefix_lengths.h"
 
 namespace spindrift::stream {
-
-inline constexpr std::uint32_t kMaxCodeBits = 11;
-inline constexpr std::size_t kMaxSymbolCount = 256;
 
 /// A code to write with.
 class PrefixWriter {
@@ -34,29 +30,11 @@ class PrefixWriter {
   std::array<std::uint32_t, kMaxSymbolCount> words_{};  ///< code | length << 16
 };
 
-/// A code to read with.
-class PrefixReader {
- public:
-  /// Nothing where the lengths are not those of a code that every sequence of bits has a meaning in.
-  static std::optional<PrefixReader> create(std::span<const std::uint8_t> lengths);
-
-  std::uint32_t get(BitReader& in) const {
-    const std::uint32_t slot = slots_[in.peek() & ((1u << kMaxCodeBits) - 1)];
-    in.take(slot >> 8);
-    return slot & 0xffu;
-  }
-
- private:
-  std::array<std::uint16_t, 1 << kMaxCodeBits> slots_{};  ///< by the next bits: symbol | length << 8
-};
-
 /// The lengths that fit the counts, at most kMaxSymbolCount; at least two of them above 0.
 void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> lengths);
 
 /// A code for one frame, sent along with it: fitted to the counts of its symbols. Symbols 0 and 1 are in it in any
 /// case.
 PrefixWriter putFittedCode(std::span<const std::uint32_t> counts, BitWriter& out);
-/// The same code; nothing where the bits are damaged.
-std::optional<PrefixReader> getFittedCode(std::size_t symbol_count, BitReader& in);
 
 }  // namespace spindrift::stream

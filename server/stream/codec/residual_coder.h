@@ -7,20 +7,12 @@
 // follows an escape.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "bit_stream.h"
+#include "residual_format.h"
 
 namespace spindrift::stream {
-
-inline constexpr std::size_t kGroupMaxCount = 64;
-inline constexpr std::uint32_t kResidualClassCount = 45;
-
-/// A group's residuals; those beyond its count are 0.
-struct alignas(32) ResidualGroup {
-  std::array<std::int16_t, kGroupMaxCount> of{};
-};
 
 struct GroupWriter;
 
@@ -39,23 +31,6 @@ class ResidualEncoder {
 
  private:
   BitWriter bits_;
-  std::uint32_t residual_sum_ = 0;
-};
-
-class ResidualDecoder {
- public:
-  explicit ResidualDecoder(core::ByteView bytes) : bits_(bytes) {}
-
-  /// Residuals beyond `count` are 0 in what an encoder wrote.
-  std::uint32_t getGroup(ResidualGroup& residuals, std::size_t count, std::uint32_t left, std::uint32_t above);
-  BitReader& bits() { return bits_; }
-  /// To be called last. Whether the sum fits and nothing is left over: else the bytes are damaged.
-  bool isAtEnd() { return bits_.get(kSumBits) == (residual_sum_ & ((1u << kSumBits) - 1)) && bits_.isAtEnd(); }
-
-  static constexpr std::uint32_t kSumBits = 16;
-
- private:
-  BitReader bits_;
   std::uint32_t residual_sum_ = 0;
 };
 

@@ -9,8 +9,6 @@
 namespace spindrift::stream {
 namespace {
 
-constexpr std::size_t kTile = 8;
-
 /// Residuals of eight rows, tile by tile: what both directions walk over.
 class TileBand {
  public:
@@ -133,38 +131,6 @@ void encodePlane(const SurfacePlane& plane, const SurfaceHistory& history, const
     for (std::size_t j = 0; j < rows; ++j) residualsOfRow(plane, history, weights, top + j, band.sums(), band.row(j));
     out.end(put(band.rows(rows), plane.resolution(), band.classes(), out.begin(band.classes().size())));
   });
-}
-
-void decodePlane(ResidualDecoder& in, const SurfaceHistory& history, const SurfaceWeights& weights,
-                 SurfacePlane& plane) {
-  const std::size_t n = plane.resolution();
-  forEachBand(n, [&](TileBand& band, std::size_t top, std::size_t rows) {
-    band.forEachTile(rows, [&](std::size_t x, std::size_t columns, std::size_t count, auto left, auto above) {
-      ResidualGroup group;
-      const std::uint32_t group_class = in.getGroup(group, count, left, above);
-      for (std::size_t j = 0; j < rows; ++j)
-        std::copy_n(group.of.data() + j * columns, columns, band.row(j).data() + x);
-      return group_class;
-    });
-    for (std::size_t j = 0; j < rows; ++j) {
-      const auto z = static_cast<std::ptrdiff_t>(top + j);
-      const std::span<std::int32_t> from_history = band.sums();
-      predictFromHistory(history, weights, top + j, from_history);
-      const std::span<const std::int16_t> residuals = band.row(j);
-      std::int16_t* here = plane.row(z);
-      const std::int16_t* above = plane.row(z - 1);
-      const std::int32_t first = z > 0 ? above[0] : 0;
-      KnownSamples known{first, first, first};
-      for (std::size_t x = 0; x < n; ++x) {
-        if (x > 0)
-          known = z > 0 ? KnownSamples{known.west, above[x], above[x - 1]}
-                        : KnownSamples{known.west, known.west, known.west};
-        here[x] = static_cast<std::int16_t>(predictionOf(from_history[x], known, weights) + residuals[x]);
-        known.west = here[x];
-      }
-    }
-  });
-  plane.fillBorder();
 }
 
 }  // namespace spindrift::stream

@@ -4,35 +4,14 @@
 // of the quanta. Whole numbers only, so that every reader comes to the same.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "residual_coder.h"
+#include "surface_weights.h"
 
 namespace spindrift::stream {
-
-/// Weights in units of 1 / 4096, of sums over: the place one frame before (kBefore), its 4 nearest, its 4 diagonal
-/// neighbours, the 4 two cells away along the axes; the place two frames before and its 4 nearest and 4 diagonal
-/// neighbours; in this frame the neighbours at -x, at -z, and at both.
-struct SurfaceWeights {
-  enum Term : std::size_t {
-    kBefore,
-    kBeforeNearest,
-    kBeforeDiagonal,
-    kBeforeFar,
-    kEarlier,
-    kEarlierNearest,
-    kEarlierDiagonal,
-    kWest,
-    kNorth,
-    kNorthWest,
-    kTermCount
-  };
-  std::array<std::int32_t, kTermCount> of{};
-};
-inline constexpr int kWeightBits = 12;
 
 /// Samples of a square grid in quanta, row by row, with a border of two that repeats the outermost ones.
 class SurfacePlane {
@@ -74,10 +53,5 @@ struct SurfaceHistory {
 /// Codes a plane, in tiles of 8 x 8, row by row.
 void encodePlane(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                  ResidualEncoder& out);
-
-/// The plane again. Sums wrap around at 32 bits as they do in every reader, so damaged input gives wrong samples,
-/// nothing worse.
-void decodePlane(ResidualDecoder& in, const SurfaceHistory& history, const SurfaceWeights& weights,
-                 SurfacePlane& plane);
 
 }  // namespace spindrift::stream

@@ -37,7 +37,8 @@ TEST_F(ConnectionTest, ServesThePageWithItsHeaders) {
   EXPECT_EQ(answer.headers.at("content-type"), "text/html; charset=utf-8");
   EXPECT_EQ(answer.headers.at("cache-control"), "no-cache");
   EXPECT_EQ(answer.headers.at("content-security-policy"),
-            "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
+            "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; img-src "
+            "'self' data: blob:; "
             "worker-src 'self' "
             "blob:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
   EXPECT_EQ(answer.headers.at("x-content-type-options"), "nosniff");

@@ -12,6 +12,10 @@
 #include "codec/prefix_code.h"
 #include "codec/residual_coder.h"
 #include "codec/surface_fit.h"
+#include "decode/plane_reader.h"
+#include "decode/prefix_slots.h"
+#include "decode/residual_reader.h"
+#include "packed_payload.h"
 
 namespace spindrift::stream {
 namespace {
@@ -45,20 +49,25 @@ TEST(PrefixCode, FitsAnyCountsAndReadsThemBack) {
     out.end(cursor);
     core::Bytes bytes;
     out.finish(bytes);
-    BitReader in(bytes);
-    const auto reader = getFittedCode(counts.size(), in);
-    ASSERT_TRUE(reader);
-    for (const std::size_t s : symbols) ASSERT_EQ(reader->get(in), s);
+    const PackedPayload payload(bytes);
+    BitSource in(payload.data(), payload.size());
+    PrefixSlots slots;
+    ASSERT_TRUE(slots.read(counts.size(), in));
+    for (const std::size_t s : symbols) {
+      in.prepare();
+      ASSERT_EQ(slots.get(in), s);
+    }
     EXPECT_TRUE(in.isAtEnd());
   }
 }
 
 TEST(PrefixCode, RefusesLengthsThatLeaveBitsWithoutMeaning) {
-  EXPECT_TRUE(PrefixReader::create(std::vector<std::uint8_t>{1, 2, 2}));
-  EXPECT_FALSE(PrefixReader::create(std::vector<std::uint8_t>{1, 2, 3}));
-  EXPECT_FALSE(PrefixReader::create(std::vector<std::uint8_t>{1, 1, 2}));
-  EXPECT_FALSE(PrefixReader::create(std::vector<std::uint8_t>{1, 2, 2, 12}));
-  EXPECT_FALSE(PrefixReader::create(std::vector<std::uint8_t>{0, 0}));
+  PrefixSlots slots;
+  EXPECT_TRUE(slots.assign(std::vector<std::uint8_t>{1, 2, 2}));
+  EXPECT_FALSE(slots.assign(std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_FALSE(slots.assign(std::vector<std::uint8_t>{1, 1, 2}));
+  EXPECT_FALSE(slots.assign(std::vector<std::uint8_t>{1, 2, 2, 12}));
+  EXPECT_FALSE(slots.assign(std::vector<std::uint8_t>{0, 0}));
 }
 
 TEST(Residuals, OfEverySizeComeBack) {
@@ -84,10 +93,11 @@ TEST(Residuals, OfEverySizeComeBack) {
   }
   core::Bytes bytes;
   out.finish(bytes);
-  ResidualDecoder in(bytes);
+  const PackedPayload payload(bytes);
+  ResidualReader in(payload.data(), payload.size());
   for (const Group& group : groups) {
     ResidualGroup read;
-    ASSERT_EQ(in.getGroup(read, group.count, group.left, group.above), group.group_class);
+    ASSERT_EQ(in.group(read, group.count, group.left, group.above), group.group_class);
     for (std::size_t i = 0; i < group.count; ++i) ASSERT_EQ(read.of[i], group.residuals.of[i]);
   }
   EXPECT_TRUE(in.isAtEnd());
@@ -147,6 +157,51 @@ TEST(Prediction, OfAWholeRowIsThatOfEachSample) {
           }
         }
       }
+    }
+  }
+}
+
+core::Bytes payloadOf(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
+                      const SurfacePlane* second, const SurfaceWeights& second_weights) {
+  ResidualEncoder residuals;
+  encodePlane(plane, history, weights, residuals);
+  if (second != nullptr) encodePlane(*second, {&plane, nullptr}, second_weights, residuals);
+  core::Bytes bytes;
+  residuals.finish(bytes);
+  return bytes;
+}
+
+void expectSame(const PlaneRow& read, const SurfacePlane& plane, const std::string& which) {
+  ASSERT_TRUE(read.hasRow()) << which;
+  for (std::size_t z = 0; z < plane.resolution(); ++z) {
+    const std::int16_t* row = plane.row(static_cast<std::ptrdiff_t>(z));
+    ASSERT_TRUE(std::equal(row, row + plane.resolution(), read.row(z))) << which << ", row " << z;
+  }
+}
+
+TEST(Planes, OfAnySizeAndWeightsComeBackToTheBit) {
+  Random random(5);
+  const auto noise = [&](std::size_t, std::size_t) { return random(); };
+  for (const std::size_t n : {1u, 2u, 7u, 8u, 9u, 16u, 17u, 23u, 33u, 64u}) {
+    for (const std::int32_t largest : {4096, 32767, 1 << 20}) {
+      const SurfacePlane earlier = planeOf(n, noise), before = planeOf(n, noise), now = planeOf(n, noise);
+      SurfaceWeights weights[3];
+      for (SurfaceWeights& set : weights) {
+        for (std::int32_t& w : set.of) w = static_cast<std::int32_t>(random() % (2u * largest + 1)) - largest;
+      }
+      const std::string which = std::to_string(n) + " a side, weights to " + std::to_string(largest);
+      PlaneMemory memory;
+      memory.resize(n);
+      PlaneRow& row = memory.row();
+      const PackedPayload whole(payloadOf(before, {}, weights[0], &earlier, weights[1]));
+      ASSERT_TRUE(row.readWhole(whole.data(), whole.size(), weights[0], weights[1])) << which;
+      expectSame(row, before, which);
+      const PackedPayload next(payloadOf(now, {&before, &earlier}, weights[2], nullptr, {}));
+      ASSERT_TRUE(row.readContinuing(next.data(), next.size(), weights[2])) << which;
+      expectSame(row, now, which);
+      ASSERT_FALSE(row.readContinuing(whole.data(), whole.size(), weights[2])) << which;
+      EXPECT_FALSE(row.hasRow()) << "damage ends the row";
+      EXPECT_FALSE(row.readContinuing(next.data(), next.size(), weights[2])) << which;
     }
   }
 }

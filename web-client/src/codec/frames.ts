@@ -1,11 +1,11 @@
 // A LayerFrame → its header as plain data and its payload as a view, or the reason why it cannot be trusted. Pure.
 import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
 import { crc32c } from "./crc32c";
+import { kWeightCount } from "./frame_reader";
 import { levelName, type LevelName } from "./level";
 import { malformed, type Malformed } from "./malformed";
 import { unpackParticles } from "./packed_particles";
 import type { PackedFoam, PackedSurface } from "./packed_planes";
-import { kWeightCount } from "./surface_predictor";
 
 /** Largest grid side and counts this client takes; all far above what a server sends. */
 export const kMaxResolutionCount = 4096;

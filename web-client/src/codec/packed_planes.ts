@@ -1,9 +1,8 @@
 // The packed forms of the layers that are planes → the samples of their plain ones. Keeps the last two planes of a layer, on
 // which the next one builds.
+import { PlaneReader } from "./frame_reader";
 import type { FoamHeader, FrameHeader, SurfaceHeader } from "./frames";
 import { malformed, type Malformed } from "./malformed";
-import { ResidualReader } from "./residual_reader";
-import { readPlane, SurfacePlane } from "./surface_predictor";
 
 /** A plane that takes those before to be read. */
 export interface PackedPlane<H extends FrameHeader> {
@@ -26,40 +25,30 @@ export interface MissingBase {
 
 /** One layer's row of planes. */
 class PlaneRow<H extends FrameHeader> {
-  private before: SurfacePlane | undefined;
-  private earlier: SurfacePlane | undefined;
+  private reader: PlaneReader | undefined;
+  /** Of the plane read last; undefined: there is none to continue. */
   private header: H | undefined;
 
   /** `isSame`: whether planes of both headers can follow each other. */
   constructor(private readonly isSame: (a: H, b: H) => boolean) {}
 
   forget(): void {
-    this.before = this.earlier = undefined;
     this.header = undefined;
   }
 
-  read(packed: PackedPlane<H>): { kind: "plane"; samples: Int16Array } | Malformed | MissingBase {
+  read(packed: PackedPlane<H>): { kind: "plane"; reader: PlaneReader } | Malformed | MissingBase {
     const { header, resolutionCount, payload, weights, earlierWeights, baseTick } = packed;
-    const { before, earlier: beforeThat, header: known } = this;
+    const known = this.header;
     this.forget(); // until this frame has proved good
-    const reader = new ResidualReader(payload);
-    const now = new SurfacePlane(resolutionCount);
-    let earlier = before;
-    if (baseTick === undefined) {
-      readPlane(reader, {}, weights, now);
-      earlier = new SurfacePlane(resolutionCount);
-      readPlane(reader, { before: now }, earlierWeights, earlier);
-    } else {
-      if (!known || known.tick !== baseTick || !this.isSame(known, header)) return { kind: "missingBase" };
-      readPlane(reader, { before, earlier: beforeThat }, weights, now);
-    }
-    if (!reader.isAtEnd()) return malformed("a packed plane: the payload's end does not fit its beginning");
-    this.before = now;
-    this.earlier = earlier;
+    const reader = (this.reader ??= new PlaneReader());
+    if (baseTick !== undefined && (!known || known.tick !== baseTick || !this.isSame(known, header))) return { kind: "missingBase" };
+    const isRead =
+      baseTick === undefined
+        ? reader.readWhole(payload, resolutionCount, weights, earlierWeights)
+        : reader.readContinuing(payload, resolutionCount, weights);
+    if (!isRead) return malformed("a packed plane: the payload's end does not fit its beginning");
     this.header = header;
-    const samples = new Int16Array(resolutionCount * resolutionCount);
-    now.copyTo(samples);
-    return { kind: "plane", samples };
+    return { kind: "plane", reader };
   }
 }
 
@@ -75,6 +64,7 @@ export class PlaneUnpacker {
     this.foam.forget();
   }
 
+  /** The payload that comes back holds until the next frame of its layer. */
   unpack(
     packed: PackedSurface | PackedFoam,
   ):
@@ -84,9 +74,9 @@ export class PlaneUnpacker {
     | MissingBase {
     if (packed.kind === "packedSurface") {
       const read = this.surface.read(packed);
-      return read.kind === "plane" ? { kind: "surface", header: packed.header, payload: new Uint8Array(read.samples.buffer) } : read;
+      return read.kind === "plane" ? { kind: "surface", header: packed.header, payload: read.reader.surface(packed.resolutionCount) } : read;
     }
     const read = this.foam.read(packed);
-    return read.kind === "plane" ? { kind: "foam", header: packed.header, payload: Uint8Array.from(new Uint8ClampedArray(read.samples)) } : read;
+    return read.kind === "plane" ? { kind: "foam", header: packed.header, payload: read.reader.foam(packed.resolutionCount) } : read;
   }
 }

@@ -1,5 +1,6 @@
 // The worker's root: a Connection on one side, postMessage on the other. Payloads are copied once, out of the message
 // into an aligned buffer, and travel to the page and back by transfer.
+import { readerFault } from "../codec/frame_reader";
 import { Connection, type ConnectionWorld, type SocketLike } from "./connection";
 import { FrameHandover } from "./handover";
 import type { DetailChoice, Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
@@ -42,6 +43,8 @@ let detail: DetailChoice = "auto";
 
 function start(url: string, identity: Identity): void {
   connection?.stop();
+  const fault = readerFault();
+  if (fault) return toPage({ type: "state", state: { name: "refused", reason: fault } });
   connection = new Connection(url, world, {
     state: (state) => toPage({ type: "state", state }),
     greeting: (greeting) => {

@@ -1,0 +1,101 @@
+// The readers of packed frames: server/stream/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance a layer.
+import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
+
+/** Of a packed plane. */
+export const kWeightCount = 10;
+
+/** server/stream/wasm/frame_reader.cpp; places in memory, counts, truth as 0 and 1. */
+interface Exports {
+  memory: WebAssembly.Memory;
+  prepareParticles(count: number, payloadBytes: number): number;
+  readParticles(count: number, cellsX: number, cellsY: number, cellsZ: number, offsetBits: number): number;
+  preparePlane(resolutionCount: number, payloadBytes: number): number;
+  weights(): number;
+  earlierWeights(): number;
+  readWholePlane(): number;
+  readContinuingPlane(): number;
+  surfaceSamples(): number;
+  foamSamples(): number;
+  prepareChecksum(payloadBytes: number): number;
+  checksum(): number;
+}
+
+let compiled: WebAssembly.Module | undefined;
+
+function instantiate(): Exports {
+  compiled ??= new WebAssembly.Module(Uint8Array.from(atob(kFrameReaderBase64), (letter) => letter.charCodeAt(0)));
+  return new WebAssembly.Instance(compiled).exports as unknown as Exports;
+}
+
+/** One line for a person where this machine cannot read packed frames. */
+export function readerFault(): string | undefined {
+  try {
+    instantiate();
+    return undefined;
+  } catch (error) {
+    return `this browser cannot read the water's frames: it lacks WebAssembly with SIMD (${error instanceof Error ? error.message : String(error)})`;
+  }
+}
+
+/** An instance. What is read lies in the instance's memory: it holds until the next frame is read, and has to be copied by then. */
+class Reader {
+  protected readonly exports = instantiate();
+
+  /** False: there is no memory for it. */
+  protected put(payload: Uint8Array, at: number): boolean {
+    if (at === 0) return false;
+    this.view(at, payload.length).set(payload);
+    return true;
+  }
+
+  protected view(at: number, bytesCount: number): Uint8Array {
+    return new Uint8Array(this.exports.memory.buffer, at, bytesCount);
+  }
+}
+
+export class ChecksumReader extends Reader {
+  /** CRC-32C; undefined: there is no memory for so many bytes. */
+  read(payload: Uint8Array): number | undefined {
+    if (!this.put(payload, this.exports.prepareChecksum(payload.length))) return undefined;
+    return this.exports.checksum() >>> 0;
+  }
+}
+
+export class ParticleReader extends Reader {
+  /** 12 bytes a particle, or undefined: the payload is damaged. */
+  read(payload: Uint8Array, count: number, cellsCount: readonly [number, number, number], offsetBits: number): Uint8Array | undefined {
+    if (!this.put(payload, this.exports.prepareParticles(count, payload.length))) return undefined;
+    const at = this.exports.readParticles(count, ...cellsCount, offsetBits);
+    return at === 0 ? undefined : this.view(at, 12 * count);
+  }
+}
+
+/** The planes of one layer. A reader that has met damage continues nothing. */
+export class PlaneReader extends Reader {
+  readWhole(payload: Uint8Array, resolutionCount: number, weights: readonly number[], earlierWeights: readonly number[]): boolean {
+    if (!this.put(payload, this.exports.preparePlane(resolutionCount, payload.length))) return false;
+    this.putWeights(weights, this.exports.weights());
+    this.putWeights(earlierWeights, this.exports.earlierWeights());
+    return this.exports.readWholePlane() !== 0;
+  }
+
+  readContinuing(payload: Uint8Array, resolutionCount: number, weights: readonly number[]): boolean {
+    if (!this.put(payload, this.exports.preparePlane(resolutionCount, payload.length))) return false;
+    this.putWeights(weights, this.exports.weights());
+    return this.exports.readContinuingPlane() !== 0;
+  }
+
+  /** Of the plane read last, two bytes each. */
+  surface(resolutionCount: number): Uint8Array {
+    return this.view(this.exports.surfaceSamples(), 2 * resolutionCount * resolutionCount);
+  }
+
+  /** Likewise, a byte each. */
+  foam(resolutionCount: number): Uint8Array {
+    return this.view(this.exports.foamSamples(), resolutionCount * resolutionCount);
+  }
+
+  private putWeights(weights: readonly number[], at: number): void {
+    new Int32Array(this.exports.memory.buffer, at, kWeightCount).set(weights);
+  }
+}
