@@ -9,7 +9,7 @@
 namespace spindrift::stream {
 namespace {
 
-/// Residuals of eight rows, tile by tile: what both directions walk over.
+/// Residuals of eight rows, tile by tile.
 class TileBand {
  public:
   explicit TileBand(std::size_t n) : n_(n), classes_((n + kTile - 1) / kTile, 0), residuals_(kTile * n), sums_(n) {}
