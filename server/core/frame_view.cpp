@@ -3,11 +3,7 @@
 namespace spindrift::core {
 
 FrameView frameAt(const FrameView& frame, Level level) {
-  if (level == Level::kFull) {
-    FrameView full = frame;
-    full.reduced = {};
-    return full;
-  }
+  if (level == Level::kFull) return frame;
   const ReducedView& reduced = frame.reduced[indexOf(level)];
   FrameView out;
   out.tick = frame.tick;
