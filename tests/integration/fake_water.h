@@ -23,6 +23,7 @@
 namespace spindrift::test {
 
 inline constexpr std::uint32_t kFakeResolutionCount = 32;
+inline constexpr std::uint32_t kFakeCoarseCount = 16;
 inline constexpr double kFakeQuantum_m = 1.0 / 1024;
 /// The first sample of every frame, so that a reader can tell whether the samples belong to the tick.
 inline std::int16_t markOf(std::uint64_t tick) {
@@ -34,11 +35,14 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
   struct Slot {
     std::vector<std::uint32_t> surface = std::vector<std::uint32_t>(kFakeResolutionCount * kFakeResolutionCount / 2);
     std::vector<std::uint32_t> foam = std::vector<std::uint32_t>(kFakeResolutionCount * kFakeResolutionCount / 4);
+    std::vector<std::uint32_t> coarse = std::vector<std::uint32_t>(kFakeCoarseCount * kFakeCoarseCount / 2);
     std::vector<std::uint32_t> particles;
   };
   const auto slot = std::make_shared<Slot>();
   for (std::uint32_t& word : slot->surface) word = random() & 0x003f003fU;
   slot->surface[0] = static_cast<std::uint16_t>(markOf(tick));
+  for (std::uint32_t& word : slot->coarse) word = random() & 0x003f003fU;
+  slot->coarse[0] = slot->surface[0];
   for (std::uint32_t& word : slot->foam) word = random() & 0x0f000f00U;
   slot->particles.resize(3 * (random() % 300));
   for (std::uint32_t& word : slot->particles) word = static_cast<std::uint32_t>(random()) & 0x00ffffffU;
@@ -48,6 +52,11 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
   frame.time_s = static_cast<double>(tick) / 60;
   frame.surface = core::SurfaceView{kFakeResolutionCount, 8.0, kFakeQuantum_m, slot->surface};
   frame.foam = core::FoamView{kFakeResolutionCount, 8.0, slot->foam};
+  frame.reduced_counts.planes = 1;
+  core::ReducedView& coarse = frame.reduced[core::indexOf(core::Level::kCoarse)];
+  coarse.surface = core::SurfaceView{kFakeCoarseCount, 8.0, kFakeQuantum_m, slot->coarse};
+  coarse.foam =
+      core::FoamView{kFakeCoarseCount, 8.0, std::span(slot->foam).first(kFakeCoarseCount * kFakeCoarseCount / 4)};
   core::ParticleView particles;
   particles.count = static_cast<std::uint32_t>(slot->particles.size() / 3);
   for (double& min : particles.min_m) min = -4.0;

@@ -17,10 +17,17 @@ constexpr int kFrameCount = 12;
 constexpr double kAsManyAsThereAre_hz = 240.0;
 
 /// Reads frames of every layer in one packing until each has come often enough; what is wrong with the first bad one.
-std::string readFrames(ScriptedClient& client, v1::Packing packing) {
+/// They come at whatever level the link carries.
+std::string readFrames(ScriptedClient& client, v1::Packing packing, v1::Level level = v1::LEVEL_FULL) {
   const bool packed = packing == v1::PACKING_PACKED;
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_FOAM, v1::LAYER_PARTICLES}) {
-    client.subscribe(layer, kAsManyAsThereAre_hz, packing);
+    v1::Subscribe wanted;
+    wanted.set_layer(layer);
+    wanted.set_max_rate_hz(kAsManyAsThereAre_hz);
+    wanted.set_packing(packing);
+    wanted.set_level(level);
+    wanted.set_adapts(true);
+    client.subscribe(wanted);
   }
   stream::PackedSurfaceDecoder packed_surface;
   stream::PackedFoamDecoder packed_foam;
@@ -41,6 +48,8 @@ std::string readFrames(ScriptedClient& client, v1::Packing packing) {
       if (!surface) return surface.error().message;
       const float mark_m = static_cast<float>(markOf(frame.tick()) * kFakeQuantum_m);
       if (surface->elevation_m.at(0) != mark_m) return "samples of another tick";
+      const bool is_coarse = frame.level() == v1::LEVEL_COARSE;
+      if (surface->resolution_count != (is_coarse ? kFakeCoarseCount : kFakeResolutionCount)) return "another level";
     } else if (frame.layer() == v1::LAYER_FOAM) {
       const auto foam = packed ? packed_foam.decode(frame) : stream::decodeFoam(frame);
       if (!foam) return foam.error().message;
@@ -72,7 +81,8 @@ std::string visit(const FakeWater& water, std::uint16_t port, int person, int tu
   if (!client.isOpen()) return "not let in";
   client.hello();
   const v1::Packing first = turn % 2 == 0 ? v1::PACKING_PLAIN : v1::PACKING_PACKED;
-  if (auto wrong = readFrames(client, first); !wrong.empty()) return wrong;
+  const v1::Level level = person % 3 == 1 ? v1::LEVEL_COARSE : v1::LEVEL_FULL;
+  if (auto wrong = readFrames(client, first, level); !wrong.empty()) return wrong;
   if (!client.apply(person % 3 == 0 ? reset() : splash())) return "no answer to a command";
   // Frames of the packing before may still be on their way; behind the pong there are none.
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_FOAM, v1::LAYER_PARTICLES}) client.unsubscribe(layer);
