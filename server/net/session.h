@@ -53,8 +53,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   boost::asio::awaitable<bool> write(const core::Bytes& message);
   /// After a message went out: whether the link carries what it is given.
   void reviewLevel();
-  /// Cuts the connection when a write passes its deadline. One timer runs on from write to write and is set again only
-  /// when it expires: moving it for each frame was a tenth of what a frame costs.
+  /// Cuts the connection when a write passes its deadline. One timer runs on from write to write, not moved for each.
   void watchWrites();
   /// Sends the close frame and waits for the peer's, within the close deadline.
   boost::asio::awaitable<void> sayGoodbye();
