@@ -8,7 +8,7 @@ namespace {
 bool hasVectors() {
 #if SPINDRIFT_HAS_VECTORS
   return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 &&
-         __builtin_cpu_supports("bmi2") != 0 && __builtin_cpu_supports("lzcnt") != 0;
+         __builtin_cpu_supports("bmi2") != 0;
 #else
   return false;
 #endif

@@ -7,7 +7,7 @@
 #define SPINDRIFT_INLINE __attribute__((always_inline)) inline
 #if defined(__x86_64__)
 #define SPINDRIFT_HAS_VECTORS 1
-#define SPINDRIFT_VECTORS __attribute__((target("avx2,bmi,bmi2,lzcnt")))
+#define SPINDRIFT_VECTORS __attribute__((target("avx2,bmi,bmi2")))
 #else
 #define SPINDRIFT_HAS_VECTORS 0
 #define SPINDRIFT_VECTORS
