@@ -29,8 +29,8 @@ void storeVector(Element* to, Vector vector) {
   std::memcpy(to, &vector, sizeof vector);
 }
 
-/// 64 times the same number. Stores and nothing else: a compiler that sees the number makes a call of them, which takes
-/// WebAssembly out of its own code and costs more than all else here.
+/// 64 times the same number. Stores and nothing else: a compiler that sees the number makes memory.fill or rep stos of
+/// them, slow for so few bytes.
 inline void fill64(std::int16_t* to, std::int16_t value) {
   asm("" : "+r"(value));
   const Shorts v{value, value, value, value, value, value, value, value};
