@@ -64,8 +64,8 @@ export class Client {
   hello(major = 1) {
     this.send({ case: "hello", value: { version: { major, minor: 0 }, client: "ws" } });
   }
-  subscribe(layer, packing, maxRateHz = 60) {
-    this.send({ case: "subscribe", value: { layer, packing, maxRateHz } });
+  subscribe(layer, packing, more = {}) {
+    this.send({ case: "subscribe", value: { layer, packing, maxRateHz: 60, ...more } });
   }
   command(commandId, action) {
     this.send({ case: "command", value: { commandId, action } });

@@ -1,7 +1,7 @@
 // An independent WebSocket implementation against the real server: handshake, both packings, commands, closing.
 import { startServer } from "../browser/server.mjs";
 import { PlaneUnpacker } from "../../web-client/src/codec/packed_planes";
-import { Layer, Packing } from "../../web-client/src/gen/spindrift/v1/wire_pb";
+import { Layer, Level, Packing } from "../../web-client/src/gen/spindrift/v1/wire_pb";
 import { Client } from "./client.mjs";
 
 let server;
@@ -43,10 +43,23 @@ describe("the npm package ws", () => {
       const { header, payload } = await client.nextOf("surface");
       expect(header.tick).toBeGreaterThan(last_tick);
       last_tick = header.tick;
-      expect(header.resolutionCount).toBe(64);
+      expect(header.resolutionCount).toBe(144);
       expect(header.sideM).toBe(16);
-      expect(payload.byteLength).toBe(2 * 64 * 64);
+      expect(payload.byteLength).toBe(2 * 144 * 144);
     }
+    expect((await client.close()).code).toBe(1000);
+  });
+
+  it("gets the level of detail that it asks for, with the server's time", async () => {
+    const client = await greeted();
+    client.subscribe(Layer.SURFACE, Packing.PLAIN, { level: Level.COARSE });
+    const { header, payload } = await client.nextOf("surface");
+    expect(header).toMatchObject({ resolutionCount: 128, level: "coarse", sideM: 16 });
+    expect(payload.byteLength).toBe(2 * 128 * 128);
+    const next = await client.nextOf("surface");
+    const passedS = next.header.serverTimeS - header.serverTimeS;
+    // A frame of twenty a second, however late the machine is with it.
+    expect(passedS).toBeGreaterThan(0.01);
     expect((await client.close()).code).toBe(1000);
   });
 
