@@ -84,29 +84,28 @@ void EncoderThread::loop() {
 EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
                                            stream::FrameEncoder& encoder) {
   Costs spent{};
-  std::array<core::FrameView, core::kLevelCount> views;
-  for (const core::Level level : core::kLevels) views[core::indexOf(level)] = core::frameAt(frame, level);
+  std::array<core::FrameView, core::kReducedLevelCount> reduced;
+  for (std::size_t k = 0; k < reduced.size(); ++k) reduced[k] = core::frameAt(frame, core::kLevels[k]);
   for (const stream::Stream stream : stream::allStreams()) {
     const auto index = layerIndex(stream);
     const std::uint32_t reduced_count = stream::reducedCountOf(stream.layer, frame.reduced_counts);
     const net::LayerDemand demand = hub_.demand(room, index, reduced_count);
-    for (const core::FrameView& view : views) {
-      const net::LevelDemand& wanted = demand[core::indexOf(view.level)];
+    for (const core::Level level : core::kLevels) {
+      const core::FrameView& view = level == core::Level::kFull ? frame : reduced[core::indexOf(level)];
+      const net::LevelDemand& wanted = demand[core::indexOf(level)];
       if (wanted.watcher_count == 0) continue;
       const auto begin = std::chrono::steady_clock::now();
       const stream::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_whole);
-      StreamCost& cost = spent[index][core::indexOf(view.level)];
+      StreamCost& cost = spent[index][core::indexOf(level)];
       cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       if (!encoded.whole && !encoded.continuing) continue;
       cost.frame_count = 1;
       for (const core::SharedBytes& form : {encoded.whole, encoded.continuing}) {
         if (form) cost.bytes_count += form->size();
       }
-      hub_.publish(room, index,
-                   {.whole = encoded.whole,
-                    .continuing = encoded.continuing,
-                    .level = view.level,
-                    .reduced_count = reduced_count});
+      hub_.publish(
+          room, index,
+          {.whole = encoded.whole, .continuing = encoded.continuing, .level = level, .reduced_count = reduced_count});
     }
   }
   return spent;

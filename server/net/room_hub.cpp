@@ -80,12 +80,6 @@ void RoomHub::watch(SessionId session, LayerIndex layer, const Watch& watch) {
   }
 }
 
-std::size_t RoomHub::watcherCount(const std::string& room, LayerIndex layer) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = rooms_.find(room);
-  return found == rooms_.end() || layer >= kMaxLayerCount ? 0 : found->second.watchers[layer].size();
-}
-
 void RoomHub::close(SessionId session, CloseCode code, std::string reason) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);

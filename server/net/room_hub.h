@@ -46,7 +46,6 @@ class RoomHub final : public Hub {
   void join(SessionId session, const std::string& room) override;
   std::size_t sessionCount(const std::string& room) const override;
   void watch(SessionId session, LayerIndex layer, const Watch& watch) override;
-  std::size_t watcherCount(const std::string& room, LayerIndex layer) const override;
   void close(SessionId session, CloseCode code, std::string reason) override;
   void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
                std::string reason) override;

@@ -93,21 +93,6 @@ std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& co
 
 namespace {
 
-std::optional<core::Level> levelOf(v1::Level level) {
-  switch (level) {
-    case v1::LEVEL_FULL:
-      return core::Level::kFull;
-    case v1::LEVEL_COARSE:
-      return core::Level::kCoarse;
-    case v1::LEVEL_MEDIUM:
-      return core::Level::kMedium;
-    case v1::LEVEL_FINE:
-      return core::Level::kFine;
-    default:
-      return std::nullopt;
-  }
-}
-
 ClientMessage parseSubscribe(const v1::Subscribe& subscribe) {
   if (!v1::Layer_IsValid(subscribe.layer()) || subscribe.layer() == v1::LAYER_UNSPECIFIED) {
     return Malformed{"subscribe.layer: " + std::to_string(subscribe.layer()) +
@@ -117,7 +102,7 @@ ClientMessage parseSubscribe(const v1::Subscribe& subscribe) {
     return Malformed{"subscribe.packing: " + std::to_string(subscribe.packing()) +
                      " is neither plain (0) nor packed (1)"};
   }
-  const std::optional<core::Level> level = levelOf(subscribe.level());
+  const std::optional<core::Level> level = fromWire(subscribe.level());
   if (!level) {
     return Malformed{"subscribe.level: " + std::to_string(subscribe.level()) +
                      " is no level; full (0), coarse (1), medium (2) and fine (3) are"};

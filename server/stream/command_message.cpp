@@ -1,10 +1,17 @@
 // Domain values back to the wire: answers, roles, and commands for the log of a room.
+#include <algorithm>
+#include <array>
+#include <optional>
 #include <variant>
 
 #include <spindrift/stream/client_message.h>
 
 namespace spindrift::stream {
 namespace {
+
+/// By core::Level.
+constexpr std::array<v1::Level, core::kLevelCount> kWireLevels{v1::LEVEL_COARSE, v1::LEVEL_MEDIUM, v1::LEVEL_FINE,
+                                                               v1::LEVEL_FULL};
 
 v1::Side toWire(core::Side side) {
   switch (side) {
@@ -109,17 +116,13 @@ v1::Role toWire(core::Role role) {
 }
 
 v1::Level toWire(core::Level level) {
-  switch (level) {
-    case core::Level::kCoarse:
-      return v1::LEVEL_COARSE;
-    case core::Level::kMedium:
-      return v1::LEVEL_MEDIUM;
-    case core::Level::kFine:
-      return v1::LEVEL_FINE;
-    case core::Level::kFull:
-      return v1::LEVEL_FULL;
-  }
-  return v1::LEVEL_FULL;
+  return kWireLevels[core::indexOf(level)];
+}
+
+std::optional<core::Level> fromWire(v1::Level level) {
+  const auto at = std::ranges::find(kWireLevels, level);
+  if (at == kWireLevels.end()) return std::nullopt;
+  return static_cast<core::Level>(at - kWireLevels.begin());
 }
 
 v1::Reject toWire(const CommandRejection& rejection) {

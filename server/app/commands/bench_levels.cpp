@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Words = std::array<std::uint32_t, 3>;
 
-/// What STREAM budgets a reduced level at most [Mbit/s].
+/// What a reduced level takes at most, as proto/README.md promises [Mbit/s].
 constexpr std::array<double, core::kReducedLevelCount> kBudgets_mbitps{4.0, 24.0, 95.0};
 
 std::vector<Words> particlesOf(const core::ParticleView& particles) {

@@ -83,11 +83,15 @@ SPINDRIFT_AVX2 __m256i pairOf(std::int32_t a, std::int32_t b) {
 }
 /// Adds weight a times p[0..15] and weight b times q[0..15]. The product of two pairs wraps around at 32 bits as sums
 /// do.
-SPINDRIFT_AVX2 void add(Sums& sums, const std::int16_t* p, const std::int16_t* q, __m256i weights) {
-  const __m256i a = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-  const __m256i b = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(q));
+SPINDRIFT_AVX2 void add(Sums& sums, __m256i a, __m256i b, __m256i weights) {
   sums.low = _mm256_add_epi32(sums.low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a, b), weights));
   sums.high = _mm256_add_epi32(sums.high, _mm256_madd_epi16(_mm256_unpackhi_epi16(a, b), weights));
+}
+SPINDRIFT_AVX2 __m256i load(const std::int16_t* p) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
+}
+SPINDRIFT_AVX2 void add(Sums& sums, const std::int16_t* p, const std::int16_t* q, __m256i weights) {
+  add(sums, load(p), load(q), weights);
 }
 /// The low 16 bits of sum >> kWeightBits, with their sign.
 SPINDRIFT_AVX2 __m256i shifted(__m256i sum) {
@@ -131,18 +135,10 @@ __attribute__((target("avx2"))) void residualsInSixteens(const std::int16_t* her
   }
 }
 
-SPINDRIFT_AVX2 __m256i load(const std::int16_t* p) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-}
 SPINDRIFT_AVX2 __m256i sumOf(const std::int16_t* a, const std::int16_t* b, const std::int16_t* c,
                              const std::int16_t* d) {
   return _mm256_add_epi16(_mm256_add_epi16(load(a), load(b)), _mm256_add_epi16(load(c), load(d)));
 }
-SPINDRIFT_AVX2 void add(Sums& sums, __m256i a, __m256i b, __m256i weights) {
-  sums.low = _mm256_add_epi32(sums.low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a, b), weights));
-  sums.high = _mm256_add_epi32(sums.high, _mm256_madd_epi16(_mm256_unpackhi_epi16(a, b), weights));
-}
-
 /// The same where sums of four samples fit into 16 bits: neighbours are added before they are weighed.
 __attribute__((target("avx2"))) void smallResidualsInSixteens(const std::int16_t* here, const std::int16_t* above,
                                                               const Rows& rows, std::span<std::int16_t> out) {
@@ -184,14 +180,6 @@ bool hasSixteens(const SurfaceWeights&) {
 #endif
 
 }  // namespace
-
-void predictFromHistory(const SurfaceHistory& history, const SurfaceWeights& weights, std::size_t z,
-                        std::span<std::int32_t> out) {
-  if (history.before == nullptr)
-    std::ranges::fill(out, kHalf);
-  else
-    fromHistory(rowsAround(*history.before, history, weights, z), 0, out);
-}
 
 void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                     std::size_t z, std::span<std::int32_t> sums, std::span<std::int16_t> out) {

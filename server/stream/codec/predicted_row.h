@@ -8,10 +8,6 @@
 
 namespace spindrift::stream {
 
-/// What the frames before say about row z, rounding included, times 4096. Wraps around at 32 bits.
-void predictFromHistory(const SurfaceHistory& history, const SurfaceWeights& weights, std::size_t z,
-                        std::span<std::int32_t> out);
-
 /// What the prediction leaves over of row z of a plane that is known already. `sums` is for its own use.
 void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                     std::size_t z, std::span<std::int32_t> sums, std::span<std::int16_t> out);

@@ -84,18 +84,18 @@ TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
 TEST_F(RoomHubTest, CountsWatchers) {
   hub.join(1, "pool");
   hub.join(2, "pool");
-  EXPECT_EQ(hub.watcherCount("pool", 3), 0U);
+  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U);
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.watch(2, 3, {.max_rate_hz = 10.0});
   hub.watch(2, 3, {.max_rate_hz = 20.0});
-  EXPECT_EQ(hub.watcherCount("pool", 3), 2U);
+  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 2U);
   EXPECT_EQ(bob->rate_hz, 20.0);
   hub.watch(1, 3, {.max_rate_hz = 0.0});
-  EXPECT_EQ(hub.watcherCount("pool", 3), 1U);
+  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 1U);
   EXPECT_EQ(ada->rate_hz, std::nullopt);
   hub.remove(2);
-  EXPECT_EQ(hub.watcherCount("pool", 3), 0U);
-  EXPECT_EQ(hub.watcherCount("nowhere", 3), 0U);
+  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U);
+  EXPECT_EQ(test::watcherCount(hub, "nowhere", 3), 0U);
 }
 
 TEST_F(RoomHubTest, TreatsARateThatIsNoRateAsStop) {
@@ -103,20 +103,20 @@ TEST_F(RoomHubTest, TreatsARateThatIsNoRateAsStop) {
   for (const double rate_hz :
        {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     hub.watch(1, 3, {.max_rate_hz = rate_hz});
-    EXPECT_EQ(hub.watcherCount("pool", 3), 0U) << rate_hz;
+    EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U) << rate_hz;
   }
 }
 
 TEST_F(RoomHubTest, TakesWatchesAlongIntoTheNextRoomButNoFrames) {
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.join(1, "pool");
-  EXPECT_EQ(hub.watcherCount("pool", 3), 1U);
+  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 1U);
   hub.join(1, "pool");
   EXPECT_EQ(ada->clear_count, 0);
   hub.join(1, "sea");
   EXPECT_EQ(ada->clear_count, 1);
-  EXPECT_EQ(hub.watcherCount("pool", 3), 0U);
-  EXPECT_EQ(hub.watcherCount("sea", 3), 1U);
+  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U);
+  EXPECT_EQ(test::watcherCount(hub, "sea", 3), 1U);
 }
 
 TEST_F(RoomHubTest, ForgetsEmptyRooms) {

@@ -41,6 +41,14 @@ inline bool eventually(const std::function<bool()>& holds) {
   return true;
 }
 
+/// Watchers of a layer, whatever the level.
+inline std::size_t watcherCount(const net::Hub& hub, const std::string& room, net::LayerIndex layer) {
+  std::size_t count = 0;
+  const net::LayerDemand demand = hub.demand(room, layer, 0);
+  for (const net::LevelDemand& level : demand) count += level.watcher_count;
+  return count;
+}
+
 /// Messages: "echo ..." comes back; "watch L RATE" watches and answers "watching"; "flood N BYTES" sends N control
 /// messages "0 ...", "1 ..."; "throw" throws; "bye" closes with 1000. Rooms: "" and "pool"; each session joins its own.
 class TestApplication final : public net::Application {

@@ -131,6 +131,30 @@ SurfacePlane planeOf(std::size_t n, auto sample_at) {
   return plane;
 }
 
+/// What the frames before say about one sample, rounding included, times 4096.
+std::int32_t fromHistoryAt(const SurfaceHistory& history, const SurfaceWeights& weights, std::size_t x, std::size_t z) {
+  using W = SurfaceWeights;
+  std::uint32_t sum = 1u << (kWeightBits - 1);
+  const auto add = [&](const SurfacePlane* plane, std::int32_t weight,
+                       std::initializer_list<std::pair<int, int>> places) {
+    for (const auto& [dx, dz] : places) {
+      if (plane == nullptr) continue;
+      const std::int16_t sample = plane->row(static_cast<std::ptrdiff_t>(z) + dz)[static_cast<std::ptrdiff_t>(x) + dx];
+      sum += static_cast<std::uint32_t>(weight) * static_cast<std::uint32_t>(sample);
+    }
+  };
+  const auto nearest = {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)};
+  const auto diagonal = {std::pair(1, 1), std::pair(-1, 1), std::pair(1, -1), std::pair(-1, -1)};
+  add(history.before, weights.of[W::kBefore], {{0, 0}});
+  add(history.before, weights.of[W::kBeforeNearest], nearest);
+  add(history.before, weights.of[W::kBeforeDiagonal], diagonal);
+  add(history.before, weights.of[W::kBeforeFar], {{2, 0}, {-2, 0}, {0, 2}, {0, -2}});
+  add(history.earlier, weights.of[W::kEarlier], {{0, 0}});
+  add(history.earlier, weights.of[W::kEarlierNearest], nearest);
+  add(history.earlier, weights.of[W::kEarlierDiagonal], diagonal);
+  return static_cast<std::int32_t>(sum);
+}
+
 TEST(Prediction, OfAWholeRowIsThatOfEachSample) {
   Random random(4);
   const auto noise = [&](std::size_t, std::size_t) { return random(); };
@@ -141,18 +165,18 @@ TEST(Prediction, OfAWholeRowIsThatOfEachSample) {
       for (std::int32_t& w : weights.of) w = static_cast<std::int32_t>(random() % (2u * largest + 1)) - largest;
       for (const SurfaceHistory& history :
            {SurfaceHistory{}, SurfaceHistory{&before, nullptr}, SurfaceHistory{&before, &earlier}}) {
-        std::vector<std::int32_t> sums(n), from_history(n);
+        std::vector<std::int32_t> sums(n);
         std::vector<std::int16_t> residuals(n);
         for (std::size_t z = 0; z < n; ++z) {
           residualsOfRow(now, history, weights, z, sums, residuals);
-          predictFromHistory(history, weights, z, from_history);
           const std::int16_t* here = now.row(static_cast<std::ptrdiff_t>(z));
           const std::int16_t* above = now.row(static_cast<std::ptrdiff_t>(z) - 1);
           for (std::size_t x = 0; x < n; ++x) {
             const std::int32_t west = x > 0 ? here[x - 1] : z > 0 ? above[0] : 0;
             const KnownSamples known =
                 z > 0 && x > 0 ? KnownSamples{west, above[x], above[x - 1]} : KnownSamples{west, west, west};
-            const auto wanted = static_cast<std::int16_t>(here[x] - predictionOf(from_history[x], known, weights));
+            const auto wanted = static_cast<std::int16_t>(
+                here[x] - predictionOf(fromHistoryAt(history, weights, x, z), known, weights));
             ASSERT_EQ(residuals[x], wanted) << n << " a side, " << x << ", " << z << ", weights to " << largest;
           }
         }

@@ -123,9 +123,6 @@ class Hub {
   /// Starts, changes or stops a layer for a session.
   virtual void watch(SessionId session, LayerIndex layer, const Watch& watch) = 0;
 
-  /// How many sessions of the room watch the layer, whatever the level.
-  virtual std::size_t watcherCount(const std::string& room, LayerIndex layer) const = 0;
-
   /// Sends everything queued on the control plane, then closes; the socket is cut after close_timeout in any case.
   virtual void close(SessionId session, CloseCode code, std::string reason) = 0;
 

@@ -73,6 +73,8 @@ std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& co
 v1::Command toWire(const core::Command& command);
 v1::Role toWire(core::Role role);
 v1::Level toWire(core::Level level);
+/// Nothing for a number that is no level.
+std::optional<core::Level> fromWire(v1::Level level);
 v1::Reject toWire(const CommandRejection& rejection);
 
 /// nullopt if this server can talk to the client, otherwise one line for a Refusal.
