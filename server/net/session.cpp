@@ -273,7 +273,9 @@ void Session::close(CloseCode code, std::string reason) {
 
 void Session::closeAt(Clock::time_point when, CloseCode code, std::string reason) {
   asio::post(strand_, [self = shared_from_this(), when, code, reason = std::move(reason)]() mutable {
+    if (self->end_) return;  // over already; the timer would keep it alive
     self->end_timer_.expires_at(when);
+    if (when == Clock::time_point::max()) return;
     self->end_timer_.async_wait(
         [self, code, reason = std::move(reason)](const boost::system::error_code& error) mutable {
           if (!error) self->close(code, std::move(reason));

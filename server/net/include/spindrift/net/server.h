@@ -141,7 +141,7 @@ class Hub {
   /// Sends everything queued on the control plane, then closes; the socket is cut after close_timeout in any case.
   virtual void close(SessionId session, CloseCode code, std::string reason) = 0;
 
-  /// The same at a later time; the latest call counts.
+  /// The same at a later time; the latest call counts. time_point::max() is never.
   virtual void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
                        std::string reason) = 0;
 };
@@ -175,6 +175,9 @@ struct ServerOptions {
   std::string web_root{};     ///< folder with the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
+  /// Share of max_session_count that one address may hold (IPv6: one /64), at least one session. 1 behind a proxy,
+  /// whose clients all come from its address.
+  double address_session_share = 0.5;
   std::size_t read_message_max_bytes = 16 * 1024;  ///< client messages are small
   std::size_t request_body_max_bytes = 64 * 1024;
   std::size_t answer_pause_count = 128;  ///< answers waiting for a session from which on it is not read from
@@ -202,7 +205,7 @@ struct ServerOptions {
 enum class Refused : std::uint8_t {
   kOrigin,      ///< 403: a page that is not on the list
   kRate,        ///< 429: too many requests from one address
-  kFull,        ///< 503: max_session_count sessions are open
+  kFull,        ///< 503: max_session_count sessions are open, or too many of them by one address
   kRoom,        ///< 404: acceptSession said no
   kHandshake,   ///< 400, 404, 426: no WebSocket upgrade that this server knows
   kRequest,     ///< 400, 413, 431: no HTTP request, or too large a one
