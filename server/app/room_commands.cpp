@@ -86,19 +86,18 @@ void Room::apply(Batch batch) {
     return answer(std::move(batch), outcome);
   }
   // Of values for one parameter only the last that the water takes matters: what it overwrites is not built first.
-  Batch overwritten;
-  std::vector<Answer> refused;
+  std::vector<Answer> tried;
   while (!batch.empty()) {
     core::Command command = std::move(batch.back());
     batch.pop_back();
     Outcome outcome = apply(command);
     const bool is_taken = !outcome;
     const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
-    refused.push_back({std::move(command), std::move(outcome), is_taken && is_spawn ? stage_->spawnedBoatId() : 0});
+    tried.push_back({std::move(command), std::move(outcome), is_taken && is_spawn ? stage_->spawnedBoatId() : 0});
     if (is_taken) break;
   }
   answer(std::move(batch), {});
-  std::ranges::move(refused | std::views::reverse, std::back_inserter(answers_));
+  std::ranges::move(tried | std::views::reverse, std::back_inserter(answers_));
 }
 
 void Room::answer(Batch batch, const Outcome& outcome) {
