@@ -26,7 +26,6 @@ void Breakers::clear() {
 void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick) {
   // The state's buffer keeps its place, so that checkpoints and readers need not know which of the two is newer.
   before_.copyFrom(now_, 0, now_.sizeBytes());
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   wave.bindSurface();
   wave.bindBasin();
   wave.bindEvents();

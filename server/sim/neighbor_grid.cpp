@@ -54,7 +54,6 @@ void NeighborGrid::build(const ParticleBuffers& particles, const Population& pop
     next();
   } else {
     cell_count_of_.clear();
-    ctx_.barrier(gpu::Barrier::kBufferUpdate);
   }
 
   // How many particles are in each cell.

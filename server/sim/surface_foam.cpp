@@ -29,7 +29,6 @@ void SurfaceFoam::clear() {
 
 void SurfaceFoam::advance(const Wave& wave, Breakers& breakers, const Boats* boats) {
   before_.copyFrom(now_, 0, now_.sizeBytes());
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   wave.bindSurface();
   breakers.state().bindTexel(BREAKING);
   before_.bindTexel(FOAM_BEFORE);

@@ -74,7 +74,6 @@ void WaterSim::setCareful(bool careful) {
   if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
   if (parts_->wave) parts_->wave->uploadBasin(scene_, *derived_.wave);
-  ctx_.barrier(gpu::Barrier::kUniform | gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 // Frames
@@ -104,7 +103,6 @@ std::vector<core::FrameView> WaterSim::takeFrames() {
 // State
 
 StateCopy WaterSim::copyState() {
-  ctx_.barrier(gpu::Barrier::kBufferUpdate);
   StateCopy out;
   if (parts_->particles) {
     std::size_t count = derived_.particles->count;
@@ -141,7 +139,6 @@ void WaterSim::setState(const StateCopy& state) {
     parts_->wave->elevation().upload(units);
     parts_->wave->flow().upload(state.flow_m2ps);
   }
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 std::uint64_t WaterSim::stateHash() {
