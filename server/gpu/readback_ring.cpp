@@ -73,9 +73,7 @@ bool ReadbackRing::Recording::copyFrom(const Buffer& source, std::size_t source_
 
 void ReadbackRing::Recording::submit(std::uint64_t tag) {
   assert(ring_ && ring_->ctx_.isOwnedHere());
-  void* const fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  glFlush();  // without it a fence may never be passed, because poll() does not wait
-  ring_->in_flight_.push_back({index_, tag, used_bytes_, fence});
+  ring_->in_flight_.push_back({index_, tag, used_bytes_, Fence::insert(ring_->ctx_)});
   ring_ = nullptr;
 }
 
@@ -120,10 +118,7 @@ ReadbackRing::ReadbackRing(Context& ctx, std::shared_ptr<State> state, std::uint
 
 ReadbackRing::~ReadbackRing() {
   assert(ctx_.isOwnedHere());
-  for (const InFlight& flight : in_flight_) {
-    glDeleteSync(static_cast<GLsync>(flight.fence));
-    state_->free(flight.index);
-  }
+  for (const InFlight& flight : in_flight_) state_->free(flight.index);
   // Deleting a mapped buffer unmaps it, so storage that a view still shows must live on until the view is dropped.
   ctx_.retire(buffer_id_, size_bytes_, [state = state_] { return state->usedCount() > 0; });
   ctx_.collectRetired();
@@ -146,12 +141,11 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
   std::vector<std::shared_ptr<const Slot>> out;
   std::size_t done = 0;
   for (; done < in_flight_.size(); ++done) {
-    const InFlight& flight = in_flight_[done];
-    const GLenum status = glClientWaitSync(static_cast<GLsync>(flight.fence), 0, 0);
+    InFlight& flight = in_flight_[done];
+    const Fence::Status status = flight.fence.wait(std::chrono::nanoseconds(0));
     // Fences are passed in order: behind one that is not, none is.
-    if (status == GL_TIMEOUT_EXPIRED) break;
-    glDeleteSync(static_cast<GLsync>(flight.fence));
-    if (status == GL_WAIT_FAILED) {
+    if (status == Fence::Status::kPending) break;
+    if (status == Fence::Status::kFailed) {
       spdlog::error("a readback fence failed; frame {} is lost", flight.tag);
       ctx_.countError();
       state_->free(flight.index);

@@ -1,6 +1,7 @@
 // One OpenGL 4.5 core context without a window, owned by one thread at a time and passed to whoever needs it.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +36,35 @@ struct Ledger {
   std::uint64_t dispatch_count = 0;       ///< dispatches since the start
   std::uint64_t buffers_made_count = 0;   ///< buffers ever made: constant while a room steps
   std::uint64_t programs_made_count = 0;  ///< programs ever compiled
+  std::uint64_t upload_count = 0;         ///< calls that copied bytes from the host into buffers
+  std::uint64_t uploaded_bytes = 0;       ///< bytes that they copied
+};
+
+/// A slow device for tests, on top of the real one: a fence is held back until enough later ones were inserted.
+class FenceDelay {
+ public:
+  /// Waits for a fence time out at once: a device that hangs.
+  static constexpr std::uint64_t kForever = ~std::uint64_t{0};
+
+  /// From now on the device lags this many fences behind; a wait for a fence lets it catch up to that one. 0: no lag.
+  void set(std::uint64_t fence_count) { fence_count_ = fence_count; }
+
+  /// Called by Fence: the number of a new fence, counted from 1.
+  std::uint64_t insert() {
+    ++inserted_;
+    if (fence_count_ <= inserted_) reached_ = std::max(reached_, inserted_ - fence_count_);
+    return inserted_;
+  }
+  /// Called by Fence: whether the fence may pass. `waits`: the caller gave it time.
+  bool passes(std::uint64_t number, bool waits) {
+    if (fence_count_ == 0 || (waits && fence_count_ != kForever)) reached_ = std::max(reached_, number);
+    return number <= reached_;
+  }
+
+ private:
+  std::uint64_t fence_count_ = 0;
+  std::uint64_t inserted_ = 0;
+  std::uint64_t reached_ = 0;  ///< fences up to this number may pass
 };
 
 /// Buffers, programs, timers and rings refer to their context and must be destroyed before it, on its thread.
@@ -75,6 +105,8 @@ class Context {
 
   /// Written by Buffer and Program.
   Ledger& ledgerEntry() { return ledger_; }
+  /// Asked by Fence; tests set it.
+  FenceDelay& fenceDelay() { return fence_delay_; }
   void countError() { debug_error_count_.fetch_add(1); }
   /// Takes over the storage of a readback ring that was destroyed while views of it were still held; it is deleted once
   /// `in_use` says false, at the latest with the context.
@@ -97,6 +129,7 @@ class Context {
   std::string why_;
   std::atomic<std::uint64_t> debug_error_count_{0};
   Ledger ledger_;
+  FenceDelay fence_delay_;
   std::vector<Retired> retired_;
 };
 

@@ -12,6 +12,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/context.h>
+#include <spindrift/gpu/fence.h>
 
 namespace spindrift::gpu {
 
@@ -89,7 +90,7 @@ class ReadbackRing {
     std::size_t index;
     std::uint64_t tag;
     std::size_t used_bytes;
-    void* fence;
+    Fence fence;
   };
   ReadbackRing(Context& ctx, std::shared_ptr<State> state, std::uint32_t buffer_id, std::size_t size_bytes);
 
