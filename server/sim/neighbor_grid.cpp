@@ -13,6 +13,7 @@ core::Result<std::unique_ptr<NeighborGrid>> NeighborGrid::create(gpu::Context& c
   auto grid = std::unique_ptr<NeighborGrid>(new NeighborGrid(ctx));
   if (auto sized = grid->resize(layout); !sized) return sized.error();
   Creation create;
+  create(grid->crowded_, gpu::TexelBuffer::create(ctx, "crowded particles", 2, gpu::TexelFormat::kR32UI));
   if (pooled) create(grid->clear_, Program::create(ctx, "grid/clear.comp", defines));
   create(grid->count_program_, Program::create(ctx, "grid/count.comp", defines));
   create(grid->scan_blocks_, Program::create(ctx, "grid/scan_blocks.comp", defines));
@@ -88,6 +89,7 @@ void NeighborGrid::build(const ParticleBuffers& particles, const Population& pop
   particles.sorted_velocity.bindStorage(SORTED_VELOCITY);
   population.forParticles(reorder_);
   next();
+  crowded_.bindStorage(CROWDED);
 }
 
 }  // namespace spindrift::sim

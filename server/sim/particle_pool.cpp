@@ -1,5 +1,7 @@
 #include "particle_pool.h"
 
+#include <algorithm>
+
 #include <shared/bindings.h>
 #include <shared/groups.h>
 #include <shared/pool.h>
@@ -52,7 +54,7 @@ void Population::forCells(gpu::Program& program) const {
   if (pool_)
     program.dispatchIndirect(pool_->words(), POOL_CELL_ARGS * 4);
   else
-    program.dispatch(cell_count_ + 1);
+    program.dispatchGroups(std::min<std::uint32_t>(cell_count_ / program.groupSize()[0] + 1, MAX_GROUPS));
 }
 
 void Population::forScanBlocks(gpu::Program& program) const {
