@@ -171,6 +171,8 @@ void Buffer::bindUniform(std::uint32_t binding) const {
 void Buffer::uploadBytes(std::span<const std::byte> bytes, std::size_t offset_bytes) {
   assert(id_ != 0 && ctx_->isOwnedHere() && offset_bytes + bytes.size() <= size_bytes_);
   if (bytes.empty()) return;
+  ++ctx_->ledgerEntry().upload_count;
+  ctx_->ledgerEntry().uploaded_bytes += bytes.size();
   ctx_->barrierBits(ctx_->accesses().beforeUpdate(nullptr, access_.get()));
   if (use_ == BufferUse::kUpdatable) {
     glNamedBufferSubData(id_, static_cast<GLintptr>(offset_bytes), static_cast<GLsizeiptr>(bytes.size()), bytes.data());

@@ -100,6 +100,7 @@ Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, c
       accesses_(std::make_unique<AccessTracker>(checks.barriers)),
       staging_(std::make_unique<Staging>(*this)),
       programs_(std::make_unique<ProgramCache>()) {
+  fence_delay_.set(checks.lag_fences_count);
   glEnable(GL_DEBUG_OUTPUT);
 #ifndef NDEBUG
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // so that a breakpoint in the callback shows the call

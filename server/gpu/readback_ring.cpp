@@ -141,14 +141,9 @@ std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
   assert(ctx_.isOwnedHere());
   ctx_.collectRetired();
-  // Fences are passed in order: behind one that is not, none is. All are asked while a test holds them, so that each
-  // counts its polls.
+  // Fences are passed in order: behind one that is not, none is.
   std::size_t done = 0;
-  bool is_open = true;
-  for (std::size_t i = 0; i < in_flight_.size() && (is_open || ctx_.heldPollsCount() > 0); ++i) {
-    is_open = in_flight_[i].fence.poll() != FenceState::kPending && is_open;
-    if (is_open) done = i + 1;
-  }
+  while (done < in_flight_.size() && in_flight_[done].fence.poll() != Fence::Status::kPending) ++done;
   return take(done);
 }
 
@@ -158,7 +153,7 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::wait(std::c
   const auto end = std::chrono::steady_clock::now() + limit;
   std::size_t done = 0;
   while (done < in_flight_.size() &&
-         in_flight_[done].fence.wait(end - std::chrono::steady_clock::now()) != FenceState::kPending) {
+         in_flight_[done].fence.wait(end - std::chrono::steady_clock::now()) != Fence::Status::kPending) {
     ++done;
   }
   return take(done);
@@ -168,7 +163,7 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::take(std::s
   std::vector<std::shared_ptr<const Slot>> out;
   for (std::size_t i = 0; i < count; ++i) {
     InFlight& flight = in_flight_[i];
-    if (flight.fence.poll() == FenceState::kLost) {
+    if (flight.fence.poll() == Fence::Status::kFailed) {
       ++lost_count_;
       state_->free(flight.index);
       continue;

@@ -37,9 +37,9 @@ bool Staging::prepare(Ring& ring, bool is_for_upload) {
 }
 
 bool Staging::await(Fence& fence, const char* what) {
-  const FenceState state = fence.wait(kLimit);
-  if (state == FenceState::kPassed) return true;
-  if (state == FenceState::kPending) {
+  const Fence::Status state = fence.wait(kLimit);
+  if (state == Fence::Status::kPassed) return true;
+  if (state == Fence::Status::kPending) {
     spdlog::error("the device did not {} within {} s", what, kLimit.count());
     ctx_.countError();
   }

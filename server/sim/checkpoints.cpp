@@ -19,6 +19,7 @@ core::Result<std::unique_ptr<Checkpoints>> Checkpoints::create(gpu::Context& ctx
 
 void Checkpoints::save(std::uint64_t tick) {
   Copy& copy = copies_[1 - good_];
+  if (copy.is_filled) return;
   for (std::size_t k = 0; k < state_.size(); ++k) copy.buffers[k].copyFrom(*state_[k], 0, state_[k]->sizeBytes());
   copy.tick = tick;
   copy.is_filled = true;

@@ -13,6 +13,7 @@ core::Result<std::unique_ptr<NeighborGrid>> NeighborGrid::create(gpu::Context& c
   auto grid = std::unique_ptr<NeighborGrid>(new NeighborGrid(ctx));
   if (auto sized = grid->resize(layout); !sized) return sized.error();
   Creation create;
+  create(grid->crowded_, gpu::TexelBuffer::create(ctx, "crowded particles", 2, gpu::TexelFormat::kR32UI));
   if (pooled) create(grid->clear_, Program::create(ctx, "grid/clear.comp", defines));
   create(grid->count_program_, Program::create(ctx, "grid/count.comp", defines));
   create(grid->scan_blocks_, Program::create(ctx, "grid/scan_blocks.comp", defines));
@@ -45,7 +46,10 @@ core::Result<void> NeighborGrid::resize(const ParticleLayout& layout) {
 }
 
 void NeighborGrid::build(const ParticleBuffers& particles, const Population& population) {
-  const auto next = [&] { ctx_.barrier(gpu::Barrier::kStorageAndTexel); };
+  // The pool's words hold the group counts of the next pass beside what this one writes.
+  const auto readers =
+      population.pool() ? gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect : gpu::Barrier::kStorageAndTexel;
+  const auto next = [&] { ctx_.barrier(readers); };
   population.bind();
 
   if (population.pool()) {
@@ -87,6 +91,7 @@ void NeighborGrid::build(const ParticleBuffers& particles, const Population& pop
   particles.sorted_velocity.bindStorage(SORTED_VELOCITY);
   population.forParticles(reorder_);
   next();
+  crowded_.bindStorage(CROWDED);
 }
 
 }  // namespace spindrift::sim

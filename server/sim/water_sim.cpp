@@ -11,6 +11,7 @@ namespace spindrift::sim {
 // The algorithm
 
 void WaterSim::step() {
+  if (!waitForDevice()) return;
   parts_->uniforms.bindUniform(SIM_UNIFORMS);  // rooms share the context
   watchHealth();
   startEvents();
@@ -33,6 +34,7 @@ void WaterSim::step() {
   ++tick_;
   measure();
   saveCheckpoint();
+  parts_->ticks_in_flight.submitted(tick_);
 }
 
 void WaterSim::advanceWave() {
@@ -141,7 +143,7 @@ void WaterSim::measure() {
   std::optional<Population> population;
   if (parts_->particles) population = parts_->population(derived_);
   parts_->diagnostics->measure(tick_, parts_->particlesOrNull(), population ? &*population : nullptr,
-                               parts_->wave.get(), parts_->breakers.get(), parts_->boats.get());
+                               parts_->grid.get(), parts_->wave.get(), parts_->breakers.get(), parts_->boats.get());
 }
 
 // Setting up
@@ -151,7 +153,7 @@ WaterSim::WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived)
       scene_(std::move(scene)),
       derived_(std::move(derived)),
       timers_(ctx),
-      parts_(std::make_unique<Parts>()) {}
+      parts_(std::make_unique<Parts>(ctx)) {}
 
 WaterSim::~WaterSim() = default;
 
@@ -195,6 +197,8 @@ core::Result<void> WaterSim::build() {
   if (create.error()) return *create.error();
   return parts_->makeCheckpoints(ctx_);
 }
+
+WaterSim::Parts::Parts(gpu::Context& ctx) : ticks_in_flight(ctx) {}
 
 core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
   std::vector<gpu::Buffer*> state;

@@ -236,14 +236,14 @@ TEST(BarrierDeathTest, FaultsThatNoTestTakesEndTheProcess) {
 TEST(Checks, ReadsTheModesOfTheEnvironment) {
   const auto none = parseChecks("");
   ASSERT_TRUE(none);
-  EXPECT_FALSE(none->barriers || none->poison || none->shuffle_seed || none->held_polls_count);
-  const auto all = parseChecks("barriers,poison,shuffle=7,hold_fences=3");
+  EXPECT_FALSE(none->barriers || none->poison || none->shuffle_seed || none->lag_fences_count);
+  const auto all = parseChecks("barriers,poison,shuffle=7,lag=3");
   ASSERT_TRUE(all);
   EXPECT_TRUE(all->barriers && all->poison);
   EXPECT_EQ(all->shuffle_seed, 7u);
-  EXPECT_EQ(all->held_polls_count, 3u);
+  EXPECT_EQ(all->lag_fences_count, 3u);
   for (const char* text : {"barrier", "shuffle", "shuffle=", "shuffle=0", "shuffle=1000001", "shuffle=x", "poison=1",
-                           "hold_fences=-1", "hold_fences=10001", " barriers"}) {
+                           "lag=-1", "lag=10001", " barriers"}) {
     const auto wrong = parseChecks(text);
     ASSERT_FALSE(wrong) << text;
     EXPECT_THAT(wrong.error().message, HasSubstr(std::string("\"") + text + "\""));

@@ -24,28 +24,31 @@ TEST_F(FenceTest, IsPassedOnceTheWorkBeforeItIsDone) {
   ASSERT_TRUE(buffer);
   buffer->clear(7);
   Fence fence = Fence::insert(*ctx);
-  EXPECT_EQ(fence.wait(kLimit), FenceState::kPassed);
-  EXPECT_EQ(fence.poll(), FenceState::kPassed) << "an answer is final";
+  EXPECT_EQ(fence.wait(kLimit), Fence::Status::kPassed);
+  EXPECT_EQ(fence.poll(), Fence::Status::kPassed) << "an answer is final";
   Fence moved = std::move(fence);
-  EXPECT_EQ(moved.poll(), FenceState::kPassed);
-  EXPECT_EQ(Fence().poll(), FenceState::kPassed) << "there is nothing to wait for";
+  EXPECT_EQ(moved.poll(), Fence::Status::kPassed);
+  EXPECT_EQ(Fence().poll(), Fence::Status::kPassed) << "there is nothing to wait for";
 }
 
-TEST_F(FenceTest, IsHeldForTheNumberOfPollsThatATestAsksFor) {
-  ctx->holdFences(3);
-  Fence fence = Fence::insert(*ctx);
+TEST_F(FenceTest, ASlowDeviceLagsBehindAndCatchesUpWithWhoWaits) {
+  ctx->fenceDelay().set(3);
+  std::vector<Fence> fences;
+  for (int i = 0; i < 5; ++i) fences.push_back(Fence::insert(*ctx));
   ctx->finish();
-  for (int poll = 0; poll < 3; ++poll) EXPECT_EQ(fence.poll(), FenceState::kPending) << poll;
-  EXPECT_EQ(fence.wait(kLimit), FenceState::kPassed);
-  Fence waited = Fence::insert(*ctx);
-  EXPECT_EQ(waited.wait(kLimit), FenceState::kPassed) << "a wait does not care";
-  ctx->holdFences(0);
-  Fence prompt = Fence::insert(*ctx);
-  EXPECT_EQ(prompt.wait(kLimit), FenceState::kPassed);
+  EXPECT_EQ(fences[1].wait(kLimit), Fence::Status::kPassed);
+  EXPECT_EQ(fences[0].poll(), Fence::Status::kPassed);
+  EXPECT_EQ(fences[2].poll(), Fence::Status::kPending);
+  EXPECT_EQ(fences[3].wait(kLimit), Fence::Status::kPassed);
+  EXPECT_EQ(fences[4].poll(), Fence::Status::kPending);
+  ctx->fenceDelay().set(FenceDelay::kForever);
+  EXPECT_EQ(fences[4].wait(kLimit), Fence::Status::kPending) << "a device that hangs; the wait is not sat out";
+  ctx->fenceDelay().set(0);
+  EXPECT_EQ(fences[4].wait(kLimit), Fence::Status::kPassed);
 }
 
-TEST_F(FenceTest, HeldFencesDelayFramesByPollsWithoutReorderingThem) {
-  ctx->holdFences(2);
+TEST_F(FenceTest, ASlowDeviceDelaysFramesWithoutReorderingThem) {
+  ctx->fenceDelay().set(2);
   auto ring = ReadbackRing::create(*ctx, "frames", 4, 4);
   auto source = Buffer::create(*ctx, "source", 4);
   ASSERT_TRUE(ring && source);
@@ -57,14 +60,17 @@ TEST_F(FenceTest, HeldFencesDelayFramesByPollsWithoutReorderingThem) {
     ASSERT_TRUE(slot->copyFrom(*source, 0, 4, 0));
     slot->submit(tick);
     ctx->finish();
-    most_in_flight = std::max(most_in_flight, (*ring)->usedCount());
     for (const auto& lease : (*ring)->poll()) tags.push_back(lease->tag());
+    most_in_flight = std::max(most_in_flight, (*ring)->usedCount());
+    if ((*ring)->usedCount() == (*ring)->slotCount()) {  // an asynchronous driver may not know yet what is done
+      for (const auto& lease : (*ring)->wait(kLimit)) tags.push_back(lease->tag());
+    }
   }
   for (const auto& lease : (*ring)->wait(kLimit)) tags.push_back(lease->tag());
   std::vector<std::uint64_t> expected(20);
   std::iota(expected.begin(), expected.end(), 1u);
   EXPECT_EQ(tags, expected);
-  EXPECT_GE(most_in_flight, 3u) << "a frame is handed out in the third poll at the earliest";
+  EXPECT_GE(most_in_flight, 2u);
 }
 
 TEST_F(DeviceLossTest, IsNotReportedByAHealthyDevice) {
@@ -75,14 +81,14 @@ TEST_F(DeviceLossTest, IsNotReportedByAHealthyDevice) {
 
 TEST_F(DeviceLossTest, StaysReportedAndEndsFences) {
   Fence before = Fence::insert(*ctx);
-  ctx->holdFences(1000);
+  ctx->fenceDelay().set(FenceDelay::kForever);
   Fence held = Fence::insert(*ctx);
   ctx->simulateLoss();
   EXPECT_TRUE(ctx->isLost());
   EXPECT_TRUE(ctx->wasLost());
-  EXPECT_EQ(before.poll(), FenceState::kLost) << "on a lost device fences look as if they were passed";
-  EXPECT_EQ(held.poll(), FenceState::kLost);
-  EXPECT_EQ(Fence::insert(*ctx).wait(kLimit), FenceState::kLost);
+  EXPECT_EQ(before.poll(), Fence::Status::kFailed) << "on a lost device fences look as if they were passed";
+  EXPECT_EQ(held.poll(), Fence::Status::kFailed);
+  EXPECT_EQ(Fence::insert(*ctx).wait(kLimit), Fence::Status::kFailed);
   EXPECT_TRUE(ctx->isLost());
 }
 

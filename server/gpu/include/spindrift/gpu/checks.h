@@ -8,7 +8,7 @@
 
 namespace spindrift::gpu {
 
-/// All off by default. Each is chosen when the context is made; Context::holdFences() can be changed later as well.
+/// All off by default; chosen when the context is made.
 struct Checks {
   /// Every access to a buffer is compared with the barriers issued so far; a missing barrier, an unbound block and a
   /// buffer that is smaller than its uniform block are faults. See Context::takeFaults().
@@ -19,11 +19,11 @@ struct Checks {
   /// Not 0: work groups of every program are numbered in another order, which this number chooses. What a program
   /// computes must not depend on it.
   std::uint32_t shuffle_seed = 0;
-  /// Every fence answers "pending" to so many polls before it tells the truth.
-  std::uint32_t held_polls_count = 0;
+  /// The device seems to lag so many fences behind what was inserted; see FenceDelay.
+  std::uint32_t lag_fences_count = 0;
 };
 
-/// Parses "barriers", "poison", "shuffle=SEED" (1 to 1,000,000) and "hold_fences=POLLS" (0 to 10,000), separated by
+/// Parses "barriers", "poison", "shuffle=SEED" (1 to 1,000,000) and "lag=FENCES" (0 to 10,000), separated by
 /// commas; an empty text turns nothing on. Error kInvalidInput names the word that is not understood.
 core::Result<Checks> parseChecks(std::string_view text);
 

@@ -1,6 +1,7 @@
 // One OpenGL 4.5 core context without a window, owned by one thread at a time and passed to whoever needs it.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -42,6 +43,35 @@ struct Ledger {
   std::uint64_t buffers_made_count = 0;   ///< buffers ever made: constant while a room steps
   std::uint64_t programs_made_count = 0;  ///< programs ever compiled: one per shader and set of defines
   std::uint64_t barrier_count = 0;        ///< barriers since the start, both barrier() and those issued by Buffer
+  std::uint64_t upload_count = 0;         ///< calls that copied bytes from the host into buffers
+  std::uint64_t uploaded_bytes = 0;       ///< bytes that they copied
+};
+
+/// A slow device for tests, on top of the real one: a fence is held back until enough later ones were inserted.
+class FenceDelay {
+ public:
+  /// Waits for a fence time out at once: a device that hangs.
+  static constexpr std::uint64_t kForever = ~std::uint64_t{0};
+
+  /// From now on the device lags this many fences behind; a wait for a fence lets it catch up to that one. 0: no lag.
+  void set(std::uint64_t fence_count) { fence_count_ = fence_count; }
+
+  /// Called by Fence: the number of a new fence, counted from 1.
+  std::uint64_t insert() {
+    ++inserted_;
+    if (fence_count_ <= inserted_) reached_ = std::max(reached_, inserted_ - fence_count_);
+    return inserted_;
+  }
+  /// Called by Fence: whether the fence may pass. `waits`: the caller gave it time.
+  bool passes(std::uint64_t number, bool waits) {
+    if (fence_count_ == 0 || (waits && fence_count_ != kForever)) reached_ = std::max(reached_, number);
+    return number <= reached_;
+  }
+
+ private:
+  std::uint64_t fence_count_ = 0;
+  std::uint64_t inserted_ = 0;
+  std::uint64_t reached_ = 0;  ///< fences up to this number may pass
 };
 
 /// Buffers, programs, timers, fences and rings refer to their context and must be destroyed before it, on its thread.
@@ -80,10 +110,10 @@ class Context {
   void finish();
 
   /// Asks the driver whether the device was reset (GPU hang, driver update, device unplugged). Once true it stays true,
-  /// and the first time is logged. Afterwards nothing that the context holds is valid: fences answer FenceState::kLost,
-  /// downloads give zeros, and everything made in the context has to be destroyed and made anew in a new one. Stays
-  /// false where the driver does not report resets (DeviceInfo::tells_of_resets). Costs a driver call; ask once per
-  /// tick.
+  /// and the first time is logged. Afterwards nothing that the context holds is valid: fences answer
+  /// Fence::Status::kFailed, downloads give zeros, and everything made in the context has to be destroyed and made anew
+  /// in a new one. Stays false where the driver does not report resets (DeviceInfo::tells_of_resets). Costs a driver
+  /// call; ask once per tick.
   [[nodiscard]] bool isLost();
   /// For tests: isLost() is true from now on, as after a reset by the driver.
   void simulateLoss() { is_lost_.store(true); }
@@ -102,9 +132,8 @@ class Context {
   /// Fills every scratch buffer (BufferContent::kScratch) with set bits, as Checks::poison does when they are made. For
   /// tests: what a tick computes must not depend on what scratch buffers held before it.
   void poisonScratch();
-  /// Fences that are inserted from now on answer "pending" to so many polls before they tell the truth.
-  void holdFences(std::uint32_t polls_count) { checks_.held_polls_count = polls_count; }
-  [[nodiscard]] std::uint32_t heldPollsCount() const { return checks_.held_polls_count; }
+  /// Makes the device look slow or hanging to everybody who asks fences. Checks::lag_fences_count is where it begins.
+  FenceDelay& fenceDelay() { return fence_delay_; }
 
   // For the other classes of this module ---------------------------------------------------------------------------
 
@@ -143,6 +172,7 @@ class Context {
   std::atomic<bool> is_lost_{false};
   std::atomic<std::uint64_t> debug_error_count_{0};
   Ledger ledger_;
+  FenceDelay fence_delay_;
   std::vector<Retired> retired_;
   std::unique_ptr<Messages> messages_;
   std::unique_ptr<AccessTracker> accesses_;

@@ -8,35 +8,35 @@
 
 namespace spindrift::gpu {
 
-enum class FenceState {
-  kPending,  ///< the device is not there yet
-  kPassed,   ///< everything submitted before the fence is done
-  kLost,     ///< the device was lost or the driver refused the fence; it will never be passed
-};
-
-/// Move-only; used and destroyed on the context's thread, before the context.
+/// Tells when everything that was submitted before it is done. Fences of one context are passed in the order in which
+/// they were inserted. Move-only; used and destroyed on the context's thread, before the context.
 class Fence {
  public:
-  /// Puts a fence behind everything submitted so far and hands the work to the device.
+  enum class Status {
+    kPassed,
+    kPending,  ///< not passed within the time given
+    kFailed,   ///< it will never be passed: the device was lost (Context::isLost()), or the driver refuses to wait
+  };
+
+  /// Puts a fence behind all work submitted so far and hands that work to the device. Does not wait.
   static Fence insert(Context& ctx);
-  Fence() = default;  ///< no fence: poll() and wait() answer kPassed
+  Fence() = default;  ///< holds nothing: kPassed
   ~Fence();
   Fence(Fence&& other) noexcept;
   Fence& operator=(Fence&& other) noexcept;
 
-  /// Never waits. An answer other than kPending is final. Fences of a context are passed in the order of insert().
-  FenceState poll();
-  /// Waits until the fence is passed or the device lost, at most `limit`; kPending when that was not enough. Does not
-  /// care whether Context::holdFences() holds this fence.
-  FenceState wait(std::chrono::nanoseconds limit);
+  /// Waits until the fence is passed or the device lost, at most `timeout`. Zero asks without waiting. An answer other
+  /// than kPending is final.
+  [[nodiscard]] Status wait(std::chrono::nanoseconds timeout);
+  [[nodiscard]] Status poll() { return wait(std::chrono::nanoseconds(0)); }
 
  private:
-  void finish(FenceState state);
+  void finish(Status status);
 
   Context* ctx_ = nullptr;
   void* sync_ = nullptr;  ///< GLsync; null once the answer is final
-  FenceState state_ = FenceState::kPassed;
-  std::uint32_t held_polls_count_ = 0;
+  Status status_ = Status::kPassed;
+  std::uint64_t number_ = 0;  ///< in the order of insertion
 };
 
 }  // namespace spindrift::gpu
