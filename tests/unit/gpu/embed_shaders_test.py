@@ -99,7 +99,7 @@ class EmbedShaders(unittest.TestCase):
         judge.chmod(0o755)
         self.spirv_val = str(judge)
         self.write("a.comp", "// variants: N=first | N=second\nlayout(local_size_x = 8) in;\n"
-                             "buffer B { uint N; };\nvoid main() { N = 1u; }\n")
+                             "layout(binding = 0) buffer B { uint N; };\nvoid main() { N = 1u; }\n")
         self.assert_refused("a.comp: SPIR-V: error: line 7: not for OpenGL", "a.comp: not valid with N=second")
 
     def test_says_what_to_install_when_the_validator_is_missing(self):
@@ -108,7 +108,7 @@ class EmbedShaders(unittest.TestCase):
         self.assert_refused("no-such-program not found: install glslang-tools and spirv-tools")
 
     def test_plain_uniforms_need_no_location(self):
-        self.write("a.comp", "uniform uint n;\nbuffer B { uint b; };\nlayout(local_size_x = 8) in;\nvoid main() { b = n; }\n")
+        self.write("a.comp", "uniform uint n;\nlayout(binding = 0) buffer B { uint b; };\nlayout(local_size_x = 8) in;\nvoid main() { b = n; }\n")
         self.assert_embedded()
 
     def test_refuses_a_variant_that_is_no_define(self):
