@@ -31,11 +31,15 @@ core::Result<void> NeighborGrid::resize(const ParticleLayout& layout) {
   const std::size_t blocks = layout.cell_count / SCAN_BLOCK + 1;
   TexelBuffer counts, start, arrival, member, total;
   Creation create;
-  create(counts, TexelBuffer::create(ctx_, "cell count", layout.cell_count + 1, TexelFormat::kR32UI));
-  create(start, TexelBuffer::create(ctx_, "cell start", layout.cell_count + 1, TexelFormat::kR32UI));
-  create(arrival, TexelBuffer::create(ctx_, "cell arrival", layout.count, TexelFormat::kRG32UI));
-  create(member, TexelBuffer::create(ctx_, "cell member", layout.count, TexelFormat::kR32UI));
-  create(total, TexelBuffer::create(ctx_, "block total", blocks, TexelFormat::kR32UI));
+  create(counts, TexelBuffer::create(ctx_, "cell count", layout.cell_count + 1, TexelFormat::kR32UI,
+                                     gpu::BufferContent::kScratch));
+  create(start, TexelBuffer::create(ctx_, "cell start", layout.cell_count + 1, TexelFormat::kR32UI,
+                                    gpu::BufferContent::kScratch));
+  create(arrival,
+         TexelBuffer::create(ctx_, "cell arrival", layout.count, TexelFormat::kRG32UI, gpu::BufferContent::kScratch));
+  create(member,
+         TexelBuffer::create(ctx_, "cell member", layout.count, TexelFormat::kR32UI, gpu::BufferContent::kScratch));
+  create(total, TexelBuffer::create(ctx_, "block total", blocks, TexelFormat::kR32UI, gpu::BufferContent::kScratch));
   if (create.error()) return *create.error();
   cell_count_of_ = std::move(counts);
   cell_start_ = std::move(start);

@@ -44,8 +44,10 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   create(wave->momentum_, Program::create(ctx, "wave/momentum.comp", defines));
   create(wave->continuity_, Program::create(ctx, "wave/continuity.comp", defines));
   if (sampled) {
-    create(wave->surface_, TexelBuffer::create(ctx, "surface", cells, TexelFormat::kRGBA32F));
-    create(wave->surface_flow_, TexelBuffer::create(ctx, "surface flow", cells, TexelFormat::kRG32F));
+    create(wave->surface_,
+           TexelBuffer::create(ctx, "surface", cells, TexelFormat::kRGBA32F, gpu::BufferContent::kScratch));
+    create(wave->surface_flow_,
+           TexelBuffer::create(ctx, "surface flow", cells, TexelFormat::kRG32F, gpu::BufferContent::kScratch));
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
   if (create.error()) return *create.error();
