@@ -132,7 +132,7 @@ void Room::start(TimePoint now) {
 Room::TimePoint Room::due(TimePoint now) const {
   if (pending_tick_count_ > 0) return now;
   const TimePoint next = paused_ || asleep_ ? now + 10ms : clock_.due();
-  return frames_in_flight_ > 0 ? std::min(next, now + kReadbackPollInterval) : next;
+  return stage_->water().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
 }
 
 void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
@@ -242,9 +242,7 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
     request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};
   ++frame_count_;
   if (request.isEmpty()) return;
-  if (stage_->water().requestFrame(request)) {
-    ++frames_in_flight_;
-  } else {
+  if (!stage_->water().requestFrame(request)) {
     ++dropped_frames_;
     next_idle_frame_ = now + kDroppedFrameRetry;
   }
@@ -252,13 +250,12 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
 
 void Room::handOverFrames(EncoderThread& encoder) {
   for (core::FrameView& frame : stage_->water().takeFrames()) {
-    if (frames_in_flight_ > 0) --frames_in_flight_;
     frame.tick = stage_->tickOf(frame.tick);
     if (wants_diagnostics_) frame.diagnostics = diagnostics();
     wants_diagnostics_ = false;
     encoder.submit(name_, std::move(frame));
   }
-  if (wants_diagnostics_ && frames_in_flight_ == 0) {
+  if (wants_diagnostics_ && stage_->water().framesInFlight() == 0) {
     wants_diagnostics_ = false;
     core::FrameView frame;
     frame.tick = tick();

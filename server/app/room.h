@@ -223,7 +223,6 @@ class Room {
   std::uint64_t frame_count_ = 0;  ///< that were due
   TimePoint next_idle_frame_{};    ///< wall time, while paused
   bool wants_diagnostics_ = false;
-  std::uint32_t frames_in_flight_ = 0;
   std::uint64_t dropped_frames_ = 0;
 
   double step_ms_sum_ = 0.0;  ///< since the last diagnostics

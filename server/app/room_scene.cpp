@@ -71,7 +71,6 @@ void Room::restartScene(RoomObserver& observer) {
   next_frame_s_ = 0.0;
   next_idle_frame_ = {};
   pending_tick_count_ = 0;
-  frames_in_flight_ = 0;
   wants_diagnostics_ = false;
   step_ms_sum_ = last_step_ms_ = 0.0;
   step_count_ = 0;

@@ -16,7 +16,8 @@ class Checkpoints {
   /// `state` are the live buffers; the pointers must stay valid.
   static core::Result<std::unique_ptr<Checkpoints>> create(gpu::Context& ctx, std::vector<gpu::Buffer*> state);
 
-  /// Copies the state of this tick, without waiting.
+  /// Copies the state of this tick, without waiting. Nothing while an earlier copy still waits for its health:
+  /// replacing it each time would leave a device that is far behind without any good copy.
   void save(std::uint64_t tick);
   /// The state at `tick` was good: copies made up to it are.
   void confirm(std::uint64_t tick);
@@ -31,9 +32,8 @@ class Checkpoints {
     bool is_filled = false;
   };
 
-  explicit Checkpoints(gpu::Context& ctx) : ctx_(ctx) {}
+  Checkpoints() = default;
 
-  gpu::Context& ctx_;
   std::vector<gpu::Buffer*> state_;
   Copy copies_[2];
   int good_ = 0;  ///< the other one waits

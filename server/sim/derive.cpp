@@ -36,6 +36,10 @@ constexpr double kWaveSafety = 0.98;
 /// Share of its flow that fully breaking water loses in the time sqrt(d/g): a bore is gone within a few depths' travel.
 constexpr double kBreakingLoss = 0.6;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
+/// The neighbour search looks at this many times the candidates of water at rest, and at least at so many. A lower
+/// bound could cut sprays that leave the water close together, a higher one only makes a blow-up slower.
+constexpr double kCrowdedRatio = 32.0;
+constexpr double kMinCandidates = 1024.0;
 
 Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
@@ -110,10 +114,18 @@ std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   std::uint64_t bytes = sizeof(shared::SimUniforms);
   if (d.particles) {
     bytes += std::uint64_t{d.particles->count} * (7 * 16 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0)) +
-             std::uint64_t{d.particles->cell_count} * 8 + 4;
+             std::uint64_t{d.particles->cell_count} * 8 + 12;
   }
   if (d.wave) bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * waveCellBytes(scene);
   return bytes;
+}
+
+/// Candidates of a column of three cells (of all its cells in a box that is periodic in height) that a particle looks
+/// at.
+std::uint32_t maxCandidates(const core::ParticleScene& particles, const ParticleLayout& layout) {
+  const double column_cells = particles.periodic_y ? layout.cells[1] : 3.0;
+  const double at_rest = column_cells * std::pow(layout.support_radius_m / layout.spacing_m, 3);
+  return static_cast<std::uint32_t>(std::clamp(kCrowdedRatio * at_rest, kMinCandidates, 1e9));
 }
 
 void fillUniforms(const core::Scene& scene, Derived& d) {
@@ -167,6 +179,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.wall_reach_m = f(l.wall_reach_m);
     u.constraint_softness_pm2 = f(l.constraint_softness_pm2);
     u.floor_gap_m = f(kFloorGapRatio * l.spacing_m);
+    u.candidates_max_count = maxCandidates(p, l);
   }
   if (isTwoWay(scene)) {
     const double s = d.particles->spacing_m;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include <shared/bindings.h>
 #include <shared/fixed_point.h>
@@ -11,6 +12,7 @@
 #include <shared/pool.h>
 
 #include "create_all.h"
+#include "ticks_in_flight.h"
 
 namespace spindrift::sim {
 namespace {
@@ -26,7 +28,9 @@ struct Partial {
   std::uint32_t outflow_low;
 };
 static_assert(sizeof(Partial) == 48);
+/// A result for each tick in flight, for the tick that is measured now, and for those that no poll has asked for yet.
 constexpr std::size_t kSlotCount = 8;
+static_assert(kSlotCount > TicksInFlight::kMaxCount + 1);
 
 struct Total {
   double nonfinite = 0, escaped = 0, max_a = 0, max_b = 0, count_b = 0;
@@ -73,7 +77,8 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
     create(out->surface_program_, gpu::Program::create(ctx, "diagnostics/surface.comp", defines));
     if (create.error()) return *create.error();
     out->surface_shares_ = sharesFor(out->cells_, out->surface_program_);
-    create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial)));
+    create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial),
+                                                   gpu::BufferUse::kDeviceOnly, gpu::BufferContent::kScratch));
   }
   if (create.error()) return *create.error();
   if (auto sized = out->resize(derived); !sized) return sized.error();
@@ -85,7 +90,9 @@ core::Result<void> Diagnostics::resize(const Derived& derived) {
   std::unique_ptr<gpu::ReadbackRing> ring;
   const std::uint32_t shares = derived.particles ? sharesFor(derived.particles->count, particle_program_) : 0;
   Creation create;
-  if (shares > 0) create(sums, gpu::Buffer::create(ctx_, "particle sums", shares * sizeof(Partial)));
+  if (shares > 0)
+    create(sums, gpu::Buffer::create(ctx_, "particle sums", shares * sizeof(Partial), gpu::BufferUse::kDeviceOnly,
+                                     gpu::BufferContent::kScratch));
   create(ring, gpu::ReadbackRing::create(
                    ctx_, "diagnostics",
                    (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0), kSlotCount));
@@ -98,7 +105,7 @@ core::Result<void> Diagnostics::resize(const Derived& derived) {
 }
 
 void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population,
-                          Wave* wave, Breakers* breakers, const Boats* boats) {
+                          const NeighborGrid* grid, Wave* wave, Breakers* breakers, const Boats* boats) {
   auto slot = ring_->begin();
   if (!slot) return;
   bool copied = true;
@@ -107,6 +114,7 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
     particles->position.bindTexel(POSITION);
     particles->velocity.bindTexel(VELOCITY);
     particles->acceleration.bindTexel(ACCELERATION);
+    grid->crowded().bindTexel(CROWDED);
     particle_sums_.bindStorage(PARTIAL_SUM);
     particle_program_.dispatch(particle_shares_);
     copied = slot->copyFrom(particle_sums_, 0, particle_sums_.sizeBytes(), 0);
@@ -126,6 +134,8 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
     copied = copied && slot->copyFrom(population->pool()->words(), 0, POOL_WORDS * 4,
                                       (particle_shares_ + surface_shares_) * sizeof(Partial));
   }
+  // The next tick's passes write what was read here.
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   if (copied) slot->submit(tick);
 }
 
@@ -144,6 +154,10 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
       h.max_speed_mps = t.max_a;
       h.max_density_ratio = t.max_b / rho_0;
       h.particle_count = particles_;
+      Partial first;
+      std::memcpy(&first, bytes.data(), sizeof first);
+      const auto crowded = static_cast<std::uint32_t>(first.elevation_high);  // see diagnostics/particles.comp
+      h.crowded_count = crowded - std::exchange(crowded_before_, crowded);
       if (is_pooled_) {
         const std::size_t at = (particle_shares_ + surface_shares_) * sizeof(Partial);
         std::array<std::uint32_t, POOL_WORDS> pool;

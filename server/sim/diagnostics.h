@@ -1,5 +1,5 @@
-// One small reduction every fourth tick: is the room healthy, and what are its energies? Results arrive some ticks
-// later; nothing waits for them.
+// One small reduction per tick: is the room healthy, and what are its energies? Results arrive some ticks later;
+// nothing waits for them.
 #pragma once
 
 #include <memory>
@@ -16,6 +16,7 @@
 
 #include "boats.h"
 #include "breakers.h"
+#include "neighbor_grid.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
 #include "wave.h"
@@ -31,10 +32,10 @@ class Diagnostics {
   /// nothing.
   core::Result<void> resize(const Derived& derived);
 
-  /// Measures the state after `tick`; parts may be null. Skipped (and retried next tick) while results are
-  /// outstanding in every slot.
-  void measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population, Wave* wave,
-               Breakers* breakers, const Boats* boats);
+  /// Measures the state after `tick`; parts may be null. There is a slot for every tick that may be in flight
+  /// (TicksInFlight), so that each tick is measured if poll() is called before it.
+  void measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population,
+               const NeighborGrid* grid, Wave* wave, Breakers* breakers, const Boats* boats);
   /// Results that have arrived, oldest first.
   std::vector<Health> poll(const core::Scene& scene, const Derived& derived);
 
@@ -47,6 +48,7 @@ class Diagnostics {
   std::uint32_t cells_ = 0;
   std::uint32_t particles_ = 0;
   bool is_pooled_ = false;
+  std::uint32_t crowded_before_ = 0;  ///< NeighborGrid::crowded() of the last result
   gpu::Buffer particle_sums_, surface_sums_;
   gpu::Program particle_program_, surface_program_;
   std::unique_ptr<gpu::ReadbackRing> ring_;

@@ -47,6 +47,8 @@ class FramePacker {
   bool pack(std::uint64_t tick, double time_s, const Parts& parts, const FrameRequest& request);
   /// Frames whose copy has finished, oldest first.
   std::vector<core::FrameView> poll(const core::Scene& scene, const Derived& derived);
+  /// Frames that were packed and that poll() is still to return.
+  [[nodiscard]] std::size_t inFlightCount() const { return pending_.size(); }
 
  private:
   explicit FramePacker(gpu::Context& ctx) : ctx_(ctx) {}

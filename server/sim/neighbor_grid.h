@@ -23,17 +23,21 @@ class NeighborGrid {
   core::Result<void> resize(const ParticleLayout& layout);
 
   /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their order before (in a
-  /// pool by where they are); particles that were absorbed leave.
+  /// pool by where they are); particles that were absorbed leave. Particles whose position is not finite come last and
+  /// are in no cell. In a cell of more than ORDERED_MAX particles (grid_hash.glsl) the order does not repeat.
   void build(const ParticleBuffers& particles, const Population& population);
 
   /// First particle of each cell, cell_count + 1 entries.
   [[nodiscard]] const gpu::TexelBuffer& cellStart() const { return cell_start_; }
+  /// Two words, include/candidates.glsl: particles, summed over the substeps since creation, that had more neighbour
+  /// candidates than they looked at, modulo 2^32. build() binds it for the passes that count.
+  [[nodiscard]] const gpu::TexelBuffer& crowded() const { return crowded_; }
 
  private:
   explicit NeighborGrid(gpu::Context& ctx) : ctx_(ctx) {}
 
   gpu::Context& ctx_;
-  gpu::TexelBuffer cell_count_of_, cell_start_, cell_arrival_, cell_member_, block_total_;
+  gpu::TexelBuffer cell_count_of_, cell_start_, cell_arrival_, cell_member_, block_total_, crowded_;
   gpu::Program clear_, count_program_, scan_blocks_, scan_totals_, scan_add_, scatter_, reorder_;
 };
 

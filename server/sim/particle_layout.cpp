@@ -18,7 +18,6 @@ using core::ErrorCode;
 /// Softness of the position-based constraint over its squared gradient inside the lattice: 0 makes lone pairs jump, 1
 /// halves every correction.
 constexpr double kConstraintSoftness = 0.05;
-constexpr std::uint32_t kMaxCellCount = 1u << 22;
 /// A droplet is spread over 25 cells or more, at most 14 % on one; more than this and a single one would bare the
 /// ground.
 constexpr double kMaxDropletHeight = 2.0;

@@ -7,6 +7,9 @@
 
 namespace spindrift::sim {
 
+/// Cells of a grid, 8 bytes each. A pool of a million particles at the default headroom has about 7 million.
+inline constexpr std::uint32_t kMaxCellCount = 1u << 26;
+
 /// `volume_m3`: of the water, when it is given; else the scene's layers decide. Errors as derive()'s.
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3 = 0.0);
 

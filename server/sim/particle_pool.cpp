@@ -1,5 +1,7 @@
 #include "particle_pool.h"
 
+#include <algorithm>
+
 #include <shared/bindings.h>
 #include <shared/groups.h>
 #include <shared/pool.h>
@@ -13,7 +15,8 @@ core::Result<std::unique_ptr<ParticlePool>> ParticlePool::create(gpu::Context& c
   auto out = std::unique_ptr<ParticlePool>(new ParticlePool(ctx));
   Creation create;
   create(out->words_, gpu::TexelBuffer::create(ctx, "pool", POOL_WORDS, gpu::TexelFormat::kR32UI));
-  create(out->emitters_, gpu::TexelBuffer::create(ctx, "emitters", layout.count, gpu::TexelFormat::kR32UI));
+  create(out->emitters_, gpu::TexelBuffer::create(ctx, "emitters", layout.count, gpu::TexelFormat::kR32UI,
+                                                  gpu::BufferContent::kScratch));
   create(out->plan_, gpu::Program::create(ctx, "coupling/plan.comp", defines));
   create(out->emit_, gpu::Program::create(ctx, "coupling/emit.comp", defines));
   if (create.error()) return *create.error();
@@ -38,7 +41,7 @@ void ParticlePool::emit(const ParticleBuffers& particles, Wave& wave, const gpu:
   wave.elevation().bindStorage(ELEVATION);
   emit_.setUniform("tick", tick);
   emit_.dispatchIndirect(words_, POOL_EMIT_ARGS * 4);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
 }
 
 void Population::forParticles(gpu::Program& program) const {
@@ -52,7 +55,7 @@ void Population::forCells(gpu::Program& program) const {
   if (pool_)
     program.dispatchIndirect(pool_->words(), POOL_CELL_ARGS * 4);
   else
-    program.dispatch(cell_count_ + 1);
+    program.dispatchGroups(std::min<std::uint32_t>(cell_count_ / program.groupSize()[0] + 1, MAX_GROUPS));
 }
 
 void Population::forScanBlocks(gpu::Program& program) const {

@@ -49,7 +49,8 @@ class Population {
       : count_(count), cell_count_(cell_count), pool_(pool) {}
 
   void forParticles(gpu::Program& program) const;
-  void forCells(gpu::Program& program) const;       ///< cell_count + 1
+  /// cell_count + 1, or fewer invocations that loop over them: at most MAX_GROUPS groups.
+  void forCells(gpu::Program& program) const;
   void forScanBlocks(gpu::Program& program) const;  ///< groups that cover cell_count + 1
   void forOneGroup(gpu::Program& program) const;
   /// Makes the counts visible to the passes. Nothing without a pool.

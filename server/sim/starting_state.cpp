@@ -42,6 +42,7 @@ core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core:
   double calm_at_s = kCalmInterval_s;
   while ((*water)->time_s() < scene.particles->settle_s) {
     (*water)->step();
+    if ((*water)->deviceError()) return *(*water)->deviceError();
     if ((*water)->time_s() < calm_at_s) continue;
     calm_at_s += kCalmInterval_s;
     StateCopy state = (*water)->copyState();

@@ -11,6 +11,7 @@ namespace spindrift::sim {
 // The algorithm
 
 void WaterSim::step() {
+  if (!waitForDevice()) return;
   parts_->uniforms.bindUniform(SIM_UNIFORMS);  // rooms share the context
   watchHealth();
   startEvents();
@@ -33,6 +34,7 @@ void WaterSim::step() {
   ++tick_;
   measure();
   saveCheckpoint();
+  parts_->ticks_in_flight.submitted(tick_);
 }
 
 void WaterSim::advanceWave() {
@@ -84,7 +86,6 @@ void WaterSim::leadSurface(std::uint32_t substep) {
   const auto left = static_cast<double>(derived_.substeps_count - 1 - substep);
   parts_->uniforms.uploadValue(static_cast<float>(-left * derived_.dt_s),
                                offsetof(shared::SimUniforms, surface_lead_s));
-  ctx_.barrier(gpu::Barrier::kUniform);
 }
 
 void WaterSim::movePatch() {
@@ -142,7 +143,7 @@ void WaterSim::measure() {
   std::optional<Population> population;
   if (parts_->particles) population = parts_->population(derived_);
   parts_->diagnostics->measure(tick_, parts_->particlesOrNull(), population ? &*population : nullptr,
-                               parts_->wave.get(), parts_->breakers.get(), parts_->boats.get());
+                               parts_->grid.get(), parts_->wave.get(), parts_->breakers.get(), parts_->boats.get());
 }
 
 // Setting up
@@ -152,7 +153,7 @@ WaterSim::WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived)
       scene_(std::move(scene)),
       derived_(std::move(derived)),
       timers_(ctx),
-      parts_(std::make_unique<Parts>()) {}
+      parts_(std::make_unique<Parts>(ctx)) {}
 
 WaterSim::~WaterSim() = default;
 
@@ -173,7 +174,8 @@ core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, cons
 core::Result<void> WaterSim::build() {
   const gpu::Defines defines = shaderDefines(scene_);
   Creation create;
-  create(parts_->uniforms, gpu::Buffer::create(ctx_, "sim uniforms", sizeof(shared::SimUniforms)));
+  create(parts_->uniforms,
+         gpu::Buffer::create(ctx_, "sim uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable));
   if (derived_.wave) create(parts_->wave, Wave::create(ctx_, scene_, *derived_.wave, defines, isSampled(scene_)));
   if (derived_.particles) {
     create(parts_->particles.emplace(),
@@ -195,6 +197,8 @@ core::Result<void> WaterSim::build() {
   if (create.error()) return *create.error();
   return parts_->makeCheckpoints(ctx_);
 }
+
+WaterSim::Parts::Parts(gpu::Context& ctx) : ticks_in_flight(ctx) {}
 
 core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
   std::vector<gpu::Buffer*> state;
@@ -240,7 +244,6 @@ void WaterSim::uploadStartingState() {
     const auto rho_0 = static_cast<float>(scene_.particles->rest_density_kgpm3);
     parts_->particles->acceleration.upload(std::vector<float>(std::size_t{derived_.particles->count} * 4, rho_0));
   }
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 void WaterSim::reset() {

@@ -100,7 +100,6 @@ core::Result<void> WaterSim::relay(const core::Scene& scene) {
   parts_->particles->velocity.upload(particles.velocity);
   parts_->particles->acceleration.upload(std::vector<float>(std::size_t{derived_.particles->count} * 4,
                                                             static_cast<float>(scene.particles->rest_density_kgpm3)));
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
   abandoned_until_tick_ = tick_;  // what is still to come is about the old particles
   return {};
 }

@@ -22,12 +22,15 @@
 #include "sph.h"
 #include "stir.h"
 #include "surface_foam.h"
+#include "ticks_in_flight.h"
 #include "wave.h"
 
 namespace spindrift::sim {
 
 /// What the scene named, and nothing else.
 struct WaterSim::Parts {
+  explicit Parts(gpu::Context& ctx);
+
   gpu::Buffer uniforms;
   std::optional<ParticleBuffers> particles;
   std::unique_ptr<NeighborGrid> grid;
@@ -44,6 +47,7 @@ struct WaterSim::Parts {
   std::unique_ptr<FramePacker> frames;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
+  TicksInFlight ticks_in_flight;
   std::vector<float> settled_positions;  ///< where particles start; empty: on the lattice
 
   /// Whom the passes over particles are for.

@@ -18,6 +18,19 @@ constexpr double kCareful_s = 5.0;
 
 }  // namespace
 
+// The device
+
+static_assert(WaterSim::kMaxTicksInFlight == TicksInFlight::kMaxCount);
+
+bool WaterSim::waitForDevice() {
+  if (device_error_) return false;
+  const auto waited = parts_->ticks_in_flight.waitForRoom();
+  if (waited) return true;
+  device_error_ = waited.error();
+  spdlog::error("scene {}: {}", scene_.name, device_error_->message);
+  return false;
+}
+
 // Health
 
 void WaterSim::watchHealth() {
@@ -26,6 +39,14 @@ void WaterSim::watchHealth() {
     health_ = health;
     nonfinite_count_ += health.nonfinite_count;
     escaped_count_ += health.escaped_count;
+    if (health.crowded_count > 0 && crowded_count_ == 0) {
+      spdlog::warn(
+          "scene {}: tick {}: {} particles lie so close together that their neighbour search was cut at {} candidates "
+          "a "
+          "column; later ticks are only counted",
+          scene_.name, health.tick, health.crowded_count, derived_.uniforms.candidates_max_count);
+    }
+    crowded_count_ += health.crowded_count;
     if (health.isGood()) {
       parts_->checkpoints->confirm(health.tick);
     } else {
@@ -74,7 +95,6 @@ void WaterSim::setCareful(bool careful) {
   if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
   if (parts_->wave) parts_->wave->uploadBasin(scene_, *derived_.wave);
-  ctx_.barrier(gpu::Barrier::kUniform | gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 // Frames
@@ -97,6 +117,10 @@ core::ReducedCounts WaterSim::reducedCounts() const {
                              derived_.particles ? derived_.particles->count : 0);
 }
 
+std::size_t WaterSim::framesInFlight() const {
+  return parts_->frames->inFlightCount();
+}
+
 std::vector<core::FrameView> WaterSim::takeFrames() {
   return parts_->frames->poll(scene_, derived_);
 }
@@ -104,7 +128,6 @@ std::vector<core::FrameView> WaterSim::takeFrames() {
 // State
 
 StateCopy WaterSim::copyState() {
-  ctx_.barrier(gpu::Barrier::kBufferUpdate);
   StateCopy out;
   if (parts_->particles) {
     std::size_t count = derived_.particles->count;
@@ -141,7 +164,6 @@ void WaterSim::setState(const StateCopy& state) {
     parts_->wave->elevation().upload(units);
     parts_->wave->flow().upload(state.flow_m2ps);
   }
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 std::uint64_t WaterSim::stateHash() {

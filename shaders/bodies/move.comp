@@ -209,6 +209,8 @@ void main() {
     b.centre_m.xz = acrossSides(b.centre_m.xz + shift_m);
     b.speed_mps.xy = vec2(dot(velocity_mps, forwardOf(b.heading)), dot(velocity_mps, starboardOf(b.heading)));
   }
+  // Everybody has read the boats as they were before anybody writes.
+  memoryBarrierBuffer();
   barrier();
   if (!is_here) return;
   const uint at = own * BOAT_TEXELS;

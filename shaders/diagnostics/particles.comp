@@ -1,9 +1,11 @@
 // Health of the particles: one partial result an invocation, summed on the host in double precision.
-// Reads POSITION, VELOCITY, ACCELERATION.w. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
-// non-finite values, escaped particles, max speed, max density; sum of density, sum of v^2, sum of y, 0; four words 0.
+// Reads POSITION, VELOCITY, ACCELERATION.w, CROWDED. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
+// non-finite values, escaped particles, max speed, max density; sum of density, sum of v^2, sum of y, 0; four words 0, but for the
+// first one of the first invocation: CROWDED[0].
 // Particles that were absorbed in the last substep are left out.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
+#include "include/finite.glsl"
 #include "include/population.glsl"
 
 layout(local_size_x = REDUCE_GROUP) in;
@@ -11,9 +13,8 @@ layout(local_size_x = REDUCE_GROUP) in;
 layout(binding = POSITION) uniform samplerBuffer position;
 layout(binding = VELOCITY) uniform samplerBuffer velocity;
 layout(binding = ACCELERATION) uniform samplerBuffer acceleration;
+layout(binding = CROWDED) uniform usamplerBuffer crowded;
 layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer PartialSum { uvec4 partial_sum[]; };
-
-bool finite(float x) { return !isnan(x) && !isinf(x); }
 
 void main() {
   const uint share = gl_GlobalInvocationID.x;
@@ -32,7 +33,7 @@ void main() {
     const vec3 v = texelFetch(velocity, int(i)).xyz;
     const float rho = texelFetch(acceleration, int(i)).w;
     const float v2 = dot(v, v);
-    if (finite(x.x + x.y + x.z) && finite(v2) && finite(rho)) {
+    if (isFinite(x.x + x.y + x.z) && isFinite(v2) && isFinite(rho)) {
       const bool inside = all(greaterThanEqual(x, low)) && all(lessThanEqual(x, high));
       worst.y += inside ? 0.0 : 1.0;
       worst.zw = max(worst.zw, vec2(sqrt(v2), rho));
@@ -43,5 +44,5 @@ void main() {
   }
   partial_sum[3u * share] = floatBitsToUint(worst);
   partial_sum[3u * share + 1u] = floatBitsToUint(sum);
-  partial_sum[3u * share + 2u] = uvec4(0u);
+  partial_sum[3u * share + 2u] = uvec4(share == 0u ? texelFetch(crowded, 0).x : 0u, 0u, 0u, 0u);
 }

@@ -1,5 +1,5 @@
 // Forgets the counts of the last build. Pools only: a size that the device decides; elsewhere the host clears.
-// Writes CELL_COUNT [cell_count + 1].
+// Writes CELL_COUNT [cell_count + 1]; an invocation takes every so many cells (MAX_GROUPS).
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 
@@ -8,6 +8,6 @@ layout(local_size_x = SCAN_GROUP) in;
 layout(std430, binding = CELL_COUNT) restrict writeonly buffer CellCount { uint cell_count_of[]; };
 
 void main() {
-  const uint cell = gl_GlobalInvocationID.x;
-  if (cell <= sim.cell_count) cell_count_of[cell] = 0u;
+  const uint stride = gl_NumWorkGroups.x * SCAN_GROUP;
+  for (uint cell = gl_GlobalInvocationID.x; cell <= sim.cell_count; cell += stride) cell_count_of[cell] = 0u;
 }

@@ -1,6 +1,7 @@
 // Counts the particles of each cell and notes each particle's cell and arrival number.
-// Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last stays 0). Writes CELL_ARRIVAL
-// = (cell, arrival); particles that were absorbed have NO_CELL and leave here. The arrival order is not repeatable; grid/reorder.comp makes the final order so.
+// Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last: positions without a cell). Writes CELL_ARRIVAL
+// = (cell, arrival); particles that were absorbed have NO_CELL and leave here, those whose position is not finite count behind the
+// last cell. The arrival order is not repeatable; grid/reorder.comp makes the final order so.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "include/grid_hash.glsl"
@@ -23,6 +24,6 @@ void main() {
     return;
   }
 #endif
-  const uint cell = uint(flatCell(g, cellOf(g, x.xyz)));
+  const uint cell = hasCell(x.xyz) ? uint(flatCell(g, cellOf(g, x.xyz))) : sim.cell_count;
   arrival[i] = uvec2(cell, atomicAdd(cell_count_of[cell], 1u));
 }

@@ -2,8 +2,9 @@
 // bit for bit because the order no longer depends on which invocation came first.
 // Reads POSITION, VELOCITY, CELL_ARRIVAL, CELL_START, CELL_MEMBER. Writes SORTED_POSITION, SORTED_VELOCITY.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
-// Cost: a particle counts the smaller indices in its cell, so n particles in one cell cost n^2, as their forces do.
+// Cost: a particle counts the smaller indices in its cell, so n particles in one cell cost n^2, up to ORDERED_MAX of them.
 #include "shared/groups.h"
+#include "shared/grid.h"
 #include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
@@ -26,14 +27,19 @@ bool isBefore(vec3 a, uint i, vec3 b, uint j) {
 void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= unsortedCount()) return;
-  const uint own_cell = texelFetch(arrival, int(i)).x;
+  const uvec2 a = texelFetch(arrival, int(i)).xy;
 #if POOL_PARTICLES
-  if (own_cell == 0xffffffffu) return;
+  if (a.x == NO_CELL) return;
 #endif
-  const int cell = int(own_cell);
+  const int cell = int(a.x);
   const int first = int(texelFetch(cell_start, cell).x);
-  const int last = int(texelFetch(cell_start, cell + 1).x);
+  // Behind the last cell are positions that are not finite: nothing to order.
+  int last = a.x < sim.cell_count ? int(texelFetch(cell_start, cell + 1).x) : first;
   uint slot = uint(first);
+  if (a.x == sim.cell_count || last - first > ORDERED_MAX) {
+    slot += a.y;
+    last = first;
+  }
   const vec4 own = texelFetch(position, int(i));
   for (int k = first; k < last; ++k) {
     const uint other = texelFetch(cell_member, k).x;

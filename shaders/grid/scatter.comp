@@ -2,6 +2,7 @@
 // Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
+#include "shared/grid.h"
 #include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
@@ -15,7 +16,7 @@ void main() {
   if (i >= unsortedCount()) return;
   const uvec2 a = texelFetch(arrival, int(i)).xy;
 #if POOL_PARTICLES
-  if (a.x == 0xffffffffu) return;
+  if (a.x == NO_CELL) return;
 #endif
   cell_member[texelFetch(cell_start, int(a.x)).x + a.y] = i;
 }

@@ -1,4 +1,6 @@
-// The neighbour search of density and force passes: ranges of sorted particles around a cell.
+// The neighbour search of density and force passes: ranges of sorted particles around a cell. A range has a bound, so that
+// a pile-up of all particles in one cell costs a multiple of their number and not its square. What lies beyond it is cut;
+// passes that define COUNT_CROWDED count the particles that this happened to in CROWDED.
 #ifndef SPINDRIFT_CANDIDATES
 #define SPINDRIFT_CANDIDATES
 
@@ -6,12 +8,31 @@
 
 layout(binding = CELL_START) uniform usamplerBuffer cell_start;
 
+#if defined(COUNT_CROWDED) || defined(COUNT_CANDIDATES)
+/// [0]: particles whose candidates were cut, since the buffer was made. [1]: candidates looked at, with COUNT_CANDIDATES
+/// only (tests).
+layout(std430, binding = CROWDED) restrict buffer Crowded { uint crowded[]; };
+#endif
+bool is_crowded = false;
+
 CandidateRange candidateRange(Grid g, ivec3 cell, int dx, int dz) {
   CandidateRange r = columnCells(g, cell, dx, dz);
   r.first = int(texelFetch(cell_start, r.first).x);
   r.last = int(texelFetch(cell_start, r.last).x);
+  is_crowded = is_crowded || r.last - r.first > g.candidates_max;
+  r.last = min(r.last, r.first + g.candidates_max);
+#ifdef COUNT_CANDIDATES
+  atomicAdd(crowded[1], uint(r.last - r.first));
+#endif
   return r;
 }
+
+#ifdef COUNT_CROWDED
+/// After the last range of a particle.
+void countCrowded() {
+  if (is_crowded) atomicAdd(crowded[0], 1u);
+}
+#endif
 
 /// From a candidate at x_j to the particle at x, its range's shift added; the shorter way round where y is periodic.
 vec3 fromCandidate(Grid g, vec3 x, vec3 x_j) {

@@ -5,10 +5,9 @@
 #ifndef SPINDRIFT_GRID_HASH
 #define SPINDRIFT_GRID_HASH
 
+#include "include/finite.glsl"
+#include "shared/grid.h"
 #include "shared/sim_uniforms.h"
-
-/// Cell of a particle that has left.
-#define NO_CELL 0xffffffffu
 
 /// The grid in registers: loops must not touch the uniform block.
 struct Grid {
@@ -16,6 +15,7 @@ struct Grid {
   vec3 side_m;
   float cell_m;
   ivec3 cells;
+  int candidates_max;  ///< of one CandidateRange
 };
 
 Grid loadGrid() {
@@ -24,13 +24,19 @@ Grid loadGrid() {
   g.side_m = vec3(sim.max_x_m, sim.max_y_m, sim.max_z_m) - g.min_m;
   g.cell_m = sim.support_radius_m;
   g.cells = ivec3(sim.cells_x, sim.cells_y, sim.cells_z);
+  g.candidates_max = int(sim.candidates_max_count);
   return g;
 }
 
-/// Cell of a position, clamped to the grid (also for a NaN, which lands in a cell and is counted by diagnostics).
+/// Whether a position is in a cell: all of it is finite. Others are kept behind the particles of the last cell, where no
+/// search finds them, until diagnostics have counted them and the watchdog acts.
+bool hasCell(vec3 position_m) { return isFinite(position_m); }
+
+/// Cell of a position, clamped to the grid. The first one for a position without a cell, whose sums are not finite
+/// whatever it meets.
 ivec3 cellOf(Grid g, vec3 position_m) {
   const vec3 c = floor((position_m - g.min_m) / g.cell_m);
-  return ivec3(clamp(c, vec3(0.0), vec3(g.cells - 1)));
+  return ivec3(hasCell(position_m) ? clamp(c, vec3(0.0), vec3(g.cells - 1)) : vec3(0.0));
 }
 
 int flatCell(Grid g, ivec3 cell) {

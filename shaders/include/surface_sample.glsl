@@ -11,7 +11,8 @@ layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 vec4 surfaceUnder(vec2 xz, out vec2 flow_mps) {
   const int n = int(sim.wave_n);
   const vec2 u = (xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m - 0.5;
-  const vec2 c = floor(u);
+  // Bounded for places that are not finite or far away: an index is made of it.
+  const vec2 c = clamp(floor(u), vec2(-n), vec2(2 * n - 2));
   const vec2 t = u - c;
   const int x0 = waveNeighbourX(int(c.x), n);
   const int x1 = waveNeighbourX(int(c.x) + 1, n);

@@ -7,6 +7,7 @@
 #include "include/population.glsl"
 #include "include/candidates.glsl"
 #include "include/boundary.glsl"
+#include "include/finite.glsl"
 #include "include/foam.glsl"
 #include "include/surroundings.glsl"
 
@@ -24,6 +25,13 @@ void main() {
   if (i >= particleCount()) return;
   const Grid g = loadGrid();
   const Support support = makeSupport(g.cell_m);
+  const vec4 predicted = texelFetch(sorted_position, int(i));
+  if (!isFinite(predicted.xyz)) {
+    // Kept as it is for diagnostics to count: min() and max() at a wall would turn the NaN into a place there.
+    position[i] = predicted;
+    velocity[i] = texelFetch(sorted_velocity, int(i));
+    return;
+  }
   vec3 x_i = texelFetch(pressure_point, int(i)).xyz;
   const vec4 own = texelFetch(acceleration, int(i));
   const ivec3 cell = cellOf(g, x_i);
@@ -67,6 +75,6 @@ void main() {
 #else
   const float foam = 0.0;
 #endif
-  position[i] = vec4(x_i, texelFetch(sorted_position, int(i)).w);
+  position[i] = vec4(x_i, predicted.w);
   velocity[i] = vec4(v, foam);
 }

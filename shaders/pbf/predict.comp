@@ -5,6 +5,7 @@
 // Invariant: not faster than max_speed_mps.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1
 #include "shared/groups.h"
+#include "include/finite.glsl"
 #include "include/population.glsl"
 #include "include/floor.glsl"
 #include "include/sides.glsl"
@@ -18,6 +19,7 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= unsortedCount()) return;
   vec4 x = position[i];
+  if (!isFinite(x.xyz)) return;  // stays for diagnostics to count
   vec4 v = velocity[i];
   v.y -= sim.dt_s * sim.gravity_mps2;
 #if COUPLED

@@ -15,6 +15,8 @@
 #define SCAN_GROUP 256
 #define SCAN_ITEMS 16
 #define SCAN_BLOCK (SCAN_GROUP * SCAN_ITEMS)
+// Groups along x that every device of OpenGL 4.5 dispatches at once. Passes over more cells than this many groups have loop.
+#define MAX_GROUPS 65535
 // Diagnostics: every invocation sums a strided share of about REDUCE_ITEMS items by itself and writes one partial result; the
 // host sums those. No shared memory: its barriers cost llvmpipe 15 times the reduction itself.
 #define REDUCE_GROUP 64

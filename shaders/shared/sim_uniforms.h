@@ -94,9 +94,14 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float frame_min_z_m;
   float frame_max_z_m;
   float surface_quantum_m;
+
+  // Bound of the neighbour search: candidates of one column of cells that a particle looks at (sim/derive.cpp).
+  uint candidates_max_count;
+  uint unused;                  // std140 rounds the block up to a multiple of 16 bytes
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 62 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 64 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) % 16 == 0, "a uniform buffer that is smaller than its block is undefined");
 }  // namespace spindrift::shared
 #else
 } sim;

@@ -4,6 +4,7 @@
 // the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
 // variants: PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=0 VARIED=1 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 NEIGHBOUR_FOAM=1 | PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=1 SURFACE_FOAM=0 FOLLOW=2 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0 NEIGHBOUR_FOAM=0
 #include "shared/groups.h"
+#include "include/finite.glsl"
 #include "include/foam.glsl"
 #include "include/population.glsl"
 #include "include/surroundings.glsl"
@@ -25,6 +26,12 @@ void main() {
   const vec4 old_position = texelFetch(sorted_position, int(i));
   const vec4 old_velocity = texelFetch(sorted_velocity, int(i));
   const vec4 a = texelFetch(acceleration, int(i));
+  if (!isFinite(old_position.xyz)) {
+    // Kept as it is for diagnostics to count: min() and max() at a wall would turn the NaN into a place there.
+    position[i] = old_position;
+    velocity[i] = old_velocity;
+    return;
+  }
 
   vec3 v = old_velocity.xyz + sim.dt_s * a.xyz;
   v *= min(1.0, sim.max_speed_mps / max(length(v), 1e-6));

@@ -7,6 +7,7 @@
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0
 #include "shared/groups.h"
 #include "include/event_shapes.glsl"
+#include "include/finite.glsl"
 #include "include/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
@@ -23,6 +24,7 @@ void main() {
   if (i >= unsortedCount()) return;
   const vec4 own = position[i];
   vec3 x = own.xyz;
+  if (!isFinite(x)) return;  // stays for diagnostics to count
   const float depth_m = sim.band_m;
   const float height_ratio = clamp((x.y + depth_m) / depth_m, 0.0, 1.0);  // 0 at the floor, 1 at the resting surface
   vec3 move_m = vec3(0.0);

@@ -31,7 +31,8 @@ uint quantizedSigned(float unit) {
 bool isChosen(float id, uint count) {
   const float budget = float(budget_count);
   const float share = (budget - 4.0 * sqrt(budget)) / float(count);
-  return float(hashed(uvec3(uint(id), 0u, 0u)).x >> 8) < share * 16777216.0;
+  // By way of int: uint() of the -1 that an absorbed particle has is undefined.
+  return float(hashed(uvec3(uint(int(id)), 0u, 0u)).x >> 8) < share * 16777216.0;
 }
 
 void main() {

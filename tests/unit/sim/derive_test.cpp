@@ -8,6 +8,7 @@
 #include <spindrift/sim/derive.h>
 
 #include "lattice.h"
+#include "particle_layout.h"
 #include "sim_fixture.h"
 
 namespace spindrift::sim {
@@ -221,8 +222,37 @@ TEST(Derive, CountsUpToAMillionFitTheirDispatches) {
   const auto d = derive(scene);
   ASSERT_TRUE(d) << d.error().message;
   EXPECT_LE(d->particles->count / 64 + 1, 65535u);
-  EXPECT_LE(d->particles->cell_count / 256 + 1, 65535u);
   EXPECT_GE(d->device_bytes, std::uint64_t{d->particles->count} * 7 * 16);
+}
+
+TEST(Derive, APoolOfAMillionParticlesHasRoomAtTheDefaultHeadroom) {
+  core::Scene scene;
+  scene.wave.emplace();
+  scene.particles.emplace();
+  scene.particles->count = 1'048'576;
+  scene.coupling.emplace();
+  const auto d = derive(scene);
+  ASSERT_TRUE(d) << d.error().message;
+  EXPECT_GT(d->particles->cell_count, 1u << 22);
+  EXPECT_LE(d->particles->cell_count, kMaxCellCount);
+}
+
+TEST(Derive, RefusesMoreCellsThanTheBoundAndNamesIt) {
+  core::Scene scene = boxScene(262'144);
+  scene.particles->layers_count = 64;  // 64^3: 33^2 cells or so over the floor
+  const auto low = derive(scene);
+  ASSERT_TRUE(low) << low.error().message;
+  const double cell_m = low->particles->support_radius_m;
+  const double floor_cells = 1.0 * low->particles->cells[0] * low->particles->cells[2];
+  scene.particles->headroom_m = (std::floor(kMaxCellCount / floor_cells) - 2) * cell_m + low->particles->min_m[1];
+  const auto d = derive(scene);
+  ASSERT_TRUE(d) << d.error().message;
+  EXPECT_GT(d->particles->cell_count, kMaxCellCount - 3 * floor_cells);
+  scene.particles->headroom_m += 4 * cell_m;
+  const auto refused = derive(scene);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("67108864"));
+  EXPECT_THAT(refused.error().message, HasSubstr("particles.headroom_m"));
 }
 
 TEST(Derive, AnotherCountKeepsTheVolumeOfTheWater) {

@@ -119,6 +119,22 @@ TEST_F(Grid, ScansMoreBlocksThanOneGroupHolds) {
   for (std::size_t k = 1; k < 4001; ++k) ASSERT_LE(cellOf(&sorted_[4 * (k - 1)]), cellOf(&sorted_[4 * k]));
 }
 
+TEST_F(Grid, HasMoreCellsThanOneDispatchHasInvocations) {
+  // Over 65535 groups of 256 cells.
+  constexpr std::uint32_t kCells = 257;
+  auto d = derive(smallScene(3000));
+  d->particles->cells = {kCells, kCells, kCells};
+  d->particles->cell_count = kCells * kCells * kCells;
+  ASSERT_GT(d->particles->cell_count / 256, 65535u);
+  d->uniforms.cells_x = d->uniforms.cells_y = d->uniforms.cells_z = kCells;
+  d->uniforms.cell_count = d->particles->cell_count;
+  for (int axis = 0; axis < 3; ++axis)
+    d->particles->max_m[axis] = d->particles->min_m[axis] + kCells * d->particles->support_radius_m;
+  sort(*d, randomPositions(*d, 1009));
+  EXPECT_EQ(start_.back(), 1009u);
+  EXPECT_TRUE(std::ranges::is_sorted(start_));
+}
+
 TEST_F(Grid, SurvivesEveryParticleInOneCell) {
   const auto d = derive(smallScene(3000));
   std::vector<float> positions;

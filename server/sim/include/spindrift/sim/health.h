@@ -11,6 +11,9 @@ struct Health {
   std::uint64_t nonfinite_count = 0;
   std::uint64_t escaped_count = 0;   ///< particles outside their domain
   std::uint32_t particle_count = 0;  ///< alive
+  /// Particles, summed over the substeps since the health before, that had more neighbour candidates than the bound of
+  /// the search (SimUniforms::candidates_max_count) and did not look at all of them. 0 in any water worth the name.
+  std::uint32_t crowded_count = 0;
   double max_speed_mps = 0.0;
   double max_density_ratio = 0.0;  ///< rho / rho0
   double mean_density_ratio = 0.0;

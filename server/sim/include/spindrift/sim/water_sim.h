@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -58,8 +59,8 @@ struct StateCopy {
   std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) a cell, the faces that it owns
 };
 
-/// All calls on the thread that owns the context. Nothing here waits for the device except copyState(), stateHash() and
-/// setState().
+/// All calls on the thread that owns the context, which may become another one between two calls (Context::release()
+/// and makeCurrent()). What waits for the device says so.
 class WaterSim {
  public:
   /// Buffers, programs and the starting state for what the scene names, and nothing else. Errors: derive()'s, and
@@ -69,8 +70,13 @@ class WaterSim {
   WaterSim(const WaterSim&) = delete;
   WaterSim& operator=(const WaterSim&) = delete;
 
-  /// Advances by one tick.
+  /// Advances by one tick. Waits for the device only while kMaxTicksInFlight ticks are submitted and not done, so that
+  /// the time of this call shows a device that cannot keep up. Does nothing once deviceError() is set.
   void step();
+  static constexpr std::size_t kMaxTicksInFlight = 3;
+  /// Set when the device has not finished a tick within 10 s, or its context is lost. Nothing moves any more: destroy
+  /// this simulation and create another, after a lost context on a new one.
+  [[nodiscard]] const std::optional<core::Error>& deviceError() const { return device_error_; }
 
   /// Starts an effect now, on the wave, or on the particles where there is none. kUnavailable when too many are active.
   core::Result<void> start(const core::Effect& effect);
@@ -94,6 +100,9 @@ class WaterSim {
   /// Packs a frame of the state now. False when none will come: it was dropped because earlier ones are still being
   /// read, or the scene has nothing of what was asked for.
   bool requestFrame(const FrameRequest& request);
+  /// Frames that were requested and that takeFrames() is still to return. Frames that are lost on the way (another
+  /// `particles.count`) no longer count.
+  [[nodiscard]] std::size_t framesInFlight() const;
   /// Frames that have arrived, oldest first. `diagnostics` is left empty.
   std::vector<core::FrameView> takeFrames();
   /// How many levels of a frame have to leave something out: surfaces, particles.
@@ -101,11 +110,13 @@ class WaterSim {
 
   /// Newest health that has arrived.
   [[nodiscard]] const Health& health() const { return health_; }
-  /// Sums since creation of what health() reported, and how often the guard put the room back to its last good
+  /// Sums since creation of what health() reported, and how often the watchdog put the room back to its last good
   /// checkpoint.
   [[nodiscard]] std::uint64_t nonfiniteCount() const { return nonfinite_count_; }
   [[nodiscard]] std::uint64_t escapedCount() const { return escaped_count_; }
   [[nodiscard]] std::uint64_t recoveredCount() const { return recovered_count_; }
+  /// Sum since creation of Health::crowded_count.
+  [[nodiscard]] std::uint64_t crowdedCount() const { return crowded_count_; }
   /// Mean cost of each pass since the last call, per scope.
   std::vector<gpu::PassCost> takePassCosts() { return timers_.take(); }
 
@@ -127,6 +138,7 @@ class WaterSim {
   WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived);
 
   core::Result<void> build();
+  bool waitForDevice();
   void uploadStartingState();
   core::Result<void> relay(const core::Scene& scene);
   void startEvents();
@@ -163,9 +175,11 @@ class WaterSim {
   std::uint64_t nonfinite_count_ = 0;
   std::uint64_t escaped_count_ = 0;
   std::uint64_t recovered_count_ = 0;
+  std::uint64_t crowded_count_ = 0;
   std::uint64_t abandoned_until_tick_ = 0;  ///< health of ticks up to this one belongs to a state that was given up
   std::uint64_t careful_until_tick_ = 0;    ///< after a recovery: twice the substeps until then
   bool is_careful_ = false;
+  std::optional<core::Error> device_error_;
 };
 
 }  // namespace spindrift::sim

@@ -1,0 +1,8 @@
+// Whether numbers are finite, by their bits: compilers may assume that no NaN occurs, and drop isnan().
+#ifndef SPINDRIFT_FINITE
+#define SPINDRIFT_FINITE
+
+bool isFinite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+bool isFinite(vec3 v) { return isFinite(v.x) && isFinite(v.y) && isFinite(v.z); }
+
+#endif

@@ -1,0 +1,100 @@
+// The uniform blocks that C++ fills and shaders read: size and offset of every member as the driver laid them out.
+#include <cstddef>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <shared/bindings.h>
+#include <shared/boats.h>
+#include <shared/event_uniforms.h>
+#include <shared/sim_uniforms.h>
+
+#include "scene_parts.h"
+#include "sim_fixture.h"
+
+namespace spindrift::sim {
+namespace {
+
+class SharedBlocks : public OnDevice {
+ protected:
+  gpu::BlockLayout block(const char* shader, const char* name, const core::Scene& scene) {
+    const auto program = gpu::Program::create(*ctx_, shader, shaderDefines(scene));
+    if (!program) throw std::runtime_error(program.error().message);
+    const auto blocks = program->blocks();
+    const auto found = blocks.find(name);
+    if (found == blocks.end()) throw std::runtime_error(std::string(shader) + " has no block " + name);
+    return found->second;
+  }
+
+  /// Offset of a member, whatever the driver puts before its name ("SimUniforms.dt_s", "splashes[0].gain_m").
+  static std::optional<std::uint32_t> offsetOf(const gpu::BlockLayout& block, const std::string& member) {
+    for (const auto& [name, offset] : block.offsets) {
+      if (name == member || name.ends_with("." + member)) return offset;
+    }
+    return std::nullopt;
+  }
+
+  /// The members of a header that both compilers read, in order: C++ and std140 put each scalar 4 bytes behind the
+  /// last.
+  static std::vector<std::string> members(const char* header, const std::string& after) {
+    std::ifstream in(std::string(SPINDRIFT_SOURCE_DIR) + "/shaders/shared/" + header);
+    const std::regex member(R"(^  (?:float|uint) (\w+);.*)");
+    std::vector<std::string> out;
+    bool is_inside = false;
+    for (std::string line; std::getline(in, line);) {
+      is_inside = is_inside || line.find(after) != std::string::npos;
+      std::smatch found;
+      if (is_inside && std::regex_match(line, found, member)) out.push_back(found[1]);
+      if (is_inside && line.starts_with("};")) break;
+    }
+    return out;
+  }
+};
+
+TEST_F(SharedBlocks, SimUniformsAreAsLargeAsTheirBlockAndEveryMemberLiesWhereTheDriverReadsIt) {
+  const gpu::BlockLayout sim = block("sph/integrate.comp", "SimUniforms", smallScene());
+  EXPECT_EQ(sim.binding, static_cast<std::uint32_t>(SIM_UNIFORMS));
+  EXPECT_EQ(sim.size_bytes, sizeof(shared::SimUniforms));
+  const auto names = members("sim_uniforms.h", "struct SimUniforms");
+  ASSERT_EQ(names.size(), sizeof(shared::SimUniforms) / 4);
+  for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(offsetOf(sim, names[k]), 4 * k) << names[k];
+}
+
+TEST_F(SharedBlocks, EventUniformsLikewise) {
+  const gpu::BlockLayout events = block("wave/splash.comp", "EventUniforms", smallScene());
+  EXPECT_EQ(events.binding, static_cast<std::uint32_t>(EVENT_UNIFORMS));
+  EXPECT_EQ(events.size_bytes, sizeof(shared::EventUniforms));
+  EXPECT_EQ(offsetOf(events, "splash_count"), offsetof(shared::EventUniforms, splash_count));
+  EXPECT_EQ(offsetOf(events, "crest_count"), offsetof(shared::EventUniforms, crest_count));
+  const auto names = members("event_uniforms.h", "struct EventUniform");
+  ASSERT_EQ(names.size(), sizeof(shared::EventUniform) / 4);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    EXPECT_EQ(offsetOf(events, "splashes[0]." + names[k]), 4 * k) << names[k];
+    EXPECT_EQ(offsetOf(events, "crests[0]." + names[k]), offsetof(shared::EventUniforms, crests) + 4 * k) << names[k];
+  }
+}
+
+TEST_F(SharedBlocks, BoatControlsLikewise) {
+  core::Scene scene = smallScene();
+  scene.boats.emplace();
+  const gpu::BlockLayout boats = block("bodies/move.comp", "BoatControls", scene);
+  EXPECT_EQ(boats.binding, static_cast<std::uint32_t>(BOAT_CONTROLS));
+  EXPECT_EQ(boats.size_bytes, sizeof(shared::BoatControls));
+  EXPECT_EQ(offsetOf(boats, "boat_control[0]"), 0u);
+  EXPECT_EQ(offsetOf(boats, "boat_place_count"), offsetof(shared::BoatControls, place_count));
+}
+
+TEST_F(SharedBlocks, TheFollowerWritesTheFirstMembersOfTheSimUniforms) {
+  core::Scene scene = smallScene();
+  scene.particles->patch_scale = 0.5;
+  scene.coupling->patch_follow = core::PatchFollow::kEvent;
+  const gpu::BlockLayout movable = block("coupling/follow.comp", "MovableUniforms", scene);
+  EXPECT_TRUE(movable.is_storage);
+  const auto names = members("sim_uniforms.h", "struct SimUniforms");
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(offsetOf(movable, names.at(k)), 4 * k) << names[k];
+}
+
+}  // namespace
+}  // namespace spindrift::sim
