@@ -42,10 +42,12 @@ core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
   Stage& stage = **made;
 
   ReplayOutcome out;
+  out.device_difference = deviceDifference(log.header(), ctx.device());
   std::uint64_t last_equal_tick = 0;
   while (const auto record = log.next()) {
     while (stage.tick() < record->tick() && !record->has_scene()) {
       stage.step();
+      if (const auto& error = stage.water().deviceError()) return *error;
       if (progress && stage.tick() % kProgressInterval_ticks == 0) progress(stage.tick());
     }
     out.tick_count = record->tick();
@@ -56,7 +58,10 @@ core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
         break;
       case v1::Record::kScene: {
         // Written after the change, which takes one tick.
-        while (stage.tick() + 1 < record->tick()) stage.step();
+        while (stage.tick() + 1 < record->tick()) {
+          stage.step();
+          if (const auto& error = stage.water().deviceError()) return *error;
+        }
         v1::Scene scene = record->scene();
         stream::fillDefaults(scene);
         if (auto rejected = stage.replaceScene(std::move(scene)))

@@ -67,7 +67,7 @@ core::Result<std::shared_ptr<Room>> Room::create(gpu::Context& ctx, RoomSetup se
   if (!rules.record_folder.empty()) {
     v1::RecordHeader header;
     header.set_server("spindrift " SPINDRIFT_VERSION);
-    header.set_device(ctx.device().name);
+    describeDevice(header, ctx.device());
     header.set_room(setup.name);
     *header.mutable_scene() = (*stage)->scene();
     header.set_hash_interval_ticks(rules.hash_interval_ticks);
