@@ -42,11 +42,12 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
   Stage stage(*std::move(water));
 
   ReplayOutcome out;
-  out.device = stage.device().name;
+  out.device_difference = deviceDifference(log.header(), stage.device());
   std::uint64_t last_equal_tick = 0;
   while (const auto record = log.next()) {
     while (stage.tick() < record->tick() && !record->has_scene()) {
       stage.step();
+      if (const auto& error = stage.water().deviceError()) return *error;
       if (progress && stage.tick() % kProgressInterval_ticks == 0) progress(stage.tick());
     }
     out.tick_count = record->tick();
@@ -57,7 +58,10 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
         break;
       case v1::Record::kScene: {
         // Written after the change, which takes one tick.
-        while (stage.tick() + 1 < record->tick()) stage.step();
+        while (stage.tick() + 1 < record->tick()) {
+          stage.step();
+          if (const auto& error = stage.water().deviceError()) return *error;
+        }
         v1::Scene scene = record->scene();
         stream::fillDefaults(scene);
         auto next = Water::create(device, std::move(scene));

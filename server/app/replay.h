@@ -14,7 +14,6 @@
 namespace spindrift::app {
 
 struct ReplayOutcome {
-  std::string device;               ///< that it ran on now
   std::uint64_t tick_count = 0;     ///< the last record's tick
   std::uint64_t command_count = 0;  ///< carried out again
   std::uint64_t hash_count = 0;     ///< compared
@@ -27,7 +26,9 @@ struct ReplayOutcome {
   };
   std::optional<Difference> difference;
   std::optional<std::uint64_t> recovered_tick;  ///< the guard had stepped in: what follows need not repeat
-  std::optional<std::string> truncation;        ///< the log has no end: where and why
+  /// Another device or driver than the log's: states may differ for that alone.
+  std::optional<std::string> device_difference;
+  std::optional<std::string> truncation;  ///< the log has no end: where and why
 };
 
 /// Errors: the scene's and the device's; kCheckFailed for a command that is not carried out as it was recorded.

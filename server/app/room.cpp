@@ -70,7 +70,7 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
   if (!rules.record_folder.empty()) {
     v1::RecordHeader header;
     header.set_server("spindrift " SPINDRIFT_VERSION);
-    header.set_device(stage->device().name);
+    describeDevice(header, stage->device());
     header.set_room(name);
     *header.mutable_scene() = stage->scene();
     header.set_hash_interval_ticks(rules.hash_interval_ticks);
