@@ -82,15 +82,20 @@ RestApi::RestApi(SimulationThread& rooms, const Access& access, CommandCounters&
     : rooms_(rooms), access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
 
 void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond) {
-  /// Compiling a large scene on a software device takes about this long.
-  constexpr double kStuck_s = 20.0;
+  /// Far above any tick that a room allows while people are connected.
+  constexpr double kStuck_s = 5.0;
   const bool is_probe = request.path == "/healthz" || request.path == "/readyz" || request.path == "/metrics";
   if (is_probe && request.method != "GET") return respond(wrongMethod(request.method, "GET"));
   if (request.path == "/healthz") return respond(text(200, "ok\n"));
   if (request.path == "/readyz") {
     const double since_s = rooms_.sinceLastRound_s();
-    if (since_s < kStuck_s) return respond(text(200, "ready\n"));
-    return respond(text(503, "the simulation has stood still for " + std::to_string(since_s) + " s\n"));
+    if (since_s >= kStuck_s)
+      return respond(text(503, "the simulation has stood still for " + std::to_string(since_s) + " s\n"));
+    for (const auto& room : rooms_.rooms()) {
+      if (room->vitals()->lost)
+        return respond(text(503, "room " + room->name() + ": the device failed, its water is being built anew\n"));
+    }
+    return respond(text(200, "ready\n"));
   }
   if (request.path == "/metrics") {
     return respond(HttpReply{.status = 200,

@@ -109,9 +109,17 @@ void Room::publishVitals(TimePoint now) {
   fresh->tick = tick();
   fresh->time_s = stage_->water().time_s();
   fresh->asleep = asleep_;
+  fresh->lost = is_lost_;
   fresh->waiting_command_count = static_cast<std::uint32_t>(commands_.size());
   fresh->dropped_frame_count = dropped_frames_;
   fresh->diagnostics = diagnostics();
+  const std::lock_guard lock(snapshot_mutex_);
+  vitals_ = std::move(fresh);
+}
+
+void Room::publishLoss() {
+  auto fresh = std::make_shared<RoomVitals>(*vitals());
+  fresh->lost = true;
   const std::lock_guard lock(snapshot_mutex_);
   vitals_ = std::move(fresh);
 }
@@ -130,6 +138,7 @@ void Room::start(TimePoint now) {
 }
 
 Room::TimePoint Room::due(TimePoint now) const {
+  if (is_lost_) return now + 10ms;
   if (pending_tick_count_ > 0) return now;
   const TimePoint next = paused_ || asleep_ ? now + 10ms : clock_.due();
   return stage_->water().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
@@ -137,7 +146,12 @@ Room::TimePoint Room::due(TimePoint now) const {
 
 void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
   stage_->bind();
-  adoptScene(observer);
+  session_count_ = hub.sessionCount();
+  adoptWater(now, observer);
+  if (isLost(now)) {
+    announce(hub, observer);
+    return;
+  }
   const bool stands_still = paused_ || asleep_;
   if (!stands_still) unpaused_wall_s_ += duration<double>(now - last_run_).count();
   last_run_ = now;
@@ -191,7 +205,9 @@ Room::TimePoint Room::timedStep() {
   const auto begin = std::chrono::steady_clock::now();
   stage_->step();
   const auto end = std::chrono::steady_clock::now();
-  step_ms_sum_ += duration<double, std::milli>(end - begin).count();
+  const double step_ms = duration<double, std::milli>(end - begin).count();
+  tick_cost_.note(step_ms);
+  step_ms_sum_ += step_ms;
   ++step_count_;
   if (log_ && !log_->ended()) {
     if (const std::uint64_t count = stage_->water().recoveredCount(); count != logged_recovery_count_) {

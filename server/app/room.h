@@ -28,6 +28,7 @@
 #include "roster.h"
 #include "scene_catalog.h"
 #include "stage.h"
+#include "tick_cost.h"
 #include "water_builder.h"
 #include "work_budget.h"
 
@@ -63,6 +64,7 @@ struct RoomVitals {
   std::uint64_t tick = 0;
   double time_s = 0.0;
   bool asleep = false;
+  bool lost = false;  ///< the device failed; the water is being built anew
   std::uint32_t waiting_command_count = 0;
   std::uint64_t dropped_frame_count = 0;
   core::DiagnosticsView diagnostics;
@@ -135,11 +137,12 @@ class Room {
     bool state = false;
     bool boats = false;
     bool reset = false;
+    bool rebuilt = false;
     std::map<std::string, double> parameters;  ///< by path, as they are now
   };
-  /// A change of scene under way: the water is built beside the running one.
-  struct SceneBuild {
-    Batch commands;
+  /// Other water under way, built beside the running one.
+  struct WaterBuild {
+    Batch commands;  ///< that asked for it: the same ChangeScene; empty where the device failed
     std::future<WaterBuilder::Built> water;
   };
 
@@ -181,10 +184,20 @@ class Room {
 
   // room_scene.cpp
   void beginScene(Batch batch);
-  /// Goes on with the scene that was built, if it is there.
-  void adoptScene(RoomObserver& observer);
-  /// Forgets what belonged to the scene before.
+  /// Goes on with the water that was built, if it is there.
+  void adoptWater(TimePoint now, RoomObserver& observer);
+  /// Forgets what belonged to the water before.
   void restartScene(RoomObserver& observer);
+  /// Whether a tick that takes so long may be asked for by this sender: while others are connected it may not.
+  [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms) const;
+  /// Goes on with other water from its start.
+  void replaceWater(std::unique_ptr<Water> water, RoomObserver& observer);
+  /// Asks the device whether it still works; if not, has the same scene built anew, on a device that does, and answers
+  /// whoever asks for something meanwhile. True while it does not.
+  bool isLost(TimePoint now);
+  void finishRebuild(TimePoint now, WaterBuilder::Built water, RoomObserver& observer);
+  /// Says in the vitals that the device failed, without asking it for anything.
+  void publishLoss();
 
   void requestFrame(TimePoint now, net::Hub& hub);
   /// Whether the next frame holds the level: all do while the room is paused, then every so many.
@@ -205,7 +218,12 @@ class Room {
   WorkBudget heavy_budget_;
   std::vector<Answer> answers_;  ///< since the last announce()
   News news_;
-  std::optional<SceneBuild> scene_build_;
+  std::optional<WaterBuild> build_;
+  bool is_lost_ = false;      ///< the device failed: nothing runs until other water is there
+  TimePoint next_rebuild_{};  ///< a build that failed is tried again
+  std::chrono::seconds rebuild_pause_{1};
+  std::size_t session_count_ = 0;  ///< of all rooms, as of this round
+  TickCost tick_cost_;
   Roster roster_;
   RealTimeClock clock_;
   bool paused_ = false;

@@ -60,7 +60,7 @@ std::optional<stream::CommandRejection> Room::admit(core::Command command) {
 void Room::applyCommands(TimePoint now) {
   using Clock = std::chrono::steady_clock;
   for (int k = 0; k < kRoundMaxCount; ++k) {
-    auto batch = commands_.next({.heavy = heavy_budget_.isOpen(now), .scene_change = !scene_build_});
+    auto batch = commands_.next({.heavy = heavy_budget_.isOpen(now), .scene_change = !build_});
     if (!batch) break;
     const bool is_heavy = isHeavy(batch->front().action);
     const auto begin = Clock::now();
@@ -74,7 +74,7 @@ void Room::applyCommands(TimePoint now) {
 
 void Room::abandonCommands(RoomObserver& observer) {
   const auto closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
-  if (scene_build_) answer(std::move(scene_build_->commands), closed);
+  if (build_) answer(std::move(build_->commands), closed);
   answer(commands_.drain(), closed);
   for (Answer& one : std::exchange(answers_, {})) observer.commandRejected(one.command, *one.rejected);
 }
@@ -138,6 +138,10 @@ Room::Outcome Room::applyToWater(const core::Command& command) {
 }
 
 Room::Outcome Room::setParameter(const core::Command& command, const core::SetParameter& change) {
+  if (const auto derived = stage_->deriveWith(change)) {
+    const double tick_ms = tick_cost_.predict_ms(workOf(stage_->water().derived()), workOf(*derived));
+    if (auto refused = refuseSlow(command.sender, change.path, tick_ms)) return refused;
+  }
   if (auto rejected = applyToWater(command)) return rejected;
   news_.parameters[change.path] = change.value;
   return {};
@@ -264,6 +268,11 @@ void Room::announce(net::Hub& hub, RoomObserver& observer) {
   if (news.reset) {
     hub.broadcastState(name_, topic::kReset,
                        stream::roomEvent(v1::ROOM_EVENT_KIND_RESET, tick(), "somebody started the scene again"));
+  }
+  if (news.rebuilt) {
+    hub.broadcastState(name_, topic::kRecovered,
+                       stream::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
+                                         "the device failed; the scene began again on a new one"));
   }
   if (news.boats) announceBoats(hub);
   for (Answer& one : std::exchange(answers_, {})) {

@@ -33,25 +33,79 @@ void Room::beginScene(Batch batch) {
                   rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField, firstLine(scene.error().message)));
   }
   commands_.hold(batch);
-  scene_build_.emplace(SceneBuild{std::move(batch), builder_.build(*std::move(scene))});
+  build_.emplace(WaterBuild{std::move(batch), builder_.build(*std::move(scene))});
 }
 
-void Room::adoptScene(RoomObserver& observer) {
-  if (!scene_build_ || scene_build_->water.wait_for(0s) != std::future_status::ready) return;
-  SceneBuild build = *std::move(scene_build_);
-  scene_build_.reset();
+void Room::adoptWater(TimePoint now, RoomObserver& observer) {
+  if (!build_ || build_->water.wait_for(0s) != std::future_status::ready) return;
+  WaterBuild build = *std::move(build_);
+  build_.reset();
   commands_.release(build.commands);
-  const core::Action action = build.commands.front().action;
   WaterBuilder::Built water = build.water.get();
+  if (build.commands.empty()) return finishRebuild(now, std::move(water), observer);
+  const core::Command first = build.commands.front();
+  const std::string name = std::get<core::ChangeScene>(first.action).name;
   if (!water) {
     return answer(std::move(build.commands), rejection(v1::REJECT_REASON_OUT_OF_RANGE, kField,
-                                                       "scene '" + std::get<core::ChangeScene>(action).name +
-                                                           "': " + firstLine(water.error().message)));
+                                                       "scene '" + name + "': " + firstLine(water.error().message)));
   }
-  builder_.dispose(stage_->replaceWater(*std::move(water)));
-  restartScene(observer);
+  if (auto slow = refuseSlow(first.sender, kField, (*water)->warmTick_ms())) {
+    builder_.dispose(*std::move(water));
+    return answer(std::move(build.commands), slow);
+  }
+  replaceWater(*std::move(water), observer);
   answer(std::move(build.commands), {});
-  answer(commands_.takeEqual(action), {});
+  answer(commands_.takeEqual(first.action), {});
+}
+
+void Room::replaceWater(std::unique_ptr<Water> water, RoomObserver& observer) {
+  builder_.dispose(stage_->replaceWater(std::move(water)));
+  is_lost_ = false;
+  restartScene(observer);
+}
+
+Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms) const {
+  const double now_ms = tick_cost_.predict_ms({}, {});
+  const std::size_t own_count = sender.session_id != 0 ? 1 : 0;
+  if (session_count_ <= own_count || tick_ms <= std::max(kTickMax_ms, now_ms)) return {};
+  return rejection(
+      v1::REJECT_REASON_BUSY, field,
+      fmt::format("a tick would take about {:.0f} ms on this device, {:.0f} ms are the most while others are "
+                  "connected: choose less, or try again when nobody else is here",
+                  tick_ms, kTickMax_ms));
+}
+
+// A device that fails
+
+bool Room::isLost(TimePoint now) {
+  if (!is_lost_) {
+    const auto failure = stage_->failure();
+    if (!failure) return false;
+    spdlog::error("room {}: {}; scene {} is built anew from its start", name_, *failure, stage_->scene().name());
+    is_lost_ = true;
+    rebuild_pause_ = 1s;
+    next_rebuild_ = now;
+    publishLoss();
+  }
+  if (!build_ && now >= next_rebuild_) build_.emplace(WaterBuild{{}, builder_.build(stage_->scene())});
+  answer(commands_.drain(), rejection(v1::REJECT_REASON_BUSY, "",
+                                      "the device failed and the room's water is being built anew: try again"));
+  return true;
+}
+
+void Room::finishRebuild(TimePoint now, WaterBuilder::Built water, RoomObserver& observer) {
+  constexpr std::chrono::seconds kLongestPause{30};
+  if (!water) {
+    spdlog::error("room {}: its water cannot be built anew ({}); the next try is in {} s", name_, water.error().message,
+                  rebuild_pause_.count());
+    next_rebuild_ = now + rebuild_pause_;
+    rebuild_pause_ = std::min(2 * rebuild_pause_, kLongestPause);
+    return;
+  }
+  replaceWater(*std::move(water), observer);
+  news_.rebuilt = true;
+  publishVitals(now);
+  spdlog::warn("room {}: runs again, from the start of scene {}", name_, stage_->scene().name());
 }
 
 void Room::restartScene(RoomObserver& observer) {
@@ -76,6 +130,7 @@ void Room::restartScene(RoomObserver& observer) {
   step_count_ = 0;
   last_passes_.clear();
   slow_since_ = {};
+  tick_cost_.restart();
   recovery_news_.restart(stage_->water().recoveredCount());
   logged_recovery_count_ = stage_->water().recoveredCount();
   boats_ = stage_->boats();

@@ -77,6 +77,14 @@ Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
   return {};
 }
 
+std::optional<sim::Derived> Stage::deriveWith(const core::SetParameter& change) const {
+  v1::Scene changed = scene();
+  if (stream::setParameter(changed, change.path, change.value)) return std::nullopt;
+  auto derived = sim::derive(stream::toCore(changed));
+  if (!derived) return std::nullopt;
+  return *std::move(derived);
+}
+
 Stage::Outcome Stage::spawnBoat(const core::SpawnBoat& spawn) {
   const auto boat_id = water().spawnBoat(spawn.boat);
   if (!boat_id) {

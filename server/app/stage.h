@@ -34,12 +34,16 @@ class Stage {
   static bool takes(const core::Action& action);
   /// Carries an action out now, between two ticks; a rejected one changes nothing.
   Outcome apply(const core::Action& action);
+  /// What would follow from another value of a parameter; nullopt where it is not allowed: apply() tells why.
+  [[nodiscard]] std::optional<sim::Derived> deriveWith(const core::SetParameter& change) const;
   /// Goes on with other water, which is bound from now on; returns the old one, still to be destroyed. The room's ticks
   /// go on: the new water begins at a tick that no frame of the old one has.
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);
   /// Makes this stage's GL context current; call it before anything else when another one may be.
   void bind() { water_->bind(); }
   void step() { water().step(); }
+  /// Water::failure().
+  [[nodiscard]] std::optional<std::string> failure() { return water_->failure(); }
 
   [[nodiscard]] const v1::Scene& scene() const { return water_->scene(); }  ///< parameters as they are now
   [[nodiscard]] sim::WaterSim& water() { return water_->sim(); }

@@ -1,6 +1,8 @@
 #include "water.h"
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -19,13 +21,22 @@ constexpr int kWarmUpTickCount = 4;
 /// The encoder holds a frame for milliseconds; whoever holds one longer has lost it.
 constexpr auto kFramePatience = 5s;
 
-void warmUp(gpu::Context& context, sim::WaterSim& sim) {
-  for (int i = 0; i < kWarmUpTickCount; ++i) sim.step();
+/// What the cheapest of the ticks took [ms].
+double warmUp(gpu::Context& context, sim::WaterSim& sim) {
+  double tick_ms = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kWarmUpTickCount; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    sim.step();
+    context.finish();
+    tick_ms =
+        std::min(tick_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  }
   (void)sim.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
   context.finish();
   (void)sim.takeFrames();
   (void)sim.takePassCosts();
   sim.reset();
+  return tick_ms;
 }
 
 }  // namespace
@@ -35,12 +46,13 @@ core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& devi
   if (!context) return context.error();
   auto sim = sim::WaterSim::create(**context, stream::toCore(scene));
   if (!sim) return sim.error();
-  warmUp(**context, **sim);
-  return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene)));
+  const double tick_ms = warmUp(**context, **sim);
+  return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));
 }
 
-Water::Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene)
-    : context_(std::move(context)), sim_(std::move(sim)), scene_(std::move(scene)) {}
+Water::Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
+             double warm_tick_ms)
+    : context_(std::move(context)), sim_(std::move(sim)), scene_(std::move(scene)), warm_tick_ms_(warm_tick_ms) {}
 
 Water::~Water() {
   bind();
@@ -50,6 +62,12 @@ Water::~Water() {
        context_->collectRetired()) {
     std::this_thread::sleep_for(1ms);
   }
+}
+
+std::optional<std::string> Water::failure() {
+  if (context_->isLost()) return "the device was lost (" + context_->device().name + ")";
+  if (const auto& error = sim_->deviceError()) return error->message;
+  return std::nullopt;
 }
 
 void Water::bind() {

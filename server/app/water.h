@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/context.h>
@@ -27,6 +29,12 @@ class Water {
   /// Lets another thread bind it.
   void release();
 
+  /// Why this water cannot go on: the device was lost, or does not answer. Asks the driver: on the owning thread, once
+  /// per tick is enough.
+  [[nodiscard]] std::optional<std::string> failure();
+  /// What a tick took while it was built, beside whatever else ran [ms].
+  [[nodiscard]] double warmTick_ms() const { return warm_tick_ms_; }
+
   [[nodiscard]] gpu::Context& context() { return *context_; }
   [[nodiscard]] const gpu::Context& context() const { return *context_; }
   [[nodiscard]] sim::WaterSim& sim() { return *sim_; }
@@ -35,11 +43,13 @@ class Water {
   [[nodiscard]] const v1::Scene& scene() const { return scene_; }
 
  private:
-  Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene);
+  Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
+        double warm_tick_ms);
 
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<sim::WaterSim> sim_;
   v1::Scene scene_;
+  double warm_tick_ms_ = 0.0;
 };
 
 }  // namespace spindrift::app

@@ -105,6 +105,13 @@ std::size_t RoomHub::sessionCount(const std::string& room) const {
   return found == rooms_.end() ? 0 : found->second.session_count;
 }
 
+std::size_t RoomHub::sessionCount() const {
+  const std::lock_guard lock(mutex_);
+  std::size_t count = 0;
+  for (const auto& [name, room] : rooms_) count += room.session_count;
+  return count;
+}
+
 Outbox::Waiting RoomHub::waiting() const {
   const std::lock_guard lock(mutex_);
   Outbox::Waiting out;

@@ -47,6 +47,7 @@ class RoomHub final : public Hub {
   LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const override;
   void join(SessionId session, const std::string& room) override;
   std::size_t sessionCount(const std::string& room) const override;
+  std::size_t sessionCount() const override;
   void watch(SessionId session, LayerIndex layer, const Watch& watch) override;
   void close(SessionId session, CloseCode code, std::string reason) override;
   void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,

@@ -77,9 +77,9 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   Outbox outbox_;
   TokenBucket message_tokens_;
   boost::beast::flat_buffer read_buffer_;
-  boost::asio::steady_timer wake_timer_;   ///< the writer sleeps on it
-  boost::asio::steady_timer answers_timer_;   ///< the reader sleeps on it; see waitUntilAnswersAreTaken()
-  boost::asio::steady_timer stall_timer_;  ///< looks whether a write takes too long; see watchWrites()
+  boost::asio::steady_timer wake_timer_;     ///< the writer sleeps on it
+  boost::asio::steady_timer answers_timer_;  ///< the reader sleeps on it; see waitUntilAnswersAreTaken()
+  boost::asio::steady_timer stall_timer_;    ///< looks whether a write takes too long; see watchWrites()
   boost::asio::steady_timer close_timer_;
   boost::asio::steady_timer end_timer_;                                  ///< of closeAt()
   boost::asio::steady_timer end_of_delay_;                               ///< a message waits for its address's bucket

@@ -73,6 +73,7 @@ class ServerTest : public testing::Test {
     ScriptedClient made(server_->port(), room);
     EXPECT_TRUE(made.isOpen());
     made.hello(who);
+    (void)made.welcome();  // from here on it hears the room's news
     return made;
   }
 

@@ -134,6 +134,8 @@ class Hub {
 
   /// How many sessions are in the room.
   virtual std::size_t sessionCount(const std::string& room) const = 0;
+  /// How many sessions are in any room.
+  virtual std::size_t sessionCount() const = 0;
 
   /// Starts, changes or stops a layer for a session.
   virtual void watch(SessionId session, LayerIndex layer, const Watch& watch) = 0;

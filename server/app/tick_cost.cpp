@@ -1,0 +1,35 @@
+#include "tick_cost.h"
+
+#include <algorithm>
+
+namespace spindrift::app {
+namespace {
+
+double ratio(double wanted, double now) {
+  return now > 0.0 ? wanted / now : 1.0;
+}
+
+}  // namespace
+
+TickWork workOf(const sim::Derived& derived) {
+  TickWork out;
+  if (derived.particles)
+    out.particle_step_count = static_cast<double>(derived.particles->count) * derived.substeps_count;
+  if (derived.wave) {
+    const double side_count = derived.wave->resolution_count;
+    out.wave_step_count = side_count * side_count * derived.wave->substeps_count;
+  }
+  return out;
+}
+
+void TickCost::note(double tick_ms) {
+  constexpr double kNewShare = 0.1;
+  tick_ms_ = tick_ms_ == 0.0 ? tick_ms : (1.0 - kNewShare) * tick_ms_ + kNewShare * tick_ms;
+}
+
+double TickCost::predict_ms(const TickWork& now, const TickWork& wanted) const {
+  return tick_ms_ * std::max({1.0, ratio(wanted.particle_step_count, now.particle_step_count),
+                              ratio(wanted.wave_step_count, now.wave_step_count)});
+}
+
+}  // namespace spindrift::app
