@@ -44,6 +44,25 @@ core::ByteView viewOf(const std::string& text) {
 
 }  // namespace
 
+void describeDevice(v1::RecordHeader& header, const gpu::DeviceInfo& device) {
+  header.set_device(device.name);
+  header.set_gl_version(device.gl_version);
+}
+
+std::optional<std::string> deviceDifference(const v1::RecordHeader& header, const gpu::DeviceInfo& device) {
+  if (header.device() != device.name)
+    return fmt::format("recorded on {}, replayed on {}", header.device(), device.name);
+  if (header.gl_version().empty()) {
+    return fmt::format("the log does not say which version of the driver it was recorded with; this is {}",
+                       device.gl_version);
+  }
+  if (header.gl_version() != device.gl_version) {
+    return fmt::format("recorded with the driver {}, replayed with {}, on {}", header.gl_version(), device.gl_version,
+                       device.name);
+  }
+  return std::nullopt;
+}
+
 core::Result<std::unique_ptr<CommandLogWriter>> CommandLogWriter::create(const std::filesystem::path& folder,
                                                                          const v1::RecordHeader& header) {
   std::error_code error;

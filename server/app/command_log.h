@@ -9,12 +9,19 @@
 #include <string>
 
 #include <spindrift/core/result.h>
+#include <spindrift/gpu/device.h>
 #include <spindrift/v1/record.pb.h>
 
 namespace spindrift::app {
 
 /// A log that has grown to this size ends there.
 inline constexpr std::uint64_t kLogMaxBytes = 1ull << 30;
+
+/// Notes the device and its driver, on which the states of a run depend.
+void describeDevice(v1::RecordHeader& header, const gpu::DeviceInfo& device);
+/// Why states may differ although everything else is the same: one line that names the recorded device or driver and
+/// the one here. Nothing when they are the same.
+std::optional<std::string> deviceDifference(const v1::RecordHeader& header, const gpu::DeviceInfo& device);
 
 /// Appends records; each is with the system when the call returns. What cannot be written ends the log with a line in
 /// the program's own log, not the room.

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <spindrift/core/result.h>
-#include <spindrift/gpu/context.h>
+#include <spindrift/gpu/device.h>
 
 #include "command_log.h"
 
@@ -26,12 +26,14 @@ struct ReplayOutcome {
   };
   std::optional<Difference> difference;
   std::optional<std::uint64_t> recovered_tick;  ///< the guard had stepped in: what follows need not repeat
-  std::optional<std::string> truncation;        ///< the log has no end: where and why
+  /// Another device or driver than the log's: states may differ for that alone.
+  std::optional<std::string> device_difference;
+  std::optional<std::string> truncation;  ///< the log has no end: where and why
 };
 
 /// Errors: the scene's and the device's; kCheckFailed for a command that is not carried out as it was recorded.
 /// `progress` is called now and then with the tick.
-core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
+core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLogReader& log,
                                       const std::function<void(std::uint64_t)>& progress = {});
 
 }  // namespace spindrift::app

@@ -70,12 +70,17 @@ core::Result<std::unique_ptr<Boats>> Boats::create(gpu::Context& ctx, const core
 }
 
 void Boats::reset(const core::Scene& scene) {
-  State nobody{};
-  nobody[6] = kNobody;
-  for (std::size_t at = 0; at < MAX_BOATS; ++at) state_.upload(nobody, at * sizeof(State));
+  std::array<State, MAX_BOATS> states{};
+  for (State& state : states) state[6] = kNobody;
   std::ranges::fill(places_, Place{});
   next_id_ = 1;
-  for (const core::Boat& boat : scene.boats->boats) (void)spawn(boat);  // create() saw that there are places
+  // create() saw that there are places.
+  for (std::size_t at = 0; at < scene.boats->boats.size(); ++at) {
+    places_[at] = {next_id_++, scene.boats->boats[at]};
+    states[at] = startingState(places_[at].boat, places_[at].boat_id);
+  }
+  state_.upload(states);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   uploadControls();
 }
 

@@ -115,7 +115,8 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, co
     at += kBodyWords;
   }
   if (at == 0 || !slot->copyFrom(packed_, 0, at * 4, 0)) return false;
-  slot->submit(tick);
+  pending.number = packed_count_++;
+  slot->submit(pending.number);
   pending_.push_back(pending);
   return true;
 }
@@ -163,6 +164,8 @@ void FramePacker::packPlane(gpu::Program& program, std::size_t at, std::uint32_t
 std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const Derived& derived) {
   std::vector<core::FrameView> out;
   for (const auto& slot : ring_->poll()) {
+    // A slot whose fence failed never comes.
+    while (pending_.front().number != slot->tag()) pending_.pop_front();
     const Pending pending = pending_.front();
     pending_.pop_front();
     core::FrameView frame;

@@ -59,6 +59,7 @@ class FramePacker {
   };
   /// What a submitted slot holds.
   struct Pending {
+    std::uint64_t number = 0;  ///< the slot's tag: frames in the order of pack()
     std::uint64_t tick = 0;
     double time_s = 0.0;
     double asked_s = 0.0;
@@ -88,6 +89,7 @@ class FramePacker {
   gpu::Program pack_surface_, pack_particles_, pack_foam_, pack_bodies_;
   std::unique_ptr<gpu::ReadbackRing> ring_;
   std::deque<Pending> pending_;
+  std::uint64_t packed_count_ = 0;
 };
 
 }  // namespace spindrift::sim

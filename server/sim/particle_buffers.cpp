@@ -1,5 +1,8 @@
 #include "particle_buffers.h"
 
+#include <bit>
+#include <cstdint>
+
 #include "create_all.h"
 
 namespace spindrift::sim {
@@ -22,6 +25,10 @@ core::Result<ParticleBuffers> ParticleBuffers::create(gpu::Context& ctx, std::si
   if (stores_foam_source) make(p.foam_source, "foam source", gpu::TexelFormat::kR32F, kScratch);
   if (create.error()) return *create.error();
   return p;
+}
+
+void ParticleBuffers::setDensity(double density_kgpm3) {
+  acceleration.clear(std::bit_cast<std::uint32_t>(static_cast<float>(density_kgpm3)));
 }
 
 }  // namespace spindrift::sim

@@ -3,60 +3,80 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
-#include "lattice.h"
 #include "starting_state.h"
 
 namespace spindrift::sim {
 namespace {
 
-/// The old particles by cell, for sums around any place.
+/// W(q) of a kernel set over W(0): a weighted mean needs no norm.
+double weightOf(core::KernelSet set, double q) {
+  const double u = 1 - q;
+  if (set == core::KernelSet::kMuller) {
+    const double v = 1 - q * q;
+    return v * v * v;
+  }
+  if (set == core::KernelSet::kCubicSpline) return q <= 0.5 ? 1 - 6 * q * q * u : 2 * u * u * u;
+  return u * u * u * u * (4 * q + 1);
+}
+
+/// The old particles in the order of their cells, y fastest as in shaders/include/grid_hash.glsl, so that the
+/// neighbours in a column of cells are one run.
 class OldParticles {
  public:
   OldParticles(const core::Scene& scene, const ParticleLayout& layout, const StateCopy& state)
-      : scene_(scene), layout_(layout), state_(state), start_(layout.cell_count + 1, 0) {
+      : scene_(scene), layout_(layout), start_(std::size_t{layout.cell_count} + 1, 0) {
     const std::size_t n = state.position.size() / 4;
-    std::vector<std::size_t> cell_of(n, layout.cell_count);
+    const std::uint32_t nowhere = layout.cell_count;
+    std::vector<std::uint32_t> cell_of(n, nowhere);
     for (std::size_t i = 0; i < n; ++i) {
       bool finite = true;
       for (std::size_t k = 4 * i; k < 4 * i + 4; ++k)
         finite = finite && std::isfinite(state.position[k]) && std::isfinite(state.velocity[k]);
       if (!finite) continue;
-      cell_of[i] = flat(cellAt(state.position.data() + 4 * i));
+      cell_of[i] = static_cast<std::uint32_t>(flat(cellAt(state.position.data() + 4 * i)));
       ++start_[cell_of[i] + 1];
     }
     for (std::size_t c = 0; c < layout.cell_count; ++c) start_[c + 1] += start_[c];
     member_.resize(start_.back());
-    std::vector<std::size_t> next(start_.begin(), start_.end() - 1);
+    std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
     for (std::size_t i = 0; i < n; ++i) {
-      if (cell_of[i] < layout.cell_count) member_[next[cell_of[i]]++] = i;
+      if (cell_of[i] == nowhere) continue;
+      Member& m = member_[next[cell_of[i]]++];
+      std::copy_n(state.position.data() + 4 * i, 3, m.position.data());
+      std::copy_n(state.velocity.data() + 4 * i, 4, m.velocity.data());
     }
   }
 
   /// Shepard mean of velocity and foam at x.
   std::array<double, 4> meanAt(const float* x) const {
-    const double H = layout_.support_radius_m;
+    const auto H = static_cast<float>(layout_.support_radius_m);
     const std::array<int, 3> centre = cellAt(x);
+    const int low_y = std::max(centre[1] - 1, 0);
+    const int high_y = std::min(centre[1] + 1, static_cast<int>(layout_.cells[1]) - 1);
     std::array<double, 4> sum{};
     double weight = 0.0;
     for (int dz = -1; dz <= 1; ++dz) {
       for (int dx = -1; dx <= 1; ++dx) {
-        for (int dy = -1; dy <= 1; ++dy) {
-          std::array<int, 3> cell = {centre[0] + dx, centre[1] + dy, centre[2] + dz};
-          std::array<double, 3> shift{};
-          if (!wrap(cell, shift)) continue;
-          const std::size_t c = flat(cell);
-          for (std::size_t k = start_[c]; k < start_[c + 1]; ++k) {
-            const float* other = state_.position.data() + 4 * member_[k];
-            double r2 = 0.0;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-              const double r = static_cast<double>(x[axis]) + shift[axis] - other[axis];
-              r2 += r * r;
-            }
-            const double w = densityKernel(scene_.particles->kernel_set, std::sqrt(r2), H);
-            weight += w;
-            for (std::size_t axis = 0; axis < 4; ++axis) sum[axis] += w * state_.velocity[4 * member_[k] + axis];
-          }
+        std::array<int, 3> cell = {centre[0] + dx, low_y, centre[2] + dz};
+        std::array<float, 3> at = {x[0], x[1], x[2]};
+        if (!wrap(cell, at)) continue;
+        const std::size_t first = start_[flat(cell)];
+        const std::size_t last = start_[flat({cell[0], high_y, cell[2]}) + 1];
+        // As the device's search: a pile-up must not cost the square of its number.
+        const std::size_t stop = std::min(last, first + kMaxCandidates);
+        for (std::size_t k = first; k < stop; ++k) {
+          const Member& m = member_[k];
+          const float rx = at[0] - m.position[0];
+          const float ry = at[1] - m.position[1];
+          const float rz = at[2] - m.position[2];
+          const float r2 = rx * rx + ry * ry + rz * rz;
+          if (r2 >= H * H) continue;
+          const double w = weightOf(scene_.particles->kernel_set, std::sqrt(r2) / layout_.support_radius_m);
+          weight += w;
+          for (std::size_t axis = 0; axis < 4; ++axis) sum[axis] += w * m.velocity[axis];
         }
       }
     }
@@ -67,6 +87,12 @@ class OldParticles {
   }
 
  private:
+  static constexpr std::size_t kMaxCandidates = 4096;
+  struct Member {
+    std::array<float, 3> position;
+    std::array<float, 4> velocity;
+  };
+
   std::array<int, 3> cellAt(const float* x) const {
     std::array<int, 3> cell{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -80,15 +106,15 @@ class OldParticles {
            layout_.cells[1] *
                (static_cast<std::size_t>(cell[0]) + layout_.cells[0] * static_cast<std::size_t>(cell[2]));
   }
-  /// Brings a neighbouring cell round a periodic side; false outside of the domain.
-  bool wrap(std::array<int, 3>& cell, std::array<double, 3>& shift_m) const {
-    for (const std::size_t axis : {0u, 1u, 2u}) {
+  /// Brings a neighbouring column round a periodic side, and the place with it; false outside of the domain.
+  bool wrap(std::array<int, 3>& cell, std::array<float, 3>& at_m) const {
+    for (const std::size_t axis : {0u, 2u}) {
       const int cells = static_cast<int>(layout_.cells[axis]);
       if (cell[axis] >= 0 && cell[axis] < cells) continue;
       const core::Boundary side = axis == 0 ? scene_.particles->boundary_x : scene_.particles->boundary_z;
-      if (axis == 1 || side != core::Boundary::kPeriodic) return false;
-      const double side_m = layout_.max_m[axis] - layout_.min_m[axis];
-      shift_m[axis] = cell[axis] < 0 ? side_m : -side_m;
+      if (side != core::Boundary::kPeriodic) return false;
+      const auto side_m = static_cast<float>(layout_.max_m[axis] - layout_.min_m[axis]);
+      at_m[axis] += cell[axis] < 0 ? side_m : -side_m;
       cell[axis] += cell[axis] < 0 ? cells : -cells;
     }
     return true;
@@ -96,9 +122,8 @@ class OldParticles {
 
   const core::Scene& scene_;
   const ParticleLayout& layout_;
-  const StateCopy& state_;
-  std::vector<std::size_t> start_;
-  std::vector<std::size_t> member_;
+  std::vector<std::uint32_t> start_;
+  std::vector<Member> member_;
 };
 
 /// Elevation of the nearest wave cell.

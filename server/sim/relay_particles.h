@@ -1,18 +1,11 @@
 // Another number of particles for water in motion: a fresh lattice in place of the old particles, with their motion.
 #pragma once
 
-#include <vector>
-
 #include <spindrift/core/scene.h>
 #include <spindrift/sim/derive.h>
-#include <spindrift/sim/water_sim.h>
+#include <spindrift/sim/prepared_scene.h>
 
 namespace spindrift::sim {
-
-/// Positions and velocities, 4 floats a particle, as the device holds them.
-struct RelaidParticles {
-  std::vector<float> position, velocity;
-};
 
 /// The lattice of `after`, in coupled scenes lifted with the surface as it is in `state`. Velocity and foam are the
 /// Shepard mean of the old particles within their support radius (sum of W v over sum of W, with the old kernel), zero

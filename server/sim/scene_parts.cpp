@@ -83,6 +83,10 @@ int followNumber(const core::Scene& scene) {
   return 0;
 }
 
+bool asksForOtherCount(const core::Scene& before, const core::Scene& after) {
+  return before.particles && after.particles && before.particles->count != after.particles->count;
+}
+
 gpu::Defines shaderDefines(const core::Scene& scene) {
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
   const bool has_particles = scene.particles.has_value();

@@ -30,6 +30,9 @@ bool storesFoamSource(const core::Scene& scene);
 /// What the patch follows, as shaders/coupling/follow.comp numbers it; 0 = nothing.
 int followNumber(const core::Scene& scene);
 
+/// Whether a change of a scene with particles wants another number of them.
+bool asksForOtherCount(const core::Scene& before, const core::Scene& after);
+
 gpu::Defines shaderDefines(const core::Scene& scene);
 
 }  // namespace spindrift::sim

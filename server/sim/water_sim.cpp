@@ -195,6 +195,7 @@ core::Result<void> WaterSim::build() {
   create(parts_->frames, FramePacker::create(ctx_, scene_, derived_, defines));
   create(parts_->diagnostics, Diagnostics::create(ctx_, derived_, defines));
   if (create.error()) return *create.error();
+  if (parts_->wave) parts_->basin_inputs.emplace(scene_, *derived_.wave);  // Wave::create() uploaded its tables
   return parts_->makeCheckpoints(ctx_);
 }
 
@@ -216,44 +217,24 @@ core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
   return {};
 }
 
-/// Whatever depends on the number of particles, made anew; programs stay. After an error parts may be of either size:
-/// size them back.
+/// Whatever depends on the number of particles, made anew; programs stay. After an error the particles are the old ones
+/// and other parts may be of either size: resize them back.
 core::Result<void> WaterSim::Parts::resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived) {
   auto fresh = ParticleBuffers::create(ctx, derived.particles->count, storesFoamSource(scene));
   if (!fresh) return fresh.error();
-  if (auto sized = grid->resize(*derived.particles); !sized) return sized.error();
-  if (auto sized = frames->resize(derived); !sized) return sized.error();
-  if (auto sized = diagnostics->resize(derived); !sized) return sized.error();
-  particles = *std::move(fresh);
-  return makeCheckpoints(ctx);
+  if (auto sized = grid->resize(*derived.particles); !sized) return sized;
+  if (auto sized = frames->resize(derived); !sized) return sized;
+  if (auto sized = diagnostics->resize(derived); !sized) return sized;
+  std::swap(*particles, *fresh);
+  auto made = makeCheckpoints(ctx);
+  if (!made) std::swap(*particles, *fresh);
+  return made;
 }
 
-void WaterSim::uploadStartingState() {
-  if (parts_->wave) parts_->wave->clear();
-  if (parts_->breakers) parts_->breakers->clear();
-  if (parts_->foam) parts_->foam->clear();
-  if (parts_->boats) parts_->boats->reset(scene_);
-  if (parts_->pool) {
-    parts_->pool->clear();
-  } else if (parts_->particles) {
-    const std::vector<float>& settled = parts_->settled_positions;
-    const bool fits = settled.size() == std::size_t{derived_.particles->count} * 4;  // not after another live count
-    parts_->particles->position.upload(fits ? settled : startingPositions(scene_, *derived_.particles));
-    parts_->particles->velocity.clear();
-    // Density is known before the first step, so that a first frame can be packed.
-    const auto rho_0 = static_cast<float>(scene_.particles->rest_density_kgpm3);
-    parts_->particles->acceleration.upload(std::vector<float>(std::size_t{derived_.particles->count} * 4, rho_0));
-  }
-}
-
-void WaterSim::reset() {
-  parts_->effects.clear();
-  start_tick_ = tick_;
-  abandoned_until_tick_ = tick_;
-  health_ = {};
-  setCareful(false);
-  uploadStartingState();
-  parts_->checkpoints->forget();
+core::Result<void> WaterSim::Parts::resizeBack(const Derived& derived) {
+  if (auto sized = grid->resize(*derived.particles); !sized) return sized;
+  if (auto sized = frames->resize(derived); !sized) return sized;
+  return diagnostics->resize(derived);
 }
 
 }  // namespace spindrift::sim

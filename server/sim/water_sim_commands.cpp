@@ -4,7 +4,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "relay_particles.h"
 #include "storm.h"
 #include "water_sim_parts.h"
 
@@ -49,59 +48,6 @@ std::vector<BoatRecord> WaterSim::boats() const {
 std::uint32_t WaterSim::particleCount() const {
   if (!derived_.particles) return 0;
   return parts_->pool ? health_.particle_count : derived_.particles->count;
-}
-
-core::Result<void> WaterSim::setScene(const core::Scene& scene) {
-  auto fresh = derive(scene);
-  if (!fresh) return fresh.error();
-  const bool relays = scene.particles && scene_.particles && scene.particles->count != scene_.particles->count;
-  // Compared with a fresh start of the scene as it was, but for the number of particles: the running layout may be one
-  // that no fresh start has.
-  // A pool's places are counted on the device and do not move.
-  if (relays && parts_->pool) {
-    return Error{
-        ErrorCode::kInvalidInput,
-        "particles.count: is the size of the pool of this two-way scene: start the room again with the changed scene"};
-  }
-  core::Scene comparable = scene_;
-  if (relays) comparable.particles->count = scene.particles->count;
-  const auto before = derive(comparable);
-  if (!before || needsRestart(*before, *fresh) || shaderDefines(scene_) != shaderDefines(scene) ||
-      (scene.particles && scene.particles->solver != scene_.particles->solver)) {
-    return Error{ErrorCode::kInvalidInput,
-                 "this change needs new buffers or shaders: start the room again with the changed scene"};
-  }
-  if (relays) {
-    if (auto relaid = relay(scene); !relaid) return relaid.error();
-  }
-  // Water that is taken away takes its motion with it; water that is added is at rest.
-  if (scene.wave && scene.wave->depth_m < scene_.wave->depth_m)
-    parts_->wave->scaleFlow(scene.wave->depth_m / scene_.wave->depth_m);
-  scene_ = scene;
-  setCareful(is_careful_);
-  return {};
-}
-
-core::Result<void> WaterSim::relay(const core::Scene& scene) {
-  const auto layout = layOutAgain(scene, *derived_.particles);
-  if (!layout) return layout.error();
-  auto derived = derive(scene, &*layout);
-  if (!derived) return derived.error();
-  const StateCopy state = copyState();
-  const RelaidParticles particles = relayParticles(scene, derived_, state, *layout);
-  if (auto sized = parts_->resize(ctx_, scene, *derived); !sized) {
-    // The device refused. Back to the old size, which it held a moment ago, and to the old state.
-    if (auto back = parts_->resize(ctx_, scene_, derived_); !back) return back.error();
-    setState(state);
-    return sized.error();
-  }
-  derived_ = *std::move(derived);
-  parts_->particles->position.upload(particles.position);
-  parts_->particles->velocity.upload(particles.velocity);
-  parts_->particles->acceleration.upload(std::vector<float>(std::size_t{derived_.particles->count} * 4,
-                                                            static_cast<float>(scene.particles->rest_density_kgpm3)));
-  abandoned_until_tick_ = tick_;  // what is still to come is about the old particles
-  return {};
 }
 
 void WaterSim::startEvents() {

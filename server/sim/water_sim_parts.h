@@ -27,6 +27,17 @@
 
 namespace spindrift::sim {
 
+/// What the tables of a basin (basin.h) follow from.
+struct BasinInputs {
+  BasinInputs(const core::Scene& scene, const WaveLayout& layout);
+  bool operator==(const BasinInputs&) const = default;
+
+  core::WaveScene wave;
+  double speed_mps;
+  std::vector<core::Obstacle> obstacles;
+  std::vector<core::Beach> beaches;
+};
+
 /// What the scene named, and nothing else.
 struct WaterSim::Parts {
   explicit Parts(gpu::Context& ctx);
@@ -48,7 +59,13 @@ struct WaterSim::Parts {
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
   TicksInFlight ticks_in_flight;
-  std::vector<float> settled_positions;  ///< where particles start; empty: on the lattice
+  std::vector<float> settled_positions;     ///< where particles start; empty: on the lattice
+  std::vector<float> starting_positions;    ///< the lattice, once it was needed
+  double start_jitter_ratio = 0.0;          ///< of starting_positions
+  std::optional<BasinInputs> basin_inputs;  ///< what the wave's tables were made of
+
+  /// Where particles start, 4 floats each.
+  const std::vector<float>& startOf(const core::Scene& scene, const ParticleLayout& layout);
 
   /// Whom the passes over particles are for.
   [[nodiscard]] Population population(const Derived& derived) const {
@@ -57,6 +74,8 @@ struct WaterSim::Parts {
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
   core::Result<void> makeCheckpoints(gpu::Context& ctx);
   core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
+  /// After resize() failed; `derived` is the one before.
+  core::Result<void> resizeBack(const Derived& derived);
 };
 
 }  // namespace spindrift::sim

@@ -70,6 +70,7 @@ void WaterSim::recover(const Health& breach) {
   if (parts_->boats) parts_->boats->mend();
   parts_->effects.clear();
   abandoned_until_tick_ = tick_;
+  ++revision_;
   careful_until_tick_ = tick_ + static_cast<std::uint64_t>(kCareful_s / derived_.tick_s);
   setCareful(true);
   if (recovered_count_ <= 10 || recovered_count_ % 100 == 0) {
@@ -94,7 +95,7 @@ void WaterSim::setCareful(bool careful) {
   // scene_ was accepted before and halving a step breaks no rule; at the bound of substeps the step stays as it was.
   if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
-  if (parts_->wave) parts_->wave->uploadBasin(scene_, *derived_.wave);
+  uploadBasin();
 }
 
 // Frames
@@ -127,6 +128,15 @@ std::vector<core::FrameView> WaterSim::takeFrames() {
 
 // State
 
+std::vector<double> WaterSim::copyElevation() {
+  const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
+  std::vector<double> out;
+  out.reserve(n);
+  for (const std::int32_t units : parts_->wave->elevation().downloadVector<std::int32_t>(n))
+    out.push_back(units * double{ELEVATION_UNIT_M});
+  return out;
+}
+
 StateCopy WaterSim::copyState() {
   StateCopy out;
   if (parts_->particles) {
@@ -144,8 +154,7 @@ StateCopy WaterSim::copyState() {
   if (parts_->boats) out.boats = parts_->boats->state().downloadVector<float>(std::size_t{MAX_BOATS} * BOAT_TEXELS * 4);
   if (parts_->wave) {
     const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
-    for (const std::int32_t units : parts_->wave->elevation().downloadVector<std::int32_t>(n))
-      out.elevation_m.push_back(units * double{ELEVATION_UNIT_M});
+    out.elevation_m = copyElevation();
     out.flow_m2ps = parts_->wave->flow().downloadVector<float>(n * parts_->wave->flowComponents());
   }
   return out;

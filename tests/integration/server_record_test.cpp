@@ -42,9 +42,7 @@ class Recorded : public ServerTest {
     if (!log) return log.error();
     gpu::DeviceChoice device;
     device.kind = gpu::DeviceChoice::Kind::kSoftware;
-    auto context = gpu::Context::create(device);
-    if (!context) return context.error();
-    return app::replayLog(**context, **log);
+    return app::replayLog(device, **log);
   }
 
   /// A session of everything that touches the water, recorded; the server has stopped.
@@ -78,6 +76,7 @@ TEST_F(Recorded, ARoomRunsAgainBitForBit) {
   EXPECT_GE(outcome->hash_count, 8U);
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
   EXPECT_FALSE(outcome->truncation);
+  EXPECT_FALSE(outcome->device_difference) << *outcome->device_difference;
 }
 
 TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndSaysSo) {
@@ -113,6 +112,23 @@ TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
   ASSERT_TRUE(outcome->difference);
   EXPECT_EQ(outcome->difference->tick, next_hash_tick);
   EXPECT_LE(outcome->difference->last_equal_tick, splash_tick);
+}
+
+TEST_F(Recorded, AnotherDriverThanTheLogsIsTold) {
+  live();
+  const auto log = app::CommandLogReader::open(logFile());
+  ASSERT_TRUE(log);
+  EXPECT_FALSE((*log)->header().gl_version().empty());
+  v1::RecordHeader header = (*log)->header();
+  header.set_gl_version("4.5 (Core Profile) Mesa 99.0");
+  auto changed = app::CommandLogWriter::create(folder_.path() / "changed", header);
+  ASSERT_TRUE(changed);
+  while (const auto record = (*log)->next()) (*changed)->write(*record);
+  const auto outcome = replayed((*changed)->file());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_FALSE(outcome->difference);
+  ASSERT_TRUE(outcome->device_difference);
+  EXPECT_NE(outcome->device_difference->find("Mesa 99.0"), std::string::npos);
 }
 
 }  // namespace

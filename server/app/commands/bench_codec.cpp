@@ -251,6 +251,7 @@ core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::S
   std::size_t frame_count = 0;
   while ((*sim)->time_s() < kBegin_s + seconds) {
     (*sim)->step();
+    if (const auto& error = (*sim)->deviceError()) return *error;
     if ((*sim)->time_s() + 1e-9 < next_s) continue;
     next_s += 1.0 / scene.stream.frame_rate_hz;
     (void)(*sim)->requestFrame(LevelMeter::request(scene));

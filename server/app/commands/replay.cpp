@@ -23,6 +23,8 @@ void print(const ReplayOutcome& outcome) {
         "the guard stepped in at tick {}: when it does depends on the machine's speed, so states after it may differ\n",
         *outcome.recovered_tick);
   }
+  if (outcome.difference && outcome.device_difference)
+    fmt::print("another device or driver: {}; for that alone states may differ\n", *outcome.device_difference);
   if (const auto& d = outcome.difference) {
     fmt::print("DIFFERS at tick {}: recorded {:016x}, now {:016x}; the state was the same at tick {}\n", d->tick,
                d->recorded, d->found, d->last_equal_tick);
@@ -37,6 +39,7 @@ boost::json::object toJson(const ReplayOutcome& outcome) {
       {"command_count", outcome.command_count},
       {"hash_count", outcome.hash_count},
       {"same", !outcome.difference},
+      {"device_difference", outcome.device_difference ? boost::json::value(*outcome.device_difference) : nullptr},
       {"truncation", outcome.truncation ? boost::json::value(*outcome.truncation) : nullptr},
       {"recovered_tick", outcome.recovered_tick ? boost::json::value(*outcome.recovered_tick) : nullptr}};
   if (const auto& d = outcome.difference) {
@@ -55,19 +58,15 @@ int replay(const ReplayOptions& options) {
   if (!device) return fail(device.error());
   auto log = CommandLogReader::open(options.file);
   if (!log) return fail(log.error());
-  auto context = gpu::Context::create(*device);
-  if (!context) return fail(context.error());
   const v1::RecordHeader& header = (*log)->header();
-  if ((*context)->device().name != header.device()) {
-    spdlog::warn("recorded on {}, replayed on {}: states repeat bit for bit on the same device only", header.device(),
-                 (*context)->device().name);
-  }
   const bool shows_progress = isatty(STDERR_FILENO) != 0;
-  const auto outcome = replayLog(**context, **log, [&](std::uint64_t tick) {
+  const auto outcome = replayLog(*device, **log, [&](std::uint64_t tick) {
     if (shows_progress) fmt::print(stderr, "\rtick {} ", tick);
   });
   if (shows_progress) fmt::print(stderr, "\r");
   if (!outcome) return fail(outcome.error());
+  if (outcome->device_difference)
+    spdlog::warn("{}: states repeat bit for bit on the same device and driver only", *outcome->device_difference);
   if (options.json_file != "-") {
     fmt::print("room {}, scene {}: ", header.room(), header.scene().name());
     print(*outcome);

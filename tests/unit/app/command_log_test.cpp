@@ -10,6 +10,7 @@ namespace spindrift::app {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 
 struct CommandLogTest : testing::Test {
@@ -20,6 +21,13 @@ struct CommandLogTest : testing::Test {
     out.set_room("main");
     out.mutable_scene()->set_name("pond");
     out.set_hash_interval_ticks(60);
+    return out;
+  }
+
+  static gpu::DeviceInfo device(std::string name, std::string gl_version) {
+    gpu::DeviceInfo out;
+    out.name = std::move(name);
+    out.gl_version = std::move(gl_version);
     return out;
   }
 
@@ -106,6 +114,31 @@ TEST_F(CommandLogTest, AFolderThatCannotBeWrittenIsNamed) {
   ASSERT_FALSE(log);
   EXPECT_THAT(log.error().message, HasSubstr("--record"));
   EXPECT_EQ(log.error().message.find('\n'), std::string::npos);
+}
+
+TEST_F(CommandLogTest, KnowsTheDeviceAndDriverThatItWasRecordedWith) {
+  v1::RecordHeader recorded = header();
+  const gpu::DeviceInfo here = device("llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6");
+  describeDevice(recorded, here);
+  EXPECT_FALSE(deviceDifference(recorded, here));
+  const auto other_driver = deviceDifference(recorded, device(here.name, "4.5 (Core Profile) Mesa 24.0.1"));
+  ASSERT_TRUE(other_driver) << "the same renderer with another driver";
+  EXPECT_THAT(*other_driver, AllOf(HasSubstr("Mesa 22.3.6"), HasSubstr("Mesa 24.0.1")));
+  const auto other_device = deviceDifference(recorded, device("NVIDIA H100", "4.6.0 NVIDIA 550.54"));
+  ASSERT_TRUE(other_device);
+  EXPECT_THAT(*other_device, AllOf(HasSubstr("llvmpipe"), HasSubstr("NVIDIA H100")));
+}
+
+TEST_F(CommandLogTest, OlderLogsWithoutADriverVersionAreReadAndSaySo) {
+  v1::RecordHeader older = header();
+  older.set_device("llvmpipe");
+  auto written = CommandLogWriter::create(folder.path() / "older", older);
+  ASSERT_TRUE(written);
+  const auto log = CommandLogReader::open((*written)->file());
+  ASSERT_TRUE(log) << log.error().message;
+  const auto difference = deviceDifference((*log)->header(), device("llvmpipe", "4.5 Mesa 22.3.6"));
+  ASSERT_TRUE(difference);
+  EXPECT_THAT(*difference, HasSubstr("does not say"));
 }
 
 }  // namespace

@@ -54,6 +54,8 @@ struct WaveScene {
   double sponge_width_m = 4.0;    ///< of the layer along an absorbing side
   double steepening_ratio = 0.0;  ///< 0: linear; 1: waves travel at the speed of shallow water of their own height
   std::uint32_t fixed_substeps_count = 0;  ///< 0 = derive() chooses; otherwise this many wave steps a tick, checked
+
+  bool operator==(const WaveScene&) const = default;
 };
 
 /// A round rock that stands out of the water.
@@ -62,6 +64,8 @@ struct Rock {
   double z_m = 0.0;
   double radius_m = 1.0;
   double height_m = 0.8;  ///< above the still water
+
+  bool operator==(const Rock&) const = default;
 };
 
 /// A straight wall from the bed to above the water; heading 0 runs along x and turns from +x toward +z.
@@ -72,6 +76,8 @@ struct Breakwater {
   double width_m = 1.0;
   double heading_deg = 0.0;
   double height_m = 0.8;
+
+  bool operator==(const Breakwater&) const = default;
 };
 
 using Obstacle = std::variant<Rock, Breakwater>;
@@ -81,6 +87,8 @@ struct Beach {
   Side side = Side::kPlusX;
   double width_m = 6.0;
   double shore_depth_m = 0.0;
+
+  bool operator==(const Beach&) const = default;
 };
 
 /// The SPH particles of a patch: a band of water, `layers` spacings thick, over part of the surface or all of it.

@@ -150,6 +150,8 @@ class Context {
   void retire(std::uint32_t buffer_id, std::size_t size_bytes, std::function<bool()> in_use);
   /// Deletes retired storage that nobody reads any more.
   void collectRetired();
+  /// Whether some is left.
+  [[nodiscard]] bool hasRetired() const { return !retired_.empty(); }
   /// True the first time that the driver says the message with this id (at most 64 ids are remembered, further ones are
   /// never new). Any thread.
   bool isNewMessage(std::uint32_t id);

@@ -18,6 +18,8 @@
 #include <spindrift/sim/boat_record.h>
 #include <spindrift/sim/derive.h>
 #include <spindrift/sim/health.h>
+#include <spindrift/sim/prepared_scene.h>
+#include <spindrift/sim/state_copy.h>
 
 namespace spindrift::sim {
 
@@ -46,17 +48,6 @@ struct FrameRequest {
     if (level == core::Level::kFull) return {surface, particles, foam};
     return reduced[indexOf(level)];
   }
-};
-
-/// The state as plain numbers, for tests, hashes and checkpoints: positions and velocities 4 floats a particle (xyz +
-/// id, xyz + foam), elevations n x n, x fastest [m].
-struct StateCopy {
-  std::vector<float> position, velocity;
-  std::vector<float> density_kgpm3;
-  std::vector<double> elevation_m;  ///< whole units of shaders/shared/fixed_point.h, which a double holds exactly
-  std::vector<float> boats;         ///< shaders/shared/boats.h, every place
-  std::vector<std::uint32_t> pool;  ///< shaders/shared/pool.h; two-way scenes
-  std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) a cell, the faces that it owns
 };
 
 /// All calls on the thread that owns the context, which may become another one between two calls (Context::release()
@@ -90,11 +81,21 @@ class WaterSim {
   /// Particles now; in two-way scenes as of the newest health().
   [[nodiscard]] std::uint32_t particleCount() const;
 
-  /// New parameter values from the next tick on. kInvalidInput when a step rule breaks or the change needs a restart;
-  /// then nothing changes. Another `particles.count` lays the same water out anew, in motion as it is (relayParticles);
-  /// that waits for the device once, and frames on their way are lost.
+  /// New parameter values from the next tick on: prepareScene() and adopt() in one call. kInvalidInput when a step rule
+  /// breaks or the change needs a restart; then nothing changes.
   core::Result<void> setScene(const core::Scene& scene);
-  /// Back to the starting state at time 0; parameters stay as they are now, ticks go on counting.
+  /// Whether the change has other particles than the running ones: another `particles.count` lays the same water out
+  /// anew, in motion as it is. Then prepareScene() takes long enough for a thread of its own.
+  [[nodiscard]] bool relaysParticles(const core::Scene& scene) const;
+  /// Copies for prepareScene(). Waits for the device where the change has other particles, else not.
+  [[nodiscard]] SceneBasis sceneBasis(const core::Scene& scene);
+  /// The device's part of a change: buffers and uploads, no waiting. Water in motion goes on from where it was when the
+  /// basis was copied; frames on their way are lost where particles are others. kUnavailable when the room has become
+  /// another one since (another change, a reset, the watchdog): prepare again from a new basis. kInternal when the
+  /// device has no memory; nothing changes then.
+  core::Result<void> adopt(PreparedScene prepared);
+  /// Back to the starting state at time 0; parameters stay as they are now, ticks go on counting. Uploads what changed
+  /// since the start: positions of particles, boats, one block of uniforms.
   void reset();
 
   /// Packs a frame of the state now. False when none will come: it was dropped because earlier ones are still being
@@ -140,7 +141,9 @@ class WaterSim {
   core::Result<void> build();
   bool waitForDevice();
   void uploadStartingState();
-  core::Result<void> relay(const core::Scene& scene);
+  std::vector<double> copyElevation();
+  core::Result<void> replaceParticles(const PreparedScene& prepared);
+  void uploadBasin();
   void startEvents();
   void advanceWave();
   void stirParticles();
@@ -171,6 +174,7 @@ class WaterSim {
   std::unique_ptr<Parts> parts_;
   std::uint64_t tick_ = 0;  ///< never goes back
   std::uint64_t start_tick_ = 0;
+  std::uint64_t revision_ = 0;  ///< of scene, layout and course of time; see SceneBasis
   Health health_;
   std::uint64_t nonfinite_count_ = 0;
   std::uint64_t escaped_count_ = 0;

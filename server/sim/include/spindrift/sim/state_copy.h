@@ -1,0 +1,19 @@
+// The state of a simulation as plain numbers, for tests, hashes and changes of scene.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace spindrift::sim {
+
+/// Positions and velocities 4 floats per particle (xyz + id, xyz + foam), elevations n x n, x fastest [m].
+struct StateCopy {
+  std::vector<float> position, velocity;
+  std::vector<float> density_kgpm3;
+  std::vector<double> elevation_m;  ///< whole units of shaders/shared/fixed_point.h, which a double holds exactly
+  std::vector<float> boats;         ///< shaders/shared/boats.h, every place
+  std::vector<std::uint32_t> pool;  ///< shaders/shared/pool.h; two-way scenes
+  std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) per cell, the faces that it owns
+};
+
+}  // namespace spindrift::sim

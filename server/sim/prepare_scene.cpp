@@ -1,0 +1,60 @@
+#include <spindrift/sim/prepared_scene.h>
+
+#include "relay_particles.h"
+#include "scene_parts.h"
+
+namespace spindrift::sim {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+/// What a fresh start of the scene looks like; an error where the running room cannot become that.
+core::Result<Derived> checkChange(const core::Scene& scene, const SceneBasis& basis) {
+  auto fresh = derive(scene);
+  if (!fresh) return fresh;
+  const bool relays = asksForOtherCount(basis.scene, scene);
+  if (relays && isTwoWay(basis.scene)) {
+    // A pool's places are counted on the device and do not move.
+    return Error{
+        ErrorCode::kInvalidInput,
+        "particles.count: is the size of the pool of this two-way scene: start the room again with the changed scene"};
+  }
+  // Compared with a fresh start of the scene as it was, but for the number of particles: the running layout may be one
+  // that no fresh start has.
+  core::Scene comparable = basis.scene;
+  if (relays) comparable.particles->count = scene.particles->count;
+  const auto before = derive(comparable);
+  if (!before || needsRestart(*before, *fresh) || shaderDefines(basis.scene) != shaderDefines(scene) ||
+      (scene.particles && scene.particles->solver != basis.scene.particles->solver)) {
+    return Error{ErrorCode::kInvalidInput,
+                 "this change needs new buffers or shaders: start the room again with the changed scene"};
+  }
+  return fresh;
+}
+
+}  // namespace
+
+core::Result<PreparedScene> prepareScene(const core::Scene& scene, const SceneBasis& basis) {
+  auto fresh = checkChange(scene, basis);
+  if (!fresh) return fresh.error();
+  PreparedScene out;
+  out.scene = scene;
+  out.revision = basis.revision;
+  // Water that is taken away takes its motion with it; water that is added is at rest.
+  if (scene.wave && scene.wave->depth_m < basis.scene.wave->depth_m)
+    out.flow_ratio = scene.wave->depth_m / basis.scene.wave->depth_m;
+  if (!asksForOtherCount(basis.scene, scene)) {
+    out.derived = *std::move(fresh);
+    return out;
+  }
+  const auto layout = layOutAgain(scene, *basis.derived.particles);
+  if (!layout) return layout.error();
+  auto derived = derive(scene, &*layout);
+  if (!derived) return derived.error();
+  out.derived = *std::move(derived);
+  out.particles = relayParticles(scene, basis.derived, basis.state, *layout);
+  return out;
+}
+
+}  // namespace spindrift::sim

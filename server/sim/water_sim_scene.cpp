@@ -1,0 +1,115 @@
+// WaterSim: changes of its scene, and its start.
+#include <bit>
+
+#include "starting_state.h"
+#include "water_sim_parts.h"
+
+namespace spindrift::sim {
+
+core::Result<void> WaterSim::setScene(const core::Scene& scene) {
+  auto prepared = prepareScene(scene, sceneBasis(scene));
+  if (!prepared) return prepared.error();
+  return adopt(*std::move(prepared));
+}
+
+bool WaterSim::relaysParticles(const core::Scene& scene) const {
+  return asksForOtherCount(scene_, scene) && !parts_->pool;
+}
+
+SceneBasis WaterSim::sceneBasis(const core::Scene& scene) {
+  SceneBasis out{.scene = scene_, .derived = derived_, .state = {}, .revision = revision_};
+  if (!relaysParticles(scene)) return out;
+  const std::size_t n = std::size_t{derived_.particles->count} * 4;
+  out.state.position = parts_->particles->position.downloadVector<float>(n);
+  out.state.velocity = parts_->particles->velocity.downloadVector<float>(n);
+  if (parts_->wave) out.state.elevation_m = copyElevation();
+  return out;
+}
+
+core::Result<void> WaterSim::adopt(PreparedScene prepared) {
+  if (prepared.revision != revision_) {
+    return core::Error{core::ErrorCode::kUnavailable,
+                       "the room has changed while this change was prepared (another change, a reset, or the watchdog "
+                       "acted): try again"};
+  }
+  if (prepared.particles) {
+    if (auto replaced = replaceParticles(prepared); !replaced) return replaced;
+  }
+  if (prepared.flow_ratio != 1.0) parts_->wave->scaleFlow(prepared.flow_ratio);
+  scene_ = std::move(prepared.scene);
+  setCareful(is_careful_);
+  ++revision_;
+  return {};
+}
+
+core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
+  if (auto sized = parts_->resize(ctx_, prepared.scene, prepared.derived); !sized) {
+    // The device refused. It held the old sizes a moment ago; the particles themselves have not been touched.
+    if (auto back = parts_->resizeBack(derived_); !back) device_error_ = back.error();
+    return sized;
+  }
+  derived_ = prepared.derived;
+  parts_->particles->position.upload(prepared.particles->position);
+  parts_->particles->velocity.upload(prepared.particles->velocity);
+  parts_->particles->setDensity(prepared.scene.particles->rest_density_kgpm3);
+  abandoned_until_tick_ = tick_;  // health that is still to come is about the old particles
+  return {};
+}
+
+// The start
+
+const std::vector<float>& WaterSim::Parts::startOf(const core::Scene& scene, const ParticleLayout& layout) {
+  const std::size_t wanted = std::size_t{layout.count} * 4;
+  if (settled_positions.size() == wanted) return settled_positions;  // not after another live count
+  const bool is_known = starting_positions.size() == wanted && start_jitter_ratio == scene.particles->jitter_ratio;
+  if (!is_known) {
+    starting_positions = startingPositions(scene, layout);
+    start_jitter_ratio = scene.particles->jitter_ratio;
+  }
+  return starting_positions;
+}
+
+void WaterSim::uploadStartingState() {
+  if (parts_->wave) parts_->wave->clear();
+  if (parts_->breakers) parts_->breakers->clear();
+  if (parts_->foam) parts_->foam->clear();
+  if (parts_->boats) parts_->boats->reset(scene_);
+  if (parts_->pool) {
+    parts_->pool->clear();
+  } else if (parts_->particles) {
+    parts_->particles->position.upload(parts_->startOf(scene_, *derived_.particles));
+    parts_->particles->velocity.clear();
+    // Density is known before the first step, so that a first frame can be packed.
+    parts_->particles->setDensity(scene_.particles->rest_density_kgpm3);
+  }
+}
+
+void WaterSim::reset() {
+  parts_->effects.clear();
+  start_tick_ = tick_;
+  abandoned_until_tick_ = tick_;
+  health_ = {};
+  setCareful(false);
+  uploadStartingState();
+  parts_->checkpoints->forget();
+  ++revision_;
+}
+
+/// The tables of the basin follow from the scene alone, and take longer than anything else of a reset.
+void WaterSim::uploadBasin() {
+  if (!parts_->wave) return;
+  const BasinInputs inputs(scene_, *derived_.wave);
+  if (parts_->basin_inputs == inputs) return;
+  parts_->wave->uploadBasin(scene_, *derived_.wave);
+  parts_->basin_inputs = inputs;
+}
+
+BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
+    : wave(*scene.wave), speed_mps(layout.speed_mps), obstacles(scene.obstacles), beaches(scene.beaches) {
+  // Live parameters that no table holds.
+  wave.damping_per_s = 0.0;
+  wave.steepening_ratio = 0.0;
+  wave.fixed_substeps_count = 0;
+}
+
+}  // namespace spindrift::sim
