@@ -4,8 +4,9 @@
 # group:package …; the text of a group says why.
 declare -rA package_groups=(
   [server]="git ca-certificates g++ cmake ninja-build ccache pkg-config python3 python3-glad libboost1.81-dev
-    libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev glslang-tools libegl-dev googletest libbenchmark-dev"
+    libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev glslang-tools spirv-tools libegl-dev googletest libbenchmark-dev"
   [driver]="libegl1 libegl-mesa0 libgl1-mesa-dri"
+  [zink]="mesa-vulkan-drivers libvulkan1"
   [browser]="chromium"
   [format]="clang-format"
   [tidy]="clang-tidy"
@@ -18,6 +19,7 @@ declare -rA package_groups=(
 declare -rA package_reasons=(
   [server]="building the server and its tests"
   [driver]="OpenGL without a GPU (Mesa's software rasteriser)"
+  [zink]="a second OpenGL without a GPU (zink over lavapipe)"
   [browser]="the test in a real browser"
   [format]="formatting"
   [tidy]="static analysis"

@@ -31,6 +31,45 @@ test_native() {
     --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
 }
 
+# A second OpenGL without a GPU: Mesa's zink over its Vulkan rasteriser lavapipe. Unlike llvmpipe it works asynchronously:
+# fences are passed later, readbacks arrive ticks after they were asked for, and it has a compiler of its own.
+readonly zink_environment=(LIBGL_ALWAYS_SOFTWARE=1 MESA_LOADER_DRIVER_OVERRIDE=zink)
+# Every gpu and sim test, and of the stability tests those that compare no times, some of them shorter than in `native`.
+readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinuteWithPositionsSolvedFor)$)'
+
+# Prints nothing when the program gets zink, otherwise why not, in one line.
+zink_problem() {
+  local info
+  info="$(env "${zink_environment[@]}" "$(binary_of "$preset")" info 2>&1)" || true
+  grep -q '^auto .*zink' <<<"$info" || printf 'zink does not start here: %s' "$(grep '^auto' <<<"$info" || tail -n 1 <<<"$info")"
+}
+
+test_zink() {
+  local problem
+  problem="$(zink_problem)"
+  if [[ -n "$problem" ]]; then
+    write_skipped "$root/build/reports/zink.xml" "every test on zink" "$problem"
+    reports+=("zink:0:$root/build/reports/zink.xml")
+    return
+  fi
+  run_part zink "$ctest_limit_s" env "${zink_environment[@]}" SPINDRIFT_LEDGER_TICKS=300 SPINDRIFT_STILL_TICKS=300 \
+    ctest --test-dir "build/$preset" --parallel 2 --output-on-failure --timeout 600 --tests-regex "$zink_tests" \
+    --output-junit "$root/build/reports/zink.xml"
+}
+
+# write_skipped FILE NAME REASON: a report of one test that was skipped, and the reason for whoever watches.
+write_skipped() {
+  say "skipped: $3"
+  python3 - "$@" <<'PYTHON'
+import sys, xml.etree.ElementTree as tree
+path, name, reason = sys.argv[1:]
+suite = tree.Element("testsuite", tests="1", skipped="1")
+case = tree.SubElement(suite, "testcase", name=name)
+tree.SubElement(case, "skipped", message=reason)
+tree.ElementTree(suite).write(path)
+PYTHON
+}
+
 test_web() {
   run_part web "$web_limit_s" npm run --silent --prefix web-client test -- \
     --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/web.xml"
@@ -57,10 +96,10 @@ command_test() {
 usage: ./dev test [--preset release|debug|asan|tsan] [PART…]
 
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
-native (all of those), web (the client's own tests), wire (the npm package ws against the real server), browser
-(the page in Chromium against it), tools (./dev itself and the bundle), fuzz (parsers and decoders under hostile
-input, some seconds each), threads (network and encoder under the thread sanitizer). The last two have presets of
-their own. The last line is `N passed, N failed, N skipped`; exit code 1 when
+native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
+own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
+(./dev itself and the bundle), fuzz (parsers and decoders under hostile input, some seconds each), threads (network
+and encoder under the thread sanitizer). The last two have presets of their own. The last line is `N passed, N failed, N skipped`; exit code 1 when
 anything failed. Reports: build/reports/*.xml, logs: build/logs.
 TEXT
     return
@@ -68,10 +107,10 @@ TEXT
   local preset rest part parts reports=()
   take_preset "$@"
   parts=("${rest[@]}")
-  ((${#parts[@]} > 0)) || parts=(native web wire browser tools fuzz threads)
+  ((${#parts[@]} > 0)) || parts=(native zink web wire browser tools fuzz threads)
   for part in "${parts[@]}"; do
     case "$part" in
-      native | unit | integration | accuracy | stability | gpu | web | wire | browser | tools | fuzz | threads) ;;
+      native | unit | integration | accuracy | stability | gpu | zink | web | wire | browser | tools | fuzz | threads) ;;
       *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
     esac
   done
@@ -82,6 +121,7 @@ TEXT
   for part in "${parts[@]}"; do
     case "$part" in
       native) test_native native "$preset" ;;
+      zink) test_zink ;;
       fuzz) test_native fuzz fuzz ;;
       threads) test_native threads tsan threads ;;
       web) test_web ;;
@@ -98,9 +138,10 @@ TEXT
 # Installs and builds what the parts need.
 prepare_tests() {
   local groups=(server driver) wanted=" $* " with_native=false with_node=false
+  [[ "$wanted" != *" zink "* ]] || groups+=(zink)
   [[ "$wanted" != *" browser "* ]] || groups+=(browser)
   [[ "$wanted" != *" tools "* ]] || groups+=(bundle lint)
-  [[ ! "$wanted" =~ \ (native|unit|integration|accuracy|stability|gpu)\  ]] || with_native=true
+  [[ ! "$wanted" =~ \ (native|unit|integration|accuracy|stability|gpu|zink)\  ]] || with_native=true
   [[ ! "$wanted" =~ \ (web|wire|browser|tools)\  ]] || with_node=true
 
   need_packages "${groups[@]}"

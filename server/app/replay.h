@@ -7,7 +7,7 @@
 #include <string>
 
 #include <spindrift/core/result.h>
-#include <spindrift/gpu/context.h>
+#include <spindrift/gpu/device.h>
 
 #include "command_log.h"
 
@@ -33,7 +33,7 @@ struct ReplayOutcome {
 
 /// Errors: the scene's and the device's; kCheckFailed for a command that is not carried out as it was recorded.
 /// `progress` is called now and then with the tick.
-core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
+core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLogReader& log,
                                       const std::function<void(std::uint64_t)>& progress = {});
 
 }  // namespace spindrift::app

@@ -6,6 +6,10 @@
 
 #include <spindrift/gpu/buffer.h>
 
+#include "access_tracker.h"
+#include "gl_errors.h"
+#include "staging.h"
+
 namespace spindrift::gpu {
 namespace {
 
@@ -46,7 +50,10 @@ std::size_t texelBytes(TexelFormat format) {
   return traits(format).bytes;
 }
 
-core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::size_t size_bytes, BufferUse use) {
+Buffer::Buffer() = default;
+
+core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::size_t size_bytes, BufferUse use,
+                                    BufferContent content) {
   assert(ctx.isOwnedHere());
   if (size_bytes == 0) return refused(name, "size is 0 bytes; leave the buffer out instead");
   const auto max_bytes = static_cast<std::size_t>(ctx.limits().max_ssbo_bytes);
@@ -54,8 +61,7 @@ core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::si
     return refused(name, std::to_string(size_bytes) + " bytes exceed the device's largest storage block of " +
                              std::to_string(max_bytes) + " bytes; make the scene smaller");
   }
-  while (glGetError() != GL_NO_ERROR) {
-  }  // old errors have been counted by the debug callback; the next one is about this buffer
+  clearOldErrors();  // they have been counted by the debug callback; the next one is about this buffer
   Buffer buffer;
   glCreateBuffers(1, &buffer.id_);
   glNamedBufferStorage(buffer.id_, static_cast<GLsizeiptr>(size_bytes), nullptr,
@@ -69,19 +75,27 @@ core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::si
   buffer.ctx_ = &ctx;
   buffer.size_bytes_ = size_bytes;
   buffer.name_ = name;
+  buffer.use_ = use;
+  buffer.access_ = std::make_unique<BufferAccess>();
+  buffer.access_->buffer_id = buffer.id_;
+  buffer.access_->name = name;
+  buffer.access_->size_bytes = size_bytes;
+  buffer.access_->is_scratch = content == BufferContent::kScratch;
+  ctx.accesses().add(*buffer.access_);
   Ledger& ledger = ctx.ledgerEntry();
   ++ledger.buffer_count;
   ++ledger.buffers_made_count;
   ledger.buffer_bytes += size_bytes;
   // Shown by drivers and debuggers; they may bound its length.
   glObjectLabel(GL_BUFFER, buffer.id_, static_cast<GLsizei>(std::min<std::size_t>(name.size(), 200)), name.data());
-  buffer.clear();
+  buffer.clear(ctx.checks().poison && content == BufferContent::kScratch ? 0xffffffff : 0);
   return buffer;
 }
 
 Buffer::~Buffer() {
   if (id_ == 0) return;
   assert(ctx_->isOwnedHere());
+  ctx_->accesses().remove(*access_);
   glDeleteBuffers(1, &id_);
   Ledger& ledger = ctx_->ledgerEntry();
   --ledger.buffer_count;
@@ -92,7 +106,9 @@ Buffer::Buffer(Buffer&& other) noexcept
     : ctx_(other.ctx_),
       id_(std::exchange(other.id_, 0)),
       size_bytes_(std::exchange(other.size_bytes_, 0)),
-      name_(std::move(other.name_)) {}
+      name_(std::move(other.name_)),
+      use_(other.use_),
+      access_(std::move(other.access_)) {}
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
   // What this held goes with the temporary.
@@ -101,13 +117,22 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   std::swap(id_, moved.id_);
   std::swap(size_bytes_, moved.size_bytes_);
   std::swap(name_, moved.name_);
+  std::swap(use_, moved.use_);
+  std::swap(access_, moved.access_);
   return *this;
+}
+
+void Buffer::declareDisjointWrites() {
+  assert(id_ != 0);
+  access_->has_disjoint_writes = true;
 }
 
 void Buffer::clear(std::uint32_t word) {
   assert(id_ != 0 && ctx_->isOwnedHere());
   const std::size_t whole_bytes = size_bytes_ / 4 * 4;
   if (whole_bytes > 0) clearRange(word, 0, whole_bytes);
+  if (whole_bytes == size_bytes_) return;
+  ctx_->barrierBits(ctx_->accesses().beforeUpdate(nullptr, access_.get()));
   for (std::size_t i = whole_bytes; i < size_bytes_; ++i) {
     const auto byte = static_cast<std::uint8_t>(word >> (8 * (i - whole_bytes)));
     glClearNamedBufferSubData(id_, GL_R8UI, static_cast<GLintptr>(i), 1, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &byte);
@@ -117,6 +142,7 @@ void Buffer::clear(std::uint32_t word) {
 void Buffer::clearRange(std::uint32_t word, std::size_t offset_bytes, std::size_t size_bytes) {
   assert(id_ != 0 && ctx_->isOwnedHere());
   assert(offset_bytes % 4 == 0 && size_bytes % 4 == 0 && offset_bytes + size_bytes <= size_bytes_);
+  ctx_->barrierBits(ctx_->accesses().beforeUpdate(nullptr, access_.get()));
   glClearNamedBufferSubData(id_, GL_R32UI, static_cast<GLintptr>(offset_bytes), static_cast<GLsizeiptr>(size_bytes),
                             GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
@@ -125,17 +151,20 @@ void Buffer::copyFrom(const Buffer& source, std::size_t source_offset_bytes, std
                       std::size_t offset_bytes) {
   assert(id_ != 0 && source.id_ != 0 && ctx_->isOwnedHere());
   assert(source_offset_bytes + size_bytes <= source.size_bytes_ && offset_bytes + size_bytes <= size_bytes_);
+  ctx_->barrierBits(ctx_->accesses().beforeUpdate(source.access_.get(), access_.get()));
   glCopyNamedBufferSubData(source.id_, id_, static_cast<GLintptr>(source_offset_bytes),
                            static_cast<GLintptr>(offset_bytes), static_cast<GLsizeiptr>(size_bytes));
 }
 
 void Buffer::bindStorage(std::uint32_t binding) const {
   assert(id_ != 0 && ctx_->isOwnedHere());
+  ctx_->accesses().bindStorage(binding, *access_);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
 }
 
 void Buffer::bindUniform(std::uint32_t binding) const {
   assert(id_ != 0 && ctx_->isOwnedHere());
+  ctx_->accesses().bindUniform(binding, *access_);
   glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_);
 }
 
@@ -144,25 +173,32 @@ void Buffer::uploadBytes(std::span<const std::byte> bytes, std::size_t offset_by
   if (bytes.empty()) return;
   ++ctx_->ledgerEntry().upload_count;
   ctx_->ledgerEntry().uploaded_bytes += bytes.size();
-  glNamedBufferSubData(id_, static_cast<GLintptr>(offset_bytes), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+  ctx_->barrierBits(ctx_->accesses().beforeUpdate(nullptr, access_.get()));
+  if (use_ == BufferUse::kUpdatable) {
+    glNamedBufferSubData(id_, static_cast<GLintptr>(offset_bytes), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+  } else {
+    (void)ctx_->staging().upload(id_, offset_bytes, bytes);  // counts its failure
+  }
 }
 
 void Buffer::downloadBytes(std::span<std::byte> bytes, std::size_t offset_bytes) const {
   assert(id_ != 0 && ctx_->isOwnedHere() && offset_bytes + bytes.size() <= size_bytes_);
   if (bytes.empty()) return;
-  glGetNamedBufferSubData(id_, static_cast<GLintptr>(offset_bytes), static_cast<GLsizeiptr>(bytes.size()),
-                          bytes.data());
+  ctx_->barrierBits(ctx_->accesses().beforeUpdate(access_.get(), nullptr));
+  (void)ctx_->staging().download(id_, offset_bytes, bytes);  // counts its failure
 }
 
+TexelBuffer::TexelBuffer() = default;
+
 core::Result<TexelBuffer> TexelBuffer::create(Context& ctx, std::string_view name, std::size_t texel_count,
-                                              TexelFormat format, BufferUse use) {
+                                              TexelFormat format, BufferContent content) {
   const TexelTraits texel = traits(format);
   const auto max_count = static_cast<std::size_t>(ctx.limits().max_texel_buffer_elements);
   if (texel_count > max_count) {
     return refused(name, std::to_string(texel_count) + " texels exceed the device's largest buffer texture of " +
                              std::to_string(max_count) + " texels; make the scene smaller");
   }
-  core::Result<Buffer> storage = Buffer::create(ctx, name, texel_count * texel.bytes, use);
+  core::Result<Buffer> storage = Buffer::create(ctx, name, texel_count * texel.bytes, BufferUse::kDeviceOnly, content);
   if (!storage) return storage.error();
   TexelBuffer buffer;
   static_cast<Buffer&>(buffer) = std::move(*storage);
@@ -194,6 +230,7 @@ TexelBuffer& TexelBuffer::operator=(TexelBuffer&& other) noexcept {
 
 void TexelBuffer::bindTexel(std::uint32_t unit) const {
   assert(texture_id_ != 0 && ctx_->isOwnedHere());
+  ctx_->accesses().bindTexel(unit, *access_);
   glBindTextureUnit(unit, texture_id_);
 }
 

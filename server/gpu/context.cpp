@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdlib>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <glad/gl.h>
@@ -9,87 +12,50 @@
 
 #include <spindrift/gpu/context.h>
 
+#include "access_tracker.h"
+#include "compiled_program.h"
+#include "device_probe.h"
+#include "device_selection.h"
 #include "egl_display.h"
+#include "staging.h"
 
 namespace spindrift::gpu {
 namespace {
 
-/// NVIDIA's remarks on where a buffer lives, on shader variants and on transfers: said for every buffer or frame.
-constexpr std::array<GLuint, 5> kNoisyIds = {131154, 131169, 131185, 131204, 131218};
+/// NVIDIA's remarks that say nothing about cost, for every buffer or texture: framebuffer storage, where a buffer lives
+/// (its type is "other", not "performance"), textures without a base level.
+constexpr std::array<GLuint, 3> kNoisyIds = {131169, 131185, 131204};
+/// More kinds of remarks than any driver has; beyond it they are logged as debug messages.
+constexpr std::size_t kMaxKnownMessages = 64;
+
+/// The driver's remark in one line, without the spaces and line ends that some put around it.
+std::string oneLine(std::string_view text) {
+  std::string out(text.substr(0, 1000));
+  std::ranges::replace(out, '\n', ' ');
+  out.erase(out.find_last_not_of(" \r") + 1);
+  return out;
+}
 
 void GLAD_API_PTR onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                  const GLchar* message, const void* user) {
   if (std::find(kNoisyIds.begin(), kNoisyIds.end(), id) != kNoisyIds.end()) return;
   const std::string_view text(message, length < 0 ? std::char_traits<char>::length(message) : std::size_t(length));
+  Context& ctx = *static_cast<Context*>(const_cast<void*>(user));
   // What the compiler says is in Program::create()'s error, with the file and line; once is enough.
   if (type == GL_DEBUG_TYPE_ERROR && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
-    static_cast<Context*>(const_cast<void*>(user))->countError();
-    spdlog::error("OpenGL error {}: {}", id, text);
+    if (ctx.wasLost()) return;  // every call fails from then on, and isLost() has said why
+    ctx.countError();
+    spdlog::error("OpenGL error {}: {}", id, oneLine(text));
   } else if (severity == GL_DEBUG_SEVERITY_HIGH && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
-    spdlog::warn("OpenGL message {}: {}", id, text);
+    spdlog::warn("OpenGL message {}: {}", id, oneLine(text));
+  } else if (type == GL_DEBUG_TYPE_PERFORMANCE && ctx.isNewMessage(id)) {
+    spdlog::info("the driver on performance, message {} (said once): {}", id, oneLine(text));
   } else {
-    spdlog::debug("OpenGL message {}: {}", id, text);
+    spdlog::debug("OpenGL message {}: {}", id, oneLine(text));
   }
 }
 
-std::string label(const DeviceInfo& info) {
-  return info.index >= 0 ? "device " + std::to_string(info.index) + " (" + info.name + ")" : info.name;
-}
-
-struct Choice {
-  egl::Handles handles;
-  DeviceInfo info;
-  std::string why;
-};
-
-/// Tries what `choice` allows, in order; the handles of the first that works, or an error naming all that did not.
-core::Result<Choice> choose(const DeviceChoice& choice) {
-  using Kind = DeviceChoice::Kind;
-  const std::vector<egl::Candidate> candidates = egl::candidates();
-  const auto hardware_count =
-      std::count_if(candidates.begin(), candidates.end(), [](const auto& c) { return !c.is_software; });
-  if (choice.kind == Kind::kIndex && choice.index >= hardware_count) {
-    return core::Error{core::ErrorCode::kNoDevice, "device " + std::to_string(choice.index) +
-                                                       " does not exist: EGL lists " + std::to_string(hardware_count) +
-                                                       " hardware devices; use auto or software, see `spindrift info`"};
-  }
-  std::string failures;
-  for (const egl::Candidate& candidate : candidates) {
-    if (choice.kind == Kind::kIndex && candidate.index != choice.index) continue;
-    if (choice.kind == Kind::kSoftware && !candidate.is_software) continue;
-    egl::Attempt attempt = egl::open(candidate);
-    DeviceInfo& info = attempt.info;
-    if (attempt.handles && choice.kind == Kind::kSoftware && !info.is_software) {
-      egl::close(*attempt.handles);
-      attempt.handles.reset();
-      info.problem = "picks " + info.name + "; set LIBGL_ALWAYS_SOFTWARE=1";
-    }
-    if (attempt.handles) {
-      std::string why = label(info) + ": ";
-      if (choice.kind == Kind::kIndex) {
-        why += "asked for by index";
-      } else if (choice.kind == Kind::kSoftware) {
-        why += "software asked for";
-      } else if (!info.is_software) {
-        why += "first hardware device that makes an OpenGL 4.5 core context";
-      } else if (hardware_count == 0) {
-        why += "software, because EGL lists no hardware device";
-      } else {
-        why += "software, because no hardware device works";
-      }
-      if (!failures.empty()) why += "; not used: " + failures;
-      return Choice{*attempt.handles, std::move(info), std::move(why)};
-    }
-    if (!failures.empty()) failures += ", ";
-    failures += label(info) + ": " + info.problem;
-  }
-  return core::Error{core::ErrorCode::kNoDevice,
-                     "no usable EGL device with OpenGL 4.5 (" + failures +
-                         "); install your GPU's driver with EGL, or Mesa's software rasteriser: "
-                         "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"};
-}
-
-GLbitfield barrierBits(Barrier readers) {
+GLbitfield bitsOf(Barrier readers) {
   const auto mask = static_cast<std::uint32_t>(readers);
   const auto has = [mask](Barrier b) { return (mask & static_cast<std::uint32_t>(b)) != 0; };
   GLbitfield bits = 0;
@@ -107,20 +73,42 @@ struct Context::Egl {
   egl::Handles handles;
 };
 
+struct Context::Messages {
+  std::mutex mutex;  // a driver may call back on a thread of its own
+  std::set<std::uint32_t> known;
+};
+
 core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choice) {
-  core::Result<Choice> chosen = choose(choice);
-  if (!chosen) return chosen.error();
-  return std::unique_ptr<Context>(
-      new Context(std::make_unique<Egl>(Egl{chosen->handles}), std::move(chosen->info), std::move(chosen->why)));
+  const auto checks = checksFromEnvironment();
+  if (!checks) return checks.error();
+  return create(choice, *checks);
 }
 
-Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why)
-    : egl_(std::move(egl)), device_(std::move(device)), why_(std::move(why)) {
+core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choice, const Checks& checks) {
+  core::Result<Selection> chosen = selectDevice(egl::candidates(), choice, openUsable, egl::close);
+  if (!chosen) return chosen.error();
+  return std::unique_ptr<Context>(new Context(std::make_unique<Egl>(Egl{chosen->handles}), std::move(chosen->info),
+                                              std::move(chosen->why), checks));
+}
+
+Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, const Checks& checks)
+    : egl_(std::move(egl)),
+      device_(std::move(device)),
+      why_(std::move(why)),
+      checks_(checks),
+      messages_(std::make_unique<Messages>()),
+      accesses_(std::make_unique<AccessTracker>(checks.barriers)),
+      staging_(std::make_unique<Staging>(*this)),
+      programs_(std::make_unique<ProgramCache>()) {
+  fence_delay_.set(checks.lag_fences_count);
   glEnable(GL_DEBUG_OUTPUT);
 #ifndef NDEBUG
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);  // so that a breakpoint in the callback shows the call
 #endif
   glDebugMessageCallback(onDebugMessage, this);
+  if (!device_.tells_of_resets) {
+    spdlog::info("{}: its driver does not report resets of the device; after one, restart the program", device_.name);
+  }
 }
 
 Context::~Context() {
@@ -136,9 +124,15 @@ Context::~Context() {
     spdlog::error("readback slots of buffer {} are still held while their context goes", retired.buffer_id);
     glDeleteBuffers(1, &retired.buffer_id);
   }
+  programs_->clear();
+  staging_.reset();
   glFinish();
   glDebugMessageCallback(nullptr, nullptr);
   egl::close(egl_->handles);
+  if (accesses_->hasFaults()) {
+    spdlog::critical("the barrier checker found faults (see above) that no test took: ending the process");
+    std::abort();
+  }
 }
 
 bool Context::makeCurrent() {
@@ -156,7 +150,15 @@ void Context::release() {
 
 void Context::barrier(Barrier readers) {
   assert(isOwnedHere());
-  glMemoryBarrier(barrierBits(readers));
+  const GLbitfield bits = bitsOf(readers);
+  accesses_->barrier(bits);
+  barrierBits(bits);
+}
+
+void Context::barrierBits(std::uint32_t bits) {
+  if (bits == 0) return;
+  glMemoryBarrier(bits);
+  ++ledger_.barrier_count;
 }
 
 void Context::flush() {
@@ -167,6 +169,40 @@ void Context::flush() {
 void Context::finish() {
   assert(isOwnedHere());
   glFinish();
+}
+
+bool Context::isLost() {
+  if (wasLost()) return true;
+  assert(isOwnedHere());
+  if (!device_.tells_of_resets) return false;
+  const GLenum status = glGetGraphicsResetStatus();
+  if (status == GL_NO_ERROR) return false;
+  if (!is_lost_.exchange(true)) {
+    spdlog::error("{}: the device was reset ({}); everything on it is lost", device_.name,
+                  status == GL_GUILTY_CONTEXT_RESET     ? "because of this program"
+                  : status == GL_INNOCENT_CONTEXT_RESET ? "because of another program"
+                                                        : "the driver does not know why");
+  }
+  return true;
+}
+
+bool Context::isNewMessage(std::uint32_t id) {
+  const std::lock_guard lock(messages_->mutex);
+  return messages_->known.size() < kMaxKnownMessages && messages_->known.insert(id).second;
+}
+
+std::vector<std::string> Context::takeFaults() {
+  return accesses_->takeFaults();
+}
+
+void Context::poisonScratch() {
+  assert(isOwnedHere());
+  for (BufferAccess* const buffer : accesses_->buffers()) {
+    if (!buffer->is_scratch) continue;
+    barrierBits(accesses_->beforeUpdate(nullptr, buffer));
+    constexpr std::uint8_t kSetBits = 0xff;
+    glClearNamedBufferData(buffer->buffer_id, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &kSetBits);
+  }
 }
 
 void Context::retire(std::uint32_t buffer_id, std::size_t size_bytes, std::function<bool()> in_use) {

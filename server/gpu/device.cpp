@@ -1,8 +1,9 @@
 #include <charconv>
-#include <optional>
 
 #include <spindrift/gpu/device.h>
 
+#include "device_probe.h"
+#include "device_selection.h"
 #include "egl_display.h"
 
 namespace spindrift::gpu {
@@ -23,25 +24,7 @@ core::Result<DeviceChoice> parseDeviceChoice(std::string_view text) {
 
 std::vector<DeviceInfo> listDevices() {
   const egl::CurrentGuard guard;
-  std::vector<DeviceInfo> devices;
-  std::optional<DeviceInfo> software;
-  for (const egl::Candidate& candidate : egl::candidates()) {
-    // There are several ways to the same software rasteriser; the first that works is the one to list.
-    if (candidate.is_software && software && software->problem.empty()) continue;
-    egl::Attempt attempt = egl::open(candidate);
-    if (attempt.handles) egl::close(*attempt.handles);
-    if (!candidate.is_software) {
-      devices.push_back(std::move(attempt.info));
-      continue;
-    }
-    if (attempt.handles && !attempt.info.is_software) {
-      attempt.info.problem = "Mesa picks " + attempt.info.name + " here; LIBGL_ALWAYS_SOFTWARE=1 makes it use software";
-      attempt.info.is_software = true;
-    }
-    software = std::move(attempt.info);
-  }
-  if (software) devices.push_back(std::move(*software));
-  return devices;
+  return describeDevices(egl::candidates(), openUsable, egl::close);
 }
 
 }  // namespace spindrift::gpu

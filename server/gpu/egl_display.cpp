@@ -4,9 +4,12 @@
 #include <array>
 #include <mutex>
 #include <string_view>
+#include <vector>
 
 #include <EGL/eglext.h>
 #include <glad/gl.h>
+
+#include "device_selection.h"
 
 namespace spindrift::gpu::egl {
 namespace {
@@ -109,6 +112,42 @@ void describeCurrent(DeviceInfo& info) {
   limits.max_ssbo_bindings = limit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
   limits.max_compute_ssbo_blocks = limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
   limits.max_compute_texture_units = limit(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS);
+  limits.max_combined_texture_units = limit(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS);
+}
+
+/// The 16 bytes of EGL_EXT_device_persistent_id, or nothing.
+std::string deviceUuid(EGLDeviceEXT device, const std::string& extensions) {
+  // Values from the extension's specification; older headers do not have them.
+  constexpr EGLint kDeviceUuid = 0x335C;  // EGL_DEVICE_UUID_EXT
+  using QueryBinary = EGLBoolean (*)(EGLDeviceEXT, EGLint, EGLint, void*, EGLint*);
+  if (!hasWord(extensions, "EGL_EXT_device_persistent_id")) return {};
+  const auto query = reinterpret_cast<QueryBinary>(eglGetProcAddress("eglQueryDeviceBinaryEXT"));
+  std::array<char, 16> uuid{};
+  EGLint size_bytes = 0;
+  if (!query || !query(device, kDeviceUuid, uuid.size(), uuid.data(), &size_bytes)) return {};
+  return size_bytes == static_cast<EGLint>(uuid.size()) ? std::string(uuid.data(), uuid.size()) : std::string();
+}
+
+/// An OpenGL 4.5 core context that reports resets, or one that does not where the driver knows no such thing.
+EGLContext createContext(EGLDisplay display, bool& tells_of_resets) {
+  std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION,       4,
+                                    EGL_CONTEXT_MINOR_VERSION,       5,
+                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+#ifndef NDEBUG
+  // Drivers may say nothing otherwise; release builds do without what it costs.
+  attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
+#endif
+  // The attribute of EGL 1.5 and that of the extension have the same meaning, but different numbers.
+  for (const EGLint strategy :
+       {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT, EGL_NONE}) {
+    std::vector<EGLint> asked = attributes;
+    if (strategy != EGL_NONE) asked.insert(asked.end(), {strategy, EGL_LOSE_CONTEXT_ON_RESET});
+    asked.push_back(EGL_NONE);
+    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, asked.data());
+    tells_of_resets = context != EGL_NO_CONTEXT && strategy != EGL_NONE;
+    if (context != EGL_NO_CONTEXT) return context;
+  }
+  return EGL_NO_CONTEXT;
 }
 
 }  // namespace
@@ -131,7 +170,7 @@ std::vector<Candidate> candidates() {
       if (hasWord(extensions, "EGL_EXT_device_drm")) {
         candidate.drm_file = text(query_string(devices[i], EGL_DRM_DEVICE_FILE_EXT));
       }
-      if (!candidate.is_software) candidate.index = static_cast<int>(hardware.size());
+      candidate.uuid = deviceUuid(devices[i], extensions);
       (candidate.is_software ? software : hardware).push_back(candidate);
     }
   }
@@ -139,6 +178,7 @@ std::vector<Candidate> candidates() {
   surfaceless.is_software = true;
   software.push_back(surfaceless);
   hardware.insert(hardware.end(), software.begin(), software.end());
+  mergeDuplicates(hardware);
   return hardware;
 }
 
@@ -165,14 +205,7 @@ Attempt open(const Candidate& candidate) {
       text(eglQueryString(handles.display, EGL_VENDOR)) + " " + text(eglQueryString(handles.display, EGL_VERSION));
   if (!eglBindAPI(EGL_OPENGL_API)) return fail("its EGL driver knows no desktop OpenGL");
 
-  constexpr EGLint kAttributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-#ifndef NDEBUG
-                                    // Drivers may say nothing otherwise; release builds do without what it costs.
-                                    EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE,
-#endif
-                                    EGL_NONE};
-  handles.context = eglCreateContext(handles.display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes);
+  handles.context = createContext(handles.display, info.tells_of_resets);
   if (handles.context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context (" + eglErrorText() + ")");
   if (!makeCurrent(handles)) {
     const std::string error = eglErrorText();

@@ -15,8 +15,9 @@ namespace spindrift::gpu::egl {
 struct Candidate {
   void* device = nullptr;  ///< EGLDeviceEXT; null: Mesa's surfaceless platform, which picks a driver by itself
   bool is_software = false;
-  int index = -1;  ///< position among the hardware devices, -1 for software
-  std::string drm_file;
+  int index = -1;        ///< position among the hardware devices, -1 for software
+  std::string drm_file;  ///< empty when EGL does not tell
+  std::string uuid;      ///< 16 bytes that name the hardware whichever driver drives it; empty when EGL does not tell
 };
 
 /// A context on an initialised display.
@@ -31,7 +32,8 @@ struct Attempt {
   std::optional<Handles> handles;
 };
 
-/// Hardware devices in EGL's order, then the ways to software rendering, best first.
+/// Hardware devices in EGL's order, then the ways to software rendering, best first. Ways to one piece of hardware have
+/// one index.
 std::vector<Candidate> candidates();
 
 /// Opens the display, makes an OpenGL 4.5 core context, makes it current on this thread, loads the OpenGL functions and

@@ -4,7 +4,8 @@
 Every *.comp below the root is an entry point. `#include "a/b.h"` is relative to the root, each file counts once per
 entry point, also where one of several places that include it lies inside of an `#if`; a cycle is refused. Shaders carry no `#version`: it and the defines are put before the text, here for
 validation and in the program before compiling. A comment `// variants: A=1 B=2 | A=3` among an entry point's leading
-comments lists the sets of defines to validate; without it one empty set is.
+comments lists the sets of defines to validate, as GLSL and as the SPIR-V that glslang
+makes of it; without it one empty set is.
 Files in shared/ are C++ headers as well: `#pragma once` and whatever is included under `#ifdef __cplusplus` is left out.
 The result is one C++ source with the expanded texts and, for each, where its lines come from.
 """
@@ -15,6 +16,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 VERSION_LINE = "#version 450 core"  # the same as in program.cpp
 INCLUDE = re.compile(r'\s*#\s*include\b\s*(.*)')
@@ -138,14 +140,26 @@ class Expansion:
         return defines
 
 
-def validate(glslang, expansion, defines):
-    """Complaints of the validator, one a line, with file and line as written; empty when the shader is valid."""
+def validate(tools, expansion, defines):
+    """Complaints of the compiler about the GLSL, or of the validator about the SPIR-V that it makes of it, one a line, with
+    file and line as written where there are any; empty when the shader is valid."""
     head = [VERSION_LINE] + [f"#define {name} {value}" for name, value in defines] + ["#line 1"]
-    run = subprocess.run([glslang, "--stdin", "-S", "comp"], input="\n".join(head) + "\n" + expansion.text(),
-                         capture_output=True, text=True, check=False)
-    if run.returncode == 0:
-        return []
+    with tempfile.TemporaryDirectory() as folder:
+        module = pathlib.Path(folder) / "shader.spv"
+        # -G: SPIR-V as OpenGL takes it. Plain uniforms need no location in our GLSL, but in SPIR-V: they get one here.
+        run = subprocess.run([tools.glslang, "--stdin", "-S", "comp", "-G", "--auto-map-locations", "-o", module],
+                             input="\n".join(head) + "\n" + expansion.text(), capture_output=True, text=True, check=False)
+        spirv = None
+        if run.returncode == 0:
+            spirv = subprocess.run([tools.spirv_val, "--target-env", "opengl4.5", module], capture_output=True, text=True,
+                                   check=False)
+            if spirv.returncode == 0:
+                return []
     complaints = []
+    if spirv is not None:
+        said = (spirv.stdout + spirv.stderr).splitlines()
+        complaints = [f"{expansion.entry}: SPIR-V: {line.strip()}" for line in said if line.strip()]
+        run.stdout = run.stderr = ""
     for line in (run.stdout + run.stderr).splitlines():
         match = re.match(r"(ERROR|WARNING): [^:]*:(\d+): (.*)", line)
         if match:
@@ -184,7 +198,8 @@ def main():
     parser.add_argument("--root", type=pathlib.Path, required=True, help="folder of the shaders")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="C++ source to write")
     parser.add_argument("--depfile", type=pathlib.Path, help="make-style list of the files read")
-    parser.add_argument("--glslang", default="glslangValidator", help="validator to run")
+    parser.add_argument("--glslang", default="glslangValidator", help="compiler to run")
+    parser.add_argument("--spirv-val", default="spirv-val", help="validator of SPIR-V to run")
     arguments = parser.parse_args()
 
     root = arguments.root.resolve()
@@ -199,10 +214,10 @@ def main():
             problems.append(str(error))
     try:
         with concurrent.futures.ThreadPoolExecutor() as pool:
-            for complaints in pool.map(lambda job: validate(arguments.glslang, *job), jobs):
+            for complaints in pool.map(lambda job: validate(arguments, *job), jobs):
                 problems += complaints
-    except FileNotFoundError:
-        problems.append(f"{arguments.glslang} not found: install glslang-tools")
+    except FileNotFoundError as error:
+        problems.append(f"{error.filename} not found: install glslang-tools and spirv-tools")
     if problems:
         print("\n".join(problems), file=sys.stderr)
         return 1

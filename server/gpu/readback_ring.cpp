@@ -9,6 +9,9 @@
 
 #include <spindrift/gpu/readback_ring.h>
 
+#include "access_tracker.h"
+#include "gl_errors.h"
+
 namespace spindrift::gpu {
 
 /// What views share with the ring, and what outlives it.
@@ -63,7 +66,8 @@ bool ReadbackRing::Recording::copyFrom(const Buffer& source, std::size_t source_
   };
   if (!fits(source_offset_bytes, source.sizeBytes()) || !fits(offset_bytes, state.slot_bytes)) return false;
   if (size_bytes == 0) return true;
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  Context& ctx = ring_->ctx_;
+  ctx.barrierBits(ctx.accesses().beforeUpdate(source.access(), nullptr));
   glCopyNamedBufferSubData(source.id(), ring_->buffer_id_, static_cast<GLintptr>(source_offset_bytes),
                            static_cast<GLintptr>(index_ * state.stride_bytes + offset_bytes),
                            static_cast<GLsizeiptr>(size_bytes));
@@ -89,8 +93,7 @@ core::Result<std::unique_ptr<ReadbackRing>> ReadbackRing::create(Context& ctx, s
   }
   auto state = std::make_shared<State>(slot_bytes, slot_count);
   const std::size_t size_bytes = state->stride_bytes * slot_count;
-  while (glGetError() != GL_NO_ERROR) {
-  }  // old errors have been counted by the debug callback; the next one is about this ring
+  clearOldErrors();  // they have been counted by the debug callback; the next one is about this ring
   GLuint id = 0;
   glCreateBuffers(1, &id);
   constexpr GLbitfield kMapping = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
@@ -138,16 +141,30 @@ std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
   assert(ctx_.isOwnedHere());
   ctx_.collectRetired();
-  std::vector<std::shared_ptr<const Slot>> out;
+  // Fences are passed in order: behind one that is not, none is.
   std::size_t done = 0;
-  for (; done < in_flight_.size(); ++done) {
-    InFlight& flight = in_flight_[done];
-    const Fence::Status status = flight.fence.wait(std::chrono::nanoseconds(0));
-    // Fences are passed in order: behind one that is not, none is.
-    if (status == Fence::Status::kPending) break;
-    if (status == Fence::Status::kFailed) {
-      spdlog::error("a readback fence failed; frame {} is lost", flight.tag);
-      ctx_.countError();
+  while (done < in_flight_.size() && in_flight_[done].fence.poll() != Fence::Status::kPending) ++done;
+  return take(done);
+}
+
+std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::wait(std::chrono::nanoseconds limit) {
+  assert(ctx_.isOwnedHere());
+  ctx_.collectRetired();
+  const auto end = std::chrono::steady_clock::now() + limit;
+  std::size_t done = 0;
+  while (done < in_flight_.size() &&
+         in_flight_[done].fence.wait(end - std::chrono::steady_clock::now()) != Fence::Status::kPending) {
+    ++done;
+  }
+  return take(done);
+}
+
+std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::take(std::size_t count) {
+  std::vector<std::shared_ptr<const Slot>> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    InFlight& flight = in_flight_[i];
+    if (flight.fence.poll() == Fence::Status::kFailed) {
+      ++lost_count_;
       state_->free(flight.index);
       continue;
     }
@@ -155,7 +172,7 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
     out.push_back(
         std::shared_ptr<const Slot>(new Slot(state_, flight.index, flight.tag, std::span(start, flight.used_bytes))));
   }
-  in_flight_.erase(in_flight_.begin(), in_flight_.begin() + static_cast<std::ptrdiff_t>(done));
+  in_flight_.erase(in_flight_.begin(), in_flight_.begin() + static_cast<std::ptrdiff_t>(count));
   return out;
 }
 

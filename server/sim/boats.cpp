@@ -61,7 +61,8 @@ core::Result<std::unique_ptr<Boats>> Boats::create(gpu::Context& ctx, const core
   Creation create;
   create(out->state_,
          gpu::TexelBuffer::create(ctx, "boats", std::size_t{MAX_BOATS} * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F));
-  create(out->control_uniforms_, gpu::Buffer::create(ctx, "boat controls", sizeof(shared::BoatControls)));
+  create(out->control_uniforms_,
+         gpu::Buffer::create(ctx, "boat controls", sizeof(shared::BoatControls), gpu::BufferUse::kUpdatable));
   create(out->move_, gpu::Program::create(ctx, "bodies/move.comp", defines));
   if (scene.wave) create(out->press_, gpu::Program::create(ctx, "bodies/press.comp", defines));
   if (create.error()) return *create.error();
@@ -97,7 +98,6 @@ core::Result<std::uint32_t> Boats::spawn(const core::Boat& boat) {
   }
   *free = {next_id_++, boat};
   state_.upload(startingState(boat, free->boat_id), static_cast<std::size_t>(free - places_.begin()) * sizeof(State));
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   uploadControls();
   return free->boat_id;
 }
@@ -116,7 +116,6 @@ core::Result<void> Boats::remove(std::uint32_t boat_id) {
   if (!at) return unknownBoat(boat_id);
   places_[*at] = {};
   state_.uploadValue(kNobody, *at * sizeof(State) + 6 * sizeof(float));
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   uploadControls();
   return {};
 }
@@ -130,7 +129,6 @@ void Boats::uploadControls() {
     controls_.place_count = static_cast<std::uint32_t>(at + 1);
   }
   control_uniforms_.uploadValue(controls_);
-  ctx_.barrier(gpu::Barrier::kUniform);
 }
 
 void Boats::mend() {
@@ -141,7 +139,6 @@ void Boats::mend() {
     if (std::ranges::all_of(own, [](float x) { return std::isfinite(x); })) continue;
     state_.upload(startingState(places_[at].boat, places_[at].boat_id), at * sizeof(State));
   }
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
 void Boats::bind() const {

@@ -12,7 +12,8 @@ core::Result<std::unique_ptr<Breakers>> Breakers::create(gpu::Context& ctx, cons
   const std::size_t cells = std::size_t{layout.resolution_count} * layout.resolution_count;
   Creation create;
   create(out->now_, gpu::TexelBuffer::create(ctx, "breaking", cells, gpu::TexelFormat::kRGBA32F));
-  create(out->before_, gpu::TexelBuffer::create(ctx, "breaking before", cells, gpu::TexelFormat::kRGBA32F));
+  create(out->before_, gpu::TexelBuffer::create(ctx, "breaking before", cells, gpu::TexelFormat::kRGBA32F,
+                                                gpu::BufferContent::kScratch));
   create(out->program_, gpu::Program::create(ctx, "wave/breaking.comp", defines));
   if (create.error()) return *create.error();
   return out;
@@ -26,7 +27,6 @@ void Breakers::clear() {
 void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick) {
   // The state's buffer keeps its place, so that checkpoints and readers need not know which of the two is newer.
   before_.copyFrom(now_, 0, now_.sizeBytes());
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   wave.bindSurface();
   wave.bindBasin();
   wave.bindEvents();

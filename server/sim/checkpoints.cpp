@@ -5,13 +5,12 @@
 namespace spindrift::sim {
 
 core::Result<std::unique_ptr<Checkpoints>> Checkpoints::create(gpu::Context& ctx, std::vector<gpu::Buffer*> state) {
-  auto out = std::unique_ptr<Checkpoints>(new Checkpoints(ctx));
+  auto out = std::unique_ptr<Checkpoints>(new Checkpoints());
   out->state_ = std::move(state);
   Creation create;
   for (Copy& copy : out->copies_) {
     for (const gpu::Buffer* live : out->state_) {
-      create(copy.buffers.emplace_back(),
-             gpu::Buffer::create(ctx, "checkpoint of " + live->name(), live->sizeBytes(), gpu::BufferUse::kDeviceOnly));
+      create(copy.buffers.emplace_back(), gpu::Buffer::create(ctx, "checkpoint of " + live->name(), live->sizeBytes()));
     }
   }
   if (create.error()) return *create.error();
@@ -21,9 +20,7 @@ core::Result<std::unique_ptr<Checkpoints>> Checkpoints::create(gpu::Context& ctx
 void Checkpoints::save(std::uint64_t tick) {
   Copy& copy = copies_[1 - good_];
   if (copy.is_filled) return;
-  ctx_.barrier(gpu::Barrier::kBufferUpdate);
   for (std::size_t k = 0; k < state_.size(); ++k) copy.buffers[k].copyFrom(*state_[k], 0, state_[k]->sizeBytes());
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);  // the next passes write what the copies read
   copy.tick = tick;
   copy.is_filled = true;
 }
@@ -40,7 +37,6 @@ bool Checkpoints::restore() {
   if (!has_good_) return false;
   for (std::size_t k = 0; k < state_.size(); ++k)
     state_[k]->copyFrom(copies_[good_].buffers[k], 0, state_[k]->sizeBytes());
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   copies_[1 - good_].is_filled = false;
   return true;
 }

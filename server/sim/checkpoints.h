@@ -32,9 +32,8 @@ class Checkpoints {
     bool is_filled = false;
   };
 
-  explicit Checkpoints(gpu::Context& ctx) : ctx_(ctx) {}
+  Checkpoints() = default;
 
-  gpu::Context& ctx_;
   std::vector<gpu::Buffer*> state_;
   Copy copies_[2];
   int good_ = 0;  ///< the other one waits

@@ -77,7 +77,8 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
     create(out->surface_program_, gpu::Program::create(ctx, "diagnostics/surface.comp", defines));
     if (create.error()) return *create.error();
     out->surface_shares_ = sharesFor(out->cells_, out->surface_program_);
-    create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial)));
+    create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial),
+                                                   gpu::BufferUse::kDeviceOnly, gpu::BufferContent::kScratch));
   }
   if (create.error()) return *create.error();
   if (auto sized = out->resize(derived); !sized) return sized.error();
@@ -89,7 +90,9 @@ core::Result<void> Diagnostics::resize(const Derived& derived) {
   std::unique_ptr<gpu::ReadbackRing> ring;
   const std::uint32_t shares = derived.particles ? sharesFor(derived.particles->count, particle_program_) : 0;
   Creation create;
-  if (shares > 0) create(sums, gpu::Buffer::create(ctx_, "particle sums", shares * sizeof(Partial)));
+  if (shares > 0)
+    create(sums, gpu::Buffer::create(ctx_, "particle sums", shares * sizeof(Partial), gpu::BufferUse::kDeviceOnly,
+                                     gpu::BufferContent::kScratch));
   create(ring, gpu::ReadbackRing::create(
                    ctx_, "diagnostics",
                    (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0), kSlotCount));

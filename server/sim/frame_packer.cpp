@@ -67,9 +67,11 @@ core::Result<void> FramePacker::resize(const Derived& derived) {
   gpu::Buffer packed;
   std::unique_ptr<gpu::ReadbackRing> ring;
   Creation create;
-  create(packed, gpu::Buffer::create(ctx_, "packed frame", words * 4));
+  create(packed, gpu::Buffer::create(ctx_, "packed frame", words * 4, gpu::BufferUse::kDeviceOnly,
+                                     gpu::BufferContent::kScratch));
   create(ring, gpu::ReadbackRing::create(ctx_, "frames", words * 4, kSlotCount));
   if (create.error()) return *create.error();
+  packed.declareDisjointWrites();  // each layer and level has its own part
   packed_ = std::move(packed);
   ring_ = std::move(ring);
   pending_.clear();

@@ -31,11 +31,15 @@ core::Result<void> NeighborGrid::resize(const ParticleLayout& layout) {
   const std::size_t blocks = layout.cell_count / SCAN_BLOCK + 1;
   TexelBuffer counts, start, arrival, member, total;
   Creation create;
-  create(counts, TexelBuffer::create(ctx_, "cell count", layout.cell_count + 1, TexelFormat::kR32UI));
-  create(start, TexelBuffer::create(ctx_, "cell start", layout.cell_count + 1, TexelFormat::kR32UI));
-  create(arrival, TexelBuffer::create(ctx_, "cell arrival", layout.count, TexelFormat::kRG32UI));
-  create(member, TexelBuffer::create(ctx_, "cell member", layout.count, TexelFormat::kR32UI));
-  create(total, TexelBuffer::create(ctx_, "block total", blocks, TexelFormat::kR32UI));
+  create(counts, TexelBuffer::create(ctx_, "cell count", layout.cell_count + 1, TexelFormat::kR32UI,
+                                     gpu::BufferContent::kScratch));
+  create(start, TexelBuffer::create(ctx_, "cell start", layout.cell_count + 1, TexelFormat::kR32UI,
+                                    gpu::BufferContent::kScratch));
+  create(arrival,
+         TexelBuffer::create(ctx_, "cell arrival", layout.count, TexelFormat::kRG32UI, gpu::BufferContent::kScratch));
+  create(member,
+         TexelBuffer::create(ctx_, "cell member", layout.count, TexelFormat::kR32UI, gpu::BufferContent::kScratch));
+  create(total, TexelBuffer::create(ctx_, "block total", blocks, TexelFormat::kR32UI, gpu::BufferContent::kScratch));
   if (create.error()) return *create.error();
   cell_count_of_ = std::move(counts);
   cell_start_ = std::move(start);
@@ -46,7 +50,10 @@ core::Result<void> NeighborGrid::resize(const ParticleLayout& layout) {
 }
 
 void NeighborGrid::build(const ParticleBuffers& particles, const Population& population) {
-  const auto next = [&] { ctx_.barrier(gpu::Barrier::kStorageAndTexel); };
+  // The pool's words hold the group counts of the next pass beside what this one writes.
+  const auto readers =
+      population.pool() ? gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect : gpu::Barrier::kStorageAndTexel;
+  const auto next = [&] { ctx_.barrier(readers); };
   population.bind();
 
   if (population.pool()) {
@@ -55,7 +62,6 @@ void NeighborGrid::build(const ParticleBuffers& particles, const Population& pop
     next();
   } else {
     cell_count_of_.clear();
-    ctx_.barrier(gpu::Barrier::kBufferUpdate);
   }
 
   // How many particles are in each cell.

@@ -15,7 +15,8 @@ core::Result<std::unique_ptr<ParticlePool>> ParticlePool::create(gpu::Context& c
   auto out = std::unique_ptr<ParticlePool>(new ParticlePool(ctx));
   Creation create;
   create(out->words_, gpu::TexelBuffer::create(ctx, "pool", POOL_WORDS, gpu::TexelFormat::kR32UI));
-  create(out->emitters_, gpu::TexelBuffer::create(ctx, "emitters", layout.count, gpu::TexelFormat::kR32UI));
+  create(out->emitters_, gpu::TexelBuffer::create(ctx, "emitters", layout.count, gpu::TexelFormat::kR32UI,
+                                                  gpu::BufferContent::kScratch));
   create(out->plan_, gpu::Program::create(ctx, "coupling/plan.comp", defines));
   create(out->emit_, gpu::Program::create(ctx, "coupling/emit.comp", defines));
   if (create.error()) return *create.error();
@@ -40,7 +41,7 @@ void ParticlePool::emit(const ParticleBuffers& particles, Wave& wave, const gpu:
   wave.elevation().bindStorage(ELEVATION);
   emit_.setUniform("tick", tick);
   emit_.dispatchIndirect(words_, POOL_EMIT_ARGS * 4);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
 }
 
 void Population::forParticles(gpu::Program& program) const {

@@ -58,7 +58,8 @@ void PositionBased::finish(const ParticleBuffers& particles, const Population& p
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   population.forParticles(finish_);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  // Absorbed particles are counted beside the group counts of the next pass.
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
 }
 
 }  // namespace spindrift::sim

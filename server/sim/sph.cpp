@@ -44,7 +44,8 @@ void Sph::integrate(const ParticleBuffers& particles, const Population& populati
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   population.forParticles(integrate_);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  // Absorbed particles are counted beside the group counts of the next pass.
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
 }
 
 }  // namespace spindrift::sim

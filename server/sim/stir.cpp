@@ -11,7 +11,8 @@ namespace spindrift::sim {
 core::Result<std::unique_ptr<Stir>> Stir::create(gpu::Context& ctx, const gpu::Defines& defines) {
   auto out = std::unique_ptr<Stir>(new Stir(ctx));
   Creation create;
-  create(out->event_uniforms_, gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms)));
+  create(out->event_uniforms_,
+         gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms), gpu::BufferUse::kUpdatable));
   create(out->program_, gpu::Program::create(ctx, "sph/stir.comp", defines));
   if (create.error()) return *create.error();
   return out;
@@ -29,7 +30,6 @@ EffectStage Stir::stage(const core::Scene& scene, const Derived& derived) {
 void Stir::apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population) {
   if (events.splash_count + events.crest_count == 0) return;
   event_uniforms_.uploadValue(events);
-  ctx_.barrier(gpu::Barrier::kUniform);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   population.bind();
   particles.position.bindStorage(POSITION);

@@ -13,7 +13,8 @@ core::Result<std::unique_ptr<SurfaceFoam>> SurfaceFoam::create(gpu::Context& ctx
   const std::size_t cells = std::size_t{out->n_} * out->n_;
   Creation create;
   create(out->now_, gpu::TexelBuffer::create(ctx, "foam", cells, gpu::TexelFormat::kRGBA32F));
-  create(out->before_, gpu::TexelBuffer::create(ctx, "foam before", cells, gpu::TexelFormat::kRGBA32F));
+  create(out->before_,
+         gpu::TexelBuffer::create(ctx, "foam before", cells, gpu::TexelFormat::kRGBA32F, gpu::BufferContent::kScratch));
   if (out->has_landings_)
     create(out->landed_, gpu::TexelBuffer::create(ctx, "landed", cells, gpu::TexelFormat::kR32UI));
   create(out->advance_, gpu::Program::create(ctx, "foam/advance.comp", defines));
@@ -29,7 +30,6 @@ void SurfaceFoam::clear() {
 
 void SurfaceFoam::advance(const Wave& wave, Breakers& breakers, const Boats* boats) {
   before_.copyFrom(now_, 0, now_.sizeBytes());
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   wave.bindSurface();
   breakers.state().bindTexel(BREAKING);
   before_.bindTexel(FOAM_BEFORE);

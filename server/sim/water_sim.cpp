@@ -86,7 +86,6 @@ void WaterSim::leadSurface(std::uint32_t substep) {
   const auto left = static_cast<double>(derived_.substeps_count - 1 - substep);
   parts_->uniforms.uploadValue(static_cast<float>(-left * derived_.dt_s),
                                offsetof(shared::SimUniforms, surface_lead_s));
-  ctx_.barrier(gpu::Barrier::kUniform);
 }
 
 void WaterSim::movePatch() {
@@ -175,7 +174,8 @@ core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, cons
 core::Result<void> WaterSim::build() {
   const gpu::Defines defines = shaderDefines(scene_);
   Creation create;
-  create(parts_->uniforms, gpu::Buffer::create(ctx_, "sim uniforms", sizeof(shared::SimUniforms)));
+  create(parts_->uniforms,
+         gpu::Buffer::create(ctx_, "sim uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable));
   if (derived_.wave) create(parts_->wave, Wave::create(ctx_, scene_, *derived_.wave, defines, isSampled(scene_)));
   if (derived_.particles) {
     create(parts_->particles.emplace(),

@@ -19,7 +19,6 @@ bool WaterSim::relaysParticles(const core::Scene& scene) const {
 SceneBasis WaterSim::sceneBasis(const core::Scene& scene) {
   SceneBasis out{.scene = scene_, .derived = derived_, .state = {}, .revision = revision_};
   if (!relaysParticles(scene)) return out;
-  ctx_.barrier(gpu::Barrier::kBufferUpdate);
   const std::size_t n = std::size_t{derived_.particles->count} * 4;
   out.state.position = parts_->particles->position.downloadVector<float>(n);
   out.state.velocity = parts_->particles->velocity.downloadVector<float>(n);
@@ -53,7 +52,6 @@ core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
   parts_->particles->position.upload(prepared.particles->position);
   parts_->particles->velocity.upload(prepared.particles->velocity);
   parts_->particles->setDensity(prepared.scene.particles->rest_density_kgpm3);
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
   abandoned_until_tick_ = tick_;  // health that is still to come is about the old particles
   return {};
 }
@@ -84,7 +82,6 @@ void WaterSim::uploadStartingState() {
     // Density is known before the first step, so that a first frame can be packed.
     parts_->particles->setDensity(scene_.particles->rest_density_kgpm3);
   }
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 void WaterSim::reset() {

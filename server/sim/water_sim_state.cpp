@@ -96,7 +96,6 @@ void WaterSim::setCareful(bool careful) {
   if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
   uploadBasin();
-  ctx_.barrier(gpu::Barrier::kUniform | gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 // Frames
@@ -139,7 +138,6 @@ std::vector<double> WaterSim::copyElevation() {
 }
 
 StateCopy WaterSim::copyState() {
-  ctx_.barrier(gpu::Barrier::kBufferUpdate);
   StateCopy out;
   if (parts_->particles) {
     std::size_t count = derived_.particles->count;
@@ -175,7 +173,6 @@ void WaterSim::setState(const StateCopy& state) {
     parts_->wave->elevation().upload(units);
     parts_->wave->flow().upload(state.flow_m2ps);
   }
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 std::uint64_t WaterSim::stateHash() {

@@ -37,14 +37,17 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->terrain_, TexelBuffer::create(ctx, "terrain", cells, TexelFormat::kRGBA32F));
     create(wave->landing_, TexelBuffer::create(ctx, "landing", cells, TexelFormat::kR32I));
   }
-  create(wave->event_uniforms_, gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms)));
+  create(wave->event_uniforms_,
+         gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms), gpu::BufferUse::kUpdatable));
   create(wave->splash_, Program::create(ctx, "wave/splash.comp", defines));
   create(wave->crest_, Program::create(ctx, "wave/crest.comp", defines));
   create(wave->momentum_, Program::create(ctx, "wave/momentum.comp", defines));
   create(wave->continuity_, Program::create(ctx, "wave/continuity.comp", defines));
   if (sampled) {
-    create(wave->surface_, TexelBuffer::create(ctx, "surface", cells, TexelFormat::kRGBA32F));
-    create(wave->surface_flow_, TexelBuffer::create(ctx, "surface flow", cells, TexelFormat::kRG32F));
+    create(wave->surface_,
+           TexelBuffer::create(ctx, "surface", cells, TexelFormat::kRGBA32F, gpu::BufferContent::kScratch));
+    create(wave->surface_flow_,
+           TexelBuffer::create(ctx, "surface flow", cells, TexelFormat::kRG32F, gpu::BufferContent::kScratch));
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
   if (create.error()) return *create.error();
@@ -64,9 +67,7 @@ void Wave::bindEvents() const {
 }
 
 void Wave::clearPressure() {
-  if (!has_head_) return;
-  pressure_head_.clear();
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  if (has_head_) pressure_head_.clear();
 }
 
 void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
@@ -81,11 +82,9 @@ void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
 }
 
 void Wave::scaleFlow(double ratio) {
-  ctx_.barrier(gpu::Barrier::kBufferUpdate);
   auto flow_m2ps = flow_.downloadVector<float>(std::size_t{n_} * n_ * flow_components_);
   for (float& q : flow_m2ps) q *= static_cast<float>(ratio);
   flow_.upload(flow_m2ps);
-  ctx_.barrier(gpu::Barrier::kBufferUpdate | gpu::Barrier::kStorageAndTexel);
 }
 
 void Wave::bindTerrain() const {
@@ -105,7 +104,6 @@ void Wave::displace(const shared::EventUniforms& events) {
   if (!any && !had_events_) return;
   had_events_ = any;
   event_uniforms_.uploadValue(events);
-  ctx_.barrier(gpu::Barrier::kUniform);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   bindBasin();
   elevation_.bindStorage(ELEVATION);

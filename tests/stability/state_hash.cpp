@@ -1,5 +1,5 @@
 // Prints the state hash of a shipped scene after some ticks with fixed commands: for runs in an environment of their
-// own.
+// own, above all another SPINDRIFT_GPU_CHECKS.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -22,6 +22,7 @@ int main(int count, char** arguments) {
     if (tick == 3) (void)(*water)->start(core::Splash{0.3, -0.2, 0.8, 0.4, 0.15});
     if (tick == 10) (void)(*water)->start(core::BreakingWave{core::Side::kMinusX, 0.4, 1.5, 0.3});
     if (tick == 15) (void)(*water)->controlBoat(1, 1.0, -0.5);
+    if ((*ctx)->checks().poison) (*ctx)->poisonScratch();
     (*water)->step();
   }
   std::printf("%016llx\n", static_cast<unsigned long long>((*water)->stateHash()));

@@ -18,6 +18,7 @@ class EmbedShaders(unittest.TestCase):
         self.root.mkdir()
         self.output = pathlib.Path(folder.name) / "out.cpp"
         self.depfile = pathlib.Path(folder.name) / "out.d"
+        self.spirv_val = os.environ["SPIRV_VAL"]
 
     def write(self, name, text):
         path = self.root / name
@@ -27,7 +28,8 @@ class EmbedShaders(unittest.TestCase):
     def run_tool(self):
         return subprocess.run(
             [sys.executable, os.environ["EMBED_SHADERS"], "--root", self.root, "--output", self.output, "--depfile",
-             self.depfile, "--glslang", os.environ["GLSLANG_VALIDATOR"]], capture_output=True, text=True, check=False)
+             self.depfile, "--glslang", os.environ["GLSLANG_VALIDATOR"], "--spirv-val", self.spirv_val],
+            capture_output=True, text=True, check=False)
 
     def assert_refused(self, *words):
         run = self.run_tool()
@@ -88,6 +90,26 @@ class EmbedShaders(unittest.TestCase):
     def test_validates_each_variant(self):
         self.write("a.comp", "// variants: N=1 | N=2\n#if N == 2\n#error two\n#endif\n" + MAIN)
         self.assert_refused("a.comp:3: error:", "not valid with N=2")
+
+    def test_validates_the_spirv_of_each_variant(self):
+        # A stand-in that refuses what the compiler made of the second variant.
+        judge = self.root.parent / "spirv-val"
+        judge.write_text('#!/bin/sh\nfor module; do :; done\ntest -s "$module" || exit 3\n'
+                         'if grep -q second "$module"; then echo "error: line 7: not for OpenGL"; exit 1; fi\n', encoding="utf-8")
+        judge.chmod(0o755)
+        self.spirv_val = str(judge)
+        self.write("a.comp", "// variants: N=first | N=second\nlayout(local_size_x = 8) in;\n"
+                             "layout(binding = 0) buffer B { uint N; };\nvoid main() { N = 1u; }\n")
+        self.assert_refused("a.comp: SPIR-V: error: line 7: not for OpenGL", "a.comp: not valid with N=second")
+
+    def test_says_what_to_install_when_the_validator_is_missing(self):
+        self.spirv_val = str(self.root / "no-such-program")
+        self.write("a.comp", MAIN)
+        self.assert_refused("no-such-program not found: install glslang-tools and spirv-tools")
+
+    def test_plain_uniforms_need_no_location(self):
+        self.write("a.comp", "uniform uint n;\nlayout(binding = 0) buffer B { uint b; };\nlayout(local_size_x = 8) in;\nvoid main() { b = n; }\n")
+        self.assert_embedded()
 
     def test_refuses_a_variant_that_is_no_define(self):
         self.write("a.comp", "// variants: N\n" + MAIN)

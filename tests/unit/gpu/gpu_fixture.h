@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <glad/gl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <spindrift/gpu/context.h>
@@ -31,6 +32,7 @@ class GpuTest : public testing::Test {
 
   void TearDown() override {
     if (ctx) {
+      EXPECT_THAT(ctx->takeFaults(), testing::IsEmpty()) << "missing barriers, see the log above";
       EXPECT_EQ(ctx->debugErrorCount(), expected_error_count) << "OpenGL errors, see the log above";
     }
   }

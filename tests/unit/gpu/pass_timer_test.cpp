@@ -46,6 +46,7 @@ TEST_F(PassTimersTest, CountsScopesByNameAndStaysWithinTheWallClock) {
   for (int i = 0; i < 3; ++i) {
     const auto grid = timers.scope("grid");
     ASSERT_TRUE(program.dispatch(kCount));
+    ctx->barrier(Barrier::kStorage);
   }
   {
     const auto sph = timers.scope("sph");
@@ -112,6 +113,7 @@ TEST_F(PassTimersTest, ReusesItsRing) {
     {
       const auto scope = timers.scope("pass");
       ASSERT_TRUE(program.dispatch(64));
+      ctx->barrier(Barrier::kStorage);
     }
     ctx->finish();
   }

@@ -51,7 +51,6 @@ TEST_F(ProgramTest, DispatchCoversSizesThatDivideByNothing) {
     program->setUniform("item_count", count);
     program->setUniform("offset", 5);
     ASSERT_TRUE(program->dispatch(count));
-    ctx->barrier(Barrier::kBufferUpdate);
     const auto read = values->downloadVector<std::int32_t>(count + 8);
     for (std::uint32_t i = 0; i < count; ++i) ASSERT_EQ(read[i], static_cast<std::int32_t>(i) + 5) << count;
     for (std::uint32_t i = count; i < count + 8; ++i) ASSERT_EQ(read[i], -1) << count;
@@ -88,7 +87,6 @@ TEST_F(ProgramTest, RunsTheGroupCountsInABuffer) {
   counts->bindStorage(1);
   program->setUniform("item_count", 190u);
   program->dispatchIndirect(*arguments, 4);
-  ctx->barrier(Barrier::kBufferUpdate);
   EXPECT_EQ(counts->downloadVector<std::uint32_t>(2), (std::vector<std::uint32_t>{190, 2}));
 }
 
@@ -125,7 +123,10 @@ TEST_F(ProgramTest, LedgerCountsProgramsAndDispatches) {
     EXPECT_FALSE(*program);
     EXPECT_EQ(ledger.program_count, 1u);
     moved.setUniform("item_count", 64u);
-    for (int i = 0; i < 3; ++i) ASSERT_TRUE(moved.dispatch(64));
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_TRUE(moved.dispatch(64));
+      ctx->barrier(Barrier::kStorage);
+    }
     EXPECT_EQ(ledger.dispatch_count, 3u);
   }
   EXPECT_EQ(ledger.program_count, 0u);

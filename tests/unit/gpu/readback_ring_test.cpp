@@ -1,3 +1,4 @@
+#include <chrono>
 #include <numeric>
 #include <thread>
 
@@ -10,6 +11,9 @@
 
 namespace spindrift::gpu {
 namespace {
+
+/// Far above what a copy of some bytes takes: a device that needs longer hangs.
+constexpr std::chrono::seconds kLimit{60};
 
 using Lease = std::shared_ptr<const ReadbackRing::Slot>;
 
@@ -38,8 +42,7 @@ TEST_F(ReadbackRingTest, ReturnsWhatWasCopiedInOrderOfSubmission) {
     source->upload(numbers(37, 100 * tag));
     send(**ring, *source, 4 * 37, tag);
   }
-  ctx->finish();
-  const auto leases = (*ring)->poll();
+  const auto leases = (*ring)->wait(kLimit);
   ASSERT_EQ(leases.size(), 3u);
   for (std::uint32_t tag = 1; tag <= 3; ++tag) {
     const Lease& lease = leases[tag - 1];
@@ -68,8 +71,7 @@ TEST_F(ReadbackRingTest, GathersSeveralCopiesAndSeesShaderWrites) {
     ASSERT_TRUE(slot->copyFrom(*counts, 0, 8, 0));
     slot->submit(5);
   }
-  ctx->finish();
-  const auto leases = (*ring)->poll();
+  const auto leases = (*ring)->wait(kLimit);
   ASSERT_EQ(leases.size(), 1u);
   const auto words = leases[0]->words();
   ASSERT_EQ(words.size(), kCount + 1);
@@ -85,8 +87,7 @@ TEST_F(ReadbackRingTest, RefusesWhenEverySlotIsInUseAndCountsIt) {
   send(**ring, *source, 64, 1);
   send(**ring, *source, 64, 2);
   EXPECT_FALSE((*ring)->begin());
-  ctx->finish();
-  auto leases = (*ring)->poll();
+  auto leases = (*ring)->wait(kLimit);
   ASSERT_EQ(leases.size(), 2u);
   EXPECT_FALSE((*ring)->begin()) << "slots that are being read are not free";
   EXPECT_EQ((*ring)->refusedCount(), 2u);
@@ -102,14 +103,12 @@ TEST_F(ReadbackRingTest, KeepsAHeldSlotUntouchedWhileOthersAreReused) {
   ASSERT_TRUE(ring && source);
   source->upload(numbers(16, 1000));
   send(**ring, *source, 64, 0);
-  ctx->finish();
-  auto held = (*ring)->poll();
+  auto held = (*ring)->wait(kLimit);
   ASSERT_EQ(held.size(), 1u);
   for (std::uint32_t i = 1; i <= 10; ++i) {
     source->upload(numbers(16, i));
     send(**ring, *source, 64, i);
-    ctx->finish();
-    const auto leases = (*ring)->poll();
+    const auto leases = (*ring)->wait(kLimit);
     ASSERT_EQ(leases.size(), 1u);
     EXPECT_EQ(leases[0]->words()[0], i);
   }
@@ -122,10 +121,9 @@ TEST_F(ReadbackRingTest, IsFreedByTheLastReferenceOnAnotherThread) {
   ASSERT_TRUE(ring && source);
   source->upload(numbers(16, 7));
   send(**ring, *source, 64, 1);
-  ctx->finish();
   std::uint32_t sum = 0;
   {
-    auto leases = (*ring)->poll();
+    auto leases = (*ring)->wait(kLimit);
     ASSERT_EQ(leases.size(), 1u);
     std::thread reader([lease = std::move(leases[0]), &sum]() mutable {
       const Lease copy = lease;
@@ -149,8 +147,7 @@ TEST_F(ReadbackRingTest, ARecordingThatIsDroppedFreesItsSlot) {
     EXPECT_EQ((*ring)->usedCount(), 1u);
   }
   EXPECT_EQ((*ring)->usedCount(), 0u);
-  ctx->finish();
-  EXPECT_TRUE((*ring)->poll().empty());
+  EXPECT_TRUE((*ring)->wait(kLimit).empty());
 }
 
 TEST_F(ReadbackRingTest, RefusesCopiesThatDoNotFit) {
@@ -176,8 +173,7 @@ TEST_F(ReadbackRingTest, AViewOutlivesItsRing) {
     auto ring = ReadbackRing::create(*ctx, "frames", 64, 2);
     ASSERT_TRUE(ring);
     send(**ring, *source, 64, 1);
-    ctx->finish();
-    leases = (*ring)->poll();
+    leases = (*ring)->wait(kLimit);
     ASSERT_EQ(leases.size(), 1u);
     send(**ring, *source, 64, 2);  // still in flight when the ring goes
   }

@@ -20,6 +20,7 @@ class OnDevice : public ::testing::Test {
   void TearDown() override {
     sim_.reset();
     if (ctx_) {
+      EXPECT_EQ(ctx_->takeFaults(), std::vector<std::string>{}) << "missing barriers";
       EXPECT_EQ(ctx_->debugErrorCount(), 0u) << "the driver complained; see the log";
     }
   }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <ranges>
 #include <span>
 #include <string>
@@ -15,21 +16,36 @@
 
 namespace spindrift::gpu {
 
-/// Who writes a buffer.
+struct BufferAccess;
+
+/// Where the driver may keep a buffer.
 enum class BufferUse {
-  kDeviceOnly,  ///< shaders, clear() and copyFrom() only; may live in faster memory
-  kUpdatable,   ///< upload() as well
+  /// In device memory: storage, texels, indirect arguments. Uploads and downloads go through a copy on the device.
+  kDeviceOnly,
+  /// Small blocks that the host writes often, above all uniform blocks: upload() hands the bytes to the driver, in the
+  /// order of the other commands.
+  kUpdatable,
 };
 
-/// A buffer with immutable storage. Move-only; must not outlive its context. All sizes and offsets in bytes. Reading
-/// what shaders wrote needs `ctx.barrier(Barrier::kBufferUpdate)` first. Offsets out of range are bugs of the caller:
-/// asserted in debug builds, otherwise refused by OpenGL and counted in Context::debugErrorCount().
+/// What a buffer holds before anything is written to it.
+enum class BufferContent {
+  kZero,
+  /// Zero as well, but nobody relies on it: every word is written before it is read, in each tick anew. Filled with set
+  /// bits where Checks::poison asks for it.
+  kScratch,
+};
+
+/// A buffer with immutable storage. Move-only; must not outlive its context. All sizes and offsets in bytes. upload(),
+/// download(), clear() and copyFrom() see what shaders wrote before and are seen by shaders that run after: they issue
+/// the barriers that they need. Offsets out of range are bugs of the caller: asserted in debug builds, otherwise
+/// refused by OpenGL and counted in Context::debugErrorCount().
 class Buffer {
  public:
-  /// Content is zero. Error kInternal when the device has no memory for it or the size is 0.
+  /// Error kInternal when the device has no memory for it or the size is 0.
   static core::Result<Buffer> create(Context& ctx, std::string_view name, std::size_t size_bytes,
-                                     BufferUse use = BufferUse::kUpdatable);
-  Buffer() = default;  ///< holds nothing; only to be assigned to
+                                     BufferUse use = BufferUse::kDeviceOnly,
+                                     BufferContent content = BufferContent::kZero);
+  Buffer();  ///< holds nothing; only to be assigned to
   ~Buffer();
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
@@ -51,7 +67,8 @@ class Buffer {
     static_assert(std::is_trivially_copyable_v<T>);
     uploadBytes(std::as_bytes(std::span(&value, 1)), offset_bytes);
   }
-  /// Reads back into `out`. Waits for the device: tests, checkpoints and hashes only.
+  /// Reads back into `out`. Waits for the device: tests, commands of people and hashes only. When the device was lost
+  /// (Context::isLost()) or does not answer within 30 s, which is logged and counted, `out` is filled with zeros.
   template <typename T>
   void download(std::span<T> out, std::size_t offset_bytes = 0) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -78,6 +95,12 @@ class Buffer {
   /// Binds the whole buffer as `layout(binding = …) uniform Block`.
   void bindUniform(std::uint32_t binding) const;
 
+  /// Tells the barrier checker that dispatches in a row write different parts of this buffer and none reads what
+  /// another one of them wrote, so that no barrier is needed between them.
+  void declareDisjointWrites();
+  /// For the other classes of this module: who touched it. Null when it holds nothing.
+  [[nodiscard]] BufferAccess* access() const { return access_.get(); }
+
  protected:
   void uploadBytes(std::span<const std::byte> bytes, std::size_t offset_bytes);
   void downloadBytes(std::span<std::byte> bytes, std::size_t offset_bytes) const;
@@ -86,6 +109,8 @@ class Buffer {
   std::uint32_t id_ = 0;
   std::size_t size_bytes_ = 0;
   std::string name_;
+  BufferUse use_ = BufferUse::kDeviceOnly;
+  std::unique_ptr<BufferAccess> access_;  ///< its address is known to the context
 };
 
 /// How texelFetch sees the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
@@ -100,8 +125,8 @@ class TexelBuffer : public Buffer {
  public:
   /// As Buffer::create(), for `texel_count` texels; also refused beyond `max_texel_buffer_elements`.
   static core::Result<TexelBuffer> create(Context& ctx, std::string_view name, std::size_t texel_count,
-                                          TexelFormat format, BufferUse use = BufferUse::kUpdatable);
-  TexelBuffer() = default;  ///< holds nothing; only to be assigned to
+                                          TexelFormat format, BufferContent content = BufferContent::kZero);
+  TexelBuffer();  ///< holds nothing; only to be assigned to
   ~TexelBuffer();
   TexelBuffer(TexelBuffer&& other) noexcept;
   TexelBuffer& operator=(TexelBuffer&& other) noexcept;

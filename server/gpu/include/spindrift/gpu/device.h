@@ -13,7 +13,7 @@ namespace spindrift::gpu {
 /// What the user asked for with `--device auto|software|N`.
 struct DeviceChoice {
   enum class Kind {
-    kAuto,      ///< the first hardware device that works, else software
+    kAuto,      ///< the first hardware device that has what the program needs and runs a probe, else software
     kSoftware,  ///< Mesa's software rasteriser
     kIndex,     ///< the hardware device with this index in listDevices()
   };
@@ -34,9 +34,10 @@ struct DeviceLimits {
   std::int64_t max_work_group_count_y = 0;
   std::int64_t max_work_group_count_z = 0;
   std::int64_t max_shared_memory_bytes = 0;
-  std::int64_t max_ssbo_bindings = 0;          ///< binding points in all
-  std::int64_t max_compute_ssbo_blocks = 0;    ///< storage blocks that one compute shader may use
-  std::int64_t max_compute_texture_units = 0;  ///< samplers that one compute shader may use
+  std::int64_t max_ssbo_bindings = 0;           ///< binding points in all
+  std::int64_t max_compute_ssbo_blocks = 0;     ///< storage blocks that one compute shader may use
+  std::int64_t max_compute_texture_units = 0;   ///< samplers that one compute shader may use
+  std::int64_t max_combined_texture_units = 0;  ///< texture units in all
 };
 
 struct DeviceInfo {
@@ -48,12 +49,14 @@ struct DeviceInfo {
   std::string egl_driver;    ///< EGL_VENDOR and EGL_VERSION of the display, e.g. "Mesa Project 1.5"
   std::string drm_file;      ///< device file, empty when the device has none
   bool is_software = false;
-  std::string problem;  ///< empty: it works; otherwise one line why it does not
+  bool tells_of_resets = false;  ///< the driver reports when the device was reset; see Context::isLost()
+  std::string problem;           ///< empty: it works; otherwise one line why it does not
   DeviceLimits limits;
 };
 
-/// Every EGL device, tried and described: hardware in EGL's order, then one software rasteriser. Devices that cannot
-/// make an OpenGL 4.5 core context are listed with `problem` set. Leaves the calling thread's current context as it
+/// Every EGL device, tried and described: hardware in EGL's order, each once even if several vendor libraries list it,
+/// then one software rasteriser. Devices that cannot make an OpenGL 4.5 core context, allow less than the program needs
+/// or fail a small probe program are listed with `problem` set. Leaves the calling thread's current context as it
 /// was.
 std::vector<DeviceInfo> listDevices();
 

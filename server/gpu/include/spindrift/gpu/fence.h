@@ -1,4 +1,4 @@
-// A mark in the device's queue of work.
+// A mark in the stream of commands that tells when the device has done everything before it.
 #pragma once
 
 #include <chrono>
@@ -8,31 +8,34 @@
 
 namespace spindrift::gpu {
 
-/// Tells when everything that was submitted before it is done. Fences of one context pass in the order in which they
-/// were inserted. Move-only; must not outlive its context; all calls on the context's thread.
+/// Tells when everything that was submitted before it is done. Fences of one context are passed in the order in which
+/// they were inserted. Move-only; used and destroyed on the context's thread, before the context.
 class Fence {
  public:
   enum class Status {
     kPassed,
     kPending,  ///< not passed within the time given
-    kFailed,   ///< the driver cannot tell, for example because the context was lost
+    kFailed,   ///< it will never be passed: the device was lost (Context::isLost()), or the driver refuses to wait
   };
 
   /// Puts a fence behind all work submitted so far and hands that work to the device. Does not wait.
   static Fence insert(Context& ctx);
-  Fence() = default;  ///< holds nothing; only to be assigned to
+  Fence() = default;  ///< holds nothing: kPassed
   ~Fence();
   Fence(Fence&& other) noexcept;
   Fence& operator=(Fence&& other) noexcept;
 
-  explicit operator bool() const { return sync_ != nullptr; }
-
-  /// Waits until the fence passes, at most `timeout`. Zero asks without waiting.
+  /// Waits until the fence is passed or the device lost, at most `timeout`. Zero asks without waiting. An answer other
+  /// than kPending is final.
   [[nodiscard]] Status wait(std::chrono::nanoseconds timeout);
+  [[nodiscard]] Status poll() { return wait(std::chrono::nanoseconds(0)); }
 
  private:
+  void finish(Status status);
+
   Context* ctx_ = nullptr;
-  void* sync_ = nullptr;
+  void* sync_ = nullptr;  ///< GLsync; null once the answer is final
+  Status status_ = Status::kPassed;
   std::uint64_t number_ = 0;  ///< in the order of insertion
 };
 

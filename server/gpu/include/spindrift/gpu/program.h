@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,23 +27,34 @@ struct BlockLayout {
   std::map<std::string, std::uint32_t> offsets;  ///< member -> offset in bytes; arrays as "name[0]"
 };
 
-/// Move-only; must not outlive its context.
+/// A plain uniform as OpenGL takes it.
+struct UniformValue {
+  enum class Type { kUint, kInt, kFloat };
+  std::int32_t location = -1;
+  Type type = Type::kUint;
+  std::uint32_t bits = 0;
+};
+
+struct CompiledProgram;
+
+/// Move-only; must not outlive its context. Programs with the same path and defines are compiled once per context and
+/// share what the driver made of them; the values of their uniforms are each one's own.
 class Program {
  public:
   /// Compiles "sph/density.comp" with `defines`. Error kInternal names the shader and, for each complaint of the
   /// driver, the file and line it was written in; a path that was not embedded is an error too.
   static core::Result<Program> create(Context& ctx, std::string_view shader_path, const Defines& defines = {});
-  Program() = default;  ///< holds nothing; only to be assigned to
+  Program();  ///< holds nothing; only to be assigned to
   ~Program();
   Program(Program&& other) noexcept;
   Program& operator=(Program&& other) noexcept;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::uint32_t id() const { return id_; }  ///< the OpenGL name; 0 when it holds nothing
-  explicit operator bool() const { return id_ != 0; }
+  [[nodiscard]] std::uint32_t id() const;  ///< the OpenGL name; 0 when it holds nothing
+  explicit operator bool() const { return compiled_ != nullptr; }
 
   /// The local size as the driver linked it: the only place host code takes it from.
-  [[nodiscard]] std::array<std::uint32_t, 3> groupSize() const { return group_size_; }
+  [[nodiscard]] std::array<std::uint32_t, 3> groupSize() const;
 
   /// Runs at least this many invocations: items over the local size, rounded up. Shaders guard the excess. Zero items
   /// run nothing. False, logged and counted in Context::debugErrorCount(), when more groups would be needed than the
@@ -65,12 +77,15 @@ class Program {
 
  private:
   [[nodiscard]] std::int32_t location(std::string_view name);
+  void setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits);
+  /// Makes the program, its uniforms and the memory that it reads ready for a dispatch.
+  void prepare(const Buffer* arguments);
 
   Context* ctx_ = nullptr;
-  std::uint32_t id_ = 0;
   std::string path_;
-  std::array<std::uint32_t, 3> group_size_ = {1, 1, 1};
-  std::map<std::string, std::int32_t, std::less<>> locations_;
+  std::shared_ptr<CompiledProgram> compiled_;
+  std::uint64_t handle_ = 0;  ///< unlike that of any other Program of the context
+  std::vector<UniformValue> uniforms_;
 };
 
 }  // namespace spindrift::gpu

@@ -1,6 +1,7 @@
 // From the device to other threads without waiting: a persistently mapped ring of slots, each guarded by a fence.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -75,8 +76,11 @@ class ReadbackRing {
 
   /// A free slot, or nothing when every slot is being filled, in flight or read: the caller drops the frame.
   [[nodiscard]] std::optional<Recording> begin();
-  /// Slots whose fence has been passed, in the order of submit(). Never waits.
+  /// Slots whose fence has been passed, in the order of submit(). Never waits. Slots that were in flight when the
+  /// device was lost are free again and counted in lostCount(); they are not returned.
   [[nodiscard]] std::vector<std::shared_ptr<const Slot>> poll();
+  /// As poll(), after waiting at most `limit` for all that are in flight.
+  [[nodiscard]] std::vector<std::shared_ptr<const Slot>> wait(std::chrono::nanoseconds limit);
 
   [[nodiscard]] std::size_t slotBytes() const;
   [[nodiscard]] std::size_t slotCount() const;
@@ -84,6 +88,8 @@ class ReadbackRing {
   [[nodiscard]] std::size_t usedCount() const;
   /// How often begin() returned nothing.
   [[nodiscard]] std::uint64_t refusedCount() const { return refused_count_; }
+  /// Slots submitted whose data never came because the device was lost.
+  [[nodiscard]] std::uint64_t lostCount() const { return lost_count_; }
 
  private:
   struct InFlight {
@@ -93,6 +99,8 @@ class ReadbackRing {
     Fence fence;
   };
   ReadbackRing(Context& ctx, std::shared_ptr<State> state, std::uint32_t buffer_id, std::size_t size_bytes);
+  /// Takes the first `count` slots in flight, none of which is pending.
+  std::vector<std::shared_ptr<const Slot>> take(std::size_t count);
 
   Context& ctx_;
   std::shared_ptr<State> state_;
@@ -100,6 +108,7 @@ class ReadbackRing {
   std::size_t size_bytes_;
   std::vector<InFlight> in_flight_;
   std::uint64_t refused_count_ = 0;
+  std::uint64_t lost_count_ = 0;
 };
 
 }  // namespace spindrift::gpu

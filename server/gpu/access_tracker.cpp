@@ -1,0 +1,162 @@
+#include "access_tracker.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include <glad/gl.h>
+#include <spdlog/spdlog.h>
+
+namespace spindrift::gpu {
+namespace {
+
+constexpr std::size_t kMaxFaults = 64;
+constexpr std::array<GLbitfield, AccessTracker::kKindCount> kBits = {
+    GL_SHADER_STORAGE_BARRIER_BIT, GL_TEXTURE_FETCH_BARRIER_BIT, GL_UNIFORM_BARRIER_BIT, GL_COMMAND_BARRIER_BIT,
+    GL_BUFFER_UPDATE_BARRIER_BIT};
+constexpr std::array<const char*, AccessTracker::kKindCount> kKindNames = {
+    "Barrier::kStorage", "Barrier::kTexel", "Barrier::kUniform", "Barrier::kIndirect", "Barrier::kBufferUpdate"};
+
+std::string quoted(const BufferAccess& buffer) {
+  return "buffer \"" + buffer.name + "\"";
+}
+
+}  // namespace
+
+void AccessTracker::remove(BufferAccess& buffer) {
+  buffers_.erase(&buffer);
+  for (Table* const table : {&storage_, &uniforms_, &texels_}) {
+    std::replace(table->begin(), table->end(), &buffer, static_cast<BufferAccess*>(nullptr));
+  }
+}
+
+void AccessTracker::bind(Table& table, std::uint32_t binding, BufferAccess& buffer) {
+  constexpr std::uint32_t kMaxBinding = 1024;  // far above what drivers have; they refuse what exceeds theirs
+  assert(binding < kMaxBinding);
+  if (binding >= kMaxBinding) return;
+  if (binding >= table.size()) table.resize(binding + 1, nullptr);
+  table[binding] = &buffer;
+}
+
+std::uint32_t AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* indirect) {
+  // Uploads and copies are ordered with shader reads by most drivers anyway; a store over what an operation still reads
+  // or writes is not. Uniform blocks and indirect arguments that an operation wrote need nothing.
+  bool is_needed = false;
+  for (const ProgramUses::Block& block : program.storage) {
+    const BufferAccess* const buffer = at(storage_, block.binding);
+    if (!buffer) continue;
+    is_needed |= buffer->update_write > barrier_at_[kStorage];
+    is_needed |= block.is_written && buffer->update_read > barrier_at_[kStorage];
+  }
+  for (const ProgramUses::Block& unit : program.texels) {
+    const BufferAccess* const buffer = at(texels_, unit.binding);
+    is_needed |= buffer && buffer->update_write > barrier_at_[kTexel];
+  }
+  const std::uint32_t bits = is_needed ? kBits[kStorage] | kBits[kTexel] : 0;
+  if (is_needed) barrier(bits);
+
+  if (checks_) check(program, indirect);
+
+  ++now_;
+  for (const ProgramUses::Block& unit : program.texels) {
+    if (BufferAccess* const buffer = at(texels_, unit.binding)) {
+      buffer->shader_read = now_;
+      buffer->shader_reader = program.path;
+    }
+  }
+  for (const ProgramUses::Block& block : program.storage) {
+    BufferAccess* const buffer = at(storage_, block.binding);
+    if (!buffer) continue;
+    if (block.is_read) {
+      buffer->shader_read = now_;
+      buffer->shader_reader = program.path;
+    }
+    if (block.is_written) {
+      buffer->shader_write = now_;
+      buffer->shader_writer = program.path;
+    }
+  }
+  return bits;
+}
+
+std::uint32_t AccessTracker::beforeUpdate(BufferAccess* from, BufferAccess* to) {
+  bool is_needed = false;
+  for (const BufferAccess* const buffer : {from, to}) {
+    is_needed |= buffer && buffer->shader_write > barrier_at_[kUpdate];
+  }
+  is_needed |= to && to->shader_read > barrier_at_[kUpdate];
+  const std::uint32_t bits = is_needed ? kBits[kUpdate] : 0;
+  if (is_needed) barrier(bits);
+  ++now_;
+  if (from) from->update_read = now_;
+  if (to) to->update_write = now_;
+  return bits;
+}
+
+void AccessTracker::barrier(std::uint32_t bits) {
+  for (std::size_t kind = 0; kind < kKindCount; ++kind) {
+    if ((bits & kBits[kind]) != 0) barrier_at_[kind] = now_;
+  }
+}
+
+void AccessTracker::check(const ProgramUses& program, BufferAccess* indirect) {
+  const auto bound = [&](const Table& table, const ProgramUses::Block& block, const char* what) {
+    const BufferAccess* const buffer = at(table, block.binding);
+    if (!buffer) {
+      fault(std::string(program.path) + " uses " + what + " " + std::to_string(block.binding) + " (" + block.name +
+            "), where no buffer is bound");
+    }
+    return buffer;
+  };
+  if (indirect) checkRead(program, *indirect, kIndirect);
+  for (const ProgramUses::Block& block : program.uniforms) {
+    const BufferAccess* const buffer = bound(uniforms_, block, "uniform binding");
+    if (!buffer) continue;
+    checkRead(program, *buffer, kUniform);
+    if (buffer->size_bytes < block.size_bytes) {
+      fault(std::string(program.path) + ": the uniform block " + block.name + " has " +
+            std::to_string(block.size_bytes) + " bytes, but " + quoted(*buffer) + " bound to it only " +
+            std::to_string(buffer->size_bytes));
+    }
+  }
+  for (const ProgramUses::Block& unit : program.texels) {
+    if (const BufferAccess* const buffer = bound(texels_, unit, "texture unit")) checkRead(program, *buffer, kTexel);
+  }
+  for (const ProgramUses::Block& block : program.storage) {
+    const BufferAccess* const buffer = bound(storage_, block, "storage binding");
+    if (!buffer) continue;
+    if (block.is_read) checkRead(program, *buffer, kStorage);
+    if (block.is_written) checkWrite(program, *buffer);
+  }
+}
+
+void AccessTracker::checkRead(const ProgramUses& program, const BufferAccess& buffer, Kind kind) {
+  if (buffer.shader_write <= barrier_at_[kind]) return;
+  if (kind == kStorage && buffer.has_disjoint_writes) return;
+  fault(std::string(program.path) + " reads " + quoted(buffer) + ", which " + std::string(buffer.shader_writer) +
+        " wrote, without " + kKindNames[kind] + " between them");
+}
+
+void AccessTracker::checkWrite(const ProgramUses& program, const BufferAccess& buffer) {
+  if (!buffer.has_disjoint_writes && buffer.shader_write > barrier_at_[kStorage]) {
+    fault(std::string(program.path) + " writes " + quoted(buffer) + ", which " + std::string(buffer.shader_writer) +
+          " wrote as well, without Barrier::kStorage between them");
+  }
+  if (!buffer.has_disjoint_writes && buffer.shader_read > barrier_at_[kStorage]) {
+    fault(std::string(program.path) + " writes " + quoted(buffer) + ", which " + std::string(buffer.shader_reader) +
+          " may still read, without Barrier::kStorage between them");
+  }
+}
+
+void AccessTracker::fault(std::string text) {
+  if (known_faults_.size() >= kMaxFaults || !known_faults_.insert(text).second) return;
+  spdlog::error("barrier checker: {}", text);
+  faults_.push_back(std::move(text));
+}
+
+std::vector<std::string> AccessTracker::takeFaults() {
+  known_faults_.clear();
+  return std::exchange(faults_, {});
+}
+
+}  // namespace spindrift::gpu

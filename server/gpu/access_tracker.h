@@ -1,0 +1,100 @@
+// Who touched which buffer since which barrier: the barriers that API operations need, and the barrier checker.
+// Private to this module.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spindrift::gpu {
+
+/// What last happened to one buffer, as places in the context's sequence of commands; 0 is never. Owned by the Buffer,
+/// at a fixed address while it lives.
+struct BufferAccess {
+  std::uint32_t buffer_id = 0;
+  std::string name;
+  std::size_t size_bytes = 0;
+  bool is_scratch = false;
+  /// Passes in a row write different parts: no fault when no barrier lies between two writes.
+  bool has_disjoint_writes = false;
+
+  std::uint64_t shader_write = 0;
+  std::uint64_t shader_read = 0;   ///< as storage or through a texel view
+  std::uint64_t update_write = 0;  ///< upload, clear, copy to
+  std::uint64_t update_read = 0;   ///< download, copy from
+  std::string_view shader_writer;  ///< path of the program of `shader_write`
+  std::string_view shader_reader;
+};
+
+/// What a linked program reads and writes. Blocks and samplers that the driver found unused are left out.
+struct ProgramUses {
+  struct Block {
+    std::string name;
+    std::uint32_t binding = 0;
+    std::uint32_t size_bytes = 0;
+    bool is_read = true;
+    bool is_written = false;
+  };
+  std::string_view path;
+  std::vector<Block> storage;
+  std::vector<Block> uniforms;
+  std::vector<Block> texels;  ///< `binding` is the texture unit
+};
+
+/// One per context. The rules are those of OpenGL 4.5 core, section 7.13.2 "Shader Memory Access Synchronization": what
+/// a shader writes is visible to a later access only after a barrier that names the kind of that access, and a shader's
+/// store may overtake earlier accesses to the same memory unless a storage barrier lies between.
+class AccessTracker {
+ public:
+  /// Kinds of access that a barrier can name.
+  enum Kind { kStorage, kTexel, kUniform, kIndirect, kUpdate, kKindCount };
+
+  explicit AccessTracker(bool checks) : checks_(checks) {}
+
+  void add(BufferAccess& buffer) { buffers_.insert(&buffer); }
+  void remove(BufferAccess& buffer);
+  [[nodiscard]] const std::set<BufferAccess*>& buffers() const { return buffers_; }
+
+  void bindStorage(std::uint32_t binding, BufferAccess& buffer) { bind(storage_, binding, buffer); }
+  void bindUniform(std::uint32_t binding, BufferAccess& buffer) { bind(uniforms_, binding, buffer); }
+  void bindTexel(std::uint32_t unit, BufferAccess& buffer) { bind(texels_, unit, buffer); }
+
+  /// Called before a dispatch. Returns the OpenGL bits of the barrier that uploads, clears and copies before it make
+  /// necessary, or 0; the caller issues it. `indirect`: where the group counts come from, or null.
+  [[nodiscard]] std::uint32_t beforeDispatch(const ProgramUses& program, BufferAccess* indirect);
+  /// Called before an upload, download, clear or copy; `from` and `to` may be null. Returns bits as above.
+  [[nodiscard]] std::uint32_t beforeUpdate(BufferAccess* from, BufferAccess* to);
+  /// A barrier with these OpenGL bits is issued now.
+  void barrier(std::uint32_t bits);
+
+  [[nodiscard]] std::vector<std::string> takeFaults();
+  [[nodiscard]] bool hasFaults() const { return !faults_.empty(); }
+
+ private:
+  using Table = std::vector<BufferAccess*>;
+  static void bind(Table& table, std::uint32_t binding, BufferAccess& buffer);
+  static BufferAccess* at(const Table& table, std::uint32_t binding) {
+    return binding < table.size() ? table[binding] : nullptr;
+  }
+
+  void check(const ProgramUses& program, BufferAccess* indirect);
+  void checkRead(const ProgramUses& program, const BufferAccess& buffer, Kind kind);
+  void checkWrite(const ProgramUses& program, const BufferAccess& buffer);
+  void fault(std::string text);
+
+  bool checks_;
+  std::uint64_t now_ = 0;
+  std::array<std::uint64_t, kKindCount> barrier_at_{};
+  std::set<BufferAccess*> buffers_;
+  Table storage_;
+  Table uniforms_;
+  Table texels_;
+  std::set<std::string> known_faults_;  ///< bounded, see fault()
+  std::vector<std::string> faults_;
+};
+
+}  // namespace spindrift::gpu

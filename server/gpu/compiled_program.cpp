@@ -1,0 +1,192 @@
+#include "compiled_program.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <utility>
+
+#include <glad/gl.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/gpu/embedded_shader.h>
+
+#include "device_needs.h"
+#include "program_resources.h"
+#include "shuffled_groups.h"
+
+namespace spindrift::gpu {
+namespace {
+
+constexpr std::string_view kVersionLine = "#version 450 core\n";  // the same as in embed_shaders.py
+
+std::string shaderLog(GLuint id) {
+  GLint length = 0;
+  glGetShaderiv(id, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  glGetShaderInfoLog(id, length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
+std::string programLog(GLuint id) {
+  GLint length = 0;
+  glGetProgramiv(id, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  glGetProgramInfoLog(id, length, &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  return log;
+}
+
+/// How `text` qualifies the storage block: `restrict readonly buffer Name {`. OpenGL does not tell. A block that is
+/// declared several times, under different conditions, is read and written as any of them says.
+void readQualifiers(std::string_view text, ProgramUses::Block& block) {
+  const auto isWord = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  const std::string wanted = "buffer " + block.name;
+  bool is_found = false;
+  bool is_read = false;
+  bool is_written = false;
+  for (std::size_t at = text.find(wanted); at != std::string_view::npos; at = text.find(wanted, at + 1)) {
+    const std::size_t end = at + wanted.size();
+    if ((end < text.size() && isWord(text[end])) || (at > 0 && isWord(text[at - 1]))) continue;
+    const std::size_t begin = text.find_last_of(";{})\n", at);
+    const std::string_view qualifiers = text.substr(begin == std::string_view::npos ? 0 : begin, at - begin);
+    is_found = true;
+    is_read |= qualifiers.find("writeonly") == std::string_view::npos;
+    is_written |= qualifiers.find("readonly") == std::string_view::npos;
+  }
+  block.is_read = is_read || !is_found;
+  block.is_written = is_written || !is_found;
+}
+
+ProgramUses usesOf(GLuint program, const EmbeddedShader& shader) {
+  ProgramUses uses;
+  uses.path = shader.path;
+  for (auto& [name, layout] : blocksOf(program)) {
+    ProgramUses::Block block;
+    block.name = name;
+    block.binding = layout.binding;
+    block.size_bytes = layout.size_bytes;
+    if (layout.is_storage) readQualifiers(shader.text, block);
+    (layout.is_storage ? uses.storage : uses.uniforms).push_back(std::move(block));
+  }
+  for (const auto& [name, unit] : texelUnitsOf(program)) {
+    ProgramUses::Block block;
+    block.name = name;
+    block.binding = unit;
+    uses.texels.push_back(std::move(block));
+  }
+  return uses;
+}
+
+/// The program's own limits are what Context::create() checked the device for.
+void checkNeeds(Context& ctx, const CompiledProgram& program) {
+  const auto over = [&](const char* what, std::int64_t used, std::int64_t stated) {
+    if (used <= stated) return;
+    ctx.countError();
+    spdlog::error("{} uses {} = {}, but devices are checked for {} only: raise it in device_needs.h", program.uses.path,
+                  what, used, stated);
+  };
+  const DeviceLimits& needs = kNeededLimits;
+  std::int64_t binding_count = 0;
+  std::int64_t unit_count = 0;
+  for (const auto& block : program.uses.storage)
+    binding_count = std::max<std::int64_t>(binding_count, block.binding + 1);
+  for (const auto& unit : program.uses.texels) unit_count = std::max<std::int64_t>(unit_count, unit.binding + 1);
+  over("storage bindings", binding_count, needs.max_ssbo_bindings);
+  over("texture units", unit_count, needs.max_combined_texture_units);
+  over("storage blocks", std::ssize(program.uses.storage), needs.max_compute_ssbo_blocks);
+  over("samplers", std::ssize(program.uses.texels), needs.max_compute_texture_units);
+  for (const auto& block : program.uses.uniforms) {
+    over("uniform block bytes", block.size_bytes, needs.max_uniform_block_bytes);
+  }
+  const auto& g = program.group_size;
+  over("invocations of a work group", std::int64_t{g[0]} * g[1] * g[2], needs.max_work_group_invocations);
+}
+
+}  // namespace
+
+core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context& ctx, std::string_view shader_path,
+                                                                        const Defines& defines) {
+  assert(ctx.isOwnedHere());
+  const EmbeddedShader* embedded = findShader(shader_path);
+  if (!embedded) {
+    return core::Error{core::ErrorCode::kInternal,
+                       "shader \"" + std::string(shader_path) + "\" is not embedded; embedded are " +
+                           std::to_string(embeddedShaders().size()) + " files shaders/**/*.comp"};
+  }
+  std::string text(kVersionLine);
+  for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
+  // The driver counts the lines of the expanded text, and all of it in one string: each string has its own number.
+  text += "#line 1\n";
+  const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;
+  text += shuffle_seed == 0 ? std::string(embedded->text) : shuffledGroups(embedded->text, shuffle_seed);
+
+  const GLchar* const pointer = text.data();
+  const auto length = static_cast<GLint>(text.size());
+  const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
+  glShaderSource(shader, 1, &pointer, &length);
+  glCompileShader(shader);
+  GLint is_fine = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &is_fine);
+  const std::string log = translateLog(*embedded, shaderLog(shader));
+  if (!is_fine) {
+    glDeleteShader(shader);
+    return core::Error{core::ErrorCode::kInternal, std::string(shader_path) + " does not compile: " + log};
+  }
+  if (!log.empty()) spdlog::debug("{}: {}", shader_path, log);
+
+  auto program = std::make_shared<CompiledProgram>();
+  program->id = glCreateProgram();
+  ++ctx.ledgerEntry().programs_made_count;
+  glAttachShader(program->id, shader);
+  glLinkProgram(program->id);
+  glDetachShader(program->id, shader);
+  glDeleteShader(shader);
+  glGetProgramiv(program->id, GL_LINK_STATUS, &is_fine);
+  if (!is_fine) {
+    return core::Error{core::ErrorCode::kInternal, std::string(shader_path) + " does not link: " +
+                                                       translateLog(*embedded, programLog(program->id))};
+  }
+  GLint size[3] = {0, 0, 0};
+  glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);
+  for (std::size_t axis = 0; axis < 3; ++axis) program->group_size[axis] = static_cast<std::uint32_t>(size[axis]);
+  glObjectLabel(GL_PROGRAM, program->id, static_cast<GLsizei>(shader_path.size()), shader_path.data());
+  program->uses = usesOf(program->id, *embedded);
+  checkNeeds(ctx, *program);
+  return program;
+}
+
+CompiledProgram::~CompiledProgram() {
+  if (id != 0) glDeleteProgram(id);
+}
+
+core::Result<std::shared_ptr<CompiledProgram>> ProgramCache::get(Context& ctx, std::string_view shader_path,
+                                                                 const Defines& defines) {
+  std::string key(shader_path);
+  for (const auto& [name, value] : defines) key += "\n" + name + " " + value;
+  if (const auto known = by_key_.find(key); known != by_key_.end()) {
+    entries_.splice(entries_.end(), entries_, known->second);
+    return known->second->program;
+  }
+  auto compiled = CompiledProgram::compile(ctx, shader_path, defines);
+  if (!compiled) return compiled.error();
+  dropUnused();
+  by_key_[key] = entries_.insert(entries_.end(), Entry{key, *compiled});
+  return *compiled;
+}
+
+void ProgramCache::dropUnused() {
+  std::size_t unused = static_cast<std::size_t>(
+      std::ranges::count_if(entries_, [](const Entry& entry) { return entry.program.use_count() == 1; }));
+  for (auto entry = entries_.begin(); entry != entries_.end() && unused >= kMaxUnused;) {
+    if (entry->program.use_count() > 1) {
+      ++entry;
+      continue;
+    }
+    by_key_.erase(entry->key);
+    entry = entries_.erase(entry);
+    --unused;
+  }
+}
+
+}  // namespace spindrift::gpu

@@ -1,0 +1,171 @@
+// Poisoned scratch buffers, another order of work groups, programs that are shared.
+#include <numeric>
+
+#include <gmock/gmock.h>
+
+#include <spindrift/gpu/program.h>
+
+#include "gpu_fixture.h"
+
+namespace spindrift::gpu {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+
+class TestModes : public testing::Test {
+ protected:
+  void make(const Checks& checks) {
+    auto made = Context::create(*testDevice(), checks);
+    if (!made) GTEST_SKIP() << made.error().message;
+    ctx = std::move(*made);
+  }
+  std::unique_ptr<Context> ctx;
+};
+
+TEST_F(TestModes, PoisonFillsScratchBuffersAndNoOthers) {
+  make({.poison = true});
+  if (!ctx) return;
+  auto scratch = TexelBuffer::create(*ctx, "scratch", 7, TexelFormat::kR32F, BufferContent::kScratch);
+  auto odd = Buffer::create(*ctx, "odd", 7, BufferUse::kDeviceOnly, BufferContent::kScratch);
+  auto state = Buffer::create(*ctx, "state", 28);
+  ASSERT_TRUE(scratch && odd && state);
+  EXPECT_THAT(scratch->downloadVector<std::uint32_t>(7), Each(0xffffffffu));
+  EXPECT_THAT(odd->downloadVector<std::uint8_t>(7), Each(0xff));
+  EXPECT_THAT(state->downloadVector<std::uint32_t>(7), Each(0u));
+  scratch->clear();
+  ctx->poisonScratch();
+  EXPECT_THAT(scratch->downloadVector<std::uint32_t>(7), Each(0xffffffffu));
+  EXPECT_THAT(state->downloadVector<std::uint32_t>(7), Each(0u));
+}
+
+TEST_F(TestModes, ScratchBuffersAreZeroWithoutPoison) {
+  make({});
+  if (!ctx) return;
+  const auto scratch = Buffer::create(*ctx, "scratch", 28, BufferUse::kDeviceOnly, BufferContent::kScratch);
+  ASSERT_TRUE(scratch);
+  EXPECT_THAT(scratch->downloadVector<std::uint32_t>(7), Each(0u));
+}
+
+TEST_F(TestModes, ShuffledGroupsCoverEveryInvocationOnce) {
+  for (const std::uint32_t seed : {1u, 2u, 7u, 1000u}) {
+    make({.shuffle_seed = seed});
+    if (!ctx) return;
+    auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+    ASSERT_TRUE(program) << program.error().message;
+    for (const std::uint32_t count : {1u, 24u, 25u, 1009u, 24u * 7919u}) {  // the last: as many groups as the factor
+      auto values = Buffer::create(*ctx, "values", 4 * count);
+      auto counts = Buffer::create(*ctx, "counts", 8);
+      ASSERT_TRUE(values && counts);
+      values->clear(0xffffffff);
+      values->bindStorage(0);
+      counts->bindStorage(1);
+      program->setUniform("item_count", count);
+      ASSERT_TRUE(program->dispatch(count));
+      std::vector<std::int32_t> expected(count);
+      std::iota(expected.begin(), expected.end(), 0);
+      EXPECT_EQ(values->downloadVector<std::int32_t>(count), expected) << "seed " << seed;
+      EXPECT_EQ(counts->downloadVector<std::uint32_t>(1)[0], count);
+    }
+  }
+}
+
+TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
+  constexpr std::uint32_t kGroups = 100;
+  const auto firstGroup = [&](std::uint32_t seed) -> std::uint32_t {
+    make({.shuffle_seed = seed});
+    if (!ctx) return 0;
+    auto program = Program::create(*ctx, "check/group_order.comp");
+    auto order = Buffer::create(*ctx, "order", 4 * (1 + kGroups));
+    EXPECT_TRUE(program && order);
+    order->bindStorage(0);
+    EXPECT_TRUE(program->dispatchGroups(kGroups));
+    auto seen = order->downloadVector<std::uint32_t>(1 + kGroups);
+    EXPECT_EQ(seen[0], kGroups);
+    const std::uint32_t first = seen[1];
+    std::vector<std::uint32_t> expected(kGroups);
+    std::iota(expected.begin(), expected.end(), 0u);
+    std::ranges::sort(seen.begin() + 1, seen.end());
+    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), seen.begin() + 1)) << "each number once";
+    return first;
+  };
+  // Devices start with the lowest numbers, whatever they do after.
+  if (const std::uint32_t plain = firstGroup(0); ctx) {
+    EXPECT_LT(plain, 10u);
+    EXPECT_GT(firstGroup(55), 20u);
+  }
+}
+
+TEST_F(TestModes, CompileErrorsOfShuffledShadersNameTheirLines) {
+  make({.shuffle_seed = 5});
+  if (!ctx) return;
+  const auto broken = Program::create(*ctx, "check/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
+  ASSERT_FALSE(broken);
+  EXPECT_THAT(broken.error().message, HasSubstr("check/block.glsl:10"));
+}
+
+using ProgramCacheTest = GpuTest;
+
+TEST_F(ProgramCacheTest, AVariantIsCompiledOncePerContext) {
+  const Ledger& ledger = ctx->ledger();
+  {
+    const auto first = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+    const auto second = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+    const auto other = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+    ASSERT_TRUE(first && second && other);
+    EXPECT_EQ(ledger.programs_made_count, 2u);
+    EXPECT_EQ(ledger.program_count, 3u);
+    EXPECT_EQ(first->id(), second->id());
+    EXPECT_NE(first->id(), other->id());
+  }
+  EXPECT_EQ(ledger.program_count, 0u);
+  const auto again = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  ASSERT_TRUE(again);
+  EXPECT_EQ(ledger.programs_made_count, 2u) << "kept for the next room";
+  auto beside = Context::create(*testDevice());
+  ASSERT_TRUE(beside);
+  {
+    const auto elsewhere = Program::create(**beside, "check/iota.comp", {{"GROUP", "64"}});
+    ASSERT_TRUE(elsewhere);
+    EXPECT_EQ((*beside)->ledger().programs_made_count, 1u) << "contexts share nothing";
+  }
+  beside->reset();
+  ASSERT_TRUE(ctx->makeCurrent());
+}
+
+TEST_F(ProgramCacheTest, AnErrorIsNotKept) {
+  for (int i = 0; i < 2; ++i) {
+    const auto broken = Program::create(*ctx, "check/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
+    ASSERT_FALSE(broken);
+    EXPECT_THAT(broken.error().message, HasSubstr("no_such_name"));
+  }
+}
+
+TEST_F(ProgramCacheTest, UniformsAreEachOnesOwnThoughTheProgramIsShared) {
+  auto values = Buffer::create(*ctx, "values", 16);
+  auto counts = Buffer::create(*ctx, "counts", 8);
+  auto ten = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  auto zero = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  ASSERT_TRUE(values && counts && ten && zero);
+  values->bindStorage(0);
+  counts->bindStorage(1);
+  ten->setUniform("item_count", 4u);
+  ten->setUniform("offset", 10);
+  zero->setUniform("item_count", 4u);  // its offset was never set: zero
+  const auto first = [&](Program& program) {
+    EXPECT_TRUE(program.dispatch(4));
+    ctx->barrier(Barrier::kStorage);
+    return values->downloadVector<std::int32_t>(1)[0];
+  };
+  EXPECT_EQ(first(*ten), 10);
+  EXPECT_EQ(first(*zero), 0);
+  EXPECT_EQ(first(*ten), 10);
+  zero->setUniform("offset", 7);
+  EXPECT_EQ(first(*ten), 10);
+  EXPECT_EQ(first(*zero), 7);
+  Program moved = std::move(*ten);
+  EXPECT_EQ(first(moved), 10);
+}
+
+}  // namespace
+}  // namespace spindrift::gpu
