@@ -35,7 +35,7 @@ test_native() {
 # fences are passed later, readbacks arrive ticks after they were asked for, and it has a compiler of its own.
 readonly zink_environment=(LIBGL_ALWAYS_SOFTWARE=1 MESA_LOADER_DRIVER_OVERRIDE=zink)
 # Every gpu and sim test, and of the stability tests those that compare no times, some of them shorter than in `native`.
-readonly zink_tests='^gpu/|^stability/.*(Determinism.*/(pool|splash|harbor)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinuteWithPositionsSolvedFor))$'
+readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinuteWithPositionsSolvedFor)$)'
 
 # Prints nothing when the program gets zink, otherwise why not, in one line.
 zink_problem() {

@@ -2,6 +2,7 @@
 // work groups in another order.
 #include <array>
 #include <cstdio>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -30,6 +31,11 @@ struct Run {
   const char* scene;
   int ticks;
 };
+
+/// Names the test in reports; without it GoogleTest prints the bytes of a pointer, which differ from run to run.
+void PrintTo(const Run& run, std::ostream* out) {
+  *out << run.scene;
+}
 
 class Determinism : public ::testing::TestWithParam<Run> {
  protected:

@@ -1,6 +1,7 @@
 // Fences, fences that a test holds back, and the loss of the device.
 #include <chrono>
 #include <numeric>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -118,6 +119,62 @@ TEST_F(DeviceLossTest, DownloadsGiveZerosAndObjectsCanStillBeMadeAndDropped) {
   buffer->upload(std::vector<std::uint32_t>(16, 1));
   (void)Buffer::create(*ctx, "after", 64);
   (void)ReadbackRing::create(*ctx, "after", 64, 1);
+}
+
+/// Replaces a function of OpenGL, as a driver that behaves so; puts it back.
+template <typename Function>
+class Replaced {
+ public:
+  Replaced(Function& function, Function by) : function_(function), before_(std::exchange(function, by)) {}
+  ~Replaced() { function_ = before_; }
+  Replaced(const Replaced&) = delete;
+  Replaced& operator=(const Replaced&) = delete;
+
+ private:
+  Function& function_;
+  Function before_;
+};
+
+TEST_F(DeviceLossTest, AResetThatTheDriverReportsIsALoss) {
+  const Replaced reset(
+      glad_glGetGraphicsResetStatus, +[]() -> GLenum { return GL_GUILTY_CONTEXT_RESET; });
+  EXPECT_FALSE(ctx->wasLost());
+  EXPECT_TRUE(ctx->isLost());
+  EXPECT_TRUE(ctx->wasLost());
+}
+
+TEST_F(DeviceLossTest, AWaitForAFenceEndsWithTheResetOfTheDevice) {
+  static int asked = 0;
+  asked = 0;
+  // A hang: no fence is passed, and after some waits the driver resets the device.
+  const Replaced hang(
+      glad_glClientWaitSync, +[](GLsync, GLbitfield, GLuint64) -> GLenum { return GL_TIMEOUT_EXPIRED; });
+  const Replaced reset(
+      glad_glGetGraphicsResetStatus,
+      +[]() -> GLenum { return ++asked > 5 ? GLenum{GL_INNOCENT_CONTEXT_RESET} : GLenum{GL_NO_ERROR}; });
+  Fence fence = Fence::insert(*ctx);
+  EXPECT_EQ(fence.wait(std::chrono::hours(24)), Fence::Status::kFailed);
+  EXPECT_EQ(asked, 6);
+}
+
+TEST_F(DeviceLossTest, AWaitForAFenceThatIsNeverPassedEndsWithItsLimit) {
+  static int slices = 0;
+  slices = 0;
+  const Replaced hang(
+      glad_glClientWaitSync, +[](GLsync, GLbitfield, GLuint64) -> GLenum { return ++slices, GL_TIMEOUT_EXPIRED; });
+  Fence fence = Fence::insert(*ctx);
+  EXPECT_EQ(fence.wait(std::chrono::seconds(3)), Fence::Status::kPending);
+  EXPECT_EQ(slices, 30) << "of 100 ms each, that a reset is noticed";
+}
+
+TEST_F(DeviceLossTest, AnErrorThatNeverEndsHangsNobody) {
+  constexpr GLenum kContextLost = 0x0507;
+  const Replaced endless(
+      glad_glGetError, +[]() -> GLenum { return kContextLost; });
+  const auto buffer = Buffer::create(*ctx, "after the loss", 64);
+  ASSERT_FALSE(buffer);
+  EXPECT_THAT(buffer.error().message, testing::HasSubstr("OpenGL error 1287"));
+  (void)ReadbackRing::create(*ctx, "after the loss", 64, 1);
 }
 
 TEST_F(DeviceLossTest, ANewContextWorksBesideALostOne) {
