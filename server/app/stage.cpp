@@ -66,18 +66,20 @@ bool Stage::takes(const core::Action& action) {
 
 Stage::Outcome Stage::apply(const core::Action& action) {
   assert(takes(action));
-  return std::visit(Overloaded{[&](const core::Splash& splash) { return startEffect(splash); },
-                               [&](const core::BreakingWave& wave) { return startEffect(wave); },
-                               [&](const core::SetParameter& change) { return setParameter(change); },
-                               [&](const core::Reset&) -> Outcome {
-                                 sim_->reset();
-                                 return {};
-                               },
-                               [&](const core::SpawnBoat& spawn) { return spawnBoat(spawn); },
-                               [&](const core::ControlBoat& control) { return controlBoat(control); },
-                               [&](const core::RemoveBoat& remove) { return removeBoat(remove); },
-                               [&](const auto&) -> Outcome { return {}; }},
-                    action);
+  Outcome outcome = std::visit(Overloaded{[&](const core::Splash& splash) { return startEffect(splash); },
+                                          [&](const core::BreakingWave& wave) { return startEffect(wave); },
+                                          [&](const core::SetParameter& change) { return setParameter(change); },
+                                          [&](const core::Reset&) -> Outcome {
+                                            sim_->reset();
+                                            return {};
+                                          },
+                                          [&](const core::SpawnBoat& spawn) { return spawnBoat(spawn); },
+                                          [&](const core::ControlBoat& control) { return controlBoat(control); },
+                                          [&](const core::RemoveBoat& remove) { return removeBoat(remove); },
+                                          [&](const auto&) -> Outcome { return {}; }},
+                               action);
+  if (!outcome) ++state_id_;
+  return outcome;
 }
 
 Stage::Outcome Stage::startEffect(const core::Effect& effect) {
@@ -93,8 +95,12 @@ Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
     return rejection(error->reason, error->field, error->message);
   }
   const core::Scene wanted = stream::toCore(changed);
-  if (auto applied = sim_->setScene(wanted); !applied)
-    return rejection(whyNot(wanted), change.path, applied.error().message);
+  if (auto applied = sim_->setScene(wanted); !applied) {
+    // The message begins with the field that breaks a rule, which Reject.field says already where it is this one.
+    const std::string& message = applied.error().message;
+    const std::string own = change.path + ": ";
+    return rejection(whyNot(wanted), change.path, message.starts_with(own) ? message.substr(own.size()) : message);
+  }
   scene_ = std::move(changed);
   return {};
 }
@@ -132,6 +138,7 @@ Stage::Outcome Stage::replaceScene(v1::Scene scene) {
   sim_ = *std::move(sim);
   scene_ = std::move(scene);
   tick_shift_ = first_tick - sim_->tick();
+  ++state_id_;
   return {};
 }
 

@@ -37,7 +37,10 @@ class Stage {
   Outcome apply(const core::Action& action);
   /// Another scene from its start. The room's ticks go on: it begins at a tick that no frame of the old one has.
   Outcome replaceScene(v1::Scene scene);
-  void step() { sim_->step(); }
+  void step() {
+    sim_->step();
+    ++state_id_;
+  }
 
   [[nodiscard]] const v1::Scene& scene() const { return scene_; }  ///< parameters as they are now
   [[nodiscard]] sim::WaterSim& water() { return *sim_; }
@@ -46,6 +49,9 @@ class Stage {
   [[nodiscard]] std::uint64_t tick() const { return tickOf(sim_->tick()); }
   /// The room's tick for one of the simulation's.
   [[nodiscard]] std::uint64_t tickOf(std::uint64_t sim_tick) const { return sim_tick + tick_shift_; }
+  /// Number of the state now: another one after every tick and every change by apply() and replaceScene(). Never 0, and
+  /// it never goes back.
+  [[nodiscard]] std::uint64_t stateId() const { return state_id_; }
   /// Of the last SpawnBoat that was applied.
   [[nodiscard]] std::uint32_t spawnedBoatId() const { return spawned_boat_id_; }
   /// The boats on the water now.
@@ -64,6 +70,7 @@ class Stage {
   v1::Scene scene_;
   std::unique_ptr<sim::WaterSim> sim_;
   std::uint64_t tick_shift_ = 0;  ///< from the simulation's ticks to the room's, modulo 2^64
+  std::uint64_t state_id_ = 1;
   std::uint32_t spawned_boat_id_ = 0;
 };
 

@@ -61,7 +61,8 @@ core::Result<void> WaterSim::setScene(const core::Scene& scene) {
   if (relays && parts_->pool) {
     return Error{
         ErrorCode::kInvalidInput,
-        "particles.count: is the size of the pool of this two-way scene: start the room again with the changed scene"};
+        "particles.count: cannot change while a two-way scene runs, where it is the size of the particle pool; start "
+        "the room again with the changed scene"};
   }
   core::Scene comparable = scene_;
   if (relays) comparable.particles->count = scene.particles->count;

@@ -37,6 +37,7 @@ struct FrameRequest {
   bool bodies = false;
   std::array<LayerRequest, core::kReducedLevelCount> reduced{};  ///< besides the full ones; by Level
   double asked_s = 0.0;                                          ///< on the caller's clock: comes back with the frame
+  std::uint64_t state_id = 0;                                    ///< the caller's: comes back with the frame
 
   [[nodiscard]] bool isEmpty() const {
     return !surface && !particles && !foam && !bodies && std::ranges::all_of(reduced, &LayerRequest::isEmpty);
