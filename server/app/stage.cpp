@@ -32,7 +32,8 @@ std::string firstLine(const std::string& text) {
   return end == std::string::npos ? text : text.substr(0, end) + " (and more)";
 }
 
-core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene) {
+core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene,
+                                                        std::uint32_t first_boat_id) {
   // A step's shaders are compiled when they first run, which takes a software device seconds; diagnostics run every
   // fourth tick, so as many ticks leave their rhythm as it was.
   constexpr int kWarmUpTickCount = 4;
@@ -43,6 +44,7 @@ core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const
   ctx.finish();
   (void)(*sim)->takeFrames();
   (void)(*sim)->takePassCosts();
+  (*sim)->numberBoatsFrom(first_boat_id);
   (*sim)->reset();
   return sim;
 }
@@ -129,7 +131,7 @@ Stage::Outcome Stage::removeBoat(const core::RemoveBoat& remove) {
 }
 
 Stage::Outcome Stage::replaceScene(v1::Scene scene) {
-  auto sim = createWarm(ctx_, scene);
+  auto sim = createWarm(ctx_, scene, sim_->nextBoatId());
   if (!sim) {
     return rejection(v1::REJECT_REASON_OUT_OF_RANGE, "change_scene.name",
                      "scene '" + scene.name() + "': " + firstLine(sim.error().message));

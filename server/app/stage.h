@@ -14,8 +14,10 @@
 
 namespace spindrift::app {
 
-/// A simulation whose shaders are compiled, put back to its start. Its ticks have begun to count.
-core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene);
+/// A simulation whose shaders are compiled, put back to its start. Its ticks have begun to count; its boats' ids begin
+/// at `first_boat_id`.
+core::Result<std::unique_ptr<sim::WaterSim>> createWarm(gpu::Context& ctx, const v1::Scene& scene,
+                                                        std::uint32_t first_boat_id = 1);
 
 /// A rejection that the caller gives its command's number.
 stream::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message);

@@ -81,6 +81,11 @@ class WaterSim {
   core::Result<void> controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
   core::Result<void> removeBoat(std::uint32_t boat_id);
   [[nodiscard]] std::vector<BoatRecord> boats() const;
+  /// Boats get ids from here on, the scene's own first, from the next reset() on. An id is given once; only the scene's
+  /// own boats keep theirs over a reset. 1 at first.
+  void numberBoatsFrom(std::uint32_t first_id);
+  /// Above every id that was given; what numberBoatsFrom() said in a scene without boats.
+  [[nodiscard]] std::uint32_t nextBoatId() const;
   [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats().size()); }
   /// Particles now; in two-way scenes as of the newest health().
   [[nodiscard]] std::uint32_t particleCount() const;
@@ -160,6 +165,7 @@ class WaterSim {
   std::unique_ptr<Parts> parts_;
   std::uint64_t tick_ = 0;  ///< never goes back
   std::uint64_t start_tick_ = 0;
+  std::uint32_t first_boat_id_ = 1;
   Health health_;
   std::uint64_t nonfinite_count_ = 0;
   std::uint64_t escaped_count_ = 0;
