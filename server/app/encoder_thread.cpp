@@ -16,6 +16,7 @@ EncoderThread::~EncoderThread() {
 void EncoderThread::submit(const std::string& room, core::FrameView frame) {
   {
     const std::lock_guard lock(mutex_);
+    if (stopping_) return;
     auto [it, is_new] = waiting_.try_emplace(room);
     if (!is_new) {
       ++replaced_count_;
@@ -45,6 +46,8 @@ void EncoderThread::stop() {
   }
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  waiting_.clear();  // frames are read from their device's memory, which goes next
 }
 
 std::uint64_t EncoderThread::replacedCount() const {

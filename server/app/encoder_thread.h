@@ -28,7 +28,7 @@ class EncoderThread {
   void submit(const std::string& room, core::FrameView frame);
   /// The room is no more.
   void forget(const std::string& room);
-  /// Ends the thread; frames still waiting are dropped. Idempotent.
+  /// Ends the thread; frames still waiting, and those submitted afterwards, are dropped. Idempotent.
   void stop();
 
   [[nodiscard]] std::uint64_t replacedCount() const;

@@ -1,7 +1,9 @@
 #include "gateway.h"
 
 #include <chrono>
+#include <optional>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/stream/client_message.h>
@@ -10,6 +12,7 @@
 #include "layer_index.h"
 #include "monotonic.h"
 #include "overloaded.h"
+#include "state_topics.h"
 
 namespace spindrift::app {
 namespace {
@@ -48,20 +51,22 @@ core::Result<void> Gateway::acceptSession(const std::string& room) {
 void Gateway::sessionOpened(net::SessionId session, const std::string& room_name, const std::string& peer) {
   const std::shared_ptr<Room> room = rooms_.find(room_name);
   if (!room) return refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+  const auto now = std::chrono::steady_clock::now();
   {
     const std::lock_guard lock(mutex_);
-    sessions_[session].room = room;
+    sessions_.emplace(session, Session{.room = room,
+                                       .greeted = nullptr,
+                                       .commands = {options_.commands_per_s, options_.command_burst_count, now}});
   }
-  spdlog::info("session {} from {} joins room {}", session, peer, room->name());
-  // The greeting comes first; a change that fell between it and joining makes a second one.
-  const auto greeted = greet(session, *room);
-  hub().join(session, room->name());
-  if (room->snapshot() != greeted) greet(session, *room);
+  spdlog::info("session {} from {} comes to room {}", session, peer, room->name());
+  greet(session, *room);
+  hub().closeAt(session, now + options_.hello_patience, net::CloseCode::kPolicy,
+                "no hello came in time: send ClientMessage.hello first");
   // Closed since: dismiss() may have passed by before this session was on its list.
   if (rooms_.find(room->name()) != room) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 
-std::shared_ptr<const RoomSnapshot> Gateway::greet(net::SessionId session, const Room& room) {
+void Gateway::greet(net::SessionId session, const Room& room) {
   const auto snapshot = room.snapshot();
   stream::GreetingFacts facts;
   facts.server = "spindrift " SPINDRIFT_VERSION;
@@ -70,15 +75,20 @@ std::shared_ptr<const RoomSnapshot> Gateway::greet(net::SessionId session, const
   facts.session_id = session;
   facts.layers = layersOf(snapshot->scene);
   facts.message_max_bytes = static_cast<std::uint32_t>(options_.message_max_bytes);
-  facts.commands_per_s = options_.messages_per_s;
+  facts.commands_per_s = options_.commands_per_s;
+  facts.command_burst_count = options_.command_burst_count;
+  facts.messages_per_s = options_.messages_per_s;
+  facts.message_burst_count = options_.message_burst_count;
+  facts.hello_within_s = std::chrono::duration<double>(options_.hello_patience).count();
   facts.frame_rate_max_hz = kFrameRateMax_hz;
   facts.server_time_s = monotonic_s();
   facts.paused = snapshot->paused;
   facts.speed = snapshot->speed;
   facts.boats = snapshot->boats;
   facts.scenes = rooms_.rules().scenes.names();
-  hub().sendControl(session, stream::greeting(facts, snapshot->scene));
-  return snapshot;
+  hub().sendState(session, topic::kGreeting, stream::greeting(facts, snapshot->scene));
+  const std::lock_guard lock(mutex_);
+  if (const auto known = sessions_.find(session); known != sessions_.end()) known->second.greeted = snapshot;
 }
 
 void Gateway::sceneChanged(const Room& room) {
@@ -105,29 +115,28 @@ void Gateway::dismiss(const Room& room) {
 
 void Gateway::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {
   constexpr std::size_t kReasonMaxBytes = 120;
-  hub().sendControl(session, stream::refusal(why));
+  hub().sendAnswer(session, stream::refusal(why));
   hub().close(session, code, why.substr(0, kReasonMaxBytes));
 }
 
 void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
-  Session state;
+  std::optional<Session> known;
   {
     const std::lock_guard lock(mutex_);
     const auto it = sessions_.find(session);
     if (it == sessions_.end()) return;
-    state = it->second;
+    known = it->second;
   }
+  const Session& state = *known;
   std::visit(
       Overloaded{
           [&](const stream::Hello& said) { hello(session, state, said); },
           [&](const stream::Subscribe& asked) { subscribe(session, state, asked); },
           [&](const core::Command& parsed) { command(session, state, parsed); },
-          [&](const stream::Ping& ping) {
-            hub().sendControl(session, stream::pong(ping.client_time_s, monotonic_s()));
-          },
+          [&](const stream::Ping& ping) { hub().sendAnswer(session, stream::pong(ping.client_time_s, monotonic_s())); },
           [&](const stream::CommandRejection& rejection) {
             counters_.rejected(rejection.reason);
-            hub().sendControl(session, stream::reject(rejection));
+            hub().sendAnswer(session, stream::reject(rejection));
           },
           [&](const stream::Malformed& malformed) { refuse(session, net::CloseCode::kPolicy, malformed.message); },
       },
@@ -140,11 +149,12 @@ void Gateway::hello(net::SessionId session, const Session& state, const stream::
   const auto now = std::chrono::system_clock::now();
   const auto grant = options_.access.resolve(hello.token, now);
   if (!grant) return refuse(session, net::CloseCode::kUnauthorized, grant.error().message);
+  auto end = std::chrono::steady_clock::time_point::max();  // in place of the patience for this hello
   if (grant->expires) {
     const auto left = std::chrono::duration_cast<std::chrono::steady_clock::duration>(*grant->expires - now);
-    hub().closeAt(session, std::chrono::steady_clock::now() + left, net::CloseCode::kUnauthorized,
-                  "the token has expired: ask for a new one");
+    end = std::chrono::steady_clock::now() + left;
   }
+  hub().closeAt(session, end, net::CloseCode::kUnauthorized, "the token has expired: ask for a new one");
   const Admission admission = state.room->roster().arrive({.session = session,
                                                            .role = grant->role,
                                                            .name = hello.name,
@@ -153,9 +163,11 @@ void Gateway::hello(net::SessionId session, const Session& state, const stream::
   if (admission.displaced) {
     refuse(*admission.displaced, net::CloseCode::kResumedElsewhere, "another connection goes on in your place");
   }
+  std::shared_ptr<const RoomSnapshot> greeted;
   {
     const std::lock_guard lock(mutex_);
-    Session& kept = sessions_[session];
+    Session& kept = sessions_.at(session);
+    greeted = kept.greeted;
     kept.said_hello = true;
     kept.role = grant->role;
     kept.person_id = admission.person_id;
@@ -168,8 +180,11 @@ void Gateway::hello(net::SessionId session, const Session& state, const stream::
   welcome.set_resume_key(admission.resume_key);
   welcome.set_grace_s(std::chrono::duration<double>(state.room->roster().grace()).count());
   welcome.set_resumed(admission.resumed);
-  hub().sendControl(session, stream::welcome(welcome));
-  hub().sendControl(session, stream::people(state.room->roster().people()));
+  hub().sendAnswer(session, stream::welcome(welcome));
+  // From here on the room's news come, and frames once they are subscribed to. What changed since the greeting is told.
+  hub().join(session, state.room->name());
+  if (state.room->snapshot() != greeted) greet(session, *state.room);
+  hub().sendState(session, topic::kPeople, stream::people(state.room->roster().people()));
 }
 
 void Gateway::subscribe(net::SessionId session, const Session& state, const stream::Subscribe& subscribe) {
@@ -191,7 +206,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const stre
 
 void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
   spdlog::info("session {} gets level {} now", session, stream::nameOf(level));
-  hub().sendControl(session, stream::levelChanged(level));
+  hub().sendState(session, topic::kLevel, stream::levelChanged(level));
 }
 
 void Gateway::command(net::SessionId session, const Session& state, core::Command command) {
@@ -202,19 +217,33 @@ void Gateway::command(net::SessionId session, const Session& state, core::Comman
                                      .field = "",
                                      .message = "say hello before the first command"});
   }
+  if (!takeCommand(session)) {
+    return commandRejected(command,
+                           {.command_id = command.command_id,
+                            .reason = v1::REJECT_REASON_BUSY,
+                            .field = "",
+                            .message = fmt::format("more than {:g} commands a second after a burst of {:g}: slow down",
+                                                   options_.commands_per_s, options_.command_burst_count)});
+  }
   if (auto rejection = state.room->admit(command)) return commandRejected(command, *rejection);
+}
+
+bool Gateway::takeCommand(net::SessionId session) {
+  const std::lock_guard lock(mutex_);
+  const auto known = sessions_.find(session);
+  return known != sessions_.end() && known->second.commands.take(std::chrono::steady_clock::now());
 }
 
 void Gateway::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
   counters_.applied();
   if (command.sender.request_id != 0) return rest_.commandApplied(command, tick, boat_id);
-  hub().sendControl(command.sender.session_id, stream::ack(command.command_id, tick, boat_id));
+  hub().sendAnswer(command.sender.session_id, stream::ack(command.command_id, tick, boat_id));
 }
 
 void Gateway::commandRejected(const core::Command& command, const stream::CommandRejection& rejection) {
   counters_.rejected(rejection.reason);
   if (command.sender.request_id != 0) return rest_.commandRejected(command, rejection);
-  hub().sendControl(command.sender.session_id, stream::reject(rejection));
+  hub().sendAnswer(command.sender.session_id, stream::reject(rejection));
 }
 
 void Gateway::sessionClosed(net::SessionId session, const net::SessionEnd& end) {

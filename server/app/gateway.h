@@ -2,11 +2,13 @@
 // threads.
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include <spindrift/core/token_bucket.h>
 #include <spindrift/net/server.h>
 
 #include "access.h"
@@ -19,7 +21,11 @@ namespace spindrift::app {
 struct GatewayOptions {
   Access access;
   std::size_t message_max_bytes = 16 * 1024;  ///< as the network has it; told in greetings
-  double messages_per_s = 200.0;              ///< likewise
+  double messages_per_s = 500.0;              ///< likewise
+  double message_burst_count = 1000.0;        ///< likewise
+  double commands_per_s = 200.0;              ///< token bucket per session; commands beyond it are rejected as BUSY
+  double command_burst_count = 400.0;
+  std::chrono::milliseconds hello_patience{10'000};  ///< sessions without Hello are closed after it
 };
 
 class Gateway final : public net::Application, public RoomObserver {
@@ -43,17 +49,21 @@ class Gateway final : public net::Application, public RoomObserver {
  private:
   struct Session {
     std::shared_ptr<Room> room;
+    std::shared_ptr<const RoomSnapshot> greeted;  ///< what the last greeting described
+    core::TokenBucket commands;
     bool said_hello = false;
     core::Role role = core::Role::kViewer;
     std::uint32_t person_id = 0;
   };
 
   net::Hub& hub() { return *hub_; }
-  /// Sends a greeting and returns the state that it described.
-  std::shared_ptr<const RoomSnapshot> greet(net::SessionId session, const Room& room);
+  /// Sends a greeting with the room's state now, and notes that state.
+  void greet(net::SessionId session, const Room& room);
   void hello(net::SessionId session, const Session& state, const stream::Hello& hello);
   void subscribe(net::SessionId session, const Session& state, const stream::Subscribe& subscribe);
   void command(net::SessionId session, const Session& state, core::Command command);
+  /// Whether the session may send another command now.
+  bool takeCommand(net::SessionId session);
   void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
   /// Sends everybody away: the room closes.
   void dismiss(const Room& room);

@@ -63,6 +63,11 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
 
+  serve_command
+      ->add_option("--address-share", serve_options.address_session_share,
+                   "Share of the sessions that one address may hold; 1 behind a proxy")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   serve_command->add_option("--max-rooms", serve_options.max_room_count, "Rooms at most, those opened later included")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -32,16 +32,17 @@ core::Result<void> carryOut(Stage& stage, const v1::Record& record) {
 
 }  // namespace
 
-core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
+core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLogReader& log,
                                       const std::function<void(std::uint64_t)>& progress) {
   constexpr std::uint64_t kProgressInterval_ticks = 60;
   v1::Scene start = log.header().scene();
   stream::fillDefaults(start);
-  auto made = Stage::create(ctx, std::move(start));
-  if (!made) return made.error();
-  Stage& stage = **made;
+  auto water = Water::create(device, std::move(start));
+  if (!water) return water.error();
+  Stage stage(*std::move(water));
 
   ReplayOutcome out;
+  out.device = stage.device().name;
   std::uint64_t last_equal_tick = 0;
   while (const auto record = log.next()) {
     while (stage.tick() < record->tick() && !record->has_scene()) {
@@ -59,8 +60,10 @@ core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
         while (stage.tick() + 1 < record->tick()) stage.step();
         v1::Scene scene = record->scene();
         stream::fillDefaults(scene);
-        if (auto rejected = stage.replaceScene(std::move(scene)))
-          return Error{ErrorCode::kCheckFailed, rejected->message};
+        auto next = Water::create(device, std::move(scene));
+        if (!next) return next.error();
+        stage.replaceWater(*std::move(next)).reset();
+        stage.bind();  // the old water's end left no context current
         break;
       }
       case v1::Record::kStateHash: {

@@ -7,13 +7,14 @@
 #include <string>
 
 #include <spindrift/core/result.h>
-#include <spindrift/gpu/context.h>
+#include <spindrift/gpu/device.h>
 
 #include "command_log.h"
 
 namespace spindrift::app {
 
 struct ReplayOutcome {
+  std::string device;               ///< that it ran on now
   std::uint64_t tick_count = 0;     ///< the last record's tick
   std::uint64_t command_count = 0;  ///< carried out again
   std::uint64_t hash_count = 0;     ///< compared
@@ -31,7 +32,7 @@ struct ReplayOutcome {
 
 /// Errors: the scene's and the device's; kCheckFailed for a command that is not carried out as it was recorded.
 /// `progress` is called now and then with the tick.
-core::Result<ReplayOutcome> replayLog(gpu::Context& ctx, CommandLogReader& log,
+core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLogReader& log,
                                       const std::function<void(std::uint64_t)>& progress = {});
 
 }  // namespace spindrift::app

@@ -17,9 +17,11 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::duration;
 
-constexpr std::size_t kCommandQueueCount = 1024;
+/// Share of the wall time that heavy commands may take, and how much of it at once: ticks come first.
+constexpr double kHeavyShare = 0.25;
+constexpr auto kHeavyBurst = 30ms;
 /// A paused room still shows newcomers its water.
-constexpr auto kPausedFrameInterval = 500ms;
+constexpr auto kPausedFrameInterval = 250ms;
 /// A paused room's frame that found no free slot is asked for again.
 constexpr auto kDroppedFrameRetry = 10ms;
 /// While the device works on a frame, look for it this often.
@@ -45,13 +47,14 @@ std::array<bool, core::kLevelCount> watchedLevels(const net::Hub& hub, const std
 
 }  // namespace
 
-Room::Room(std::string name, const RoomRules& rules, std::unique_ptr<Stage> stage,
+Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, std::unique_ptr<Stage> stage,
            std::unique_ptr<CommandLogWriter> log)
     : name_(std::move(name)),
       rules_(rules),
+      builder_(builder),
       stage_(std::move(stage)),
       log_(std::move(log)),
-      commands_(kCommandQueueCount),
+      heavy_budget_(kHeavyShare, kHeavyBurst),
       roster_(rules.grace),
       clock_(stage_->water().derived().tick_s),
       boats_(stage_->boats()) {
@@ -60,23 +63,23 @@ Room::Room(std::string name, const RoomRules& rules, std::unique_ptr<Stage> stag
   publishVitals({});
 }
 
-core::Result<std::shared_ptr<Room>> Room::create(gpu::Context& ctx, RoomSetup setup, const RoomRules& rules) {
-  auto stage = Stage::create(ctx, std::move(setup.scene));
-  if (!stage) return core::Error{stage.error().code, "room " + setup.name + ": " + stage.error().message};
+core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
+                                                 WaterBuilder& builder) {
+  auto stage = std::make_unique<Stage>(std::move(water));
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty()) {
     v1::RecordHeader header;
     header.set_server("spindrift " SPINDRIFT_VERSION);
-    header.set_device(ctx.device().name);
-    header.set_room(setup.name);
-    *header.mutable_scene() = (*stage)->scene();
+    header.set_device(stage->device().name);
+    header.set_room(name);
+    *header.mutable_scene() = stage->scene();
     header.set_hash_interval_ticks(rules.hash_interval_ticks);
     auto opened = CommandLogWriter::create(rules.record_folder, header);
     if (!opened) return opened.error();
     log = *std::move(opened);
-    spdlog::info("room {}: recorded to {}", setup.name, log->file().string());
+    spdlog::info("room {}: recorded to {}", name, log->file().string());
   }
-  return std::shared_ptr<Room>(new Room(std::move(setup.name), rules, *std::move(stage), std::move(log)));
+  return std::shared_ptr<Room>(new Room(std::move(name), rules, builder, std::move(stage), std::move(log)));
 }
 
 bool isRoomName(const std::string& name) {
@@ -133,13 +136,16 @@ Room::TimePoint Room::due(TimePoint now) const {
 }
 
 void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
+  stage_->bind();
+  adoptScene(observer);
   const bool stands_still = paused_ || asleep_;
   if (!stands_still) unpaused_wall_s_ += duration<double>(now - last_run_).count();
   last_run_ = now;
   handOverFrames(encoder);
   watchOverSleep(now, hub);
   settlePeople(now, hub);
-  if (paused_ || asleep_ || now >= clock_.due()) applyCommands(hub, observer);
+  if (paused_ || asleep_ || now >= clock_.due()) applyCommands(now);
+  announce(hub, observer);
   if (paused_) {
     advancePaused(now, hub);
   } else if (!asleep_ && now >= clock_.due()) {

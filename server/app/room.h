@@ -5,13 +5,14 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <spindrift/core/bounded_queue.h>
 #include <spindrift/core/command.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
@@ -20,12 +21,15 @@
 #include <spindrift/v1/scene.pb.h>
 
 #include "command_log.h"
+#include "command_queue.h"
 #include "encoder_thread.h"
 #include "growth_news.h"
 #include "real_time_clock.h"
 #include "roster.h"
 #include "scene_catalog.h"
 #include "stage.h"
+#include "water_builder.h"
+#include "work_budget.h"
 
 namespace spindrift::app {
 
@@ -82,9 +86,10 @@ class Room {
  public:
   using TimePoint = RealTimeClock::TimePoint;
 
-  /// The simulation is warm when this returns: every shader was compiled, and time stands at the start. The context
-  /// lives until releaseDevice().
-  static core::Result<std::shared_ptr<Room>> create(gpu::Context& ctx, RoomSetup setup, const RoomRules& rules);
+  /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes what
+  /// the room changes to, and outlives it. Errors: those of the log.
+  static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
+                                                    const RoomRules& rules, WaterBuilder& builder);
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -111,15 +116,35 @@ class Room {
   [[nodiscard]] std::uint64_t tick() const { return stage_->tick(); }
   /// Tells whoever still waits for an answer that there will be none.
   void abandonCommands(RoomObserver& observer);
-  /// Ends the simulation while the context still lives; only the any-thread functions may be called afterwards.
+  /// Ends the simulation; only the any-thread functions may be called afterwards.
   void releaseDevice() { stage_.reset(); }
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
   [[nodiscard]] std::uint64_t droppedFrameCount() const { return dropped_frames_; }
 
  private:
   using Outcome = Stage::Outcome;
+  using Batch = CommandQueue::Batch;
+  /// What became of a command; sent when everybody knows the state that it made.
+  struct Answer {
+    core::Command command;
+    Outcome rejected;
+    std::uint32_t boat_id = 0;
+  };
+  /// What people have yet to be told about.
+  struct News {
+    bool state = false;
+    bool boats = false;
+    bool reset = false;
+    std::map<std::string, double> parameters;  ///< by path, as they are now
+  };
+  /// A change of scene under way: the water is built beside the running one.
+  struct SceneBuild {
+    Batch commands;
+    std::future<WaterBuilder::Built> water;
+  };
 
-  Room(std::string name, const RoomRules& rules, std::unique_ptr<Stage> stage, std::unique_ptr<CommandLogWriter> log);
+  Room(std::string name, const RoomRules& rules, WaterBuilder& builder, std::unique_ptr<Stage> stage,
+       std::unique_ptr<CommandLogWriter> log);
 
   void step(TimePoint now, net::Hub& hub);
   void watchOverSleep(TimePoint now, const net::Hub& hub);
@@ -127,26 +152,39 @@ class Room {
   void advancePaused(TimePoint now, net::Hub& hub);
 
   // room_commands.cpp
-  void applyCommands(net::Hub& hub, RoomObserver& observer);
-  Outcome apply(const core::Command& command, net::Hub& hub, RoomObserver& observer);
+  void applyCommands(TimePoint now);
+  /// One or more commands by one piece of work.
+  void apply(Batch batch);
+  Outcome apply(const core::Command& command);
   /// The stage's part of a command, and its line in the log.
   Outcome applyToWater(const core::Command& command);
-  Outcome setParameter(const core::Command& command, const core::SetParameter& change, net::Hub& hub);
-  Outcome reset(const core::Command& command, net::Hub& hub);
-  Outcome spawnBoat(const core::Command& command, net::Hub& hub);
+  Outcome setParameter(const core::Command& command, const core::SetParameter& change);
+  Outcome reset(const core::Command& command);
+  Outcome spawnBoat(const core::Command& command);
   Outcome controlBoat(const core::Command& command, std::uint32_t boat_id);
-  Outcome removeBoat(const core::Command& command, std::uint32_t boat_id, net::Hub& hub);
+  Outcome removeBoat(const core::Command& command, std::uint32_t boat_id);
   Outcome takeBoat(const core::Sender& sender, std::uint32_t boat_id);
-  Outcome setPaused(bool paused, net::Hub& hub);
+  Outcome setPaused(bool paused);
   Outcome advance(const core::Step& step);
-  Outcome changeScene(const core::ChangeScene& change, RoomObserver& observer);
+  /// Notes what became of each command.
+  void answer(Batch batch, const Outcome& outcome);
+  /// Tells everybody what is new, then the senders what became of their commands.
+  void announce(net::Hub& hub, RoomObserver& observer);
   /// Boats whose people went away stop; news of people go out.
   void settlePeople(TimePoint now, net::Hub& hub);
-  void announceState(net::Hub& hub);
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const;
-  /// Where the boats on the water are others than those announced last.
+  /// Boats came or went: owners of those that are gone have them no more, and people are told.
+  void boatsChanged();
+  /// The boats on the water, if they are others than those announced last.
   void announceBoats(net::Hub& hub);
   void announceRecovery(TimePoint now, net::Hub& hub);
+
+  // room_scene.cpp
+  void beginScene(Batch batch);
+  /// Goes on with the scene that was built, if it is there.
+  void adoptScene(RoomObserver& observer);
+  /// Forgets what belonged to the scene before.
+  void restartScene(RoomObserver& observer);
 
   void requestFrame(TimePoint now, net::Hub& hub);
   /// Whether the next frame holds the level: all do while the room is paused, then every so many.
@@ -160,9 +198,14 @@ class Room {
 
   const std::string name_;
   const RoomRules& rules_;
+  WaterBuilder& builder_;
   std::unique_ptr<Stage> stage_;
   std::unique_ptr<CommandLogWriter> log_;  ///< null: no log
-  core::BoundedQueue<core::Command> commands_;
+  CommandQueue commands_;
+  WorkBudget heavy_budget_;
+  std::vector<Answer> answers_;  ///< since the last announce()
+  News news_;
+  std::optional<SceneBuild> scene_build_;
   Roster roster_;
   RealTimeClock clock_;
   bool paused_ = false;

@@ -1,5 +1,10 @@
-// What a room does with each command. Every command gets one answer; news go to everybody in the room.
+// What a room does with each command. Every command gets one answer; everybody in the room is told of what changed,
+// once per round, before the senders are answered.
+#include <algorithm>
+#include <iterator>
+#include <ranges>
 #include <set>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -11,6 +16,7 @@
 #include "access.h"
 #include "overloaded.h"
 #include "room.h"
+#include "state_topics.h"
 
 namespace spindrift::app {
 namespace {
@@ -19,8 +25,8 @@ using namespace std::chrono_literals;
 
 /// Ticks of Step that may wait: what one command may ask for.
 constexpr std::uint32_t kPendingTickMaxCount = 600;
-/// A new scene builds buffers and programs while every room of the thread waits.
-constexpr auto kSceneChangeInterval = 1s;
+/// Pieces of work that one round takes up; the rest waits for the next tick.
+constexpr int kRoundMaxCount = 256;
 /// A crowd that joins is announced in a few lists, not in one a head.
 constexpr auto kPeopleNewsInterval = 200ms;
 
@@ -43,52 +49,82 @@ std::optional<stream::CommandRejection> Room::admit(core::Command command) {
     refused = stream::checkAgainstScene(command, snapshot()->scene);
   }
   const std::uint64_t command_id = command.command_id;
-  if (!refused && !commands_.tryPush(std::move(command))) {
-    refused = rejection(v1::REJECT_REASON_BUSY, "", "the room's command queue is full: try again");
+  if (!refused) {
+    if (auto full = commands_.tryPush(std::move(command), std::chrono::steady_clock::now()))
+      refused = rejection(v1::REJECT_REASON_BUSY, "", *std::move(full));
   }
   if (refused) refused->command_id = command_id;
   return refused;
 }
 
-void Room::applyCommands(net::Hub& hub, RoomObserver& observer) {
-  for (const core::Command& command : commands_.drain()) {
-    if (auto rejected = apply(command, hub, observer)) {
-      rejected->command_id = command.command_id;
-      observer.commandRejected(command, *rejected);
-    } else {
-      const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
-      observer.commandApplied(command, tick(), is_spawn ? stage_->spawnedBoatId() : 0);
-    }
+void Room::applyCommands(TimePoint now) {
+  using Clock = std::chrono::steady_clock;
+  for (int k = 0; k < kRoundMaxCount; ++k) {
+    auto batch = commands_.next({.heavy = heavy_budget_.isOpen(now), .scene_change = !scene_build_});
+    if (!batch) break;
+    const bool is_heavy = isHeavy(batch->front().action);
+    const auto begin = Clock::now();
+    apply(*std::move(batch));
+    if (is_heavy) heavy_budget_.spend(Clock::now() - begin);
   }
+  answer(commands_.takeExpired(now),
+         rejection(v1::REJECT_REASON_BUSY, "",
+                   "the room is busy with resets, scenes and parameters of others: try again in a second"));
 }
 
 void Room::abandonCommands(RoomObserver& observer) {
-  for (const core::Command& command : commands_.drain()) {
-    stream::CommandRejection closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
-    closed.command_id = command.command_id;
-    observer.commandRejected(command, closed);
-  }
+  const auto closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
+  if (scene_build_) answer(std::move(scene_build_->commands), closed);
+  answer(commands_.drain(), closed);
+  for (Answer& one : std::exchange(answers_, {})) observer.commandRejected(one.command, *one.rejected);
 }
 
-Room::Outcome Room::apply(const core::Command& command, net::Hub& hub, RoomObserver& observer) {
+void Room::apply(Batch batch) {
+  if (std::holds_alternative<core::ChangeScene>(batch.front().action)) return beginScene(std::move(batch));
+  if (std::holds_alternative<core::Reset>(batch.front().action)) {
+    const Outcome outcome = apply(batch.front());
+    return answer(std::move(batch), outcome);
+  }
+  // Of values for one parameter only the last that the water takes matters: what it overwrites is not built first.
+  Batch overwritten;
+  std::vector<Answer> refused;
+  while (!batch.empty()) {
+    core::Command command = std::move(batch.back());
+    batch.pop_back();
+    Outcome outcome = apply(command);
+    const bool is_taken = !outcome;
+    const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
+    refused.push_back({std::move(command), std::move(outcome), is_taken && is_spawn ? stage_->spawnedBoatId() : 0});
+    if (is_taken) break;
+  }
+  answer(std::move(batch), {});
+  std::ranges::move(refused | std::views::reverse, std::back_inserter(answers_));
+}
+
+void Room::answer(Batch batch, const Outcome& outcome) {
+  for (core::Command& command : batch) answers_.push_back({std::move(command), outcome});
+}
+
+Room::Outcome Room::apply(const core::Command& command) {
   // Checked against the scene when it arrived; the scene may be another one since.
   if (auto rejected = stream::checkAgainstScene(command, stage_->scene())) return rejected;
   return std::visit(Overloaded{[&](const core::Splash&) { return applyToWater(command); },
                                [&](const core::BreakingWave&) { return applyToWater(command); },
-                               [&](const core::SetParameter& change) { return setParameter(command, change, hub); },
-                               [&](const core::Reset&) { return reset(command, hub); },
-                               [&](const core::SetPaused& pause) { return setPaused(pause.paused, hub); },
+                               [&](const core::SetParameter& change) { return setParameter(command, change); },
+                               [&](const core::Reset&) { return reset(command); },
+                               [&](const core::SetPaused& pause) { return setPaused(pause.paused); },
                                [&](const core::SetSpeed& speed) -> Outcome {
                                  clock_.setSpeed(speed.speed);
-                                 announceState(hub);
+                                 news_.state = true;
                                  return {};
                                },
-                               [&](const core::SpawnBoat&) { return spawnBoat(command, hub); },
+                               [&](const core::SpawnBoat&) { return spawnBoat(command); },
                                [&](const core::ControlBoat& control) { return controlBoat(command, control.boat_id); },
-                               [&](const core::RemoveBoat& remove) { return removeBoat(command, remove.boat_id, hub); },
+                               [&](const core::RemoveBoat& remove) { return removeBoat(command, remove.boat_id); },
                                [&](const core::TakeBoat& take) { return takeBoat(command.sender, take.boat_id); },
                                [&](const core::Step& step) { return advance(step); },
-                               [&](const core::ChangeScene& change) { return changeScene(change, observer); }},
+                               // Of a scene's own kind: beginScene().
+                               [&](const core::ChangeScene&) -> Outcome { return {}; }},
                     command.action);
 }
 
@@ -102,41 +138,40 @@ Room::Outcome Room::applyToWater(const core::Command& command) {
   return {};
 }
 
-Room::Outcome Room::setParameter(const core::Command& command, const core::SetParameter& change, net::Hub& hub) {
+Room::Outcome Room::setParameter(const core::Command& command, const core::SetParameter& change) {
   if (auto rejected = applyToWater(command)) return rejected;
-  publishSnapshot();
-  hub.broadcastControl(name_, stream::parameterChanged(change.path, change.value, tick()));
+  news_.parameters[change.path] = change.value;
   return {};
 }
 
-Room::Outcome Room::reset(const core::Command& command, net::Hub& hub) {
+Room::Outcome Room::reset(const core::Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
   next_frame_s_ = 0.0;
   next_idle_frame_ = {};
   pending_tick_count_ = 0;
-  hub.broadcastControl(name_, stream::roomEvent(v1::ROOM_EVENT_KIND_RESET, tick(), "somebody started the scene again"));
-  announceBoats(hub);
+  news_.reset = true;
+  boatsChanged();
   return {};
 }
 
-Room::Outcome Room::setPaused(bool paused, net::Hub& hub) {
+Room::Outcome Room::setPaused(bool paused) {
   if (paused_ && !paused) clock_.restart(std::chrono::steady_clock::now());
   paused_ = paused;
   pending_tick_count_ = 0;
-  announceState(hub);
+  news_.state = true;
   return {};
 }
 
 // Boats
 
-Room::Outcome Room::spawnBoat(const core::Command& command, net::Hub& hub) {
+Room::Outcome Room::spawnBoat(const core::Command& command) {
   const core::Sender& sender = command.sender;
   if (sender.role < core::Role::kOperator && roster_.hasBoat(sender.person_id)) {
     return rejection(v1::REJECT_REASON_HAS_BOAT, "spawn_boat", "you have a boat: remove it before you launch another");
   }
   if (auto rejected = applyToWater(command)) return rejected;
+  boatsChanged();
   roster_.give(stage_->spawnedBoatId(), sender.person_id);
-  announceBoats(hub);
   return {};
 }
 
@@ -150,14 +185,14 @@ Room::Outcome Room::controlBoat(const core::Command& command, std::uint32_t boat
   return applyToWater(command);
 }
 
-Room::Outcome Room::removeBoat(const core::Command& command, std::uint32_t boat_id, net::Hub& hub) {
+Room::Outcome Room::removeBoat(const core::Command& command, std::uint32_t boat_id) {
   const std::uint32_t owner_id = roster_.ownerOf(boat_id);
   const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
   if (!is_own && command.sender.role < core::Role::kOperator && isOnTheWater(boat_id)) {
     return notYours("remove_boat.boat_id", boat_id, owner_id);
   }
   if (auto rejected = applyToWater(command)) return rejected;
-  announceBoats(hub);
+  boatsChanged();
   return {};
 }
 
@@ -181,10 +216,15 @@ Room::Outcome Room::takeBoat(const core::Sender& sender, std::uint32_t boat_id) 
 }
 
 bool Room::isOnTheWater(std::uint32_t boat_id) const {
-  for (const v1::BoatInfo& boat : boats_.boats()) {
-    if (boat.boat_id() == boat_id) return true;
-  }
-  return false;
+  return std::ranges::any_of(stage_->water().boats(),
+                             [boat_id](const sim::BoatRecord& boat) { return boat.boat_id == boat_id; });
+}
+
+void Room::boatsChanged() {
+  std::set<std::uint32_t> boat_ids;
+  for (const sim::BoatRecord& boat : stage_->water().boats()) boat_ids.insert(boat.boat_id);
+  roster_.keepOnly(boat_ids);
+  news_.boats = true;
 }
 
 void Room::settlePeople(TimePoint now, net::Hub& hub) {
@@ -196,10 +236,10 @@ void Room::settlePeople(TimePoint now, net::Hub& hub) {
   if (!has_people_news_ || now < next_people_news_) return;
   has_people_news_ = false;
   next_people_news_ = now + kPeopleNewsInterval;
-  hub.broadcastControl(name_, stream::people(roster_.people()));
+  hub.broadcastState(name_, topic::kPeople, stream::people(roster_.people()));
 }
 
-// Time and scenes
+// Time
 
 Room::Outcome Room::advance(const core::Step& step) {
   if (!paused_) {
@@ -214,75 +254,45 @@ Room::Outcome Room::advance(const core::Step& step) {
   return {};
 }
 
-Room::Outcome Room::changeScene(const core::ChangeScene& change, RoomObserver& observer) {
-  const char* const kField = "change_scene.name";
-  const auto now = std::chrono::steady_clock::now();
-  if (!rules_.scenes.has(change.name)) {
-    return rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField,
-                     "there is no scene '" + change.name + "'; the greeting lists what there is");
-  }
-  if (now < next_scene_change_) {
-    return rejection(v1::REJECT_REASON_BUSY, kField, "the scene was changed a moment ago; try again in a second");
-  }
-  auto scene = rules_.scenes.load(change.name);
-  if (!scene) return rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField, firstLine(scene.error().message));
-  if (auto rejected = stage_->replaceScene(*std::move(scene))) return rejected;
-  if (log_) {
-    v1::Record line;
-    *line.mutable_scene() = stage_->scene();
-    record(std::move(line));
-  }
-  const double speed = clock_.speed();
-  clock_ = RealTimeClock(stage_->water().derived().tick_s);
-  clock_.setSpeed(speed);
-  const auto ready = std::chrono::steady_clock::now();
-  clock_.restart(ready);
-  last_run_ = last_watched_ = ready;
-  asleep_ = false;
-  next_scene_change_ = ready + kSceneChangeInterval;
-  next_frame_s_ = 0.0;
-  next_idle_frame_ = {};
-  pending_tick_count_ = 0;
-  frames_in_flight_ = 0;
-  wants_diagnostics_ = false;
-  step_ms_sum_ = last_step_ms_ = 0.0;
-  step_count_ = 0;
-  last_passes_.clear();
-  slow_since_ = {};
-  recovery_news_.restart(stage_->water().recoveredCount());
-  logged_recovery_count_ = stage_->water().recoveredCount();
-  boats_ = stage_->boats();
-  roster_.keepOnly({});  // the new scene's boats are nobody's yet, whatever their numbers
-  publishSnapshot();
-  spdlog::info("room {}: scene {}", name_, stage_->scene().name());
-  observer.sceneChanged(*this);
-  return {};
-}
+// News
 
-void Room::announceState(net::Hub& hub) {
-  publishSnapshot();
-  hub.broadcastControl(name_, stream::roomState(paused_, clock_.speed()));
+void Room::announce(net::Hub& hub, RoomObserver& observer) {
+  const News news = std::exchange(news_, {});
+  if (news.state || !news.parameters.empty()) publishSnapshot();
+  if (news.state) hub.broadcastState(name_, topic::kRoomState, stream::roomState(paused_, clock_.speed()));
+  for (const auto& [path, value] : news.parameters)
+    hub.broadcastState(name_, topic::ofParameter(path), stream::parameterChanged(path, value, tick()));
+  if (news.reset) {
+    hub.broadcastState(name_, topic::kReset,
+                       stream::roomEvent(v1::ROOM_EVENT_KIND_RESET, tick(), "somebody started the scene again"));
+  }
+  if (news.boats) announceBoats(hub);
+  for (Answer& one : std::exchange(answers_, {})) {
+    if (one.rejected) {
+      one.rejected->command_id = one.command.command_id;
+      observer.commandRejected(one.command, *one.rejected);
+    } else {
+      observer.commandApplied(one.command, tick(), one.boat_id);
+    }
+  }
 }
 
 void Room::announceBoats(net::Hub& hub) {
   const std::string before = boats_.SerializeAsString();
   boats_ = stage_->boats();
   if (boats_.SerializeAsString() == before) return;
-  std::set<std::uint32_t> boat_ids;
-  for (const v1::BoatInfo& boat : boats_.boats()) boat_ids.insert(boat.boat_id());
-  roster_.keepOnly(boat_ids);
   publishSnapshot();
-  hub.broadcastControl(name_, stream::boatList(boats_));
+  hub.broadcastState(name_, topic::kBoats, stream::boatList(boats_));
 }
 
 void Room::announceRecovery(TimePoint now, net::Hub& hub) {
   const std::uint64_t count = stage_->water().recoveredCount();
   if (!recovery_news_.tell(count, now)) return;
-  hub.broadcastControl(
-      name_,
+  hub.broadcastState(
+      name_, topic::kRecovered,
       stream::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
                         fmt::format("the guard put the water back to its last good state ({} times so far)", count)));
-  announceBoats(hub);
+  boatsChanged();
 }
 
 }  // namespace spindrift::app

@@ -1,6 +1,7 @@
 #include "simulation_thread.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,15 +22,19 @@ core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gp
   auto self = std::unique_ptr<SimulationThread>(new SimulationThread);
   self->rules_ = std::move(rules);
   self->max_room_count_ = std::max(max_room_count, setups.size());
+  self->builder_ = std::make_unique<WaterBuilder>(device, [raw = self.get()] {
+    {
+      const std::lock_guard lock(raw->mutex_);
+      raw->was_built_ = true;
+    }
+    raw->wake_.notify_one();
+  });
   std::promise<core::Result<void>> built;
   auto outcome = built.get_future();
-  self->thread_ = std::thread([raw = self.get(), device, &built, setups = std::move(setups)]() mutable {
-    auto result = raw->build(device, std::move(setups));
+  self->thread_ = std::thread([raw = self.get(), &built, setups = std::move(setups)]() mutable {
+    auto result = raw->build(std::move(setups));
     const bool ok = static_cast<bool>(result);
-    if (!ok) {
-      raw->rooms_.clear();
-      raw->context_.reset();
-    }
+    if (!ok) raw->rooms_.clear();
     built.set_value(std::move(result));
     if (ok) raw->loop();
   });
@@ -45,13 +50,10 @@ SimulationThread::~SimulationThread() {
   stop();
 }
 
-core::Result<void> SimulationThread::build(const gpu::DeviceChoice& device, std::vector<RoomSetup> setups) {
-  auto context = gpu::Context::create(device);
-  if (!context) return context.error();
-  context_ = *std::move(context);
-  device_line_ = context_->device().name;
+core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
   for (RoomSetup& setup : setups) {
-    if (auto opened = open(std::move(setup)); !opened) return opened.error();
+    auto water = builder_->build(std::move(setup.scene)).get();
+    if (auto added = add(std::move(setup.name), std::move(water)); !added) return added.error();
   }
   return {};
 }
@@ -98,7 +100,8 @@ void SimulationThread::openRoom(RoomSetup setup, Done done) {
   auto shared = std::make_shared<RoomSetup>(std::move(setup));
   carryOut(
       [this, shared, done](bool runs) {
-        done(runs ? open(std::move(*shared)) : Error{ErrorCode::kUnavailable, "the server shuts down"});
+        if (runs) return open(std::move(*shared), done);
+        done(Error{ErrorCode::kUnavailable, "the server shuts down"});
       },
       done);
 }
@@ -123,17 +126,38 @@ void SimulationThread::carryOut(Change change, const Done& done) {
   done(Error{ErrorCode::kUnavailable, "too many rooms are being opened or closed: try again"});
 }
 
-core::Result<void> SimulationThread::open(RoomSetup setup) {
-  if (rooms().size() >= max_room_count_) {
-    return Error{ErrorCode::kUnavailable,
-                 fmt::format("there are {} rooms, as many as may be: close one, or start the server with more "
-                             "--max-rooms",
-                             max_room_count_)};
+void SimulationThread::open(RoomSetup setup, Done done) {
+  if (rooms().size() + openings_.size() >= max_room_count_) {
+    return done(Error{ErrorCode::kUnavailable,
+                      fmt::format("there are {} rooms, as many as may be: close one, or start the server with more "
+                                  "--max-rooms",
+                                  max_room_count_)});
   }
-  if (!rooms().empty() && find(setup.name)) {
-    return Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"};
+  if (find(setup.name) || std::ranges::any_of(openings_, [&](const auto& one) { return one.name == setup.name; })) {
+    return done(Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"});
   }
-  auto room = Room::create(*context_, std::move(setup), rules_);
+  openings_.push_back({std::move(setup.name), builder_->build(std::move(setup.scene)), std::move(done)});
+}
+
+void SimulationThread::finishOpenings() {
+  const auto is_ready = [](const Opening& opening) {
+    return opening.water.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  };
+  for (auto opening = openings_.begin(); opening != openings_.end();) {
+    if (!is_ready(*opening)) {
+      ++opening;
+      continue;
+    }
+    opening->done(add(std::move(opening->name), opening->water.get()));
+    opening = openings_.erase(opening);
+  }
+}
+
+core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water) {
+  if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
+  (*water)->bind();
+  if (device_line_.empty()) device_line_ = (*water)->context().device().name;
+  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_);
   if (!room) return room.error();
   (*room)->start(std::chrono::steady_clock::now());
   const std::lock_guard lock(rooms_mutex_);
@@ -176,6 +200,7 @@ void SimulationThread::loop() {
     const auto changes = std::exchange(changes_, {});
     lock.unlock();
     for (const Change& change : changes) change(true);
+    finishOpenings();
     auto due = Clock::now() + std::chrono::milliseconds(100);
     for (const auto& room : rooms_) {
       room->run(Clock::now(), *hub_, *encoder_, *observer_);
@@ -183,16 +208,17 @@ void SimulationThread::loop() {
     const auto now = Clock::now();
     for (const auto& room : rooms_) due = std::min(due, room->due(now));
     lock.lock();
-    wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty(); });
+    wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty() || std::exchange(was_built_, false); });
   }
   const auto changes = std::exchange(changes_, {});
   lock.unlock();
   for (const Change& change : changes) change(false);
+  for (Opening& opening : std::exchange(openings_, {}))
+    opening.done(Error{ErrorCode::kUnavailable, "the server shuts down"});
   for (const auto& room : rooms_) {
     summarise(*room);
     room->releaseDevice();
   }
-  context_.reset();
 }
 
 }  // namespace spindrift::app

@@ -1,5 +1,5 @@
-// The thread that owns the GL context and every room. Rooms open and close while it runs; others reach them through
-// shared pointers and use only their any-thread functions.
+// The thread that runs every room. Rooms open and close meanwhile, their water is built by another thread; others reach
+// them through shared pointers and use only their any-thread functions.
 #pragma once
 
 #include <condition_variable>
@@ -18,12 +18,13 @@
 
 #include "encoder_thread.h"
 #include "room.h"
+#include "water_builder.h"
 
 namespace spindrift::app {
 
 class SimulationThread {
  public:
-  /// Makes the context and the rooms on the new thread and waits for that; errors are the device's and the rooms'.
+  /// Makes the rooms and waits for that; errors are the device's and the rooms'.
   static core::Result<std::unique_ptr<SimulationThread>> start(const gpu::DeviceChoice& device,
                                                                std::vector<RoomSetup> setups, RoomRules rules = {},
                                                                std::size_t max_room_count = 8);
@@ -43,7 +44,7 @@ class SimulationThread {
 
   /// Called on this thread when a room was opened or closed, or could not be.
   using Done = std::function<void(core::Result<void>)>;
-  /// Opens a room between two ticks; all rooms wait while its shaders are compiled. Errors: kInvalidInput for a name
+  /// Opens a room, whose water is built beside the running ones. Errors: kInvalidInput for a name
   /// that is taken, kUnavailable when there are as many as may be or too many changes wait, else the scene's.
   void openRoom(RoomSetup setup, Done done);
   /// Closes a room: `before` is called first, on this thread, with the room still there. Errors: kInvalidInput for a
@@ -64,17 +65,29 @@ class SimulationThread {
   /// Carried out by the thread between two rounds; called with false when it never will be.
   using Change = std::function<void(bool runs)>;
 
+  /// A room whose water is being built.
+  struct Opening {
+    std::string name;
+    std::future<WaterBuilder::Built> water;
+    Done done;
+  };
+
   SimulationThread() = default;
-  core::Result<void> build(const gpu::DeviceChoice& device, std::vector<RoomSetup> setups);
+  core::Result<void> build(std::vector<RoomSetup> setups);
   void loop();
   void carryOut(Change change, const Done& done);
-  core::Result<void> open(RoomSetup setup);
+  /// Begins to open a room; `done` may be called at once, with an error.
+  void open(RoomSetup setup, Done done);
+  /// Finishes the openings whose water is there.
+  void finishOpenings();
+  core::Result<void> add(std::string name, WaterBuilder::Built water);
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void summarise(const Room& room);
 
   RoomRules rules_;
   std::size_t max_room_count_ = 0;
-  std::unique_ptr<gpu::Context> context_;
+  std::unique_ptr<WaterBuilder> builder_;
+  std::vector<Opening> openings_;  ///< of the thread
   mutable std::mutex rooms_mutex_;
   std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;
@@ -86,6 +99,7 @@ class SimulationThread {
   std::condition_variable wake_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};
+  bool was_built_ = false;  ///< the builder has finished something since the last round
   bool stopping_ = false;
   std::thread thread_;
 };

@@ -11,7 +11,9 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
   self->gateway_ = std::make_unique<Gateway>(*self->simulation_,
                                              GatewayOptions{.access = std::move(options.access),
                                                             .message_max_bytes = options.network.read_message_max_bytes,
-                                                            .messages_per_s = options.network.messages_per_s},
+                                                            .messages_per_s = options.network.messages_per_s,
+                                                            .message_burst_count = options.network.message_burst_count,
+                                                            .hello_patience = options.hello_patience},
                                              self->sources_);
   auto network = net::Server::start(options.network, *self->gateway_);
   if (!network) return network.error();
@@ -30,8 +32,8 @@ WaterServer::~WaterServer() {
 
 void WaterServer::stop() {
   if (network_) network_->stop();
+  if (encoder_) encoder_->stop();  // lets go of the frames before their devices end
   if (simulation_) simulation_->stop();
-  if (encoder_) encoder_->stop();
 }
 
 }  // namespace spindrift::app

@@ -1,6 +1,7 @@
 // A whole server in one object: simulation, encoder, network, in the order they start and the reverse they stop.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct WaterServerOptions {
   RoomRules rules;               ///< what they have in common
   std::size_t max_room_count = 8;
   Access access;
+  std::chrono::milliseconds hello_patience{10'000};  ///< sessions that do not say Hello are closed after it
 };
 
 class WaterServer {

@@ -8,7 +8,10 @@ AddressLimits::AddressLimits(const ServerOptions& options)
     : requests_per_s_(options.address_requests_per_s),
       request_burst_count_(options.address_request_burst_count),
       messages_per_s_(options.address_messages_per_s),
-      message_burst_count_(options.address_message_burst_count) {}
+      message_burst_count_(options.address_message_burst_count),
+      session_max_count_(std::max<std::size_t>(
+          1,
+          static_cast<std::size_t>(options.address_session_share * static_cast<double>(options.max_session_count)))) {}
 
 bool AddressLimits::takeRequest(const std::string& address, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
@@ -23,6 +26,20 @@ Clock::duration AddressLimits::reserveMessage(const std::string& address, Clock:
 std::size_t AddressLimits::addressCount() const {
   const std::lock_guard lock(mutex_);
   return accounts_.size();
+}
+
+bool AddressLimits::takeSession(const std::string& address) {
+  const std::lock_guard lock(mutex_);
+  std::size_t& count = session_counts_[address];
+  if (count >= session_max_count_) return false;
+  ++count;
+  return true;
+}
+
+void AddressLimits::releaseSession(const std::string& address) {
+  const std::lock_guard lock(mutex_);
+  const auto found = session_counts_.find(address);
+  if (found != session_counts_.end() && --found->second == 0) session_counts_.erase(found);
 }
 
 AddressLimits::Account& AddressLimits::account(const std::string& address, Clock::time_point now) {

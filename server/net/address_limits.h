@@ -26,6 +26,12 @@ class AddressLimits {
   Clock::duration reserveMessage(const std::string& address, Clock::time_point now);
   std::size_t addressCount() const;
 
+  /// Sessions that one address may hold at a time.
+  [[nodiscard]] std::size_t sessionMaxCount() const { return session_max_count_; }
+  /// Counts one more session of this address, or says no. Each yes is to be given back with releaseSession().
+  bool takeSession(const std::string& address);
+  void releaseSession(const std::string& address);
+
  private:
   struct Account {
     TokenBucket requests;
@@ -38,8 +44,10 @@ class AddressLimits {
   const double request_burst_count_;
   const double messages_per_s_;
   const double message_burst_count_;
+  const std::size_t session_max_count_;
   mutable std::mutex mutex_;
   std::unordered_map<std::string, Account> accounts_;
+  std::unordered_map<std::string, std::size_t> session_counts_;  ///< open ones; bounded by max_session_count
 };
 
 }  // namespace spindrift::net

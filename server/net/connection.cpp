@@ -256,21 +256,34 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
   // Reserved before the handshake, so that a crowd of handshakes cannot pass the bound together.
   struct Place {
     ServerContext& context;
-    const bool granted;
-    explicit Place(ServerContext& shared)
-        : context(shared), granted(++shared.reserved_session_count <= shared.options.max_session_count) {}
+    const std::string& address;
+    const bool is_free;      ///< the server has a place
+    const bool is_in_share;  ///< the address may have it
+    Place(ServerContext& shared, const std::string& of)
+        : context(shared),
+          address(of),
+          is_free(++shared.reserved_session_count <= shared.options.max_session_count),
+          is_in_share(is_free && shared.addresses.takeSession(of)) {}
     Place(const Place&) = delete;
     Place& operator=(const Place&) = delete;
-    ~Place() { --context.reserved_session_count; }
+    ~Place() {
+      if (is_in_share) context.addresses.releaseSession(address);
+      --context.reserved_session_count;
+    }
   };
-  const Place place(context_);
+  const Place place(context_, address_);
   UpgradeDecision decision;
-  if (place.granted) {
+  const std::string max_count = std::to_string(context_.options.max_session_count);
+  if (place.is_in_share) {
     decision = decideUpgrade(request, buffer_.size(), context_.application);
+  } else if (place.is_free) {
+    decision.why = Refused::kFull;
+    decision.refusal = textReply(503, "Your address has " + std::to_string(context_.addresses.sessionMaxCount()) +
+                                          " of this server's " + max_count +
+                                          " sessions open, as many as one address may: close one, or try again later.");
   } else {
     decision.why = Refused::kFull;
-    decision.refusal = textReply(503, "The server is full: " + std::to_string(context_.options.max_session_count) +
-                                          " sessions are open; try again later.");
+    decision.refusal = textReply(503, "The server is full: " + max_count + " sessions are open; try again later.");
   }
   if (decision.refusal) {
     context_.counters.refused(decision.why);

@@ -5,16 +5,36 @@
 
 namespace spindrift::net {
 
-Outbox::Outcome Outbox::pushControl(core::SharedBytes message) {
+Outbox::Outcome Outbox::pushAnswer(core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_) return {};
-  if (control_.size() >= control_queue_count_) {
+  if (answer_count_ >= answer_max_count_) {
     close_ = SessionEnd{static_cast<std::uint16_t>(CloseCode::kTryAgainLater),
-                        "more than " + std::to_string(control_queue_count_) + " control messages wait: read faster"};
+                        std::to_string(answer_max_count_) + " answers wait to be read: read faster"};
     for (Slot& slot : slots_) slot.frame.reset();
     return {.wake = takeWake(), .overflow = true};
   }
-  control_.push_back(std::move(message));
+  control_.push_back({std::move(message), std::nullopt});
+  ++answer_count_;
+  return {.wake = takeWake()};
+}
+
+Outbox::Outcome Outbox::pushState(const StateTopic& topic, core::SharedBytes message) {
+  using Scope = StateTopic::Scope;
+  const std::lock_guard lock(mutex_);
+  if (close_ || shut_) return {};
+  const auto is_replaced = [&](const Control& waiting) {
+    if (!waiting.topic) return false;
+    return waiting.topic->name == topic.name || (topic.scope == Scope::kWhole && waiting.topic->scope == Scope::kPart);
+  };
+  if (topic.scope == Scope::kWhole) whole_state_waits_ = true;
+  const auto place = std::ranges::find_if(control_, is_replaced);
+  if (place == control_.end()) {
+    control_.push_back({std::move(message), topic});
+  } else {
+    *place = {std::move(message), topic};
+    control_.erase(std::remove_if(std::next(place), control_.end(), is_replaced), control_.end());
+  }
   return {.wake = takeWake()};
 }
 
@@ -118,6 +138,8 @@ void Outbox::shut() {
   const std::lock_guard lock(mutex_);
   shut_ = true;
   control_.clear();
+  answer_count_ = 0;
+  whole_state_waits_ = false;
   for (Slot& slot : slots_) slot = {};
 }
 
@@ -126,25 +148,38 @@ Outbox::Next Outbox::next() {
   writer_sleeps_ = false;
   ++turn_count_;
   if (shut_) return {Kind::kShut, nullptr};
+  // A frame may describe the scene that a waiting greeting is about: it does not overtake it.
+  if (control_run_count_ >= kControlRunMaxCount && !whole_state_waits_ && !close_) {
+    if (auto frame = takeFrame()) return {Kind::kFrame, std::move(frame)};
+  }
   if (!control_.empty()) {
-    Next out{Kind::kControl, std::move(control_.front())};
+    const Control taken = std::move(control_.front());
     control_.pop_front();
-    return out;
+    ++control_run_count_;
+    if (!taken.topic) --answer_count_;
+    if (taken.topic && taken.topic->scope == StateTopic::Scope::kWhole) whole_state_waits_ = false;
+    return {Kind::kControl, taken.message};
   }
   if (close_) return {Kind::kClose, nullptr};
-  for (std::size_t k = 0; k < slots_.size(); ++k) {
-    const std::size_t layer = (turn_ + k) % slots_.size();
-    if (!slots_[layer].frame) continue;
-    turn_ = (layer + 1) % slots_.size();
-    return {Kind::kFrame, std::exchange(slots_[layer].frame, nullptr)};
-  }
+  if (auto frame = takeFrame()) return {Kind::kFrame, std::move(frame)};
   writer_sleeps_ = true;
   return {};
 }
 
+core::SharedBytes Outbox::takeFrame() {
+  for (std::size_t k = 0; k < slots_.size(); ++k) {
+    const std::size_t layer = (turn_ + k) % slots_.size();
+    if (!slots_[layer].frame) continue;
+    turn_ = (layer + 1) % slots_.size();
+    control_run_count_ = 0;
+    return std::exchange(slots_[layer].frame, nullptr);
+  }
+  return nullptr;
+}
+
 Outbox::Waiting Outbox::waiting() const {
   const std::lock_guard lock(mutex_);
-  Waiting out{.control_count = control_.size()};
+  Waiting out{.answer_count = answer_count_, .state_count = control_.size() - answer_count_};
   for (const Slot& slot : slots_) out.frame_count += slot.frame ? 1 : 0;
   return out;
 }

@@ -1,6 +1,6 @@
 // What waits to be sent to one session. Producers on any thread put messages in, the session's writer takes them out
-// one at a time. Bounded by construction: `control_queue_count` control messages and one frame per layer, whatever the
-// client does, and without a task queued per frame.
+// one at a time. Bounded by construction: `answer_max_count` answers, one message per state topic and one frame per
+// layer, whatever this client or another one does, and without a task queued per frame.
 #pragma once
 
 #include <array>
@@ -18,21 +18,31 @@
 
 namespace spindrift::net {
 
-/// Thread-safe. Two planes: control (ordered, never dropped) goes before data (newest frame per layer, layers in turn).
+/// Thread-safe. Two planes. Control goes first: answers are ordered and never dropped; state is coalesced by topic, and
+/// the newest message of a topic takes the place of the one that waits, so that a client never reads an answer before a
+/// state that is at least as new. Data: the newest frame per layer, layers in turn; a waiting frame goes out at the
+/// latest after kControlRunMaxCount control messages.
 class Outbox {
  public:
-  explicit Outbox(std::size_t control_queue_count) : control_queue_count_(control_queue_count) {}
+  explicit Outbox(std::size_t answer_max_count) : answer_max_count_(answer_max_count) {}
+
+  /// Control messages in a row while a frame waits.
+  static constexpr std::size_t kControlRunMaxCount = 8;
 
   /// What a producer has to do after a call.
   struct Outcome {
     bool wake = false;      ///< the writer sleeps: wake it
     bool dropped = false;   ///< an unsent older frame was replaced
-    bool overflow = false;  ///< the control queue was full: this call has asked for kTryAgainLater
+    bool overflow = false;  ///< too many answers waited: this call has asked for kTryAgainLater
   };
 
-  /// Appends to the control plane. A message that finds the queue full is lost, and the session with it: a close with
+  /// Appends an answer. One that finds `answer_max_count` waiting is lost, and the session with it: a close with
   /// kTryAgainLater follows what is queued. Ignored once a close was asked for.
-  Outcome pushControl(core::SharedBytes message);
+  Outcome pushAnswer(core::SharedBytes message);
+
+  /// Puts the state where the oldest waiting message is that it replaces, or at the end. Replaced are messages of the
+  /// same topic, by a topic with Scope::kWhole also all with Scope::kPart. Ignored once a close was asked for.
+  Outcome pushState(const StateTopic& topic, core::SharedBytes message);
 
   /// Puts the frame into its layer's slot if the session watches the layer and its rate allows: the continuing form if
   /// the client has what it builds on, else the whole one. Without a whole one an unsent older frame is dropped and the
@@ -76,7 +86,8 @@ class Outbox {
   Next next();
 
   struct Waiting {
-    std::size_t control_count = 0;
+    std::size_t answer_count = 0;
+    std::size_t state_count = 0;
     std::size_t frame_count = 0;
   };
   Waiting waiting() const;
@@ -106,9 +117,19 @@ class Outbox {
     std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost for want of a whole one
   };
 
-  const std::size_t control_queue_count_;
+  struct Control {
+    core::SharedBytes message;
+    std::optional<StateTopic> topic;  ///< empty: an answer
+  };
+  /// The frame of the layer whose turn it is; null if none waits.
+  core::SharedBytes takeFrame();
+
+  const std::size_t answer_max_count_;
   mutable std::mutex mutex_;
-  std::deque<core::SharedBytes> control_;
+  std::deque<Control> control_;
+  std::size_t answer_count_ = 0;       ///< in control_
+  bool whole_state_waits_ = false;     ///< in control_: a message with Scope::kWhole
+  std::size_t control_run_count_ = 0;  ///< control messages taken since the last frame
   std::array<Slot, kMaxLayerCount> slots_;
   LevelLadder ladder_;
   std::size_t turn_ = 0;          ///< the layer that is asked first

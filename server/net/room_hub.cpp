@@ -20,16 +20,22 @@ void RoomHub::remove(SessionId session) {
   members_.erase(found);
 }
 
-void RoomHub::sendControl(SessionId session, core::SharedBytes message) {
+void RoomHub::sendAnswer(SessionId session, core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
-  if (found != members_.end()) found->second.link->sendControl(std::move(message));
+  if (found != members_.end()) found->second.link->sendAnswer(std::move(message));
 }
 
-void RoomHub::broadcastControl(const std::string& room, core::SharedBytes message) {
+void RoomHub::sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) {
+  const std::lock_guard lock(mutex_);
+  const auto found = members_.find(session);
+  if (found != members_.end()) found->second.link->sendState(topic, std::move(message));
+}
+
+void RoomHub::broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
   for (const auto& [session, member] : members_) {
-    if (member.room == room) member.link->sendControl(message);
+    if (member.room == room) member.link->sendState(topic, message);
   }
 }
 
@@ -104,7 +110,8 @@ Outbox::Waiting RoomHub::waiting() const {
   Outbox::Waiting out;
   for (const auto& [session, member] : members_) {
     const Outbox::Waiting waits = member.link->waiting();
-    out.control_count += waits.control_count;
+    out.answer_count += waits.answer_count;
+    out.state_count += waits.state_count;
     out.frame_count += waits.frame_count;
   }
   return out;

@@ -20,7 +20,8 @@ namespace spindrift::net {
 class SessionLink {
  public:
   virtual ~SessionLink() = default;
-  virtual void sendControl(core::SharedBytes message) = 0;
+  virtual void sendAnswer(core::SharedBytes message) = 0;
+  virtual void sendState(const StateTopic& topic, core::SharedBytes message) = 0;
   virtual void offerFrame(LayerIndex layer, const LayerBytes& frame) = 0;
   virtual Outbox::Demand demand(LayerIndex layer, std::uint32_t reduced_count) const = 0;
   /// nullopt stops the layer.
@@ -39,8 +40,9 @@ class RoomHub final : public Hub {
   /// After this no call reaches the link.
   void remove(SessionId session);
 
-  void sendControl(SessionId session, core::SharedBytes message) override;
-  void broadcastControl(const std::string& room, core::SharedBytes message) override;
+  void sendAnswer(SessionId session, core::SharedBytes message) override;
+  void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) override;
+  void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) override;
   void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) override;
   LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const override;
   void join(SessionId session, const std::string& room) override;

@@ -160,7 +160,7 @@ ServerStats ServerImpl::stats() const {
                   .delayed_message_count = counters.delayed_message_count,
                   .closed_by_code = counters.closedByCode()};
   const Outbox::Waiting waiting = context_.hub.waiting();
-  out.waiting_control_count = waiting.control_count;
+  out.waiting_control_count = waiting.answer_count + waiting.state_count;
   out.waiting_frame_count = waiting.frame_count;
   for (std::size_t k = 0; k < kRefusedCount; ++k) out.refused_count[k] = counters.refused_count[k];
   return out;

@@ -31,6 +31,8 @@ constexpr std::uint16_t kProtocolError = 1002;
 /// 1011: our own failure. The peer did nothing wrong.
 constexpr const char* kInternalReason = "the server failed on this session; its log says why";
 
+constexpr const char* kTooManyMessages = "too many messages for too long: keep to Greeting.limits.messages_per_s";
+
 /// A close reason is at most 123 bytes (RFC 6455 section 5.5).
 websocket::close_reason closeFrame(const SessionEnd& end) {
   constexpr std::size_t kMaxReasonBytes = 123;
@@ -47,9 +49,10 @@ Session::Session(beast::tcp_stream stream, ServerContext& context)
       id_(++context.last_session_id),
       ws_(std::move(stream)),
       strand_(ws_.get_executor()),
-      outbox_(context.options.control_queue_count),
+      outbox_(context.options.answer_max_count),
       message_tokens_(context.options.messages_per_s, context.options.message_burst_count, Clock::now()),
       wake_timer_(strand_),
+      answers_timer_(strand_),
       stall_timer_(strand_),
       close_timer_(strand_),
       end_timer_(strand_),
@@ -113,7 +116,7 @@ void Session::configure(bool echo_subprotocol) {
       }
       armCloseDeadline();
     } else if (!message_tokens_.take(Clock::now())) {
-      close(CloseCode::kPolicy, "too many pings: slow down");
+      close(CloseCode::kPolicy, kTooManyMessages);
     }
   });
   ws_.next_layer().setFragmentHandler([this](std::uint64_t fragment_count) {
@@ -129,6 +132,8 @@ void Session::configure(bool echo_subprotocol) {
 
 asio::awaitable<void> Session::readLoop() {
   while (true) {
+    co_await waitUntilAnswersAreTaken();
+    if (outbox_.closing()) co_return;  // the writer's goodbye reads the rest
     const auto [error, bytes_count] = co_await ws_.async_read(read_buffer_, kToken);
     if (error) {
       if (error == websocket::error::closed) {
@@ -144,13 +149,13 @@ asio::awaitable<void> Session::readLoop() {
       wakeWriter();
       co_return;
     }
-    if (outbox_.closing()) co_return;  // the writer's goodbye reads the rest
+    if (outbox_.closing()) co_return;
     if (ws_.got_text()) {
       close(CloseCode::kUnsupportedData, "text messages are not understood: send binary ones");
       co_return;
     }
     if (!message_tokens_.take(Clock::now())) {
-      close(CloseCode::kPolicy, "too many messages: slow down");
+      close(CloseCode::kPolicy, kTooManyMessages);
       co_return;
     }
     // Everybody behind the address shares its rate; who comes too soon waits, and TCP holds back what follows.
@@ -166,6 +171,14 @@ asio::awaitable<void> Session::readLoop() {
   }
 }
 
+asio::awaitable<void> Session::waitUntilAnswersAreTaken() {
+  while (!outbox_.closing() && outbox_.waiting().answer_count >= context_.options.answer_pause_count) {
+    // The writer cancels it after each message; both run on the strand.
+    answers_timer_.expires_at(Clock::time_point::max());
+    (void)co_await answers_timer_.async_wait(kToken);
+  }
+}
+
 asio::awaitable<void> Session::writeLoop() {
   while (true) {
     Outbox::Next next = outbox_.next();
@@ -173,6 +186,7 @@ asio::awaitable<void> Session::writeLoop() {
       case Outbox::Kind::kShut:
         co_return;
       case Outbox::Kind::kClose:
+        answers_timer_.cancel();
         co_await sayGoodbye();
         co_return;
       case Outbox::Kind::kIdle:
@@ -186,8 +200,10 @@ asio::awaitable<void> Session::writeLoop() {
         if (!sent) {
           cut();
           outbox_.shut();
+          answers_timer_.cancel();
           co_return;
         }
+        answers_timer_.cancel();
         context_.counters.sent_bytes_count += next.message->size();
         if (next.kind == Outbox::Kind::kFrame) ++context_.counters.sent_frame_count;
         reviewLevel();
@@ -238,13 +254,17 @@ asio::awaitable<void> Session::sayGoodbye() {
   cut();
 }
 
-void Session::sendControl(core::SharedBytes message) {
-  const Outbox::Outcome outcome = outbox_.pushControl(std::move(message));
+void Session::sendAnswer(core::SharedBytes message) {
+  const Outbox::Outcome outcome = outbox_.pushAnswer(std::move(message));
   if (outcome.overflow) {
     ++context_.counters.evicted_session_count;
     asio::post(strand_, [self = shared_from_this()] { self->armCloseDeadline(); });
   }
   if (outcome.wake) wakeWriter();
+}
+
+void Session::sendState(const StateTopic& topic, core::SharedBytes message) {
+  if (outbox_.pushState(topic, std::move(message)).wake) wakeWriter();
 }
 
 void Session::offerFrame(LayerIndex layer, const LayerBytes& frame) {
@@ -273,7 +293,9 @@ void Session::close(CloseCode code, std::string reason) {
 
 void Session::closeAt(Clock::time_point when, CloseCode code, std::string reason) {
   asio::post(strand_, [self = shared_from_this(), when, code, reason = std::move(reason)]() mutable {
+    if (self->end_) return;  // over already; the timer would keep it alive
     self->end_timer_.expires_at(when);
+    if (when == Clock::time_point::max()) return;
     self->end_timer_.async_wait(
         [self, code, reason = std::move(reason)](const boost::system::error_code& error) mutable {
           if (!error) self->close(code, std::move(reason));

@@ -33,7 +33,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   boost::asio::awaitable<void> run(const UpgradeRequest& request, std::string room, std::string peer,
                                    std::string address, bool echo_subprotocol);
 
-  void sendControl(core::SharedBytes message) override;
+  void sendAnswer(core::SharedBytes message) override;
+  void sendState(const StateTopic& topic, core::SharedBytes message) override;
   void offerFrame(LayerIndex layer, const LayerBytes& frame) override;
   Outbox::Demand demand(LayerIndex layer, std::uint32_t reduced_count) const override;
   void setWatch(LayerIndex layer, const std::optional<Watch>& watch) override;
@@ -49,6 +50,9 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   void configure(bool echo_subprotocol);
   boost::asio::awaitable<void> readLoop();
   boost::asio::awaitable<void> writeLoop();
+  /// Returns once fewer than answer_pause_count answers wait, or the connection is gone: a client that does not read
+  /// what it asked for is not heard any further, and TCP holds back what follows.
+  boost::asio::awaitable<void> waitUntilAnswersAreTaken();
   /// One message; false if the connection is gone.
   boost::asio::awaitable<bool> write(const core::Bytes& message);
   /// After a message went out: whether the link carries what it is given.
@@ -75,6 +79,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   std::uint64_t untaken_fragment_count_ = 0;  ///< that no token was taken for yet
   boost::beast::flat_buffer read_buffer_;
   boost::asio::steady_timer wake_timer_;   ///< the writer sleeps on it
+  boost::asio::steady_timer answers_timer_;   ///< the reader sleeps on it; see waitUntilAnswersAreTaken()
   boost::asio::steady_timer stall_timer_;  ///< looks whether a write takes too long; see watchWrites()
   boost::asio::steady_timer close_timer_;
   boost::asio::steady_timer end_timer_;                                  ///< of closeAt()

@@ -48,7 +48,9 @@ std::vector<BoatRecord> WaterSim::boats() const {
 
 void WaterSim::numberBoatsFrom(std::uint32_t first_id) {
   first_boat_id_ = first_id;
-  if (parts_->boats) parts_->boats->numberFrom(first_id);
+  if (!parts_->boats) return;
+  parts_->boats->numberFrom(first_id);
+  parts_->boats->reset(scene_);
 }
 
 std::uint32_t WaterSim::nextBoatId() const {

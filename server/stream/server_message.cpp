@@ -24,9 +24,14 @@ core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene) {
   out.set_room(facts.room);
   out.set_session_id(facts.session_id);
   for (const v1::Layer layer : facts.layers) out.add_layers(layer);
-  out.mutable_limits()->set_message_max_bytes(facts.message_max_bytes);
-  out.mutable_limits()->set_commands_per_s(facts.commands_per_s);
-  out.mutable_limits()->set_frame_rate_max_hz(facts.frame_rate_max_hz);
+  v1::Limits& limits = *out.mutable_limits();
+  limits.set_message_max_bytes(facts.message_max_bytes);
+  limits.set_commands_per_s(facts.commands_per_s);
+  limits.set_command_burst_count(facts.command_burst_count);
+  limits.set_messages_per_s(facts.messages_per_s);
+  limits.set_message_burst_count(facts.message_burst_count);
+  limits.set_hello_within_s(facts.hello_within_s);
+  limits.set_frame_rate_max_hz(facts.frame_rate_max_hz);
   *out.mutable_scene() = scene;
   for (v1::ParameterDescription& description : describeParameters(scene)) {
     *out.add_parameters() = std::move(description);

@@ -85,7 +85,7 @@ class FakeGateway final : public net::Application {
     stream::GreetingFacts facts;
     facts.room = room;
     facts.session_id = session;
-    hub_->sendControl(session, stream::greeting(facts, scene_));
+    hub_->sendAnswer(session, stream::greeting(facts, scene_));
     hub_->join(session, room);  // afterwards, so that no news of the room comes before the greeting
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
@@ -100,11 +100,11 @@ class FakeGateway final : public net::Application {
                      .adapts = subscribe->adapts});
       }
     } else if (const auto* ping = std::get_if<stream::Ping>(&message)) {
-      hub_->sendControl(session, stream::pong(ping->client_time_s, 0.0));
+      hub_->sendAnswer(session, stream::pong(ping->client_time_s, 0.0));
     } else if (const auto* command = std::get_if<core::Command>(&message)) {
-      hub_->broadcastControl(kRooms[command->command_id % 2], stream::roomState(false, 1.0));
+      hub_->broadcastState(kRooms[command->command_id % 2], {.name = "room_state"}, stream::roomState(false, 1.0));
       if (std::holds_alternative<core::Reset>(command->action)) hub_->join(session, kRooms[1]);
-      hub_->sendControl(session, stream::ack(command->command_id, 0));
+      hub_->sendAnswer(session, stream::ack(command->command_id, 0));
     }
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }

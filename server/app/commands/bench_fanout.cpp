@@ -64,7 +64,7 @@ class EchoApplication final : public net::Application {
     std::uint64_t number = 0;
     if (bytes.size() != 1 + sizeof number || bytes[0] != 'c') return;
     std::memcpy(&number, bytes.data() + 1, sizeof number);
-    hub_->sendControl(session, message('a', number));
+    hub_->sendAnswer(session, message('a', number));
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override {}
   void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }

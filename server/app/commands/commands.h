@@ -19,6 +19,7 @@ struct ServeOptions {
   std::string device = "auto";
   std::string web_root;  ///< empty: found beside the program
   std::size_t thread_count = 1;
+  double address_session_share = 0.5;  ///< share of the sessions that one address may hold
   std::size_t max_room_count = 8;
   std::string token_file;            ///< empty: the environment's SPINDRIFT_TOKENS, if it is set
   std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with

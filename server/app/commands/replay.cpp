@@ -55,19 +55,17 @@ int replay(const ReplayOptions& options) {
   if (!device) return fail(device.error());
   auto log = CommandLogReader::open(options.file);
   if (!log) return fail(log.error());
-  auto context = gpu::Context::create(*device);
-  if (!context) return fail(context.error());
   const v1::RecordHeader& header = (*log)->header();
-  if ((*context)->device().name != header.device()) {
-    spdlog::warn("recorded on {}, replayed on {}: states repeat bit for bit on the same device only", header.device(),
-                 (*context)->device().name);
-  }
   const bool shows_progress = isatty(STDERR_FILENO) != 0;
-  const auto outcome = replayLog(**context, **log, [&](std::uint64_t tick) {
+  const auto outcome = replayLog(*device, **log, [&](std::uint64_t tick) {
     if (shows_progress) fmt::print(stderr, "\rtick {} ", tick);
   });
   if (shows_progress) fmt::print(stderr, "\r");
   if (!outcome) return fail(outcome.error());
+  if (outcome->device != header.device()) {
+    spdlog::warn("recorded on {}, replayed on {}: states repeat bit for bit on the same device only", header.device(),
+                 outcome->device);
+  }
   if (options.json_file != "-") {
     fmt::print("room {}, scene {}: ", header.room(), header.scene().name());
     print(*outcome);

@@ -133,6 +133,7 @@ int serve(const ServeOptions& options) {
   server_options.network.address = options.address;
   server_options.network.port = options.port;
   server_options.network.thread_count = options.thread_count;
+  server_options.network.address_session_share = options.address_session_share;
   server_options.network.web_root = options.web_root.empty() ? findWebRoot().string() : options.web_root;
   const bool has_page = !server_options.network.web_root.empty();
   auto server = WaterServer::start(std::move(server_options));

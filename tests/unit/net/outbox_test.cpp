@@ -21,12 +21,12 @@ Outbox::Kind kind(Outbox& outbox) {
   return outbox.next().kind;
 }
 
-TEST(Outbox, SendsControlMessagesInOrder) {
+TEST(Outbox, SendsAnswersInOrder) {
   Outbox outbox(8);
   const auto first = shared("1");
   const auto second = shared("2");
-  outbox.pushControl(first);
-  outbox.pushControl(second);
+  outbox.pushAnswer(first);
+  outbox.pushAnswer(second);
   EXPECT_EQ(outbox.next().message, first);
   EXPECT_EQ(outbox.next().message, second);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
@@ -36,8 +36,74 @@ TEST(Outbox, SendsControlBeforeData) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("frame"), {}}, later());
-  outbox.pushControl(shared("control"));
+  outbox.pushAnswer(shared("control"));
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
+}
+
+std::string sentText(Outbox& outbox) {
+  const core::SharedBytes message = outbox.next().message;
+  return message ? std::string(message->begin(), message->end()) : std::string("(nothing)");
+}
+
+TEST(Outbox, TheNewestStateTakesThePlaceOfTheOlderOne) {
+  Outbox outbox(8);
+  outbox.pushState({.name = "people"}, shared("people 1"));
+  outbox.pushAnswer(shared("answer"));
+  outbox.pushState({.name = "boats"}, shared("boats"));
+  outbox.pushState({.name = "people"}, shared("people 2"));
+  EXPECT_EQ(sentText(outbox), "people 2") << "whoever reads the answer knows a state that is at least as new";
+  EXPECT_EQ(sentText(outbox), "answer");
+  EXPECT_EQ(sentText(outbox), "boats");
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+}
+
+TEST(Outbox, HoldsOneMessageATopicHoweverManyComeAndNeverCloses) {
+  Outbox outbox(8);
+  for (int k = 0; k < 10'000; ++k) {
+    EXPECT_FALSE(outbox.pushState({.name = "topic " + std::to_string(k % 3)}, shared("state")).overflow);
+  }
+  EXPECT_EQ(outbox.waiting().state_count, 3U);
+  EXPECT_FALSE(outbox.closing());
+}
+
+TEST(Outbox, AWholeStateReplacesItsPartsAndIsNotReplacedByThem) {
+  using Scope = StateTopic::Scope;
+  Outbox outbox(8);
+  const StateTopic part{.name = "speed", .scope = Scope::kPart};
+  const StateTopic whole{.name = "greeting", .scope = Scope::kWhole};
+  outbox.pushState(part, shared("speed 1"));
+  outbox.pushState({.name = "people"}, shared("people"));
+  outbox.pushState({.name = "boats", .scope = Scope::kPart}, shared("boats"));
+  outbox.pushState(whole, shared("greeting 1"));
+  outbox.pushState(part, shared("speed 2"));
+  EXPECT_EQ(outbox.waiting().state_count, 3U);
+  outbox.pushState(whole, shared("greeting 2"));
+  outbox.pushState(part, shared("speed 3"));
+  EXPECT_EQ(sentText(outbox), "greeting 2");
+  EXPECT_EQ(sentText(outbox), "people");
+  EXPECT_EQ(sentText(outbox), "speed 3") << "newer than the greeting, so after it";
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+}
+
+TEST(Outbox, AFrameWaitsForABoundedNumberOfControlMessages) {
+  Outbox outbox(1000);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  for (int k = 0; k < 100; ++k) outbox.pushAnswer(shared("answer"));
+  outbox.offerFrame(1, {shared("frame"), {}}, later());
+  std::size_t control_count = 0;
+  while (kind(outbox) == Outbox::Kind::kControl) ++control_count;
+  EXPECT_EQ(control_count, Outbox::kControlRunMaxCount);
+}
+
+TEST(Outbox, AFrameNeverOvertakesAWholeState) {
+  Outbox outbox(1000);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  for (int k = 0; k < 100; ++k) outbox.pushAnswer(shared("answer"));
+  outbox.pushState({.name = "greeting", .scope = StateTopic::Scope::kWhole}, shared("greeting"));
+  outbox.offerFrame(1, {shared("frame of the new scene"), {}}, later());
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(sentText(outbox), "answer");
+  EXPECT_EQ(sentText(outbox), "greeting");
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
 }
 
@@ -274,19 +340,19 @@ TEST(Outbox, ForgetsTheFrameOfALayerThatStops) {
 
 TEST(Outbox, WakesASleepingWriterOnce) {
   Outbox outbox(8);
-  EXPECT_FALSE(outbox.pushControl(shared("before the writer slept")).wake);
+  EXPECT_FALSE(outbox.pushAnswer(shared("before the writer slept")).wake);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-  EXPECT_TRUE(outbox.pushControl(shared("1")).wake);
-  EXPECT_FALSE(outbox.pushControl(shared("2")).wake);
+  EXPECT_TRUE(outbox.pushAnswer(shared("1")).wake);
+  EXPECT_FALSE(outbox.pushAnswer(shared("2")).wake);
 }
 
-TEST(Outbox, ClosesWhenTheControlQueueOverflows) {
+TEST(Outbox, ClosesWhenTooManyAnswersWait) {
   Outbox outbox(2);
-  EXPECT_FALSE(outbox.pushControl(shared("1")).overflow);
-  EXPECT_FALSE(outbox.pushControl(shared("2")).overflow);
-  EXPECT_TRUE(outbox.pushControl(shared("3")).overflow);
-  EXPECT_FALSE(outbox.pushControl(shared("4")).overflow) << "the overflow is told once";
+  EXPECT_FALSE(outbox.pushAnswer(shared("1")).overflow);
+  EXPECT_FALSE(outbox.pushAnswer(shared("2")).overflow);
+  EXPECT_TRUE(outbox.pushAnswer(shared("3")).overflow);
+  EXPECT_FALSE(outbox.pushAnswer(shared("4")).overflow) << "the overflow is told once";
   ASSERT_TRUE(outbox.closeRequest());
   EXPECT_EQ(outbox.closeRequest()->code, 1013);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
@@ -298,11 +364,11 @@ TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("frame"), {}}, later());
-  outbox.pushControl(shared("last words"));
+  outbox.pushAnswer(shared("last words"));
   EXPECT_TRUE(outbox.requestClose(CloseCode::kNormal, "first"));
   EXPECT_FALSE(outbox.requestClose(CloseCode::kPolicy, "second"));
   outbox.offerFrame(1, {shared("frame"), {}}, later());
-  outbox.pushControl(shared("too late"));
+  outbox.pushAnswer(shared("too late"));
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
   EXPECT_EQ(outbox.closeRequest()->reason, "first");
@@ -312,10 +378,10 @@ TEST(Outbox, KeepsNothingOnceShut) {
   Outbox outbox(8);
   const auto message = shared("message");
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.pushControl(message);
+  outbox.pushAnswer(message);
   outbox.offerFrame(1, {message, {}}, later());
   outbox.shut();
-  outbox.pushControl(message);
+  outbox.pushAnswer(message);
   EXPECT_EQ(message.use_count(), 1);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kShut);
 }

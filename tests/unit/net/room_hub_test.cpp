@@ -20,7 +20,8 @@ struct RecordingLink final : SessionLink {
   std::optional<CloseCode> closed;
   std::optional<CloseCode> closing_later;
 
-  void sendControl(core::SharedBytes) override { ++control_count; }
+  void sendAnswer(core::SharedBytes) override { ++control_count; }
+  void sendState(const StateTopic&, core::SharedBytes) override { ++control_count; }
   void offerFrame(LayerIndex, const LayerBytes&) override { ++frame_count; }
   Outbox::Demand demand(LayerIndex, std::uint32_t reduced_count) const override {
     return {.level = core::effectiveLevel(level, reduced_count), .wants_whole = wants_whole};
@@ -136,7 +137,7 @@ TEST_F(RoomHubTest, IgnoresSessionsThatAreGone) {
   hub.remove(1);
   hub.join(1, "pool");
   hub.watch(1, 3, {.max_rate_hz = 30.0});
-  hub.sendControl(1, shared("control"));
+  hub.sendAnswer(1, shared("control"));
   hub.close(1, CloseCode::kNormal, "");
   hub.publish("pool", 3, {shared("frame"), {}});
   EXPECT_EQ(ada->control_count + ada->frame_count, 0);
@@ -145,7 +146,7 @@ TEST_F(RoomHubTest, IgnoresSessionsThatAreGone) {
 }
 
 TEST_F(RoomHubTest, ReachesOneSession) {
-  hub.sendControl(2, shared("control"));
+  hub.sendAnswer(2, shared("control"));
   hub.close(2, CloseCode::kPolicy, "because");
   EXPECT_EQ(bob->control_count, 1);
   EXPECT_EQ(bob->closed, CloseCode::kPolicy);

@@ -100,8 +100,8 @@ TEST(Session, KeepsTheOrderOfControlMessages) {
   for (int k = 0; k < 200; ++k) ASSERT_EQ(text(client.receive()), std::to_string(k) + " ");
 }
 
-TEST(Session, ClosesWithTryAgainLaterWhenTheControlQueueOverflows) {
-  TestServer served({.control_queue_count = 8});
+TEST(Session, ClosesWithTryAgainLaterWhenTooManyAnswersWait) {
+  TestServer served({.answer_max_count = 8});
   WsClient client = served.client();
   // The flood is queued inside one callback, so the writer cannot take any of it before the ninth.
   ASSERT_TRUE(client.sendBinary(bytes("flood 20 0")));
@@ -111,6 +111,20 @@ TEST(Session, ClosesWithTryAgainLaterWhenTheControlQueueOverflows) {
   ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
   EXPECT_EQ(served.application.closed()[0].end.code, 1013);
   EXPECT_EQ(served.server->stats().evicted_session_count, 1U);
+}
+
+TEST(Session, IsNotReadFromWhileItsAnswersWait) {
+  TestServer served({.answer_pause_count = 4, .messages_per_s = 1e6, .message_burst_count = 1e6});
+  WsClient client = served.client();
+  // More answers than kernels hold, asked for by messages that they do.
+  constexpr int kCount = 600;
+  constexpr std::size_t kAnswerBytes = 65'536;
+  for (int k = 0; k < kCount; ++k) ASSERT_TRUE(client.sendBinary(bytes("flood 1 65536")));
+  ASSERT_TRUE(eventually([&] { return served.server->stats().waiting_control_count >= 4U; }));
+  EXPECT_LT(served.application.message_count.load(), kCount) << "TCP holds back what follows";
+  EXPECT_LE(served.server->stats().waiting_control_count, 5U);
+  for (int k = 0; k < kCount; ++k) ASSERT_EQ(client.receive().value_or(core::Bytes{}).size(), kAnswerBytes) << k;
+  EXPECT_FALSE(client.closed()) << "nothing is lost, nobody is closed";
 }
 
 TEST(Session, ClosesAfterTheLastWords) {

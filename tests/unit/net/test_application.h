@@ -76,7 +76,7 @@ class TestApplication final : public net::Application {
       peers_.push_back(peer);
     }
     hub->join(session, room);
-    hub->sendControl(session, shared("hello " + room));
+    hub->sendAnswer(session, shared("hello " + room));
   }
 
   void sessionMessage(net::SessionId session, core::ByteView message) override {
@@ -86,13 +86,13 @@ class TestApplication final : public net::Application {
     std::string verb;
     words >> verb;
     if (verb == "echo") {
-      hub->sendControl(session, core::share(core::Bytes(message.begin(), message.end())));
+      hub->sendAnswer(session, core::share(core::Bytes(message.begin(), message.end())));
     } else if (verb == "watch") {
       net::LayerIndex layer = 0;
       double rate_hz = 0.0;
       words >> layer >> rate_hz;
       hub->watch(session, layer, {.max_rate_hz = rate_hz});
-      hub->sendControl(session, shared("watching"));
+      hub->sendAnswer(session, shared("watching"));
     } else if (verb == "flood") {
       std::size_t count = 0;
       std::size_t size_bytes = 0;
@@ -100,12 +100,12 @@ class TestApplication final : public net::Application {
       for (std::size_t k = 0; k < count; ++k) {
         core::Bytes content = bytes(std::to_string(k) + " ");
         content.resize(std::max(content.size(), size_bytes));
-        hub->sendControl(session, core::share(std::move(content)));
+        hub->sendAnswer(session, core::share(std::move(content)));
       }
     } else if (verb == "throw") {
       throw std::runtime_error("sessionMessage was asked to throw");
     } else if (verb == "bye") {
-      hub->sendControl(session, shared("last words"));
+      hub->sendAnswer(session, shared("last words"));
       hub->close(session, net::CloseCode::kNormal, "as you wish");
     }
   }

@@ -81,6 +81,8 @@ class Context {
   void retire(std::uint32_t buffer_id, std::size_t size_bytes, std::function<bool()> in_use);
   /// Deletes retired storage that nobody reads any more.
   void collectRetired();
+  /// Whether some is left.
+  [[nodiscard]] bool hasRetired() const { return !retired_.empty(); }
 
  private:
   struct Egl;  // the EGL handles, kept out of the header

@@ -36,6 +36,17 @@ struct LayerBytes {
   std::uint32_t reduced_count = 0;  ///< levels of the layer from this one on are all kFull
 };
 
+/// What a state message is about: of messages with the same name only the newest is worth sending.
+struct StateTopic {
+  enum class Scope : std::uint8_t {
+    kAlone,  ///< replaces its own name only
+    kPart,   ///< likewise; and kWhole says it as well
+    kWhole,  ///< replaces every waiting kPart besides its own name
+  };
+  std::string name;  ///< "people", "parameter:wave.depth_m"; the number of names bounds what waits for a session
+  Scope scope = Scope::kAlone;
+};
+
 /// What a session watches of a layer.
 struct Watch {
   double max_rate_hz = 0.0;  ///< 0 stops the layer
@@ -59,7 +70,7 @@ enum class CloseCode : std::uint16_t {
   kPolicy = 1008,           ///< protocol misuse, flood
   kTooBig = 1009,           ///< message over read_message_max_bytes
   kInternalError = 1011,    ///< an Application callback threw for this session
-  kTryAgainLater = 1013,    ///< the control queue overflowed
+  kTryAgainLater = 1013,    ///< too many answers waited for a client that does not read
   kUnauthorized = 4401,     ///< a token that is unknown or has expired, or none where one is needed
   kRoomClosed = 4404,       ///< the room is no more
   kResumedElsewhere = 4409  ///< another connection goes on as this person
@@ -98,12 +109,16 @@ class Hub {
  public:
   virtual ~Hub() = default;
 
-  /// Control plane: ordered, never dropped; the bounded queue (ServerOptions::control_queue_count) overflowing closes
-  /// the session with kTryAgainLater.
-  virtual void sendControl(SessionId session, core::SharedBytes message) = 0;
+  /// Control plane, answers to what this session asked: ordered, never dropped. The session is not read from while
+  /// ServerOptions::answer_pause_count of them wait; beyond answer_max_count it is closed with kTryAgainLater.
+  virtual void sendAnswer(SessionId session, core::SharedBytes message) = 0;
+
+  /// Control plane, state: only the newest message of a topic waits, in the place of the older one. Never closes a
+  /// session.
+  virtual void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) = 0;
 
   /// The same to every session of the room.
-  virtual void broadcastControl(const std::string& room, core::SharedBytes message) = 0;
+  virtual void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) = 0;
 
   /// Data plane: one write in flight and one newest slot per layer; an unsent older frame in the slot is dropped and
   /// counted. `room` is the group the sessions joined; only sessions that watch `layer` get it, no faster than the rate
@@ -128,7 +143,7 @@ class Hub {
   /// Sends everything queued on the control plane, then closes; the socket is cut after close_timeout in any case.
   virtual void close(SessionId session, CloseCode code, std::string reason) = 0;
 
-  /// The same at a later time; the latest call counts.
+  /// The same at a later time; the latest call counts. time_point::max() is never.
   virtual void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
                        std::string reason) = 0;
 };
@@ -162,11 +177,17 @@ struct ServerOptions {
   std::string web_root{};     ///< folder with the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
+  /// Share of max_session_count that one address may hold (IPv6: one /64), at least one session. 1 behind a proxy,
+  /// whose clients all come from its address.
+  double address_session_share = 0.5;
   std::size_t read_message_max_bytes = 16 * 1024;  ///< client messages are small
   std::size_t request_body_max_bytes = 64 * 1024;
-  std::size_t control_queue_count = 256;
-  double messages_per_s = 200.0;  ///< token bucket per session; sustained excess closes with kPolicy
-  double message_burst_count = 400.0;
+  std::size_t answer_pause_count = 128;  ///< answers waiting for a session from which on it is not read from
+  std::size_t answer_max_count = 2048;   ///< beyond: the session is closed; above what can be on its way to it
+  /// Token bucket per session over messages of every kind, pings included: sustained excess closes with kPolicy. The
+  /// application has a lower one for commands, which it answers.
+  double messages_per_s = 500.0;
+  double message_burst_count = 1000.0;
   std::chrono::milliseconds write_stall_timeout{10'000};  ///< a write that takes longer evicts the session
   std::chrono::milliseconds handshake_timeout{10'000};
   std::chrono::milliseconds idle_timeout{60'000};    ///< pings half-way; silence beyond closes
@@ -186,7 +207,7 @@ struct ServerOptions {
 enum class Refused : std::uint8_t {
   kOrigin,      ///< 403: a page that is not on the list
   kRate,        ///< 429: too many requests from one address
-  kFull,        ///< 503: max_session_count sessions are open
+  kFull,        ///< 503: max_session_count sessions are open, or too many of them by one address
   kRoom,        ///< 404: acceptSession said no
   kHandshake,   ///< 400, 404, 426: no WebSocket upgrade that this server knows
   kRequest,     ///< 400, 411, 413, 431: no HTTP request, one without a length, or too large a one
@@ -206,8 +227,8 @@ struct ServerStats {
   std::uint64_t dropped_frame_count = 0;    ///< replaced in their slot before they were sent
   std::uint64_t lowered_level_count = 0;    ///< times a session was given a lower level
   std::uint64_t raised_level_count = 0;     ///< and a higher one again
-  std::uint64_t evicted_session_count = 0;  ///< sessions that did not read: write stall or control overflow
-  std::uint64_t waiting_control_count = 0;  ///< now, over all sessions
+  std::uint64_t evicted_session_count = 0;  ///< sessions that did not read: write stall or too many answers
+  std::uint64_t waiting_control_count = 0;  ///< answers and state, now, over all sessions
   std::uint64_t waiting_frame_count = 0;    ///< now, over all sessions
   std::uint64_t delayed_message_count = 0;  ///< messages that waited for their address's bucket
   std::array<std::uint64_t, kRefusedCount> refused_count{};  ///< by Refused

@@ -81,8 +81,8 @@ class WaterSim {
   core::Result<void> controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
   core::Result<void> removeBoat(std::uint32_t boat_id);
   [[nodiscard]] std::vector<BoatRecord> boats() const;
-  /// Boats get ids from here on, the scene's own first, from the next reset() on. An id is given once; only the scene's
-  /// own boats keep theirs over a reset. 1 at first.
+  /// Gives boats ids from here on (1 where it is never called), the scene's own first. An id is given once; only the
+  /// scene's own boats keep theirs over a reset. At the start, before a boat was launched or a tick was made.
   void numberBoatsFrom(std::uint32_t first_id);
   /// Above every id that was given; what numberBoatsFrom() said in a scene without boats.
   [[nodiscard]] std::uint32_t nextBoatId() const;

@@ -24,6 +24,10 @@ struct GreetingFacts {
   std::vector<v1::Layer> layers;  ///< what the room can send
   std::uint32_t message_max_bytes = 0;
   double commands_per_s = 0.0;
+  double command_burst_count = 0.0;
+  double messages_per_s = 0.0;
+  double message_burst_count = 0.0;
+  double hello_within_s = 0.0;
   double frame_rate_max_hz = 0.0;
   double server_time_s = 0.0;  ///< monotonic clock
   bool paused = false;
