@@ -49,28 +49,10 @@ unsigned statusOf(const core::Error& error) {
   return error.code == ErrorCode::kUnavailable ? 503 : error.code == ErrorCode::kInvalidInput ? 409 : 500;
 }
 
-unsigned statusOf(v1::RejectReason reason) {
-  switch (reason) {
-    case v1::REJECT_REASON_MALFORMED:
-      return 400;
-    case v1::REJECT_REASON_FORBIDDEN:
-    case v1::REJECT_REASON_NOT_YOURS:
-      return 403;
-    case v1::REJECT_REASON_UNKNOWN_BOAT:
-    case v1::REJECT_REASON_UNKNOWN_SCENE:
-    case v1::REJECT_REASON_UNKNOWN_PARAMETER:
-      return 404;
-    case v1::REJECT_REASON_BUSY:
-      return 503;
-    default:
-      return 422;
-  }
-}
-
 HttpReply rejected(const stream::CommandRejection& rejection) {
   v1::CommandAnswer out;
   *out.mutable_reject() = stream::toWire(rejection);
-  return json(statusOf(rejection.reason), out);
+  return json(httpStatusOf(rejection.reason), out);
 }
 
 std::vector<std::string> split(std::string_view path) {
@@ -92,6 +74,24 @@ bool isJson(std::string_view content_type) {
 }
 
 }  // namespace
+
+unsigned httpStatusOf(v1::RejectReason reason) {
+  switch (reason) {
+    case v1::REJECT_REASON_MALFORMED:
+      return 400;
+    case v1::REJECT_REASON_FORBIDDEN:
+    case v1::REJECT_REASON_NOT_YOURS:
+      return 403;
+    case v1::REJECT_REASON_UNKNOWN_BOAT:
+    case v1::REJECT_REASON_UNKNOWN_SCENE:
+    case v1::REJECT_REASON_UNKNOWN_PARAMETER:
+      return 404;
+    case v1::REJECT_REASON_BUSY:
+      return 503;
+    default:
+      return 422;
+  }
+}
 
 RestApi::RestApi(SimulationThread& rooms, const Access& access, CommandCounters& counters,
                  const MetricsSources& sources, std::function<void(const Room&)> dismiss)
