@@ -77,8 +77,9 @@ int run(int argc, char** argv) {
       ->add_option("--guests", serve_options.guest_role,
                    "What somebody without a token is (default: operator, or viewer where there are tokens)")
       ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
-  serve_command->add_option("--origin", serve_options.origins,
-                            "A page elsewhere that may connect, https://HOST; * = any; may be repeated");
+  serve_command->add_option(
+      "--origin", serve_options.origins,
+      "Origin of pages that may connect and use the REST interface, https://HOST; * = any; may be repeated");
   serve_command->add_option("--grace", serve_options.grace_s, "Seconds that a lost connection's boat is kept")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();

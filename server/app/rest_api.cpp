@@ -1,5 +1,7 @@
 #include "rest_api.h"
 
+#include <algorithm>
+#include <cctype>
 #include <string_view>
 #include <utility>
 
@@ -25,8 +27,18 @@ HttpReply problem(unsigned status, std::string line) {
   return json(status, out);
 }
 
-HttpReply wrongMethod(const std::string& method, const std::string& allowed) {
-  return problem(405, "the method " + method + " is not allowed here: use " + allowed);
+/// RFC 9110 section 15.5.6: Allow lists what may be asked.
+HttpReply wrongMethod(const std::string& allowed) {
+  HttpReply out = problem(405, "the method is not allowed here: use " + allowed);
+  out.headers.emplace_back("Allow", allowed);
+  return out;
+}
+
+/// RFC 9110 section 15.5.2: WWW-Authenticate names the scheme.
+HttpReply unauthorized(std::string line) {
+  HttpReply out = problem(401, std::move(line));
+  out.headers.emplace_back("WWW-Authenticate", "Bearer");
+  return out;
 }
 
 HttpReply text(unsigned status, std::string body) {
@@ -37,7 +49,33 @@ unsigned statusOf(const core::Error& error) {
   return error.code == ErrorCode::kUnavailable ? 503 : error.code == ErrorCode::kInvalidInput ? 409 : 500;
 }
 
-unsigned statusOf(v1::RejectReason reason) {
+HttpReply rejected(const stream::CommandRejection& rejection) {
+  v1::CommandAnswer out;
+  *out.mutable_reject() = stream::toWire(rejection);
+  return json(httpStatusOf(rejection.reason), out);
+}
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> out;
+  while (!path.empty()) {
+    const std::size_t slash = path.find('/');
+    out.emplace_back(path.substr(0, slash));
+    path = slash == std::string_view::npos ? std::string_view() : path.substr(slash + 1);
+  }
+  return out;
+}
+
+/// RFC 9110 section 8.3.1: names of media types are not case-sensitive, and parameters may follow.
+bool isJson(std::string_view content_type) {
+  std::string name(content_type.substr(0, content_type.find(';')));
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  name.erase(name.find_last_not_of(" \t") + 1);
+  return name == "application/json";
+}
+
+}  // namespace
+
+unsigned httpStatusOf(v1::RejectReason reason) {
   switch (reason) {
     case v1::REJECT_REASON_MALFORMED:
       return 400;
@@ -55,28 +93,6 @@ unsigned statusOf(v1::RejectReason reason) {
   }
 }
 
-HttpReply rejected(const stream::CommandRejection& rejection) {
-  v1::CommandAnswer out;
-  *out.mutable_reject() = stream::toWire(rejection);
-  return json(statusOf(rejection.reason), out);
-}
-
-std::vector<std::string> split(std::string_view path) {
-  std::vector<std::string> out;
-  while (!path.empty()) {
-    const std::size_t slash = path.find('/');
-    out.emplace_back(path.substr(0, slash));
-    path = slash == std::string_view::npos ? std::string_view() : path.substr(slash + 1);
-  }
-  return out;
-}
-
-bool isJson(const std::string& content_type) {
-  return content_type == "application/json" || content_type.starts_with("application/json;");
-}
-
-}  // namespace
-
 RestApi::RestApi(SimulationThread& rooms, const Access& access, CommandCounters& counters,
                  const MetricsSources& sources, std::function<void(const Room&)> dismiss)
     : rooms_(rooms), access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
@@ -85,7 +101,7 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   /// Far above any tick that a room allows while people are connected.
   constexpr double kStuck_s = 5.0;
   const bool is_probe = request.path == "/healthz" || request.path == "/readyz" || request.path == "/metrics";
-  if (is_probe && request.method != "GET") return respond(wrongMethod(request.method, "GET"));
+  if (is_probe && request.method != "GET") return respond(wrongMethod("GET"));
   if (request.path == "/healthz") return respond(text(200, "ok\n"));
   if (request.path == "/readyz") {
     const double since_s = rooms_.sinceLastRound_s();
@@ -107,11 +123,11 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   const auto token = Access::bearerToken(request.authorization);
   const auto grant =
       token ? access_.resolve(*token, std::chrono::system_clock::now()) : core::Result<Grant>(token.error());
-  if (!grant) return respond(problem(401, grant.error().message));
+  if (!grant) return respond(unauthorized(grant.error().message));
   const Call call{request, split(std::string_view(request.path).substr(kRoot.size())), grant->role};
   if (call.path.empty()) return respond(std::nullopt);
   if (call.path[0] == "scenes" && call.path.size() == 1) {
-    if (request.method != "GET") return respond(wrongMethod(request.method, "GET"));
+    if (request.method != "GET") return respond(wrongMethod("GET"));
     v1::SceneList out;
     for (const std::string& name : rooms_.rules().scenes.names()) out.add_scenes(name);
     return respond(json(200, out));
@@ -123,7 +139,7 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
 
 void RestApi::rooms(const Call& call, net::HttpResponder respond) {
   if (call.request.method == "POST") return createRoom(call, std::move(respond));
-  if (call.request.method != "GET") return respond(wrongMethod(call.request.method, "GET, POST"));
+  if (call.request.method != "GET") return respond(wrongMethod("GET, POST"));
   v1::RoomList out;
   for (const auto& room : rooms_.rooms()) fillRoomInfo(*room, *out.add_rooms());
   respond(json(200, out));
@@ -157,11 +173,16 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
 
 void RestApi::room(const Call& call, net::HttpResponder respond) {
   const auto room = rooms_.find(call.path[1]);
-  if (!room || call.path[1].empty()) return respond(problem(404, "there is no room '" + call.path[1] + "'"));
+  if (!room || call.path[1].empty()) {
+    // Only a name that a room may have is echoed: any other can hold whatever bytes a stranger sends.
+    const std::string named =
+        isRoomName(call.path[1]) ? "there is no room '" + call.path[1] + "'" : "there is no such room";
+    return respond(problem(404, named + "; /api/v1/rooms lists what there is"));
+  }
   const std::string& method = call.request.method;
   if (call.path.size() == 2) {
     if (method == "DELETE") return closeRoom(call, std::move(respond));
-    if (method != "GET") return respond(wrongMethod(method, "GET, DELETE"));
+    if (method != "GET") return respond(wrongMethod("GET, DELETE"));
     v1::RoomInfo out;
     fillRoomInfo(*room, out);
     return respond(json(200, out));
@@ -169,11 +190,11 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
   if (call.path.size() != 3) return respond(std::nullopt);
   const std::string& part = call.path[2];
   if (part == "commands") {
-    if (method != "POST") return respond(wrongMethod(method, "POST"));
+    if (method != "POST") return respond(wrongMethod("POST"));
     return command(call, room, std::move(respond));
   }
   if (part != "scene" && part != "parameters" && part != "people") return respond(std::nullopt);
-  if (method != "GET") return respond(wrongMethod(method, "GET"));
+  if (method != "GET") return respond(wrongMethod("GET"));
   if (part == "scene") return respond(json(200, room->snapshot()->scene));
   if (part == "people") return respond(json(200, room->roster().people()));
   v1::ParameterList out;

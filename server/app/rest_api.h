@@ -20,6 +20,9 @@
 
 namespace spindrift::app {
 
+/// The HTTP status that a rejected command gets.
+unsigned httpStatusOf(v1::RejectReason reason);
+
 class RestApi {
  public:
   /// Everything given outlives it. `dismiss` sends a room's sessions away before it closes.

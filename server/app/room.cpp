@@ -253,7 +253,8 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
                             .particles = particles.back(),
                             .foam = foam.back(),
                             .bodies = bodies.back(),
-                            .asked_s = monotonic_s(now)};
+                            .asked_s = monotonic_s(now),
+                            .state_id = stage_->stateId()};
   for (std::size_t level = 0; level < request.reduced.size(); ++level)
     request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};
   ++frame_count_;
@@ -276,6 +277,7 @@ void Room::handOverFrames(EncoderThread& encoder) {
     core::FrameView frame;
     frame.tick = tick();
     frame.time_s = stage_->water().time_s();
+    frame.state_id = stage_->stateId();
     frame.diagnostics = diagnostics();
     encoder.submit(name_, std::move(frame));
   }

@@ -44,18 +44,20 @@ bool Stage::takes(const core::Action& action) {
 
 Stage::Outcome Stage::apply(const core::Action& action) {
   assert(takes(action));
-  return std::visit(Overloaded{[&](const core::Splash& splash) { return startEffect(splash); },
-                               [&](const core::BreakingWave& wave) { return startEffect(wave); },
-                               [&](const core::SetParameter& change) { return setParameter(change); },
-                               [&](const core::Reset&) -> Outcome {
-                                 water().reset();
-                                 return {};
-                               },
-                               [&](const core::SpawnBoat& spawn) { return spawnBoat(spawn); },
-                               [&](const core::ControlBoat& control) { return controlBoat(control); },
-                               [&](const core::RemoveBoat& remove) { return removeBoat(remove); },
-                               [&](const auto&) -> Outcome { return {}; }},
-                    action);
+  Outcome outcome = std::visit(Overloaded{[&](const core::Splash& splash) { return startEffect(splash); },
+                                          [&](const core::BreakingWave& wave) { return startEffect(wave); },
+                                          [&](const core::SetParameter& change) { return setParameter(change); },
+                                          [&](const core::Reset&) -> Outcome {
+                                            water().reset();
+                                            return {};
+                                          },
+                                          [&](const core::SpawnBoat& spawn) { return spawnBoat(spawn); },
+                                          [&](const core::ControlBoat& control) { return controlBoat(control); },
+                                          [&](const core::RemoveBoat& remove) { return removeBoat(remove); },
+                                          [&](const auto&) -> Outcome { return {}; }},
+                               action);
+  if (!outcome) ++state_id_;
+  return outcome;
 }
 
 Stage::Outcome Stage::startEffect(const core::Effect& effect) {
@@ -71,8 +73,12 @@ Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
     return rejection(error->reason, error->field, error->message);
   }
   const core::Scene wanted = stream::toCore(changed);
-  if (auto applied = water().setScene(wanted); !applied)
-    return rejection(whyNot(wanted), change.path, applied.error().message);
+  if (auto applied = water().setScene(wanted); !applied) {
+    // The message begins with the field that breaks a rule, which Reject.field says already where it is this one.
+    const std::string& message = applied.error().message;
+    const std::string own = change.path + ": ";
+    return rejection(whyNot(wanted), change.path, message.starts_with(own) ? message.substr(own.size()) : message);
+  }
   water_->scene() = std::move(changed);
   return {};
 }
@@ -110,8 +116,11 @@ Stage::Outcome Stage::removeBoat(const core::RemoveBoat& remove) {
 
 std::unique_ptr<Water> Stage::replaceWater(std::unique_ptr<Water> water) {
   const std::uint64_t first_tick = tick() + 1;
+  const std::uint32_t first_boat_id = water_->sim().nextBoatId();
   std::swap(water_, water);
   water_->bind();
+  water_->sim().numberBoatsFrom(first_boat_id);
+  ++state_id_;
   tick_shift_ = first_tick - water_->sim().tick();
   return water;
 }

@@ -37,11 +37,14 @@ class Stage {
   /// What would follow from another value of a parameter; nullopt where it is not allowed: apply() tells why.
   [[nodiscard]] std::optional<sim::Derived> deriveWith(const core::SetParameter& change) const;
   /// Goes on with other water, which is bound from now on; returns the old one, still to be destroyed. The room's ticks
-  /// go on: the new water begins at a tick that no frame of the old one has.
+  /// go on: the new water begins at a tick that no frame of the old one has, and its boats get ids that none had.
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);
   /// Makes this stage's GL context current; call it before anything else when another one may be.
   void bind() { water_->bind(); }
-  void step() { water().step(); }
+  void step() {
+    water().step();
+    ++state_id_;
+  }
   /// Water::failure().
   [[nodiscard]] std::optional<std::string> failure() { return water_->failure(); }
 
@@ -53,6 +56,9 @@ class Stage {
   [[nodiscard]] std::uint64_t tick() const { return tickOf(water().tick()); }
   /// The room's tick for one of the simulation's.
   [[nodiscard]] std::uint64_t tickOf(std::uint64_t sim_tick) const { return sim_tick + tick_shift_; }
+  /// Number of the state now: another one after every tick and every change by apply() and replaceWater(). Never 0, and
+  /// it never goes back.
+  [[nodiscard]] std::uint64_t stateId() const { return state_id_; }
   /// Of the last SpawnBoat that was applied.
   [[nodiscard]] std::uint32_t spawnedBoatId() const { return spawned_boat_id_; }
   /// The boats on the water now.
@@ -67,6 +73,7 @@ class Stage {
 
   std::unique_ptr<Water> water_;
   std::uint64_t tick_shift_ = 0;  ///< from the simulation's ticks to the room's, modulo 2^64
+  std::uint64_t state_id_ = 1;
   std::uint32_t spawned_boat_id_ = 0;
 };
 

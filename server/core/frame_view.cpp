@@ -9,6 +9,7 @@ FrameView frameAt(const FrameView& frame, Level level) {
   out.tick = frame.tick;
   out.time_s = frame.time_s;
   out.asked_s = frame.asked_s;
+  out.state_id = frame.state_id;
   out.level = level;
   out.surface = reduced.surface;
   out.particles = reduced.particles;

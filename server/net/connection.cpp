@@ -69,7 +69,8 @@ void fillHead(Fields& response, const Reply& reply, bool keep_alive) {
   response.set(http::field::server, "Spindrift");
   for (const auto& [name, value] : securityHeaders()) response.set(name, value);
   for (const auto& [name, value] : reply.headers) response.set(name, value);
-  if (reply.status != 304) {
+  // RFC 9110 section 8.6: neither length nor type where there is no content by definition.
+  if (reply.status != 304 && reply.status != 204) {
     response.set(http::field::content_type, reply.content_type);
     response.content_length(reply.body->size());
   }
@@ -140,11 +141,11 @@ asio::awaitable<void> Connection::run() {
     }
     if (refusal) {
       context_.counters.refused(Refused::kRequest);
-      co_await sendLast(std::move(*refusal), false);
+      co_await sendLast(fitted(parser.get(), *std::move(refusal)), false);
     }
     if (error || refusal) co_return;
     if (auto reply = refuseAny(parser.get())) {
-      co_await sendLast(std::move(*reply), parser.get().method() == http::verb::head);
+      co_await sendLast(fitted(parser.get(), *std::move(reply)), parser.get().method() == http::verb::head);
       co_return;
     }
     if (beast::websocket::is_upgrade(parser.get())) {
@@ -155,7 +156,9 @@ asio::awaitable<void> Connection::run() {
     const RequestHead head = headOf(request);
     auto routed = routeRequest(head, context_.files);
     Reply reply;
-    if (auto* target = std::get_if<Target>(&routed)) {
+    if (isPreflight(request)) {
+      reply = preflightReply();
+    } else if (auto* target = std::get_if<Target>(&routed)) {
       // HEAD is GET without the body, for every path alike; send() leaves the body out.
       HttpRequest question;
       question.method = head.method == "HEAD" ? "GET" : head.method;
@@ -171,11 +174,32 @@ asio::awaitable<void> Connection::run() {
       reply = std::get<Reply>(std::move(routed));
     }
     const bool keep_alive = request.keep_alive() && !stopping_;
+    reply = fitted(request, std::move(reply));
     const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
     if (!sent || !keep_alive) break;
   }
   boost::system::error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+Reply Connection::fitted(const UpgradeRequest& request, Reply reply) const {
+  const auto target = request.target();
+  if (!isApiTarget({target.data(), target.size()})) return reply;
+  reply = asProblem(std::move(reply));
+  reply.headers.emplace_back("Vary", "Origin");
+  const auto origin = request[http::field::origin];
+  if (!origin.empty() && isOriginListed({origin.data(), origin.size()}, context_.options.allowed_origins)) {
+    allowOrigin(reply, {origin.data(), origin.size()});
+  }
+  return reply;
+}
+
+bool Connection::isPreflight(const UpgradeRequest& request) const {
+  const auto target = request.target();
+  const auto origin = request[http::field::origin];
+  return request.method() == http::verb::options && request.count(http::field::access_control_request_method) > 0 &&
+         isApiTarget({target.data(), target.size()}) &&
+         isOriginListed({origin.data(), origin.size()}, context_.options.allowed_origins);
 }
 
 std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {

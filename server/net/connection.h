@@ -34,6 +34,10 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   /// Asks the application. Nothing to send where the connection was closed meanwhile.
   boost::asio::awaitable<std::optional<Reply>> ask(const HttpRequest& request);
   boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
+  /// The reply as this request's target and origin need it: see asProblem() and allowOrigin().
+  Reply fitted(const UpgradeRequest& request, Reply reply) const;
+  /// Whether a browser asks for a page of a listed origin what it may send to the REST interface.
+  bool isPreflight(const UpgradeRequest& request) const;
   /// The reply to a request that is not heard, upgrade or not: too many from its address, or from a foreign page.
   std::optional<Reply> refuseAny(const UpgradeRequest& request);
   /// False if the connection is gone.

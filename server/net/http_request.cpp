@@ -1,5 +1,8 @@
 #include "http_request.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <exception>
 #include <utility>
 
@@ -12,6 +15,7 @@
 
 namespace spindrift::net {
 
+namespace beast = boost::beast;
 namespace http = boost::beast::http;
 
 void bound(RequestParser& parser, std::size_t body_max_bytes) {
@@ -19,9 +23,53 @@ void bound(RequestParser& parser, std::size_t body_max_bytes) {
   parser.body_limit(body_max_bytes);
 }
 
+namespace {
+
+/// Headers that say one thing: two of them are two requests in one, read differently by whoever stands in between.
+constexpr std::array kSingleFields{http::field::host,
+                                   http::field::origin,
+                                   http::field::authorization,
+                                   http::field::content_type,
+                                   http::field::sec_websocket_key,
+                                   http::field::sec_websocket_version};
+
+/// RFC 9112 section 3.2: a host and perhaps a port, from the characters that RFC 3986 section 3.2.2 gives them. Empty
+/// is allowed.
+bool isHost(std::string_view host) {
+  constexpr std::string_view kMarks = "-._~%!$&'()*+,;=:[]";
+  return std::ranges::all_of(host, [&](unsigned char c) {
+    return (std::isalnum(c) != 0 && c < 0x80) || kMarks.find(static_cast<char>(c)) != std::string_view::npos;
+  });
+}
+
+std::string_view viewOf(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+}  // namespace
+
 std::optional<Reply> refuseHead(const RequestParser& parser) {
-  if (!parser.chunked()) return std::nullopt;
-  return textReply(411, "A body needs a Content-Length here; it may not come in chunks.");
+  constexpr unsigned kHttp11 = 11;
+  const Request& request = parser.get();
+  for (const http::field field : kSingleFields) {
+    if (request.count(field) <= 1) continue;
+    return textReply(400, "There are " + std::to_string(request.count(field)) + " " +
+                              std::string(viewOf(http::to_string(field))) + " headers; send one.");
+  }
+  if (request.version() >= kHttp11 && request.count(http::field::host) == 0) {
+    return textReply(400, "An HTTP/1.1 request needs a Host header.");
+  }
+  if (!isHost(viewOf(request[http::field::host]))) {
+    return textReply(400, "The Host header is no host with an optional port.");
+  }
+  if (parser.chunked()) return textReply(411, "A body needs a Content-Length here; it may not come in chunks.");
+  const bool has_body = request.method() == http::verb::post || request.method() == http::verb::put ||
+                        request.method() == http::verb::patch;
+  if (has_body && isApiTarget(viewOf(request.target())) && !parser.content_length()) {
+    return textReply(411, "A " + std::string(viewOf(request.method_string())) +
+                              " needs a Content-Length, also where its body is empty.");
+  }
+  return std::nullopt;
 }
 
 std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, std::size_t body_max_bytes) {
@@ -66,24 +114,42 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
   }
   const auto target = parseTarget(std::string_view(request.target().data(), request.target().size()));
   if (!target) return {textReply(400, "The request's path is not a plain absolute path.")};
-  if (request[http::field::sec_websocket_version] != kWebSocketVersion) return {webSocketReply()};
+  if (const auto version = viewOf(request[http::field::sec_websocket_version]); version != kWebSocketVersion) {
+    return {webSocketReply((version.empty() ? "The upgrade has no Sec-WebSocket-Version"
+                                            : "Sec-WebSocket-Version " + printable(version) + " is not spoken here") +
+                           ": send version 13.")};
+  }
   const auto key = request[http::field::sec_websocket_key];
   if (!isKey({key.data(), key.size()})) {
     return {textReply(400, "An upgrade needs a Sec-WebSocket-Key of 16 bytes in base64.")};
   }
   auto named = roomOfPath(target->path);
-  if (!named) return {textReply(404, "There is no WebSocket at " + target->path + ": use /ws or /ws/ROOM.")};
+  if (!named) return {textReply(404, "There is no WebSocket at " + printable(target->path) + ": use /ws or /ws/ROOM.")};
 
   // A query ends up in logs and histories; nothing of ours belongs there.
   if (target->query.find("token") != std::string::npos) {
     return {textReply(400, "Tokens do not belong into addresses: send it in Hello.token.")};
   }
 
+  // A page's own address names the room in its query, so people try the same here.
+  const auto asked = queryValues(target->query, "room");
+  if (!asked) return {textReply(400, "The room in the query has a broken percent escape or a control character.")};
+  if (asked->size() > 1 || (asked->size() == 1 && !named->empty() && asked->front() != *named)) {
+    return {textReply(400, "The address names more than one room: use /ws/ROOM.")};
+  }
+  if (!asked->empty()) named = asked->front();
+
   UpgradeDecision decision;
-  decision.room = std::move(*named);
-  const auto offered = request[http::field::sec_websocket_protocol];
-  for (const auto& protocol : http::token_list(offered)) decision.echo_subprotocol |= protocol == kSubprotocol;
-  if (!offered.empty() && !decision.echo_subprotocol) {
+  decision.room = *std::move(named);
+  // RFC 6455 section 11.3.4: the list may stand in several headers.
+  bool is_protocol_offered = false;
+  const auto [first, end] = request.equal_range(http::field::sec_websocket_protocol);
+  for (auto offered = first; offered != end; ++offered) {
+    is_protocol_offered = is_protocol_offered || !offered->value().empty();
+    for (const auto& protocol : http::token_list(offered->value()))
+      decision.echo_subprotocol |= protocol == kSubprotocol;
+  }
+  if (is_protocol_offered && !decision.echo_subprotocol) {
     return {textReply(400, std::string("No offered subprotocol is known here: offer ") + kSubprotocol + ".")};
   }
   try {

@@ -25,7 +25,9 @@ using RequestParser = boost::beast::http::request_parser<boost::beast::http::str
 /// Sets the parser's bounds; before its first byte.
 void bound(RequestParser& parser, std::size_t body_max_bytes);
 
-/// What a request gets whose body is not to be read, once its head is there; nullopt if it may go on. Chunked bodies
+/// What a request gets that is refused by its head alone, its body unread; nullopt if it may go on. 400: HTTP/1.1
+/// without Host, a Host that is none, or two of a header of which there may be one (RFC 9112 section 3.2, RFC 9110
+/// section 5.3, RFC 6455 section 11.3). 411: a POST to the REST interface without a length, or a chunked body. Those
 /// are refused: nothing here takes one, Boost 1.81's parser keeps a chunk's line however long it grows, and it fails an
 /// assertion when the last chunk of an empty body comes byte by byte (boostorg/beast pull request 2861).
 std::optional<Reply> refuseHead(const RequestParser& parser);

@@ -6,12 +6,15 @@
 namespace spindrift::net {
 namespace {
 
+constexpr std::string_view kApiRoot = "/api/";
+
 bool isApplicationPath(std::string_view path) {
-  return path.starts_with("/api/") || path == "/healthz" || path == "/readyz" || path == "/metrics";
+  return path.starts_with(kApiRoot) || path == "/healthz" || path == "/readyz" || path == "/metrics";
 }
 
 Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
-  Reply reply = textReply(405, "The method " + method + " is not allowed here: use " + std::string(allowed) + ".");
+  Reply reply =
+      textReply(405, "The method " + printable(method) + " is not allowed here: use " + std::string(allowed) + ".");
   reply.headers.emplace_back("Allow", allowed);
   return reply;
 }
@@ -36,7 +39,7 @@ Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& f
   if (!file && path == "/") {
     return textReply(503, "The web client is not built: run ./dev build, then start the server again with --web-root.");
   }
-  if (!file) return textReply(404, "There is nothing at " + path + ".");
+  if (!file) return textReply(404, "There is nothing at " + printable(path) + ".");
   Reply reply;
   reply.headers.emplace_back("ETag", file->etag);
   reply.headers.emplace_back("Cache-Control", file->immutable ? "public, max-age=31536000, immutable" : "no-cache");
@@ -60,11 +63,45 @@ Reply textReply(unsigned status, std::string line) {
   return reply;
 }
 
-Reply webSocketReply() {
-  Reply reply = textReply(426, "This is a WebSocket address: connect with the subprotocol spindrift.v1.");
+Reply webSocketReply(std::string line) {
+  Reply reply = textReply(426, std::move(line));
   reply.headers.emplace_back("Upgrade", "websocket");
   reply.headers.emplace_back("Sec-WebSocket-Version", kWebSocketVersion);
   return reply;
+}
+
+bool isApiTarget(std::string_view target) {
+  if (const auto parsed = parseTarget(target)) return parsed->path.starts_with(kApiRoot);
+  return target.starts_with(kApiRoot);
+}
+
+Reply asProblem(Reply reply) {
+  constexpr unsigned kFirstError = 400;
+  if (reply.status < kFirstError || !reply.content_type.starts_with("text/plain")) return reply;
+  // Lines of ours are printable ASCII: strangers' text in them went through printable().
+  std::string line;
+  for (const char c : *reply.body) {
+    if (c == '"' || c == '\\') line.push_back('\\');
+    if (c != '\n') line.push_back(c);
+  }
+  reply.content_type = "application/json";
+  reply.body = std::make_shared<const std::string>("{\"message\":\"" + line + "\"}\n");
+  return reply;
+}
+
+Reply preflightReply() {
+  Reply reply;
+  reply.status = 204;
+  reply.body = std::make_shared<const std::string>();
+  reply.headers = {{"Cache-Control", "no-store"},
+                   {"Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE"},
+                   {"Access-Control-Allow-Headers", "Authorization, Content-Type"},
+                   {"Access-Control-Max-Age", "600"}};
+  return reply;
+}
+
+void allowOrigin(Reply& reply, std::string_view origin) {
+  reply.headers.emplace_back("Access-Control-Allow-Origin", origin);
 }
 
 std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files) {
@@ -76,17 +113,20 @@ std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& f
     }
     return *std::move(target);
   }
-  if (roomOfPath(target->path)) return webSocketReply();
+  if (roomOfPath(target->path)) {
+    return webSocketReply("This is a WebSocket address: connect with a WebSocket client, subprotocol spindrift.v1.");
+  }
   if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, "GET, HEAD");
   return fileReply(head, target->path, files);
 }
 
 Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {
-  if (!answer) return textReply(404, "There is nothing at " + std::string(path) + ".");
+  if (!answer) return textReply(404, "There is nothing at " + printable(path) + ".");
   Reply reply;
   reply.status = answer->status;
   reply.content_type = std::move(answer->content_type);
   reply.body = std::make_shared<const std::string>(std::move(answer->body));
+  reply.headers = std::move(answer->headers);
   reply.headers.emplace_back("Cache-Control", "no-store");
   return reply;
 }

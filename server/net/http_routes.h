@@ -38,8 +38,20 @@ Reply textReply(unsigned status, std::string line);
 /// RFC 6455.
 inline constexpr std::string_view kWebSocketVersion = "13";
 
-/// 426: what a request to a WebSocket address gets that is no upgrade, or one to another version.
-Reply webSocketReply();
+/// 426: what a request to a WebSocket address gets that is no upgrade, or one to another version. `line` says which.
+Reply webSocketReply(std::string line);
+
+/// Whether what is at this target, as sent, is the REST interface, which answers in JSON.
+bool isApiTarget(std::string_view target);
+
+/// The reply as a spindrift.v1.Problem in JSON where it is an error in plain text; unchanged otherwise.
+Reply asProblem(Reply reply);
+
+/// 204: what a browser is told that asks whether a page of `origin` may send a request to the REST interface.
+Reply preflightReply();
+
+/// Lets a page of `origin` read the reply (Fetch standard, "CORS protocol").
+void allowOrigin(Reply& reply, std::string_view origin);
 
 /// What a whole request gets: a reply at once (the web client's files, or an error with one line), or, for its paths,
 /// what the application says.

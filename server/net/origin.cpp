@@ -32,12 +32,14 @@ bool isLoopbackName(std::string_view host) {
 
 }  // namespace
 
+bool isOriginListed(std::string_view origin, std::span<const std::string> allowed) {
+  return std::ranges::any_of(
+      allowed, [&](const std::string& known) { return known == "*" || equalsIgnoringCase(known, origin); });
+}
+
 bool isOriginAllowed(std::string_view origin, std::string_view host, bool listens_on_loopback,
                      std::span<const std::string> allowed) {
-  if (origin.empty()) return true;
-  for (const std::string& known : allowed) {
-    if (known == "*" || equalsIgnoringCase(known, origin)) return true;
-  }
+  if (origin.empty() || isOriginListed(origin, allowed)) return true;
   const std::string_view page_host = hostOf(origin);
   if (page_host.empty() || !equalsIgnoringCase(page_host, host)) return false;
   return !listens_on_loopback || isLoopbackName(host);

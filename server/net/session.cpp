@@ -21,6 +21,13 @@ namespace websocket = boost::beast::websocket;
 
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
+/// So many fragments of messages count as one message: a whole message in single bytes takes fewer than a burst, and a
+/// stream of empty ones is as slow as one of messages.
+constexpr std::uint64_t kFragmentsPerMessage = 64;
+/// RFC 6455 section 7.4: 3000 to 4999 are for libraries and programs, more is not defined.
+constexpr std::uint16_t kCloseCodeMax = 4999;
+constexpr std::uint16_t kProtocolError = 1002;
+
 /// 1011: our own failure. The peer did nothing wrong.
 constexpr const char* kInternalReason = "the server failed on this session; its log says why";
 
@@ -103,10 +110,23 @@ void Session::configure(bool echo_subprotocol) {
   // Pings cost a pong each, so they count as messages. A peer that says goodbye gets a deadline to hang up as well.
   ws_.control_callback([this](websocket::frame_type kind, beast::string_view) {
     if (kind == websocket::frame_type::close) {
+      if (ws_.reason().code > kCloseCodeMax) {
+        noteEnd(kProtocolError, "close code " + std::to_string(ws_.reason().code) + " is above 4999");
+        ws_.next_layer().closeAsProtocolError();
+      }
       armCloseDeadline();
     } else if (!message_tokens_.take(Clock::now())) {
       close(CloseCode::kPolicy, kTooManyMessages);
     }
+  });
+  ws_.next_layer().setFragmentHandler([this](std::uint64_t fragment_count) {
+    untaken_fragment_count_ += fragment_count;
+    for (; untaken_fragment_count_ >= kFragmentsPerMessage; untaken_fragment_count_ -= kFragmentsPerMessage) {
+      if (message_tokens_.take(Clock::now())) continue;
+      close(CloseCode::kPolicy, "too many fragments: send messages in fewer pieces, or slow down");
+      return false;
+    }
+    return true;
   });
 }
 

@@ -76,6 +76,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   const boost::asio::any_io_executor strand_;
   Outbox outbox_;
   TokenBucket message_tokens_;
+  std::uint64_t untaken_fragment_count_ = 0;  ///< that no token was taken for yet
   boost::beast::flat_buffer read_buffer_;
   boost::asio::steady_timer wake_timer_;     ///< the writer sleeps on it
   boost::asio::steady_timer answers_timer_;  ///< the reader sleeps on it; see waitUntilAnswersAreTaken()

@@ -17,6 +17,8 @@ using core::Error;
 using core::ErrorCode;
 
 constexpr float kNobody = -1.0f;
+/// The device keeps ids as 32-bit floats, which hold every whole number up to this one.
+constexpr std::uint32_t kBoatIdMax = 1u << 24;
 
 using State = std::array<float, std::size_t{BOAT_TEXELS} * 4>;
 
@@ -73,15 +75,19 @@ void Boats::reset(const core::Scene& scene) {
   std::array<State, MAX_BOATS> states{};
   for (State& state : states) state[6] = kNobody;
   std::ranges::fill(places_, Place{});
-  next_id_ = 1;
+  std::uint32_t boat_id = first_id_;
   // create() saw that there are places.
   for (std::size_t at = 0; at < scene.boats->boats.size(); ++at) {
-    places_[at] = {next_id_++, scene.boats->boats[at]};
+    places_[at] = {boat_id++, scene.boats->boats[at]};
     states[at] = startingState(places_[at].boat, places_[at].boat_id);
   }
+  next_id_ = std::max(next_id_, boat_id);
   state_.upload(states);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   uploadControls();
+}
+
+void Boats::numberFrom(std::uint32_t first_id) {
+  first_id_ = next_id_ = first_id;
 }
 
 std::optional<std::size_t> Boats::find(std::uint32_t boat_id) const {
@@ -91,15 +97,25 @@ std::optional<std::size_t> Boats::find(std::uint32_t boat_id) const {
 }
 
 core::Result<std::uint32_t> Boats::spawn(const core::Boat& boat) {
+  if (next_id_ > kBoatIdMax) {
+    return Error{
+        ErrorCode::kUnavailable,
+        fmt::format("boats: {} were launched in this room, the most there can be; open another room", kBoatIdMax)};
+  }
+  if (auto launched = launch(boat, next_id_); !launched) return launched.error();
+  return next_id_++;
+}
+
+core::Result<void> Boats::launch(const core::Boat& boat, std::uint32_t boat_id) {
   const auto free = std::ranges::find(places_, 0u, &Place::boat_id);
   if (free == places_.end()) {
     return Error{ErrorCode::kUnavailable,
                  fmt::format("boats: all {} places are taken; remove a boat first", places_.size())};
   }
-  *free = {next_id_++, boat};
+  *free = {boat_id, boat};
   state_.upload(startingState(boat, free->boat_id), static_cast<std::size_t>(free - places_.begin()) * sizeof(State));
   uploadControls();
-  return free->boat_id;
+  return {};
 }
 
 core::Result<void> Boats::control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {

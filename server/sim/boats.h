@@ -26,9 +26,14 @@ class Boats {
   static core::Result<std::unique_ptr<Boats>> create(gpu::Context& ctx, const core::Scene& scene, double cell_m,
                                                      const gpu::Defines& defines);
 
-  /// Only the scene's own boats, where they start; ids start again.
+  /// Only the scene's own boats, where they start, with the ids that they had: the first ones. Ids of other boats are
+  /// not given again.
   void reset(const core::Scene& scene);
-  /// The new boat's id. kUnavailable when every place is taken.
+  /// Ids from here on, the scene's own boats first; takes effect with the next reset().
+  void numberFrom(std::uint32_t first_id);
+  /// Above every id that was given.
+  [[nodiscard]] std::uint32_t nextId() const { return next_id_; }
+  /// The new boat's id. kUnavailable when every place or every id is taken.
   core::Result<std::uint32_t> spawn(const core::Boat& boat);
   /// kInvalidInput for an id that is not on the water.
   core::Result<void> control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
@@ -56,13 +61,15 @@ class Boats {
     std::uint32_t boat_id = 0;  ///< 0 = free
     core::Boat boat;
   };
+  core::Result<void> launch(const core::Boat& boat, std::uint32_t boat_id);
   std::optional<std::size_t> find(std::uint32_t boat_id) const;
   void uploadControls();
 
   gpu::Context& ctx_;
   double cell_m_;
   std::vector<Place> places_;
-  std::uint32_t next_id_ = 1;
+  std::uint32_t first_id_ = 1;
+  std::uint32_t next_id_ = 1;  ///< never goes back
   shared::BoatControls controls_{};
   gpu::TexelBuffer state_;
   gpu::Buffer control_uniforms_;

@@ -16,9 +16,10 @@ core::Result<Derived> checkChange(const core::Scene& scene, const SceneBasis& ba
   const bool relays = asksForOtherCount(basis.scene, scene);
   if (relays && isTwoWay(basis.scene)) {
     // A pool's places are counted on the device and do not move.
-    return Error{
-        ErrorCode::kInvalidInput,
-        "particles.count: is the size of the pool of this two-way scene: start the room again with the changed scene"};
+    return Error{ErrorCode::kInvalidInput,
+                 "particles.count: cannot change while a two-way scene runs, where it is the size of the particle "
+                 "pool; start the "
+                 "room again with the changed scene"};
   }
   // Compared with a fresh start of the scene as it was, but for the number of particles: the running layout may be one
   // that no fresh start has.

@@ -45,6 +45,17 @@ std::vector<BoatRecord> WaterSim::boats() const {
   return parts_->boats ? parts_->boats->records() : std::vector<BoatRecord>{};
 }
 
+void WaterSim::numberBoatsFrom(std::uint32_t first_id) {
+  first_boat_id_ = first_id;
+  if (!parts_->boats) return;
+  parts_->boats->numberFrom(first_id);
+  parts_->boats->reset(scene_);
+}
+
+std::uint32_t WaterSim::nextBoatId() const {
+  return parts_->boats ? parts_->boats->nextId() : first_boat_id_;
+}
+
 std::uint32_t WaterSim::particleCount() const {
   if (!derived_.particles) return 0;
   return parts_->pool ? health_.particle_count : derived_.particles->count;

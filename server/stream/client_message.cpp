@@ -130,9 +130,9 @@ ClientMessage parseChecked(core::ByteView bytes) {
       const v1::Hello& hello = message.hello();
       return Hello{hello.version().major(),
                    hello.version().minor(),
-                   cleanText(hello.client(), kClientNameMaxBytes),
+                   cleanName(hello.client(), kClientNameMaxBytes),
                    hello.token().substr(0, kSecretMaxBytes),
-                   cleanText(hello.name(), kPersonNameMaxBytes),
+                   cleanName(hello.name(), kPersonNameMaxBytes),
                    hello.color_rgb() & 0xFFFFFFu,
                    hello.resume_key().substr(0, kSecretMaxBytes)};
     }

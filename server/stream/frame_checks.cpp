@@ -35,6 +35,8 @@ std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer lay
     return invalid("layer: " + std::to_string(frame.layer()) + " is not " + v1::Layer_Name(layer));
   }
   if (!std::isfinite(frame.time_s())) return invalid("time_s: " + formatNumber(frame.time_s()) + " is not finite");
+  if (!std::isfinite(frame.server_time_s()))
+    return invalid("server_time_s: " + formatNumber(frame.server_time_s()) + " is not finite");
   if (const std::uint32_t crc = crc32c(viewOf(frame.payload())); crc != frame.crc32c()) {
     return invalid("crc32c: the frame says " + std::to_string(frame.crc32c()) + ", its payload has " +
                    std::to_string(crc));

@@ -33,7 +33,7 @@ std::uint8_t* appendMessage(const google::protobuf::MessageLite& message, std::u
 }  // namespace
 
 // The payload is written by hand so that it is copied exactly once; serialized pieces of a message may be concatenated,
-// and here all but the server's time stand in the order of their field numbers.
+// and here all but server_time_s and state_id stand in the order of their field numbers.
 core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, std::optional<std::uint64_t> base_tick,
                                  const v1::LayerFrame& codec, core::ByteView payload) {
   v1::LayerFrame head;
@@ -43,6 +43,7 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   head.set_keyframe(!base_tick);
   head.set_base_tick(base_tick.value_or(0));
   head.set_server_time_s(frame.asked_s);
+  head.set_state_id(frame.state_id);
   v1::LayerFrame level;
   level.set_level(toWire(frame.level));
 

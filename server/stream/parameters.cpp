@@ -107,7 +107,9 @@ std::optional<ParameterError> checkChanged(const v1::Scene& changed, std::string
   if (!changed.has_wave()) return std::nullopt;
   const std::vector<FieldIssue> issues = checkWater(changed);
   if (issues.empty()) return std::nullopt;
-  return ParameterError{issues.front().reason, std::string(path), issues.front().path + ": " + issues.front().message};
+  const FieldIssue& issue = issues.front();
+  return ParameterError{issue.reason, std::string(path),
+                        issue.path == path ? issue.message : issue.path + ": " + issue.message};
 }
 
 void appendReference(const Descriptor& type, const std::string& prefix, std::string& table) {

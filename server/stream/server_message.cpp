@@ -146,6 +146,7 @@ core::SharedBytes diagnostics(const core::FrameView& frame) {
   out.set_emitted_m3(in.emitted_m3);
   out.set_absorbed_m3(in.absorbed_m3);
   out.set_breaking_ratio(in.breaking_ratio);
+  out.set_state_id(frame.state_id);
   for (const core::DiagnosticsView::PassTime& pass : in.passes) {
     v1::Diagnostics::PassTime& time = *out.add_passes();
     time.set_name(pass.name);

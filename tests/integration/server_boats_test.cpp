@@ -102,6 +102,18 @@ TEST_F(Boats, AreThoseOfTheStartAgainAfterAResetAndEverybodyIsTold) {
   EXPECT_EQ(nextList(two).size(), 1u);
 }
 
+TEST_F(Boats, KeepTheirNumbersOverAResetAndNeverShareThem) {
+  ScriptedClient one = client();
+  EXPECT_EQ(one.ask(spawnBoat(0, 4)).ack().boat_id(), 2u);
+  EXPECT_THAT(nextList(one), ElementsAre(1u, 2u));
+  ASSERT_TRUE(one.apply(reset()));
+  EXPECT_THAT(nextList(one), ElementsAre(1u)) << "the scene's own is the same boat as before";
+  EXPECT_EQ(one.rejected(controlBoat(2, 1, 0)).reason(), v1::REJECT_REASON_UNKNOWN_BOAT);
+  EXPECT_EQ(one.ask(spawnBoat(0, 4)).ack().boat_id(), 3u) << "2 was another boat";
+  ASSERT_TRUE(one.apply(removeBoat(3)));
+  EXPECT_EQ(one.ask(spawnBoat(0, 4)).ack().boat_id(), 4u);
+}
+
 TEST_F(Boats, AreCountedByTheDiagnostics) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_DIAGNOSTICS);

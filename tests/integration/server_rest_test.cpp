@@ -107,6 +107,8 @@ TEST_F(Rest, BadCommandsAreNamed) {
     EXPECT_THAT(answer.text("message"), HasSubstr("Command")) << body;
   }
   EXPECT_EQ(post("{}").status, 400U);
+  EXPECT_EQ(post("{'reset': {}}").status, 400U);
+  EXPECT_EQ(post(R"({"reset": {},})").status, 400U);
   const Answer deep = post(R"({"splash": {"depth_m": 49}})");
   EXPECT_EQ(deep.status, 422U);
   EXPECT_EQ(deep.json.at("reject").at("field").as_string(), "splash.depth_m");
@@ -119,6 +121,38 @@ TEST_F(Rest, BadCommandsAreNamed) {
                 .status,
             415U)
       << "what a foreign page's form can send";
+}
+
+TEST_F(Rest, EveryErrorIsAProblemInJson) {
+  const auto check = [&](unsigned status, const HttpAnswer& answer) {
+    EXPECT_EQ(answer.status, status) << answer.body;
+    EXPECT_EQ(answer.headers.at("content-type"), "application/json") << status;
+    boost::system::error_code error;
+    const auto json = boost::json::parse(answer.body, error);
+    ASSERT_FALSE(error) << answer.body;
+    EXPECT_TRUE(json.as_object().contains("message")) << answer.body;
+  };
+  const auto port = server().port();
+  const std::string json = "Content-Type: application/json\r\n";
+  check(401, httpRequest(port, "GET", "/api/v1/rooms", "Authorization: Bearer wrong-wrong-wrong-1\r\n"));
+  EXPECT_EQ(httpRequest(port, "GET", "/api/v1/rooms", "Authorization: Bearer wrong-wrong-wrong-1\r\n")
+                .headers.at("www-authenticate"),
+            "Bearer");
+  check(403, httpRequest(port, "POST", "/api/v1/rooms", json + "Origin: http://evil.example\r\n", "{}"));
+  for (const char* path : {"/api/", "/api/v1/", "/api/v1/weather", "/api/v1/rooms/main/weather", "/api/v1/rooms/%ff%22",
+                           "/api/v1/rooms/main/scene/x", "/api/v2/rooms"}) {
+    check(404, httpRequest(port, "GET", path));
+  }
+  const HttpAnswer wrong_method = httpRequest(port, "PUT", "/api/v1/rooms", json, "{}");
+  check(405, wrong_method);
+  EXPECT_EQ(wrong_method.headers.at("allow"), "GET, POST");
+  check(411, httpRequest(port, "POST", "/api/v1/rooms/main/commands", json));
+  check(413, httpRequest(port, "POST", "/api/v1/rooms", json + "Content-Length: 99999999\r\n"));
+  check(415, httpRequest(port, "POST", "/api/v1/rooms", "", "{}"));
+  EXPECT_EQ(httpRequest(port, "POST", "/api/v1/rooms/main/commands",
+                        "Content-Type: Application/JSON ; charset=utf-8\r\n", R"({"splash": {}})")
+                .status,
+            200U);
 }
 
 TEST_F(Rest, TellsRoomsScenesParametersAndPeople) {

@@ -19,6 +19,7 @@ class Scenes : public ServerTest {
     folder_.write("box.textproto",
                   "particles { count: 200 layers_count: 4 box_side_m: 1 headroom_m: 1\n"
                   "  boundary_x: BOUNDARY_WALL boundary_z: BOUNDARY_WALL }");
+    folder_.write("quay.textproto", "wave { resolution_count: 48 side_m: 16 depth_m: 1 }\nboats { boats { x_m: -4 } }");
     folder_.write("broken.textproto", "wave { depth_m: 200 }\nparticles { count: 0 }\n");
     folder_.write("impossible.textproto", "particles { count: 10 }\n");
     return app::SceneCatalog(folder_.path());
@@ -40,7 +41,7 @@ class Scenes : public ServerTest {
 };
 
 TEST_F(Scenes, AreListedInTheGreeting) {
-  EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "impossible", "pond"));
+  EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "impossible", "pond", "quay"));
 }
 
 TEST_F(Scenes, ChangeForEverybodyInTheRoomWithAGreetingAndGrowingTicks) {
@@ -60,7 +61,7 @@ TEST_F(Scenes, ChangeForEverybodyInTheRoomWithAGreetingAndGrowingTicks) {
     ASSERT_TRUE(greeting);
     EXPECT_EQ(greeting->greeting().scene().name(), "pond");
     EXPECT_EQ(greeting->greeting().session_id(), each->greeting().session_id());
-    EXPECT_EQ(greeting->greeting().scenes_size(), 4);
+    EXPECT_EQ(greeting->greeting().scenes_size(), 5);
   }
   const auto frame = two.waitFor(
       [](const v1::ServerMessage& m) { return m.has_frame() && m.frame().surface_fixed16().resolution_count() == 48; });
@@ -185,6 +186,23 @@ TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
     ASSERT_TRUE(splashed) << name;
     EXPECT_GT(*splashed, *applied);
   }
+}
+
+TEST_F(Scenes, NeverGiveABoatsNumberToAnother) {
+  ScriptedClient one = client();
+  const auto boatsAfter = [&](const std::string& scene) {
+    EXPECT_TRUE(changeTo(one, scene));
+    const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
+    std::vector<std::uint32_t> ids;
+    if (!greeting) return ids;
+    for (const v1::BoatInfo& boat : greeting->greeting().boat_list().boats()) ids.push_back(boat.boat_id());
+    return ids;
+  };
+  EXPECT_THAT(boatsAfter("quay"), ElementsAre(1u));
+  EXPECT_EQ(one.ask(spawnBoat(0, 4)).ack().boat_id(), 2u);
+  EXPECT_THAT(boatsAfter("pond"), testing::IsEmpty());
+  EXPECT_THAT(boatsAfter("quay"), ElementsAre(3u)) << "also over a scene without boats";
+  EXPECT_EQ(one.ask(spawnBoat(0, 4)).ack().boat_id(), 4u);
 }
 
 }  // namespace

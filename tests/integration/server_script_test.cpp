@@ -57,6 +57,22 @@ TEST_F(Script, ASplashIsSeenAtItsPlaceBySomebodyElse) {
   EXPECT_EQ(report.clients[1].malformed_count, 0u);
 }
 
+TEST_F(Script, FramesThatAPausedRoomRepeatAreOneState) {
+  const auto report = run(R"(
+    clients { name: "ada" }
+    clients { name: "bob" subscribe { layer: LAYER_SURFACE max_rate_hz: 60 } }
+    steps { client: "ada" command { command { set_paused { paused: true } } } }
+    steps { client: "bob" frames { layer: LAYER_SURFACE min_count: 3 within_s: 20 } }
+    steps { client: "ada" command { command { reset {} } } }
+    steps { client: "bob" frames { layer: LAYER_SURFACE min_count: 3 within_s: 20 } }
+  )");
+  EXPECT_TRUE(report.passed()) << failures(report);
+  ASSERT_EQ(report.clients.size(), 2u);
+  ASSERT_EQ(report.clients[1].layers.size(), 1u);
+  EXPECT_GE(report.clients[1].layers[0].frame_count, 6u);
+  EXPECT_EQ(report.clients[1].layers[0].state_count, 2u) << "before the reset and after it, at the same tick";
+}
+
 TEST_F(Script, PeopleDriveTheirBoatsAndComeBackToThem) {
   const auto report = run(R"(
     clients { name: "ada" person: "Ada" }

@@ -24,6 +24,42 @@ TEST_F(Step, AdvancesAPausedRoomByExactlyItsTicksAndShowsThem) {
   EXPECT_NEAR(later->time_s(), static_cast<double>(*paused + 7) / 60.0, 1e-9);
 }
 
+TEST_F(Step, StatesOfAPausedRoomAreToldApartByTheirNumber) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  one.subscribe(v1::LAYER_DIAGNOSTICS);
+  ASSERT_TRUE(one.apply(setPaused(true)));
+  ASSERT_TRUE(one.barrier());
+  const auto frameOf = [&](std::uint64_t after) {
+    const auto message =
+        one.waitFor([&](const v1::ServerMessage& m) { return m.has_frame() && m.frame().state_id() > after; });
+    EXPECT_TRUE(message);
+    return message ? message->frame() : v1::LayerFrame();
+  };
+  const v1::LayerFrame before = frameOf(0);
+  const auto repeated = one.nextFrame(v1::LAYER_SURFACE);
+  ASSERT_TRUE(repeated);
+  EXPECT_EQ(repeated->tick(), before.tick()) << "a paused room repeats its frame";
+  EXPECT_EQ(repeated->state_id(), before.state_id());
+  EXPECT_EQ(repeated->payload(), before.payload());
+  const auto diagnostics = one.waitFor(v1::ServerMessage::kDiagnostics);
+  ASSERT_TRUE(diagnostics);
+  EXPECT_EQ(diagnostics->diagnostics().state_id(), before.state_id());
+
+  ASSERT_TRUE(one.apply(splash()));
+  const v1::LayerFrame splashed = frameOf(before.state_id());
+  EXPECT_EQ(splashed.tick(), before.tick());
+  ASSERT_TRUE(one.apply(step(3)));
+  const v1::LayerFrame stepped = frameOf(splashed.state_id() + 2);
+  EXPECT_EQ(stepped.tick(), before.tick() + 3);
+  EXPECT_EQ(stepped.state_id(), splashed.state_id() + 3) << "each tick is a state";
+  ASSERT_TRUE(one.apply(reset()));
+  const v1::LayerFrame started = frameOf(stepped.state_id());
+  EXPECT_EQ(started.tick(), stepped.tick()) << "the tick alone does not tell";
+  EXPECT_EQ(started.time_s(), 0.0);
+  EXPECT_NE(started.payload(), stepped.payload());
+}
+
 TEST_F(Step, MovesTheWaterAsRunningDoes) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);

@@ -39,10 +39,13 @@ describe("the npm package ws", () => {
     const client = await greeted();
     client.subscribe(Layer.SURFACE, Packing.PLAIN);
     let last_tick = -1n;
+    let last_state = 0n;
     for (let i = 0; i < 5; ++i) {
       const { header, payload } = await client.nextOf("surface");
       expect(header.tick).toBeGreaterThan(last_tick);
       last_tick = header.tick;
+      expect(header.stateId).toBeGreaterThan(last_state);
+      last_state = header.stateId;
       expect(header.resolutionCount).toBe(144);
       expect(header.sideM).toBe(16);
       expect(payload.byteLength).toBe(2 * 144 * 144);

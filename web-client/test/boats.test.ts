@@ -9,11 +9,11 @@ function frame(timeS: number, records: Partial<BodyRecord>[], spareBytes = 0): B
   const payload = bodiesPayload(records);
   const buffer = new ArrayBuffer(payload.length + spareBytes);
   new Uint8Array(buffer).set(payload);
-  return { layer: "bodies", tick: 1n, timeS, serverTimeS: timeS, level: "full", count: records.length, buffer };
+  return { layer: "bodies", tick: 1n, stateId: 0n, timeS, serverTimeS: timeS, level: "full", count: records.length, buffer };
 }
 
 function state(timeS: number, ...bodies: Partial<BodyPose>[]): BodiesState {
-  return { timeS, bodies: bodies.map((body) => ({ ...makePose(), ...body })) };
+  return { timeS, stateId: 0n, bodies: bodies.map((body) => ({ ...makePose(), ...body })) };
 }
 
 describe("a bodies frame", () => {

@@ -64,7 +64,7 @@ describe("golden bytes", () => {
     if (parsed.kind !== "surface") throw new Error(JSON.stringify(parsed));
     const { header, payload } = parsed;
     expect(header).toEqual({
-      tick: BigInt(golden["tick"] as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", resolutionCount: golden["resolution_count"],
+      tick: BigInt(golden["tick"] as string), stateId: BigInt((golden["state_id"] ?? "0") as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", resolutionCount: golden["resolution_count"],
       sideM: golden["side_m"], quantumM: golden["quantum_m"],
     });
     const frame = { layer: "surface" as const, ...header, buffer: payload.slice().buffer };
@@ -110,7 +110,7 @@ describe("golden bytes", () => {
     const parsed = unpacked(golden);
     if (parsed.kind !== "foam") throw new Error(JSON.stringify(parsed));
     expect(parsed.header).toEqual({
-      tick: BigInt(golden["tick"] as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", resolutionCount: golden["resolution_count"], sideM: golden["side_m"],
+      tick: BigInt(golden["tick"] as string), stateId: BigInt((golden["state_id"] ?? "0") as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", resolutionCount: golden["resolution_count"], sideM: golden["side_m"],
     });
     expect([...parsed.payload]).toEqual(golden["foam"]);
   });
@@ -119,7 +119,7 @@ describe("golden bytes", () => {
     const parsed = parse(read(golden.file));
     if (parsed.kind !== "bodies") throw new Error(JSON.stringify(parsed));
     const { header, payload } = parsed;
-    expect(header).toEqual({ tick: BigInt(golden["tick"] as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", count: golden["count"] });
+    expect(header).toEqual({ tick: BigInt(golden["tick"] as string), stateId: BigInt((golden["state_id"] ?? "0") as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", count: golden["count"] });
     const { bodies } = unpackBodies({ layer: "bodies", ...header, buffer: payload.slice().buffer });
     const wanted = golden["bodies"] as Record<string, number | number[]>[];
     expect(bodies).toHaveLength(wanted.length);

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { FrameHandover } from "../src/net/handover";
+import { LinkMeter } from "../src/net/link_meter";
 import { FrameRing } from "../src/scene/frame_ring";
 
 interface Numbered {
@@ -63,31 +64,68 @@ describe("the hand-over to a slow page", () => {
 });
 
 describe("the page's ring of frames", () => {
-  const frames = (ring: FrameRing<{ timeS: number }>, ...times: number[]) => times.forEach((timeS) => ring.push({ timeS }));
+  interface Numbered {
+    timeS: number;
+    stateId: bigint;
+  }
+  const at = (timeS: number, stateId = 0n): Numbered => ({ timeS, stateId });
+  const frames = (ring: FrameRing<Numbered>, ...times: number[]) => times.forEach((timeS) => ring.push(at(timeS)));
+  /** A ring that notes which frames it gave back. */
+  const noted = (maxCount: number) => {
+    const released: Numbered[] = [];
+    return { released, ring: new FrameRing<Numbered>(maxCount, (frame) => released.push(frame)) };
+  };
 
   it("gives the oldest back when it is full", () => {
-    const released: number[] = [];
-    const ring = new FrameRing<{ timeS: number }>(3, ({ timeS }) => released.push(timeS));
+    const { released, ring } = noted(3);
     frames(ring, 1, 2, 3, 4, 5);
-    expect(released).toEqual([1, 2]);
-    expect(ring.newest()).toEqual({ timeS: 5 });
+    expect(released).toEqual([at(1), at(2)]);
+    expect(ring.newest()).toEqual(at(5));
   });
 
   it("finds the frames on either side of a time", () => {
-    const ring = new FrameRing<{ timeS: number }>(4, () => {});
+    const { ring } = noted(4);
     expect(ring.around(1)).toBeUndefined();
     frames(ring, 1, 2, 4);
-    expect(ring.around(0.5)).toEqual({ from: { timeS: 1 }, to: { timeS: 1 }, mix: 0 });
-    expect(ring.around(1)).toEqual({ from: { timeS: 1 }, to: { timeS: 2 }, mix: 0 });
-    expect(ring.around(2.5)).toEqual({ from: { timeS: 2 }, to: { timeS: 4 }, mix: 0.25 });
-    expect(ring.around(9)).toEqual({ from: { timeS: 4 }, to: { timeS: 4 }, mix: 0 });
+    expect(ring.around(0.5)).toEqual({ from: at(1), to: at(1), mix: 0 });
+    expect(ring.around(1)).toEqual({ from: at(1), to: at(2), mix: 0 });
+    expect(ring.around(2.5)).toEqual({ from: at(2), to: at(4), mix: 0.25 });
+    expect(ring.around(9)).toEqual({ from: at(4), to: at(4), mix: 0 });
   });
 
   it("starts anew when simulation time goes back", () => {
-    const released: number[] = [];
-    const ring = new FrameRing<{ timeS: number }>(4, ({ timeS }) => released.push(timeS));
+    const { released, ring } = noted(4);
     frames(ring, 7, 8, 0.1);
-    expect(released).toEqual([7, 8]);
-    expect(ring.around(8)).toEqual({ from: { timeS: 0.1 }, to: { timeS: 0.1 }, mix: 0 });
+    expect(released).toEqual([at(7), at(8)]);
+    expect(ring.around(8)).toEqual({ from: at(0.1), to: at(0.1), mix: 0 });
+  });
+
+  it("puts a repeated frame of a paused room in the place of the newest", () => {
+    const { released, ring } = noted(4);
+    for (const frame of [at(1, 10n), at(2, 20n), at(2, 20n)]) ring.push(frame);
+    expect(released).toEqual([at(2, 20n)]);
+    expect(ring.around(1.5)).toEqual({ from: at(1, 10n), to: at(2, 20n), mix: 0.5 });
+  });
+
+  it("starts anew when a paused room was changed, with or without numbered states", () => {
+    for (const [before, after] of [[20n, 21n], [0n, 0n]] as const) {
+      const { released, ring } = noted(4);
+      for (const frame of [at(1, before && 10n), at(2, before), at(2, after)]) ring.push(frame);
+      expect(released).toHaveLength(2);
+      expect(ring.around(1.5)).toEqual({ from: at(2, after), to: at(2, after), mix: 0 });
+    }
+  });
+});
+
+describe("the link's meter", () => {
+  it("counts the layers of one state as one frame, and every state of a paused room as one", () => {
+    const countOf = (...shown: [bigint, bigint][]): number => {
+      const meter = new LinkMeter(0);
+      for (const [stateId, tick] of shown) meter.frame("surface", { stateId, tick });
+      return Math.round(meter.measure(1000).framesPerS / 0.6);
+    };
+    expect(countOf([1n, 5n], [1n, 5n], [1n, 5n])).toBe(1);
+    expect(countOf([1n, 5n], [2n, 5n], [3n, 5n], [2n, 5n])).toBe(3);
+    expect(countOf([0n, 5n], [0n, 5n], [0n, 6n])).toBe(2);
   });
 });

@@ -63,7 +63,7 @@ describe("parse", () => {
     const buffer = encode(surfaceFrame([0, 1, -2, 32767]));
     const parsed = parse(buffer);
     if (parsed.kind !== "surface") throw new Error(parsed.kind);
-    expect(parsed.header).toEqual({ tick: 7n, timeS: 0.25, serverTimeS: 0, level: "full", resolutionCount: 2, sideM: 16, quantumM: 0.001 });
+    expect(parsed.header).toEqual({ tick: 7n, stateId: 0n, timeS: 0.25, serverTimeS: 0, level: "full", resolutionCount: 2, sideM: 16, quantumM: 0.001 });
     expect(parsed.payload.buffer).toBe(buffer);
     expect([...new Int16Array(parsed.payload.slice().buffer)]).toEqual([0, 1, -2, 32767]);
   });
@@ -71,7 +71,7 @@ describe("parse", () => {
   it("reads particles with their bounds", () => {
     const parsed = parse(encode(particleFrame(Uint8Array.from({ length: 24 }, (_, i) => i))));
     if (parsed.kind !== "particles") throw new Error(parsed.kind);
-    expect(parsed.header).toEqual({ tick: 8n, timeS: 0.5, serverTimeS: 0, level: "full", count: 2, minM: [-8, -1.5, -8], maxM: [8, 5, 8], wordMinM: [-8, -1.5, -8], wordMaxM: [8, 5, 8], maxSpeedMps: 9, radiusM: 0.15 });
+    expect(parsed.header).toEqual({ tick: 8n, stateId: 0n, timeS: 0.5, serverTimeS: 0, level: "full", count: 2, minM: [-8, -1.5, -8], maxM: [8, 5, 8], wordMinM: [-8, -1.5, -8], wordMaxM: [8, 5, 8], maxSpeedMps: 9, radiusM: 0.15 });
     expect(parsed.payload.length).toBe(24);
   });
 
@@ -138,11 +138,11 @@ describe("parse of what stands and floats in the water", () => {
 
   it("reads foam and bodies as views into the message", () => {
     const foam = parse(encode(foamFrame(Uint8Array.of(0, 80, 255, 9))));
-    expect(foam).toMatchObject({ kind: "foam", header: { tick: 9n, timeS: 0.5, resolutionCount: 2, sideM: 16 } });
+    expect(foam).toMatchObject({ kind: "foam", header: { tick: 9n, stateId: 0n, timeS: 0.5, resolutionCount: 2, sideM: 16 } });
     const buffer = encode(bodiesFrame(bodiesPayload([{ boatId: 5 }, { boatId: 6 }])));
     const bodies = parse(buffer);
     if (bodies.kind !== "bodies") throw new Error(JSON.stringify(bodies));
-    expect(bodies.header).toEqual({ tick: 9n, timeS: 0.5, serverTimeS: 0, level: "full", count: 2 });
+    expect(bodies.header).toEqual({ tick: 9n, stateId: 0n, timeS: 0.5, serverTimeS: 0, level: "full", count: 2 });
     expect(bodies.payload.buffer).toBe(buffer);
   });
 

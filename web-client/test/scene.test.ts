@@ -54,7 +54,7 @@ describe("a click on the water", () => {
 describe("the CPU's view of the surface", () => {
   const n = 4;
   const values = Int16Array.from({ length: n * n }, (_, at) => 100 * (at % n) + 10 * Math.floor(at / n));
-  const frame = { layer: "surface" as const, tick: 1n, timeS: 0, serverTimeS: 0, level: "full" as const, resolutionCount: n, sideM: 8, quantumM: 0.01, buffer: values.buffer };
+  const frame = { layer: "surface" as const, tick: 1n, stateId: 0n, timeS: 0, serverTimeS: 0, level: "full" as const, resolutionCount: n, sideM: 8, quantumM: 0.01, buffer: values.buffer };
 
   it("interpolates between samples and holds the edge", () => {
     expect(elevationAtM(frame, -3, -3)).toBeCloseTo(0, 9);

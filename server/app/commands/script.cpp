@@ -41,8 +41,10 @@ boost::json::object toJson(const ScriptReport& report) {
   for (const ClientReport& client : report.clients) {
     boost::json::array layers;
     for (const ClientReport::Layer& layer : client.layers) {
-      layers.push_back(boost::json::object{
-          {"layer", layer.name}, {"frame_count", layer.frame_count}, {"longest_gap_s", layer.longest_gap_s}});
+      layers.push_back(boost::json::object{{"layer", layer.name},
+                                           {"frame_count", layer.frame_count},
+                                           {"state_count", layer.state_count},
+                                           {"longest_gap_s", layer.longest_gap_s}});
     }
     clients.push_back(boost::json::object{{"name", client.name},
                                           {"received_bytes", client.received_bytes},

@@ -114,12 +114,12 @@ void ScriptClient::take(core::ByteView bytes) {
     case v1::ServerMessage::kFrame: {
       v1::LayerFrame& received = *parsed->mutable_frame();
       if (!v1::Layer_IsValid(received.layer())) return;
-      frame(received.layer());
+      frame(received.layer(), received.state_id());
       newest_[static_cast<std::size_t>(received.layer())] = std::move(received);
       return;
     }
     case v1::ServerMessage::kDiagnostics:
-      return frame(v1::LAYER_DIAGNOSTICS);
+      return frame(v1::LAYER_DIAGNOSTICS, parsed->diagnostics().state_id());
     case v1::ServerMessage::kAck:
       return answered(parsed->ack().command_id(), {.ack = parsed->ack(), .reject = {}});
     case v1::ServerMessage::kReject:
@@ -142,9 +142,12 @@ void ScriptClient::take(core::ByteView bytes) {
   }
 }
 
-void ScriptClient::frame(v1::Layer layer) {
+void ScriptClient::frame(v1::Layer layer, std::uint64_t state_id) {
   LayerTally& tally = tallies_[static_cast<std::size_t>(layer)];
   ++tally.frame_count;
+  // A server that does not number its states gives 0: each frame counts then.
+  if (state_id == 0 || state_id != tally.state_id) ++tally.state_count;
+  tally.state_id = state_id;
   if (tally.last) {
     const double gap_s = since_s(*tally.last);
     tally.longest_gap_s = std::max(tally.longest_gap_s, gap_s);

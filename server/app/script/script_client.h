@@ -29,6 +29,8 @@ class ScriptClient {
   /// Of one layer, diagnostics included.
   struct LayerTally {
     std::uint64_t frame_count = 0;
+    std::uint64_t state_count = 0;  ///< different states of the water that the frames showed: a paused room repeats its
+    std::uint64_t state_id = 0;     ///< of the last frame
     std::optional<Clock::time_point> last;  ///< or the subscription
     double longest_gap_s = 0.0;             ///< since the subscription or the last resetGap()
     double longest_gap_ever_s = 0.0;
@@ -71,7 +73,7 @@ class ScriptClient {
 
  private:
   void take(core::ByteView bytes);
-  void frame(v1::Layer layer);
+  void frame(v1::Layer layer, std::uint64_t state_id);
 
   const v1::ScriptClient& setup_;
   net::ClientPool& pool_;

@@ -312,7 +312,7 @@ class Runner {
       const auto layer = static_cast<v1::Layer>(k);
       const ScriptClient::LayerTally& tally = client.tally(layer);
       if (tally.frame_count > 0)
-        out.layers.push_back({v1::Layer_Name(layer), tally.frame_count, tally.longest_gap_ever_s});
+        out.layers.push_back({v1::Layer_Name(layer), tally.frame_count, tally.state_count, tally.longest_gap_ever_s});
     }
     return out;
   }

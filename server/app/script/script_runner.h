@@ -28,6 +28,7 @@ struct ClientReport {
   struct Layer {
     std::string name;
     std::uint64_t frame_count = 0;
+    std::uint64_t state_count = 0;  ///< different states that they showed
     double longest_gap_s = 0.0;
   };
   std::vector<Layer> layers;

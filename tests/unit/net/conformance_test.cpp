@@ -171,10 +171,18 @@ TEST_F(Conformance, AnswersACloseWithoutACode) {
 }
 
 TEST_F(Conformance, RefusesCloseCodesThatNobodyMaySend) {
-  for (const int sent : {0, 999, 1004, 1005, 1006, 1014, 1015, 1016, 1100, 2000, 2999}) {
+  for (const int sent : {0, 999, 1004, 1005, 1006, 1014, 1015, 1016, 1100, 2000, 2999, 5000, 9999, 65535}) {
     expectClosed({closeFrame(static_cast<std::uint16_t>(sent))}, kProtocolError, "code " + std::to_string(sent));
   }
   expectClosed({{.opcode = Opcode::kClose, .payload = "\x03"}}, kProtocolError, "half a code");
+  expectClosed({closeFrame(5000, "with a reason")}, kProtocolError, "code 5000 with a reason");
+}
+
+TEST_F(Conformance, NotesAForbiddenCloseCodeAsAProtocolError) {
+  expectClosed({closeFrame(65535)}, kProtocolError, "code 65535");
+  ASSERT_TRUE(eventually([&] { return served_.application.closed().size() == 1; }));
+  EXPECT_EQ(served_.application.closed()[0].end.code, kProtocolError);
+  EXPECT_EQ(served_.application.closed()[0].end.reason, "close code 65535 is above 4999");
 }
 
 TEST_F(Conformance, RefusesACloseReasonThatIsNotUtf8) {
@@ -208,6 +216,47 @@ TEST_F(Conformance, RefusesMessagesOverTheLimitInOneFrameOrInMany) {
   pieces.push_back({.opcode = Opcode::kContinuation, .payload = std::string(40'001, 'x')});
   expectClosed(pieces, kTooBig, "in two");
   EXPECT_EQ(served_.application.message_count, 0);
+}
+
+/// With the rate of messages that a server has by default.
+struct Fragments : testing::Test {
+  test::TestServer served{{.close_timeout = std::chrono::milliseconds(500)}};
+  FrameClient client;
+
+  void SetUp() override {
+    ASSERT_TRUE(client.connect(served.server->port()));
+    ASSERT_TRUE(client.receive());
+  }
+};
+
+TEST_F(Fragments, AMessageOfTheGreatestSizeMayComeInSingleBytes) {
+  std::string frames;
+  const std::string whole = "echo " + std::string(ServerOptions{}.read_message_max_bytes - 5, 'x');
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    frames += bytesOf({.opcode = i == 0 ? Opcode::kBinary : Opcode::kContinuation,
+                       .payload = whole.substr(i, 1),
+                       .fin = i + 1 == whole.size()});
+  }
+  ASSERT_TRUE(client.tcp().send(frames));
+  const auto answer = client.receive();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->payload, whole);
+}
+
+TEST_F(Fragments, EmptyOnesAreBoundedByTheRateOfMessages) {
+  std::string thousand;
+  for (int i = 0; i < 1000; ++i) thousand += bytesOf({.opcode = Opcode::kContinuation, .fin = false});
+  ASSERT_TRUE(client.send({.payload = "echo ", .fin = false}));
+  // 100 million would take a server that reads them minutes; this one stops reading and hangs up.
+  int sent_count = 0;
+  while (sent_count < 100'000 && client.tcp().send(thousand)) ++sent_count;
+  EXPECT_LT(sent_count, 100'000);
+  EXPECT_EQ(client.receiveClose(), 1008);
+  ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
+  EXPECT_EQ(served.application.closed()[0].end.reason,
+            "too many fragments: send messages in fewer pieces, or slow down");
+  EXPECT_EQ(served.application.message_count, 0);
+  EXPECT_TRUE(served.serves());
 }
 
 TEST_F(Conformance, EndsWhenThePeerHangsUpInsideAFrame) {

@@ -110,7 +110,7 @@ TEST_F(ConnectionTest, SaysWhatIsWrongWithARequest) {
   EXPECT_EQ(httpExchange(port, "hello water\r\n\r\n").status, 400U);
   const HttpAnswer too_big = httpRequest(port, "POST", "/api/echo", "", std::string(101, 'x'));
   EXPECT_EQ(too_big.status, 413U);
-  EXPECT_EQ(too_big.body, "The request's body is larger than 100 bytes.\n");
+  EXPECT_EQ(too_big.body, "{\"message\":\"The request's body is larger than 100 bytes.\"}\n");
   const HttpAnswer too_long = httpRequest(port, "GET", "/", "X-Long: " + std::string(20'000, 'x') + "\r\n");
   EXPECT_EQ(too_long.status, 431U);
   EXPECT_EQ(too_long.body, "The request's header is larger than 16384 bytes.\n");
@@ -132,6 +132,85 @@ TEST_F(ConnectionTest, RefusesChunkedBodiesHoweverTheyCome) {
   }
   EXPECT_EQ(parseAnswer(tcp.receiveAll()).status, 411U);
   EXPECT_TRUE(served.serves());
+}
+
+TEST_F(ConnectionTest, WantsExactlyOneHostOfEveryHttp11Request) {
+  const TestServer served(options());
+  const auto ask = [&](const std::string& version, const std::string& headers) {
+    return httpExchange(served.server->port(),
+                        "GET /healthz HTTP/" + version + "\r\nConnection: close\r\n" + headers + "\r\n");
+  };
+  EXPECT_EQ(ask("1.1", "").status, 400U);
+  EXPECT_EQ(ask("1.1", "").body, "An HTTP/1.1 request needs a Host header.\n");
+  EXPECT_EQ(ask("1.1", "Host: a\r\nHost: a\r\n").status, 400U);
+  EXPECT_EQ(ask("1.1", "Host: a b\r\n").status, 400U);
+  EXPECT_EQ(ask("1.1", "Host: a/b\r\n").status, 400U);
+  EXPECT_EQ(ask("1.1", "Host: user@a\r\n").status, 400U);
+  for (const char* host : {"Host: a\r\n", "Host:\r\n", "Host: [::1]:8080\r\n", "Host: b%C3%A9a_r.example:1\r\n"}) {
+    EXPECT_EQ(ask("1.1", host).status, 200U) << host;
+  }
+  EXPECT_EQ(ask("1.0", "").status, 200U) << "HTTP/1.0 knows no Host";
+}
+
+TEST_F(ConnectionTest, AnswersRestErrorsOfItsOwnAsProblems) {
+  ServerOptions small = options();
+  small.request_body_max_bytes = 100;
+  small.answer_timeout = std::chrono::milliseconds(50);
+  const TestServer served(small);
+  const auto ask = [&](const std::string& method, const std::string& target, const std::string& headers = "") {
+    return httpRequest(served.server->port(), method, target, headers);
+  };
+  const std::vector<std::pair<unsigned, HttpAnswer>> answers{
+      {400, ask("GET", "/api/%zz")},
+      {403, ask("POST", "/api/echo", "Origin: http://evil.example\r\nContent-Length: 0\r\n")},
+      {404, ask("GET", "/api/nothing/\"here\"")},
+      {405, ask("TRACE", "/api/echo")},
+      {411, ask("POST", "/api/echo")},
+      {411, ask("POST", "/api/echo", "Transfer-Encoding: chunked\r\n")},
+      {413, ask("POST", "/api/echo", "Content-Length: 101\r\n")},
+      {500, ask("GET", "/api/forget")},
+      {504, ask("GET", "/api/keep")}};
+  for (const auto& [status, answer] : answers) {
+    EXPECT_EQ(answer.status, status);
+    EXPECT_EQ(answer.headers.at("content-type"), "application/json") << status;
+    EXPECT_TRUE(answer.body.starts_with("{\"message\":\"") && answer.body.ends_with("\"}\n")) << answer.body;
+  }
+  EXPECT_TRUE(ask("GET", "/nothing").headers.at("content-type").starts_with("text/plain"));
+  EXPECT_EQ(ask("POST", "/api/echo", "Content-Length: 0\r\n").status, 200U) << "no content, and it says so";
+}
+
+TEST_F(ConnectionTest, OpensRestToListedPagesAndToNoOthers) {
+  ServerOptions listed = options();
+  listed.allowed_origins = {"https://water.example"};
+  const TestServer served(listed);
+  const std::string good = "Origin: https://water.example\r\n", evil = "Origin: https://evil.example\r\n";
+  const auto preflight = [&](const std::string& origin, const std::string& target) {
+    return httpRequest(
+        served.server->port(), "OPTIONS", target,
+        origin + "Access-Control-Request-Method: POST\r\nAccess-Control-Request-Headers: content-type\r\n");
+  };
+  const HttpAnswer allowed = preflight(good, "/api/echo");
+  EXPECT_EQ(allowed.status, 204U);
+  EXPECT_EQ(allowed.headers.at("access-control-allow-origin"), "https://water.example");
+  EXPECT_EQ(allowed.headers.at("access-control-allow-methods"), "GET, HEAD, POST, DELETE");
+  EXPECT_EQ(allowed.headers.at("access-control-allow-headers"), "Authorization, Content-Type");
+  EXPECT_EQ(allowed.headers.at("vary"), "Origin");
+  EXPECT_FALSE(allowed.headers.contains("content-length"));
+  const HttpAnswer refused = preflight(evil, "/api/echo");
+  EXPECT_EQ(refused.status, 403U);
+  EXPECT_FALSE(refused.headers.contains("access-control-allow-origin"));
+  EXPECT_FALSE(preflight(good, "/healthz").headers.contains("access-control-allow-origin")) << "REST alone";
+
+  // What the page then sends it may read, errors as well.
+  const auto ask = [&](const std::string& method, const std::string& target, const std::string& headers) {
+    return httpRequest(served.server->port(), method, target,
+                       headers + (method == "POST" ? "Content-Length: 0\r\n" : ""));
+  };
+  for (const std::string target : {"/api/echo", "/api/nothing"}) {
+    EXPECT_EQ(ask("POST", target, good).headers.at("access-control-allow-origin"), "https://water.example") << target;
+  }
+  EXPECT_FALSE(ask("GET", "/api/echo", evil).headers.contains("access-control-allow-origin"));
+  EXPECT_EQ(ask("GET", "/api/echo", "").headers.at("vary"), "Origin") << "for caches";
 }
 
 TEST_F(ConnectionTest, ReadsABodyThatComesInPieces) {

@@ -123,6 +123,28 @@ TEST(Target, SplitsPathAndQuery) {
   EXPECT_EQ(target->query, "x=%20&y");
 }
 
+TEST(Query, GivesTheValuesOfAName) {
+  using Values = std::vector<std::string>;
+  EXPECT_EQ(queryValues("room=a&x=1&room=b%20c+d&room&rooms=e", "room"), (Values{"a", "b c d", ""}));
+  EXPECT_EQ(queryValues("", "room"), Values{});
+  EXPECT_EQ(queryValues("x=%zz", "room"), Values{});
+  for (const char* broken : {"room=%", "room=%4", "room=%zz", "room=a%0a"}) {
+    EXPECT_EQ(queryValues(broken, "room"), std::nullopt) << broken;
+  }
+}
+
+TEST(Printable, LeavesNothingOfAStrangersBytesThatIsNotPlain) {
+  EXPECT_EQ(printable("/a b\xff\"\n"), "/a%20b%FF\"%0A");
+  EXPECT_EQ(printable(std::string(1000, '\x01')).size(), 198U + 3U);
+}
+
+TEST(Problem, IsTheLineInJson) {
+  const Reply reply = asProblem(textReply(404, "There is nothing at /api/\"x\\."));
+  EXPECT_EQ(reply.content_type, "application/json");
+  EXPECT_EQ(*reply.body, "{\"message\":\"There is nothing at /api/\\\"x\\\\.\"}\n");
+  EXPECT_TRUE(asProblem(textReply(200, "fine")).content_type.starts_with("text/plain"));
+}
+
 TEST(RoomOfPath, ReadsTheRoom) {
   EXPECT_EQ(roomOfPath("/ws"), "");
   EXPECT_EQ(roomOfPath("/ws/"), "");

@@ -34,6 +34,60 @@ TEST(Upgrade, SaysWhichVersionItSpeaksToOtherVersions) {
   EXPECT_TRUE(served.serves());
 }
 
+TEST(Upgrade, BlamesAWrongVersionOnTheVersion) {
+  const TestServer served;
+  EXPECT_EQ(httpExchange(served.server->port(), upgradeRequest(kKey)).body,
+            "The upgrade has no Sec-WebSocket-Version: send version 13.\n");
+  EXPECT_EQ(httpExchange(served.server->port(), upgradeRequest("Sec-WebSocket-Version: 8\r\n" + kKey)).body,
+            "Sec-WebSocket-Version 8 is not spoken here: send version 13.\n");
+}
+
+TEST(Upgrade, RefusesHeadersThatMayStandOnceButComeTwice) {
+  const TestServer served;
+  for (const std::string& twice :
+       {kVersion, kKey, std::string("Host: localhost\r\n"), std::string("Origin: http://a\r\n")}) {
+    const std::string more = twice.starts_with("Host") ? twice : twice + twice;
+    std::string headers = more;
+    if (twice != kVersion) headers += kVersion;
+    if (twice != kKey) headers += kKey;
+    const HttpAnswer answer = httpExchange(served.server->port(), upgradeRequest(headers));
+    EXPECT_EQ(answer.status, 400U) << twice;
+    EXPECT_EQ(answer.body, "There are 2 " + twice.substr(0, twice.find(':')) + " headers; send one.\n");
+  }
+  EXPECT_TRUE(served.application.opened().empty());
+  EXPECT_TRUE(served.serves());
+}
+
+TEST(Upgrade, TakesSubprotocolsFromSeveralHeaders) {
+  const TestServer served;
+  RawTcp tcp;
+  ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+  ASSERT_TRUE(tcp.send(upgradeRequest(kVersion + kKey +
+                                      "Sec-WebSocket-Protocol: other.v1\r\nSec-WebSocket-Protocol: spindrift.v1\r\n")));
+  const HttpAnswer answer = test::parseAnswer(tcp.receiveUntil("\r\n\r\n"));
+  EXPECT_EQ(answer.status, 101U);
+  EXPECT_EQ(answer.headers.at("sec-websocket-protocol"), "spindrift.v1");
+}
+
+TEST(Upgrade, JoinsTheRoomOfTheQueryOrRefuses) {
+  const TestServer served;
+  const auto statusOf = [&](const std::string& target) {
+    test::WsClient client;
+    if (!client.connect("127.0.0.1", served.server->port(), target)) return std::to_string(client.handshakeStatus());
+    return test::text(client.receive());
+  };
+  EXPECT_EQ(statusOf("/ws?room=pool"), "hello pool");
+  EXPECT_EQ(statusOf("/ws/?room=po%6Fl&x=%zz"), "hello pool") << "what is not ours is left alone";
+  EXPECT_EQ(statusOf("/ws/pool?room=pool"), "hello pool");
+  EXPECT_EQ(statusOf("/ws?room="), "hello ");
+  EXPECT_EQ(statusOf("/ws?rooms=nosuch"), "hello ");
+  EXPECT_EQ(statusOf("/ws?room=nosuch"), "404");
+  EXPECT_EQ(statusOf("/ws/pool?room=main"), "400") << "two rooms";
+  EXPECT_EQ(statusOf("/ws?room=pool&room=pool"), "400");
+  EXPECT_EQ(statusOf("/ws?room=%zz"), "400");
+  EXPECT_EQ(statusOf("/ws?room=pool%00"), "400");
+}
+
 TEST(Upgrade, RefusesKeysThatAreNotSixteenBytesInBase64) {
   const TestServer served;
   for (const std::string key :

@@ -8,6 +8,8 @@
 #include <spindrift/stream/client_message.h>
 #include <spindrift/stream/scene_loader.h>
 
+#include "text.h"
+
 namespace spindrift::stream {
 namespace {
 
@@ -75,6 +77,25 @@ TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedReadably) {
   EXPECT_THAT(*refusal, HasSubstr("wire version 2.3"));
   EXPECT_THAT(*refusal, HasSubstr("1.0"));
   EXPECT_TRUE(checkVersion(Hello{0, 0, ""})) << "a hello without a version";
+}
+
+TEST(Text, NamesKeepNothingThatTurnsOrHidesTheTextAround) {
+  const auto clean = [](const std::string& text) { return cleanName(text, kPersonNameMaxBytes); };
+  // Right-to-left override, isolates, marks, Arabic letter mark, zero width space, line separator, byte order mark.
+  for (const char* hidden : {"\u202E", "\u202A", "\u2066", "\u2069", "\u200E", "\u200F", "\u061C", "\u200B", "\u2028",
+                             "\u2029", "\uFEFF", "\u2060", "\u0085", "\x1b", "\x7f"}) {
+    EXPECT_EQ(clean(std::string("A") + hidden + "da"), "Ada") << hidden;
+  }
+  for (const char* blank : {"", " ", "   \t ", "\u00A0\u2003\u3000", "\u2800", "\u3164", "\u200D\u200C", "\u00AD",
+                            "\uFE0F", "\u202E \u202C"}) {
+    EXPECT_EQ(clean(blank), "") << blank;
+  }
+  EXPECT_EQ(clean("  Ada  Lovelace \u3000"), "Ada  Lovelace");
+  EXPECT_EQ(clean(std::string(40, ' ') + "Ada" + std::string(40, ' ') + "x"), "Ada") << "cut, then no space at the end";
+  for (const char* kept :
+       {"\u2764\uFE0F", "\u0645\u06CC\u200C\u062E", "\U0001F469\u200D\U0001F680", "\u00C9va", "\u05D0\u05D1"}) {
+    EXPECT_EQ(clean(kept), kept);
+  }
 }
 
 TEST(ClientMessages, HelloNameIsCutAtACharacterAndCleaned) {

@@ -59,6 +59,17 @@ core::Bytes surfaceBytes() {
   return *FrameEncoder().encode(v1::LAYER_SURFACE, frame);
 }
 
+/// Of a server that numbers its states; the other golden frames are of one that does not.
+core::Bytes numberedBytes() {
+  const std::vector<std::uint32_t> words = goldenBodyWords();
+  core::FrameView frame;
+  frame.tick = 1234;
+  frame.time_s = kTimeS;
+  frame.state_id = kTick + 2;
+  frame.bodies = core::BodiesView{2, words};
+  return *FrameEncoder().encode(v1::LAYER_BODIES, frame);
+}
+
 core::Bytes particleBytes() {
   // Corners, centre, both ends of a velocity, tint and foam.
   const std::vector<std::uint32_t> words = {
@@ -310,6 +321,8 @@ std::vector<GoldenCase> goldenCases() {
        *reject({301, v1::REJECT_REASON_OUT_OF_RANGE, "splash.radius_m", "too wide"})},
       {"foam_16.bin", kOk, foamJson(foam), foam},
       {"bodies_2.bin", kOk, bodiesJson(bodies), bodies},
+      {"bodies_state_id.bin", kOk, "\"state_id\": " + wide(kTick + 2) + ", " + bodiesJson(numberedBytes()),
+       numberedBytes()},
       {"ack_boat.bin", kOk, "\"kind\": \"ack\", \"command_id\": \"302\", \"applied_tick\": \"1234\", \"boat_id\": 7",
        *ack(302, 1234, 7)},
       {"boat_list.bin", kOk, "\"kind\": \"boat_list\", \"boats\": " + std::string(kGoldenBoatsJson),

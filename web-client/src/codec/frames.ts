@@ -25,6 +25,8 @@ const kLargest = 1e6;
 /** What every frame carries: tick, simulation time, when that was on the server's clock, and how much of the layer it is. */
 export interface FrameHeader {
   tick: bigint;
+  /** Number of the room's state that the frame shows: ticks repeat while the room is paused. 0: an older server. */
+  stateId: bigint;
   timeS: number;
   serverTimeS: number;
   level: LevelName;
@@ -104,8 +106,8 @@ function baseTickOf(frame: LayerFrame): bigint | undefined {
 }
 
 export function parseFrame(frame: LayerFrame): ParsedFrame | PackedSurface | PackedFoam | Malformed {
-  const { tick, timeS, serverTimeS, payload, codec } = frame;
-  const of: FrameHeader = { tick, timeS, serverTimeS, level: levelName(frame.level) };
+  const { tick, stateId, timeS, serverTimeS, payload, codec } = frame;
+  const of: FrameHeader = { tick, stateId, timeS, serverTimeS, level: levelName(frame.level) };
   switch (codec.case) {
     case "surfaceFixed16": {
       const { resolutionCount, sideM, quantumM } = codec.value;

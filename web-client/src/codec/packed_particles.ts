@@ -21,7 +21,7 @@ export interface PackedParticles extends FrameHeader {
 
 /** Bounds were checked; what is left to find is damage of the payload. What comes back holds until the next call. */
 export function unpackParticles(packed: PackedParticles): { kind: "particles"; header: ParticleHeader; payload: Uint8Array } | Malformed {
-  const { tick, timeS, serverTimeS, level, count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM, payload } = packed;
+  const { tick, stateId, timeS, serverTimeS, level, count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM, payload } = packed;
   reader ??= new ParticleReader();
   const words = reader.read(payload, count, cellsCount, offsetBits);
   if (!words) return malformed(`particles: the payload does not hold ${count} of them`);
@@ -30,6 +30,7 @@ export function unpackParticles(packed: PackedParticles): { kind: "particles"; h
   const first = minM.map((min) => min + quantumM / 2) as ParticleHeader["wordMinM"];
   const header: ParticleHeader = {
     tick,
+    stateId,
     timeS,
     serverTimeS,
     level,

@@ -34,6 +34,8 @@ export interface DiagnosticsInfo {
   emittedM3: number;
   absorbedM3: number;
   breakingRatio: number;
+  /** As FrameHeader.stateId. */
+  stateId: bigint;
 }
 
 export type RoomEventName = "recovered" | "reset" | "other";

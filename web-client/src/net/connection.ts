@@ -248,7 +248,7 @@ export class Connection {
   }
 
   private gotFrame(frame: ParsedFrame): void {
-    this.meter.frame(frame.kind, frame.header.tick);
+    this.meter.frame(frame.kind, frame.header);
     this.events.frame(frame);
   }
 

@@ -1,12 +1,13 @@
-// Counts what arrives and turns it into rates: kB/s, frames/s, latency. Frames of two layers with one tick are one frame.
+// Counts what arrives and turns it into rates: kB/s, frames/s, latency. Frames of two layers that show one state are one
+// frame; a server that does not number its states is taken by its ticks.
 import type { FrameLayer, LinkStats } from "./messages";
 
 const kRoundTripsKept = 5;
 /** What is counted here. */
 export type MeteredStats = Omit<LinkStats, "overtakenCount" | "level" | "levelHeldBy">;
 
-/** A frame older than the newest by less than this is a late part of one that was counted; by more, time began anew. */
-const kSameFrameTicks = 30n;
+/** A frame older than the newest by less than this is a late part of one that was counted; by more, another room's. */
+const kSameFrameStates = 30n;
 
 export class LinkMeter {
   private readonly receivedCount = { surface: 0, particles: 0, foam: 0, bodies: 0, diagnostics: 0 };
@@ -17,7 +18,7 @@ export class LinkMeter {
   /** Share of the time between the last two measurements that messages took, 0..1. */
   busyShare = 0;
   private frameCount = 0;
-  private lastTick = -kSameFrameTicks;
+  private lastState = -kSameFrameStates;
   private kilobytesPerS = 0;
   private framesPerS = 0;
   private roundTripsMs: number[] = [];
@@ -28,12 +29,13 @@ export class LinkMeter {
     this.bytesCount += count;
   }
 
-  frame(layer: FrameLayer, tick: bigint): void {
+  frame(layer: FrameLayer, { stateId, tick }: { stateId: bigint; tick: bigint }): void {
     ++this.receivedCount[layer];
-    // Layers of one tick may come in any order, and one of them late.
-    if (tick <= this.lastTick && tick > this.lastTick - kSameFrameTicks) return;
+    const state = stateId !== 0n ? stateId : tick;
+    // Layers of one state may come in any order, and one of them late.
+    if (state <= this.lastState && state > this.lastState - kSameFrameStates) return;
     ++this.frameCount;
-    this.lastTick = tick;
+    this.lastState = state;
   }
 
   diagnostics(): void {

@@ -21,6 +21,7 @@ export interface BodyPose {
 /** One frame unpacked, once, when it comes. */
 export interface BodiesState {
   timeS: number;
+  stateId: bigint;
   bodies: BodyPose[];
 }
 
@@ -45,7 +46,7 @@ export function unpackBodies(frame: BodiesFrame): BodiesState {
       throttle: view.getInt8(at + 24) / 127,
       rudder: view.getInt8(at + 25) / 127,
     });
-  return { timeS: frame.timeS, bodies };
+  return { timeS: frame.timeS, stateId: frame.stateId, bodies };
 }
 
 /** From one angle to another by the shorter way; the result is in -pi..pi. */

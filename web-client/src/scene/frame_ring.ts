@@ -6,7 +6,7 @@ interface Between<T> {
   mix: number;
 }
 
-export class FrameRing<T extends { timeS: number }> {
+export class FrameRing<T extends { timeS: number; stateId: bigint }> {
   private frames: T[] = [];
   private between: Between<T> | undefined;
 
@@ -15,10 +15,18 @@ export class FrameRing<T extends { timeS: number }> {
     private readonly release: (frame: T) => void,
   ) {}
 
-  /** A frame not newer than the newest one means that the simulation started again: the old ones go. */
+  /**
+   * A frame of the newest one's state (a paused room repeats its frames, perhaps at another level) takes its place. Another
+   * state at no later time means that the simulation started again or was changed while paused: the old frames go.
+   */
   push(frame: T): void {
     const newest = this.newest();
-    if (newest && frame.timeS <= newest.timeS) this.clear();
+    if (newest && frame.stateId !== 0n && frame.stateId === newest.stateId) {
+      this.release(this.frames.pop()!);
+      this.between = undefined;
+    } else if (newest && frame.timeS <= newest.timeS) {
+      this.clear();
+    }
     this.frames.push(frame);
     if (this.frames.length > this.maxCount) this.release(this.frames.shift()!);
   }

@@ -90,8 +90,9 @@ struct ReducedView {
 /// One frame of one room. The spans live as long as `lease` does; dropping the last copy frees the readback slot.
 struct FrameView {
   std::uint64_t tick = 0;
-  double time_s = 0.0;   ///< simulation time
-  double asked_s = 0.0;  ///< when the frame was asked for, on the server's monotonic clock
+  double time_s = 0.0;         ///< simulation time
+  double asked_s = 0.0;        ///< when the frame was asked for, on the server's monotonic clock
+  std::uint64_t state_id = 0;  ///< number of the room's state that the frame shows; 0: not counted
   Level level = Level::kFull;
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <spindrift/core/bytes.h>
@@ -80,6 +81,7 @@ struct HttpReply {
   unsigned status = 200;
   std::string content_type = "application/json";
   std::string body;
+  std::vector<std::pair<std::string, std::string>> headers{};  ///< beyond Content-Type: "Allow", ...
 };
 
 struct HttpRequest {
@@ -210,7 +212,7 @@ enum class Refused : std::uint8_t {
   kFull,        ///< 503: max_session_count sessions are open, or too many of them by one address
   kRoom,        ///< 404: acceptSession said no
   kHandshake,   ///< 400, 404, 426: no WebSocket upgrade that this server knows
-  kRequest,     ///< 400, 413, 431: no HTTP request, or too large a one
+  kRequest,     ///< 400, 411, 413, 431: no HTTP request, one without a length, or too large a one
   kConnection,  ///< closed unheard: too many connections
 };
 inline constexpr std::size_t kRefusedCount = 7;

@@ -40,6 +40,7 @@ struct FrameRequest {
   bool bodies = false;
   std::array<LayerRequest, core::kReducedLevelCount> reduced{};  ///< besides the full ones; by Level
   double asked_s = 0.0;                                          ///< on the caller's clock: comes back with the frame
+  std::uint64_t state_id = 0;                                    ///< the caller's: comes back with the frame
 
   [[nodiscard]] bool isEmpty() const {
     return !surface && !particles && !foam && !bodies && std::ranges::all_of(reduced, &LayerRequest::isEmpty);
@@ -77,6 +78,11 @@ class WaterSim {
   core::Result<void> controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
   core::Result<void> removeBoat(std::uint32_t boat_id);
   [[nodiscard]] std::vector<BoatRecord> boats() const;
+  /// Gives boats ids from here on (1 where it is never called), the scene's own first. An id is given once; only the
+  /// scene's own boats keep theirs over a reset. At the start, before a boat was launched or a tick was made.
+  void numberBoatsFrom(std::uint32_t first_id);
+  /// Above every id that was given; what numberBoatsFrom() said in a scene without boats.
+  [[nodiscard]] std::uint32_t nextBoatId() const;
   [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats().size()); }
   /// Particles now; in two-way scenes as of the newest health().
   [[nodiscard]] std::uint32_t particleCount() const;
@@ -175,6 +181,7 @@ class WaterSim {
   std::uint64_t tick_ = 0;  ///< never goes back
   std::uint64_t start_tick_ = 0;
   std::uint64_t revision_ = 0;  ///< of scene, layout and course of time; see SceneBasis
+  std::uint32_t first_boat_id_ = 1;
   Health health_;
   std::uint64_t nonfinite_count_ = 0;
   std::uint64_t escaped_count_ = 0;

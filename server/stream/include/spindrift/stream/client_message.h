@@ -28,9 +28,9 @@ inline constexpr std::size_t kSecretMaxBytes = 256;
 struct Hello {
   std::uint32_t major = 0;
   std::uint32_t minor = 0;
-  std::string client;           ///< at most kClientNameMaxBytes of UTF-8 without control characters; may be empty
+  std::string client;           ///< at most kClientNameMaxBytes of cleaned UTF-8 (see text.h); may be empty
   std::string token{};          ///< at most kSecretMaxBytes of anything; empty: a guest
-  std::string name{};           ///< at most kPersonNameMaxBytes of UTF-8 without control characters; may be empty
+  std::string name{};           ///< at most kPersonNameMaxBytes, likewise; empty also where it showed nothing
   std::uint32_t color_rgb = 0;  ///< 24 bits; 0: the server chooses
   std::string resume_key{};     ///< as token
 };
