@@ -65,7 +65,7 @@ std::optional<Reply> refuseHead(const RequestParser& parser) {
   if (parser.chunked()) return textReply(411, "A body needs a Content-Length here; it may not come in chunks.");
   const bool has_body = request.method() == http::verb::post || request.method() == http::verb::put ||
                         request.method() == http::verb::patch;
-  if (has_body && isApiTarget(viewOf(request.target())) && !parser.content_length()) {
+  if (has_body && isApiTarget(viewOf(request.target())) && request.count(http::field::content_length) == 0) {
     return textReply(411, "A " + std::string(viewOf(request.method_string())) +
                               " needs a Content-Length, also where its body is empty.");
   }

@@ -85,6 +85,13 @@ TEST_F(People, AreWelcomedWithTheirRoleAndToldToOthers) {
   peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 1; });
 }
 
+TEST_F(People, WhoseNameShowsNothingAreNamedAsGuests) {
+  ScriptedClient ada = player("\u202EAda\u202C  ");
+  ScriptedClient blank = player(" \u3000\u2066 \u200D");
+  const v1::People people = peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 2; });
+  EXPECT_THAT(namesOf(people), ElementsAre("Ada", "guest 2"));
+}
+
 TEST_F(People, MayDoWhatTheirRoleAllows) {
   ScriptedClient guest = client();
   for (const v1::Command& command : {splash(), spawnBoat(0, 4), controlBoat(1, 1, 0), takeBoat(1), reset()}) {

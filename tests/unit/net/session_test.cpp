@@ -79,7 +79,7 @@ TEST(Session, RefusesAnUnknownRoomWithTheApplicationsLine) {
 }
 
 TEST(Session, RefusesMoreSessionsThanTheBoundAndTakesThemAgainLater) {
-  const TestServer served({.max_session_count = 2});
+  const TestServer served({.max_session_count = 2, .address_session_share = 1.0});
   WsClient first = served.client();
   WsClient second = served.client();
   WsClient third;
