@@ -117,6 +117,8 @@ Context::~Context() {
   if (!isOwnedHere()) guard.emplace();
   if (!makeCurrent()) {
     spdlog::error("OpenGL context destroyed while another thread uses it; its objects are not freed");
+    (void)programs_.release();  // their destructors would need the context
+    (void)staging_.release();
     return;
   }
   collectRetired();

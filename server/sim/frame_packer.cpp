@@ -115,7 +115,9 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, co
     pending.boat_count = parts.boats->count();
     at += kBodyWords;
   }
-  if (at == 0 || !slot->copyFrom(packed_, 0, at * 4, 0)) return false;
+  if (at == 0) return false;
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);  // the next tick's passes write what was read here
+  if (!slot->copyFrom(packed_, 0, at * 4, 0)) return false;
   pending.number = packed_count_++;
   slot->submit(pending.number);
   pending_.push_back(pending);

@@ -287,7 +287,11 @@ TEST_F(Variants, EveryMixOfPartsRuns) {
         auto sim = WaterSim::create(*ctx_, scene);
         ASSERT_TRUE(sim) << sim.error().message;
         ASSERT_TRUE((*sim)->start(core::Splash{0.0, 0.0, 1.0, 0.5, 0.1}));
-        for (int i = 0; i < 20; ++i) (*sim)->step();
+        for (int i = 0; i < 20; ++i) {
+          (*sim)->step();
+          (void)(*sim)->requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+          (void)(*sim)->takeFrames();
+        }
         EXPECT_TRUE(isFinite((*sim)->copyState()));
         EXPECT_EQ((*sim)->recoveredCount(), 0u);
       }
