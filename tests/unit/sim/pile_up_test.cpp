@@ -124,14 +124,16 @@ TEST_F(PileUp, APositionThatIsNotFiniteIsInNoCellAndCounted) {
 }
 
 TEST_F(PileUp, EveryPositionMayBeLostWithoutAnUnboundedStep) {
-  WaterSim& sim = make(boxScene(core::PressureSolver::kWeaklyCompressible, 3000));
-  StateCopy state = sim.copyState();
-  for (std::size_t i = 0; i < state.position.size(); i += 4) state.position[i] = kNan;
-  sim.setState(state);
-  for (int i = 0; i < kHealthArrives_ticks; ++i) sim.step();
-  EXPECT_EQ(sim.nonfiniteCount(), sim.particleCount());
-  EXPECT_EQ(sim.crowdedCount(), 0u) << "no cell holds them";
-  for (const float x : sim.copyState().position) ASSERT_TRUE(std::isfinite(x));
+  for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
+    WaterSim& sim = make(boxScene(solver, 3000));
+    StateCopy state = sim.copyState();
+    for (std::size_t i = 0; i < state.position.size(); i += 4) state.position[i] = kNan;
+    sim.setState(state);
+    for (int i = 0; i < kHealthArrives_ticks; ++i) sim.step();
+    EXPECT_EQ(sim.nonfiniteCount(), sim.particleCount());
+    EXPECT_EQ(sim.crowdedCount(), 0u) << "no cell holds them";
+    for (const float x : sim.copyState().position) ASSERT_TRUE(std::isfinite(x));
+  }
 }
 
 TEST_F(PileUp, APoolKeepsItsLedgerThroughAPositionThatIsNotFinite) {
