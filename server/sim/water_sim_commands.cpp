@@ -75,10 +75,11 @@ core::Result<void> WaterSim::setScene(const core::Scene& scene) {
     if (auto relaid = relay(scene); !relaid) return relaid.error();
   }
   // Water that is taken away takes its motion with it; water that is added is at rest.
-  if (scene.wave && scene.wave->depth_m < scene_.wave->depth_m)
-    parts_->wave->scaleFlow(scene.wave->depth_m / scene_.wave->depth_m);
+  const bool is_shallower = scene.wave && scene.wave->depth_m < scene_.wave->depth_m;
+  if (is_shallower) parts_->wave->scaleFlow(scene.wave->depth_m / scene_.wave->depth_m);
   scene_ = scene;
   setCareful(is_careful_);
+  if (is_shallower) parts_->wave->fillUpToBed(scene_, *derived_.wave);
   return {};
 }
 
