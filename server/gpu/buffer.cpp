@@ -34,6 +34,8 @@ TexelTraits traits(TexelFormat format) {
       return {GL_RGBA32UI, 16};
     case TexelFormat::kR32I:
       return {GL_R32I, 4};
+    case TexelFormat::kRG32I:
+      return {GL_RG32I, 8};
     case TexelFormat::kRGBA32I:
       return {GL_RGBA32I, 16};
   }

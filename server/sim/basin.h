@@ -19,8 +19,9 @@ struct Basin {
   /// +z, and the two diagonals of the 9-point stencil. Depth at the face (harmonic mean, so that a dry cell closes it)
   /// times the stencil's weight; 0 across reflecting and absorbing sides.
   std::vector<std::array<float, 4>> conductance_m;
-  /// Rates at which flow and elevation are lost [1/s]: equal in a sponge; flow alone where a beach runs dry.
-  std::vector<std::array<float, 2>> loss_per_s;
+  /// What a wave step reads of each cell: rates at which flow and elevation are lost [1/s] (equal in a sponge; flow
+  /// alone where a beach runs dry), still depth [m] as in depth_m, 0.
+  std::vector<std::array<float, 4>> bed;
 };
 
 /// Still depth at a place, obstacles not considered. [m]

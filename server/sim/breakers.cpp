@@ -33,6 +33,7 @@ void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t 
   before_.bindTexel(BREAKING_BEFORE);
   now_.bindStorage(BREAKING);
   if (pool) {
+    wave.bindTerrain();
     pool->words().bindStorage(POOL);
     pool->emitters().bindStorage(EMITTER);
     program_.setUniform("tick", tick);

@@ -10,6 +10,7 @@
 #include "lattice.h"
 #include "particle_layout.h"
 #include "scene_parts.h"
+#include "spray.h"
 
 namespace spindrift::sim {
 namespace {
@@ -87,6 +88,8 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   return out;
 }
 
+/// The bound of the inside holds in sponges too, and with any damping: losses are centred in the step
+/// (shaders/wave/continuity.comp).
 double waveMaxStep(const core::WaveScene& wave, const WaveLayout& layout) {
   const double limit = wave.stencil == core::Stencil::kNinePoint ? kNinePointCourant : kFivePointCourant;
   // Crests of a steepening wave are faster: shaders/wave/momentum.comp bounds d (1 + 3 s eta/d) by d (1 + s).
@@ -98,10 +101,11 @@ std::uint32_t stepsFor(double interval_s, double max_dt_s) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(interval_s / max_dt_s - 1e-9), 1.0, 1e6));
 }
 
-/// Bytes a wave cell: elevation, flow, tables of a varied basin, what particles and boats read.
+/// Bytes a wave cell: elevation, flow, transfers, tables of a varied basin, what particles and boats read.
 std::uint64_t waveCellBytes(const core::Scene& scene) {
-  std::uint64_t bytes = 4 + (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8);
-  if (isVaried(scene)) bytes += 16 + 8;
+  // Elevation; flow and transfer; what limits transfers.
+  std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
+  if (isVaried(scene)) bytes += 16 + 16;
   if (isOpen(scene)) bytes += 8;
   if (isSampled(scene)) bytes += 24 + (isVaried(scene) ? 20 : 0);
   if (hasPressureHead(scene)) bytes += 4;
@@ -189,6 +193,10 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.splat_reach_count = d.particles->splat_reach_count;
     u.splat_width_m = f(splatWidth(d.particles->splat_reach_count) * d.wave->cell_m);
     u.emission_ratio = f(scene.coupling->emission_ratio);
+    const double droplet_m = u.droplet_units * double{ELEVATION_UNIT_M};
+    const SprayBlocks spray = sprayBlocks(u.splat_reach_count, droplet_m, scene.wave->depth_m);
+    u.spray_block_count = spray.block_count;
+    u.spray_taken_m = f(spray.taken_ratio * droplet_m);
     u.seed = static_cast<std::uint32_t>(scene.seed);
   }
   if (scene.coupling) u.downforce_per_m_s2 = f(scene.coupling->downforce_per_m_s2);

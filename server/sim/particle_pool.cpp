@@ -34,6 +34,7 @@ void ParticlePool::emit(const ParticleBuffers& particles, Wave& wave, const gpu:
   words_.bindStorage(POOL);
   wave.bindSurface();
   wave.bindTerrain();
+  wave.bindBasin();
   breaking.bindTexel(BREAKING);
   emitters_.bindTexel(EMITTER);
   particles.position.bindStorage(POSITION);

@@ -41,8 +41,9 @@ void WaterSim::advanceWave() {
   if (!parts_->wave) return;
   const auto timer = timers_.scope("wave");
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
-    parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr);
-    parts_->wave->displace(parts_->effects.advance(time_s() + (k + 1) * derived_.wave->dt_s, stageOf(*derived_.wave)));
+    const double end_s = time_s() + (k + 1) * derived_.wave->dt_s;
+    parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr,
+                          parts_->effects.advance(end_s, stageOf(*derived_.wave)));
   }
   parts_->wave->clearPressure();  // hulls and falling particles press anew for the next tick
 }

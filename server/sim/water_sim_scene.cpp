@@ -38,6 +38,7 @@ core::Result<void> WaterSim::adopt(PreparedScene prepared) {
   if (prepared.flow_ratio != 1.0) parts_->wave->scaleFlow(prepared.flow_ratio);
   scene_ = std::move(prepared.scene);
   setCareful(is_careful_);
+  if (prepared.flow_ratio != 1.0) parts_->wave->fillUpToBed(scene_, *derived_.wave);  // shallower
   ++revision_;
   return {};
 }

@@ -73,6 +73,8 @@ void WaterSim::recover(const Health& breach) {
   ++revision_;
   careful_until_tick_ = tick_ + static_cast<std::uint64_t>(kCareful_s / derived_.tick_s);
   setCareful(true);
+  // The checkpoint may be of deeper water than there is now.
+  if (restored && parts_->wave) parts_->wave->fillUpToBed(scene_, *derived_.wave);
   if (recovered_count_ <= 10 || recovered_count_ % 100 == 0) {
     spdlog::warn(
         "scene {}: tick {} has {} values out of range and {} escaped particles; went back to {} with half the step for "

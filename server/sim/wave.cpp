@@ -1,12 +1,14 @@
 #include "wave.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <shared/bindings.h>
 
 #include "basin.h"
 #include "create_all.h"
+#include "fill_up.h"
 
 namespace spindrift::sim {
 
@@ -24,9 +26,13 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   Creation create;
   create(wave->elevation_, TexelBuffer::create(ctx, "elevation", cells, TexelFormat::kR32I));
   create(wave->flow_, TexelBuffer::create(ctx, "flow", cells, nine ? TexelFormat::kRGBA32F : TexelFormat::kRG32F));
+  create(wave->transfer_,
+         TexelBuffer::create(ctx, "transfer", cells, nine ? TexelFormat::kRGBA32I : TexelFormat::kRG32I));
+  create(wave->given_share_, TexelBuffer::create(ctx, "given share", cells, TexelFormat::kR32F));
+  create(wave->limit_args_, gpu::Buffer::create(ctx, "limit arguments", 3 * sizeof(std::uint32_t)));
   if (wave->is_varied_) {
     create(wave->basin_, TexelBuffer::create(ctx, "basin", cells, TexelFormat::kRGBA32F));
-    create(wave->sponge_, TexelBuffer::create(ctx, "sponge", cells, TexelFormat::kRG32F));
+    create(wave->bed_, TexelBuffer::create(ctx, "bed", cells, TexelFormat::kRGBA32F));
   }
   if (wave->has_outflow_) create(wave->outflow_, TexelBuffer::create(ctx, "outflow", cells, TexelFormat::kRG32UI));
   wave->has_head_ = hasPressureHead(scene);
@@ -42,6 +48,8 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   create(wave->splash_, Program::create(ctx, "wave/splash.comp", defines));
   create(wave->crest_, Program::create(ctx, "wave/crest.comp", defines));
   create(wave->momentum_, Program::create(ctx, "wave/momentum.comp", defines));
+  create(wave->find_share_, Program::create(ctx, "wave/given_share.comp", defines));
+  create(wave->limit_, Program::create(ctx, "wave/limit.comp", defines));
   create(wave->continuity_, Program::create(ctx, "wave/continuity.comp", defines));
   if (sampled) {
     create(wave->surface_,
@@ -51,6 +59,8 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
   if (create.error()) return *create.error();
+  // Rows are one group high. Momentum sets the first word where there is something to limit, continuity puts it back.
+  wave->limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.resolution_count, 1});
   wave->uploadBasin(scene, layout);
   return wave;
 }
@@ -74,7 +84,7 @@ void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
   if (!is_varied_) return;
   const Basin basin = layOutBasin(scene, layout);
   basin_.upload(basin.conductance_m);
-  sponge_.upload(basin.loss_per_s);
+  bed_.upload(basin.bed);
   if (!has_terrain_) return;
   const Terrain terrain = layOutTerrain(scene, layout, basin);
   terrain_.upload(terrain.ground);
@@ -87,6 +97,24 @@ void Wave::scaleFlow(double ratio) {
   flow_.upload(flow_m2ps);
 }
 
+void Wave::fillUpToBed(const core::Scene& scene, const WaveLayout& layout) {
+  const std::size_t cells = std::size_t{n_} * n_;
+  std::vector<std::int64_t> bed_units(cells, bedUnits(scene.wave->depth_m));
+  if (is_varied_)
+    std::ranges::transform(layOutBasin(scene, layout).depth_m, bed_units.begin(), [](float m) { return bedUnits(m); });
+  auto elevation_units = elevation_.downloadVector<std::int32_t>(cells);
+  const FillUp filled = fillUp(bed_units, elevation_units, has_outflow_ ? Lack::kComesFromOutside : Lack::kStays);
+  if (!filled.is_changed) return;
+  elevation_.upload(elevation_units);
+  if (filled.from_outside_units > 0) {
+    // Only the sum over all cells counts: the first one's is as good as any. Low 24 bits, the rest.
+    auto outflow = outflow_.downloadVector<std::int32_t>(2);
+    const std::int64_t units = std::int64_t{outflow[1]} * (1 << 24) + outflow[0] - filled.from_outside_units;
+    outflow_.upload(std::array<std::int32_t, 2>{static_cast<std::int32_t>(units & 0xffffff),
+                                                static_cast<std::int32_t>(units >> 24)});
+  }
+}
+
 void Wave::bindTerrain() const {
   if (!has_terrain_) return;
   terrain_.bindTexel(TERRAIN);
@@ -96,17 +124,36 @@ void Wave::bindTerrain() const {
 void Wave::bindBasin() const {
   if (!is_varied_) return;
   basin_.bindTexel(BASIN);
-  sponge_.bindTexel(SPONGE);
+  bed_.bindTexel(BED);
 }
 
+void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events) {
+  bindBasin();
+  elevation_.bindTexel(ELEVATION);
+  if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
+  if (breaking) breaking->bindTexel(BREAKING);
+  flow_.bindStorage(FLOW);
+  transfer_.bindStorage(TRANSFER);
+  limit_args_.bindStorage(LIMIT_ARGS);
+  momentum_.dispatch(n_, n_);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  displace(events);
+  limit();
+
+  transfer_.bindTexel(TRANSFER);
+  elevation_.bindStorage(ELEVATION);
+  if (has_outflow_) outflow_.bindStorage(OUTFLOW);
+  continuity_.dispatch(n_, n_);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+/// Adds to TRANSFER, and with crests to FLOW, which advance() has bound.
 void Wave::displace(const shared::EventUniforms& events) {
   const bool any = events.splash_count + events.crest_count > 0;
   if (!any && !had_events_) return;
   had_events_ = any;
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
-  bindBasin();
-  elevation_.bindStorage(ELEVATION);
   if (events.splash_count > 0) {
     float radius_m = 0.0f;
     for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
@@ -116,25 +163,21 @@ void Wave::displace(const shared::EventUniforms& events) {
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
   if (events.crest_count > 0) {
-    flow_.bindStorage(FLOW);
     crest_.dispatch(n_, n_);
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
 }
 
-void Wave::advance(const gpu::TexelBuffer* breaking) {
-  bindBasin();
-  elevation_.bindTexel(ELEVATION);
-  if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
-  if (breaking) breaking->bindTexel(BREAKING);
-  flow_.bindStorage(FLOW);
-  momentum_.dispatch(n_, n_);
+/// Both passes run no group in steps in which nothing could empty a cell.
+void Wave::limit() {
+  ctx_.barrier(gpu::Barrier::kIndirect);
+  transfer_.bindTexel(TRANSFER);
+  given_share_.bindStorage(GIVEN_SHARE);
+  find_share_.dispatchIndirect(limit_args_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 
-  flow_.bindTexel(FLOW);
-  elevation_.bindStorage(ELEVATION);
-  if (has_outflow_) outflow_.bindStorage(OUTFLOW);
-  continuity_.dispatch(n_, n_);
+  given_share_.bindTexel(GIVEN_SHARE);
+  limit_.dispatchIndirect(limit_args_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

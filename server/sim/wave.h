@@ -32,11 +32,14 @@ class Wave {
 
   /// Multiplies the flow everywhere. Waits: for what people rarely do.
   void scaleFlow(double ratio);
+  /// After the bed has risen (shallower water, an older checkpoint): cells whose surface lies below it are filled up to
+  /// it with water of the others, in proportion to what these hold; where sides are open and there is too little, with
+  /// water from outside, counted as outflow. Not a unit is made or lost. Waits: for what people rarely do.
+  void fillUpToBed(const core::Scene& scene, const WaveLayout& layout);
 
-  /// Adds one wave step's share of the active effects. An empty one says that no effect acts now.
-  void displace(const shared::EventUniforms& events);
-  /// One wave step. `breaking` may be null.
-  void advance(const gpu::TexelBuffer* breaking);
+  /// One wave step: what the slope sets in motion and what this step's share of the active effects displaces, limited
+  /// to what cells hold. `breaking` may be null; empty `events` say that no effect acts now.
+  void advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events);
   /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
 
@@ -51,7 +54,7 @@ class Wave {
   void bindSurface() const;
   /// Binds the effects of the last wave step.
   void bindEvents() const;
-  /// Binds BASIN and SPONGE where there are tables.
+  /// Binds BASIN and BED where there are tables.
   void bindBasin() const;
   /// Binds TERRAIN and LANDING where there is ground to see.
   void bindTerrain() const;
@@ -60,6 +63,8 @@ class Wave {
 
  private:
   Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count), cell_m_(layout.cell_m) {}
+  void displace(const shared::EventUniforms& events);
+  void limit();
 
   gpu::Context& ctx_;
   std::uint32_t n_;
@@ -70,11 +75,14 @@ class Wave {
   bool had_events_ = false;
   bool has_head_ = false;
   bool has_terrain_ = false;
-  gpu::TexelBuffer elevation_, flow_, basin_, sponge_, outflow_;
+  gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_;
+  gpu::TexelBuffer transfer_;     ///< n x n x 2 (9-point: 4) [units]
+  gpu::TexelBuffer given_share_;  ///< n x n; written in steps that limit something
+  gpu::Buffer limit_args_;        ///< groups of the two passes that limit; none in most steps
   gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;
   gpu::Buffer event_uniforms_;
-  gpu::Program splash_, crest_, momentum_, continuity_, sample_surface_;
+  gpu::Program splash_, crest_, momentum_, find_share_, limit_, continuity_, sample_surface_;
 };
 
 }  // namespace spindrift::sim

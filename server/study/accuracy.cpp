@@ -9,6 +9,7 @@ const std::vector<Case>& accuracyCases() {
       {"eigenmode", "Frequency of a standing mode between walls", eigenmode},
       {"observed-order", "How the wave's error falls with its resolution", observedOrder},
       {"phase-error", "Speed of short plane waves, along the axis and the diagonal", phaseError},
+      {"round-hump", "Rings of a hump, with both stencils", roundHump},
       {"wave-energy", "Energy of undamped waves between walls", waveEnergy},
       {"damped-mode", "Decay of a damped mode", dampedMode},
       {"reflection", "What an absorbing side sends back", reflection},

@@ -11,6 +11,7 @@ using Outcome = core::Result<CaseResult>;
 Outcome eigenmode(gpu::Context& ctx, bool quick);
 Outcome observedOrder(gpu::Context& ctx, bool quick);
 Outcome phaseError(gpu::Context& ctx, bool quick);
+Outcome roundHump(gpu::Context& ctx, bool quick);
 Outcome waveEnergy(gpu::Context& ctx, bool quick);
 Outcome dampedMode(gpu::Context& ctx, bool quick);
 

@@ -60,13 +60,15 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
     stepOnce();
     const sim::Health& health = water.health();
     out.max_density_ratio = std::max(out.max_density_ratio, health.max_density_ratio);
+    out.max_elevation_m = std::max(out.max_elevation_m, health.max_elevation_m);
     // A wave's energy counts from when its start is over.
     if (scale_j == 0.0 && water.time_s() > start_s + 0.5) scale_j = energyOf(health);
     if (scale_j > 0.0) out.energy_growth = std::max(out.energy_growth, energyOf(health) / scale_j);
   }
   out.guard_count = water.recoveredCount();
   out.is_stable = out.guard_count == 0 && out.energy_growth <= sweep.stable_growth &&
-                  out.max_density_ratio <= sweep.stable_density_ratio;
+                  out.max_density_ratio <= sweep.stable_density_ratio &&
+                  out.max_elevation_m <= sweep.stable_elevation_m;
 
   // With the rules' own steps again.
   core::Scene ruled = sweep.disturb ? water.scene() : scene;

@@ -1,16 +1,15 @@
 // Breaking cells turn water into particles.
-// Reads EMITTER, SURFACE, SURFACE_FLOW, BREAKING. Writes POSITION, VELOCITY at free places of the pool; takes droplet_units for each from
+// Reads EMITTER, SURFACE, SURFACE_FLOW, BREAKING, BED. Writes POSITION, VELOCITY at free places of the pool; takes droplet_units for each from
 // ELEVATION. A particle starts on the surface with the crest's speed: the water's own, the wave's along it, and the rise of the
 // surface, each a little at random; or with the crown that a splash throws.
-// Invariant: ELEVATION loses exactly droplet_units a particle. Which place a particle gets depends on the order of invocations;
+// Invariant: ELEVATION loses exactly droplet_units a particle, and no cell more than it holds. Which place a particle gets depends on the order of invocations;
 // the sort orders particles by where they are.
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "include/hash.glsl"
 #include "include/transfer.glsl"
 #include "shared/pool.h"
-#include "include/splat.glsl"
-#include "include/surface_rate.glsl"
+#include "include/spray_source.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -39,8 +38,8 @@ void main() {
   const int reach = int(sim.splat_reach_count);
   for (int dz = -2 * reach; dz <= 2 * reach; ++dz) {
     for (int dx = -2 * reach; dx <= 2 * reach; ++dx) {
-      const int at = splatTarget(cell, ivec2(dx, dz), n);
-      const int share = at >= 0 ? splatShare(amount, ivec2(dx, dz), reach) : 0;
+      int at;
+      const int share = sprayFrom(cell, ivec2(dx, dz), n, at);
       if (share != 0) atomicAdd(elevation[at], -share);
       rest -= share;
     }

@@ -12,12 +12,18 @@
 /// Share of the rising water that a fully breaking cell throws out as spray.
 #define SPRAY_SHARE 0.15
 
-/// Expected particles in the tick: the volume thrown out over a particle's; drawn by the hash of cell and tick.
-bool emits(uint cell, uint tick, float intensity, float rate_mps) {
+/// Expected particles in the tick: the volume thrown out over a particle's; drawn by the hash of cell and tick. Where only one cell
+/// of a block may emit, the tick's is drawn first and emits for all.
+bool emits(ivec2 at, int n, uint tick, float intensity, float rate_mps) {
   if (intensity <= 0.0) return false;
+  const uint cell = uint(at.x + n * at.y);
+  const uint block = sim.spray_block_count;
+  const uvec2 inside = uvec2(at) % block;
+  const uvec2 corner = uvec2(at) - inside;
+  if (block > 1u && hashed(uvec3(corner.x + uint(n) * corner.y, tick, sim.seed ^ 0xc2b2ae35u)).x % (block * block) != inside.x + block * inside.y) return false;
   const float thrown_m = sim.emission_ratio * SPRAY_SHARE * intensity * rate_mps * sim.tick_s;
   const float expected = thrown_m * ELEVATION_UNITS_PER_M / float(sim.droplet_units);
-  return random3(uvec3(cell, tick, sim.seed)).x < expected;
+  return random3(uvec3(cell, tick, sim.seed)).x < expected * float(block * block);
 }
 #endif
 

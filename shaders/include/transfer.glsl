@@ -1,5 +1,6 @@
-// Water through the faces of wave cells, in integer units. Both cells of a face compute the same number from the same bits
-// (`precise` forbids that a compiler rounds one of them differently), so what one loses the other gains.
+// Water through the faces of wave cells, in integer units. Each face's transfer is computed by one invocation, that of the cell
+// which owns the face, and stored in TRANSFER; both cells of the face then read the same integer. So what one cell loses the other
+// gains, whatever a compiler makes of the floating-point expressions before.
 #ifndef SPINDRIFT_TRANSFER
 #define SPINDRIFT_TRANSFER
 
@@ -7,7 +8,7 @@
 
 /// Flow times `units` (dt/dx in units) rounded; nothing for a flow that is not finite or absurd (diagnostics count it).
 int transferUnits(float flow, float units) {
-  precise float t = flow * units;
+  const float t = flow * units;
   return abs(t) < TRANSFER_MAX_UNITS ? int(round(t)) : 0;
 }
 

@@ -28,13 +28,18 @@
 #define BLOCK_TOTAL 11
 
 // Wave, n x n cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance of those
-// faces [m]; loss of flow and of elevation in sponges and on beaches [1/s]; what left through absorbing sides [units: low 24
-// bits, the rest].
+// faces [m]; loss of flow and of elevation in sponges and on beaches [1/s] with the still depth of the cell [m]; what left through
+// absorbing sides [units: low 24 bits, the rest].
 #define FLOW 12
 #define ELEVATION 13
 #define BASIN 14
-#define SPONGE 19
+#define BED 19
 #define OUTFLOW 20
+// Water that a wave step moves through the faces that a cell owns [units]; share of it that a cell can give [0..1]; arguments of
+// the indirect dispatches that find and apply those shares. Only passes of the wave use them; the numbers are the grid's.
+#define TRANSFER 7
+#define GIVEN_SHARE 8
+#define LIMIT_ARGS 9
 // What presses on the surface (hulls, falling particles), as a height of water [units].
 #define PRESSURE_HEAD 21
 // Breaking: seconds since a cell began to break, intensity 0..1; and the same one substep ago.

@@ -57,6 +57,8 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   uint splat_reach_count;       // what a particle gives and takes is spread over 4 of these + 1 cells on an axis
   float splat_width_m;          // standard deviation of that spread
   float emission_ratio;         // factor on the scene's emission
+  uint spray_block_count;       // at most one cell in each square of so many cells an axis emits in a tick
+  float spray_taken_m;          // so much water at most a tick's particles together take from a cell
   uint seed;
 
   // Foam.
@@ -97,10 +99,12 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
 
   // Bound of the neighbour search: candidates of one column of cells that a particle looks at (sim/derive.cpp).
   uint candidates_max_count;
-  uint unused;                  // std140 rounds the block up to a multiple of 16 bytes
+  uint unused_0;                // std140 rounds the block up to a multiple of 16 bytes
+  uint unused_1;
+  uint unused_2;
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 64 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 68 * 4, "scalars of four bytes only: std140 and C++ must agree");
 static_assert(sizeof(SimUniforms) % 16 == 0, "a uniform buffer that is smaller than its block is undefined");
 }  // namespace spindrift::shared
 #else

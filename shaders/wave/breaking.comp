@@ -1,5 +1,5 @@
 // Where the wave breaks, and how much.
-// Reads SURFACE (d eta/dt), BASIN, EventUniforms, BREAKING_BEFORE (age [s], intensity, velocity of a splash's crown [m/s]). Writes
+// Reads SURFACE (eta, d eta/dt), BASIN, BED, EventUniforms, BREAKING_BEFORE (age [s], intensity, velocity of a splash's crown [m/s]). Writes
 // BREAKING; in two-way scenes lists the cells that emit a particle
 // in EMITTER, POOL_WANTED of them.
 // Equation: Kennedy et al. 2000, eqs. 5-7: breaking starts where d eta/dt > 0.65 sqrt(g d); the threshold relaxes to
@@ -10,6 +10,9 @@
 #include "include/wave_faces.glsl"
 #include "include/emission.glsl"
 #include "include/surface_rate.glsl"
+#if POOL_PARTICLES
+#include "include/spray_source.glsl"
+#endif
 #include "shared/event_uniforms.h"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
@@ -71,7 +74,7 @@ void main() {
   state.y = max(state.y, clamp(crown_mps / speed_mps, 0.0, 1.0));
   breaking[i] = state;
 #if POOL_PARTICLES
-  if (emits(uint(i), tick, state.y, max(rate_mps, crown_mps))) {
+  if (emits(cell, n, tick, state.y, max(rate_mps, crown_mps)) && canEmit(cell, n)) {
     const uint slot = atomicAdd(pool[POOL_WANTED], 1u);
     if (slot < sim.pool_capacity_count) emitter[slot] = uint(i);
   }

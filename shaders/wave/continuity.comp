@@ -1,20 +1,23 @@
 // Second half of a wave step: water moves through the faces, in whole units.
-// Reads FLOW [m^2/s], SPONGE. Updates ELEVATION [n x n, units] and, in basins with an absorbing side, OUTFLOW (units that left
-// for the open water through this cell since the start: low 24 bits, the rest).
+// Reads TRANSFER [n x n, units], BED. Updates ELEVATION [n x n, units] and, in basins with an absorbing side, OUTFLOW (units that left
+// for the open water through this cell since the start: low 24 bits, the rest). Lowers LIMIT_ARGS for the next step.
 // Equation: eta_t = -div q - sigma eta; sigma only in a sponge, where it equals the flow's, so that plane waves enter it
-// without reflection.
-// Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit.
+// without reflection. The loss is centred in the step as the flow's is, b = sigma dt/2:
+//   eta+ = ((1 - b) eta + gain)/(1 + b), so lost = (2 eta + gain) b/(1 + b)
+// Then the step's bound is that of water without losses, whatever they are: with G the scaled gradient, A and B the losses of flow
+// and elevation over half a step and m the mean of the flow before and after, |eta|^2 - |G eta|^2/4 + |m|^2 + |A m|^2 never grows,
+// and |G| < 2 is the Courant bound. (Taken after the step, exp(-sigma dt) lowered the bound to sqrt((1 + exp(-sigma dt))/2) of it.)
+// Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit; no cell loses more than it holds.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1
 #include "shared/groups.h"
-#include "include/transfer.glsl"
-#include "include/wave_faces.glsl"
+#include "include/water_column.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
-layout(binding = FLOW) uniform samplerBuffer flow;
+layout(binding = TRANSFER) uniform isamplerBuffer transfer;
 layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
+layout(std430, binding = LIMIT_ARGS) restrict writeonly buffer LimitArgs { uint limit_args[]; };
 #if OPEN
-layout(binding = SPONGE) uniform samplerBuffer sponge;
 layout(std430, binding = OUTFLOW) restrict buffer Outflow { uvec2 outflow[]; };
 #endif
 
@@ -26,21 +29,24 @@ void main() {
   const int row = n * cell.y;
   const int last_row = n * wrapped(cell.y - 1, n);
   const int i = cell.x + row;
-  const float units = sim.wave_transfer;
+  if (i == 0) limit_args[0] = 0u;
 
-  const Flow own = asFlow(texelFetch(flow, i));
-  const Flow from_left = asFlow(texelFetch(flow, left + row));
-  const Flow from_before = asFlow(texelFetch(flow, cell.x + last_row));
-  int gain = transferUnits(from_left.x, units) - transferUnits(own.x, units) +
-             transferUnits(from_before.y, units) - transferUnits(own.y, units);
+  const ivec4 own = texelFetch(transfer, i);
+  const ivec4 from_left = texelFetch(transfer, left + row);
+  const ivec4 from_before = texelFetch(transfer, cell.x + last_row);
+  int gain = from_left.x - own.x + from_before.y - own.y;
 #if STENCIL == 9
-  const Flow from_corner = texelFetch(flow, left + last_row);
-  gain += transferUnits(from_corner.z, units) - transferUnits(own.z, units) +
-          transferUnits(from_before.w, units) - transferUnits(from_left.w, units);
+  const ivec4 from_corner = texelFetch(transfer, left + last_row);
+  gain += from_corner.z - own.z + from_before.w - from_left.w;
 #endif
 #if OPEN
-  const float sigma_per_s = texelFetch(sponge, i).y;
-  const int lost = int(round(float(elevation[i]) * (1.0 - exp(-sigma_per_s * sim.wave_dt_s))));
+  const vec4 ground = texelFetch(bed, i);
+  const float b = 0.5 * ground.y * sim.wave_dt_s;
+  const float wanted = clamp(round((2.0 * float(elevation[i]) + float(gain)) * (b / (1.0 + b))), -float(ELEVATION_MAX_UNITS), float(ELEVATION_MAX_UNITS));
+  // With more than half of it lost in a step, water above the still level would be taken below the bed. A float's last bit may be
+  // 128 units: compare there, take here.
+  const uint held = heldUnits(elevation[i] + gain, ground.z);
+  const int lost = wanted >= float(held) ? int(held) : int(wanted);
   // 24 bits, and what goes beyond them: 32 would turn over after 128 m of water through one cell, hours of a storm.
   const int low = int(outflow[i].x) + lost;
   outflow[i] = uvec2(uint(low & 0xffffff), outflow[i].y + uint(low >> 24));

@@ -1,45 +1,31 @@
 // Crests displace water and set it in motion, so that they travel one way (d'Alembert; PHYSICS: breaking wave, thesis 3.6.4).
-// Reads EventUniforms, BASIN. Adds to ELEVATION [n x n, units] and FLOW [m^2/s], half a step earlier as the leapfrog has it.
-// Invariant: the sum of ELEVATION does not change; nothing passes a closed face.
+// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units], for this step, and to FLOW [m^2/s], for the next, half a
+// step earlier as the leapfrog has it; raises LIMIT_ARGS as wave/momentum.comp does.
+// Invariant: a face's transfer is computed by one invocation; nothing passes a closed face.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
+#include "include/displacement.glsl"
 #include "include/event_shapes.glsl"
-#include "include/transfer.glsl"
-#include "include/wave_faces.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
-layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
 layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
-
-/// Units that leave a cell through its own faces toward +x and +z.
-ivec2 outward(EventUniform e, ivec2 cell, int n, float units) {
-  const float cell_m = sim.wave_cell_m;
-  const vec2 p = waveCellCentre(cell);
-  const float at_x = crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0));
-  const float at_z = crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m));
-  const Flow open = conductanceOf(cell, n);
-  return ivec2(open.x > 0.0 ? transferUnits(-e.direction_x * at_x, units) : 0,
-               open.y > 0.0 ? transferUnits(-e.direction_z * at_z, units) : 0);
-}
 
 void main() {
   const int n = int(sim.wave_n);
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (cell.x >= n || cell.y >= n) return;
   const float cell_m = sim.wave_cell_m;
-  const ivec2 left = ivec2(wrapped(cell.x - 1, n), cell.y);
-  const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n));
   const int i = cell.x + n * cell.y;
   const vec2 p = waveCellCentre(cell);
   const Flow open = conductanceOf(cell, n);
-  int gain = 0;
+  ivec2 moved = ivec2(0);
   Flow flow = Flow(0.0);
   for (uint k = 0u; k < crest_count; ++k) {
     EventUniform e = crests[k];
     const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-    const ivec2 out_here = outward(e, cell, n, units);
-    gain += outward(e, left, n, units).x - out_here.x + outward(e, before, n, units).y - out_here.y;
+    moved += ivec2(transferUnits(-e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0)), units),
+                   transferUnits(-e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m)), units));
     e.offset_m -= e.half_step_m;
     const vec2 d = vec2(e.direction_x, e.direction_z);
     const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0));
@@ -47,6 +33,7 @@ void main() {
     const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m));
     flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d.x * at_x, d.y * at_z, (d.x + d.y) * at_corner, (d.y - d.x) * at_corner));
   }
-  elevation[i] += gain;
+  if (open.x > 0.0) addTransfer(i, wrapped(cell.x + 1, n) + n * cell.y, 0u, moved.x);
+  if (open.y > 0.0) addTransfer(i, cell.x + n * wrapped(cell.y + 1, n), 1u, moved.y);
   flow_m2ps[i] += flow * Flow(greaterThan(open, Flow(0.0)));
 }

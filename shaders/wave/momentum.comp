@@ -1,6 +1,7 @@
 // First half of a wave step: the slope of the surface accelerates the flow through each face.
-// Reads ELEVATION [n x n, units], PRESSURE_HEAD (boats, falling water), BASIN, SPONGE, BREAKING where the scene has them.
-// Updates FLOW [n x n, m^2/s per metre of face].
+// Reads ELEVATION [n x n, units], PRESSURE_HEAD (boats, falling water), BASIN, BED, BREAKING where the scene has them.
+// Updates FLOW [n x n, m^2/s per metre of face]. Writes TRANSFER [n x n, units]: what wave/continuity.comp is to move. Raises
+// LIMIT_ARGS where a transfer could empty a cell, so that wave/given_share.comp looks at them all.
 // Equation: q_t = -g d grad(eta + head) - (kappa + sigma) q, centred in time; with wave/continuity.comp this is the leapfrog of
 // eta_tt + kappa eta_t = div(g d grad eta) (thesis 3.21), the damping on the velocity term alone:
 //   q+ = keep q - gain g dt d_face (eta_there - eta_here)/dx,  keep = (1 - a)/(1 + a), gain = 1/(1 + a), a = (kappa + sigma) dt/2
@@ -11,7 +12,8 @@
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=0 BREAKERS=0 STEEPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 HEAD=1 BREAKERS=1 STEEPEN=1 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=1 BREAKERS=0 STEEPEN=1
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
-#include "include/wave_faces.glsl"
+#include "include/transfer.glsl"
+#include "include/water_column.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
@@ -19,19 +21,20 @@ layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 #if HEAD
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
 #endif
-#if VARIED
-layout(binding = SPONGE) uniform samplerBuffer sponge;
-#endif
 #if BREAKERS
 layout(binding = BREAKING) uniform samplerBuffer breaking;
 #endif
 layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
+layout(std430, binding = TRANSFER) restrict writeonly buffer Transfer { Units transfer[]; };
+layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
 
-int levelAt(int i) {
+int elevationAt(int i) { return texelFetch(elevation, i).x; }
+
+int headAt(int i) {
 #if HEAD
-  return texelFetch(elevation, i).x + texelFetch(pressure_head, i).x;
+  return texelFetch(pressure_head, i).x;
 #else
-  return texelFetch(elevation, i).x;
+  return 0;
 #endif
 }
 
@@ -39,7 +42,7 @@ int levelAt(int i) {
 float lossAt(int i) {
   float loss_per_s = 0.0;
 #if VARIED
-  loss_per_s += texelFetch(sponge, i).x;
+  loss_per_s += texelFetch(bed, i).x;
 #endif
 #if BREAKERS
   loss_per_s += sim.breaking_loss_per_s * texelFetch(breaking, i).y;
@@ -76,11 +79,18 @@ void main() {
   const int next_row = n * wrapped(cell.y + 1, n);
   const int i = cell.x + row;
 
-  const int here = levelAt(i);
-  const int there_x = levelAt(right + row);
-  const int there_z = levelAt(cell.x + next_row);
+  const int i_x = right + row;
+  const int i_z = cell.x + next_row;
+  const int eta = elevationAt(i);
+  const int eta_x = elevationAt(i_x);
+  const int eta_z = elevationAt(i_z);
+  const int here = eta + headAt(i);
+  const int there_x = eta_x + headAt(i_x);
+  const int there_z = eta_z + headAt(i_z);
 #if STENCIL == 9
-  const int there_d = levelAt(right + next_row);
+  const int i_d = right + next_row;
+  const int eta_d = elevationAt(i_d);
+  const int there_d = eta_d + headAt(i_d);
   const Flow slope = vec4(there_x - here, there_z - here, there_d - here, there_z - there_x);
 #else
   const Flow slope = vec2(there_x - here, there_z - here);
@@ -97,10 +107,23 @@ void main() {
 
 #if VARIED || BREAKERS
   const float own_loss_per_s = lossAt(i);
-  const Flow loss_per_s = 0.5 * (own_loss_per_s + asFlow(vec4(lossAt(right + row), lossAt(cell.x + next_row), own_loss_per_s, own_loss_per_s)));
+  const Flow loss_per_s = 0.5 * (own_loss_per_s + asFlow(vec4(lossAt(i_x), lossAt(i_z), own_loss_per_s, own_loss_per_s)));
   const Flow a = 0.5 * sim.wave_dt_s * (sim.wave_damping_per_s + loss_per_s);
 #else
   const float a = 0.5 * sim.wave_dt_s * sim.wave_damping_per_s;
 #endif
-  flow_m2ps[i] = ((1.0 - a) * flow_m2ps[i] - sim.wave_pull * conductance_m * slope) / (1.0 + a);
+  const Flow flow = ((1.0 - a) * flow_m2ps[i] - sim.wave_pull * conductance_m * slope) / (1.0 + a);
+  flow_m2ps[i] = flow;
+
+  Units moved;
+  for (uint k = 0u; k < OWNED_FACES; ++k) moved[k] = transferUnits(flow[k], sim.wave_transfer);
+  transfer[i] = moved;
+  const uint held = heldUnits(eta, stillDepth(i));
+  const uint held_x = heldUnits(eta_x, stillDepth(i_x));
+  const uint held_z = heldUnits(eta_z, stillDepth(i_z));
+  bool may_empty = mayEmpty(moved.x, held, held_x) || mayEmpty(moved.y, held, held_z);
+#if STENCIL == 9
+  may_empty = may_empty || mayEmpty(moved.z, held, heldUnits(eta_d, stillDepth(i_d))) || mayEmpty(moved.w, held_x, held_z);
+#endif
+  if (may_empty) limit_args[0] = limitGroups();  // whoever writes, writes the same number
 }

@@ -1,28 +1,13 @@
-// Splashes displace water: invocations (x, y) cover the square that a splash can reach, z is the splash.
-// Reads EventUniforms, BASIN. Adds to ELEVATION [n x n, units]; integers, so that overlapping splashes add up in any order to
-// the same bits.
-// Invariant: the sum of ELEVATION does not change; nothing passes a closed face.
+// Splashes displace water: invocations (x, y) cover the square that a splash can reach, z is the splash. Each adds to the two faces
+// that its cell owns.
+// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp does.
+// Invariant: a face's transfer is computed by one invocation a splash; nothing passes a closed face.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
+#include "include/displacement.glsl"
 #include "include/event_shapes.glsl"
-#include "include/transfer.glsl"
-#include "include/wave_faces.glsl"
 
 layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
-
-layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
-
-/// Units that leave a cell through its own faces toward +x and +z.
-ivec2 outward(EventUniform e, ivec2 cell, int n, float units) {
-  const float cell_m = sim.wave_cell_m;
-  const vec2 centre = vec2(e.x_m, e.z_m);
-  const vec2 p = waveCellCentre(cell);
-  const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
-  const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
-  const Flow open = conductanceOf(cell, n);
-  return ivec2(open.x > 0.0 ? transferUnits(-splashDisplacement(at_x, e.radius_m).x, units) : 0,
-               open.y > 0.0 ? transferUnits(-splashDisplacement(at_z, e.radius_m).y, units) : 0);
-}
 
 void main() {
   const EventUniform e = splashes[gl_GlobalInvocationID.z];
@@ -46,9 +31,14 @@ void main() {
 #endif
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return;
   const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-  const ivec2 out_here = outward(e, cell, n, units);
-  const int out_left = outward(e, ivec2(wrapped(cell.x - 1, n), cell.y), n, units).x;
-  const int out_before = outward(e, ivec2(cell.x, wrapped(cell.y - 1, n)), n, units).y;
-  const int gain = out_left - out_here.x + out_before - out_here.y;
-  if (gain != 0) atomicAdd(elevation[cell.x + n * cell.y], gain);
+  const vec2 p = waveCellCentre(cell);
+  const vec2 centre = vec2(e.x_m, e.z_m);
+  const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
+  const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
+  const Flow open = conductanceOf(cell, n);
+  const int i = cell.x + n * cell.y;
+  if (open.x > 0.0)
+    addTransfer(i, wrapped(cell.x + 1, n) + n * cell.y, 0u, transferUnits(-splashDisplacement(at_x, e.radius_m).x, units));
+  if (open.y > 0.0)
+    addTransfer(i, cell.x + n * wrapped(cell.y + 1, n), 1u, transferUnits(-splashDisplacement(at_z, e.radius_m).y, units));
 }

@@ -32,7 +32,10 @@ class Dice {
 /// them.
 class Crowd {
  public:
-  explicit Crowd(v1::Scene scene) : scene_(std::move(scene)), parameters_(stream::describeParameters(scene_)) {}
+  enum class Sends { kEverything, kEffectsAndBoats };
+
+  explicit Crowd(v1::Scene scene, Sends sends = Sends::kEverything)
+      : scene_(std::move(scene)), parameters_(stream::describeParameters(scene_)), sends_(sends) {}
 
   /// Sends one command; whether the scene allowed it.
   bool send(sim::WaterSim& water) {
@@ -67,12 +70,15 @@ class Crowd {
     return out;
   }
 
+  /// The scene with every change that the room took.
+  [[nodiscard]] const v1::Scene& scene() const { return scene_; }
+
  private:
   core::Action any(const sim::WaterSim& water) {
     const double half_m = scene_.wave().side_m() / 2;
     const auto boats = water.boats();
     const int kind = dice_.upTo(1000);
-    if (kind < 1) return core::Reset{};
+    if (kind < 1 && sends_ == Sends::kEverything) return core::Reset{};
     if (kind < 250) {
       return core::Splash{dice_.between(-half_m, half_m), dice_.between(-half_m, half_m), dice_.between(0.2, 3.0),
                           dice_.between(0.05, 1.0), dice_.between(0.05, 0.6)};
@@ -101,6 +107,7 @@ class Crowd {
     }
     if (kind < 800 && !boats.empty())
       return core::RemoveBoat{boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id};
+    if (sends_ == Sends::kEffectsAndBoats) return any(water);
     // Somebody always puts back what makes a step several times as dear: it lasts until the next change of a parameter,
     // a few ticks, so that a run is about 10,000 commands and not about patience.
     if (costly_) return core::SetParameter{std::exchange(costly_, nullptr)->path(), costly_value_before_};
@@ -122,6 +129,7 @@ class Crowd {
 
   v1::Scene scene_;
   std::vector<v1::ParameterDescription> parameters_;
+  Sends sends_;
   const v1::ParameterDescription* costly_ = nullptr;  ///< set last, to be put back next
   double costly_value_before_ = 0.0;
   std::size_t next_parameter_ = 0;

@@ -68,10 +68,10 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   const Cost all = cost(full);
   const Cost wave = cost(wave_only);
   const Cost particles = cost(particles_only);
-  // A wave alone: splash, crest, momentum, continuity, its diagnostics and packing; one wave step a tick of two
-  // dispatches, and one for its health.
-  EXPECT_EQ(wave.programs, 6u);
-  EXPECT_EQ(wave.dispatches, 3u);
+  // A wave alone: splash, crest, momentum, two that limit outflow, continuity, its diagnostics and packing; one wave
+  // step per tick of four dispatches, of which calm water runs two with no group, and one for its health.
+  EXPECT_EQ(wave.programs, 8u);
+  EXPECT_EQ(wave.dispatches, 5u);
   // Particles alone: 6 grid, 3 sph, effects on particles, their diagnostics and packing; 2 x 9 dispatches a tick
   // and one for their health.
   EXPECT_EQ(particles.programs, 12u);
@@ -83,7 +83,7 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   EXPECT_LT(particles.bytes, all.bytes);
   // derive() says what will be allocated, to the packing and readback of frames.
   sim_.reset();
-  EXPECT_EQ(derive(wave_only)->device_bytes, sizeof(shared::SimUniforms) + 32 * 32 * 12);
+  EXPECT_EQ(derive(wave_only)->device_bytes, sizeof(shared::SimUniforms) + 32 * 32 * 24);
 
   // Two-way: a pool and its plan, breaking, emission, a clearing pass in the grid; calm water dispatches the particle
   // passes with no group.

@@ -4,11 +4,14 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
+#include <random>
 
 #include <gtest/gtest.h>
 
 #include <spindrift/study/water_reference.h>
+#include <spindrift/study/wave_reference.h>
 
+#include "basin.h"
 #include "sim_fixture.h"
 
 namespace spindrift::sim {
@@ -171,6 +174,123 @@ TEST_F(WaveOnDevice, VolumeIsExactWithEveryKindOfSideBedAndEffect) {
     EXPECT_GT(highest, 0.3);
     EXPECT_LT(highest, 3.0);
     EXPECT_EQ(sim.health().nonfinite_count, 0u);
+  }
+}
+
+/// Water whose four sides absorb, as in scene `splash_wave`.
+core::Scene openScene(std::uint32_t n, double side_m, double sponge_width_m, core::Stencil stencil) {
+  core::Scene scene = waveScene(n);
+  scene.wave->side_m = side_m;
+  scene.wave->sponge_width_m = sponge_width_m;
+  scene.wave->stencil = stencil;
+  scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+  return scene;
+}
+
+TEST_F(WaveOnDevice, AbsorbingSidesKeepTheStepRuleAtEveryDepth) {
+  // Depths at which the rule's step is nearly its bound: with the loss taken after the step instead of around its
+  // middle these grew into a checkerboard within two seconds (scenes splash, open_water and boat_wake, with a splash of
+  // 0.5 m).
+  struct Case {
+    std::uint32_t n;
+    double side_m, sponge_width_m;
+    core::Stencil stencil;
+    double depth_m;
+  };
+  const Case cases[] = {{192, 16.0, 2.0, core::Stencil::kFivePoint, 1.2},
+                        {256, 30.0, 4.0, core::Stencil::kNinePoint, 3.5},
+                        {256, 28.0, 3.0, core::Stencil::kFivePoint, 2.05}};
+  for (const Case& each : cases) {
+    core::Scene scene = openScene(each.n, each.side_m, each.sponge_width_m, each.stencil);
+    scene.wave->depth_m = each.depth_m;
+    WaterSim& sim = make(scene);
+    ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 1.6, 0.5, 0.22}));
+    for (int i = 0; i < 300; ++i) sim.step();
+    EXPECT_GT(sim.derived().wave->courant, 0.9 * (each.stencil == core::Stencil::kFivePoint ? 0.7071 : 0.866))
+        << "a step far below the bound proves nothing";
+    EXPECT_LT(sim.health().max_elevation_m, 0.05) << "depth " << each.depth_m << " m: the rings have left";
+    EXPECT_EQ(sim.health().surface_units + sim.health().outflow_units, 0);
+    EXPECT_EQ(sim.recoveredCount(), 0u);
+  }
+}
+
+/// A rock, a wall, a beach that runs dry, and one side that absorbs.
+core::Scene roughScene(core::Stencil stencil) {
+  core::Scene scene = waveScene(64);
+  scene.wave->stencil = stencil;
+  scene.wave->damping_per_s = 0.3;
+  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  scene.wave->boundary_minus_x = core::WaveBoundary::kAbsorb;
+  scene.wave->sponge_width_m = 1.5;
+  scene.obstacles = {core::Rock{1.0, 1.0, 0.7, 0.5}, core::Breakwater{-1.0, -2.0, 3.0, 0.5, 30.0, 0.5}};
+  scene.beaches = {core::Beach{core::Side::kPlusX, 3.0, 0.0}};
+  return scene;
+}
+
+TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsRunEmpty) {
+  for (const auto stencil : {core::Stencil::kFivePoint, core::Stencil::kNinePoint}) {
+    const core::Scene scene = roughScene(stencil);
+    WaterSim& sim = make(scene);
+    ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
+    const Basin basin = layOutBasin(scene, *sim.derived().wave);
+    study::ReferenceBed bed;
+    for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {
+      bed.depth_m.push_back(basin.depth_m[i]);
+      bed.flow_loss_per_s.push_back(basin.bed[i][0]);
+      bed.elevation_loss_per_s.push_back(basin.bed[i][1]);
+    }
+    // Columns from empty to twice the depth, and flows that some of them cannot feed.
+    std::mt19937 random(3);
+    const auto unit = [&] { return std::generate_canonical<double, 53>(random); };
+    StateCopy state = sim.copyState();
+    const std::size_t components = state.flow_m2ps.size() / state.elevation_m.size();
+    for (std::size_t i = 0; i < state.elevation_m.size(); ++i) {
+      const double column_m = unit() < 0.1 ? 0.0 : 2 * unit() * basin.depth_m[i];
+      state.elevation_m[i] = std::ceil((column_m - basin.depth_m[i]) * 16777216.0) / 16777216.0;
+      for (std::size_t k = 0; k < components; ++k)
+        state.flow_m2ps[components * i + k] =
+            basin.conductance_m[i][k] > 0 ? static_cast<float>((unit() - 0.5) * 10.0 * basin.depth_m[i]) : 0.0f;
+    }
+    sim.setState(state);
+    study::ReferenceWater water{state.elevation_m, {state.flow_m2ps.begin(), state.flow_m2ps.end()}};
+    for (int step = 0; step < 3; ++step) {
+      SCOPED_TRACE(step);
+      sim.step();
+      study::referenceFlowStep(scene, sim.derived(), bed, water);
+      EXPECT_GT(water.limited_count, 20u) << "no cell lacked water";
+      const StateCopy after = sim.copyState();
+      double elevation_error_m = 0.0;
+      double flow_error_m2ps = 0.0;
+      for (std::size_t i = 0; i < after.elevation_m.size(); ++i) {
+        elevation_error_m = std::max(elevation_error_m, std::abs(after.elevation_m[i] - water.elevation_m[i]));
+        ASSERT_GE(after.elevation_m[i], -static_cast<double>(basin.depth_m[i]));
+      }
+      for (std::size_t i = 0; i < after.flow_m2ps.size(); ++i)
+        flow_error_m2ps = std::max(flow_error_m2ps, std::abs(after.flow_m2ps[i] - water.flow_m2ps[i]));
+      EXPECT_LE(elevation_error_m, 1e-5);
+      EXPECT_LE(flow_error_m2ps, 1e-4);
+    }
+  }
+}
+
+TEST_F(WaveOnDevice, ARisingBedLiftsTheSurfaceAndKeepsTheLedger) {
+  core::Scene scene = roughScene(core::Stencil::kFivePoint);
+  scene.wave->depth_m = 2.0;
+  WaterSim& sim = make(scene);
+  ASSERT_TRUE(sim.start(core::Splash{-2.0, 2.0, 1.5, 1.5, 0.1}));
+  for (int i = 0; i < 8; ++i) sim.step();
+  const StateCopy deep = sim.copyState();
+  ASSERT_LT(std::ranges::min(deep.elevation_m), -0.6);
+  scene.wave->depth_m = 0.5;
+  ASSERT_TRUE(sim.setScene(scene));
+  const StateCopy shallow = sim.copyState();
+  EXPECT_GE(std::ranges::min(shallow.elevation_m), -0.5);
+  EXPECT_EQ(std::accumulate(shallow.elevation_m.begin(), shallow.elevation_m.end(), 0.0),
+            std::accumulate(deep.elevation_m.begin(), deep.elevation_m.end(), 0.0))
+      << "whole units: the sums are exact";
+  for (int i = 0; i < 20; ++i) {
+    sim.step();
+    ASSERT_EQ(sim.health().surface_units + sim.health().outflow_units, 0);
   }
 }
 

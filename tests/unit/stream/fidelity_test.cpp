@@ -41,6 +41,14 @@ TEST(Fidelity, RisesInEveryNumberFromDraftToReference) {
   }
 }
 
+TEST(Fidelity, TakesTheStencilThatIsMoreAccurateAtEveryLevel) {
+  for (const auto level : {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE, v1::FIDELITY_REFERENCE})
+    EXPECT_EQ(parsed(kPool, level).wave().stencil(), v1::STENCIL_FIVE_POINT) << fidelityName(level);
+  EXPECT_EQ(parsed("fidelity: FIDELITY_FINE wave { stencil: STENCIL_NINE_POINT }").wave().stencil(),
+            v1::STENCIL_NINE_POINT)
+      << "a scene may choose";
+}
+
 TEST(Fidelity, KeepsWhatTheSceneChose) {
   const v1::Scene scene = parsed(
       "fidelity: FIDELITY_REFERENCE wave { stencil: STENCIL_FIVE_POINT } particles { iterations_count: 3 }\n"

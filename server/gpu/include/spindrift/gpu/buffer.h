@@ -114,7 +114,7 @@ class Buffer {
 };
 
 /// How texelFetch sees the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
-enum class TexelFormat { kR32F, kRG32F, kRGBA32F, kR32UI, kRG32UI, kRGBA32UI, kR32I, kRGBA32I };
+enum class TexelFormat { kR32F, kRG32F, kRGBA32F, kR32UI, kRG32UI, kRGBA32UI, kR32I, kRG32I, kRGBA32I };
 /// 4, 8 or 16.
 std::size_t texelBytes(TexelFormat format);
 

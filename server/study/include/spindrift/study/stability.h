@@ -23,6 +23,7 @@ struct StabilityPoint {
   bool is_well_after = true;       ///< two seconds with the rules' own steps: finite, the guard silent
   double max_density_ratio = 0.0;  ///< largest rho / rho0; 0 without particles
   double energy_growth = 0.0;      ///< largest energy over what there was to begin with
+  double max_elevation_m = 0.0;    ///< largest |elevation|; 0 without a wave
   double slowest_step_s = 0.0;     ///< wall time of a substep, mean of the slowest tick
 
   /// No breach, and no more energy and density than the sweep's bounds.
@@ -44,6 +45,9 @@ struct Sweep {
   /// What happens before each tick of the sweep; may be empty.
   std::function<void(sim::WaterSim&, double value, int tick)> disturb = {};
   double seconds_after = 2.0;  ///< simulated, with the rules' own steps, that must go well
+  /// Largest max_elevation_m of a stable point. An unstable wave does not grow for ever: no cell gives more water than
+  /// it holds, which bounds its energy, so that it is told by its height.
+  double stable_elevation_m = 1e9;
 };
 
 /// `quick`: fewer values.

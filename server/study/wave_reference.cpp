@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <spindrift/study/wave_reference.h>
+
+namespace spindrift::study {
+namespace {
+
+/// A face between two cells, and how well it conducts: still depth times the stencil's weight, 0 where it is closed.
+/// [m]
+struct Face {
+  std::size_t from, to;
+  double conductance_m;
+};
+
+class Faces {
+ public:
+  Faces(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed)
+      : wave_(*scene.wave), depth_m_(bed.depth_m), n_(static_cast<int>(derived.wave->resolution_count)) {}
+
+  [[nodiscard]] std::size_t count() const { return wave_.stencil == core::Stencil::kNinePoint ? 4 : 2; }
+
+  /// Face k of the cell (x, z).
+  [[nodiscard]] Face at(int x, int z, std::size_t k) const {
+    const bool nine = count() == 4;
+    switch (k) {
+      case 0:
+        return between(x, z, x + 1, z, nine ? 2.0 / 3.0 + folded(x, z) + folded(x, z - 1) : 1.0);
+      case 1:
+        return between(x, z, x, z + 1, nine ? 2.0 / 3.0 + folded(x, z) + folded(x - 1, z) : 1.0);
+      case 2:
+        return between(x, z, x + 1, z + 1, 1.0 / 6.0 - folded(x, z));
+      default:
+        return between(x + 1, z, x, z + 1, 1.0 / 6.0 - folded(x, z));
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int z) const {
+    return static_cast<std::size_t>((x + n_) % n_ + n_ * ((z + n_) % n_));
+  }
+  [[nodiscard]] bool isWet(int x, int z) const {
+    const bool periodic_x = wave_.boundary_minus_x == core::WaveBoundary::kPeriodic;
+    const bool periodic_z = wave_.boundary_minus_z == core::WaveBoundary::kPeriodic;
+    if ((!periodic_x && (x < 0 || x >= n_)) || (!periodic_z && (z < 0 || z >= n_))) return false;
+    return depth_m_[index(x, z)] > 0;
+  }
+  /// Weight of the diagonals of a square that has a dry corner: it goes to the faces beside the square.
+  [[nodiscard]] double folded(int x, int z) const {
+    return isWet(x, z) && isWet(x + 1, z) && isWet(x, z + 1) && isWet(x + 1, z + 1) ? 0.0 : 1.0 / 6.0;
+  }
+  [[nodiscard]] Face between(int x, int z, int to_x, int to_z, double weight) const {
+    const double a_m = isWet(x, z) ? depth_m_[index(x, z)] : 0.0;
+    const double b_m = isWet(to_x, to_z) ? depth_m_[index(to_x, to_z)] : 0.0;
+    return {index(x, z), index(to_x, to_z), a_m > 0 && b_m > 0 ? weight * 2 / (1 / a_m + 1 / b_m) : 0.0};
+  }
+
+  const core::WaveScene& wave_;
+  const std::vector<double>& depth_m_;
+  int n_;
+};
+
+}  // namespace
+
+void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed,
+                       ReferenceWater& water) {
+  const Faces faces(scene, derived, bed);
+  const int n = static_cast<int>(derived.wave->resolution_count);
+  const double dt_s = derived.wave->dt_s;
+  const double dt_per_dx = dt_s / derived.wave->cell_m;
+  const auto forEachFace = [&](auto&& visit) {
+    for (int z = 0; z < n; ++z) {
+      for (int x = 0; x < n; ++x) {
+        for (std::size_t k = 0; k < faces.count(); ++k) {
+          const Face face = faces.at(x, z, k);
+          visit(face, water.flow_m2ps[static_cast<std::size_t>(x + n * z) * faces.count() + k], x, z, k);
+        }
+      }
+    }
+  };
+  std::vector<double> leaving_m(water.elevation_m.size(), 0.0);
+  forEachFace([&](const Face& face, double& flow_m2ps, int x, int z, std::size_t k) {
+    // Diagonals take the loss of the cell that owns them.
+    const double own_per_s = bed.flow_loss_per_s[static_cast<std::size_t>(x + n * z)];
+    const double loss_per_s = k < 2 ? 0.5 * (own_per_s + bed.flow_loss_per_s[face.to]) : own_per_s;
+    const double a = 0.5 * dt_s * (scene.wave->damping_per_s + loss_per_s);
+    const double slope = water.elevation_m[face.to] - water.elevation_m[face.from];
+    flow_m2ps = ((1 - a) * flow_m2ps - scene.gravity_mps2 * dt_per_dx * face.conductance_m * slope) / (1 + a);
+    leaving_m[flow_m2ps > 0 ? face.from : face.to] += std::abs(flow_m2ps) * dt_per_dx;
+  });
+  std::vector<double> share(water.elevation_m.size(), 1.0);
+  water.limited_count = 0;
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    const double held_m = std::max(water.elevation_m[i] + bed.depth_m[i], 0.0);
+    if (leaving_m[i] <= held_m) continue;
+    share[i] = held_m / leaving_m[i];
+    ++water.limited_count;
+  }
+  std::vector<double> gain_m(water.elevation_m.size(), 0.0);
+  forEachFace([&](const Face& face, double& flow_m2ps, int, int, std::size_t) {
+    flow_m2ps *= share[flow_m2ps > 0 ? face.from : face.to];
+    gain_m[face.from] -= flow_m2ps * dt_per_dx;
+    gain_m[face.to] += flow_m2ps * dt_per_dx;
+  });
+  for (std::size_t i = 0; i < gain_m.size(); ++i) {
+    const double b = 0.5 * dt_s * bed.elevation_loss_per_s[i];
+    const double held_m = std::max(water.elevation_m[i] + gain_m[i] + bed.depth_m[i], 0.0);
+    const double lost_m = std::min((2 * water.elevation_m[i] + gain_m[i]) * b / (1 + b), held_m);
+    water.elevation_m[i] += gain_m[i] - lost_m;
+    water.lost_m += lost_m;
+  }
+}
+
+}  // namespace spindrift::study

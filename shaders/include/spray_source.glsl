@@ -1,0 +1,39 @@
+// Which cells hold enough water to give some to particles: no cell may give more than it holds, however many cells emit at once.
+// A tick's particles together take at most sim.spray_taken_m from a cell (sim/spray.h); what a particle's other cells cannot give
+// comes from the emitting cell on top of that.
+#ifndef SPINDRIFT_SPRAY_SOURCE
+#define SPINDRIFT_SPRAY_SOURCE
+
+#include "include/splat.glsl"
+#include "include/surface_rate.glsl"
+#include "include/water_column.glsl"
+
+/// Water over the bed when the surface was sampled, before any emission, less what its floats may hide. [m]
+float heldBeforeSpray(int i) {
+  const float eta_m = texelFetch(surface_texels, i).x;
+  const float depth_m = stillDepth(i);
+  return depth_m + eta_m - 2.4e-7 * (depth_m + abs(eta_m));
+}
+
+bool givesSpray(int i) { return heldBeforeSpray(i) > sim.spray_taken_m; }
+
+/// Units that the cell at `offset` gives to a particle that leaves `middle`, and its index; 0 where it is dry or has too little.
+int sprayFrom(ivec2 middle, ivec2 offset, int n, out int at) {
+  at = splatTarget(middle, offset, n);
+  return at >= 0 && givesSpray(at) ? splatShare(int(sim.droplet_units), offset, int(sim.splat_reach_count)) : 0;
+}
+
+/// Whether a cell can emit a particle: it holds its own part and what the others leave to it.
+bool canEmit(ivec2 cell, int n) {
+  int rest = int(sim.droplet_units);
+  const int reach = int(sim.splat_reach_count);
+  for (int dz = -2 * reach; dz <= 2 * reach; ++dz) {
+    for (int dx = -2 * reach; dx <= 2 * reach; ++dx) {
+      int at;
+      rest -= sprayFrom(cell, ivec2(dx, dz), n, at);
+    }
+  }
+  return heldBeforeSpray(cell.x + n * cell.y) > sim.spray_taken_m + float(rest) * ELEVATION_UNIT_M;
+}
+
+#endif

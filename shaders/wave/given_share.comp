@@ -1,0 +1,43 @@
+// Before water moves: which share of its outflow a cell can give. Runs only in steps in which some transfer is large beside what its
+// giver holds (LIMIT_ARGS).
+// Reads ELEVATION, TRANSFER [n x n, units], BED. Writes GIVEN_SHARE [n x n, 0..1].
+// Equation: share = held / outflow where the outflow through all faces of a cell is more than the cell holds, else 1: a donor cell's
+// limit as in flux-corrected transport (Zalesak 1979). What flows in during the same step does not count.
+// Invariant: shares times transfers, each cut toward zero, add up to no more than the cell holds. The margin of 2^-20 is
+// sixteen times what a float's rounding of the four operations can add.
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
+#include "shared/groups.h"
+#include "include/water_column.glsl"
+
+layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
+
+layout(binding = ELEVATION) uniform isamplerBuffer elevation;
+layout(binding = TRANSFER) uniform isamplerBuffer transfer;
+layout(std430, binding = GIVEN_SHARE) restrict writeonly buffer GivenShare { float given_share[]; };
+
+#define MARGIN 9.5367431640625e-7
+
+/// What leaves through a face, of a transfer that is positive outward. As a float, which has no largest negative number to trip over.
+float leaving(int outward_units) { return max(float(outward_units), 0.0); }
+float leavingBackward(int inward_units) { return max(-float(inward_units), 0.0); }
+
+void main() {
+  const int n = int(sim.wave_n);
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (cell.x >= n || cell.y >= n) return;
+  const int left = wrapped(cell.x - 1, n);
+  const int row = n * cell.y;
+  const int last_row = n * wrapped(cell.y - 1, n);
+  const int i = cell.x + row;
+
+  const ivec4 own = texelFetch(transfer, i);
+  const ivec4 from_left = texelFetch(transfer, left + row);
+  const ivec4 from_before = texelFetch(transfer, cell.x + last_row);
+  float outflow = leaving(own.x) + leaving(own.y) + leavingBackward(from_left.x) + leavingBackward(from_before.y);
+#if STENCIL == 9
+  const ivec4 from_corner = texelFetch(transfer, left + last_row);
+  outflow += leaving(own.z) + leavingBackward(from_corner.z) + leaving(from_left.w) + leavingBackward(from_before.w);
+#endif
+  const float held = float(heldUnits(texelFetch(elevation, i).x, stillDepth(i)));
+  given_share[i] = outflow > (1.0 - MARGIN) * held ? held / max(outflow, 1.0) * (1.0 - MARGIN) : 1.0;
+}

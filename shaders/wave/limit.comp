@@ -1,0 +1,41 @@
+// Before water moves: each face carries the share that its giver can give (wave/given_share.comp, in the same steps).
+// Reads GIVEN_SHARE. Updates TRANSFER [n x n, units], and FLOW [m^2/s], which loses the same share: water that is not there has no
+// momentum.
+// Invariant: a face is limited by its giver only; where no giver lacks water nothing changes by a single bit.
+// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
+#include "shared/groups.h"
+#include "include/water_column.glsl"
+
+layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
+
+layout(binding = GIVEN_SHARE) uniform samplerBuffer given_share;
+layout(std430, binding = TRANSFER) restrict buffer Transfer { Units transfer[]; };
+layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
+
+float shareOf(int transfer_units, float share_here, float share_there) { return transfer_units > 0 ? share_here : share_there; }
+
+void main() {
+  const int n = int(sim.wave_n);
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (cell.x >= n || cell.y >= n) return;
+  const int right = wrapped(cell.x + 1, n);
+  const int row = n * cell.y;
+  const int next_row = n * wrapped(cell.y + 1, n);
+  const int i = cell.x + row;
+
+  const float here = texelFetch(given_share, i).x;
+  const float there_x = texelFetch(given_share, right + row).x;
+  const float there_z = texelFetch(given_share, cell.x + next_row).x;
+  Units moved = transfer[i];
+#if STENCIL == 9
+  const float there_d = texelFetch(given_share, right + next_row).x;
+  const Flow share = vec4(shareOf(moved.x, here, there_x), shareOf(moved.y, here, there_z), shareOf(moved.z, here, there_d),
+                          shareOf(moved.w, there_x, there_z));
+#else
+  const Flow share = vec2(shareOf(moved.x, here, there_x), shareOf(moved.y, here, there_z));
+#endif
+  if (all(equal(share, Flow(1.0)))) return;
+  for (uint k = 0u; k < OWNED_FACES; ++k) moved[k] = share[k] < 1.0 ? int(float(moved[k]) * share[k]) : moved[k];
+  transfer[i] = moved;
+  flow_m2ps[i] *= share;
+}

@@ -1,0 +1,201 @@
+// Every live parameter of every shipped scene over its whole range, with every kind of side: the water stays finite and
+// above its bed, the ledger exact, and the watchdog is never needed. Parameters come from their descriptions, scenes
+// from the folder, so that new ones are swept too. A short form by default: both ends of each range, depths at which
+// absorbing sides used to blow up, few ticks. Longer: SPINDRIFT_SWEEP_VALUES values between the ends,
+// SPINDRIFT_SWEEP_TICKS ticks each, SPINDRIFT_SWEEP_SIDES=1 for every kind of side in every scene, SPINDRIFT_COUNT_MAX
+// particles.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <shared/fixed_point.h>
+
+#include <spindrift/stream/parameters.h>
+
+#include "basin.h"
+#include "stability_scene.h"
+
+namespace spindrift {
+namespace {
+
+std::filesystem::path sceneFolder() {
+  return std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes";
+}
+
+enum class Which { kAll, kWithWave };
+
+/// Names of the shipped scenes, sorted; a file that is no scene counts as one, so that its test says what is wrong.
+std::vector<std::string> sceneNames(Which which) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(sceneFolder())) {
+    if (entry.path().extension() != ".textproto") continue;
+    const auto scene = stream::loadSceneFile(entry.path());
+    if (which == Which::kAll || !scene || scene->has_wave()) names.insert(entry.path().stem().string());
+  }
+  // "splash_wave" is the wave of "splash" by itself: the same once the particles of "splash" are left out.
+  if (which == Which::kWithWave)
+    std::erase_if(names, [&](const std::string& name) {
+      return name.ends_with("_wave") && names.contains(name.substr(0, name.size() - 5));
+    });
+  return {names.begin(), names.end()};
+}
+
+/// The ends of a parameter's range, `between` values between them, and what a scene adds for a path.
+std::vector<double> valuesOf(const v1::ParameterDescription& parameter, int between, std::vector<double> more) {
+  std::vector<double> values = {parameter.min(), parameter.max()};
+  // Ranges that span decades are divided by ratio, others evenly.
+  const bool by_ratio = parameter.min() > 0 && parameter.max() > 30 * parameter.min();
+  for (int i = 1; i <= between; ++i) {
+    const double share = static_cast<double>(i) / (between + 1);
+    const double value = by_ratio ? parameter.min() * std::pow(parameter.max() / parameter.min(), share)
+                                  : std::lerp(parameter.min(), parameter.max(), share);
+    values.push_back(parameter.step() >= 1 ? std::round(value) : value);
+  }
+  for (const double value : more) {
+    if (value > parameter.min() && value < parameter.max()) values.push_back(value);
+  }
+  return values;
+}
+
+/// Depths at which the step rule's step is nearly its bound in scenes with absorbing sides.
+const std::vector<double> kBadDepths_m = {1.2, 2.05, 3.5};
+/// A splash of 0.5 m ends in rings a third as high. An unstable wave stands higher than this within a second: as no
+/// cell gives more than it holds, it grows to about the depth and no further.
+constexpr double kHighest_m = 0.5;
+class Parameters : public Endurance, public ::testing::WithParamInterface<std::string> {
+ protected:
+  /// Runs the water from its start with a splash of at most 0.5 m.
+  void run(sim::WaterSim& water, const core::Scene& scene, int ticks, const std::string& what) {
+    SCOPED_TRACE(what);
+    water.reset();
+    const std::uint64_t recovered = water.recoveredCount();
+    const double depth_m = scene.wave ? scene.wave->depth_m : scene.particles->headroom_m;
+    ASSERT_TRUE(water.start(core::Splash{0.3, -0.2, 1.6, std::min(0.5, 0.9 * depth_m), 0.22}));
+    if (scene.wave) {
+      // A sharp one at a corner: what grows at a side has something to grow from at once.
+      const double place_m = 0.5 * scene.wave->side_m - 6 * water.derived().wave->cell_m;
+      const double radius_m = 1.5 * water.derived().wave->cell_m;
+      ASSERT_TRUE(water.start(core::Splash{place_m, place_m, radius_m, std::min(0.1, 0.5 * depth_m), 0.05}));
+    }
+    // The fastest sound takes hundreds of substeps per tick.
+    const int most = std::max(ticks / static_cast<int>(water.derived().substeps_count), 2);
+    for (int tick = 0; tick < most; ++tick) {
+      water.step();
+      ASSERT_EQ(water.health().volume_error_units, 0) << "tick " << tick;
+    }
+    ++run_count_;
+    EXPECT_EQ(water.recoveredCount(), recovered) << "the watchdog stepped in";
+    EXPECT_EQ(water.nonfiniteCount(), 0u);
+    const sim::StateCopy state = water.copyState();
+    for (const auto* values : {&state.position, &state.velocity, &state.flow_m2ps, &state.boats})
+      ASSERT_TRUE(std::ranges::all_of(*values, [](float value) { return std::isfinite(value); }));
+    if (!scene.wave) return;
+    const sim::Basin basin = sim::layOutBasin(scene, *water.derived().wave);
+    for (std::size_t i = 0; i < state.elevation_m.size(); ++i) {
+      if (basin.depth_m[i] <= 0) continue;
+      ASSERT_GE(state.elevation_m[i], -double{basin.depth_m[i]} - 1e-6) << "below the bed";
+      ASSERT_LE(state.elevation_m[i], kHighest_m);
+      highest_seen_m_ = std::max(highest_seen_m_, state.elevation_m[i]);
+    }
+  }
+
+  /// Each live parameter of a room in turn, the others as in the scene. Where the scene or its room refuses an end of
+  /// the range (a boat needs water to float in, a pool's drops need a column to come from) the nearest value that they
+  /// take stands for it.
+  void sweep(const v1::Scene& scene, int between, int ticks, int bad_depth_ticks) {
+    sim::WaterSim& water = make(stream::toCore(scene));
+    v1::Scene changed;
+    const auto takes = [&](const std::string& path, double value) {
+      changed = scene;
+      return !stream::setParameter(changed, path, value) && water.setScene(stream::toCore(changed));
+    };
+    for (const v1::ParameterDescription& parameter : stream::describeParameters(scene)) {
+      const std::string& path = parameter.path();
+      const bool is_depth = path == "wave.depth_m";
+      int taken_count = 0;
+      for (double value : valuesOf(parameter, between, is_depth ? kBadDepths_m : std::vector<double>{})) {
+        if (path == "particles.count") value = std::min<double>(value, wanted("SPINDRIFT_COUNT_MAX", 12000));
+        if (!takes(path, value)) value = nearestTaken(parameter, value, takes);
+        if (!takes(path, value) || value == parameter.value()) continue;
+        ++taken_count;
+        const int value_ticks = is_depth && value < 10 ? std::max(ticks, bad_depth_ticks) : ticks;
+        ASSERT_NO_FATAL_FAILURE(run(water, stream::toCore(changed), value_ticks, path + " = " + std::to_string(value)));
+      }
+      ASSERT_TRUE(takes(path, parameter.value())) << "back from " << path;
+      if (taken_count == 0) refused_.insert(path);
+    }
+  }
+
+  /// Between a value that is not taken and the scene's own, which is.
+  static double nearestTaken(const v1::ParameterDescription& parameter, double refused, const auto& takes) {
+    double allowed = parameter.value();
+    for (int i = 0; i < 12; ++i) {
+      double middle = 0.5 * (allowed + refused);
+      if (parameter.step() >= 1) middle = std::round(middle);
+      (takes(parameter.path(), middle) ? allowed : refused) = middle;
+    }
+    return allowed;
+  }
+
+  int run_count_ = 0;
+  double highest_seen_m_ = 0.0;
+  std::set<std::string> refused_;  ///< every value needs another room
+};
+
+class WaveParameters : public Parameters {};
+
+TEST_P(Parameters, OverTheirWholeRangesKeepTheWaterWell) {
+  const v1::Scene scene = shipped(GetParam());
+  sweep(scene, wanted("SPINDRIFT_SWEEP_VALUES", 0), wanted("SPINDRIFT_SWEEP_TICKS", 8), 24);
+  std::printf("%d runs, elevations of up to %.2f m\n", run_count_, highest_seen_m_);
+  EXPECT_GE(run_count_, 8);
+  // A pool's size, and what a room that was made without it has no shaders for.
+  const std::set<std::string> may_refuse = {"particles.count", "wave.steepening_ratio", "foam.neighbours_count"};
+  for (const std::string& path : refused_) EXPECT_TRUE(may_refuse.contains(path)) << path;
+}
+
+/// The waves of a scene by themselves, with one kind of side all round.
+v1::Scene withSides(v1::Scene scene, v1::WaveBoundary side) {
+  v1::WaveScene& wave = *scene.mutable_wave();
+  wave.set_boundary_minus_x(side);
+  wave.set_boundary_plus_x(side);
+  wave.set_boundary_minus_z(side);
+  wave.set_boundary_plus_z(side);
+  wave.set_sponge_width_m(std::min(wave.sponge_width_m(), 0.5 * wave.side_m()));
+  if (side == v1::WAVE_BOUNDARY_PERIODIC) scene.clear_beaches();  // they need a side
+  return scene;
+}
+
+TEST_P(WaveParameters, KeepItWellWithEveryKindOfSide) {
+  v1::Scene scene = shipped(GetParam());
+  scene.clear_particles();
+  scene.clear_coupling();
+  if (!scene.foam().surface()) scene.clear_foam();
+  constexpr std::array kSides = {v1::WAVE_BOUNDARY_ABSORB, v1::WAVE_BOUNDARY_REFLECT, v1::WAVE_BOUNDARY_PERIODIC};
+  const int between = wanted("SPINDRIFT_SWEEP_VALUES", 0);
+  const int ticks = wanted("SPINDRIFT_SWEEP_TICKS", 8);
+  // In the short form: absorbing sides everywhere, and one of the others in turn.
+  const std::vector<std::string> names = sceneNames(Which::kWithWave);
+  const auto turn = static_cast<std::size_t>(std::ranges::find(names, GetParam()) - names.begin()) % 2;
+  for (std::size_t i = 0; i < kSides.size(); ++i) {
+    if (wanted("SPINDRIFT_SWEEP_SIDES", 0) == 0 && i != 0 && i != 1 + turn) continue;
+    SCOPED_TRACE(v1::WaveBoundary_Name(kSides[i]));
+    sweep(withSides(scene, kSides[i]), between, ticks, 70);
+  }
+  std::printf("%d runs, elevations of up to %.2f m\n", run_count_, highest_seen_m_);
+  EXPECT_GE(run_count_, 15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Parameters, ::testing::ValuesIn(sceneNames(Which::kAll)),
+                         [](const auto& scene) { return scene.param; });
+INSTANTIATE_TEST_SUITE_P(Scenes, WaveParameters, ::testing::ValuesIn(sceneNames(Which::kWithWave)),
+                         [](const auto& scene) { return scene.param; });
+
+}  // namespace
+}  // namespace spindrift

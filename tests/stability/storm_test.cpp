@@ -1,0 +1,103 @@
+// However hard people and weather work on the water, no cell holds less than nothing: the surface stays above the bed.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+
+#include <shared/fixed_point.h>
+
+#include "basin.h"
+#include "random_crowd.h"
+#include "stability_scene.h"
+
+namespace spindrift {
+namespace {
+
+/// Extremes of the water of one state, wet cells only.
+struct Extremes {
+  std::int64_t thinnest_units = std::numeric_limits<std::int64_t>::max();  ///< least water column, elevation + depth
+  double lowest_m = 0.0;                                                   ///< elevation
+  double highest_m = 0.0;                                                  ///< elevation
+
+  void add(const Extremes& other) {
+    thinnest_units = std::min(thinnest_units, other.thinnest_units);
+    lowest_m = std::min(lowest_m, other.lowest_m);
+    highest_m = std::max(highest_m, other.highest_m);
+  }
+};
+
+Extremes extremesOf(sim::WaterSim& water) {
+  const sim::Basin basin = sim::layOutBasin(water.scene(), *water.derived().wave);
+  const sim::StateCopy state = water.copyState();
+  Extremes out;
+  for (std::size_t i = 0; i < state.elevation_m.size(); ++i) {
+    if (basin.depth_m[i] <= 0) continue;
+    // Both are exact: the elevation is a whole number of units, and so is the bed as the shaders see it.
+    const auto bed_units = static_cast<std::int64_t>(double{basin.depth_m[i]} * double{ELEVATION_UNITS_PER_M});
+    const auto units = static_cast<std::int64_t>(std::llround(state.elevation_m[i] * double{ELEVATION_UNITS_PER_M}));
+    out.add({bed_units + units, state.elevation_m[i], state.elevation_m[i]});
+  }
+  return out;
+}
+
+/// Largest elevations that are allowed. 168 splashes, waves and boats a second, each as large as the harbor takes them,
+/// pile water up where they meet rocks and walls (13.0 m were measured in 400 ticks); full storm and boats at full
+/// speed do not (1.24 m in 600 ticks).
+constexpr double kHighestOfCrowd_m = 16.0;
+constexpr double kHighestOfWeather_m = 2.0;
+
+class Storm : public Endurance {
+ protected:
+  /// `ticks` of a scene with random commands, its boats at full speed; the bed is looked at every third tick.
+  Extremes run(const v1::Scene& scene, Crowd::Sends sends, int ticks, double commands_per_tick = 2.8) {
+    sim::WaterSim& water = make(stream::toCore(scene));
+    Crowd crowd(scene, sends);
+    Extremes out;
+    double commands = 0.0;
+    for (const sim::BoatRecord& boat : water.boats()) EXPECT_TRUE(water.controlBoat(boat.boat_id, 1.0, 0.4));
+    for (int tick = 0; tick < ticks; ++tick) {
+      for (commands += commands_per_tick; commands >= 1.0; commands -= 1.0) crowd.send(water);
+      water.step();
+      EXPECT_EQ(water.health().volume_error_units, 0) << "tick " << tick;
+      if (tick % 3 == 0) out.add(extremesOf(water));
+      if (HasFailure()) break;
+    }
+    std::printf("elevations from %.2f to %.2f m, thinnest column %.6f m, watchdog stepped in %llu times\n",
+                out.lowest_m, out.highest_m, static_cast<double>(out.thinnest_units) * double{ELEVATION_UNIT_M},
+                static_cast<unsigned long long>(water.recoveredCount()));
+    EXPECT_EQ(water.recoveredCount(), 0u);
+    EXPECT_EQ(water.nonfiniteCount(), 0u);
+    return out;
+  }
+
+  static v1::Scene stormyHarbor() {
+    v1::Scene scene = shipped("harbor");
+    scene.mutable_storm()->set_level_ratio(1.0);
+    return scene;
+  }
+};
+
+TEST_F(Storm, SplashesWavesAndBoatsNeverEmptyTheHarborBelowItsBed) {
+  const int ticks = wanted("SPINDRIFT_STORM_TICKS", 400);
+  const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEffectsAndBoats, ticks);
+  EXPECT_GE(extremes.thinnest_units, 0);
+  EXPECT_LE(extremes.highest_m, kHighestOfCrowd_m);
+  EXPECT_GT(extremes.highest_m, 0.5) << "a storm that moves no water proves nothing";
+}
+
+TEST_F(Storm, WeatherAndBoatsAloneStayLow) {
+  const int ticks = wanted("SPINDRIFT_STORM_TICKS", 600);
+  const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEffectsAndBoats, ticks, 0.0);
+  EXPECT_GE(extremes.thinnest_units, 0);
+  EXPECT_LE(extremes.highest_m, kHighestOfWeather_m);
+}
+
+TEST_F(Storm, ParametersThatChangeMeanwhileNeverBareTheBedEither) {
+  const int ticks = wanted("SPINDRIFT_STORM_TICKS", 400);
+  const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEverything, ticks);
+  EXPECT_GE(extremes.thinnest_units, 0);
+}
+
+}  // namespace
+}  // namespace spindrift
