@@ -1,5 +1,6 @@
 // Poisoned scratch buffers, another order of work groups, programs that are shared.
-#include <numeric>
+#include <optional>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -72,7 +73,8 @@ TEST_F(TestModes, ShuffledGroupsCoverEveryInvocationOnce) {
 
 TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
   constexpr std::uint32_t kGroups = 100;
-  const auto firstGroup = [&](std::uint32_t seed) -> std::uint32_t {
+  // Of the groups g, in how many cases g + 1 ran later than g.
+  const auto ascendingCount = [&](std::uint32_t seed) -> std::uint32_t {
     make({.shuffle_seed = seed});
     if (!ctx) return 0;
     auto program = Program::create(*ctx, "check/group_order.comp");
@@ -80,19 +82,22 @@ TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
     EXPECT_TRUE(program && order);
     order->bindStorage(0);
     EXPECT_TRUE(program->dispatchGroups(kGroups));
-    auto seen = order->downloadVector<std::uint32_t>(1 + kGroups);
+    const auto seen = order->downloadVector<std::uint32_t>(1 + kGroups);
     EXPECT_EQ(seen[0], kGroups);
-    const std::uint32_t first = seen[1];
-    std::vector<std::uint32_t> expected(kGroups);
-    std::iota(expected.begin(), expected.end(), 0u);
-    std::ranges::sort(seen.begin() + 1, seen.end());
-    EXPECT_TRUE(std::equal(expected.begin(), expected.end(), seen.begin() + 1)) << "each number once";
-    return first;
+    std::vector<std::optional<std::size_t>> place(kGroups);
+    for (std::size_t k = 1; k <= kGroups; ++k) {
+      EXPECT_LT(seen[k], kGroups);
+      EXPECT_FALSE(place.at(seen[k])) << "each number once";
+      place.at(seen[k]) = k;
+    }
+    std::uint32_t count = 0;
+    for (std::size_t g = 0; g + 1 < kGroups; ++g) count += *place[g] < *place[g + 1] ? 1 : 0;
+    return count;
   };
-  // Devices start with the lowest numbers, whatever they do after.
-  if (const std::uint32_t plain = firstGroup(0); ctx) {
-    EXPECT_LT(plain, 10u);
-    EXPECT_GT(firstGroup(55), 20u);
+  // Each of a device's threads takes its groups in ascending order, however the threads fall together.
+  if (const std::uint32_t plain_count = ascendingCount(0); ctx) {
+    EXPECT_GE(plain_count, 90u);
+    EXPECT_LE(ascendingCount(55), 75u);
   }
 }
 
