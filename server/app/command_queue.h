@@ -26,8 +26,8 @@ class CommandQueue {
   using TimePoint = std::chrono::steady_clock::time_point;
 
   struct Bounds {
-    std::size_t max_count = 1024;                    ///< commands waiting in all lanes
-    std::size_t lane_max_count = 256;                ///< commands of one sender
+    std::size_t max_count = 4096;                    ///< commands waiting in all lanes
+    std::size_t lane_max_count = 512;                ///< commands of one sender: above its burst
     std::size_t lane_heavy_max_count = 64;           ///< heavy commands of one sender
     std::chrono::milliseconds heavy_wait_max{1000};  ///< heavy commands that wait longer are given up
   };

@@ -143,6 +143,7 @@ Room::Outcome Room::setParameter(const core::Command& command, const core::SetPa
     if (auto refused = refuseSlow(command.sender, change.path, tick_ms)) return refused;
   }
   if (auto rejected = applyToWater(command)) return rejected;
+  next_frame_s_ = 0.0;  // of another rate, perhaps: the one before may have been a second away
   news_.parameters[change.path] = change.value;
   return {};
 }

@@ -8,15 +8,16 @@
 namespace spindrift::test {
 namespace {
 
-/// A third too few wave steps: Courant number 0.73 where 0.707 is the limit, and a splash to start from.
+/// A third too few wave steps: Courant number 0.73 where 0.707 is the limit, and a splash to start from. Deep, because no
+/// cell gives more than it holds: shallow water would rock within bounds for ever.
 constexpr const char* kUnstable = R"(
-  wave { resolution_count: 64 side_m: 8 depth_m: 3 fixed_substeps_count: 1 }
+  wave { resolution_count: 64 side_m: 22.4 depth_m: 24 fixed_substeps_count: 1 }
   allow_unstable: true
   stream { frame_rate_hz: 60 }
   events { at_s: 0.2 effect { splash { radius_m: 1 depth_m: 0.5 duration_s: 0.1 } } }
 )";
 
-/// Eight times as deep: Courant number 2.1, unstable with half the step as well.
+/// Cells a third as wide: Courant number 2.1, unstable with half the step as well.
 constexpr const char* kHopeless = R"(
   wave { resolution_count: 64 side_m: 8 depth_m: 24 fixed_substeps_count: 1 }
   allow_unstable: true
@@ -54,7 +55,7 @@ TEST_F(Guard, SaysThatItPutARoomBackAndTheRoomGoesOn) {
     EXPECT_GT(next->tick(), tick);
     const double max_m = maxElevation_m(*next);
     EXPECT_GE(max_m, 0.0) << "decodes";
-    EXPECT_LT(max_m, 5.0);
+    EXPECT_LT(max_m, 24.0) << "what trips the watchdog is five times as high";
   }
   const auto message = one.waitFor(v1::ServerMessage::kDiagnostics);
   ASSERT_TRUE(message);

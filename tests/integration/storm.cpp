@@ -196,6 +196,8 @@ class Visitor {
     const std::lock_guard lock(mutex_);
     if (message.has_greeting()) {
       parameters_.assign(message.greeting().parameters().begin(), message.greeting().parameters().end());
+      // A room that was told to send one frame per second does.
+      std::erase_if(parameters_, [](const auto& known) { return known.path() == "stream.frame_rate_hz"; });
       scenes_.assign(message.greeting().scenes().begin(), message.greeting().scenes().end());
     }
     if (message.has_ack() && message.ack().boat_id() != 0) last_boat_id_ = message.ack().boat_id();
