@@ -59,6 +59,7 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, std:
       clock_(stage_->water().derived().tick_s),
       boats_(stage_->boats()) {
   recovery_news_.restart(stage_->water().recoveredCount());
+  tick_cost_.restart(stage_->warmTick_ms());
   publishSnapshot();
   publishVitals({});
 }

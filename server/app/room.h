@@ -188,8 +188,9 @@ class Room {
   void adoptWater(TimePoint now, RoomObserver& observer);
   /// Forgets what belonged to the water before.
   void restartScene(RoomObserver& observer);
-  /// Whether a tick that takes so long may be asked for by this sender: while others are connected it may not.
-  [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms) const;
+  /// Refuses ticks that take longer than `max_ms`, and longer than now, while others than the sender are connected.
+  [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
+                                   double max_ms) const;
   /// Goes on with other water from its start.
   void replaceWater(std::unique_ptr<Water> water, RoomObserver& observer);
   /// Asks the device whether it still works; if not, has the same scene built anew, on a device that does, and answers

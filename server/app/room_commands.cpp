@@ -138,9 +138,9 @@ Room::Outcome Room::applyToWater(const core::Command& command) {
 }
 
 Room::Outcome Room::setParameter(const core::Command& command, const core::SetParameter& change) {
-  if (const auto derived = stage_->deriveWith(change)) {
-    const double tick_ms = tick_cost_.predict_ms(workOf(stage_->water().derived()), workOf(*derived));
-    if (auto refused = refuseSlow(command.sender, change.path, tick_ms)) return refused;
+  if (const auto wanted = stage_->workWith(change)) {
+    const double tick_ms = tick_cost_.predict_ms(stage_->work(), *wanted);
+    if (auto refused = refuseSlow(command.sender, change.path, tick_ms, kTickMax_ms)) return refused;
   }
   if (auto rejected = applyToWater(command)) return rejected;
   next_frame_s_ = 0.0;  // of another rate, perhaps: the one before may have been a second away

@@ -49,7 +49,7 @@ void Room::adoptWater(TimePoint now, RoomObserver& observer) {
     return answer(std::move(build.commands), rejection(v1::REJECT_REASON_OUT_OF_RANGE, kField,
                                                        "scene '" + name + "': " + firstLine(water.error().message)));
   }
-  if (auto slow = refuseSlow(first.sender, kField, (*water)->warmTick_ms())) {
+  if (auto slow = refuseSlow(first.sender, kField, (*water)->warmTick_ms(), kSceneTickMax_ms)) {
     builder_.dispose(*std::move(water));
     return answer(std::move(build.commands), slow);
   }
@@ -64,15 +64,16 @@ void Room::replaceWater(std::unique_ptr<Water> water, RoomObserver& observer) {
   restartScene(observer);
 }
 
-Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms) const {
+Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
+                               double max_ms) const {
   const double now_ms = tick_cost_.predict_ms({}, {});
   const std::size_t own_count = sender.session_id != 0 ? 1 : 0;
-  if (session_count_ <= own_count || tick_ms <= std::max(kTickMax_ms, now_ms)) return {};
+  if (session_count_ <= own_count || tick_ms <= std::max(max_ms, now_ms)) return {};
   return rejection(
       v1::REJECT_REASON_BUSY, field,
       fmt::format("a tick would take about {:.0f} ms on this device, {:.0f} ms are the most while others are "
                   "connected: choose less, or try again when nobody else is here",
-                  tick_ms, kTickMax_ms));
+                  tick_ms, max_ms));
 }
 
 // A device that fails
@@ -130,7 +131,7 @@ void Room::restartScene(RoomObserver& observer) {
   step_count_ = 0;
   last_passes_.clear();
   slow_since_ = {};
-  tick_cost_.restart();
+  tick_cost_.restart(stage_->warmTick_ms());
   recovery_news_.restart(stage_->water().recoveredCount());
   logged_recovery_count_ = stage_->water().recoveredCount();
   boats_ = stage_->boats();

@@ -83,12 +83,16 @@ Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
   return {};
 }
 
-std::optional<sim::Derived> Stage::deriveWith(const core::SetParameter& change) const {
+TickWork Stage::work() const {
+  return workOf(water().scene(), water().derived());
+}
+
+std::optional<TickWork> Stage::workWith(const core::SetParameter& change) const {
   v1::Scene changed = scene();
   if (stream::setParameter(changed, change.path, change.value)) return std::nullopt;
-  auto derived = sim::derive(stream::toCore(changed));
-  if (!derived) return std::nullopt;
-  return *std::move(derived);
+  const core::Scene wanted = stream::toCore(changed);
+  const auto derived = sim::derive(wanted);
+  return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
 }
 
 Stage::Outcome Stage::spawnBoat(const core::SpawnBoat& spawn) {

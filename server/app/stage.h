@@ -12,6 +12,7 @@
 #include <spindrift/stream/client_message.h>
 #include <spindrift/v1/scene.pb.h>
 
+#include "tick_cost.h"
 #include "water.h"
 
 namespace spindrift::app {
@@ -34,8 +35,12 @@ class Stage {
   static bool takes(const core::Action& action);
   /// Carries an action out now, between two ticks; a rejected one changes nothing.
   Outcome apply(const core::Action& action);
-  /// What would follow from another value of a parameter; nullopt where it is not allowed: apply() tells why.
-  [[nodiscard]] std::optional<sim::Derived> deriveWith(const core::SetParameter& change) const;
+  /// The work of a tick, now or with another value of a parameter; nullopt where that is not allowed: apply() tells
+  /// why.
+  [[nodiscard]] TickWork work() const;
+  [[nodiscard]] std::optional<TickWork> workWith(const core::SetParameter& change) const;
+  /// What a tick took while the water was built [ms].
+  [[nodiscard]] double warmTick_ms() const { return water_->warmTick_ms(); }
   /// Goes on with other water, which is bound from now on; returns the old one, still to be destroyed. The room's ticks
   /// go on: the new water begins at a tick that no frame of the old one has, and its boats get ids that none had.
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);

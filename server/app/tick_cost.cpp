@@ -11,10 +11,13 @@ double ratio(double wanted, double now) {
 
 }  // namespace
 
-TickWork workOf(const sim::Derived& derived) {
+TickWork workOf(const core::Scene& scene, const sim::Derived& derived) {
   TickWork out;
-  if (derived.particles)
-    out.particle_step_count = static_cast<double>(derived.particles->count) * derived.substeps_count;
+  if (derived.particles && scene.particles) {
+    const bool iterates = scene.particles->solver == core::PressureSolver::kPositionBased;
+    const double passes_count = 1.0 + (iterates ? scene.particles->iterations_count : 0);
+    out.particle_step_count = passes_count * static_cast<double>(derived.particles->count) * derived.substeps_count;
+  }
   if (derived.wave) {
     const double side_count = derived.wave->resolution_count;
     out.wave_step_count = side_count * side_count * derived.wave->substeps_count;

@@ -8,8 +8,8 @@
 namespace spindrift::test {
 namespace {
 
-/// A third too few wave steps: Courant number 0.73 where 0.707 is the limit, and a splash to start from. Deep, because no
-/// cell gives more than it holds: shallow water would rock within bounds for ever.
+/// A third too few wave steps: Courant number 0.73 where 0.707 is the limit, and a splash to start from. Deep, because
+/// no cell gives more than it holds: shallow water would rock within bounds for ever.
 constexpr const char* kUnstable = R"(
   wave { resolution_count: 64 side_m: 22.4 depth_m: 24 fixed_substeps_count: 1 }
   allow_unstable: true

@@ -36,12 +36,31 @@ TEST(WorkBudget, TakesNoMoreThanItsShareInALongRun) {
 
 TEST(TickCost, GrowsWithTheDearerPart) {
   TickCost cost;
-  EXPECT_EQ(cost.predict_ms({}, {}), 0.0) << "before any tick";
-  cost.note(10.0);
+  cost.restart(10.0);
   const TickWork now{.particle_step_count = 1000, .wave_step_count = 500};
   EXPECT_DOUBLE_EQ(cost.predict_ms(now, {.particle_step_count = 3000, .wave_step_count = 500}), 30.0);
   EXPECT_DOUBLE_EQ(cost.predict_ms(now, {.particle_step_count = 1000, .wave_step_count = 2000}), 40.0);
   EXPECT_DOUBLE_EQ(cost.predict_ms(now, {.particle_step_count = 1, .wave_step_count = 1}), 10.0);
+}
+
+TEST(TickCost, FollowsWhatTicksTake) {
+  TickCost cost;
+  cost.restart(10.0);
+  for (int k = 0; k < 100; ++k) cost.note(50.0);
+  EXPECT_NEAR(cost.predict_ms({}, {}), 50.0, 0.1);
+}
+
+TEST(TickCost, KnowsWhatASceneAsksFor) {
+  core::Scene scene;
+  scene.particles.emplace();
+  scene.particles->solver = core::PressureSolver::kPositionBased;
+  scene.particles->iterations_count = 4;
+  sim::Derived derived;
+  derived.substeps_count = 3;
+  derived.particles.emplace();
+  derived.particles->count = 100;
+  EXPECT_EQ(workOf(scene, derived).particle_step_count, 5 * 3 * 100);
+  EXPECT_EQ(workOf(scene, derived).wave_step_count, 0.0);
 }
 
 }  // namespace
