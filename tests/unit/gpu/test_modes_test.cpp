@@ -1,4 +1,5 @@
 // Poisoned scratch buffers, another order of work groups, programs that are shared.
+#include <numeric>
 #include <optional>
 #include <vector>
 
