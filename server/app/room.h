@@ -173,6 +173,8 @@ class Room {
   void answer(Batch batch, const Outcome& outcome);
   /// Tells everybody what is new, then the senders what became of their commands.
   void announce(net::Hub& hub, RoomObserver& observer);
+  /// Tells the senders what became of their commands.
+  void deliverAnswers(RoomObserver& observer);
   /// Boats whose people went away stop; news of people go out.
   void settlePeople(TimePoint now, net::Hub& hub);
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const;

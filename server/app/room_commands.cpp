@@ -69,14 +69,14 @@ void Room::applyCommands(TimePoint now) {
   }
   answer(commands_.takeExpired(now),
          rejection(v1::REJECT_REASON_BUSY, "",
-                   "the room is busy with resets, scenes and parameters of others: try again in a second"));
+                   "the room is busy with resets, scenes, parameters and boats: try again in a second"));
 }
 
 void Room::abandonCommands(RoomObserver& observer) {
   const auto closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
   if (build_) answer(std::move(build_->commands), closed);
   answer(commands_.drain(), closed);
-  for (Answer& one : std::exchange(answers_, {})) observer.commandRejected(one.command, *one.rejected);
+  deliverAnswers(observer);
 }
 
 void Room::apply(Batch batch) {
@@ -122,7 +122,7 @@ Room::Outcome Room::apply(const core::Command& command) {
                                [&](const core::RemoveBoat& remove) { return removeBoat(command, remove.boat_id); },
                                [&](const core::TakeBoat& take) { return takeBoat(command.sender, take.boat_id); },
                                [&](const core::Step& step) { return advance(step); },
-                               // Of a scene's own kind: beginScene().
+                               // apply(Batch) hands them to beginScene().
                                [&](const core::ChangeScene&) -> Outcome { return {}; }},
                     command.action);
 }
@@ -276,6 +276,10 @@ void Room::announce(net::Hub& hub, RoomObserver& observer) {
                                          "the device failed; the scene began again on a new one"));
   }
   if (news.boats) announceBoats(hub);
+  deliverAnswers(observer);
+}
+
+void Room::deliverAnswers(RoomObserver& observer) {
   for (Answer& one : std::exchange(answers_, {})) {
     if (one.rejected) {
       one.rejected->command_id = one.command.command_id;

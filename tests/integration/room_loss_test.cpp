@@ -41,6 +41,7 @@ struct RecordingObserver final : app::RoomObserver {
   int scene_count = 0;
   std::vector<std::uint64_t> applied;
   std::vector<std::string> rejected;
+  std::vector<std::uint64_t> rejected_ids;
 
   void sceneChanged(const app::Room&) override { ++scene_count; }
   void commandApplied(const core::Command& command, std::uint64_t, std::uint32_t) override {
@@ -48,6 +49,7 @@ struct RecordingObserver final : app::RoomObserver {
   }
   void commandRejected(const core::Command&, const stream::CommandRejection& rejection) override {
     rejected.push_back(rejection.message);
+    rejected_ids.push_back(rejection.command_id);
   }
 };
 
@@ -126,6 +128,14 @@ TEST_F(RoomLoss, AnswersCommandsThatCameBeforeTheLoss) {
   room_->run(Clock::now(), hub_, encoder_, observer_);
   ASSERT_EQ(observer_.rejected.size(), 1u);
   EXPECT_THAT(observer_.rejected[0], testing::HasSubstr("the device failed"));
+}
+
+TEST_F(RoomLoss, ARoomThatClosesAnswersWhatWaits) {
+  send(7);
+  send(8);
+  room_->abandonCommands(observer_);
+  EXPECT_THAT(observer_.rejected_ids, testing::ElementsAre(7, 8));
+  EXPECT_THAT(observer_.rejected, testing::Each(testing::HasSubstr("closed")));
 }
 
 }  // namespace
