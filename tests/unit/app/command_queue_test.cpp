@@ -1,5 +1,8 @@
 #include "command_queue.h"
 
+#include <map>
+#include <thread>
+
 #include <gmock/gmock.h>
 
 namespace spindrift::app {
@@ -132,6 +135,29 @@ TEST_F(CommandQueueTest, DrainTakesEverything) {
   EXPECT_EQ(queue_.size(), 0u);
   push(queue_, from(1, 3, core::Splash{}));
   EXPECT_THAT(next(queue_), ElementsAre(3));
+}
+
+TEST_F(CommandQueueTest, LosesAndInventsNothingWithManyProducers) {
+  constexpr std::uint64_t kProducers = 4;
+  constexpr std::uint64_t kCommands = 2000;
+  std::vector<std::jthread> producers;
+  for (std::uint64_t session = 1; session <= kProducers; ++session) {
+    producers.emplace_back([this, session] {
+      for (std::uint64_t k = 1; k <= kCommands; ++k) {
+        while (queue_.tryPush(from(session, k, core::Splash{}), at(0ms))) std::this_thread::yield();  // full
+      }
+    });
+  }
+  std::map<std::uint64_t, std::uint64_t> last_id;
+  for (std::uint64_t taken = 0; taken < kProducers * kCommands;) {
+    const auto batch = queue_.next({});
+    if (!batch) continue;
+    for (const core::Command& command : *batch) {
+      ASSERT_EQ(command.command_id, ++last_id[command.sender.session_id]) << "in order, each once";
+      ++taken;
+    }
+  }
+  EXPECT_EQ(queue_.size(), 0u);
 }
 
 }  // namespace
