@@ -231,8 +231,9 @@ TEST_F(ShortGrace, HandsTheBoatOverWhenItsPersonStaysAway) {
   ScriptedClient ada = player("Ada");
   const v1::Welcome first = ada.welcome();
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
-  ada.ws().vanish();
+  // She stays until he was told of her: who comes and goes between two lists is in neither.
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 2; });
+  ada.ws().vanish();
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 1; });
   EXPECT_TRUE(bob.apply(takeBoat(boat_id)));
   EXPECT_TRUE(bob.apply(controlBoat(boat_id, 1, 0)));
