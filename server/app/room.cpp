@@ -139,7 +139,7 @@ void Room::start(TimePoint now) {
 }
 
 Room::TimePoint Room::due(TimePoint now) const {
-  if (is_lost_) return now + 10ms;
+  if (is_lost_ || change_) return now + 10ms;
   if (pending_tick_count_ > 0) return now;
   const TimePoint next = paused_ || asleep_ ? now + 10ms : clock_.due();
   return stage_->water().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
@@ -159,9 +159,12 @@ void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserve
   handOverFrames(encoder);
   watchOverSleep(now, hub);
   settlePeople(now, hub);
+  finishChange();
   if (paused_ || asleep_ || now >= clock_.due()) applyCommands(now);
   announce(hub, observer);
-  if (paused_) {
+  if (change_) {
+    // The state stands still until the particles are laid out.
+  } else if (paused_) {
     advancePaused(now, hub);
   } else if (!asleep_ && now >= clock_.due()) {
     step(now, hub);

@@ -146,6 +146,20 @@ class Room {
     std::future<WaterBuilder::Built> water;
   };
 
+  /// Values that one sender gave one parameter, the newest first tried: the first that the water takes is the last one.
+  struct Values {
+    Batch untried;              ///< oldest first
+    std::vector<Answer> tried;  ///< newest first
+  };
+  /// A value on its way that lays the particles out anew; the room's ticks wait for it.
+  struct Change {
+    core::Command command;
+    Values others;
+    Stage::Relayout relayout;  ///< without its basis
+    std::future<WaterBuilder::Prepared> prepared;
+    TimePoint begin;
+  };
+
   Room(std::string name, const RoomRules& rules, WaterBuilder& builder, std::unique_ptr<Stage> stage,
        std::unique_ptr<CommandLogWriter> log);
 
@@ -161,6 +175,7 @@ class Room {
   Outcome apply(const core::Command& command);
   /// The stage's part of a command, and its line in the log.
   Outcome applyToWater(const core::Command& command);
+  void recordCommand(const core::Command& command);
   Outcome setParameter(const core::Command& command, const core::SetParameter& change);
   Outcome reset(const core::Command& command);
   Outcome spawnBoat(const core::Command& command);
@@ -183,6 +198,19 @@ class Room {
   /// The boats on the water, if they are others than those announced last.
   void announceBoats(net::Hub& hub);
   void announceRecovery(TimePoint now, net::Hub& hub);
+
+  // room_change.cpp
+  void applyNewest(Values values);
+  /// The newest of them is taken, or none: answers them all.
+  void conclude(Values values);
+  /// Whether the value lays the particles out anew, which has begun then.
+  bool beginChange(const core::Command& command, Values& others);
+  /// Goes on with the particles that were laid out, if they are there.
+  void finishChange();
+  /// Answers what the change would have answered.
+  void abandonChange(const stream::CommandRejection& rejection);
+  [[nodiscard]] Outcome refuseSlowChange(const core::Command& command, const core::SetParameter& change) const;
+  void parameterChanged(const core::SetParameter& change);
 
   // room_scene.cpp
   void beginScene(Batch batch);
@@ -222,6 +250,7 @@ class Room {
   std::vector<Answer> answers_;  ///< since the last announce()
   News news_;
   std::optional<WaterBuild> build_;
+  std::optional<Change> change_;
   bool is_lost_ = false;      ///< the device failed: nothing runs until other water is there
   TimePoint next_rebuild_{};  ///< a build that failed is tried again
   std::chrono::seconds rebuild_pause_{1};

@@ -60,7 +60,7 @@ std::optional<stream::CommandRejection> Room::admit(core::Command command) {
 void Room::applyCommands(TimePoint now) {
   using Clock = std::chrono::steady_clock;
   for (int k = 0; k < kRoundMaxCount; ++k) {
-    auto batch = commands_.next({.heavy = heavy_budget_.isOpen(now), .scene_change = !build_});
+    auto batch = commands_.next({.heavy = !change_ && heavy_budget_.isOpen(now), .scene_change = !build_});
     if (!batch) break;
     const bool is_heavy = isHeavy(batch->front().action);
     const auto begin = Clock::now();
@@ -75,6 +75,7 @@ void Room::applyCommands(TimePoint now) {
 void Room::abandonCommands(RoomObserver& observer) {
   const auto closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
   if (build_) answer(std::move(build_->commands), closed);
+  abandonChange(closed);
   answer(commands_.drain(), closed);
   deliverAnswers(observer);
 }
@@ -85,19 +86,7 @@ void Room::apply(Batch batch) {
     const Outcome outcome = apply(batch.front());
     return answer(std::move(batch), outcome);
   }
-  // Of values for one parameter only the last that the water takes matters: what it overwrites is not built first.
-  std::vector<Answer> tried;
-  while (!batch.empty()) {
-    core::Command command = std::move(batch.back());
-    batch.pop_back();
-    Outcome outcome = apply(command);
-    const bool is_taken = !outcome;
-    const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
-    tried.push_back({std::move(command), std::move(outcome), is_taken && is_spawn ? stage_->spawnedBoatId() : 0});
-    if (is_taken) break;
-  }
-  answer(std::move(batch), {});
-  std::ranges::move(tried | std::views::reverse, std::back_inserter(answers_));
+  applyNewest({.untried = std::move(batch), .tried = {}});
 }
 
 void Room::answer(Batch batch, const Outcome& outcome) {
@@ -129,22 +118,21 @@ Room::Outcome Room::apply(const core::Command& command) {
 
 Room::Outcome Room::applyToWater(const core::Command& command) {
   if (auto rejected = stage_->apply(command.action)) return rejected;
-  if (log_) {
-    v1::Record line;
-    *line.mutable_command() = stream::toWire(command);
-    record(std::move(line));
-  }
+  recordCommand(command);
   return {};
 }
 
+void Room::recordCommand(const core::Command& command) {
+  if (!log_) return;
+  v1::Record line;
+  *line.mutable_command() = stream::toWire(command);
+  record(std::move(line));
+}
+
 Room::Outcome Room::setParameter(const core::Command& command, const core::SetParameter& change) {
-  if (const auto wanted = stage_->workWith(change)) {
-    const double tick_ms = tick_cost_.predict_ms(stage_->work(), *wanted);
-    if (auto refused = refuseSlow(command.sender, change.path, tick_ms, kTickMax_ms)) return refused;
-  }
+  if (auto refused = refuseSlowChange(command, change)) return refused;
   if (auto rejected = applyToWater(command)) return rejected;
-  next_frame_s_ = 0.0;  // of another rate, perhaps: the one before may have been a second away
-  news_.parameters[change.path] = change.value;
+  parameterChanged(change);
   return {};
 }
 

@@ -37,7 +37,7 @@ void Room::beginScene(Batch batch) {
 }
 
 void Room::adoptWater(TimePoint now, RoomObserver& observer) {
-  if (!build_ || build_->water.wait_for(0s) != std::future_status::ready) return;
+  if (!build_ || change_ || build_->water.wait_for(0s) != std::future_status::ready) return;
   WaterBuild build = *std::move(build_);
   build_.reset();
   commands_.release(build.commands);
@@ -89,8 +89,10 @@ bool Room::isLost(TimePoint now) {
     publishLoss();
   }
   if (!build_ && now >= next_rebuild_) build_.emplace(WaterBuild{{}, builder_.build(stage_->scene())});
-  answer(commands_.drain(), rejection(v1::REJECT_REASON_BUSY, "",
-                                      "the device failed and the room's water is being built anew: try again"));
+  const auto failed =
+      rejection(v1::REJECT_REASON_BUSY, "", "the device failed and the room's water is being built anew: try again");
+  abandonChange(failed);
+  answer(commands_.drain(), failed);
   return true;
 }
 

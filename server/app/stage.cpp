@@ -12,13 +12,20 @@
 namespace spindrift::app {
 namespace {
 
-/// Why a running room does not take a scene.
-v1::RejectReason whyNot(core::Scene wanted) {
-  // What could be started afresh only needs other buffers or programs than the room has.
-  if (sim::derive(wanted)) return v1::REJECT_REASON_NEEDS_RESTART;
-  wanted.allow_unstable = true;
-  wanted.fixed_substeps_count = 1;
-  return sim::derive(wanted) ? v1::REJECT_REASON_BREAKS_STEP_RULE : v1::REJECT_REASON_OUT_OF_RANGE;
+/// Why a running room does not take `wanted`, which `change` makes of its scene.
+stream::CommandRejection whyNot(const core::SetParameter& change, core::Scene wanted, const core::Error& error) {
+  // The message begins with the field that breaks a rule, which Reject.field says already where it is this one.
+  const std::string own = change.path + ": ";
+  const std::string message = error.message.starts_with(own) ? error.message.substr(own.size()) : error.message;
+  const auto reason = [&] {
+    if (error.code == core::ErrorCode::kUnavailable) return v1::REJECT_REASON_BUSY;
+    // What could be started afresh only needs other buffers or programs than the room has.
+    if (sim::derive(wanted)) return v1::REJECT_REASON_NEEDS_RESTART;
+    wanted.allow_unstable = true;
+    wanted.fixed_substeps_count = 1;
+    return sim::derive(wanted) ? v1::REJECT_REASON_BREAKS_STEP_RULE : v1::REJECT_REASON_OUT_OF_RANGE;
+  };
+  return rejection(reason(), change.path, message);
 }
 
 }  // namespace
@@ -73,13 +80,29 @@ Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
     return rejection(error->reason, error->field, error->message);
   }
   const core::Scene wanted = stream::toCore(changed);
-  if (auto applied = water().setScene(wanted); !applied) {
-    // The message begins with the field that breaks a rule, which Reject.field says already where it is this one.
-    const std::string& message = applied.error().message;
-    const std::string own = change.path + ": ";
-    return rejection(whyNot(wanted), change.path, message.starts_with(own) ? message.substr(own.size()) : message);
-  }
+  if (auto applied = water().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());
   water_->scene() = std::move(changed);
+  return {};
+}
+
+std::optional<Stage::Relayout> Stage::relayout(const core::Action& action) {
+  const auto* change = std::get_if<core::SetParameter>(&action);
+  if (!change) return std::nullopt;
+  v1::Scene changed = scene();
+  if (stream::setParameter(changed, change->path, change->value)) return std::nullopt;
+  core::Scene wanted = stream::toCore(changed);
+  if (!water().relaysParticles(wanted)) return std::nullopt;
+  sim::SceneBasis basis = water().sceneBasis(wanted);
+  return Relayout{*change, std::move(changed), std::move(wanted), std::move(basis)};
+}
+
+Stage::Outcome Stage::adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared) {
+  if (!prepared) return whyNot(relayout.change, relayout.wanted, prepared.error());
+  if (auto adopted = water().adopt(*std::move(prepared)); !adopted) {
+    return whyNot(relayout.change, relayout.wanted, adopted.error());
+  }
+  water_->scene() = std::move(relayout.changed);
+  ++state_id_;
   return {};
 }
 

@@ -8,6 +8,7 @@
 
 #include <spindrift/core/command.h>
 #include <spindrift/core/result.h>
+#include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/stream/client_message.h>
 #include <spindrift/v1/scene.pb.h>
@@ -35,6 +36,19 @@ class Stage {
   static bool takes(const core::Action& action);
   /// Carries an action out now, between two ticks; a rejected one changes nothing.
   Outcome apply(const core::Action& action);
+
+  /// A change of a parameter that lays the particles out anew, which takes long enough for a thread of its own.
+  struct Relayout {
+    core::SetParameter change;
+    v1::Scene changed;
+    core::Scene wanted;  ///< `changed` for sim::prepareScene()
+    sim::SceneBasis basis;
+  };
+  /// Set where the action is such a change, with copies of what it starts from; else apply() carries it out or says why
+  /// not. What apply() does in one call: sim::prepareScene() of `wanted` and `basis` on any thread, then adopt(), with
+  /// no tick in between.
+  [[nodiscard]] std::optional<Relayout> relayout(const core::Action& action);
+  Outcome adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared);
   /// The work of a tick, now or with another value of a parameter; nullopt where that is not allowed: apply() tells
   /// why.
   [[nodiscard]] TickWork work() const;

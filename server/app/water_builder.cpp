@@ -2,36 +2,26 @@
 
 #include <utility>
 
-#include <sys/resource.h>
-
 namespace spindrift::app {
 namespace {
 
-/// Of this thread alone, which Linux allows: ticks of running rooms come first. Best effort.
-void lowerPriority() {
-  constexpr int kNice = 10;
-  (void)setpriority(PRIO_PROCESS, 0, kNice);
+/// Ticks of running rooms come before a build.
+constexpr int kBuildNiceness = 10;
+
+core::Error shutDown() {
+  return {core::ErrorCode::kUnavailable, "the server shuts down"};
 }
 
 }  // namespace
 
 WaterBuilder::WaterBuilder(gpu::DeviceChoice device, std::function<void()> done)
-    : device_(std::move(device)), done_(std::move(done)), thread_([this] { loop(); }) {}
-
-WaterBuilder::~WaterBuilder() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  wake_.notify_one();
-  thread_.join();
-}
+    : device_(std::move(device)), builds_(kBuildNiceness, done), changes_(0, done) {}
 
 std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {
   auto promise = std::make_shared<std::promise<Built>>();
   auto future = promise->get_future();
-  push([this, promise, scene = std::move(scene)](bool runs) mutable {
-    if (!runs) return promise->set_value(core::Error{core::ErrorCode::kUnavailable, "the server shuts down"});
+  builds_.push([this, promise, scene = std::move(scene)](bool runs) mutable {
+    if (!runs) return promise->set_value(shutDown());
     Built built = Water::create(device_, std::move(scene));
     if (built) (*built)->release();
     promise->set_value(std::move(built));
@@ -39,35 +29,19 @@ std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {
   return future;
 }
 
+std::future<WaterBuilder::Prepared> WaterBuilder::prepare(core::Scene scene, sim::SceneBasis basis) {
+  auto promise = std::make_shared<std::promise<Prepared>>();
+  auto future = promise->get_future();
+  changes_.push([promise, scene = std::move(scene), basis = std::move(basis)](bool runs) {
+    promise->set_value(runs ? sim::prepareScene(scene, basis) : Prepared(shutDown()));
+  });
+  return future;
+}
+
 void WaterBuilder::dispose(std::unique_ptr<Water> water) {
   if (!water) return;
   water->release();
-  push([kept = std::shared_ptr<Water>(std::move(water))](bool) mutable { kept.reset(); });
-}
-
-void WaterBuilder::push(std::function<void(bool runs)> work) {
-  {
-    const std::lock_guard lock(mutex_);
-    work_.push_back(std::move(work));
-  }
-  wake_.notify_one();
-}
-
-void WaterBuilder::loop() {
-  lowerPriority();
-  std::unique_lock lock(mutex_);
-  while (true) {
-    wake_.wait(lock, [this] { return stopping_ || !work_.empty(); });
-    if (work_.empty()) return;
-    auto work = std::move(work_.front());
-    work_.pop_front();
-    const bool runs = !stopping_;
-    lock.unlock();
-    work(runs);
-    work = nullptr;
-    if (done_) done_();
-    lock.lock();
-  }
+  builds_.push([kept = std::shared_ptr<Water>(std::move(water))](bool) mutable { kept.reset(); });
 }
 
 }  // namespace spindrift::app

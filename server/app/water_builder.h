@@ -1,51 +1,47 @@
-// The thread that builds water beside the running rooms, and takes down what they let go of.
+// Builds water, and works out changes of it, beside the running rooms; takes down what they let go of.
 #pragma once
 
-#include <condition_variable>
-#include <deque>
 #include <functional>
 #include <future>
 #include <memory>
-#include <mutex>
-#include <thread>
 
 #include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
 #include <spindrift/gpu/device.h>
+#include <spindrift/sim/prepared_scene.h>
 #include <spindrift/v1/scene.pb.h>
 
 #include "water.h"
+#include "worker.h"
 
 namespace spindrift::app {
 
-/// One piece of work at a time, in order, at a lower priority than the simulation. What waits is bounded by its
-/// callers: a room has one build under way.
+/// What waits is bounded by its callers: a room has one build and one change under way.
 class WaterBuilder {
  public:
   using Built = core::Result<std::unique_ptr<Water>>;
+  using Prepared = core::Result<sim::PreparedScene>;
 
-  /// `done` is called on the builder's thread after each piece of work.
+  /// `done` is called after each piece of work, on a thread of the builder.
   explicit WaterBuilder(gpu::DeviceChoice device, std::function<void()> done = {});
-  /// Ends the thread after the work at hand; builds that wait end with kUnavailable.
-  ~WaterBuilder();
+  /// Ends after the work at hand; builds and changes that wait end with kUnavailable.
+  ~WaterBuilder() = default;
   WaterBuilder(const WaterBuilder&) = delete;
   WaterBuilder& operator=(const WaterBuilder&) = delete;
 
-  /// Any thread. The water comes released: the caller binds it. Errors: Water::create()'s; kUnavailable at the end.
+  /// Any thread. At a lower priority than the simulation. The water comes released: the caller binds it. Errors:
+  /// Water::create()'s; kUnavailable at the end.
   std::future<Built> build(v1::Scene scene);
+  /// Any thread. sim::prepareScene() on a thread of its own, behind no build: a room waits for it without a tick.
+  /// Errors: its own; kUnavailable at the end.
+  std::future<Prepared> prepare(core::Scene scene, sim::SceneBasis basis);
   /// Destroys the water, which the calling thread has bound.
   void dispose(std::unique_ptr<Water> water);
 
  private:
-  void loop();
-  void push(std::function<void(bool runs)> work);
-
   const gpu::DeviceChoice device_;
-  const std::function<void()> done_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<std::function<void(bool runs)>> work_;
-  bool stopping_ = false;
-  std::thread thread_;
+  Worker builds_;
+  Worker changes_;
 };
 
 }  // namespace spindrift::app

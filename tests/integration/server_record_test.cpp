@@ -79,6 +79,29 @@ TEST_F(Recorded, ARoomRunsAgainBitForBit) {
   EXPECT_FALSE(outcome->device_difference) << *outcome->device_difference;
 }
 
+/// Particles whose number may change while they run.
+class RecordedPool : public Recorded {
+ protected:
+  std::vector<RoomText> rooms() const override { return {{"main", kStillPool}}; }
+};
+
+TEST_F(RecordedPool, RunsAgainBitForBitWhenItsParticlesAreLaidOutAnew) {
+  ScriptedClient one = client();
+  ASSERT_TRUE(one.apply(splash(0.3)));
+  ASSERT_TRUE(one.runFor(10));
+  ASSERT_TRUE(one.apply(setParameter("particles.count", 9000)));
+  ASSERT_TRUE(one.apply(splash(0.2)));
+  ASSERT_TRUE(one.runFor(10));
+  ASSERT_TRUE(one.apply(setParameter("particles.count", 3000)));
+  ASSERT_TRUE(one.runFor(10));
+  server().stop();
+  const auto outcome = replayed(logFile());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->command_count, 4U);
+  EXPECT_GE(outcome->hash_count, 6U);
+  EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
+}
+
 TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndSaysSo) {
   live();
   fs::resize_file(logFile(), fs::file_size(logFile()) - 3);

@@ -1,4 +1,5 @@
-// The golden cases in one list, so that both languages see the same ones in the same order; 400 lines of cases, not of logic.
+// The golden cases in one list, so that both languages see the same ones in the same order; 400 lines of cases, not of
+// logic.
 #include "golden_cases.h"
 
 #include <cstdio>
