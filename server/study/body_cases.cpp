@@ -5,6 +5,7 @@
 #include <shared/boats.h>
 
 #include "cases.h"
+#include "ticks.h"
 #include "wave_modes.h"
 
 namespace spindrift::study {
@@ -24,7 +25,7 @@ Outcome floatingBody(gpu::Context& ctx, bool quick) {
     scene.boats->boats = {core::Boat{.length_m = 3.0, .beam_m = 1.2, .height_m = 0.8, .density_ratio = density_ratio}};
     auto water = sim::WaterSim::create(ctx, scene);
     if (!water) return water.error();
-    for (int tick = 0; tick < (quick ? 900 : 1800); ++tick) (*water)->step();
+    if (auto done = run(**water, quick ? 900 : 1800); !done) return done.error();
     const sim::StateCopy state = (*water)->copyState();
     const double keel_m = state.boats[1] - 0.4;
     // Walls keep the water that the hull displaced: the level away from it stands a little higher.
@@ -49,7 +50,7 @@ Outcome machWedge(gpu::Context& ctx, bool /*quick*/) {
   auto made = sim::WaterSim::create(ctx, scene);
   if (!made) return made.error();
   sim::WaterSim& water = **made;
-  for (int tick = 0; tick < 360; ++tick) water.step();
+  if (auto done = run(water, 360); !done) return done.error();
   const sim::StateCopy state = water.copyState();
   const double x_m = state.boats[0];
   const double forward_mps = state.boats[8];

@@ -12,6 +12,7 @@
 
 #include "cases.h"
 #include "particle_choices.h"
+#include "ticks.h"
 
 namespace spindrift::study {
 namespace {
@@ -186,7 +187,7 @@ core::Result<Collapse> collapse(gpu::Context& ctx, const core::Scene& scene) {
   const double a_m = 1.0;
   Collapse out{{{0.0, 1.0}}, {{0.0, 1.0}}, {{0.0, 2.0}}};
   while (out.front.back().T < kLastT + 0.1) {
-    water.step();
+    if (auto done = tick(water); !done) return done.error();
     const sim::StateCopy state = water.copyState();
     std::vector<float> x_m;
     for (std::size_t i = 0; i < state.position.size(); i += 4) x_m.push_back(state.position[i]);

@@ -9,6 +9,7 @@
 
 #include "cases.h"
 #include "particle_choices.h"
+#include "ticks.h"
 #include "wave_modes.h"
 
 namespace spindrift::study {
@@ -42,9 +43,9 @@ core::Result<Row> waveStep(gpu::Context& ctx, core::Stencil stencil) {
   if (!water) return water.error();
   setSurface(**water, [](double x, double z) { return 0.3 * std::sin(1.3 * x) * std::cos(0.7 * z) + 0.1 * x; });
   const std::vector<double> before = (*water)->copyState().elevation_m;
-  (*water)->step();
+  if (auto done = tick(**water); !done) return done.error();
   const std::vector<double> now = (*water)->copyState().elevation_m;
-  (*water)->step();
+  if (auto done = tick(**water); !done) return done.error();
   const std::vector<double> after = (*water)->copyState().elevation_m;
   const std::vector<double> reference = referenceWaveStep(scene, (*water)->derived(), now, before);
   double worst_m = 0.0;
@@ -78,7 +79,9 @@ Outcome oneStep(gpu::Context& ctx, bool quick) {
         scene.particles->kernel_set = set;
         auto water = sim::WaterSim::create(ctx, oneSubstepScene(scene));
         if (!water) return water.error();
-        const StepErrors errors = compareStep(**water);
+        const auto compared = compareStep(**water);
+        if (!compared) return compared.error();
+        const StepErrors& errors = *compared;
         const std::string name = fmt::format("{}, {}, {}, {} particles: ", nameOf(solver), nameOf(set),
                                              coupled ? "on a wave" : "between walls", (*water)->particleCount());
         const std::string source =

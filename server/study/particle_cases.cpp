@@ -9,6 +9,7 @@
 
 #include "cases.h"
 #include "particle_choices.h"
+#include "ticks.h"
 
 namespace spindrift::study {
 namespace {
@@ -53,11 +54,11 @@ Outcome stillWater(gpu::Context& ctx, bool quick) {
   const sim::StateCopy before = (*water)->copyState();
   double fastest_mps = 0.0;
   double highest_m = 0.0;
-  while ((*water)->time_s() < seconds) {
-    (*water)->step();
+  const auto watch = [&] {
     fastest_mps = std::max(fastest_mps, rootMeanSquareSpeed(**water));
     highest_m = std::max(highest_m, (*water)->health().max_elevation_m);
-  }
+  };
+  if (auto done = runTo(**water, seconds, watch); !done) return done.error();
   const sim::StateCopy after = (*water)->copyState();
   double drift_m = 0.0;
   for (std::size_t i = 1; i < after.position.size(); i += 4) drift_m += after.position[i] - before.position[i];
@@ -87,10 +88,10 @@ Outcome hydrostaticColumn(gpu::Context& ctx, bool quick) {
       // Slices as thick as the support radius, below which SPH resolves nothing; mean of the last two seconds.
       const auto slices = static_cast<std::size_t>(l.layers_count * l.spacing_m / l.support_radius_m);
       std::vector<double> pressure_pa(slices + 1), height_m(slices + 1), count(slices + 1);
-      const int ticks = quick ? 330 : 1200;
-      for (int tick = 0; tick < ticks; ++tick) {
-        water.step();
-        if (tick < ticks - 120 || tick % 6) continue;
+      const int tick_count = quick ? 330 : 1200;
+      for (int ticks_done = 0; ticks_done < tick_count; ++ticks_done) {
+        if (auto done = tick(water); !done) return done.error();
+        if (ticks_done < tick_count - 120 || ticks_done % 6) continue;
         const sim::StateCopy state = water.copyState();
         for (std::size_t i = 0; i < l.count; ++i) {
           const double y_m = state.position[4 * i + 1] + l.band_m;

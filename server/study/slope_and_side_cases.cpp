@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cases.h"
+#include "ticks.h"
 #include "wave_modes.h"
 
 namespace spindrift::study {
@@ -52,12 +53,12 @@ core::Result<double> sentBack(gpu::Context& ctx, const Incidence& incidence) {
     return 0.1 * std::exp(-s_m * s_m / (kPacket_m * kPacket_m)) * std::cos(incidence.kx_radpm() * s_m) *
            std::cos(incidence.kz_radpm() * z);
   });
-  for (int i = 0; i < 8; ++i) (*water)->step();
+  if (auto done = run(**water, 8); !done) return done.error();
   const double before_j = (*water)->health().wave_energy_j;
   const double there_and_back_s =
       kCrossed_m / ((*water)->derived().wave->speed_mps * incidence.kx_radpm() / incidence.k_radpm());
   const auto steps = static_cast<int>(there_and_back_s * scene.tick_rate_hz);
-  for (int i = 8; i < steps; ++i) (*water)->step();
+  if (auto done = run(**water, steps - 8); !done) return done.error();
   return std::sqrt((*water)->health().wave_energy_j / before_j);
 }
 
@@ -121,8 +122,8 @@ Outcome greensLaw(gpu::Context& ctx, bool quick) {
   for (const double stop_m : {30.0, 50.0, 70.0}) {
     double x_m = 0.0;
     double height_m = 0.0;
-    for (int tick = 0; tick < 20'000 && x_m < stop_m; ++tick) {
-      water.step();
+    for (int count = 0; count < 20'000 && x_m < stop_m; ++count) {
+      if (auto done = tick(water); !done) return done.error();
       std::tie(x_m, height_m) = crest();
     }
     if (first_m == 0.0) {

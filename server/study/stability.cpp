@@ -4,6 +4,8 @@
 
 #include <spindrift/study/stability.h>
 
+#include "ticks.h"
+
 namespace spindrift::study {
 namespace {
 
@@ -44,20 +46,21 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
   sim::WaterSim& water = **made;
   if (sweep.start) sweep.start(water, value);
   double scale_j = energyScale(water);
-  const auto stepOnce = [&] {
+  const auto step = [&]() -> core::Result<void> {
     const auto begin = std::chrono::steady_clock::now();
-    water.step();
+    if (auto done = tick(water); !done) return done;
     ctx.finish();
     const double tick_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     out.slowest_step_s = std::max(out.slowest_step_s, tick_s / std::max(water.derived().substeps_count, 1u));
     (void)water.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
     for (const core::FrameView& frame : water.takeFrames())
       out.are_frames_finite = out.are_frames_finite && isFinite(frame);
+    return {};
   };
   const double start_s = water.time_s();
-  for (int tick = 0; water.time_s() < start_s + sweep.seconds; ++tick) {
-    if (sweep.disturb) sweep.disturb(water, value, tick);
-    stepOnce();
+  for (int k = 0; water.time_s() < start_s + sweep.seconds; ++k) {
+    if (sweep.disturb) sweep.disturb(water, value, k);
+    if (auto done = step(); !done) return done.error();
     const sim::Health& health = water.health();
     out.max_density_ratio = std::max(out.max_density_ratio, health.max_density_ratio);
     out.max_elevation_m = std::max(out.max_elevation_m, health.max_elevation_m);
@@ -75,10 +78,14 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
   ruled.fixed_substeps_count = 0;
   if (ruled.wave) ruled.wave->fixed_substeps_count = 0;
   if (auto back = water.setScene(ruled); !back) return back.error();
-  for (int tick = 0; tick < 8; ++tick) stepOnce();  // news of the last breach is still under way
+  for (int k = 0; k < 8; ++k) {  // news of the last breach is still under way
+    if (auto done = step(); !done) return done.error();
+  }
   const std::uint64_t guard_count = water.recoveredCount();
   const double after_s = water.time_s();
-  while (water.time_s() < after_s + sweep.seconds_after) stepOnce();
+  while (water.time_s() < after_s + sweep.seconds_after) {
+    if (auto done = step(); !done) return done.error();
+  }
   out.is_well_after = water.recoveredCount() == guard_count && water.health().isGood();
   return out;
 }

@@ -6,6 +6,8 @@
 #include <spindrift/study/step_comparison.h>
 #include <spindrift/study/water_reference.h>
 
+#include "ticks.h"
+
 namespace spindrift::study {
 namespace {
 
@@ -143,10 +145,10 @@ sim::StateCopy stirredState(sim::WaterSim& water) {
   return state;
 }
 
-StepErrors compareStep(sim::WaterSim& water) {
+core::Result<StepErrors> compareStep(sim::WaterSim& water) {
   const sim::StateCopy before = stirredState(water);
   water.setState(before);
-  water.step();
+  if (auto done = tick(water); !done) return done.error();
   const sim::StateCopy after = water.copyState();
   const bool corrects = water.scene().particles->solver == core::PressureSolver::kPositionBased;
   return (corrects ? compareCorrections : compareAccelerations)(water.scene(), water.derived(), before, after);

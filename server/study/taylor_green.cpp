@@ -12,6 +12,7 @@
 
 #include "cases.h"
 #include "particle_choices.h"
+#include "ticks.h"
 
 namespace spindrift::study {
 namespace {
@@ -111,12 +112,10 @@ core::Result<Decay> decay(gpu::Context& ctx, const core::Scene& scene) {
   water.setState(state);
   const double start_mps = rootMeanSquareSpeed(state);
   const double rate_ps = 2 * k_pm * k_pm / kReynolds;
-  const auto runTo = [&](double time_s) {
-    while (water.time_s() < time_s - 1e-9) water.step();
-    return water.copyState();
-  };
-  const double first_mps = rootMeanSquareSpeed(runTo(kFirst_s));
-  const sim::StateCopy last = runTo(kLast_s);
+  if (auto done = runTo(water, kFirst_s); !done) return done.error();
+  const double first_mps = rootMeanSquareSpeed(water.copyState());
+  if (auto done = runTo(water, kLast_s); !done) return done.error();
+  const sim::StateCopy last = water.copyState();
   Decay out;
   out.late_rate_ratio = std::log(first_mps / rootMeanSquareSpeed(last)) / (kLast_s - kFirst_s) / rate_ps;
   out.first_speed = first_mps / (start_mps * std::exp(-rate_ps * kFirst_s));

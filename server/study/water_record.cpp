@@ -9,6 +9,8 @@
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/study/water_record.h>
 
+#include "ticks.h"
+
 namespace spindrift::study {
 namespace {
 
@@ -222,21 +224,20 @@ class IntervalTimes {
 
 /// Advances to `time_s`, as one interval.
 template <typename EachTick>
-void advance(gpu::Context& ctx, sim::WaterSim& water, double time_s, IntervalTimes& times, EachTick each_tick) {
+core::Result<void> advance(gpu::Context& ctx, sim::WaterSim& water, double time_s, IntervalTimes& times,
+                           EachTick each_tick) {
   times.begin();
-  while (water.time_s() < time_s - 1e-9) {
-    water.step();
-    each_tick();
-  }
+  if (auto done = runTo(water, time_s, each_tick); !done) return done;
   ctx.finish();
   times.end();
+  return {};
 }
 
 /// The scene after its first tick, which compiles shaders on some drivers.
 core::Result<std::unique_ptr<sim::WaterSim>> warm(gpu::Context& ctx, const core::Scene& scene) {
   auto water = sim::WaterSim::create(ctx, scene);
   if (!water) return water.error();
-  (*water)->step();
+  if (auto done = tick(**water); !done) return done.error();
   ctx.finish();
   (void)(*water)->takePassCosts();
   return water;
@@ -263,7 +264,8 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   const double begin_s = water.time_s();
   const auto interval_count = static_cast<int>(std::lround(options.seconds / options.sample_interval_s));
   for (int i = 1; i <= interval_count; ++i) {
-    advance(ctx, water, i * options.sample_interval_s, times, [&] { energy.add(water); });
+    const double time_s = i * options.sample_interval_s;
+    if (auto done = advance(ctx, water, time_s, times, [&] { energy.add(water); }); !done) return done.error();
     if (!options.has_samples) continue;
     sample_ticks.push_back(water.tick());
     out.samples.push_back(sampleOf(water));
@@ -286,7 +288,10 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
     auto again = warm(ctx, scene);
     if (!again) return again.error();
     IntervalTimes again_times;
-    for (int i = 1; i <= interval_count; ++i) advance(ctx, **again, i * options.sample_interval_s, again_times, [] {});
+    for (int i = 1; i <= interval_count; ++i) {
+      const double time_s = i * options.sample_interval_s;
+      if (auto done = advance(ctx, **again, time_s, again_times, [] {}); !done) return done.error();
+    }
     times.keepFastest(again_times);
   }
   out.wall_ms_per_s = 1e3 * times.sum() / out.seconds;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cases.h"
+#include "ticks.h"
 #include "wave_modes.h"
 
 namespace spindrift::study {
@@ -25,7 +26,8 @@ core::Result<double> frequency(gpu::Context& ctx, const core::Scene& scene, doub
   const auto mode = [&](double x, double z) { return std::cos(kx * x) * std::cos(kz * z); };
   setSurface(**water, [&](double x, double z) { return 0.1 * mode(x, z); });
   const auto series = amplitudes(**water, mode, steps);
-  return fitRecurrence(series, true).omega_radps((*water)->derived().wave->dt_s);
+  if (!series) return series.error();
+  return fitRecurrence(*series, true).omega_radps((*water)->derived().wave->dt_s);
 }
 
 }  // namespace
@@ -150,7 +152,7 @@ core::Result<double> humpError(gpu::Context& ctx, Stencil stencil, double couran
   setSurface(**water, [&](double x, double z) { return 0.1 * std::exp(-std::pow(radius(x, z) / width_m, 2)); });
   const double c_mps = layout.speed_mps;
   const auto steps = static_cast<int>(std::lround(5 * width_m / (c_mps * layout.dt_s)));
-  for (int i = 0; i < steps; ++i) (*water)->step();
+  if (auto done = run(**water, steps); !done) return done.error();
   // A surface without flow stood still half a step before (setSurface).
   const HumpRings rings(width_m, c_mps * (steps + 0.5) * layout.dt_s, 17.0);
   const std::vector<double> eta_m = (*water)->copyState().elevation_m;
@@ -198,7 +200,7 @@ Outcome waveEnergy(gpu::Context& ctx, bool quick) {
   double high = 0.0;
   double first = 0.0;
   for (int step = 0; step < steps; ++step) {
-    (*water)->step();
+    if (auto done = tick(**water); !done) return done.error();
     const double energy_j = (*water)->health().wave_energy_j;
     if (step < 10 || energy_j == 0) continue;
     if (first == 0) first = energy_j;
@@ -224,8 +226,9 @@ Outcome dampedMode(gpu::Context& ctx, bool quick) {
     const auto mode = [&](double x, double) { return std::cos(k * x); };
     setSurface(**water, [&](double x, double z) { return 0.1 * mode(x, z); });
     const auto series = amplitudes(**water, mode, quick ? 150 : 400);
+    if (!series) return series.error();
     rows.push_back({fmt::format("decay of a mode at kappa = {} 1/s", kappa), "1/s",
-                    fitRecurrence(series, false).decay_per_s((*water)->derived().wave->dt_s), kappa / 2,
+                    fitRecurrence(*series, false).decay_per_s((*water)->derived().wave->dt_s), kappa / 2,
                     Tolerance::kRelative, 0.01, "eta_tt + kappa eta_t = c^2 lap eta: kappa/2"});
   }
   return CaseResult{std::move(rows), {}};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ticks.h"
+
 namespace spindrift::study {
 
 core::Scene waveScene(std::uint32_t resolution_count, double side_m, double depth_m, double courant,
@@ -34,7 +36,8 @@ void setSurface(sim::WaterSim& water, const std::function<double(double, double)
   water.setState(state);
 }
 
-std::vector<double> amplitudes(sim::WaterSim& water, const std::function<double(double, double)>& mode, int steps) {
+core::Result<std::vector<double>> amplitudes(sim::WaterSim& water, const std::function<double(double, double)>& mode,
+                                             int steps) {
   const sim::WaveLayout wave = *water.derived().wave;
   const std::size_t n = wave.resolution_count;
   std::vector<double> shape(n * n);
@@ -48,7 +51,7 @@ std::vector<double> amplitudes(sim::WaterSim& water, const std::function<double(
   }
   std::vector<double> out;
   for (int step = 0; step < steps; ++step) {
-    water.step();
+    if (auto done = tick(water); !done) return done.error();
     const std::vector<double> eta_m = water.copyState().elevation_m;
     double sum = 0.0;
     for (std::size_t i = 0; i < eta_m.size(); ++i) sum += eta_m[i] * shape[i];

@@ -16,8 +16,9 @@ core::Scene waveScene(std::uint32_t resolution_count, double side_m, double dept
 /// would be in a motion that stood still then.
 void setSurface(sim::WaterSim& water, const std::function<double(double x_m, double z_m)>& eta_m);
 
-/// Amplitude of a mode after each of `steps` ticks: <eta, mode> / <mode, mode>.
-std::vector<double> amplitudes(sim::WaterSim& water, const std::function<double(double, double)>& mode, int steps);
+/// Amplitude of a mode after each of `steps` ticks: <eta, mode> / <mode, mode>. Errors: the device's.
+core::Result<std::vector<double>> amplitudes(sim::WaterSim& water, const std::function<double(double, double)>& mode,
+                                             int steps);
 
 /// A series a_n that obeys a_{n+1} - b a_n + r a_{n-1} = 0: fitted b and r (least squares; r fixed at 1 where
 /// `undamped`).

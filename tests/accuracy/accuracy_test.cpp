@@ -35,6 +35,17 @@ INSTANTIATE_TEST_SUITE_P(Cases, Accuracy, ::testing::Range(std::size_t{0}, accur
                            return name;
                          });
 
+TEST(Cases, EndWithTheErrorOfADeviceThatIsLost) {
+  auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
+  if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+  (*ctx)->simulateLoss();
+  for (const Case& each : accuracyCases()) {
+    const auto result = each.run(**ctx, true);
+    ASSERT_FALSE(result) << each.name << " measured something on a device that is lost";
+    EXPECT_NE(result.error().message.find("lost"), std::string::npos) << each.name << ": " << result.error().message;
+  }
+}
+
 TEST(Row, JudgesByItsOwnMeasure) {
   const Row relative{"r", "m", 1.04, 1.0, Tolerance::kRelative, 0.05, ""};
   EXPECT_TRUE(relative.passes());

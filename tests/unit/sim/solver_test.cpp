@@ -15,7 +15,9 @@ class Solver : public OnDevice {
  protected:
   void compare(const core::Scene& scene) {
     WaterSim& sim = make(study::oneSubstepScene(scene));
-    const study::StepErrors errors = study::compareStep(sim);
+    const auto compared = study::compareStep(sim);
+    ASSERT_TRUE(compared) << compared.error().message;
+    const study::StepErrors& errors = *compared;
     const std::uint32_t count = sim.derived().particles->count;
     EXPECT_GT(errors.compared_count, count / 2);
     EXPECT_LE(errors.density_ratio, 1e-5) << "largest relative density error of " << count << " particles";

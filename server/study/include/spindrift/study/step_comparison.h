@@ -22,7 +22,7 @@ core::Scene oneSubstepScene(core::Scene scene);
 /// wavy surface.
 sim::StateCopy stirredState(sim::WaterSim& water);
 
-/// Runs one substep from a stirred state. `water` is of a oneSubstepScene().
-StepErrors compareStep(sim::WaterSim& water);
+/// Runs one substep from a stirred state. `water` is of a oneSubstepScene(). Errors: the device's.
+core::Result<StepErrors> compareStep(sim::WaterSim& water);
 
 }  // namespace spindrift::study
