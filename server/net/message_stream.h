@@ -4,8 +4,8 @@
 // Writing. Asio's composed write hands on at most 64 KiB a call, and each call is a turn of the event loop. Beast
 // writes through it with no say in that number. So this stream, which is told where the message lies, takes the rest
 // along when it is offered a part of it. It then reports more bytes than it was offered; the composed write counts them
-// off the whole sequence, which is the same message. That is no promise of Asio's but what version 1.81 does, the one
-// that the build asks for; session and outflow tests would see it change.
+// off the whole sequence, which is the same message. That is no promise of Asio's but what Boost 1.81 does, the version
+// that the build asks for. With any other version the stream writes what it is offered: right, and slower.
 //
 // Reading. Beast joins fragments without a word to its caller, who therefore cannot bound how many come. This stream
 // counts them below Beast and stops reading when its owner says so.
@@ -32,7 +32,8 @@
 
 namespace spindrift::net {
 
-static_assert(BOOST_VERSION == 108100, "look whether the composed write still counts bytes beyond those it offered");
+/// Whether the composed write is known to count bytes beyond those that it offered. Session and outflow tests hold it.
+inline constexpr bool kWriteTakesRestAlong = BOOST_VERSION == 108100;
 
 /// Of one strand, as its base.
 class MessageStream : public boost::beast::tcp_stream {
@@ -82,7 +83,7 @@ class MessageStream : public boost::beast::tcp_stream {
       const auto rest = asio::buffer(kProtocolErrorClose) + (kProtocolErrorClose.size() - parts[0].size());
       return boost::beast::tcp_stream::async_write_some(rest, std::forward<Handler>(handler));
     }
-    if (count == 0 || count > parts.size() || !isOfMessage(parts[count - 1]))
+    if (!kWriteTakesRestAlong || count == 0 || count > parts.size() || !isOfMessage(parts[count - 1]))
       return boost::beast::tcp_stream::async_write_some(buffers, std::forward<Handler>(handler));
     const auto* first = static_cast<const std::uint8_t*>(parts[count - 1].data());
     parts[count - 1] = asio::const_buffer(first, static_cast<std::size_t>(message_.data() + message_.size() - first));
