@@ -10,7 +10,7 @@
 #include <google/protobuf/stubs/logging.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/stream/crc32c.h>
+#include <spindrift/codec/crc32c.h>
 
 namespace spindrift::app {
 namespace {
@@ -90,7 +90,7 @@ core::Result<std::unique_ptr<CommandLogWriter>> CommandLogWriter::create(const s
 void CommandLogWriter::write(const v1::Record& record) {
   if (ended_) return;
   const std::string payload = record.SerializeAsString();
-  const auto prefix = prefixOf(static_cast<std::uint32_t>(payload.size()), stream::crc32c(viewOf(payload)));
+  const auto prefix = prefixOf(static_cast<std::uint32_t>(payload.size()), codec::crc32c(viewOf(payload)));
   if (size_bytes_ + prefix.size() + payload.size() > kLogMaxBytes) {
     spdlog::warn("the log {} ends here: it has reached {} bytes", file_.string(), kLogMaxBytes);
     ended_ = true;
@@ -144,7 +144,7 @@ std::optional<v1::Record> CommandLogReader::next() {
   if (in_.gcount() < static_cast<std::streamsize>(length)) return broken("a record breaks off");
   v1::Record record;
   const google::protobuf::LogSilencer silencer;
-  if (stream::crc32c(viewOf(payload)) != numberAt(prefix, 4) || !record.ParseFromString(payload)) {
+  if (codec::crc32c(viewOf(payload)) != numberAt(prefix, 4) || !record.ParseFromString(payload)) {
     return broken("a record is damaged");
   }
   offset_bytes_ += prefix.size() + length;

@@ -55,7 +55,7 @@ std::uint64_t EncoderThread::replacedCount() const {
   return replaced_count_;
 }
 
-std::uint64_t EncoderThread::encodeCount(const std::string& room, stream::Stream stream) const {
+std::uint64_t EncoderThread::encodeCount(const std::string& room, codec::Stream stream) const {
   const std::lock_guard lock(mutex_);
   const auto it = encoders_.find(room);
   return it == encoders_.end() ? 0 : it->second->encodeCount(stream);
@@ -68,7 +68,7 @@ void EncoderThread::loop() {
     if (stopping_) return;
     auto node = waiting_.extract(waiting_.begin());
     auto& kept = encoders_[node.key()];
-    if (!kept) kept = std::make_shared<stream::FrameEncoder>();
+    if (!kept) kept = std::make_shared<codec::FrameEncoder>();
     const auto encoder = kept;  // the room may be forgotten meanwhile
     lock.unlock();
     const Costs spent = encode(node.key(), node.mapped(), *encoder);
@@ -85,20 +85,20 @@ void EncoderThread::loop() {
 }
 
 EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
-                                           stream::FrameEncoder& encoder) {
+                                           codec::FrameEncoder& encoder) {
   Costs spent{};
   std::array<core::FrameView, core::kReducedLevelCount> reduced;
   for (std::size_t k = 0; k < reduced.size(); ++k) reduced[k] = core::frameAt(frame, core::kLevels[k]);
-  for (const stream::Stream stream : stream::allStreams()) {
+  for (const codec::Stream stream : codec::allStreams()) {
     const auto index = layerIndex(stream);
-    const std::uint32_t reduced_count = stream::reducedCountOf(stream.layer, frame.reduced_counts);
+    const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
     const net::LayerDemand demand = hub_.demand(room, index, reduced_count);
     for (const core::Level level : core::kLevels) {
       const core::FrameView& view = level == core::Level::kFull ? frame : reduced[core::indexOf(level)];
       const net::LevelDemand& wanted = demand[core::indexOf(level)];
       if (wanted.watcher_count == 0) continue;
       const auto begin = std::chrono::steady_clock::now();
-      const stream::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_whole);
+      const codec::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_whole);
       StreamCost& cost = spent[index][core::indexOf(level)];
       cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       if (!encoded.whole && !encoded.continuing) continue;

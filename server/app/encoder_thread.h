@@ -10,9 +10,9 @@
 #include <string>
 #include <thread>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/net/server.h>
-#include <spindrift/stream/frame_encoder.h>
 
 namespace spindrift::app {
 
@@ -33,7 +33,7 @@ class EncoderThread {
 
   [[nodiscard]] std::uint64_t replacedCount() const;
   /// Messages encoded for a stream of a room so far: one a frame and level, however many clients watch.
-  [[nodiscard]] std::uint64_t encodeCount(const std::string& room, stream::Stream stream) const;
+  [[nodiscard]] std::uint64_t encodeCount(const std::string& room, codec::Stream stream) const;
 
   /// Of one level of a stream, over all rooms since the start.
   struct StreamCost {
@@ -41,14 +41,14 @@ class EncoderThread {
     std::uint64_t bytes_count = 0;
     double encode_s = 0.0;
   };
-  /// By stream::indexOf() and core::indexOf().
-  using Costs = std::array<std::array<StreamCost, core::kLevelCount>, stream::kStreamCount>;
+  /// By codec::indexOf() and core::indexOf().
+  using Costs = std::array<std::array<StreamCost, core::kLevelCount>, codec::kStreamCount>;
   [[nodiscard]] Costs costs() const;
 
  private:
   void loop();
   /// Encodes what somebody watches of a frame, and publishes it.
-  Costs encode(const std::string& room, const core::FrameView& frame, stream::FrameEncoder& encoder);
+  Costs encode(const std::string& room, const core::FrameView& frame, codec::FrameEncoder& encoder);
 
   net::Hub& hub_;
   mutable std::mutex mutex_;
@@ -57,7 +57,7 @@ class EncoderThread {
   std::uint64_t replaced_count_ = 0;
   bool stopping_ = false;
   /// Grows and shrinks under mutex_; used by the thread.
-  std::map<std::string, std::shared_ptr<stream::FrameEncoder>> encoders_;
+  std::map<std::string, std::shared_ptr<codec::FrameEncoder>> encoders_;
   Costs costs_{};
   std::thread thread_;
 };

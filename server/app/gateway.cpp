@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/server_message.h>
+#include <spindrift/wire/client_message.h>
+#include <spindrift/wire/server_message.h>
 
 #include "layer_index.h"
 #include "monotonic.h"
@@ -68,7 +68,7 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
 
 void Gateway::greet(net::SessionId session, const Room& room) {
   const auto snapshot = room.snapshot();
-  stream::GreetingFacts facts;
+  wire::GreetingFacts facts;
   facts.server = "spindrift " SPINDRIFT_VERSION;
   facts.device = rooms_.deviceLine();
   facts.room = room.name();
@@ -86,7 +86,7 @@ void Gateway::greet(net::SessionId session, const Room& room) {
   facts.speed = snapshot->speed;
   facts.boats = snapshot->boats;
   facts.scenes = rooms_.rules().scenes.names();
-  hub().sendState(session, topic::kGreeting, stream::greeting(facts, snapshot->scene));
+  hub().sendState(session, topic::kGreeting, wire::greeting(facts, snapshot->scene));
   const std::lock_guard lock(mutex_);
   if (const auto known = sessions_.find(session); known != sessions_.end()) known->second.greeted = snapshot;
 }
@@ -115,7 +115,7 @@ void Gateway::dismiss(const Room& room) {
 
 void Gateway::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {
   constexpr std::size_t kReasonMaxBytes = 120;
-  hub().sendAnswer(session, stream::refusal(why));
+  hub().sendAnswer(session, wire::refusal(why));
   hub().close(session, code, why.substr(0, kReasonMaxBytes));
 }
 
@@ -130,21 +130,21 @@ void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
   const Session& state = *known;
   std::visit(
       Overloaded{
-          [&](const stream::Hello& said) { hello(session, state, said); },
-          [&](const stream::Subscribe& asked) { subscribe(session, state, asked); },
+          [&](const wire::Hello& said) { hello(session, state, said); },
+          [&](const wire::Subscribe& asked) { subscribe(session, state, asked); },
           [&](const core::Command& parsed) { command(session, state, parsed); },
-          [&](const stream::Ping& ping) { hub().sendAnswer(session, stream::pong(ping.client_time_s, monotonic_s())); },
-          [&](const stream::CommandRejection& rejection) {
+          [&](const wire::Ping& ping) { hub().sendAnswer(session, wire::pong(ping.client_time_s, monotonic_s())); },
+          [&](const wire::CommandRejection& rejection) {
             counters_.rejected(rejection.reason);
-            hub().sendAnswer(session, stream::reject(rejection));
+            hub().sendAnswer(session, wire::reject(rejection));
           },
-          [&](const stream::Malformed& malformed) { refuse(session, net::CloseCode::kPolicy, malformed.message); },
+          [&](const wire::Malformed& malformed) { refuse(session, net::CloseCode::kPolicy, malformed.message); },
       },
-      stream::parseClientMessage(message));
+      wire::parseClientMessage(message));
 }
 
-void Gateway::hello(net::SessionId session, const Session& state, const stream::Hello& hello) {
-  if (auto why = stream::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
+void Gateway::hello(net::SessionId session, const Session& state, const wire::Hello& hello) {
+  if (auto why = wire::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
   if (state.said_hello) return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
   const auto now = std::chrono::system_clock::now();
   const auto grant = options_.access.resolve(hello.token, now);
@@ -175,26 +175,26 @@ void Gateway::hello(net::SessionId session, const Session& state, const stream::
   spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, roleName(grant->role), hello.client,
                admission.resumed ? "resumed" : "");
   v1::Welcome welcome;
-  welcome.set_role(stream::toWire(grant->role));
+  welcome.set_role(wire::toWire(grant->role));
   welcome.set_person_id(admission.person_id);
   welcome.set_resume_key(admission.resume_key);
   welcome.set_grace_s(std::chrono::duration<double>(state.room->roster().grace()).count());
   welcome.set_resumed(admission.resumed);
-  hub().sendAnswer(session, stream::welcome(welcome));
+  hub().sendAnswer(session, wire::welcome(welcome));
   // From here on the room's news come, and frames once they are subscribed to. What changed since the greeting is told.
   hub().join(session, state.room->name());
   if (state.room->snapshot() != greeted) greet(session, *state.room);
-  hub().sendState(session, topic::kPeople, stream::people(state.room->roster().people()));
+  hub().sendState(session, topic::kPeople, wire::people(state.room->roster().people()));
 }
 
-void Gateway::subscribe(net::SessionId session, const Session& state, const stream::Subscribe& subscribe) {
+void Gateway::subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe) {
   if (!state.said_hello) {
     return refuse(session, net::CloseCode::kPolicy, "subscribe before hello: send ClientMessage.hello first");
   }
   // One packing at a time: asking for the other one stops this one.
-  const stream::Stream wanted = stream::streamOf(subscribe.layer, subscribe.packing);
-  const bool has_levels = stream::hasLevels(subscribe.layer);
-  for (const stream::Stream stream : stream::allStreams()) {
+  const codec::Stream wanted = codec::streamOf(subscribe.layer, subscribe.packing);
+  const bool has_levels = codec::hasLevels(subscribe.layer);
+  for (const codec::Stream stream : codec::allStreams()) {
     if (stream.layer != wanted.layer) continue;
     const bool is_wanted = stream.packing == wanted.packing;
     hub().watch(session, layerIndex(stream),
@@ -205,8 +205,8 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const stre
 }
 
 void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
-  spdlog::info("session {} gets level {} now", session, stream::nameOf(level));
-  hub().sendState(session, topic::kLevel, stream::levelChanged(level));
+  spdlog::info("session {} gets level {} now", session, codec::nameOf(level));
+  hub().sendState(session, topic::kLevel, wire::levelChanged(level));
 }
 
 void Gateway::command(net::SessionId session, const Session& state, core::Command command) {
@@ -237,13 +237,13 @@ bool Gateway::takeCommand(net::SessionId session) {
 void Gateway::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
   counters_.applied();
   if (command.sender.request_id != 0) return rest_.commandApplied(command, tick, boat_id);
-  hub().sendAnswer(command.sender.session_id, stream::ack(command.command_id, tick, boat_id));
+  hub().sendAnswer(command.sender.session_id, wire::ack(command.command_id, tick, boat_id));
 }
 
-void Gateway::commandRejected(const core::Command& command, const stream::CommandRejection& rejection) {
+void Gateway::commandRejected(const core::Command& command, const wire::CommandRejection& rejection) {
   counters_.rejected(rejection.reason);
   if (command.sender.request_id != 0) return rest_.commandRejected(command, rejection);
-  hub().sendAnswer(command.sender.session_id, stream::reject(rejection));
+  hub().sendAnswer(command.sender.session_id, wire::reject(rejection));
 }
 
 void Gateway::sessionClosed(net::SessionId session, const net::SessionEnd& end) {

@@ -44,7 +44,7 @@ class Gateway final : public net::Application, public RoomObserver {
   /// Greets everybody in the room again; their layers go on.
   void sceneChanged(const Room& room) override;
   void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
-  void commandRejected(const core::Command& command, const stream::CommandRejection& rejection) override;
+  void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) override;
 
  private:
   struct Session {
@@ -59,8 +59,8 @@ class Gateway final : public net::Application, public RoomObserver {
   net::Hub& hub() { return *hub_; }
   /// Sends a greeting with the room's state now, and notes that state.
   void greet(net::SessionId session, const Room& room);
-  void hello(net::SessionId session, const Session& state, const stream::Hello& hello);
-  void subscribe(net::SessionId session, const Session& state, const stream::Subscribe& subscribe);
+  void hello(net::SessionId session, const Session& state, const wire::Hello& hello);
+  void subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe);
   void command(net::SessionId session, const Session& state, core::Command command);
   /// Whether the session may send another command now.
   bool takeCommand(net::SessionId session);

@@ -1,15 +1,15 @@
 // The network knows layers by number: here a stream gets its own.
 #pragma once
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/net/server.h>
-#include <spindrift/stream/frame_encoder.h>
 
 namespace spindrift::app {
 
-static_assert(stream::kStreamCount <= net::kMaxLayerCount);
+static_assert(codec::kStreamCount <= net::kMaxLayerCount);
 
-inline net::LayerIndex layerIndex(stream::Stream stream) {
-  return static_cast<net::LayerIndex>(stream::indexOf(stream));
+inline net::LayerIndex layerIndex(codec::Stream stream) {
+  return static_cast<net::LayerIndex>(codec::indexOf(stream));
 }
 
 }  // namespace spindrift::app

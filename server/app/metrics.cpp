@@ -111,13 +111,13 @@ void writeEncoder(Page& page, const EncoderThread& encoder) {
   const auto costs = encoder.costs();
   const auto each = [&](const char* name, const char* help, auto&& value) {
     page.head(name, "counter", help);
-    for (const stream::Stream stream : stream::allStreams()) {
+    for (const codec::Stream stream : codec::allStreams()) {
       for (const core::Level level : core::kLevels) {
-        const EncoderThread::StreamCost& cost = costs[stream::indexOf(stream)][core::indexOf(level)];
+        const EncoderThread::StreamCost& cost = costs[codec::indexOf(stream)][core::indexOf(level)];
         if (level != core::Level::kFull && cost.frame_count == 0) continue;  // nobody has asked for it so far
         page.sample(fmt::format("layer=\"{}\",packing=\"{}\",level=\"{}\"",
                                 shortName(v1::Layer_Name(stream.layer), sizeof("LAYER")),
-                                shortName(v1::Packing_Name(stream.packing), sizeof("PACKING")), stream::nameOf(level)),
+                                shortName(v1::Packing_Name(stream.packing), sizeof("PACKING")), codec::nameOf(level)),
                     value(cost));
       }
     }

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/client_message.h>
 
 #include "stage.h"
 
@@ -20,8 +20,8 @@ core::Result<void> carryOut(Stage& stage, const v1::Record& record) {
     return Error{ErrorCode::kCheckFailed,
                  fmt::format("tick {}: a command of the log is not carried out now: {}", record.tick(), why)};
   };
-  const auto checked = stream::checkCommand(record.command());
-  if (const auto* rejected = std::get_if<stream::CommandRejection>(&checked)) {
+  const auto checked = wire::checkCommand(record.command());
+  if (const auto* rejected = std::get_if<wire::CommandRejection>(&checked)) {
     return failed(rejected->field + " " + rejected->message);
   }
   const auto& command = std::get<core::Command>(checked);
@@ -36,7 +36,7 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
                                       const std::function<void(std::uint64_t)>& progress) {
   constexpr std::uint64_t kProgressInterval_ticks = 60;
   v1::Scene start = log.header().scene();
-  stream::fillDefaults(start);
+  scene::fillDefaults(start);
   auto water = Water::create(device, std::move(start));
   if (!water) return water.error();
   Stage stage(*std::move(water));
@@ -63,7 +63,7 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
           if (const auto& error = stage.water().deviceError()) return *error;
         }
         v1::Scene scene = record->scene();
-        stream::fillDefaults(scene);
+        scene::fillDefaults(scene);
         auto next = Water::create(device, std::move(scene));
         if (!next) return next.error();
         stage.replaceWater(*std::move(next)).reset();

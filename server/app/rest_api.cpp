@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include <spindrift/stream/api_message.h>
-#include <spindrift/stream/parameters.h>
+#include <spindrift/scene/parameters.h>
 #include <spindrift/v1/api.pb.h>
+#include <spindrift/wire/api_message.h>
 
 namespace spindrift::app {
 namespace {
@@ -18,7 +18,7 @@ using net::HttpReply;
 constexpr std::string_view kRoot = "/api/v1/";
 
 HttpReply json(unsigned status, const google::protobuf::Message& message) {
-  return {.status = status, .content_type = "application/json", .body = stream::toJson(message) + "\n"};
+  return {.status = status, .content_type = "application/json", .body = wire::toJson(message) + "\n"};
 }
 
 HttpReply problem(unsigned status, std::string line) {
@@ -49,9 +49,9 @@ unsigned statusOf(const core::Error& error) {
   return error.code == ErrorCode::kUnavailable ? 503 : error.code == ErrorCode::kInvalidInput ? 409 : 500;
 }
 
-HttpReply rejected(const stream::CommandRejection& rejection) {
+HttpReply rejected(const wire::CommandRejection& rejection) {
   v1::CommandAnswer out;
-  *out.mutable_reject() = stream::toWire(rejection);
+  *out.mutable_reject() = wire::toWire(rejection);
   return json(httpStatusOf(rejection.reason), out);
 }
 
@@ -149,7 +149,7 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
   if (call.role < core::Role::kOperator) return respond(problem(403, "opening a room takes the role of operator"));
   if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
   const core::ByteView body = call.request.body;
-  const auto wanted = stream::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
+  const auto wanted = wire::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
   if (!wanted) return respond(problem(400, wanted.error().message));
   if (!isRoomName(wanted->name())) {
     return respond(problem(422, "name: a room's name has 1 to 32 letters, digits, '_' or '-'"));
@@ -198,7 +198,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
   if (part == "scene") return respond(json(200, room->snapshot()->scene));
   if (part == "people") return respond(json(200, room->roster().people()));
   v1::ParameterList out;
-  for (v1::ParameterDescription& known : stream::describeParameters(room->snapshot()->scene)) {
+  for (v1::ParameterDescription& known : scene::describeParameters(room->snapshot()->scene)) {
     *out.add_parameters() = std::move(known);
   }
   respond(json(200, out));
@@ -216,12 +216,12 @@ void RestApi::command(const Call& call, const std::shared_ptr<Room>& room, net::
   // What a form of a foreign page can send is never JSON by its type.
   if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
   const core::ByteView body = call.request.body;
-  auto parsed = stream::parseCommandJson({reinterpret_cast<const char*>(body.data()), body.size()});
-  if (const auto* malformed = std::get_if<stream::Malformed>(&parsed)) {
+  auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(body.data()), body.size()});
+  if (const auto* malformed = std::get_if<wire::Malformed>(&parsed)) {
     counters_.rejected(v1::REJECT_REASON_MALFORMED);
     return respond(problem(400, malformed->message));
   }
-  if (const auto* rejection = std::get_if<stream::CommandRejection>(&parsed)) {
+  if (const auto* rejection = std::get_if<wire::CommandRejection>(&parsed)) {
     counters_.rejected(rejection->reason);
     return respond(rejected(*rejection));
   }
@@ -253,7 +253,7 @@ void RestApi::commandApplied(const core::Command& command, std::uint64_t tick, s
   respond(json(200, out));
 }
 
-void RestApi::commandRejected(const core::Command& command, const stream::CommandRejection& rejection) {
+void RestApi::commandRejected(const core::Command& command, const wire::CommandRejection& rejection) {
   if (const auto respond = takePending(command.sender.request_id)) respond(rejected(rejection));
 }
 

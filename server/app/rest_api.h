@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <spindrift/net/server.h>
-#include <spindrift/stream/client_message.h>
 #include <spindrift/v1/api.pb.h>
+#include <spindrift/wire/client_message.h>
 
 #include "access.h"
 #include "metrics.h"
@@ -35,7 +35,7 @@ class RestApi {
 
   /// The commands of requests, by their request_id.
   void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id);
-  void commandRejected(const core::Command& command, const stream::CommandRejection& rejection);
+  void commandRejected(const core::Command& command, const wire::CommandRejection& rejection);
 
  private:
   struct Call {

@@ -5,8 +5,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include <spindrift/stream/frame_encoder.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/codec/frame_encoder.h>
+#include <spindrift/scene/scene_loader.h>
 
 #include "layer_index.h"
 #include "monotonic.h"
@@ -37,7 +37,7 @@ constexpr auto kSlowWarningInterval = 60s;
 std::array<bool, core::kLevelCount> watchedLevels(const net::Hub& hub, const std::string& room, v1::Layer layer,
                                                   std::uint32_t reduced_count) {
   std::array<bool, core::kLevelCount> out{};
-  for (const stream::Stream& stream : stream::allStreams()) {
+  for (const codec::Stream& stream : codec::allStreams()) {
     if (stream.layer != layer) continue;
     const auto demand = hub.demand(room, layerIndex(stream), reduced_count);
     for (std::size_t level = 0; level < out.size(); ++level) out[level] |= demand[level].watcher_count > 0;
@@ -85,7 +85,7 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
 
 bool isRoomName(const std::string& name) {
   constexpr std::size_t kNameMaxBytes = 32;
-  return stream::isSceneName(name) && name.size() <= kNameMaxBytes;
+  return scene::isSceneName(name) && name.size() <= kNameMaxBytes;
 }
 
 std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
@@ -245,7 +245,7 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
   const core::ReducedCounts counts = stage_->water().reducedCounts();
   const auto wanted = [&](bool has_it, v1::Layer layer) {
     std::array<bool, core::kLevelCount> levels{};
-    if (has_it) levels = watchedLevels(hub, name_, layer, stream::reducedCountOf(layer, counts));
+    if (has_it) levels = watchedLevels(hub, name_, layer, codec::reducedCountOf(layer, counts));
     for (const core::Level level : core::kLevels) levels[core::indexOf(level)] &= isDue(level);
     return levels;
   };

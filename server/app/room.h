@@ -17,8 +17,8 @@
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/net/server.h>
-#include <spindrift/stream/client_message.h>
 #include <spindrift/v1/scene.pb.h>
+#include <spindrift/wire/client_message.h>
 
 #include "command_log.h"
 #include "command_queue.h"
@@ -81,7 +81,7 @@ class RoomObserver {
   /// `boat_id`: of SpawnBoat, the new boat; 0 otherwise.
   virtual void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
   /// The rejection has the command's number.
-  virtual void commandRejected(const core::Command& command, const stream::CommandRejection& rejection) = 0;
+  virtual void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) = 0;
 };
 
 class Room {
@@ -102,7 +102,7 @@ class Room {
   [[nodiscard]] const Roster& roster() const { return roster_; }
   /// The one way in, for sessions and requests alike: checks the sender's role and the scene, and queues the command.
   /// Or why not, with the command's number; a full queue is BUSY.
-  [[nodiscard]] std::optional<stream::CommandRejection> admit(core::Command command);
+  [[nodiscard]] std::optional<wire::CommandRejection> admit(core::Command command);
 
   // Simulation thread.
   void start(TimePoint now);
@@ -208,7 +208,7 @@ class Room {
   /// Goes on with the particles that were laid out, if they are there.
   void finishChange();
   /// Answers what the change would have answered.
-  void abandonChange(const stream::CommandRejection& rejection);
+  void abandonChange(const wire::CommandRejection& rejection);
   [[nodiscard]] Outcome refuseSlowChange(const core::Command& command, const core::SetParameter& change) const;
   void parameterChanged(const core::SetParameter& change);
 

@@ -33,7 +33,7 @@ void Room::conclude(Values values) {
 
 bool Room::beginChange(const core::Command& command, Values& others) {
   const auto* value = std::get_if<core::SetParameter>(&command.action);
-  if (!value || stream::checkAgainstScene(command, stage_->scene()) || refuseSlowChange(command, *value)) return false;
+  if (!value || wire::checkAgainstScene(command, stage_->scene()) || refuseSlowChange(command, *value)) return false;
   auto relayout = stage_->relayout(command.action);
   if (!relayout) return false;
   auto prepared = builder_.prepare(relayout->wanted, std::exchange(relayout->basis, {}));
@@ -60,7 +60,7 @@ void Room::finishChange() {
   applyNewest(std::move(change.others));
 }
 
-void Room::abandonChange(const stream::CommandRejection& rejection) {
+void Room::abandonChange(const wire::CommandRejection& rejection) {
   if (!change_) return;
   Change change = *std::move(change_);
   change_.reset();

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/server_message.h>
+#include <spindrift/wire/client_message.h>
+#include <spindrift/wire/server_message.h>
 
 #include "access.h"
 #include "overloaded.h"
@@ -31,7 +31,7 @@ constexpr int kRoundMaxCount = 256;
 constexpr auto kPeopleNewsInterval = 200ms;
 
 /// A boat that somebody else has, or nobody.
-stream::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::uint32_t owner_id) {
+wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::uint32_t owner_id) {
   return rejection(v1::REJECT_REASON_NOT_YOURS, std::move(field),
                    owner_id == 0 ? fmt::format("boat {} is nobody's: take it first", boat_id)
                                  : fmt::format("boat {} is person {}'s", boat_id, owner_id));
@@ -39,14 +39,14 @@ stream::CommandRejection notYours(std::string field, std::uint32_t boat_id, std:
 
 }  // namespace
 
-std::optional<stream::CommandRejection> Room::admit(core::Command command) {
+std::optional<wire::CommandRejection> Room::admit(core::Command command) {
   const core::Sender& sender = command.sender;
   Outcome refused;
   if (const core::Role needed = core::roleFor(command.action); sender.role < needed) {
     refused = rejection(v1::REJECT_REASON_FORBIDDEN, "",
                         fmt::format("this takes the role of {}; yours is {}", roleName(needed), roleName(sender.role)));
   } else {
-    refused = stream::checkAgainstScene(command, snapshot()->scene);
+    refused = wire::checkAgainstScene(command, snapshot()->scene);
   }
   const std::uint64_t command_id = command.command_id;
   if (!refused) {
@@ -95,7 +95,7 @@ void Room::answer(Batch batch, const Outcome& outcome) {
 
 Room::Outcome Room::apply(const core::Command& command) {
   // Checked against the scene when it arrived; the scene may be another one since.
-  if (auto rejected = stream::checkAgainstScene(command, stage_->scene())) return rejected;
+  if (auto rejected = wire::checkAgainstScene(command, stage_->scene())) return rejected;
   return std::visit(Overloaded{[&](const core::Splash&) { return applyToWater(command); },
                                [&](const core::BreakingWave&) { return applyToWater(command); },
                                [&](const core::SetParameter& change) { return setParameter(command, change); },
@@ -125,7 +125,7 @@ Room::Outcome Room::applyToWater(const core::Command& command) {
 void Room::recordCommand(const core::Command& command) {
   if (!log_) return;
   v1::Record line;
-  *line.mutable_command() = stream::toWire(command);
+  *line.mutable_command() = wire::toWire(command);
   record(std::move(line));
 }
 
@@ -228,7 +228,7 @@ void Room::settlePeople(TimePoint now, net::Hub& hub) {
   if (!has_people_news_ || now < next_people_news_) return;
   has_people_news_ = false;
   next_people_news_ = now + kPeopleNewsInterval;
-  hub.broadcastState(name_, topic::kPeople, stream::people(roster_.people()));
+  hub.broadcastState(name_, topic::kPeople, wire::people(roster_.people()));
 }
 
 // Time
@@ -251,17 +251,17 @@ Room::Outcome Room::advance(const core::Step& step) {
 void Room::announce(net::Hub& hub, RoomObserver& observer) {
   const News news = std::exchange(news_, {});
   if (news.state || !news.parameters.empty()) publishSnapshot();
-  if (news.state) hub.broadcastState(name_, topic::kRoomState, stream::roomState(paused_, clock_.speed()));
+  if (news.state) hub.broadcastState(name_, topic::kRoomState, wire::roomState(paused_, clock_.speed()));
   for (const auto& [path, value] : news.parameters)
-    hub.broadcastState(name_, topic::ofParameter(path), stream::parameterChanged(path, value, tick()));
+    hub.broadcastState(name_, topic::ofParameter(path), wire::parameterChanged(path, value, tick()));
   if (news.reset) {
     hub.broadcastState(name_, topic::kReset,
-                       stream::roomEvent(v1::ROOM_EVENT_KIND_RESET, tick(), "somebody started the scene again"));
+                       wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, tick(), "somebody started the scene again"));
   }
   if (news.rebuilt) {
     hub.broadcastState(name_, topic::kRecovered,
-                       stream::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
-                                         "the device failed; the scene began again on a new one"));
+                       wire::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
+                                       "the device failed; the scene began again on a new one"));
   }
   if (news.boats) announceBoats(hub);
   deliverAnswers(observer);
@@ -283,7 +283,7 @@ void Room::announceBoats(net::Hub& hub) {
   boats_ = stage_->boats();
   if (boats_.SerializeAsString() == before) return;
   publishSnapshot();
-  hub.broadcastState(name_, topic::kBoats, stream::boatList(boats_));
+  hub.broadcastState(name_, topic::kBoats, wire::boatList(boats_));
 }
 
 void Room::announceRecovery(TimePoint now, net::Hub& hub) {
@@ -291,8 +291,8 @@ void Room::announceRecovery(TimePoint now, net::Hub& hub) {
   if (!recovery_news_.tell(count, now)) return;
   hub.broadcastState(
       name_, topic::kRecovered,
-      stream::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
-                        fmt::format("the guard put the water back to its last good state ({} times so far)", count)));
+      wire::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
+                      fmt::format("the guard put the water back to its last good state ({} times so far)", count)));
   boatsChanged();
 }
 

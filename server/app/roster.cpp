@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/stream/client_message.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::app {
 namespace {
@@ -121,7 +121,7 @@ v1::People Roster::people() const {
     wire.set_person_id(id);
     wire.set_name(person.name);
     wire.set_color_rgb(person.color_rgb);
-    wire.set_role(stream::toWire(person.role));
+    wire.set_role(wire::toWire(person.role));
     for (const std::uint32_t boat : person.boats) wire.add_boat_ids(boat);
     wire.set_away(person.session == 0);
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/scene_loader.h>
 
 namespace spindrift::app {
 namespace {
@@ -21,7 +21,7 @@ SceneCatalog::SceneCatalog(fs::path folder, std::optional<v1::Fidelity> fidelity
     std::error_code ignored;
     const fs::path& file = entry->path();
     if (file.extension() != kEnding || !fs::is_regular_file(file, ignored)) continue;
-    if (std::string name = file.stem().string(); stream::isSceneName(name)) names_.push_back(std::move(name));
+    if (std::string name = file.stem().string(); scene::isSceneName(name)) names_.push_back(std::move(name));
   }
   std::ranges::sort(names_);
   if (names_.size() > kCatalogMaxCount) names_.resize(kCatalogMaxCount);
@@ -33,7 +33,7 @@ bool SceneCatalog::has(const std::string& name) const {
 
 core::Result<v1::Scene> SceneCatalog::load(const std::string& name, std::optional<v1::Fidelity> fidelity) const {
   if (!has(name)) return core::Error{core::ErrorCode::kUnavailable, "scene '" + name + "' is not listed"};
-  auto scene = stream::loadSceneFile(folder_ / (name + kEnding), fidelity ? fidelity : fidelity_);
+  auto scene = scene::loadSceneFile(folder_ / (name + kEnding), fidelity ? fidelity : fidelity_);
   if (scene) scene->set_name(name);
   return scene;
 }

@@ -4,8 +4,8 @@
 #include <utility>
 #include <variant>
 
-#include <spindrift/stream/parameters.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
 
 #include "overloaded.h"
 
@@ -13,7 +13,7 @@ namespace spindrift::app {
 namespace {
 
 /// Why a running room does not take `wanted`, which `change` makes of its scene.
-stream::CommandRejection whyNot(const core::SetParameter& change, core::Scene wanted, const core::Error& error) {
+wire::CommandRejection whyNot(const core::SetParameter& change, core::Scene wanted, const core::Error& error) {
   // The message begins with the field that breaks a rule, which Reject.field says already where it is this one.
   const std::string own = change.path + ": ";
   const std::string message = error.message.starts_with(own) ? error.message.substr(own.size()) : error.message;
@@ -30,7 +30,7 @@ stream::CommandRejection whyNot(const core::SetParameter& change, core::Scene wa
 
 }  // namespace
 
-stream::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message) {
+wire::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message) {
   return {.command_id = 0, .reason = reason, .field = std::move(field), .message = std::move(message)};
 }
 
@@ -76,10 +76,10 @@ Stage::Outcome Stage::startEffect(const core::Effect& effect) {
 
 Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
   v1::Scene changed = scene();
-  if (auto error = stream::setParameter(changed, change.path, change.value)) {
+  if (auto error = scene::setParameter(changed, change.path, change.value)) {
     return rejection(error->reason, error->field, error->message);
   }
-  const core::Scene wanted = stream::toCore(changed);
+  const core::Scene wanted = scene::toCore(changed);
   if (auto applied = water().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());
   water_->scene() = std::move(changed);
   return {};
@@ -89,8 +89,8 @@ std::optional<Stage::Relayout> Stage::relayout(const core::Action& action) {
   const auto* change = std::get_if<core::SetParameter>(&action);
   if (!change) return std::nullopt;
   v1::Scene changed = scene();
-  if (stream::setParameter(changed, change->path, change->value)) return std::nullopt;
-  core::Scene wanted = stream::toCore(changed);
+  if (scene::setParameter(changed, change->path, change->value)) return std::nullopt;
+  core::Scene wanted = scene::toCore(changed);
   if (!water().relaysParticles(wanted)) return std::nullopt;
   sim::SceneBasis basis = water().sceneBasis(wanted);
   return Relayout{*change, std::move(changed), std::move(wanted), std::move(basis)};
@@ -112,8 +112,8 @@ TickWork Stage::work() const {
 
 std::optional<TickWork> Stage::workWith(const core::SetParameter& change) const {
   v1::Scene changed = scene();
-  if (stream::setParameter(changed, change.path, change.value)) return std::nullopt;
-  const core::Scene wanted = stream::toCore(changed);
+  if (scene::setParameter(changed, change.path, change.value)) return std::nullopt;
+  const core::Scene wanted = scene::toCore(changed);
   const auto derived = sim::derive(wanted);
   return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
 }

@@ -10,8 +10,8 @@
 #include <spindrift/core/result.h>
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/client_message.h>
 #include <spindrift/v1/scene.pb.h>
+#include <spindrift/wire/client_message.h>
 
 #include "tick_cost.h"
 #include "water.h"
@@ -19,7 +19,7 @@
 namespace spindrift::app {
 
 /// A rejection that the caller gives its command's number.
-stream::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message);
+wire::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message);
 /// Errors of several lines (one a field) in one.
 std::string firstLine(const std::string& text);
 
@@ -27,7 +27,7 @@ std::string firstLine(const std::string& text);
 class Stage {
  public:
   /// Empty: applied.
-  using Outcome = std::optional<stream::CommandRejection>;
+  using Outcome = std::optional<wire::CommandRejection>;
 
   /// `water` is bound to the calling thread; its scene is checked and has its defaults.
   explicit Stage(std::unique_ptr<Water> water);

@@ -8,7 +8,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/scene_loader.h>
 
 namespace spindrift::app {
 namespace {
@@ -44,7 +44,7 @@ double warmUp(gpu::Context& context, sim::WaterSim& sim) {
 core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& device, v1::Scene scene) {
   auto context = gpu::Context::create(device);
   if (!context) return context.error();
-  auto sim = sim::WaterSim::create(**context, stream::toCore(scene));
+  auto sim = sim::WaterSim::create(**context, scene::toCore(scene));
   if (!sim) return sim.error();
   const double tick_ms = warmUp(**context, **sim);
   return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));

@@ -11,11 +11,11 @@
 #include <thread>
 #include <vector>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/net/server.h>
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/frame_encoder.h>
-#include <spindrift/stream/scene_loader.h>
-#include <spindrift/stream/server_message.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/client_message.h>
+#include <spindrift/wire/server_message.h>
 
 #include "encoder_thread.h"
 #include "layer_index.h"
@@ -74,7 +74,7 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
 class FakeGateway final : public net::Application {
  public:
   FakeGateway() {
-    auto scene = stream::parseSceneText("wave {} particles { count: 100 } coupling {} foam {}", "fake.textproto");
+    auto scene = scene::parseSceneText("wave {} particles { count: 100 } coupling {} foam {}", "fake.textproto");
     scene_ = *scene;
   }
 
@@ -82,29 +82,29 @@ class FakeGateway final : public net::Application {
   core::Result<void> acceptSession(const std::string&) override { return {}; }
   void sessionOpened(net::SessionId session, const std::string& room, const std::string&) override {
     ++opened_count;
-    stream::GreetingFacts facts;
+    wire::GreetingFacts facts;
     facts.room = room;
     facts.session_id = session;
-    hub_->sendAnswer(session, stream::greeting(facts, scene_));
+    hub_->sendAnswer(session, wire::greeting(facts, scene_));
     hub_->join(session, room);  // afterwards, so that no news of the room comes before the greeting
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
-    const stream::ClientMessage message = stream::parseClientMessage(bytes);
-    if (const auto* subscribe = std::get_if<stream::Subscribe>(&message)) {
-      const stream::Stream wanted = stream::streamOf(subscribe->layer, subscribe->packing);
-      for (const stream::Stream stream : stream::allStreams()) {
+    const wire::ClientMessage message = wire::parseClientMessage(bytes);
+    if (const auto* subscribe = std::get_if<wire::Subscribe>(&message)) {
+      const codec::Stream wanted = codec::streamOf(subscribe->layer, subscribe->packing);
+      for (const codec::Stream stream : codec::allStreams()) {
         if (stream.layer != wanted.layer) continue;
         hub_->watch(session, app::layerIndex(stream),
                     {.max_rate_hz = stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0,
                      .level = subscribe->level,
                      .adapts = subscribe->adapts});
       }
-    } else if (const auto* ping = std::get_if<stream::Ping>(&message)) {
-      hub_->sendAnswer(session, stream::pong(ping->client_time_s, 0.0));
+    } else if (const auto* ping = std::get_if<wire::Ping>(&message)) {
+      hub_->sendAnswer(session, wire::pong(ping->client_time_s, 0.0));
     } else if (const auto* command = std::get_if<core::Command>(&message)) {
-      hub_->broadcastState(kRooms[command->command_id % 2], {.name = "room_state"}, stream::roomState(false, 1.0));
+      hub_->broadcastState(kRooms[command->command_id % 2], {.name = "room_state"}, wire::roomState(false, 1.0));
       if (std::holds_alternative<core::Reset>(command->action)) hub_->join(session, kRooms[1]);
-      hub_->sendAnswer(session, stream::ack(command->command_id, 0));
+      hub_->sendAnswer(session, wire::ack(command->command_id, 0));
     }
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }

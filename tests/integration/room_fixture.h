@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/scene_loader.h>
 
 #include "room.h"
 #include "server_fixture.h"
@@ -47,7 +47,7 @@ struct RecordingObserver final : app::RoomObserver {
   void commandApplied(const core::Command& command, std::uint64_t, std::uint32_t) override {
     applied.push_back(command.command_id);
   }
-  void commandRejected(const core::Command&, const stream::CommandRejection& rejection) override {
+  void commandRejected(const core::Command&, const wire::CommandRejection& rejection) override {
     rejected.push_back(rejection.message);
     rejected_ids.push_back(rejection.command_id);
   }
@@ -57,7 +57,7 @@ class RoomTest : public testing::Test {
  protected:
   void SetUp() override {
     device_.kind = gpu::DeviceChoice::Kind::kSoftware;
-    auto scene = stream::parseSceneText(kStillPool, "main");
+    auto scene = scene::parseSceneText(kStillPool, "main");
     ASSERT_TRUE(scene);
     auto water = app::Water::create(device_, *std::move(scene));
     if (!water && water.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << water.error().message;

@@ -23,14 +23,14 @@ class Crowd : public ServerTest {
   std::uint64_t encodedCount(v1::Layer layer) const {
     std::uint64_t count = 0;
     const app::EncoderThread::Costs costs = encoder().costs();
-    for (const auto& level : costs[stream::indexOf(stream::streamOf(layer, v1::PACKING_PACKED))])
+    for (const auto& level : costs[codec::indexOf(codec::streamOf(layer, v1::PACKING_PACKED))])
       count += level.frame_count;
     return count;
   }
 };
 
 TEST_F(Crowd, OfTwoHundredNobodyStarvesAndEveryCommandIsAnswered) {
-  auto scene = stream::parseSceneText(rooms()[0].scene, "main");
+  auto scene = scene::parseSceneText(rooms()[0].scene, "main");
   ASSERT_TRUE(scene);
   const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string(server().port()) + "/ws");
   std::uint64_t encoded_before = 0;

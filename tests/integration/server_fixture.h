@@ -9,8 +9,8 @@
 
 #include <gmock/gmock.h>
 
-#include <spindrift/stream/frame_decoder.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/scene/scene_loader.h>
 
 #include "scripted_client.h"
 #include "water_server.h"
@@ -51,7 +51,7 @@ class ServerTest : public testing::Test {
     options.network.port = 0;
     options.rules.scenes = scenes();
     for (const RoomText& room : rooms()) {
-      auto scene = stream::parseSceneText(room.scene, room.name);
+      auto scene = scene::parseSceneText(room.scene, room.name);
       ASSERT_TRUE(scene) << scene.error().message;
       options.rooms.push_back({room.name, *std::move(scene)});
     }
@@ -88,7 +88,7 @@ class WaveServerTest : public ServerTest {
 
 /// Largest elevation of a frame; -1 where it does not decode.
 inline double maxElevation_m(const v1::LayerFrame& frame) {
-  const auto surface = stream::decodeSurface(frame);
+  const auto surface = codec::decodeSurface(frame);
   if (!surface) return -1.0;
   double max_m = 0.0;
   for (const float eta_m : surface->elevation_m) max_m = std::max(max_m, std::abs(static_cast<double>(eta_m)));

@@ -198,7 +198,7 @@ TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
   const auto throttle = [&]() -> double {
     const auto frame = bob.nextFrame(v1::LAYER_BODIES);
     if (!frame) return -1.0;
-    const auto bodies = stream::decodeBodies(*frame);
+    const auto bodies = codec::decodeBodies(*frame);
     if (!bodies) return -1.0;
     for (const auto& body : *bodies) {
       if (body.boat_id == boat_id) return body.throttle_ratio;

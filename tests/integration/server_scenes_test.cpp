@@ -83,7 +83,7 @@ TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
   const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
   ASSERT_TRUE(particles) << "a layer asked for before the room had it";
   EXPECT_GE(particles->tick(), *box);
-  EXPECT_TRUE(stream::decodeParticles(*particles));
+  EXPECT_TRUE(codec::decodeParticles(*particles));
   const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
   ASSERT_TRUE(greeting);
   EXPECT_THAT(greeting->greeting().layers(), ElementsAre(v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS));
@@ -95,7 +95,7 @@ TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
     return m.has_frame() && m.frame().layer() == v1::LAYER_SURFACE && m.frame().tick() >= *pond;
   });
   ASSERT_TRUE(surface);
-  EXPECT_TRUE(stream::decodeSurface(surface->frame()));
+  EXPECT_TRUE(codec::decodeSurface(surface->frame()));
   EXPECT_TRUE(
       one.waitFor([&](const v1::ServerMessage& m) { return m.has_diagnostics() && m.diagnostics().tick() > *pond; }));
 }
@@ -176,10 +176,10 @@ TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
       });
       ASSERT_TRUE(frame) << name << " layer " << layer;
       if (layer == v1::LAYER_SURFACE) {
-        EXPECT_TRUE(stream::decodeSurface(frame->frame()));
+        EXPECT_TRUE(codec::decodeSurface(frame->frame()));
       }
       if (layer == v1::LAYER_PARTICLES) {
-        EXPECT_TRUE(stream::decodeParticles(frame->frame()));
+        EXPECT_TRUE(codec::decodeParticles(frame->frame()));
       }
     }
     const auto splashed = one.apply(splash(0.3, 0.3));

@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #include <spindrift/gpu/context.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/fidelity.h>
-#include <spindrift/stream/scene_loader.h>
 
 #include "../paths.h"
 #include "bench_codec.h"
@@ -158,12 +158,12 @@ int bench(const BenchOptions& options) {
   if (!device) return fail(device.error());
   auto file = findScene(options.scene);
   if (!file) return fail(file.error());
-  auto loaded = stream::loadSceneFile(*file, stream::parseFidelity(options.fidelity));
+  auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
   if (!loaded) return fail(loaded.error());
   if (options.suite == "fanout") return benchFanout(options, *loaded);
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());
-  const core::Scene scene = stream::toCore(*loaded);
+  const core::Scene scene = scene::toCore(*loaded);
 
   std::FILE* out = options.json_file == "-" ? stderr : stdout;
   char host[256] = "";

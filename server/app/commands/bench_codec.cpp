@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/frame_decoder.h>
-#include <spindrift/stream/frame_encoder.h>
 
 #include "bench_baselines.h"
 #include "bench_levels.h"
@@ -59,7 +59,7 @@ struct CodecRow {
 };
 
 v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
-  return stream::parseServerMessage(*bytes)->frame();
+  return codec::parseServerMessage(*bytes)->frame();
 }
 
 /// The surface's and the particles' rows of a scene, filled frame by frame.
@@ -92,20 +92,20 @@ class CodecMeter {
     const core::SharedBytes plain = encoder_.encode(v1::LAYER_SURFACE, frame);
     surface_plain_.encode_ms += sinceMs(begin);
     begin = Clock::now();
-    const auto plain_samples = stream::decodeSurface(frameOf(plain));
+    const auto plain_samples = codec::decodeSurface(frameOf(plain));
     surface_plain_.decode_ms += sinceMs(begin);
     surface_plain_.add(plain->size(), samples);
     surface_deflated_.add(deflate(view.words), samples, 0.0);
     surface_zstd_.add(zstd(view.words), samples, 0.0);
 
     // The continuing frame as a room makes it; the whole one from an encoder of its own, so that times do not mix.
-    const stream::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
+    const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
     begin = Clock::now();
-    const stream::EncodedFrame encoded = encoder_.encode(packed, frame, false);
+    const codec::EncodedFrame encoded = encoder_.encode(packed, frame, false);
     const double encode_ms = sinceMs(begin);
-    stream::FrameEncoder fresh;
+    codec::FrameEncoder fresh;
     begin = Clock::now();
-    const stream::EncodedFrame whole = fresh.encode(packed, frame, true);
+    const codec::EncodedFrame whole = fresh.encode(packed, frame, true);
     surface_whole_.encode_ms += sinceMs(begin);
     surface_whole_.add(whole.whole->size(), samples);
     const v1::LayerFrame message = frameOf(encoded.continuing ? encoded.continuing : encoded.whole);
@@ -130,18 +130,18 @@ class CodecMeter {
     const core::SharedBytes plain = encoder_.encode(v1::LAYER_PARTICLES, frame);
     particles_plain_.encode_ms += sinceMs(begin);
     begin = Clock::now();
-    const auto plain_samples = stream::decodeParticles(frameOf(plain));
+    const auto plain_samples = codec::decodeParticles(frameOf(plain));
     particles_plain_.decode_ms += sinceMs(begin);
     particles_plain_.add(plain->size(), view.count);
     particles_deflated_.add(deflate(view.words), view.count, 0.0);
     particles_zstd_.add(zstd(view.words), view.count, 0.0);
 
     begin = Clock::now();
-    const stream::EncodedFrame encoded = encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, frame, true);
+    const codec::EncodedFrame encoded = encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, frame, true);
     particles_.encode_ms += sinceMs(begin);
     const v1::LayerFrame message = frameOf(encoded.whole);
     begin = Clock::now();
-    const auto samples = stream::decodePackedParticles(message);
+    const auto samples = codec::decodePackedParticles(message);
     particles_.decode_ms += sinceMs(begin);
     if (!samples) return samples.error();
     particles_.add(encoded.whole->size(), view.count);
@@ -182,7 +182,7 @@ class CodecMeter {
     places_.encode_ms += sinceMs(begin);
     const v1::LayerFrame message = frameOf(packed);
     begin = Clock::now();
-    const auto samples = stream::decodePackedParticles(message);
+    const auto samples = codec::decodePackedParticles(message);
     places_.decode_ms += sinceMs(begin);
     places_.add(packed->size(), count);
     places_.bound_bits = particles_.bound_bits;
@@ -222,8 +222,8 @@ class CodecMeter {
     return largest;
   }
 
-  stream::FrameEncoder encoder_, places_encoder_;
-  stream::PackedSurfaceDecoder decoder_;
+  codec::FrameEncoder encoder_, places_encoder_;
+  codec::PackedSurfaceDecoder decoder_;
   CodecRow surface_plain_{.name = "surface, plain"};
   CodecRow surface_deflated_{.name = "surface, plain + deflate"};
   CodecRow surface_zstd_{.name = "surface, plain + zstd"};

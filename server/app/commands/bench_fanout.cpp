@@ -12,8 +12,8 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <spindrift/codec/frame_decoder.h>
 #include <spindrift/net/server.h>
-#include <spindrift/stream/frame_decoder.h>
 
 #include "../fanout/crowd.h"
 #include "../fanout/scene_crowd.h"

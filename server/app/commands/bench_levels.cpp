@@ -25,7 +25,7 @@ std::vector<Words> particlesOf(const core::ParticleView& particles) {
   return out;
 }
 
-std::size_t bytesOf(const stream::EncodedFrame& encoded) {
+std::size_t bytesOf(const codec::EncodedFrame& encoded) {
   const core::SharedBytes& sent = encoded.continuing ? encoded.continuing : encoded.whole;
   return sent ? sent->size() : 0;
 }
@@ -52,7 +52,7 @@ void LevelMeter::add(const core::FrameView& frame) {
     Level& row = levels_[indexOf(level)];
     const auto begin = Clock::now();
     const auto bytes = [&](v1::Layer layer) {
-      const core::Level effective = core::effectiveLevel(level, stream::reducedCountOf(layer, counts_));
+      const core::Level effective = core::effectiveLevel(level, codec::reducedCountOf(layer, counts_));
       const core::FrameView view = core::frameAt(frame, effective);
       if (layer == v1::LAYER_SURFACE && view.surface) row.resolution_count = view.surface->resolution_count;
       if (layer == v1::LAYER_PARTICLES && view.particles) row.particle_sum += view.particles->count;
@@ -91,7 +91,7 @@ void LevelMeter::addParts(const core::FrameView& frame) {
     part.particles->count = static_cast<std::uint32_t>(added.size());
     part.particles->words = std::span(added.data()->data(), 3 * added.size());
     bits += 8.0 * static_cast<double>(
-                      bytesOf(stream::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, part, true)));
+                      bytesOf(codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, part, true)));
     part_bits_[indexOf(level)] += bits;
     part_counts_[indexOf(level)] += static_cast<double>(now.size());
     before = now;
@@ -127,11 +127,11 @@ boost::json::array LevelMeter::print(std::FILE* out) const {
     }
     fmt::print(out,
                "{:<8} {:>8} {:>10.0f} {:>5.0f} {:>9.2f} {:>10.2f} {:>6.2f} {:>8.2f} {:>8} {:>10.3f} {:>15.2f} {:>14}\n",
-               stream::nameOf(level), fmt::format("{0}^2", row.resolution_count), particle_count, rate_hz,
+               codec::nameOf(level), fmt::format("{0}^2", row.resolution_count), particle_count, rate_hz,
                mbitps(row.surface_bytes), mbitps(row.particle_bytes), mbitps(row.foam_bytes), sum_mbitps,
                budget_mbitps > 0 ? fmt::format("{:.0f}", budget_mbitps) : std::string("-"), row.encode_ms / frames,
                bits, part_bits > 0 ? fmt::format("{:.2f}", part_bits) : std::string("-"));
-    json.push_back({{"level", stream::nameOf(level)},
+    json.push_back({{"level", codec::nameOf(level)},
                     {"resolution_count", row.resolution_count},
                     {"particle_count", particle_count},
                     {"rate_hz", rate_hz},

@@ -7,10 +7,10 @@
 
 #include <boost/json.hpp>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/frame_encoder.h>
 
 namespace spindrift::app {
 
@@ -39,7 +39,7 @@ class LevelMeter {
   double frame_rate_hz_;
   std::uint64_t frame_count_ = 0;
   core::ReducedCounts counts_;
-  stream::FrameEncoder encoder_;
+  codec::FrameEncoder encoder_;
   std::array<Level, core::kLevelCount> levels_;
   /// Of levels that add to each other: bits that the particles up to a level take in all, and how many those are.
   std::array<double, core::kLevelCount> part_bits_{};

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/derive.h>
-#include <spindrift/stream/fidelity.h>
-#include <spindrift/stream/scene_loader.h>
 
 #include "../paths.h"
 #include "commands.h"
@@ -72,7 +72,7 @@ void printBoats(const core::BoatsScene& boats) {
 
 void print(const std::string& file, const v1::Scene& scene, const core::Scene& in, const sim::Derived& d) {
   fmt::print("{}: fine\n  scene      {} ({}), {}\n  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", file,
-             scene.name(), scene.title(), stream::fidelityName(scene.fidelity()), d.tick_s * 1e3, d.substeps_count,
+             scene.name(), scene.title(), scene::fidelityName(scene.fidelity()), d.tick_s * 1e3, d.substeps_count,
              d.dt_s * 1e3);
   if (d.wave) {
     fmt::print(
@@ -108,12 +108,12 @@ int check(const CheckOptions& options) {
       code = fail(file.error());
       continue;
     }
-    auto scene = stream::loadSceneFile(*file, stream::parseFidelity(options.fidelity));
+    auto scene = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
     if (!scene) {
       code = fail(scene.error());
       continue;
     }
-    const core::Scene in = stream::toCore(*scene);
+    const core::Scene in = scene::toCore(*scene);
     auto derived = sim::derive(in);
     if (!derived) {
       code = fail({derived.error().code, file->string() + ": " + derived.error().message});

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <spindrift/gpu/info.h>
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/parameters.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/wire/client_message.h>
 
 #include "commands.h"
 #include "output.h"
@@ -35,7 +35,7 @@ boost::json::object toJson(const gpu::DeviceInfo& d) {
 
 int info(const InfoOptions& options) {
   if (options.parameters) {
-    fmt::print("{}", stream::parameterReferenceMarkdown());
+    fmt::print("{}", scene::parameterReferenceMarkdown());
     return 0;
   }
   const gpu::GpuInfo gpu = gpu::collectInfo({});
@@ -43,15 +43,15 @@ int info(const InfoOptions& options) {
   for (const gpu::DeviceInfo& d : gpu.devices) devices.push_back(toJson(d));
   const boost::json::object json = {
       {"program", "spindrift " SPINDRIFT_VERSION},
-      {"wire", fmt::format("{}.{}", stream::kWireMajor, stream::kWireMinor)},
+      {"wire", fmt::format("{}.{}", wire::kWireMajor, wire::kWireMinor)},
       {"egl_client_version", gpu.egl_client_version},
       {"shader_count", gpu.shader_count},
       {"devices", devices},
       {"chosen", gpu.chosen ? boost::json::value(toJson(*gpu.chosen)) : boost::json::value()},
       {"why", gpu.why}};
   if (options.json_file != "-") {
-    fmt::print("program   spindrift {}, wire {}.{}, {} shaders\nEGL       {}\n", SPINDRIFT_VERSION, stream::kWireMajor,
-               stream::kWireMinor, gpu.shader_count, gpu.egl_client_version);
+    fmt::print("program   spindrift {}, wire {}.{}, {} shaders\nEGL       {}\n", SPINDRIFT_VERSION, wire::kWireMajor,
+               wire::kWireMinor, gpu.shader_count, gpu.egl_client_version);
     for (const gpu::DeviceInfo& d : gpu.devices) {
       fmt::print("device {:>2} {}\n", d.is_software ? "sw" : std::to_string(d.index), d.name);
       if (!d.problem.empty()) {

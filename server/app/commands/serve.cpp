@@ -8,8 +8,8 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/stream/fidelity.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
 
 #include "../paths.h"
 #include "../water_server.h"
@@ -27,7 +27,7 @@ core::Result<RoomSetup> loadRoom(const std::string& name, const std::string& sce
   }
   auto file = findScene(scene);
   if (!file) return file.error();
-  auto loaded = stream::loadSceneFile(*file, stream::parseFidelity(fidelity));
+  auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(fidelity));
   if (!loaded) return loaded.error();
   return RoomSetup{name, *std::move(loaded)};
 }
@@ -122,7 +122,7 @@ int serve(const ServeOptions& options) {
   WaterServerOptions server_options;
   server_options.device = *device;
   server_options.rooms = *std::move(rooms);
-  server_options.rules.scenes = SceneCatalog(findSceneFolder(), stream::parseFidelity(options.fidelity));
+  server_options.rules.scenes = SceneCatalog(findSceneFolder(), scene::parseFidelity(options.fidelity));
   server_options.rules.grace =
       std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(options.grace_s * 1e3));
   server_options.rules.record_folder = options.record_folder;

@@ -7,9 +7,9 @@
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
-#include <spindrift/stream/fidelity.h>
-#include <spindrift/stream/frame_encoder.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/codec/frame_encoder.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/study/trade.h>
 #include <spindrift/study/water_record.h>
 
@@ -45,7 +45,7 @@ constexpr const char* kSeedKnob = "seed";
 
 /// Counts what the room's encoder would send.
 study::FrameBytes frameBytes() {
-  auto encoder = std::make_shared<stream::FrameEncoder>();
+  auto encoder = std::make_shared<codec::FrameEncoder>();
   return [encoder](const core::FrameView& frame) {
     std::size_t bytes = 0;
     for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES}) {
@@ -58,9 +58,9 @@ study::FrameBytes frameBytes() {
 core::Result<core::Scene> loadLevel(const std::string& name, v1::Fidelity level) {
   auto file = findScene(name);
   if (!file) return file.error();
-  auto scene = stream::loadSceneFile(*file, level);
+  auto scene = scene::loadSceneFile(*file, level);
   if (!scene) return scene.error();
-  return stream::toCore(*scene);
+  return scene::toCore(*scene);
 }
 
 /// The levels first, then BALANCED with one thing changed.
@@ -69,7 +69,7 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
   for (const v1::Fidelity level : kLevels) {
     auto loaded = loadLevel(scene.name, level);
     if (!loaded) return loaded.error();
-    choices.push_back({kLevelKnob, stream::fidelityName(level), *std::move(loaded)});
+    choices.push_back({kLevelKnob, scene::fidelityName(level), *std::move(loaded)});
   }
   if (quick) return choices;
   for (TradeChoice& knob : study::singleKnobs(choices[1].scene)) choices.push_back(std::move(knob));

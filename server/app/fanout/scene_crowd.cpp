@@ -1,8 +1,8 @@
 #include "scene_crowd.h"
 
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/frame_decoder.h>
 #include <spindrift/v1/wire.pb.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::app {
 namespace {
@@ -22,7 +22,7 @@ CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double
   out.duration = std::chrono::duration<double>(seconds);
   out.commands_per_s = 0.1;
   v1::ClientMessage hello;
-  hello.mutable_hello()->mutable_version()->set_major(stream::kWireMajor);
+  hello.mutable_hello()->mutable_version()->set_major(wire::kWireMajor);
   hello.mutable_hello()->set_client("spindrift bench");
   out.on_open.push_back(bytesOf(hello));
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES}) {
@@ -36,7 +36,7 @@ CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double
   const v1::Layer counted = scene.has_wave() ? v1::LAYER_SURFACE : v1::LAYER_PARTICLES;
   out.look = [counted](core::ByteView bytes) {
     Sighting sighting;
-    const auto message = stream::parseServerMessage(bytes);
+    const auto message = codec::parseServerMessage(bytes);
     if (!message) return sighting;
     if (message->has_frame() && message->frame().layer() == counted) sighting.kind = Sighting::Kind::kFrame;
     if (message->has_ack() || message->has_reject()) {

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::app {
 namespace {
@@ -39,8 +39,8 @@ void ScriptClient::connect() {
       {.opened = if_current([this] {
          v1::ClientMessage message;
          v1::Hello& hello = *message.mutable_hello();
-         hello.mutable_version()->set_major(stream::kWireMajor);
-         hello.mutable_version()->set_minor(stream::kWireMinor);
+         hello.mutable_version()->set_major(wire::kWireMajor);
+         hello.mutable_version()->set_minor(wire::kWireMinor);
          hello.set_client("spindrift script");
          hello.set_name(setup_.person());
          hello.set_resume_key(resume_key_);
@@ -101,7 +101,7 @@ std::uint64_t ScriptClient::command(v1::Command command) {
 
 void ScriptClient::take(core::ByteView bytes) {
   received_bytes_ += bytes.size();
-  auto parsed = stream::parseServerMessage(bytes);
+  auto parsed = codec::parseServerMessage(bytes);
   if (!parsed) {
     ++malformed_count_;
     return;

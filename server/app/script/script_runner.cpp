@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/frame_decoder.h>
 
 #include "script_client.h"
 
@@ -197,7 +197,7 @@ class Runner {
   }
 
   static std::optional<double> elevation_m(const v1::LayerFrame& frame, double x_m, double z_m) {
-    const auto surface = stream::decodeSurface(frame);
+    const auto surface = codec::decodeSurface(frame);
     if (!surface) return std::nullopt;
     const double n = surface->resolution_count;
     const auto index = [&](double at_m) {
@@ -223,9 +223,9 @@ class Runner {
     const auto holds = [&] {
       if (held || client.tally(v1::LAYER_BODIES).frame_count == looked_count) return held;
       looked_count = client.tally(v1::LAYER_BODIES).frame_count;
-      const auto bodies = stream::decodeBodies(*client.newest(v1::LAYER_BODIES));
+      const auto bodies = codec::decodeBodies(*client.newest(v1::LAYER_BODIES));
       if (!bodies) return false;
-      const auto boat = std::ranges::find(*bodies, boat_id, &stream::BodySample::boat_id);
+      const auto boat = std::ranges::find(*bodies, boat_id, &codec::BodySample::boat_id);
       if (boat == bodies->end()) {
         seen = fmt::format("boat {} is not on the water", boat_id);
         return false;

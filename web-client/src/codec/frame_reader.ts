@@ -1,10 +1,10 @@
-// The readers of packed frames: server/stream/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance a layer.
+// The readers of packed frames: server/codec/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance a layer.
 import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
 
 /** Of a packed plane. */
 export const kWeightCount = 10;
 
-/** server/stream/wasm/frame_reader.cpp; places in memory, counts, truth as 0 and 1. */
+/** server/codec/wasm/frame_reader.cpp; places in memory, counts, truth as 0 and 1. */
 interface Exports {
   memory: WebAssembly.Memory;
   prepareParticles(count: number, payloadBytes: number): number;

@@ -1,0 +1,47 @@
+// The data plane's encoder: one frame of a room in, one immutable message a layer out, shared by every client.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include <spindrift/codec/stream.h>
+#include <spindrift/core/bytes.h>
+#include <spindrift/core/frame_view.h>
+#include <spindrift/v1/wire.pb.h>
+
+namespace spindrift::codec {
+
+class LayerCodec;
+
+/// Serialized ServerMessages of one frame of a layer. Both null where the frame lacks the layer.
+struct EncodedFrame {
+  core::SharedBytes whole;       ///< a keyframe
+  core::SharedBytes continuing;  ///< for whoever has the frame that was encoded before it; null: no such form
+};
+
+/// The codecs of one room: one for each stream and level, made when it is first asked for. Methods from one thread (the
+/// encoder's), except encodeCount(): any thread.
+class FrameEncoder {
+ public:
+  FrameEncoder();
+  ~FrameEncoder();
+
+  /// Encodes a frame of one level (core::frameAt). Nothing where it lacks the layer.
+  EncodedFrame encode(Stream stream, const core::FrameView& frame, bool wants_whole);
+  /// The plain form.
+  core::SharedBytes encode(v1::Layer layer, const core::FrameView& frame) { return encode({layer}, frame, true).whole; }
+
+  /// Frames of the stream encoded so far: one a level and frame, however many clients watch.
+  std::uint64_t encodeCount(Stream stream) const;
+
+ private:
+  struct Slot {
+    std::array<std::unique_ptr<LayerCodec>, core::kLevelCount> codecs;
+    std::atomic<std::uint64_t> encode_count{0};
+  };
+  std::array<Slot, kStreamCount> slots_;
+};
+
+}  // namespace spindrift::codec
