@@ -13,12 +13,11 @@
 
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/net/server.h>
+#include <spindrift/rooms/encoder_thread.h>
+#include <spindrift/rooms/layer_index.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/client_message.h>
 #include <spindrift/wire/server_message.h>
-
-#include "encoder_thread.h"
-#include "layer_index.h"
 
 namespace spindrift::test {
 
@@ -94,7 +93,7 @@ class FakeGateway final : public net::Application {
       const codec::Stream wanted = codec::streamOf(subscribe->layer, subscribe->packing);
       for (const codec::Stream stream : codec::allStreams()) {
         if (stream.layer != wanted.layer) continue;
-        hub_->watch(session, app::layerIndex(stream),
+        hub_->watch(session, rooms::layerIndex(stream),
                     {.max_rate_hz = stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0,
                      .level = subscribe->level,
                      .adapts = subscribe->adapts});
@@ -129,7 +128,7 @@ class FakeWater {
     auto started = net::Server::start(options, gateway);
     if (!started) throw std::runtime_error(started.error().message);
     server = std::move(*started);
-    encoder = std::make_unique<app::EncoderThread>(server->hub());
+    encoder = std::make_unique<rooms::EncoderThread>(server->hub());
     for (std::size_t room = 0; room < makers_.size(); ++room) {
       makers_[room] = std::thread([this, room] { makeFrames(room); });
     }
@@ -152,7 +151,7 @@ class FakeWater {
 
   FakeGateway gateway;
   std::unique_ptr<net::Server> server;
-  std::unique_ptr<app::EncoderThread> encoder;
+  std::unique_ptr<rooms::EncoderThread> encoder;
 
  private:
   void makeFrames(std::size_t room) {

@@ -5,9 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
 
-#include "room.h"
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -37,13 +37,13 @@ struct RecordingHub final : net::Hub {
   void closeAt(net::SessionId, std::chrono::steady_clock::time_point, net::CloseCode, std::string) override {}
 };
 
-struct RecordingObserver final : app::RoomObserver {
+struct RecordingObserver final : rooms::RoomObserver {
   int scene_count = 0;
   std::vector<std::uint64_t> applied;
   std::vector<std::string> rejected;
   std::vector<std::uint64_t> rejected_ids;
 
-  void sceneChanged(const app::Room&) override { ++scene_count; }
+  void sceneChanged(const rooms::Room&) override { ++scene_count; }
   void commandApplied(const core::Command& command, std::uint64_t, std::uint32_t) override {
     applied.push_back(command.command_id);
   }
@@ -59,12 +59,12 @@ class RoomTest : public testing::Test {
     device_.kind = gpu::DeviceChoice::Kind::kSoftware;
     auto scene = scene::parseSceneText(kStillPool, "main");
     ASSERT_TRUE(scene);
-    auto water = app::Water::create(device_, *std::move(scene));
+    auto water = rooms::Water::create(device_, *std::move(scene));
     if (!water && water.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << water.error().message;
     ASSERT_TRUE(water);
     context_ = &(*water)->context();
-    builder_ = std::make_unique<app::WaterBuilder>(device_);
-    auto room = app::Room::create("main", *std::move(water), rules_, *builder_);
+    builder_ = std::make_unique<rooms::WaterBuilder>(device_);
+    auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_);
     ASSERT_TRUE(room);
     room_ = *std::move(room);
     room_->start(Clock::now());
@@ -92,12 +92,12 @@ class RoomTest : public testing::Test {
 
   using Clock = std::chrono::steady_clock;
   gpu::DeviceChoice device_;
-  app::RoomRules rules_;
+  rooms::RoomRules rules_;
   RecordingHub hub_;
   RecordingObserver observer_;
-  app::EncoderThread encoder_{hub_};
-  std::unique_ptr<app::WaterBuilder> builder_;
-  std::shared_ptr<app::Room> room_;
+  rooms::EncoderThread encoder_{hub_};
+  std::unique_ptr<rooms::WaterBuilder> builder_;
+  std::shared_ptr<rooms::Room> room_;
   gpu::Context* context_ = nullptr;  ///< of the room's first water
 };
 

@@ -11,9 +11,9 @@
 
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/service/water_server.h>
 
 #include "scripted_client.h"
-#include "water_server.h"
 
 namespace spindrift::test {
 
@@ -41,12 +41,12 @@ class ServerTest : public testing::Test {
   virtual std::vector<RoomText> rooms() const { return {{"main", kStillPool}}; }
 
   /// What rooms can be changed to.
-  virtual app::SceneCatalog scenes() const { return {}; }
+  virtual rooms::SceneCatalog scenes() const { return {}; }
   /// Everything else that a test wants otherwise.
-  virtual void adjust(app::WaterServerOptions& /*options*/) const {}
+  virtual void adjust(service::WaterServerOptions& /*options*/) const {}
 
   void SetUp() override {
-    app::WaterServerOptions options;
+    service::WaterServerOptions options;
     options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
     options.network.port = 0;
     options.rules.scenes = scenes();
@@ -56,14 +56,14 @@ class ServerTest : public testing::Test {
       options.rooms.push_back({room.name, *std::move(scene)});
     }
     adjust(options);
-    auto started = app::WaterServer::start(std::move(options));
+    auto started = service::WaterServer::start(std::move(options));
     if (!started && started.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << started.error().message;
     ASSERT_TRUE(started) << started.error().message;
     server_ = *std::move(started);
   }
 
-  app::WaterServer& server() { return *server_; }
-  const app::EncoderThread& encoder() const { return server_->encoder(); }
+  service::WaterServer& server() { return *server_; }
+  const rooms::EncoderThread& encoder() const { return server_->encoder(); }
 
   /// A client that has said hello.
   ScriptedClient client(const std::string& room = "") { return person({}, room); }
@@ -78,7 +78,7 @@ class ServerTest : public testing::Test {
   }
 
  private:
-  std::unique_ptr<app::WaterServer> server_;
+  std::unique_ptr<service::WaterServer> server_;
 };
 
 class WaveServerTest : public ServerTest {

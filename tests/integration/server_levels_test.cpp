@@ -3,10 +3,10 @@
 #include <map>
 #include <thread>
 
+#include <spindrift/bench/levels.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/sim/water_sim.h>
 
-#include "commands/bench_levels.h"
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -140,11 +140,11 @@ TEST(LevelBudgets, AreKeptByAPoolOfTheLargestOne) {
   const core::Scene scene = scene::toCore(*parsed);
   auto sim = sim::WaterSim::create(**context, scene);
   ASSERT_TRUE(sim) << sim.error().message;
-  app::LevelMeter meter(scene.stream.frame_rate_hz);
+  bench::LevelMeter meter(scene.stream.frame_rate_hz);
   for (int tick = 0; tick < 20; ++tick) {
     (*sim)->step();
     if (tick % 2 != 0) continue;
-    ASSERT_TRUE((*sim)->requestFrame(app::LevelMeter::request(scene)));
+    ASSERT_TRUE((*sim)->requestFrame(bench::LevelMeter::request(scene)));
     (*context)->finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) meter.add(frame);
   }

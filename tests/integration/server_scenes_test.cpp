@@ -13,7 +13,7 @@ using testing::HasSubstr;
 class Scenes : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}, {"other", kStillWave}}; }
-  app::SceneCatalog scenes() const override {
+  rooms::SceneCatalog scenes() const override {
     folder_.write("pond.textproto",
                   "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }\nstream { frame_rate_hz: 60 }");
     folder_.write("box.textproto",
@@ -22,7 +22,7 @@ class Scenes : public ServerTest {
     folder_.write("quay.textproto", "wave { resolution_count: 48 side_m: 16 depth_m: 1 }\nboats { boats { x_m: -4 } }");
     folder_.write("broken.textproto", "wave { depth_m: 200 }\nparticles { count: 0 }\n");
     folder_.write("impossible.textproto", "particles { count: 10 }\n");
-    return app::SceneCatalog(folder_.path());
+    return rooms::SceneCatalog(folder_.path());
   }
 
   /// Changes the scene as soon as the room lets us; the tick of its Ack.
@@ -147,7 +147,7 @@ TEST_F(Scenes, DoNotChangeFasterThanTheRoomCanBuildThem) {
 class ShippedScenes : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
-  app::SceneCatalog scenes() const override { return app::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
+  rooms::SceneCatalog scenes() const override { return rooms::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
 };
 
 TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace spindrift::core {
@@ -97,7 +99,12 @@ using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused
 /// What somebody may do; each includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
 
-/// The least that an action asks for.
+/// "viewer", "player", "operator".
+std::string_view roleName(Role role);
+/// nullopt for a name that is not a role.
+std::optional<Role> parseRole(std::string_view name);
+
+/// The lowest role that may carry out the action.
 Role roleFor(const Action& action);
 
 /// Who asks: a session, or a request by HTTP. Exactly one id is not 0, unless the room itself asks.
