@@ -1,4 +1,5 @@
 #include <array>
+#include <cstddef>
 
 #include <spindrift/core/command.h>
 
@@ -13,6 +14,11 @@ bool isOneOf(const Action& action) {
 constexpr std::array<std::string_view, 3> kRoleNames{"viewer", "player", "operator"};
 
 }  // namespace
+
+std::string_view nameOf(Role role) {
+  constexpr std::array<std::string_view, 3> kNames{"viewer", "player", "operator"};
+  return kNames[static_cast<std::size_t>(role)];
+}
 
 Role roleFor(const Action& action) {
   const bool is_play = isOneOf<Splash, BreakingWave, SpawnBoat, ControlBoat, RemoveBoat, TakeBoat>(action);

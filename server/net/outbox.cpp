@@ -79,9 +79,9 @@ Outbox::Demand Outbox::demand(LayerIndex layer, std::uint32_t reduced_count, Clo
   const core::Level level = core::effectiveLevel(wanted, reduced_count);
   if (close_ || shut_) return {.level = level};
   const bool has_ground = slot.follows && slot.level == level;
-  return {
-      .level = level,
-      .wants_whole = !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
+  return {.level = level,
+          .wants_keyframe =
+              !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
 }
 
 core::Level Outbox::levelOf(const Slot& slot) const {

@@ -53,7 +53,7 @@ class Outbox {
   struct Demand {
     core::Level level = core::Level::kFull;
     /// Only whole. False for a session that has read nothing since it lost one: what it cannot take is not made for it.
-    bool wants_whole = false;
+    bool wants_keyframe = false;
   };
   Demand demand(LayerIndex layer, std::uint32_t reduced_count, Clock::time_point now) const;
 

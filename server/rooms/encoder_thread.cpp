@@ -1,12 +1,9 @@
 #include <chrono>
 #include <utility>
 
-#include <spindrift/rooms/encoder_thread.h>
-#include <spindrift/rooms/layer_index.h>
-
 namespace spindrift::rooms {
 
-EncoderThread::EncoderThread(net::Hub& hub) : hub_(hub), thread_([this] { loop(); }) {}
+EncoderThread::EncoderThread(FrameOutlet& outlet) : outlet_(outlet), thread_([this] { loop(); }) {}
 
 EncoderThread::~EncoderThread() {
   stop();
@@ -89,25 +86,22 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
   std::array<core::FrameView, core::kReducedLevelCount> reduced;
   for (std::size_t k = 0; k < reduced.size(); ++k) reduced[k] = core::frameAt(frame, core::kLevels[k]);
   for (const codec::Stream stream : codec::allStreams()) {
-    const auto index = layerIndex(stream);
     const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
-    const net::LayerDemand demand = hub_.demand(room, index, reduced_count);
+    const core::LayerDemand demand = outlet_.demand(room, stream, reduced_count);
     for (const core::Level level : core::kLevels) {
       const core::FrameView& view = level == core::Level::kFull ? frame : reduced[core::indexOf(level)];
-      const net::LevelDemand& wanted = demand[core::indexOf(level)];
+      const core::LevelDemand& wanted = demand[core::indexOf(level)];
       if (wanted.watcher_count == 0) continue;
       const auto begin = std::chrono::steady_clock::now();
-      const codec::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_whole);
-      StreamCost& cost = spent[index][core::indexOf(level)];
+      const codec::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_keyframe);
+      StreamCost& cost = spent[codec::indexOf(stream)][core::indexOf(level)];
       cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       if (!encoded.whole && !encoded.continuing) continue;
       cost.frame_count = 1;
       for (const core::SharedBytes& form : {encoded.whole, encoded.continuing}) {
         if (form) cost.bytes_count += form->size();
       }
-      hub_.publish(
-          room, index,
-          {.whole = encoded.whole, .continuing = encoded.continuing, .level = level, .reduced_count = reduced_count});
+      outlet_.publish(room, stream, encoded, level, reduced_count);
     }
   }
   return spent;

@@ -5,7 +5,6 @@
 
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/monotonic.h>
-#include <spindrift/rooms/layer_index.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
 
@@ -31,25 +30,14 @@ constexpr double kSlowFactor = 0.9;
 constexpr auto kSlowPatience = 5s;
 constexpr auto kSlowWarningInterval = 60s;
 
-/// Which levels of a layer somebody watches, plain or packed.
-std::array<bool, core::kLevelCount> watchedLevels(const net::Hub& hub, const std::string& room, v1::Layer layer,
-                                                  std::uint32_t reduced_count) {
-  std::array<bool, core::kLevelCount> out{};
-  for (const codec::Stream& stream : codec::allStreams()) {
-    if (stream.layer != layer) continue;
-    const auto demand = hub.demand(room, layerIndex(stream), reduced_count);
-    for (std::size_t level = 0; level < out.size(); ++level) out[level] |= demand[level].watcher_count > 0;
-  }
-  return out;
-}
-
 }  // namespace
 
-Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, std::unique_ptr<Stage> stage,
-           std::unique_ptr<CommandLogWriter> log)
+Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
+           std::unique_ptr<Stage> stage, std::unique_ptr<CommandLogWriter> log)
     : name_(std::move(name)),
       rules_(rules),
       builder_(builder),
+      outlets_(outlets),
       stage_(std::move(stage)),
       log_(std::move(log)),
       heavy_budget_(kHeavyShare, kHeavyBurst),
@@ -63,7 +51,7 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, std:
 }
 
 core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
-                                                 WaterBuilder& builder) {
+                                                 WaterBuilder& builder, RoomOutlets& outlets) {
   auto stage = std::make_unique<Stage>(std::move(water));
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty()) {
@@ -78,7 +66,7 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
     log = *std::move(opened);
     spdlog::info("room {}: recorded to {}", name, log->file().string());
   }
-  return std::shared_ptr<Room>(new Room(std::move(name), rules, builder, std::move(stage), std::move(log)));
+  return std::shared_ptr<Room>(new Room(std::move(name), rules, builder, outlets, std::move(stage), std::move(log)));
 }
 
 bool isRoomName(const std::string& name) {
@@ -143,37 +131,37 @@ Room::TimePoint Room::due(TimePoint now) const {
   return stage_->water().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
 }
 
-void Room::run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
+void Room::run(TimePoint now) {
   stage_->bind();
-  session_count_ = hub.sessionCount();
-  adoptWater(now, observer);
+  session_count_ = outlets_.sessionCount();
+  adoptWater(now);
   if (isLost(now)) {
-    announce(hub, observer);
+    announce();
     return;
   }
   const bool stands_still = paused_ || asleep_;
   if (!stands_still) unpaused_wall_s_ += duration<double>(now - last_run_).count();
   last_run_ = now;
-  handOverFrames(encoder);
-  watchOverSleep(now, hub);
-  settlePeople(now, hub);
+  handOverFrames();
+  watchOverSleep(now);
+  settlePeople(now);
   finishChange();
   if (paused_ || asleep_ || now >= clock_.due()) applyCommands(now);
-  announce(hub, observer);
+  announce();
   if (change_) {
     // The state stands still until the particles are laid out.
   } else if (paused_) {
-    advancePaused(now, hub);
+    advancePaused(now);
   } else if (!asleep_ && now >= clock_.due()) {
-    step(now, hub);
+    step(now);
   }
-  announceRecovery(now, hub);
-  handOverFrames(encoder);
+  announceRecovery(now);
+  handOverFrames();
   if (now >= next_vitals_) publishVitals(now);
 }
 
-void Room::watchOverSleep(TimePoint now, const net::Hub& hub) {
-  if (stage_->scene().unwatched() != v1::UNWATCHED_SLEEP || hub.sessionCount(name_) > 0) {
+void Room::watchOverSleep(TimePoint now) {
+  if (stage_->scene().unwatched() != v1::UNWATCHED_SLEEP || outlets_.sessionCount(*this) > 0) {
     last_watched_ = now;
     if (!asleep_) return;
     asleep_ = false;
@@ -184,23 +172,23 @@ void Room::watchOverSleep(TimePoint now, const net::Hub& hub) {
   }
 }
 
-void Room::step(TimePoint now, net::Hub& hub) {
+void Room::step(TimePoint now) {
   const TimePoint end = timedStep();
   run_s_ += stage_->water().derived().tick_s;
   unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
   last_run_ = end;
   clock_.ticked(end);
-  if (stage_->water().time_s() + 1e-9 >= next_frame_s_) requestFrame(end, hub);
+  if (stage_->water().time_s() + 1e-9 >= next_frame_s_) requestFrame(end);
   watchRealTime(end);
 }
 
-void Room::advancePaused(TimePoint now, net::Hub& hub) {
+void Room::advancePaused(TimePoint now) {
   if (pending_tick_count_ > 0) {
     const TimePoint end = timedStep();
     if (--pending_tick_count_ == 0) next_idle_frame_ = end;  // what was asked for is there to see at once
     now = end;
   }
-  if (now >= next_idle_frame_) requestFrame(now, hub);
+  if (now >= next_idle_frame_) requestFrame(now);
 }
 
 Room::TimePoint Room::timedStep() {
@@ -233,29 +221,26 @@ bool Room::isDue(core::Level level) const {
   return paused_ || frame_count_ % core::frameStride(level, stage_->scene().stream().frame_rate_hz()) == 0;
 }
 
-void Room::requestFrame(TimePoint now, net::Hub& hub) {
+void Room::requestFrame(TimePoint now) {
   const double interval_s =
       clock_.speed() / stage_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
   if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, stage_->water().time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
-  wants_diagnostics_ = wants_diagnostics_ || watchedLevels(hub, name_, v1::LAYER_DIAGNOSTICS, 0).back();
   const v1::Scene& scene = stage_->scene();
-  const core::ReducedCounts counts = stage_->water().reducedCounts();
-  const auto wanted = [&](bool has_it, v1::Layer layer) {
-    std::array<bool, core::kLevelCount> levels{};
-    if (has_it) levels = watchedLevels(hub, name_, layer, codec::reducedCountOf(layer, counts));
-    for (const core::Level level : core::kLevels) levels[core::indexOf(level)] &= isDue(level);
+  const WatchedLayers watched = outlets_.watched(*this, stage_->water().reducedCounts());
+  wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
+  const auto due = [&](bool has_it, WatchedLayers::Levels levels) {
+    for (const core::Level level : core::kLevels) levels[core::indexOf(level)] &= has_it && isDue(level);
     return levels;
   };
-  const auto surface = wanted(scene.has_wave(), v1::LAYER_SURFACE);
-  const auto particles = wanted(scene.has_particles(), v1::LAYER_PARTICLES);
-  const auto foam = wanted(scene.foam().surface(), v1::LAYER_FOAM);
-  const auto bodies = wanted(scene.has_boats(), v1::LAYER_BODIES);
+  const auto surface = due(scene.has_wave(), watched.surface);
+  const auto particles = due(scene.has_particles(), watched.particles);
+  const auto foam = due(scene.foam().surface(), watched.foam);
   sim::FrameRequest request{.surface = surface.back(),
                             .particles = particles.back(),
                             .foam = foam.back(),
-                            .bodies = bodies.back(),
-                            .asked_s = core::monotonic_s(now),
+                            .bodies = scene.has_boats() && watched.bodies,
+                            .asked_s = monotonic_s(now),
                             .state_id = stage_->stateId()};
   for (std::size_t level = 0; level < request.reduced.size(); ++level)
     request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};
@@ -267,12 +252,12 @@ void Room::requestFrame(TimePoint now, net::Hub& hub) {
   }
 }
 
-void Room::handOverFrames(EncoderThread& encoder) {
+void Room::handOverFrames() {
   for (core::FrameView& frame : stage_->water().takeFrames()) {
     frame.tick = stage_->tickOf(frame.tick);
     if (wants_diagnostics_) frame.diagnostics = diagnostics();
     wants_diagnostics_ = false;
-    encoder.submit(name_, std::move(frame));
+    outlets_.frameReady(*this, std::move(frame));
   }
   if (wants_diagnostics_ && stage_->water().framesInFlight() == 0) {
     wants_diagnostics_ = false;
@@ -281,7 +266,7 @@ void Room::handOverFrames(EncoderThread& encoder) {
     frame.time_s = stage_->water().time_s();
     frame.state_id = stage_->stateId();
     frame.diagnostics = diagnostics();
-    encoder.submit(name_, std::move(frame));
+    outlets_.frameReady(*this, std::move(frame));
   }
 }
 

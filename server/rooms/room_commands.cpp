@@ -12,9 +12,7 @@
 
 #include <spindrift/core/overloaded.h>
 #include <spindrift/rooms/room.h>
-#include <spindrift/rooms/state_topics.h>
 #include <spindrift/wire/client_message.h>
-#include <spindrift/wire/server_message.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -43,7 +41,7 @@ std::optional<wire::CommandRejection> Room::admit(core::Command command) {
   if (const core::Role needed = core::roleFor(command.action); sender.role < needed) {
     refused = rejection(
         v1::REJECT_REASON_FORBIDDEN, "",
-        fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));
+        fmt::format("this takes the role of {}; yours is {}", core::nameOf(needed), core::nameOf(sender.role)));
   } else {
     refused = wire::checkAgainstScene(command, snapshot()->scene);
   }
@@ -71,12 +69,12 @@ void Room::applyCommands(TimePoint now) {
                    "the room is busy with resets, scenes, parameters and boats: try again in a second"));
 }
 
-void Room::abandonCommands(RoomObserver& observer) {
+void Room::abandonCommands() {
   const auto closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
   if (build_) answer(std::move(build_->commands), closed);
   abandonChange(closed);
   answer(commands_.drain(), closed);
-  deliverAnswers(observer);
+  deliverAnswers();
 }
 
 void Room::apply(Batch batch) {
@@ -219,7 +217,7 @@ void Room::boatsChanged() {
   news_.boats = true;
 }
 
-void Room::settlePeople(TimePoint now, net::Hub& hub) {
+void Room::settlePeople(TimePoint now) {
   const Roster::Turn turn = roster_.settle(now);
   for (const std::uint32_t boat_id : turn.boats_to_stop) {
     (void)applyToWater({.action = core::ControlBoat{.boat_id = boat_id}});  // it may be gone already
@@ -228,7 +226,7 @@ void Room::settlePeople(TimePoint now, net::Hub& hub) {
   if (!has_people_news_ || now < next_people_news_) return;
   has_people_news_ = false;
   next_people_news_ = now + kPeopleNewsInterval;
-  hub.broadcastState(name_, topic::kPeople, wire::people(roster_.people()));
+  outlets_.peopleChanged(*this, roster_.people());
 }
 
 // Time
@@ -248,51 +246,41 @@ Room::Outcome Room::advance(const core::Step& step) {
 
 // News
 
-void Room::announce(net::Hub& hub, RoomObserver& observer) {
+void Room::announce() {
   const News news = std::exchange(news_, {});
   if (news.state || !news.parameters.empty()) publishSnapshot();
-  if (news.state) hub.broadcastState(name_, topic::kRoomState, wire::roomState(paused_, clock_.speed()));
-  for (const auto& [path, value] : news.parameters)
-    hub.broadcastState(name_, topic::ofParameter(path), wire::parameterChanged(path, value, tick()));
-  if (news.reset) {
-    hub.broadcastState(name_, topic::kReset,
-                       wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, tick(), "somebody started the scene again"));
-  }
-  if (news.rebuilt) {
-    hub.broadcastState(name_, topic::kRecovered,
-                       wire::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
-                                       "the device failed; the scene began again on a new one"));
-  }
-  if (news.boats) announceBoats(hub);
-  deliverAnswers(observer);
+  if (news.state) outlets_.timeChanged(*this, paused_, clock_.speed());
+  for (const auto& [path, value] : news.parameters) outlets_.parameterChanged(*this, path, value);
+  if (news.reset) outlets_.wasReset(*this);
+  if (news.rebuilt) outlets_.hasRecovered(*this, "the device failed; the scene began again on a new one");
+  if (news.boats) announceBoats();
+  deliverAnswers();
 }
 
-void Room::deliverAnswers(RoomObserver& observer) {
+void Room::deliverAnswers() {
   for (Answer& one : std::exchange(answers_, {})) {
     if (one.rejected) {
       one.rejected->command_id = one.command.command_id;
-      observer.commandRejected(one.command, *one.rejected);
+      outlets_.commandRejected(one.command, *one.rejected);
     } else {
-      observer.commandApplied(one.command, tick(), one.boat_id);
+      outlets_.commandApplied(one.command, tick(), one.boat_id);
     }
   }
 }
 
-void Room::announceBoats(net::Hub& hub) {
+void Room::announceBoats() {
   const std::string before = boats_.SerializeAsString();
   boats_ = stage_->boats();
   if (boats_.SerializeAsString() == before) return;
   publishSnapshot();
-  hub.broadcastState(name_, topic::kBoats, wire::boatList(boats_));
+  outlets_.boatsChanged(*this, boats_);
 }
 
-void Room::announceRecovery(TimePoint now, net::Hub& hub) {
+void Room::announceRecovery(TimePoint now) {
   const std::uint64_t count = stage_->water().recoveredCount();
   if (!recovery_news_.tell(count, now)) return;
-  hub.broadcastState(
-      name_, topic::kRecovered,
-      wire::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, tick(),
-                      fmt::format("the guard put the water back to its last good state ({} times so far)", count)));
+  outlets_.hasRecovered(*this,
+                        fmt::format("the guard put the water back to its last good state ({} times so far)", count));
   boatsChanged();
 }
 

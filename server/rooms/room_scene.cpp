@@ -36,13 +36,13 @@ void Room::beginScene(Batch batch) {
   build_.emplace(WaterBuild{std::move(batch), builder_.build(*std::move(scene))});
 }
 
-void Room::adoptWater(TimePoint now, RoomObserver& observer) {
+void Room::adoptWater(TimePoint now) {
   if (!build_ || change_ || build_->water.wait_for(0s) != std::future_status::ready) return;
   WaterBuild build = *std::move(build_);
   build_.reset();
   commands_.release(build.commands);
   WaterBuilder::Built water = build.water.get();
-  if (build.commands.empty()) return finishRebuild(now, std::move(water), observer);
+  if (build.commands.empty()) return finishRebuild(now, std::move(water));
   const core::Command first = build.commands.front();
   const std::string name = std::get<core::ChangeScene>(first.action).name;
   if (!water) {
@@ -53,15 +53,15 @@ void Room::adoptWater(TimePoint now, RoomObserver& observer) {
     builder_.dispose(*std::move(water));
     return answer(std::move(build.commands), slow);
   }
-  replaceWater(*std::move(water), observer);
+  replaceWater(*std::move(water));
   answer(std::move(build.commands), {});
   answer(commands_.takeEqual(first.action), {});
 }
 
-void Room::replaceWater(std::unique_ptr<Water> water, RoomObserver& observer) {
+void Room::replaceWater(std::unique_ptr<Water> water) {
   builder_.dispose(stage_->replaceWater(std::move(water)));
   is_lost_ = false;
-  restartScene(observer);
+  restartScene();
 }
 
 Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
@@ -96,7 +96,7 @@ bool Room::isLost(TimePoint now) {
   return true;
 }
 
-void Room::finishRebuild(TimePoint now, WaterBuilder::Built water, RoomObserver& observer) {
+void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   constexpr std::chrono::seconds kLongestPause{30};
   if (!water) {
     spdlog::error("room {}: its water cannot be built anew ({}); the next try is in {} s", name_, water.error().message,
@@ -105,13 +105,13 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water, RoomObserver&
     rebuild_pause_ = std::min(2 * rebuild_pause_, kLongestPause);
     return;
   }
-  replaceWater(*std::move(water), observer);
+  replaceWater(*std::move(water));
   news_.rebuilt = true;
   publishVitals(now);
   spdlog::warn("room {}: runs again, from the start of scene {}", name_, stage_->scene().name());
 }
 
-void Room::restartScene(RoomObserver& observer) {
+void Room::restartScene() {
   if (log_) {
     v1::Record line;
     *line.mutable_scene() = stage_->scene();
@@ -141,7 +141,7 @@ void Room::restartScene(RoomObserver& observer) {
   roster_.keepOnly({});  // the new scene's boats are nobody's yet, whatever their numbers
   publishSnapshot();
   spdlog::info("room {}: scene {}", name_, stage_->scene().name());
-  observer.sceneChanged(*this);
+  outlets_.sceneChanged(*this);
 }
 
 }  // namespace spindrift::rooms

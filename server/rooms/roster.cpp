@@ -49,7 +49,7 @@ Admission Roster::arrive(const Arrival& arrival) {
   return out;
 }
 
-void Roster::leave(net::SessionId session, Clock::time_point now) {
+void Roster::leave(core::SessionId session, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find_if(people_, [&](const auto& entry) { return entry.second.session == session; });
   if (session == 0 || found == people_.end()) return;

@@ -18,8 +18,9 @@ constexpr std::size_t kChangeMaxCount = 16;
 
 core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gpu::DeviceChoice& device,
                                                                         std::vector<RoomSetup> setups, RoomRules rules,
-                                                                        std::size_t max_room_count) {
-  auto self = std::unique_ptr<SimulationThread>(new SimulationThread);
+                                                                        std::size_t max_room_count,
+                                                                        RoomOutlets& outlets) {
+  auto self = std::unique_ptr<SimulationThread>(new SimulationThread(outlets));
   self->rules_ = std::move(rules);
   self->max_room_count_ = std::max(max_room_count, setups.size());
   self->builder_ = std::make_unique<WaterBuilder>(device, [raw = self.get()] {
@@ -58,12 +59,10 @@ core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
   return {};
 }
 
-void SimulationThread::run(net::Hub& hub, EncoderThread& encoder, RoomObserver& observer) {
+void SimulationThread::run() {
   {
     const std::lock_guard lock(mutex_);
-    hub_ = &hub;
-    encoder_ = &encoder;
-    observer_ = &observer;
+    running_ = true;
   }
   wake_.notify_one();
 }
@@ -157,7 +156,7 @@ core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built w
   if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
   (*water)->bind();
   if (device_line_.empty()) device_line_ = (*water)->context().device().name;
-  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_);
+  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_);
   if (!room) return room.error();
   (*room)->start(std::chrono::steady_clock::now());
   const std::lock_guard lock(rooms_mutex_);
@@ -176,10 +175,10 @@ core::Result<void> SimulationThread::close(const std::string& name, const std::f
     std::erase(rooms_, room);
   }
   before(*room);
-  room->abandonCommands(*observer_);
+  room->abandonCommands();
   summarise(*room);
+  outlets_.closed(*room);
   room->releaseDevice();
-  encoder_->forget(name);
   return {};
 }
 
@@ -193,7 +192,7 @@ void SimulationThread::summarise(const Room& room) {
 void SimulationThread::loop() {
   using Clock = std::chrono::steady_clock;
   std::unique_lock lock(mutex_);
-  wake_.wait(lock, [&] { return stopping_ || hub_; });
+  wake_.wait(lock, [&] { return stopping_ || running_; });
   for (const auto& room : rooms_) room->start(Clock::now());
   while (!stopping_) {
     last_round_ = Clock::now();
@@ -203,7 +202,7 @@ void SimulationThread::loop() {
     finishOpenings();
     auto due = Clock::now() + std::chrono::milliseconds(100);
     for (const auto& room : rooms_) {
-      room->run(Clock::now(), *hub_, *encoder_, *observer_);
+      room->run(Clock::now());
     }
     const auto now = Clock::now();
     for (const auto& room : rooms_) due = std::min(due, room->due(now));

@@ -1,4 +1,3 @@
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <sstream>
@@ -40,6 +39,13 @@ std::optional<system_clock::time_point> parseUtc(const std::string& text) {
 }
 
 }  // namespace
+
+std::optional<core::Role> parseRole(std::string_view name) {
+  for (const core::Role role : {core::Role::kViewer, core::Role::kPlayer, core::Role::kOperator}) {
+    if (core::nameOf(role) == name) return role;
+  }
+  return std::nullopt;
+}
 
 core::Result<Access> Access::parse(std::string_view text, const std::string& label, std::optional<core::Role> guest) {
   Access out;

@@ -6,9 +6,9 @@
 
 #include <spindrift/core/monotonic.h>
 #include <spindrift/core/overloaded.h>
-#include <spindrift/rooms/layer_index.h>
-#include <spindrift/rooms/state_topics.h>
 #include <spindrift/service/gateway.h>
+#include <spindrift/service/layer_index.h>
+#include <spindrift/service/state_topics.h>
 #include <spindrift/wire/client_message.h>
 #include <spindrift/wire/server_message.h>
 
@@ -29,10 +29,15 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
 
 }  // namespace
 
-Gateway::Gateway(rooms::SimulationThread& rooms, GatewayOptions options, const MetricsSources& sources)
-    : rooms_(rooms),
-      options_(std::move(options)),
-      rest_(rooms, options_.access, counters_, sources, [this](const rooms::Room& room) { dismiss(room); }) {}
+Gateway::Gateway(GatewayOptions options, const MetricsSources& sources)
+    : options_(std::move(options)),
+      rest_(options_.access, counters_, sources, [this](const rooms::Room& room) { dismiss(room); }) {}
+
+void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
+  rooms_ = &rooms;
+  encoder_ = &encoder;
+  rest_.serve(rooms);
+}
 
 void Gateway::serverStarts(net::Hub& served) {
   hub_ = &served;
@@ -40,14 +45,14 @@ void Gateway::serverStarts(net::Hub& served) {
 }
 
 core::Result<void> Gateway::acceptSession(const std::string& room) {
-  if (rooms_.find(room)) return {};
+  if (simulation().find(room)) return {};
   std::string names;
-  for (const auto& known : rooms_.rooms()) names += (names.empty() ? "" : ", ") + known->name();
+  for (const auto& known : simulation().rooms()) names += (names.empty() ? "" : ", ") + known->name();
   return core::Error{core::ErrorCode::kInvalidInput, "room '" + room + "' does not exist; rooms are: " + names};
 }
 
 void Gateway::sessionOpened(net::SessionId session, const std::string& room_name, const std::string& peer) {
-  const std::shared_ptr<rooms::Room> room = rooms_.find(room_name);
+  const std::shared_ptr<rooms::Room> room = simulation().find(room_name);
   if (!room) return refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
   const auto now = std::chrono::steady_clock::now();
   {
@@ -61,14 +66,14 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
   hub().closeAt(session, now + options_.hello_patience, net::CloseCode::kPolicy,
                 "no hello came in time: send ClientMessage.hello first");
   // Closed since: dismiss() may have passed by before this session was on its list.
-  if (rooms_.find(room->name()) != room) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+  if (simulation().find(room->name()) != room) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 
 void Gateway::greet(net::SessionId session, const rooms::Room& room) {
   const auto snapshot = room.snapshot();
   wire::GreetingFacts facts;
   facts.server = "spindrift " SPINDRIFT_VERSION;
-  facts.device = rooms_.deviceLine();
+  facts.device = simulation().deviceLine();
   facts.room = room.name();
   facts.session_id = session;
   facts.layers = layersOf(snapshot->scene);
@@ -83,8 +88,8 @@ void Gateway::greet(net::SessionId session, const rooms::Room& room) {
   facts.paused = snapshot->paused;
   facts.speed = snapshot->speed;
   facts.boats = snapshot->boats;
-  facts.scenes = rooms_.rules().scenes.names();
-  hub().sendState(session, rooms::topic::kGreeting, wire::greeting(facts, snapshot->scene));
+  facts.scenes = simulation().rules().scenes.names();
+  hub().sendState(session, topic::kGreeting, wire::greeting(facts, snapshot->scene));
   const std::lock_guard lock(mutex_);
   if (const auto known = sessions_.find(session); known != sessions_.end()) known->second.greeted = snapshot;
 }
@@ -171,7 +176,7 @@ void Gateway::hello(net::SessionId session, const Session& state, const wire::He
     kept.role = grant->role;
     kept.person_id = admission.person_id;
   }
-  spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, core::roleName(grant->role),
+  spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, core::nameOf(grant->role),
                hello.client, admission.resumed ? "resumed" : "");
   v1::Welcome welcome;
   welcome.set_role(wire::toWire(grant->role));
@@ -231,6 +236,90 @@ bool Gateway::takeCommand(net::SessionId session) {
   const std::lock_guard lock(mutex_);
   const auto known = sessions_.find(session);
   return known != sessions_.end() && known->second.commands.take(std::chrono::steady_clock::now());
+}
+
+// What rooms tell
+
+void Gateway::timeChanged(const rooms::Room& room, bool paused, double speed) {
+  hub().broadcastState(room.name(), topic::kRoomState, wire::roomState(paused, speed));
+}
+
+void Gateway::parameterChanged(const rooms::Room& room, const std::string& path, double value) {
+  hub().broadcastState(room.name(), topic::ofParameter(path), wire::parameterChanged(path, value, room.tick()));
+}
+
+void Gateway::boatsChanged(const rooms::Room& room, const v1::BoatList& boats) {
+  hub().broadcastState(room.name(), topic::kBoats, wire::boatList(boats));
+}
+
+void Gateway::peopleChanged(const rooms::Room& room, const v1::People& people) {
+  hub().broadcastState(room.name(), topic::kPeople, wire::people(people));
+}
+
+void Gateway::wasReset(const rooms::Room& room) {
+  hub().broadcastState(room.name(), topic::kReset,
+                       wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, room.tick(), "somebody started the scene again"));
+}
+
+void Gateway::hasRecovered(const rooms::Room& room, const std::string& how) {
+  hub().broadcastState(room.name(), topic::kRecovered,
+                       wire::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, room.tick(), how));
+}
+
+void Gateway::closed(const rooms::Room& room) {
+  encoder_->forget(room.name());
+}
+
+void Gateway::frameReady(const rooms::Room& room, core::FrameView frame) {
+  encoder_->submit(room.name(), std::move(frame));
+}
+
+rooms::WatchedLayers Gateway::watched(const rooms::Room& room, const core::ReducedCounts& counts) const {
+  rooms::WatchedLayers out;
+  for (const codec::Stream& stream : codec::allStreams()) {
+    const auto of_levels = demand(room.name(), stream, codec::reducedCountOf(stream.layer, counts));
+    const auto is_watched = [](const core::LevelDemand& level) { return level.watcher_count > 0; };
+    const auto note = [&](rooms::WatchedLayers::Levels& levels) {
+      for (std::size_t level = 0; level < levels.size(); ++level) levels[level] |= is_watched(of_levels[level]);
+    };
+    switch (stream.layer) {
+      case v1::LAYER_SURFACE:
+        note(out.surface);
+        break;
+      case v1::LAYER_PARTICLES:
+        note(out.particles);
+        break;
+      case v1::LAYER_FOAM:
+        note(out.foam);
+        break;
+      case v1::LAYER_BODIES:
+        out.bodies |= is_watched(of_levels.back());
+        break;
+      case v1::LAYER_DIAGNOSTICS:
+        out.diagnostics |= is_watched(of_levels.back());
+        break;
+      default:
+        break;
+    }
+  }
+  return out;
+}
+
+std::size_t Gateway::sessionCount(const rooms::Room& room) const {
+  return hub().sessionCount(room.name());
+}
+
+std::size_t Gateway::sessionCount() const {
+  return hub().sessionCount();
+}
+
+core::LayerDemand Gateway::demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const {
+  return demandOf(hub(), room, stream, reduced_count);
+}
+
+void Gateway::publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
+                      core::Level level, std::uint32_t reduced_count) {
+  publishTo(hub(), room, stream, frame, level, reduced_count);
 }
 
 void Gateway::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {

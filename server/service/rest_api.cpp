@@ -92,9 +92,9 @@ unsigned httpStatusOf(v1::RejectReason reason) {
   }
 }
 
-RestApi::RestApi(rooms::SimulationThread& rooms, const Access& access, CommandCounters& counters,
-                 const MetricsSources& sources, std::function<void(const rooms::Room&)> dismiss)
-    : rooms_(rooms), access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
+RestApi::RestApi(const Access& access, CommandCounters& counters, const MetricsSources& sources,
+                 std::function<void(const rooms::Room&)> dismiss)
+    : access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
 
 void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond) {
   /// Far above any tick that a room allows while people are connected.
@@ -103,10 +103,10 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   if (is_probe && request.method != "GET") return respond(wrongMethod("GET"));
   if (request.path == "/healthz") return respond(text(200, "ok\n"));
   if (request.path == "/readyz") {
-    const double since_s = rooms_.sinceLastRound_s();
+    const double since_s = rooms_->sinceLastRound_s();
     if (since_s >= kStuck_s)
       return respond(text(503, "the simulation has stood still for " + std::to_string(since_s) + " s\n"));
-    for (const auto& room : rooms_.rooms()) {
+    for (const auto& room : rooms_->rooms()) {
       if (room->vitals()->lost)
         return respond(text(503, "room " + room->name() + ": the device failed, its water is being built anew\n"));
     }
@@ -115,7 +115,7 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   if (request.path == "/metrics") {
     return respond(HttpReply{.status = 200,
                              .content_type = "text/plain; version=0.0.4; charset=utf-8",
-                             .body = metricsText(rooms_, *hub_, counters_, sources_)});
+                             .body = metricsText(*rooms_, *hub_, counters_, sources_)});
   }
   if (!request.path.starts_with(kRoot)) return respond(std::nullopt);
 
@@ -128,7 +128,7 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   if (call.path[0] == "scenes" && call.path.size() == 1) {
     if (request.method != "GET") return respond(wrongMethod("GET"));
     v1::SceneList out;
-    for (const std::string& name : rooms_.rules().scenes.names()) out.add_scenes(name);
+    for (const std::string& name : rooms_->rules().scenes.names()) out.add_scenes(name);
     return respond(json(200, out));
   }
   if (call.path[0] != "rooms") return respond(std::nullopt);
@@ -140,7 +140,7 @@ void RestApi::rooms(const Call& call, net::HttpResponder respond) {
   if (call.request.method == "POST") return createRoom(call, std::move(respond));
   if (call.request.method != "GET") return respond(wrongMethod("GET, POST"));
   v1::RoomList out;
-  for (const auto& room : rooms_.rooms()) fillRoomInfo(*room, *out.add_rooms());
+  for (const auto& room : rooms_->rooms()) fillRoomInfo(*room, *out.add_rooms());
   respond(json(200, out));
 }
 
@@ -153,26 +153,26 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
   if (!rooms::isRoomName(wanted->name())) {
     return respond(problem(422, "name: a room's name has 1 to 32 letters, digits, '_' or '-'"));
   }
-  if (!rooms_.rules().scenes.has(wanted->scene())) {
+  if (!rooms_->rules().scenes.has(wanted->scene())) {
     return respond(problem(404, "scene: there is none of that name; /api/v1/scenes lists what there is"));
   }
   if (!v1::Fidelity_IsValid(wanted->fidelity())) return respond(problem(422, "fidelity: no level of that number"));
   const auto fidelity =
       wanted->fidelity() == v1::FIDELITY_UNSPECIFIED ? std::nullopt : std::optional(wanted->fidelity());
-  auto scene = rooms_.rules().scenes.load(wanted->scene(), fidelity);
+  auto scene = rooms_->rules().scenes.load(wanted->scene(), fidelity);
   if (!scene) return respond(problem(500, "scene: " + rooms::firstLine(scene.error().message)));
-  rooms_.openRoom({wanted->name(), *std::move(scene)},
-                  [this, name = wanted->name(), respond = std::move(respond)](const core::Result<void>& opened) {
-                    if (!opened)
-                      return respond(problem(statusOf(opened.error()), rooms::firstLine(opened.error().message)));
-                    v1::RoomInfo out;
-                    if (const auto room = rooms_.find(name)) fillRoomInfo(*room, out);
-                    respond(json(201, out));
-                  });
+  rooms_->openRoom({wanted->name(), *std::move(scene)},
+                   [this, name = wanted->name(), respond = std::move(respond)](const core::Result<void>& opened) {
+                     if (!opened)
+                       return respond(problem(statusOf(opened.error()), rooms::firstLine(opened.error().message)));
+                     v1::RoomInfo out;
+                     if (const auto room = rooms_->find(name)) fillRoomInfo(*room, out);
+                     respond(json(201, out));
+                   });
 }
 
 void RestApi::room(const Call& call, net::HttpResponder respond) {
-  const auto room = rooms_.find(call.path[1]);
+  const auto room = rooms_->find(call.path[1]);
   if (!room || call.path[1].empty()) {
     // Only a name that a room may have is echoed: any other can hold whatever bytes a stranger sends.
     const std::string named =
@@ -206,7 +206,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
 
 void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
   if (call.role < core::Role::kOperator) return respond(problem(403, "closing a room takes the role of operator"));
-  rooms_.closeRoom(call.path[1], dismiss_, [respond = std::move(respond)](const core::Result<void>& closed) {
+  rooms_->closeRoom(call.path[1], dismiss_, [respond = std::move(respond)](const core::Result<void>& closed) {
     if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
     respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
   });

@@ -14,8 +14,8 @@
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
-#include <spindrift/rooms/layer_index.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/service/layer_index.h>
 #include <spindrift/wire/client_message.h>
 #include <spindrift/wire/server_message.h>
 
@@ -70,7 +70,7 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
 }
 
 /// What a client meets: greets, takes subscriptions as the real gateway does, answers every command with an Ack.
-class FakeGateway final : public net::Application {
+class FakeGateway final : public net::Application, public rooms::FrameOutlet {
  public:
   FakeGateway() {
     auto scene = scene::parseSceneText("wave {} particles { count: 100 } coupling {} foam {}", "fake.textproto");
@@ -107,6 +107,13 @@ class FakeGateway final : public net::Application {
     }
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }
+  core::LayerDemand demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const override {
+    return service::demandOf(*hub_, room, stream, reduced_count);
+  }
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
+               std::uint32_t reduced_count) override {
+    service::publishTo(*hub_, room, stream, frame, level, reduced_count);
+  }
   void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
 
   /// The rooms that frames are made for.
@@ -128,7 +135,7 @@ class FakeWater {
     auto started = net::Server::start(options, gateway);
     if (!started) throw std::runtime_error(started.error().message);
     server = std::move(*started);
-    encoder = std::make_unique<rooms::EncoderThread>(server->hub());
+    encoder = std::make_unique<rooms::EncoderThread>(gateway);
     for (std::size_t room = 0; room < makers_.size(); ++room) {
       makers_[room] = std::thread([this, room] { makeFrames(room); });
     }

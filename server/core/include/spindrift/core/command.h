@@ -98,6 +98,11 @@ using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused
 
 /// What somebody may do; each includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
+/// "viewer", "player", "operator".
+std::string_view nameOf(Role role);
+
+/// Identifies one connection for the life of the process; never 0, never reused.
+using SessionId = std::uint64_t;
 
 /// "viewer", "player", "operator".
 std::string_view roleName(Role role);
@@ -109,7 +114,7 @@ Role roleFor(const Action& action);
 
 /// Who asks: a session, or a request by HTTP. Exactly one id is not 0, unless the room itself asks.
 struct Sender {
-  std::uint64_t session_id = 0;
+  SessionId session_id = 0;
   std::uint64_t request_id = 0;
   std::uint32_t person_id = 0;  ///< of the session, in its room; 0: nobody in particular
   Role role = Role::kOperator;

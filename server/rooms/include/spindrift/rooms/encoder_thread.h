@@ -12,14 +12,14 @@
 
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/frame_view.h>
-#include <spindrift/net/server.h>
+#include <spindrift/rooms/frame_outlet.h>
 
 namespace spindrift::rooms {
 
 /// Holds at most one waiting frame a room: a newer one replaces it, and the loss is counted.
 class EncoderThread {
  public:
-  explicit EncoderThread(net::Hub& hub);
+  explicit EncoderThread(FrameOutlet& outlet);
   ~EncoderThread();
   EncoderThread(const EncoderThread&) = delete;
   EncoderThread& operator=(const EncoderThread&) = delete;
@@ -50,7 +50,7 @@ class EncoderThread {
   /// Encodes what somebody watches of a frame, and publishes it.
   Costs encode(const std::string& room, const core::FrameView& frame, codec::FrameEncoder& encoder);
 
-  net::Hub& hub_;
+  FrameOutlet& outlet_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::map<std::string, core::FrameView> waiting_;

@@ -16,12 +16,11 @@
 #include <spindrift/core/command.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
-#include <spindrift/net/server.h>
 #include <spindrift/rooms/command_log.h>
 #include <spindrift/rooms/command_queue.h>
-#include <spindrift/rooms/encoder_thread.h>
 #include <spindrift/rooms/growth_news.h>
 #include <spindrift/rooms/real_time_clock.h>
+#include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/roster.h>
 #include <spindrift/rooms/scene_catalog.h>
 #include <spindrift/rooms/stage.h>
@@ -69,28 +68,15 @@ struct RoomVitals {
   core::DiagnosticsView diagnostics;
 };
 
-class Room;
-
-/// Who has to know what became of commands and scenes. Called on the simulation thread; must not block.
-class RoomObserver {
- public:
-  virtual ~RoomObserver() = default;
-  /// The room's scene was replaced; its snapshot is the new one already.
-  virtual void sceneChanged(const Room& room) = 0;
-  /// `boat_id`: of SpawnBoat, the new boat; 0 otherwise.
-  virtual void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
-  /// The rejection has the command's number.
-  virtual void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) = 0;
-};
-
 class Room {
  public:
   using TimePoint = RealTimeClock::TimePoint;
 
   /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes what
-  /// the room changes to, and outlives it. Errors: those of the log.
+  /// the room changes to; it and `outlets` outlive the room. Errors: those of the log.
   static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
-                                                    const RoomRules& rules, WaterBuilder& builder);
+                                                    const RoomRules& rules, WaterBuilder& builder,
+                                                    RoomOutlets& outlets);
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -109,14 +95,14 @@ class Room {
   [[nodiscard]] TimePoint due(TimePoint now) const;
   /// Drains commands, steps if neither paused nor asleep, asks for a frame when one is due and watched, hands over
   /// finished ones. At most one tick a call, so that rooms share the thread.
-  void run(TimePoint now, net::Hub& hub, EncoderThread& encoder, RoomObserver& observer);
+  void run(TimePoint now);
 
   /// For the summary at the end.
   [[nodiscard]] const sim::WaterSim& water() const { return stage_->water(); }
   /// Ticks since the room began, whatever its scenes: never goes back.
   [[nodiscard]] std::uint64_t tick() const { return stage_->tick(); }
   /// Tells whoever still waits for an answer that there will be none.
-  void abandonCommands(RoomObserver& observer);
+  void abandonCommands();
   /// Ends the simulation; only the any-thread functions may be called afterwards.
   void releaseDevice() { stage_.reset(); }
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
@@ -159,13 +145,13 @@ class Room {
     TimePoint begin;
   };
 
-  Room(std::string name, const RoomRules& rules, WaterBuilder& builder, std::unique_ptr<Stage> stage,
-       std::unique_ptr<CommandLogWriter> log);
+  Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
+       std::unique_ptr<Stage> stage, std::unique_ptr<CommandLogWriter> log);
 
-  void step(TimePoint now, net::Hub& hub);
-  void watchOverSleep(TimePoint now, const net::Hub& hub);
+  void step(TimePoint now);
+  void watchOverSleep(TimePoint now);
   TimePoint timedStep();
-  void advancePaused(TimePoint now, net::Hub& hub);
+  void advancePaused(TimePoint now);
 
   // room_commands.cpp
   void applyCommands(TimePoint now);
@@ -186,17 +172,17 @@ class Room {
   /// Notes what became of each command.
   void answer(Batch batch, const Outcome& outcome);
   /// Tells everybody what is new, then the senders what became of their commands.
-  void announce(net::Hub& hub, RoomObserver& observer);
+  void announce();
   /// Tells the senders what became of their commands.
-  void deliverAnswers(RoomObserver& observer);
+  void deliverAnswers();
   /// Boats whose people went away stop; news of people go out.
-  void settlePeople(TimePoint now, net::Hub& hub);
+  void settlePeople(TimePoint now);
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const;
   /// Boats came or went: owners of those that are gone have them no more, and people are told.
   void boatsChanged();
   /// The boats on the water, if they are others than those announced last.
-  void announceBoats(net::Hub& hub);
-  void announceRecovery(TimePoint now, net::Hub& hub);
+  void announceBoats();
+  void announceRecovery(TimePoint now);
 
   // room_change.cpp
   void applyNewest(Values values);
@@ -214,25 +200,25 @@ class Room {
   // room_scene.cpp
   void beginScene(Batch batch);
   /// Goes on with the water that was built, if it is there.
-  void adoptWater(TimePoint now, RoomObserver& observer);
+  void adoptWater(TimePoint now);
   /// Forgets what belonged to the water before.
-  void restartScene(RoomObserver& observer);
+  void restartScene();
   /// Refuses ticks that take longer than `max_ms`, and longer than now, while others than the sender are connected.
   [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                    double max_ms) const;
   /// Goes on with other water from its start.
-  void replaceWater(std::unique_ptr<Water> water, RoomObserver& observer);
+  void replaceWater(std::unique_ptr<Water> water);
   /// Asks the device whether it still works; if not, has the same scene built anew, on a device that does, and answers
   /// whoever asks for something meanwhile. True while it does not.
   bool isLost(TimePoint now);
-  void finishRebuild(TimePoint now, WaterBuilder::Built water, RoomObserver& observer);
+  void finishRebuild(TimePoint now, WaterBuilder::Built water);
   /// Says in the vitals that the device failed, without asking it for anything.
   void publishLoss();
 
-  void requestFrame(TimePoint now, net::Hub& hub);
+  void requestFrame(TimePoint now);
   /// Whether the next frame holds the level: all do while the room is paused, then every so many.
   [[nodiscard]] bool isDue(core::Level level) const;
-  void handOverFrames(EncoderThread& encoder);
+  void handOverFrames();
   core::DiagnosticsView diagnostics();
   void watchRealTime(TimePoint now);
   void publishSnapshot();
@@ -242,6 +228,7 @@ class Room {
   const std::string name_;
   const RoomRules& rules_;
   WaterBuilder& builder_;
+  RoomOutlets& outlets_;
   std::unique_ptr<Stage> stage_;
   std::unique_ptr<CommandLogWriter> log_;  ///< null: no log
   CommandQueue commands_;

@@ -12,14 +12,13 @@
 #include <vector>
 
 #include <spindrift/core/command.h>
-#include <spindrift/net/server.h>
 #include <spindrift/v1/wire.pb.h>
 
 namespace spindrift::rooms {
 
 /// Somebody who said hello.
 struct Arrival {
-  net::SessionId session = 0;
+  core::SessionId session = 0;
   core::Role role = core::Role::kViewer;
   std::string name{};           ///< empty: "guest" and the person's number
   std::uint32_t color_rgb = 0;  ///< 0: one of the roster's own
@@ -30,7 +29,7 @@ struct Admission {
   std::uint32_t person_id = 0;
   std::string resume_key;
   bool resumed = false;
-  std::optional<net::SessionId> displaced;  ///< the session that was this person until now
+  std::optional<core::SessionId> displaced;  ///< the session that was this person until now
 };
 
 /// A lost connection keeps its person, and the person's boats, for the grace time; then the boats are nobody's.
@@ -43,7 +42,7 @@ class Roster {
 
   Admission arrive(const Arrival& arrival);
   /// The connection is gone. Only the session that is the person's now counts.
-  void leave(net::SessionId session, Clock::time_point now);
+  void leave(core::SessionId session, Clock::time_point now);
 
   /// Boats.
   [[nodiscard]] std::uint32_t ownerOf(std::uint32_t boat_id) const;  ///< 0: nobody
@@ -69,7 +68,7 @@ class Roster {
     std::uint32_t color_rgb = 0;
     core::Role role = core::Role::kViewer;
     std::string resume_key;
-    net::SessionId session = 0;  ///< 0: away
+    core::SessionId session = 0;  ///< 0: away
     Clock::time_point away_since{};
     bool boats_stopped = false;  ///< since they went away
     std::set<std::uint32_t> boats;

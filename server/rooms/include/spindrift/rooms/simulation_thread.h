@@ -14,8 +14,6 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/device.h>
-#include <spindrift/net/server.h>
-#include <spindrift/rooms/encoder_thread.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/rooms/water_builder.h>
 
@@ -23,16 +21,17 @@ namespace spindrift::rooms {
 
 class SimulationThread {
  public:
-  /// Makes the rooms and waits for that; errors are the device's and the rooms'.
+  /// Makes the rooms, which speak to `outlets` once run() was called, and waits for that; errors are the device's and
+  /// the rooms'.
   static core::Result<std::unique_ptr<SimulationThread>> start(const gpu::DeviceChoice& device,
-                                                               std::vector<RoomSetup> setups, RoomRules rules = {},
-                                                               std::size_t max_room_count = 8);
+                                                               std::vector<RoomSetup> setups, RoomRules rules,
+                                                               std::size_t max_room_count, RoomOutlets& outlets);
   ~SimulationThread();
   SimulationThread(const SimulationThread&) = delete;
   SimulationThread& operator=(const SimulationThread&) = delete;
 
-  /// Time begins to run; all must live until stop().
-  void run(net::Hub& hub, EncoderThread& encoder, RoomObserver& observer);
+  /// Time begins to run; the outlets must live until stop().
+  void run();
   /// Ends the thread; the rooms' water and the context are gone afterwards, changes that wait are told so. Idempotent.
   void stop();
 
@@ -71,7 +70,7 @@ class SimulationThread {
     Done done;
   };
 
-  SimulationThread() = default;
+  explicit SimulationThread(RoomOutlets& outlets) : outlets_(outlets) {}
   core::Result<void> build(std::vector<RoomSetup> setups);
   void loop();
   void carryOut(Change change, const Done& done);
@@ -83,6 +82,7 @@ class SimulationThread {
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void summarise(const Room& room);
 
+  RoomOutlets& outlets_;
   RoomRules rules_;
   std::size_t max_room_count_ = 0;
   std::unique_ptr<WaterBuilder> builder_;
@@ -91,14 +91,12 @@ class SimulationThread {
   std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;
   std::vector<std::string> summary_;
-  net::Hub* hub_ = nullptr;
-  EncoderThread* encoder_ = nullptr;
-  RoomObserver* observer_ = nullptr;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};
   bool was_built_ = false;  ///< the builder has finished something since the last round
+  bool running_ = false;
   bool stopping_ = false;
   std::thread thread_;
 };

@@ -10,6 +10,9 @@
 
 #include <spindrift/core/token_bucket.h>
 #include <spindrift/net/server.h>
+#include <spindrift/rooms/encoder_thread.h>
+#include <spindrift/rooms/frame_outlet.h>
+#include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/simulation_thread.h>
 #include <spindrift/service/access.h>
 #include <spindrift/service/metrics.h>
@@ -27,10 +30,13 @@ struct GatewayOptions {
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions without Hello are closed after it
 };
 
-class Gateway final : public net::Application, public rooms::RoomObserver {
+class Gateway final : public net::Application, public rooms::RoomOutlets, public rooms::FrameOutlet {
  public:
-  /// `rooms` and `sources` outlive the gateway, though the rooms' thread may have ended.
-  Gateway(rooms::SimulationThread& rooms, GatewayOptions options, const MetricsSources& sources);
+  /// `sources` outlives the gateway.
+  Gateway(GatewayOptions options, const MetricsSources& sources);
+  /// Before the network starts: whose rooms these are, and who encodes their frames. Both outlive the gateway's use by
+  /// the network, though their threads may have ended.
+  void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
 
   void serverStarts(net::Hub& hub) override;
   core::Result<void> acceptSession(const std::string& room) override;
@@ -40,10 +46,28 @@ class Gateway final : public net::Application, public rooms::RoomObserver {
   void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
+  // RoomOutlets
   /// Greets everybody in the room again; their layers go on.
   void sceneChanged(const rooms::Room& room) override;
+  void timeChanged(const rooms::Room& room, bool paused, double speed) override;
+  void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
+  void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
+  void peopleChanged(const rooms::Room& room, const v1::People& people) override;
+  void wasReset(const rooms::Room& room) override;
+  void hasRecovered(const rooms::Room& room, const std::string& how) override;
+  void closed(const rooms::Room& room) override;
+  void frameReady(const rooms::Room& room, core::FrameView frame) override;
+  [[nodiscard]] rooms::WatchedLayers watched(const rooms::Room& room, const core::ReducedCounts& counts) const override;
+  [[nodiscard]] std::size_t sessionCount(const rooms::Room& room) const override;
+  [[nodiscard]] std::size_t sessionCount() const override;
   void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
   void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) override;
+
+  // FrameOutlet
+  [[nodiscard]] core::LayerDemand demand(const std::string& room, codec::Stream stream,
+                                         std::uint32_t reduced_count) const override;
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
+               std::uint32_t reduced_count) override;
 
  private:
   struct Session {
@@ -55,7 +79,8 @@ class Gateway final : public net::Application, public rooms::RoomObserver {
     std::uint32_t person_id = 0;
   };
 
-  net::Hub& hub() { return *hub_; }
+  [[nodiscard]] net::Hub& hub() const { return *hub_; }
+  [[nodiscard]] rooms::SimulationThread& simulation() const { return *rooms_; }
   /// Sends a greeting with the room's state now, and notes that state.
   void greet(net::SessionId session, const rooms::Room& room);
   void hello(net::SessionId session, const Session& state, const wire::Hello& hello);
@@ -67,8 +92,9 @@ class Gateway final : public net::Application, public rooms::RoomObserver {
   /// Sends everybody away: the room closes.
   void dismiss(const rooms::Room& room);
 
-  rooms::SimulationThread& rooms_;
   const GatewayOptions options_;
+  rooms::SimulationThread* rooms_ = nullptr;  ///< set before any session exists
+  rooms::EncoderThread* encoder_ = nullptr;   ///< likewise
   CommandCounters counters_;
   RestApi rest_;
   net::Hub* hub_ = nullptr;  ///< set before any session exists

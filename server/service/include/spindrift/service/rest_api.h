@@ -25,9 +25,11 @@ unsigned httpStatusOf(v1::RejectReason reason);
 class RestApi {
  public:
   /// Everything given outlives it. `dismiss` sends a room's sessions away before it closes.
-  RestApi(rooms::SimulationThread& rooms, const Access& access, CommandCounters& counters,
-          const MetricsSources& sources, std::function<void(const rooms::Room&)> dismiss);
+  RestApi(const Access& access, CommandCounters& counters, const MetricsSources& sources,
+          std::function<void(const rooms::Room&)> dismiss);
 
+  /// Before the network starts.
+  void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
   void serverStarts(net::Hub& hub) { hub_ = &hub; }
   /// Any request that net leaves to the application.
   void answer(const net::HttpRequest& request, net::HttpResponder respond);
@@ -51,12 +53,12 @@ class RestApi {
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
   net::HttpResponder takePending(std::uint64_t request_id);
 
-  rooms::SimulationThread& rooms_;
   const Access& access_;
   CommandCounters& counters_;
   const MetricsSources& sources_;
   const std::function<void(const rooms::Room&)> dismiss_;
-  net::Hub* hub_ = nullptr;
+  rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request comes
+  net::Hub* hub_ = nullptr;                   ///< likewise
   std::atomic<std::uint64_t> last_request_id_{0};
   std::mutex mutex_;
   std::map<std::uint64_t, net::HttpResponder> pending_;  ///< bounded by the connections: one request each

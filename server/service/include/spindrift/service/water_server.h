@@ -49,10 +49,10 @@ class WaterServer {
   WaterServer() = default;
 
   MetricsSources sources_;
-  std::unique_ptr<rooms::SimulationThread> simulation_;
   std::unique_ptr<Gateway> gateway_;
-  std::unique_ptr<net::Server> network_;
   std::unique_ptr<rooms::EncoderThread> encoder_;
+  std::unique_ptr<rooms::SimulationThread> simulation_;
+  std::unique_ptr<net::Server> network_;
   std::uint16_t port_ = 0;
 };
 

@@ -5,7 +5,7 @@
 
 #include <spindrift/net/server.h>
 
-namespace spindrift::rooms::topic {
+namespace spindrift::service::topic {
 
 // A greeting says again what these say.
 inline const net::StateTopic kGreeting{.name = "greeting", .scope = net::StateTopic::Scope::kWhole};
@@ -21,4 +21,4 @@ inline const net::StateTopic kLevel{.name = "level"};
 inline const net::StateTopic kReset{.name = "reset"};
 inline const net::StateTopic kRecovered{.name = "recovered"};
 
-}  // namespace spindrift::rooms::topic
+}  // namespace spindrift::service::topic
