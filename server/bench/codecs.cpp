@@ -106,16 +106,16 @@ class CodecMeter {
     begin = Clock::now();
     const codec::EncodedFrame whole = fresh.encode(packed, frame, true);
     surface_whole_.encode_ms += sinceMs(begin);
-    surface_whole_.add(whole.whole->size(), samples);
-    const v1::LayerFrame message = frameOf(encoded.continuing ? encoded.continuing : encoded.whole);
+    surface_whole_.add(whole.keyframe->size(), samples);
+    const v1::LayerFrame message = frameOf(encoded.delta ? encoded.delta : encoded.keyframe);
     begin = Clock::now();
     const auto packed_samples = decoder_.decode(message);
     const double decode_ms = sinceMs(begin);
     if (!packed_samples) return packed_samples.error();
-    if (!encoded.continuing) return {};
+    if (!encoded.delta) return {};
     surface_.encode_ms += encode_ms;
     surface_.decode_ms += decode_ms;
-    surface_.add(encoded.continuing->size(), samples);
+    surface_.add(encoded.delta->size(), samples);
     for (std::size_t i = 0; i < samples; ++i) {
       const double error_m = std::abs(packed_samples->elevation_m[i] - plain_samples->elevation_m[i]);
       surface_.max_error = std::max(surface_.max_error, error_m / view.quantum_m);
@@ -138,12 +138,12 @@ class CodecMeter {
     begin = Clock::now();
     const codec::EncodedFrame encoded = encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, frame, true);
     particles_.encode_ms += sinceMs(begin);
-    const v1::LayerFrame message = frameOf(encoded.whole);
+    const v1::LayerFrame message = frameOf(encoded.keyframe);
     begin = Clock::now();
     const auto samples = codec::decodePackedParticles(message);
     particles_.decode_ms += sinceMs(begin);
     if (!samples) return samples.error();
-    particles_.add(encoded.whole->size(), view.count);
+    particles_.add(encoded.keyframe->size(), view.count);
     const v1::ParticlesByCell& header = message.particles_by_cell();
     const double quantum_m = header.cell_m() / (1 << header.offset_bits());
     particles_.bound_bits = 3 * std::log2(2 * view.radius_m / quantum_m) + std::log2(std::exp(1.0));
@@ -177,7 +177,7 @@ class CodecMeter {
     places.particles->words = words;
     auto begin = Clock::now();
     const core::SharedBytes packed =
-        places_encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, places, true).whole;
+        places_encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, places, true).keyframe;
     places_.encode_ms += sinceMs(begin);
     const v1::LayerFrame message = frameOf(packed);
     begin = Clock::now();

@@ -26,7 +26,7 @@ std::vector<Words> particlesOf(const core::ParticleView& particles) {
 }
 
 std::size_t bytesOf(const codec::EncodedFrame& encoded) {
-  const core::SharedBytes& sent = encoded.continuing ? encoded.continuing : encoded.whole;
+  const core::SharedBytes& sent = encoded.delta ? encoded.delta : encoded.keyframe;
   return sent ? sent->size() : 0;
 }
 

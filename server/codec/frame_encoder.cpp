@@ -20,8 +20,8 @@ static_assert(std::endian::native == std::endian::little, "packed words are sent
 EncodedFrame plain(const core::FrameView& frame, v1::Layer layer, const v1::LayerFrame& codec,
                    std::span<const std::uint32_t> words) {
   const auto* payload = reinterpret_cast<const std::uint8_t*>(words.data());
-  return {.whole = serializeFrame(frame, layer, std::nullopt, codec, {payload, words.size_bytes()}),
-          .continuing = nullptr};
+  return {.keyframe = serializeFrame(frame, layer, std::nullopt, codec, {payload, words.size_bytes()}),
+          .delta = nullptr};
 }
 
 class SurfaceFixed16Codec final : public LayerCodec {
@@ -113,13 +113,13 @@ std::unique_ptr<LayerCodec> makeCodec(Stream stream) {
 FrameEncoder::FrameEncoder() = default;
 FrameEncoder::~FrameEncoder() = default;
 
-EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, bool wants_whole) {
+EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, bool wants_keyframe) {
   Slot& slot = slots_.at(indexOf(stream));
   std::unique_ptr<LayerCodec>& codec = slot.codecs[core::indexOf(frame.level)];
   if (!codec) codec = makeCodec(stream);
   if (!codec) return {};
-  EncodedFrame encoded = codec->encode(frame, wants_whole);
-  if (encoded.whole || encoded.continuing) slot.encode_count.fetch_add(1, std::memory_order_relaxed);
+  EncodedFrame encoded = codec->encode(frame, wants_keyframe);
+  if (encoded.keyframe || encoded.delta) slot.encode_count.fetch_add(1, std::memory_order_relaxed);
   return encoded;
 }
 

@@ -13,8 +13,8 @@ namespace spindrift::codec {
 class LayerCodec {
  public:
   virtual ~LayerCodec() = default;
-  /// Keeps nothing of the frame's memory. Without `wants_whole` the whole form is left out where there is another one.
-  virtual EncodedFrame encode(const core::FrameView& frame, bool wants_whole) = 0;
+  /// Keeps nothing of the frame's memory. Without `wants_keyframe` the keyframe is left out where there is a delta.
+  virtual EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) = 0;
 };
 
 /// SurfacePredicted.

@@ -19,8 +19,8 @@ namespace {
 class PlaneMessages {
  public:
   template <typename Header>
-  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, bool wants_whole, Header header_of) {
-    const PlaneChainEncoder::Forms forms = chain_.encode(wants_whole);
+  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, bool wants_keyframe, Header header_of) {
+    const PlaneChainEncoder::Forms forms = chain_.encode(wants_keyframe);
     const auto message = [&](const std::optional<PlaneChainEncoder::Form>& form,
                              std::optional<std::uint64_t> base_tick) -> core::SharedBytes {
       if (!form) return nullptr;
@@ -31,7 +31,7 @@ class PlaneMessages {
         header.mutable_earlier_weights()->Add(form->earlier_weights.of.begin(), form->earlier_weights.of.end());
       return serializeFrame(frame, layer, base_tick, codec, form->payload);
     };
-    EncodedFrame out{.whole = message(forms.whole, std::nullopt), .continuing = message(forms.continuing, tick_)};
+    EncodedFrame out{.keyframe = message(forms.keyframe, std::nullopt), .delta = message(forms.delta, tick_)};
     tick_ = frame.tick;
     return out;
   }
@@ -46,7 +46,7 @@ class PlaneMessages {
 
 class SurfacePredictedCodec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool wants_whole) override {
+  EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) override {
     if (!frame.surface) return {};
     const core::SurfaceView& surface = *frame.surface;
     if (side_m_ != surface.side_m || quantum_m_ != surface.quantum_m) messages_.restart();
@@ -55,13 +55,14 @@ class SurfacePredictedCodec final : public LayerCodec {
     messages_.plane().resize(surface.resolution_count);
     messages_.plane().assign(
         std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), 2 * surface.words.size()));
-    return messages_.encode(frame, v1::LAYER_SURFACE, wants_whole, [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
-      v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
-      header.set_resolution_count(surface.resolution_count);
-      header.set_side_m(surface.side_m);
-      header.set_quantum_m(surface.quantum_m);
-      return header;
-    });
+    return messages_.encode(frame, v1::LAYER_SURFACE, wants_keyframe,
+                            [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
+                              v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
+                              header.set_resolution_count(surface.resolution_count);
+                              header.set_side_m(surface.side_m);
+                              header.set_quantum_m(surface.quantum_m);
+                              return header;
+                            });
   }
 
  private:
@@ -72,7 +73,7 @@ class SurfacePredictedCodec final : public LayerCodec {
 
 class FoamPredictedCodec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool wants_whole) override {
+  EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) override {
     if (!frame.foam) return {};
     const core::FoamView& foam = *frame.foam;
     if (side_m_ != foam.side_m) messages_.restart();
@@ -80,7 +81,7 @@ class FoamPredictedCodec final : public LayerCodec {
     messages_.plane().resize(foam.resolution_count);
     messages_.plane().assign(
         std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.words.size_bytes()));
-    return messages_.encode(frame, v1::LAYER_FOAM, wants_whole, [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
+    return messages_.encode(frame, v1::LAYER_FOAM, wants_keyframe, [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
       v1::FoamPredicted& header = *codec.mutable_foam_predicted();
       header.set_resolution_count(foam.resolution_count);
       header.set_side_m(foam.side_m);
@@ -147,7 +148,7 @@ struct PackedPlaneDecoder::History {
       if (!takeWeights(header.earlier_weights(), earlier_weights))
         return invalid("earlier_weights: " + std::to_string(header.earlier_weights_size()) + ", there have to be 10");
       memory.resize(header.resolution_count());
-      is_read = row.readWhole(payload.data(), payload.size(), weights, earlier_weights);
+      is_read = row.readKeyframe(payload.data(), payload.size(), weights, earlier_weights);
     } else {
       if (!row.hasRow() || row.resolution() != header.resolution_count() || frame.base_tick() != tick ||
           header.side_m() != side_m || header_quantum_m != quantum_m) {
@@ -155,7 +156,7 @@ struct PackedPlaneDecoder::History {
                                                               std::to_string(frame.base_tick()) +
                                                               ", which is not here: subscribe again for a keyframe"};
       }
-      is_read = row.readContinuing(payload.data(), payload.size(), weights);
+      is_read = row.readDelta(payload.data(), payload.size(), weights);
     }
     if (!is_read) return invalid("payload: its end does not fit its beginning; the frame is damaged");
     return std::nullopt;

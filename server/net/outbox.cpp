@@ -49,8 +49,8 @@ Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Cl
   const bool is_pending = slot.frame != nullptr;
   const bool is_due = isOpen(slot, wanted, frame.level, now);
   if (slot.watch->adapts && is_due) ladder_.noteFrame(is_pending || slot.lost_turn);
-  const bool can_continue = slot.follows && slot.level == frame.level && !is_pending && frame.continuing;
-  const core::SharedBytes& message = can_continue ? frame.continuing : frame.whole;
+  const bool can_continue = slot.follows && slot.level == frame.level && !is_pending && frame.delta;
+  const core::SharedBytes& message = can_continue ? frame.delta : frame.keyframe;
   if (!message) {
     slot.follows = false;
     if (!is_pending) return {};
@@ -96,7 +96,7 @@ void Outbox::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
   const std::lock_guard lock(mutex_);
   if (layer >= kMaxLayerCount) return;
   Slot& slot = slots_[layer];
-  slot = {};  // whoever asks again, perhaps for want of a frame, begins with a whole one
+  slot = {};  // whoever asks again, perhaps for want of a frame, begins with a keyframe
   if (!watch) return;
   slot.watch = watch;
   slot.gate = RateGate(watch->max_rate_hz);

@@ -40,7 +40,7 @@ void RoomHub::broadcastState(const std::string& room, const StateTopic& topic, c
 }
 
 void RoomHub::publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) {
-  assert(layer < kMaxLayerCount && (frame.whole || frame.continuing));
+  assert(layer < kMaxLayerCount && (frame.keyframe || frame.delta));
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
   if (found == rooms_.end() || layer >= kMaxLayerCount) return;

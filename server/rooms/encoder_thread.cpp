@@ -96,9 +96,9 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
       const codec::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_keyframe);
       StreamCost& cost = spent[codec::indexOf(stream)][core::indexOf(level)];
       cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      if (!encoded.whole && !encoded.continuing) continue;
+      if (!encoded.keyframe && !encoded.delta) continue;
       cost.frame_count = 1;
-      for (const core::SharedBytes& form : {encoded.whole, encoded.continuing}) {
+      for (const core::SharedBytes& form : {encoded.keyframe, encoded.delta}) {
         if (form) cost.bytes_count += form->size();
       }
       outlet_.publish(room, stream, encoded, level, reduced_count);

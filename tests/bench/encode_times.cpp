@@ -117,7 +117,7 @@ int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
         const double begin_ms = threadCpu_ms();
         const codec::EncodedFrame encoded = encoder.encode({kLayers[layer], v1::PACKING_PACKED}, view, false);
         const double ms = threadCpu_ms() - begin_ms;
-        const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+        const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
         if (round == 0) {
           const std::uint32_t crc = codec::crc32c(*bytes);
           sums.insert(sums.end(), reinterpret_cast<const std::uint8_t*>(&crc),

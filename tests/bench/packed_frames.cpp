@@ -41,7 +41,7 @@ int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
     for (const core::FrameView& frame : (*sim)->takeFrames()) {
       for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES}) {
         const codec::EncodedFrame encoded = encoder.encode({layer, v1::PACKING_PACKED}, frame, false);
-        const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+        const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
         if (bytes && !write(bytes, out)) return failWith({core::ErrorCode::kUnavailable, "cannot write"});
       }
       ++count;

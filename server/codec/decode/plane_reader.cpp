@@ -53,8 +53,8 @@ void PlaneRow::place(std::uint8_t* memory, std::size_t n) {
   has_row_ = false;
 }
 
-bool PlaneRow::readWhole(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights,
-                         const SurfaceWeights& earlier_weights) {
+bool PlaneRow::readKeyframe(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights,
+                            const SurfaceWeights& earlier_weights) {
   has_row_ = false;
   if (byte_count > BitSource::kMaxBytes) return false;
   ResidualReader in(payload, byte_count);
@@ -64,7 +64,7 @@ bool PlaneRow::readWhole(const std::uint8_t* payload, std::uint32_t byte_count, 
   return has_row_;
 }
 
-bool PlaneRow::readContinuing(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights) {
+bool PlaneRow::readDelta(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights) {
   if (!std::exchange(has_row_, false) || byte_count > BitSource::kMaxBytes) return false;
   ResidualReader in(payload, byte_count);
   readPlane(in, {before_, earlier_}, weights, next_);

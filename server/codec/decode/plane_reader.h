@@ -43,10 +43,10 @@ class PlaneRow {
 
   /// The payload of a frame that stands by itself, with BitSource::kSlackBytes of 0 behind it. False: it is damaged,
   /// and there is no row any more.
-  bool readWhole(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights,
-                 const SurfaceWeights& earlier_weights);
+  bool readKeyframe(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights,
+                    const SurfaceWeights& earlier_weights);
   /// The payload of a frame that continues the row. False: as above, or there is none.
-  bool readContinuing(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights);
+  bool readDelta(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights);
 
   /// Whether there is a row; then row(z) holds n samples of the plane read last.
   [[nodiscard]] bool hasRow() const { return has_row_; }

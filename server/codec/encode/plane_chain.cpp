@@ -6,18 +6,18 @@
 
 namespace spindrift::codec {
 
-PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_whole) {
+PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
   const bool is_first = before_.resolution() != next_.resolution();
   if (is_first) before_ = earlier_ = next_;
   Forms out;
-  if (!is_first) out.continuing = continuing();
-  if (is_first || wants_whole) out.whole = whole();
+  if (!is_first) out.delta = delta();
+  if (is_first || wants_keyframe) out.keyframe = keyframe();
   std::swap(earlier_, before_);
   std::swap(before_, next_);
   return out;
 }
 
-PlaneChainEncoder::Form PlaneChainEncoder::continuing() {
+PlaneChainEncoder::Form PlaneChainEncoder::delta() {
   Form out;
   const SurfaceHistory history{&before_, &earlier_};
   out.weights = fitWeights(next_, history);
@@ -26,7 +26,7 @@ PlaneChainEncoder::Form PlaneChainEncoder::continuing() {
   return out;
 }
 
-PlaneChainEncoder::Form PlaneChainEncoder::whole() {
+PlaneChainEncoder::Form PlaneChainEncoder::keyframe() {
   Form out;
   out.weights = fitWeights(next_, {});
   encodePlane(next_, {}, out.weights, residuals_);

@@ -15,23 +15,23 @@ class PlaneChainEncoder {
  public:
   struct Form {
     SurfaceWeights weights;
-    SurfaceWeights earlier_weights;  ///< of a whole form: of the plane before it
+    SurfaceWeights earlier_weights;  ///< of a keyframe: of the plane before it
     core::Bytes payload;
   };
   struct Forms {
-    std::optional<Form> continuing;  ///< absent at the beginning of a row
-    std::optional<Form> whole;       ///< at the beginning of a row, or when it was wanted
+    std::optional<Form> delta;     ///< absent at the beginning of a row
+    std::optional<Form> keyframe;  ///< at the beginning of a row, or when it was wanted
   };
   /// Where the next plane's samples go.
   SurfacePlane& next() { return next_; }
   /// The forms of the plane that was put there. Another resolution begins a new row.
-  Forms encode(bool wants_whole);
+  Forms encode(bool wants_keyframe);
   /// The next plane begins a new row.
   void restart() { before_.resize(0); }
 
  private:
-  Form continuing();
-  Form whole();
+  Form delta();
+  Form keyframe();
 
   SurfacePlane next_, before_, earlier_;
   ResidualEncoder residuals_;

@@ -87,11 +87,11 @@ SPINDRIFT_EXPORT(earlierWeights) std::int32_t* earlierWeightsRoom() {
   return earlier_weights.of.data();
 }
 /// A plane that stands by itself, or one that continues the row. 0: the payload is damaged or there is no row.
-SPINDRIFT_EXPORT(readWholePlane) bool readWholePlane() {
-  return row.readWhole(payload, payload_bytes, weights, earlier_weights);
+SPINDRIFT_EXPORT(readKeyframePlane) bool readKeyframePlane() {
+  return row.readKeyframe(payload, payload_bytes, weights, earlier_weights);
 }
-SPINDRIFT_EXPORT(readContinuingPlane) bool readContinuingPlane() {
-  return row.readContinuing(payload, payload_bytes, weights);
+SPINDRIFT_EXPORT(readDeltaPlane) bool readDeltaPlane() {
+  return row.readDelta(payload, payload_bytes, weights);
 }
 /// The n x n samples of the plane read last, row by row: 16 bits each.
 SPINDRIFT_EXPORT(surfaceSamples) std::int16_t* surfaceSamples() {

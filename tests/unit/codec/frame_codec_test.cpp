@@ -208,22 +208,22 @@ TEST(FrameEncoding, EachLevelIsEncodedForItselfAndSaysSo) {
     frame.reduced_counts.planes = 1;
     frame.reduced[0].surface = core::SurfaceView{8, 2.0, 0.001, small};
     const EncodedFrame full = encoder.encode(kPacked, core::frameAt(frame, core::Level::kFull), tick == 1);
-    ASSERT_TRUE(full.whole || full.continuing);
-    const v1::LayerFrame sent = frameOf(tick == 1 ? full.whole : full.continuing);
+    ASSERT_TRUE(full.keyframe || full.delta);
+    const v1::LayerFrame sent = frameOf(tick == 1 ? full.keyframe : full.delta);
     EXPECT_EQ(sent.level(), v1::LEVEL_FULL);
     const auto samples = full_reader.decode(sent);
     ASSERT_TRUE(samples) << samples.error().message;
     EXPECT_EQ(samples->resolution_count, test.view.surface->resolution_count);
     if (tick % 3 == 2) continue;  // a coarse frame now and then
     const EncodedFrame coarse = encoder.encode(kPacked, core::frameAt(frame, core::Level::kCoarse), tick == 1);
-    const v1::LayerFrame sent_coarse = frameOf(tick == 1 ? coarse.whole : coarse.continuing);
+    const v1::LayerFrame sent_coarse = frameOf(tick == 1 ? coarse.keyframe : coarse.delta);
     EXPECT_EQ(sent_coarse.level(), v1::LEVEL_COARSE);
     const auto coarse_samples = coarse_reader.decode(sent_coarse);
     ASSERT_TRUE(coarse_samples) << coarse_samples.error().message;
     EXPECT_EQ(coarse_samples->resolution_count, 8u);
   }
   EXPECT_EQ(encoder.encodeCount(kPacked), 6u + 4u);
-  EXPECT_FALSE(encoder.encode(kPacked, core::frameAt(test.view, core::Level::kMedium), true).whole)
+  EXPECT_FALSE(encoder.encode(kPacked, core::frameAt(test.view, core::Level::kMedium), true).keyframe)
       << "not in the frame";
 }
 

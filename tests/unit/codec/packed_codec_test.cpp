@@ -218,14 +218,14 @@ TEST(Planes, OfAnySizeAndWeightsComeBackToTheBit) {
       memory.resize(n);
       PlaneRow& row = memory.row();
       const PackedPayload whole(payloadOf(before, {}, weights[0], &earlier, weights[1]));
-      ASSERT_TRUE(row.readWhole(whole.data(), whole.size(), weights[0], weights[1])) << which;
+      ASSERT_TRUE(row.readKeyframe(whole.data(), whole.size(), weights[0], weights[1])) << which;
       expectSame(row, before, which);
       const PackedPayload next(payloadOf(now, {&before, &earlier}, weights[2], nullptr, {}));
-      ASSERT_TRUE(row.readContinuing(next.data(), next.size(), weights[2])) << which;
+      ASSERT_TRUE(row.readDelta(next.data(), next.size(), weights[2])) << which;
       expectSame(row, now, which);
-      ASSERT_FALSE(row.readContinuing(whole.data(), whole.size(), weights[2])) << which;
+      ASSERT_FALSE(row.readDelta(whole.data(), whole.size(), weights[2])) << which;
       EXPECT_FALSE(row.hasRow()) << "damage ends the row";
-      EXPECT_FALSE(row.readContinuing(next.data(), next.size(), weights[2])) << which;
+      EXPECT_FALSE(row.readDelta(next.data(), next.size(), weights[2])) << which;
     }
   }
 }
@@ -279,8 +279,8 @@ TEST(SurfacePredicted, TakesAtMost2Point3BitsASampleOfWavesEveryOtherTick) {
     view.tick = tick;
     view.surface = core::SurfaceView{kSide, 16.0, 0.001, words};
     const EncodedFrame encoded = encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, false);
-    if (encoded.continuing) {
-      bytes += encoded.continuing->size();
+    if (encoded.delta) {
+      bytes += encoded.delta->size();
       ++frame_count;
     }
     water.step();

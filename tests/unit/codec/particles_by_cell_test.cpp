@@ -75,8 +75,8 @@ v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
 
 v1::LayerFrame packed(const Cloud& cloud) {
   const EncodedFrame encoded = FrameEncoder().encode(kPacked, cloud.frame(), false);
-  EXPECT_EQ(encoded.continuing, nullptr);
-  return frameOf(encoded.whole);
+  EXPECT_EQ(encoded.delta, nullptr);
+  return frameOf(encoded.keyframe);
 }
 
 struct Row {

@@ -71,9 +71,9 @@ TEST(SurfacePredicted, IsThePlainSurfaceToTheBitFrameAfterFrame) {
     for (std::uint64_t tick = 10; tick < 30; tick += 2) {
       const Surface surface = waves(n, tick);
       const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), tick == 10);
-      ASSERT_EQ(encoded.whole != nullptr, tick == 10);
-      ASSERT_EQ(encoded.continuing != nullptr, tick != 10);
-      const v1::LayerFrame frame = frameOf(encoded.whole ? encoded.whole : encoded.continuing);
+      ASSERT_EQ(encoded.keyframe != nullptr, tick == 10);
+      ASSERT_EQ(encoded.delta != nullptr, tick != 10);
+      const v1::LayerFrame frame = frameOf(encoded.keyframe ? encoded.keyframe : encoded.delta);
       EXPECT_EQ(frame.keyframe(), tick == 10);
       if (tick > 10) {
         EXPECT_EQ(frame.base_tick(), tick - 2);
@@ -97,7 +97,7 @@ TEST(SurfacePredicted, CarriesAnythingThatFitsInto16Bits) {
   std::uint64_t tick = 0;
   for (const Surface& surface : {Surface(32, wild), Surface(32, ends), Surface(32, spike), Surface(32, wild)}) {
     const EncodedFrame encoded = encoder.encode(kPacked, surface.view(++tick), false);
-    const auto samples = decoder.decode(frameOf(tick == 1 ? encoded.whole : encoded.continuing));
+    const auto samples = decoder.decode(frameOf(tick == 1 ? encoded.keyframe : encoded.delta));
     ASSERT_TRUE(samples) << samples.error().message;
     EXPECT_EQ(samples->elevation_m, plainOf(surface)) << "surface " << tick;
   }
@@ -109,9 +109,9 @@ TEST(SurfacePredicted, TakesAFractionOfThePlainBytes) {
   for (std::uint64_t tick = 10; tick < 60; tick += 2) {
     const Surface surface = waves(128, tick);
     const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), true);
-    whole_bytes += encoded.whole->size();
-    if (encoded.continuing) {
-      packed_bytes += encoded.continuing->size();
+    whole_bytes += encoded.keyframe->size();
+    if (encoded.delta) {
+      packed_bytes += encoded.delta->size();
       plain_bytes += encoder.encode(v1::LAYER_SURFACE, surface.view(tick))->size();
     }
   }
@@ -120,7 +120,7 @@ TEST(SurfacePredicted, TakesAFractionOfThePlainBytes) {
   const Surface still(128, [](std::uint32_t, std::uint32_t) { return 0; });
   (void)encoder.encode(kPacked, still.view(100), false);
   (void)encoder.encode(kPacked, still.view(102), false);
-  EXPECT_LT(encoder.encode(kPacked, still.view(104), false).continuing->size(), 150u) << "nothing moves";
+  EXPECT_LT(encoder.encode(kPacked, still.view(104), false).delta->size(), 150u) << "nothing moves";
 }
 
 TEST(SurfacePredicted, AWholeFrameLetsALatecomerReadWhatFollows) {
@@ -129,9 +129,9 @@ TEST(SurfacePredicted, AWholeFrameLetsALatecomerReadWhatFollows) {
   for (std::uint64_t tick = 10; tick < 40; tick += 2) {
     const Surface surface = waves(48, tick);
     const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), tick == 10 || tick == 20);
-    ASSERT_TRUE(early.decode(frameOf(tick == 10 ? encoded.whole : encoded.continuing)));
+    ASSERT_TRUE(early.decode(frameOf(tick == 10 ? encoded.keyframe : encoded.delta)));
     if (tick < 20) continue;
-    const auto samples = late.decode(frameOf(tick == 20 ? encoded.whole : encoded.continuing));
+    const auto samples = late.decode(frameOf(tick == 20 ? encoded.keyframe : encoded.delta));
     ASSERT_TRUE(samples) << samples.error().message;
     EXPECT_EQ(samples->elevation_m, plainOf(surface)) << "tick " << tick;
   }
@@ -139,11 +139,11 @@ TEST(SurfacePredicted, AWholeFrameLetsALatecomerReadWhatFollows) {
 
 TEST(SurfacePredicted, BeginsAgainWhenTheGridChanges) {
   FrameEncoder encoder;
-  EXPECT_TRUE(encoder.encode(kPacked, waves(32, 1).view(1), false).whole);
-  EXPECT_FALSE(encoder.encode(kPacked, waves(32, 3).view(3), false).whole);
+  EXPECT_TRUE(encoder.encode(kPacked, waves(32, 1).view(1), false).keyframe);
+  EXPECT_FALSE(encoder.encode(kPacked, waves(32, 3).view(3), false).keyframe);
   const EncodedFrame other = encoder.encode(kPacked, waves(48, 5).view(5), false);
-  EXPECT_TRUE(other.whole);
-  EXPECT_FALSE(other.continuing);
+  EXPECT_TRUE(other.keyframe);
+  EXPECT_FALSE(other.delta);
 }
 
 TEST(SurfacePredicted, SaysThatTheFrameBeforeIsMissingUntilAWholeOneComes) {
@@ -158,12 +158,12 @@ TEST(SurfacePredicted, SaysThatTheFrameBeforeIsMissingUntilAWholeOneComes) {
     EXPECT_EQ(samples.error().code, core::ErrorCode::kUnavailable);
     EXPECT_THAT(samples.error().message, HasSubstr("subscribe again"));
   };
-  expectMissing(encoded[1].continuing);
-  EXPECT_TRUE(decoder.decode(frameOf(encoded[1].whole)));
-  expectMissing(encoded[3].continuing);
-  expectMissing(encoded[2].continuing);
-  EXPECT_TRUE(decoder.decode(frameOf(encoded[3].whole)));
-  EXPECT_TRUE(decoder.decode(frameOf(encoded[4].continuing)));
+  expectMissing(encoded[1].delta);
+  EXPECT_TRUE(decoder.decode(frameOf(encoded[1].keyframe)));
+  expectMissing(encoded[3].delta);
+  expectMissing(encoded[2].delta);
+  EXPECT_TRUE(decoder.decode(frameOf(encoded[3].keyframe)));
+  EXPECT_TRUE(decoder.decode(frameOf(encoded[4].delta)));
 }
 
 TEST(FoamPredicted, IsThePlainFoamToTheByte) {
@@ -179,7 +179,7 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
     view.tick = tick;
     view.foam = core::FoamView{32, 16.0, words};
     const EncodedFrame encoded = encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, tick == 1);
-    const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+    const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
     packed_bytes += bytes->size();
     const auto packed = decoder.decode(frameOf(bytes));
     ASSERT_TRUE(packed) << packed.error().message;
@@ -194,14 +194,14 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
   const std::vector<std::uint32_t> words(32 * 32 / 4, 0u);
   view.foam = core::FoamView{32, 16.0, words};
   const auto missing =
-      late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).continuing));
+      late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).delta));
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, core::ErrorCode::kUnavailable);
 }
 
 TEST(SurfacePredicted, RefusesDamagedFrames) {
   FrameEncoder encoder;
-  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), true).whole);
+  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), true).keyframe);
   struct Case {
     const char* name;
     void (*damage)(v1::LayerFrame&);
@@ -243,7 +243,7 @@ TEST(SurfacePredicted, RefusesDamagedFrames) {
 
 TEST(SurfacePredicted, ReadsAnyBytesWithoutHarm) {
   FrameEncoder encoder;
-  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), true).whole);
+  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), true).keyframe);
   std::mt19937 random(7);
   int accepted_count = 0;
   for (int k = 0; k < 3000; ++k) {

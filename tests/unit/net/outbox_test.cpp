@@ -189,8 +189,8 @@ TEST(Outbox, ASlowerWatchTakesWholeFramesOnly) {
 }
 
 LayerBytes levelFrame(core::Level level, std::uint32_t reduced_count, bool is_whole = true) {
-  return {.whole = is_whole ? shared("whole") : nullptr,
-          .continuing = shared("continuing"),
+  return {.keyframe = is_whole ? shared("whole") : nullptr,
+          .delta = shared("continuing"),
           .level = level,
           .reduced_count = reduced_count};
 }

@@ -100,7 +100,7 @@ std::vector<GoldenCase> goldenPackedFoam() {
     view.time_s = 20.5;
     view.foam = core::FoamView{12, 8.0, words};
     const codec::EncodedFrame encoded = encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false);
-    const core::Bytes& bytes = encoded.whole ? *encoded.whole : *encoded.continuing;
+    const core::Bytes& bytes = encoded.keyframe ? *encoded.keyframe : *encoded.delta;
     const v1::LayerFrame frame = codec::parseServerMessage(bytes)->frame();
     const std::string follows = step > 0 ? cases.back().file : "";
     const std::string json =
@@ -129,7 +129,7 @@ std::vector<GoldenCase> goldenPackedParticles() {
   view.tick = 1234;
   view.time_s = 20.5;
   view.particles = particles;
-  const core::Bytes bytes = *codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).whole;
+  const core::Bytes bytes = *codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).keyframe;
   const auto samples = *codec::decodePackedParticles(codec::parseServerMessage(bytes)->frame());
   const std::string json =
       "\"kind\": \"frame\", \"layer\": \"LAYER_PARTICLES\", \"packing\": \"PACKING_PACKED\", "
@@ -162,7 +162,7 @@ std::vector<GoldenCase> goldenPackedSurfaces() {
     view.time_s = 20.5;
     view.surface = core::SurfaceView{kSide, 8.0, 0.0009765625, words};
     const codec::EncodedFrame encoded = encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, false);
-    const core::Bytes& bytes = encoded.whole ? *encoded.whole : *encoded.continuing;
+    const core::Bytes& bytes = encoded.keyframe ? *encoded.keyframe : *encoded.delta;
     const v1::LayerFrame frame = codec::parseServerMessage(bytes)->frame();
     const std::string follows = step > 0 ? cases.back().file : "";
     cases.push_back({"surface_packed_" + std::to_string(step) + ".bin", GoldenVerdict::kOk,

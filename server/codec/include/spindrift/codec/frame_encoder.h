@@ -17,8 +17,8 @@ class LayerCodec;
 
 /// Serialized ServerMessages of one frame of a layer. Both null where the frame lacks the layer.
 struct EncodedFrame {
-  core::SharedBytes whole;       ///< a keyframe
-  core::SharedBytes continuing;  ///< for whoever has the frame that was encoded before it; null: no such form
+  core::SharedBytes keyframe;  ///< stands by itself
+  core::SharedBytes delta;     ///< for clients that have the frame encoded before it; null: none
 };
 
 /// The codecs of one room: one for each stream and level, made when it is first asked for. Methods from one thread (the
@@ -29,9 +29,11 @@ class FrameEncoder {
   ~FrameEncoder();
 
   /// Encodes a frame of one level (core::frameAt). Nothing where it lacks the layer.
-  EncodedFrame encode(Stream stream, const core::FrameView& frame, bool wants_whole);
+  EncodedFrame encode(Stream stream, const core::FrameView& frame, bool wants_keyframe);
   /// The plain form.
-  core::SharedBytes encode(v1::Layer layer, const core::FrameView& frame) { return encode({layer}, frame, true).whole; }
+  core::SharedBytes encode(v1::Layer layer, const core::FrameView& frame) {
+    return encode({layer}, frame, true).keyframe;
+  }
 
   /// Frames of the stream encoded so far: one a level and frame, however many clients watch.
   std::uint64_t encodeCount(Stream stream) const;

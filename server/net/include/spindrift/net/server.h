@@ -31,8 +31,8 @@ inline constexpr LayerIndex kMaxLayerCount = 16;
 
 /// One frame of a layer in the forms that its watchers need; either may be null, not both.
 struct LayerBytes {
-  core::SharedBytes whole;       ///< stands by itself
-  core::SharedBytes continuing;  ///< needs the frame of this level that was published before it
+  core::SharedBytes keyframe;  ///< stands by itself
+  core::SharedBytes delta;     ///< needs the frame of this level that was published before it
   core::Level level = core::Level::kFull;
   std::uint32_t reduced_count = 0;  ///< levels of the layer from this one on are all kFull
 };
@@ -116,7 +116,7 @@ class Hub {
   /// Data plane: one write in flight and one newest slot per layer; an unsent older frame in the slot is dropped and
   /// counted. `room` is the group the sessions joined; only sessions that watch `layer` get it, no faster than the rate
   /// they asked for (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted). A
-  /// session that has the frame before gets the continuing form where there is one, any other the whole one; where that
+  /// session that has the frame before gets the delta where there is one, any other the keyframe; where that
   /// is missing it gets nothing, and demand() says so. Levels are published one by one; a session gets its own.
   virtual void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) = 0;
 

@@ -25,7 +25,7 @@ inline core::LayerDemand demandOf(const net::Hub& hub, const std::string& room, 
 inline void publishTo(net::Hub& hub, const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                       core::Level level, std::uint32_t reduced_count) {
   hub.publish(room, layerIndex(stream),
-              {.whole = frame.whole, .continuing = frame.continuing, .level = level, .reduced_count = reduced_count});
+              {.keyframe = frame.keyframe, .delta = frame.delta, .level = level, .reduced_count = reduced_count});
 }
 
 }  // namespace spindrift::service
