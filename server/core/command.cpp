@@ -15,11 +15,6 @@ constexpr std::array<std::string_view, 3> kRoleNames{"viewer", "player", "operat
 
 }  // namespace
 
-std::string_view nameOf(Role role) {
-  constexpr std::array<std::string_view, 3> kNames{"viewer", "player", "operator"};
-  return kNames[static_cast<std::size_t>(role)];
-}
-
 Role roleFor(const Action& action) {
   const bool is_play = isOneOf<Splash, BreakingWave, SpawnBoat, ControlBoat, RemoveBoat, TakeBoat>(action);
   return is_play ? Role::kPlayer : Role::kOperator;

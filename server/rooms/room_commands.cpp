@@ -41,7 +41,7 @@ std::optional<wire::CommandRejection> Room::admit(core::Command command) {
   if (const core::Role needed = core::roleFor(command.action); sender.role < needed) {
     refused = rejection(
         v1::REJECT_REASON_FORBIDDEN, "",
-        fmt::format("this takes the role of {}; yours is {}", core::nameOf(needed), core::nameOf(sender.role)));
+        fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));
   } else {
     refused = wire::checkAgainstScene(command, snapshot()->scene);
   }

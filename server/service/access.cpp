@@ -40,13 +40,6 @@ std::optional<system_clock::time_point> parseUtc(const std::string& text) {
 
 }  // namespace
 
-std::optional<core::Role> parseRole(std::string_view name) {
-  for (const core::Role role : {core::Role::kViewer, core::Role::kPlayer, core::Role::kOperator}) {
-    if (core::nameOf(role) == name) return role;
-  }
-  return std::nullopt;
-}
-
 core::Result<Access> Access::parse(std::string_view text, const std::string& label, std::optional<core::Role> guest) {
   Access out;
   out.guest_ = guest;

@@ -176,7 +176,7 @@ void Gateway::hello(net::SessionId session, const Session& state, const wire::He
     kept.role = grant->role;
     kept.person_id = admission.person_id;
   }
-  spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, core::nameOf(grant->role),
+  spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, core::roleName(grant->role),
                hello.client, admission.resumed ? "resumed" : "");
   v1::Welcome welcome;
   welcome.set_role(wire::toWire(grant->role));

@@ -98,8 +98,6 @@ using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused
 
 /// What somebody may do; each includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
-/// "viewer", "player", "operator".
-std::string_view nameOf(Role role);
 
 /// Identifies one connection for the life of the process; never 0, never reused.
 using SessionId = std::uint64_t;

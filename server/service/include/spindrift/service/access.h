@@ -15,9 +15,6 @@ namespace spindrift::service {
 /// Shorter tokens could be guessed.
 inline constexpr std::size_t kTokenMinBytes = 16;
 
-/// By the names of core::nameOf().
-std::optional<core::Role> parseRole(std::string_view name);
-
 struct Grant {
   core::Role role = core::Role::kViewer;
   std::optional<std::chrono::system_clock::time_point> expires;  ///< never, where it is not set
