@@ -1,6 +1,8 @@
 #include <chrono>
 #include <utility>
 
+#include <spindrift/rooms/encoder_thread.h>
+
 namespace spindrift::rooms {
 
 EncoderThread::EncoderThread(FrameOutlet& outlet) : outlet_(outlet), thread_([this] { loop(); }) {}

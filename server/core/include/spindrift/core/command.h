@@ -99,9 +99,6 @@ using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused
 /// What somebody may do; each includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
 
-/// Identifies one connection for the life of the process; never 0, never reused.
-using SessionId = std::uint64_t;
-
 /// "viewer", "player", "operator".
 std::string_view roleName(Role role);
 /// nullopt for a name that is not a role.
@@ -109,6 +106,9 @@ std::optional<Role> parseRole(std::string_view name);
 
 /// The lowest role that may carry out the action.
 Role roleFor(const Action& action);
+
+/// Identifies one connection for the life of the process; never 0, never reused.
+using SessionId = std::uint64_t;
 
 /// Who asks: a session, or a request by HTTP. Exactly one id is not 0, unless the room itself asks.
 struct Sender {
