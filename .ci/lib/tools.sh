@@ -88,8 +88,8 @@ TEXT
     need_packages tidy
     build_server release
     say "clang-tidy"
-    # server/stream/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
-    git ls-files -z -- 'server/*.cpp' ':!server/stream/wasm' | xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" \
+    # server/codec/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
+    git ls-files -z -- 'server/*.cpp' ':!server/codec/wasm' | xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" \
       clang-tidy --quiet -p build/release || code=1
   fi
   return "$code"

@@ -49,8 +49,8 @@ Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Cl
   const bool is_pending = slot.frame != nullptr;
   const bool is_due = isOpen(slot, wanted, frame.level, now);
   if (slot.watch->adapts && is_due) ladder_.noteFrame(is_pending || slot.lost_turn);
-  const bool can_continue = slot.follows && slot.level == frame.level && !is_pending && frame.continuing;
-  const core::SharedBytes& message = can_continue ? frame.continuing : frame.whole;
+  const bool can_continue = slot.follows && slot.level == frame.level && !is_pending && frame.delta;
+  const core::SharedBytes& message = can_continue ? frame.delta : frame.keyframe;
   if (!message) {
     slot.follows = false;
     if (!is_pending) return {};
@@ -79,9 +79,9 @@ Outbox::Demand Outbox::demand(LayerIndex layer, std::uint32_t reduced_count, Clo
   const core::Level level = core::effectiveLevel(wanted, reduced_count);
   if (close_ || shut_) return {.level = level};
   const bool has_ground = slot.follows && slot.level == level;
-  return {
-      .level = level,
-      .wants_whole = !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
+  return {.level = level,
+          .wants_keyframe =
+              !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
 }
 
 core::Level Outbox::levelOf(const Slot& slot) const {
@@ -96,7 +96,7 @@ void Outbox::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
   const std::lock_guard lock(mutex_);
   if (layer >= kMaxLayerCount) return;
   Slot& slot = slots_[layer];
-  slot = {};  // whoever asks again, perhaps for want of a frame, begins with a whole one
+  slot = {};  // whoever asks again, perhaps for want of a frame, begins with a keyframe
   if (!watch) return;
   slot.watch = watch;
   slot.gate = RateGate(watch->max_rate_hz);

@@ -44,16 +44,17 @@ class Outbox {
   /// same topic, by a topic with Scope::kWhole also all with Scope::kPart. Ignored once a close was asked for.
   Outcome pushState(const StateTopic& topic, core::SharedBytes message);
 
-  /// Puts the frame into its layer's slot if the session watches the layer and its rate allows: the continuing form if
-  /// the client has what it builds on, else the whole one. Without a whole one an unsent older frame is dropped and the
-  /// session waits. Frames of another level than the session's are not for it. Ignored once a close was asked for.
+  /// Puts the frame into its layer's slot if the session watches the layer and its rate allows: the delta if the
+  /// client has the frame that it builds on, else the keyframe. Without a keyframe an unsent older frame is dropped and
+  /// the session waits. Frames of another level than the session's are not for it. Ignored once a close was asked for.
   Outcome offerFrame(LayerIndex layer, const LayerBytes& frame, Clock::time_point now);
 
   /// What the session would take next of a layer that it watches.
   struct Demand {
     core::Level level = core::Level::kFull;
-    /// Only whole. False for a session that has read nothing since it lost one: what it cannot take is not made for it.
-    bool wants_whole = false;
+    /// Only a keyframe helps. False for a session that has read nothing since it lost one: what it cannot take is not
+    /// made for it.
+    bool wants_keyframe = false;
   };
   Demand demand(LayerIndex layer, std::uint32_t reduced_count, Clock::time_point now) const;
 
@@ -114,7 +115,7 @@ class Outbox {
     core::Level level = core::Level::kFull;  ///< of the newest frame that was taken
     std::uint32_t reduced_count = 0;         ///< as the newest frame said
     bool follows = false;                    ///< the client has the last frame, or will have it with `frame`
-    std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost for want of a whole one
+    std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost for want of a keyframe
   };
 
   struct Control {

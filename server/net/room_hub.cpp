@@ -40,23 +40,23 @@ void RoomHub::broadcastState(const std::string& room, const StateTopic& topic, c
 }
 
 void RoomHub::publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) {
-  assert(layer < kMaxLayerCount && (frame.whole || frame.continuing));
+  assert(layer < kMaxLayerCount && (frame.keyframe || frame.delta));
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
   if (found == rooms_.end() || layer >= kMaxLayerCount) return;
   for (const Watcher& watcher : found->second.watchers[layer]) watcher.link->offerFrame(layer, frame);
 }
 
-LayerDemand RoomHub::demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const {
+core::LayerDemand RoomHub::demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const {
   const std::lock_guard lock(mutex_);
-  LayerDemand out;
+  core::LayerDemand out;
   const auto found = rooms_.find(room);
   if (found == rooms_.end() || layer >= kMaxLayerCount) return out;
   for (const Watcher& watcher : found->second.watchers[layer]) {
     const Outbox::Demand one = watcher.link->demand(layer, reduced_count);
-    LevelDemand& of_level = out[indexOf(one.level)];
+    core::LevelDemand& of_level = out[indexOf(one.level)];
     ++of_level.watcher_count;
-    of_level.wants_whole = of_level.wants_whole || one.wants_whole;
+    of_level.wants_keyframe = of_level.wants_keyframe || one.wants_keyframe;
   }
   return out;
 }

@@ -44,7 +44,7 @@ class RoomHub final : public Hub {
   void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) override;
   void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) override;
   void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) override;
-  LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const override;
+  core::LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const override;
   void join(SessionId session, const std::string& room) override;
   std::size_t sessionCount(const std::string& room) const override;
   std::size_t sessionCount() const override;

@@ -11,13 +11,13 @@
 #include <string_view>
 #include <vector>
 
+#include <spindrift/codec/crc32c.h>
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/gpu/context.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/crc32c.h>
-#include <spindrift/stream/frame_encoder.h>
-#include <spindrift/stream/scene_loader.h>
 
-#include "codec/processor.h"
+#include "encode/processor.h"
 
 namespace {
 
@@ -47,9 +47,9 @@ struct RecordedFrame {
 
 /// Views as they lie in memory, their words behind them: a file for this machine and this build's layout only.
 int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
-  auto loaded = stream::loadSceneFile(scene_file, std::nullopt);
+  auto loaded = scene::loadSceneFile(scene_file, std::nullopt);
   if (!loaded) return failWith(loaded.error().message.c_str());
-  const core::Scene scene = stream::toCore(*loaded);
+  const core::Scene scene = scene::toCore(*loaded);
   auto ctx = gpu::Context::create(*gpu::parseDeviceChoice("auto"));
   if (!ctx) return failWith(ctx.error().message.c_str());
   auto sim = sim::WaterSim::create(**ctx, scene);
@@ -110,16 +110,16 @@ int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
   core::Bytes sums;
   for (Times& t : times) t.least_ms.assign(frames.size(), 1e9);
   for (std::size_t round = 0; round < rounds; ++round) {
-    stream::FrameEncoder encoder;
+    codec::FrameEncoder encoder;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const core::FrameView view = frames[i].view(i + 1);
       for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
         const double begin_ms = threadCpu_ms();
-        const stream::EncodedFrame encoded = encoder.encode({kLayers[layer], v1::PACKING_PACKED}, view, false);
+        const codec::EncodedFrame encoded = encoder.encode({kLayers[layer], v1::PACKING_PACKED}, view, false);
         const double ms = threadCpu_ms() - begin_ms;
-        const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+        const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
         if (round == 0) {
-          const std::uint32_t crc = stream::crc32c(*bytes);
+          const std::uint32_t crc = codec::crc32c(*bytes);
           sums.insert(sums.end(), reinterpret_cast<const std::uint8_t*>(&crc),
                       reinterpret_cast<const std::uint8_t*>(&crc) + sizeof crc);
         }
@@ -142,7 +142,7 @@ int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
     mean_ms += mean;
   }
   std::printf("both             least %.3f ms, mean %.3f ms; %zu frames, %zu rounds, check sum %08x\n", least_ms,
-              mean_ms, frames.size() - 1, rounds, static_cast<unsigned>(stream::crc32c(sums)));
+              mean_ms, frames.size() - 1, rounds, static_cast<unsigned>(codec::crc32c(sums)));
   return 0;
 }
 
@@ -164,7 +164,7 @@ int main(int argc, char** argv) {
     const int code = record(argv[2], static_cast<std::size_t>(std::atoi(argv[3])), file);
     return std::fclose(file) == 0 ? code : 1;
   }
-  if (argc == 5) stream::useVectors(false);
+  if (argc == 5) codec::useVectors(false);
   const std::vector<RecordedFrame> frames = read(file);
   (void)std::fclose(file);
   return measure(frames, static_cast<std::size_t>(std::atoi(argv[3])));

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/gpu/context.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/frame_encoder.h>
-#include <spindrift/stream/scene_loader.h>
 
 namespace {
 
@@ -23,14 +23,14 @@ bool write(const core::SharedBytes& bytes, std::FILE* out) {
 }
 
 int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
-  auto loaded = stream::loadSceneFile(scene_file, std::nullopt);
+  auto loaded = scene::loadSceneFile(scene_file, std::nullopt);
   if (!loaded) return failWith(loaded.error());
-  const core::Scene scene = stream::toCore(*loaded);
+  const core::Scene scene = scene::toCore(*loaded);
   auto ctx = gpu::Context::create(*gpu::parseDeviceChoice("auto"));
   if (!ctx) return failWith(ctx.error());
   auto sim = sim::WaterSim::create(**ctx, scene);
   if (!sim) return failWith(sim.error());
-  stream::FrameEncoder encoder;
+  codec::FrameEncoder encoder;
   double next_s = 1.0;  // the first effect
   for (std::size_t count = 0; count < frame_count;) {
     (*sim)->step();
@@ -40,8 +40,8 @@ int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
     (*ctx)->finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) {
       for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES}) {
-        const stream::EncodedFrame encoded = encoder.encode({layer, v1::PACKING_PACKED}, frame, false);
-        const core::SharedBytes& bytes = encoded.continuing ? encoded.continuing : encoded.whole;
+        const codec::EncodedFrame encoded = encoder.encode({layer, v1::PACKING_PACKED}, frame, false);
+        const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
         if (bytes && !write(bytes, out)) return failWith({core::ErrorCode::kUnavailable, "cannot write"});
       }
       ++count;

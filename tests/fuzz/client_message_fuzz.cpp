@@ -4,10 +4,10 @@
 #include <string>
 #include <variant>
 
-#include <spindrift/stream/api_message.h>
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/parameters.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/api_message.h>
+#include <spindrift/wire/client_message.h>
 
 #include "fuzz.h"
 #include "invariants.h"
@@ -16,21 +16,21 @@ namespace spindrift::fuzz {
 namespace {
 
 v1::Scene sceneOf(const char* text) {
-  const auto scene = stream::parseSceneText(text, "fuzz.textproto");
+  const auto scene = scene::parseSceneText(text, "fuzz.textproto");
   must(static_cast<bool>(scene), "the target's own scenes load");
   return *scene;
 }
 
 void checkCommand(const core::Command& command, const v1::Scene& scene) {
-  const auto rejection = stream::checkAgainstScene(command, scene);
+  const auto rejection = wire::checkAgainstScene(command, scene);
   if (rejection) {
     must(rejection->reason != v1::REJECT_REASON_UNSPECIFIED, "a rejection has a reason");
     must(!rejection->message.empty() && rejection->message.find('\n') == std::string::npos, "a rejection has one line");
     must(rejection->command_id == command.command_id, "a rejection names its command");
   } else if (const auto* set = std::get_if<core::SetParameter>(&command.action)) {
     v1::Scene changed = scene;
-    must(!stream::setParameter(changed, set->path, set->value), "a parameter that is accepted can be set");
-    must(!stream::checkAgainstScene(command, changed), "and set again");
+    must(!scene::setParameter(changed, set->path, set->value), "a parameter that is accepted can be set");
+    must(!wire::checkAgainstScene(command, changed), "and set again");
   }
 }
 
@@ -44,24 +44,24 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       "wave { resolution_count: 64 } particles { count: 100 } coupling {} foam {} boats {} "
       "obstacles { rock { x_m: 4 } } storm {}");
   static const v1::Scene wave_only = fuzz::sceneOf("wave { resolution_count: 64 depth_m: 0.5 }");
-  const stream::ClientMessage message = stream::parseClientMessage({data, size});
+  const wire::ClientMessage message = wire::parseClientMessage({data, size});
   must(test::isHarmless(message), "what comes out is finite and in range");
-  if (const auto* hello = std::get_if<stream::Hello>(&message)) {
-    const auto refusal = stream::checkVersion(*hello);
-    must(refusal.has_value() == (hello->major != stream::kWireMajor), "another major version is refused, no other");
+  if (const auto* hello = std::get_if<wire::Hello>(&message)) {
+    const auto refusal = wire::checkVersion(*hello);
+    must(refusal.has_value() == (hello->major != wire::kWireMajor), "another major version is refused, no other");
   }
   if (const auto* command = std::get_if<core::Command>(&message)) {
     fuzz::checkCommand(*command, full);
     fuzz::checkCommand(*command, wave_only);
   }
   // The same commands as text, from the REST interface.
-  const auto parsed = stream::parseCommandJson({reinterpret_cast<const char*>(data), size});
+  const auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(data), size});
   if (const auto* command = std::get_if<core::Command>(&parsed)) {
     must(test::isHarmless(*command), "what comes out of JSON is finite and in range");
     fuzz::checkCommand(*command, full);
-    const auto again = stream::checkCommand(stream::toWire(*command));
+    const auto again = wire::checkCommand(wire::toWire(*command));
     must(std::holds_alternative<core::Command>(again), "a command that was taken is taken again from a log");
   }
-  (void)stream::parseCreateRoomJson({reinterpret_cast<const char*>(data), size});
+  (void)wire::parseCreateRoomJson({reinterpret_cast<const char*>(data), size});
   return 0;
 }

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include <spindrift/stream/crc32c.h>
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/crc32c.h>
+#include <spindrift/codec/frame_decoder.h>
 
 #include "fuzz.h"
 #include "invariants.h"
@@ -44,7 +44,7 @@ bool isSmall(const v1::LayerFrame& frame) {
 
 void setChecksum(v1::LayerFrame& frame) {
   frame.set_crc32c(
-      stream::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+      codec::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
 
 template <typename Decoded>
@@ -55,35 +55,35 @@ void check(const Decoded& decoded) {
 
 /// A frame with a wrong checksum is refused, whatever else it says.
 void checkRefused(const v1::LayerFrame& frame) {
-  must(!stream::decodeSurface(frame) && !stream::decodeParticles(frame) && !stream::decodeFoam(frame) &&
-           !stream::decodeBodies(frame) && !stream::decodePackedParticles(frame) &&
-           !stream::PackedSurfaceDecoder().decode(frame) && !stream::PackedFoamDecoder().decode(frame),
+  must(!codec::decodeSurface(frame) && !codec::decodeParticles(frame) && !codec::decodeFoam(frame) &&
+           !codec::decodeBodies(frame) && !codec::decodePackedParticles(frame) &&
+           !codec::PackedSurfaceDecoder().decode(frame) && !codec::PackedFoamDecoder().decode(frame),
        "a wrong checksum is noticed");
 }
 
 class Client {
  public:
   void read(const v1::LayerFrame& frame) {
-    check(stream::decodeSurface(frame));
-    check(stream::decodeParticles(frame));
-    check(stream::decodeFoam(frame));
-    if (const auto bodies = stream::decodeBodies(frame)) {
+    check(codec::decodeSurface(frame));
+    check(codec::decodeParticles(frame));
+    check(codec::decodeFoam(frame));
+    if (const auto bodies = codec::decodeBodies(frame)) {
       must(bodies->size() == frame.bodies_fixed28().count(), "as many bodies as the frame says");
     }
     check(packed_surface_.decode(frame));
     check(packed_foam_.decode(frame));
-    check(stream::decodePackedParticles(frame));
+    check(codec::decodePackedParticles(frame));
   }
 
  private:
-  stream::PackedSurfaceDecoder packed_surface_;
-  stream::PackedFoamDecoder packed_foam_;
+  codec::PackedSurfaceDecoder packed_surface_;
+  codec::PackedFoamDecoder packed_foam_;
 };
 
 /// Another payload for one of the frames, and the checksum that belongs to it. False: there is no frame to change.
 bool damagePayload(std::string& message_bytes, std::size_t growth_max_bytes) {
   auto message =
-      stream::parseServerMessage({reinterpret_cast<const std::uint8_t*>(message_bytes.data()), message_bytes.size()});
+      codec::parseServerMessage({reinterpret_cast<const std::uint8_t*>(message_bytes.data()), message_bytes.size()});
   if (!message || !message->has_frame()) return false;
   v1::LayerFrame& frame = *message->mutable_frame();
   std::string& payload = *frame.mutable_payload();
@@ -102,8 +102,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace spindrift;
   fuzz::Client client;
   for (const std::string& bytes : fuzz::split({reinterpret_cast<const char*>(data), size})) {
-    const auto message =
-        stream::parseServerMessage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    const auto message = codec::parseServerMessage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     if (!message || !message->has_frame() || !fuzz::isSmall(message->frame())) continue;
     const v1::LayerFrame& frame = message->frame();
     v1::LayerFrame whole = frame;

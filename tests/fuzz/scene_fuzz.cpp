@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include <spindrift/stream/parameters.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
 
 #include "fuzz.h"
 
@@ -26,15 +26,15 @@ bool isReport(std::string_view text) {
 
 void checkLoaded(const v1::Scene& scene) {
   v1::Scene filled = scene;
-  stream::fillDefaults(filled);
+  scene::fillDefaults(filled);
   must(filled.SerializeAsString() == scene.SerializeAsString(), "a loaded scene has every default");
-  must(stream::isSceneName(scene.name()), "a loaded scene has a name that a client may ask for");
-  for (const v1::ParameterDescription& parameter : stream::describeParameters(scene)) {
+  must(scene::isSceneName(scene.name()), "a loaded scene has a name that a client may ask for");
+  for (const v1::ParameterDescription& parameter : scene::describeParameters(scene)) {
     must(std::isfinite(parameter.value()), "a loaded scene's parameters are finite");
-    must(!stream::checkParameter(scene, parameter.path(), parameter.value()),
+    must(!scene::checkParameter(scene, parameter.path(), parameter.value()),
          "a loaded scene's own values may be set again");
   }
-  const core::Scene seen = stream::toCore(scene);
+  const core::Scene seen = scene::toCore(scene);
   must(seen.wave || seen.particles, "a loaded scene has water");
   must(!seen.wave || std::isfinite(seen.wave->depth_m), "its depth is finite");
 }
@@ -50,7 +50,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (const int choice = static_cast<int>(size % 8); v1::Fidelity_IsValid(choice) && choice > 0) {
     fidelity = static_cast<v1::Fidelity>(choice);
   }
-  const auto scene = stream::parseSceneText(text, std::string(fuzz::kLabel), fidelity);
+  const auto scene = scene::parseSceneText(text, std::string(fuzz::kLabel), fidelity);
   if (scene) {
     fuzz::checkLoaded(*scene);
   } else {

@@ -11,14 +11,13 @@
 #include <thread>
 #include <vector>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/net/server.h>
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/frame_encoder.h>
-#include <spindrift/stream/scene_loader.h>
-#include <spindrift/stream/server_message.h>
-
-#include "encoder_thread.h"
-#include "layer_index.h"
+#include <spindrift/rooms/encoder_thread.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/service/layer_index.h>
+#include <spindrift/wire/client_message.h>
+#include <spindrift/wire/server_message.h>
 
 namespace spindrift::test {
 
@@ -71,10 +70,10 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
 }
 
 /// What a client meets: greets, takes subscriptions as the real gateway does, answers every command with an Ack.
-class FakeGateway final : public net::Application {
+class FakeGateway final : public net::Application, public rooms::FrameOutlet {
  public:
   FakeGateway() {
-    auto scene = stream::parseSceneText("wave {} particles { count: 100 } coupling {} foam {}", "fake.textproto");
+    auto scene = scene::parseSceneText("wave {} particles { count: 100 } coupling {} foam {}", "fake.textproto");
     scene_ = *scene;
   }
 
@@ -82,32 +81,39 @@ class FakeGateway final : public net::Application {
   core::Result<void> acceptSession(const std::string&) override { return {}; }
   void sessionOpened(net::SessionId session, const std::string& room, const std::string&) override {
     ++opened_count;
-    stream::GreetingFacts facts;
+    wire::GreetingFacts facts;
     facts.room = room;
     facts.session_id = session;
-    hub_->sendAnswer(session, stream::greeting(facts, scene_));
+    hub_->sendAnswer(session, wire::greeting(facts, scene_));
     hub_->join(session, room);  // afterwards, so that no news of the room comes before the greeting
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
-    const stream::ClientMessage message = stream::parseClientMessage(bytes);
-    if (const auto* subscribe = std::get_if<stream::Subscribe>(&message)) {
-      const stream::Stream wanted = stream::streamOf(subscribe->layer, subscribe->packing);
-      for (const stream::Stream stream : stream::allStreams()) {
+    const wire::ClientMessage message = wire::parseClientMessage(bytes);
+    if (const auto* subscribe = std::get_if<wire::Subscribe>(&message)) {
+      const codec::Stream wanted = codec::streamOf(subscribe->layer, subscribe->packing);
+      for (const codec::Stream stream : codec::allStreams()) {
         if (stream.layer != wanted.layer) continue;
-        hub_->watch(session, app::layerIndex(stream),
+        hub_->watch(session, rooms::layerIndex(stream),
                     {.max_rate_hz = stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0,
                      .level = subscribe->level,
                      .adapts = subscribe->adapts});
       }
-    } else if (const auto* ping = std::get_if<stream::Ping>(&message)) {
-      hub_->sendAnswer(session, stream::pong(ping->client_time_s, 0.0));
+    } else if (const auto* ping = std::get_if<wire::Ping>(&message)) {
+      hub_->sendAnswer(session, wire::pong(ping->client_time_s, 0.0));
     } else if (const auto* command = std::get_if<core::Command>(&message)) {
-      hub_->broadcastState(kRooms[command->command_id % 2], {.name = "room_state"}, stream::roomState(false, 1.0));
+      hub_->broadcastState(kRooms[command->command_id % 2], {.name = "room_state"}, wire::roomState(false, 1.0));
       if (std::holds_alternative<core::Reset>(command->action)) hub_->join(session, kRooms[1]);
-      hub_->sendAnswer(session, stream::ack(command->command_id, 0));
+      hub_->sendAnswer(session, wire::ack(command->command_id, 0));
     }
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }
+  core::LayerDemand demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const override {
+    return service::demandOf(*hub_, room, stream, reduced_count);
+  }
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
+               std::uint32_t reduced_count) override {
+    service::publishTo(*hub_, room, stream, frame, level, reduced_count);
+  }
   void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
 
   /// The rooms that frames are made for.
@@ -129,7 +135,7 @@ class FakeWater {
     auto started = net::Server::start(options, gateway);
     if (!started) throw std::runtime_error(started.error().message);
     server = std::move(*started);
-    encoder = std::make_unique<app::EncoderThread>(server->hub());
+    encoder = std::make_unique<rooms::EncoderThread>(gateway);
     for (std::size_t room = 0; room < makers_.size(); ++room) {
       makers_[room] = std::thread([this, room] { makeFrames(room); });
     }
@@ -152,7 +158,7 @@ class FakeWater {
 
   FakeGateway gateway;
   std::unique_ptr<net::Server> server;
-  std::unique_ptr<app::EncoderThread> encoder;
+  std::unique_ptr<rooms::EncoderThread> encoder;
 
  private:
   void makeFrames(std::size_t room) {

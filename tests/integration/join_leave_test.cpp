@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/frame_decoder.h>
 
 #include "fake_water.h"
 #include "scripted_client.h"
@@ -29,8 +29,8 @@ std::string readFrames(ScriptedClient& client, v1::Packing packing, v1::Level le
     wanted.set_adapts(true);
     client.subscribe(wanted);
   }
-  stream::PackedSurfaceDecoder packed_surface;
-  stream::PackedFoamDecoder packed_foam;
+  codec::PackedSurfaceDecoder packed_surface;
+  codec::PackedFoamDecoder packed_foam;
   std::map<v1::Layer, int> counts{{v1::LAYER_SURFACE, 0}, {v1::LAYER_FOAM, 0}, {v1::LAYER_PARTICLES, 0}};
   const auto is_done = [&] {
     for (const auto& [layer, count] : counts) {
@@ -44,17 +44,17 @@ std::string readFrames(ScriptedClient& client, v1::Packing packing, v1::Level le
     const v1::LayerFrame& frame = message->frame();
     ++counts[frame.layer()];
     if (frame.layer() == v1::LAYER_SURFACE) {
-      const auto surface = packed ? packed_surface.decode(frame) : stream::decodeSurface(frame);
+      const auto surface = packed ? packed_surface.decode(frame) : codec::decodeSurface(frame);
       if (!surface) return surface.error().message;
       const float mark_m = static_cast<float>(markOf(frame.tick()) * kFakeQuantum_m);
       if (surface->elevation_m.at(0) != mark_m) return "samples of another tick";
       const bool is_coarse = frame.level() == v1::LEVEL_COARSE;
       if (surface->resolution_count != (is_coarse ? kFakeCoarseCount : kFakeResolutionCount)) return "another level";
     } else if (frame.layer() == v1::LAYER_FOAM) {
-      const auto foam = packed ? packed_foam.decode(frame) : stream::decodeFoam(frame);
+      const auto foam = packed ? packed_foam.decode(frame) : codec::decodeFoam(frame);
       if (!foam) return foam.error().message;
     } else {
-      const auto particles = packed ? stream::decodePackedParticles(frame) : stream::decodeParticles(frame);
+      const auto particles = packed ? codec::decodePackedParticles(frame) : codec::decodeParticles(frame);
       if (!particles) return particles.error().message;
     }
   }

@@ -18,8 +18,8 @@ class RoomChange : public RoomTest {
     ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
     send(command_id, count(value));
     send(100, core::SetSpeed{.speed = 1.0}, 2);
-    ASSERT_TRUE(runUntil([&] { return !observer_.applied.empty(); }));
-    ASSERT_THAT(observer_.applied, ElementsAre(100)) << "the change is still being laid out";
+    ASSERT_TRUE(runUntil([&] { return !outlets_.applied.empty(); }));
+    ASSERT_THAT(outlets_.applied, ElementsAre(100)) << "the change is still being laid out";
   }
 };
 
@@ -27,12 +27,12 @@ TEST_F(RoomChange, IsLaidOutBesideTheRoomWhoseTicksWait) {
   begin(1, 60000);
   const std::uint64_t tick = room_->tick();
   send(2, core::Reset{});
-  while (observer_.applied.size() == 1) {
+  while (outlets_.applied.size() == 1) {
     EXPECT_EQ(room_->tick(), tick) << "the state stands still, so that a log replays it";
     ASSERT_TRUE(runUntil([n = 0]() mutable { return n++ > 0; }));
   }
-  ASSERT_TRUE(runUntil([&] { return observer_.applied.size() == 3; }));
-  EXPECT_THAT(observer_.applied, ElementsAre(100, 1, 2)) << "what its sender sent later waits";
+  ASSERT_TRUE(runUntil([&] { return outlets_.applied.size() == 3; }));
+  EXPECT_THAT(outlets_.applied, ElementsAre(100, 1, 2)) << "what its sender sent later waits";
   EXPECT_EQ(sceneCount(), 60000u);
   EXPECT_TRUE(runUntil([&] { return room_->tick() >= tick + 3; })) << "time goes on";
 }
@@ -42,30 +42,30 @@ TEST_F(RoomChange, OfSeveralValuesOnlyTheLastIsLaidOut) {
   send(1, count(3000));
   send(2, count(5000));
   send(3, count(4000));
-  ASSERT_TRUE(runUntil([&] { return observer_.applied.size() == 3; }));
-  EXPECT_THAT(observer_.applied, ElementsAre(1, 2, 3));
+  ASSERT_TRUE(runUntil([&] { return outlets_.applied.size() == 3; }));
+  EXPECT_THAT(outlets_.applied, ElementsAre(1, 2, 3));
   EXPECT_EQ(sceneCount(), 4000u);
-  EXPECT_THAT(observer_.rejected, testing::IsEmpty());
+  EXPECT_THAT(outlets_.rejected, testing::IsEmpty());
 }
 
 TEST_F(RoomChange, EndsWithTheDeviceThatFails) {
   begin(1, 60000);
   context_->simulateLoss();
-  ASSERT_TRUE(runUntil([&] { return !observer_.rejected_ids.empty() || observer_.applied.size() > 1; }));
-  EXPECT_THAT(observer_.rejected_ids, ElementsAre(1));
-  EXPECT_THAT(observer_.rejected[0], HasSubstr("the device failed"));
-  ASSERT_TRUE(runUntil([&] { return observer_.scene_count == 1; }));
+  ASSERT_TRUE(runUntil([&] { return !outlets_.rejected_ids.empty() || outlets_.applied.size() > 1; }));
+  EXPECT_THAT(outlets_.rejected_ids, ElementsAre(1));
+  EXPECT_THAT(outlets_.rejected[0], HasSubstr("the device failed"));
+  ASSERT_TRUE(runUntil([&] { return outlets_.scene_count == 1; }));
   EXPECT_EQ(sceneCount(), kStartCount);
   send(2, count(3000));
-  EXPECT_TRUE(runUntil([&] { return observer_.applied.back() == 2; })) << "its sender may go on";
+  EXPECT_TRUE(runUntil([&] { return outlets_.applied.back() == 2; })) << "its sender may go on";
   EXPECT_EQ(sceneCount(), 3000u);
 }
 
 TEST_F(RoomChange, EndsWithTheRoom) {
   begin(1, 60000);
-  room_->abandonCommands(observer_);
-  EXPECT_THAT(observer_.rejected_ids, ElementsAre(1));
-  EXPECT_THAT(observer_.rejected[0], HasSubstr("closed"));
+  room_->abandonCommands();
+  EXPECT_THAT(outlets_.rejected_ids, ElementsAre(1));
+  EXPECT_THAT(outlets_.rejected[0], HasSubstr("closed"));
 }
 
 }  // namespace

@@ -1,76 +1,67 @@
 // A room alone, run tick by tick by the test: no network, no simulation thread.
 #pragma once
 
-#include <map>
-
 #include <gmock/gmock.h>
 
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/rooms/room.h>
+#include <spindrift/scene/scene_loader.h>
 
-#include "room.h"
 #include "server_fixture.h"
 
 namespace spindrift::test {
 
 using namespace std::chrono_literals;
 
-/// Keeps the newest state by topic; one session is there.
-struct RecordingHub final : net::Hub {
-  std::map<std::string, core::SharedBytes> states;
-
-  void sendAnswer(net::SessionId, core::SharedBytes) override {}
-  void sendState(net::SessionId, const net::StateTopic&, core::SharedBytes) override {}
-  void broadcastState(const std::string&, const net::StateTopic& topic, core::SharedBytes message) override {
-    states[topic.name] = std::move(message);
-  }
-  void publish(const std::string&, net::LayerIndex, const net::LayerBytes&) override {}
-  net::LayerDemand demand(const std::string&, net::LayerIndex, std::uint32_t) const override {
-    net::LayerDemand out{};
-    out.back() = {.watcher_count = 1, .wants_whole = true};
-    return out;
-  }
-  void join(net::SessionId, const std::string&) override {}
-  std::size_t sessionCount(const std::string&) const override { return 1; }
-  std::size_t sessionCount() const override { return 1; }
-  void watch(net::SessionId, net::LayerIndex, const net::Watch&) override {}
-  void close(net::SessionId, net::CloseCode, std::string) override {}
-  void closeAt(net::SessionId, std::chrono::steady_clock::time_point, net::CloseCode, std::string) override {}
-};
-
-struct RecordingObserver final : app::RoomObserver {
+/// Keeps what a room tells; one session is there, which watches everything at full detail.
+struct RecordingOutlets final : rooms::RoomOutlets {
   int scene_count = 0;
+  int recovered_count = 0;
   std::vector<std::uint64_t> applied;
   std::vector<std::string> rejected;
   std::vector<std::uint64_t> rejected_ids;
 
-  void sceneChanged(const app::Room&) override { ++scene_count; }
+  void sceneChanged(const rooms::Room&) override { ++scene_count; }
+  void timeChanged(const rooms::Room&, bool, double) override {}
+  void parameterChanged(const rooms::Room&, const std::string&, double) override {}
+  void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
+  void peopleChanged(const rooms::Room&, const v1::People&) override {}
+  void wasReset(const rooms::Room&) override {}
+  void hasRecovered(const rooms::Room&, const std::string&) override { ++recovered_count; }
+  void closed(const rooms::Room&) override {}
   void commandApplied(const core::Command& command, std::uint64_t, std::uint32_t) override {
     applied.push_back(command.command_id);
   }
-  void commandRejected(const core::Command&, const stream::CommandRejection& rejection) override {
+  void commandRejected(const core::Command&, const wire::CommandRejection& rejection) override {
     rejected.push_back(rejection.message);
     rejected_ids.push_back(rejection.command_id);
   }
+  void frameReady(const rooms::Room&, core::FrameView) override {}
+  rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&) const override {
+    rooms::WatchedLayers out{.bodies = true, .diagnostics = true};
+    out.surface.back() = out.particles.back() = out.foam.back() = true;
+    return out;
+  }
+  std::size_t sessionCount(const rooms::Room&) const override { return 1; }
+  std::size_t sessionCount() const override { return 1; }
 };
 
 class RoomTest : public testing::Test {
  protected:
   void SetUp() override {
     device_.kind = gpu::DeviceChoice::Kind::kSoftware;
-    auto scene = stream::parseSceneText(kStillPool, "main");
+    auto scene = scene::parseSceneText(kStillPool, "main");
     ASSERT_TRUE(scene);
-    auto water = app::Water::create(device_, *std::move(scene));
+    auto water = rooms::Water::create(device_, *std::move(scene));
     if (!water && water.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << water.error().message;
     ASSERT_TRUE(water);
     context_ = &(*water)->context();
-    builder_ = std::make_unique<app::WaterBuilder>(device_);
-    auto room = app::Room::create("main", *std::move(water), rules_, *builder_);
+    builder_ = std::make_unique<rooms::WaterBuilder>(device_);
+    auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_, outlets_);
     ASSERT_TRUE(room);
     room_ = *std::move(room);
     room_->start(Clock::now());
   }
   void TearDown() override {
-    encoder_.stop();
     if (room_) room_->releaseDevice();
   }
 
@@ -79,7 +70,7 @@ class RoomTest : public testing::Test {
     const auto deadline = Clock::now() + kPatience;
     while (!holds()) {
       if (Clock::now() > deadline) return false;
-      room_->run(Clock::now(), hub_, encoder_, observer_);
+      room_->run(Clock::now());
       std::this_thread::sleep_for(1ms);
     }
     return true;
@@ -92,12 +83,10 @@ class RoomTest : public testing::Test {
 
   using Clock = std::chrono::steady_clock;
   gpu::DeviceChoice device_;
-  app::RoomRules rules_;
-  RecordingHub hub_;
-  RecordingObserver observer_;
-  app::EncoderThread encoder_{hub_};
-  std::unique_ptr<app::WaterBuilder> builder_;
-  std::shared_ptr<app::Room> room_;
+  rooms::RoomRules rules_;
+  RecordingOutlets outlets_;
+  std::unique_ptr<rooms::WaterBuilder> builder_;
+  std::shared_ptr<rooms::Room> room_;
   gpu::Context* context_ = nullptr;  ///< of the room's first water
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/frame_decoder.h>
 
 namespace spindrift::test {
 namespace {
@@ -92,7 +92,7 @@ ScriptedClient::ScriptedClient(std::uint16_t port, const std::string& room, int 
   if (!ws_.connect("127.0.0.1", port, room.empty() ? "/ws" : "/ws/" + room)) return;
   const auto first = ws_.receive();
   if (!first) return;
-  if (auto message = stream::parseServerMessage(*first)) greeting_ = message->greeting();
+  if (auto message = codec::parseServerMessage(*first)) greeting_ = message->greeting();
 }
 
 void ScriptedClient::hello(const Person& who) {
@@ -143,7 +143,7 @@ std::optional<v1::ServerMessage> ScriptedClient::waitFor(const Wanted& wanted) {
   while (Clock::now() < deadline) {
     const auto bytes = ws_.receive(std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()));
     if (!bytes) return std::nullopt;
-    auto message = stream::parseServerMessage(*bytes);
+    auto message = codec::parseServerMessage(*bytes);
     if (!message) return std::nullopt;
     if (wanted(*message)) return *std::move(message);
     if (isKept(*message)) kept_.push_back(*std::move(message));

@@ -1,5 +1,6 @@
 // Two hundred clients on one server: nobody starves, every command is answered, nothing is encoded twice.
-#include "fanout/scene_crowd.h"
+#include <spindrift/bench/scene_crowd.h>
+
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -17,26 +18,26 @@ class Crowd : public ServerTest {
       stream { frame_rate_hz: 20 }
     )"}};
   }
-  void adjust(app::WaterServerOptions& options) const override { options.network.max_session_count = 512; }
+  void adjust(service::WaterServerOptions& options) const override { options.network.max_session_count = 512; }
 
   /// Frames of a layer encoded so far, packed.
   std::uint64_t encodedCount(v1::Layer layer) const {
     std::uint64_t count = 0;
-    const app::EncoderThread::Costs costs = encoder().costs();
-    for (const auto& level : costs[stream::indexOf(stream::streamOf(layer, v1::PACKING_PACKED))])
+    const rooms::EncoderThread::Costs costs = encoder().costs();
+    for (const auto& level : costs[codec::indexOf(codec::streamOf(layer, v1::PACKING_PACKED))])
       count += level.frame_count;
     return count;
   }
 };
 
 TEST_F(Crowd, OfTwoHundredNobodyStarvesAndEveryCommandIsAnswered) {
-  auto scene = stream::parseSceneText(rooms()[0].scene, "main");
+  auto scene = scene::parseSceneText(rooms()[0].scene, "main");
   ASSERT_TRUE(scene);
   const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string(server().port()) + "/ws");
   std::uint64_t encoded_before = 0;
   std::uint64_t encoded_after = 0;
-  const app::CrowdReport crowd = app::runCrowd(
-      *url, app::sceneCrowd(*scene, 200, 6.0), [&] { encoded_before = encodedCount(v1::LAYER_SURFACE); },
+  const bench::CrowdReport crowd = bench::runCrowd(
+      *url, bench::sceneCrowd(*scene, 200, 6.0), [&] { encoded_before = encodedCount(v1::LAYER_SURFACE); },
       [&] { encoded_after = encodedCount(v1::LAYER_SURFACE); });
   EXPECT_EQ(crowd.connected_count, 200u);
   EXPECT_EQ(crowd.lost_count, 0u);

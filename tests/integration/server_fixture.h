@@ -9,11 +9,11 @@
 
 #include <gmock/gmock.h>
 
-#include <spindrift/stream/frame_decoder.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/service/water_server.h>
 
 #include "scripted_client.h"
-#include "water_server.h"
 
 namespace spindrift::test {
 
@@ -41,29 +41,29 @@ class ServerTest : public testing::Test {
   virtual std::vector<RoomText> rooms() const { return {{"main", kStillPool}}; }
 
   /// What rooms can be changed to.
-  virtual app::SceneCatalog scenes() const { return {}; }
+  virtual rooms::SceneCatalog scenes() const { return {}; }
   /// Everything else that a test wants otherwise.
-  virtual void adjust(app::WaterServerOptions& /*options*/) const {}
+  virtual void adjust(service::WaterServerOptions& /*options*/) const {}
 
   void SetUp() override {
-    app::WaterServerOptions options;
+    service::WaterServerOptions options;
     options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
     options.network.port = 0;
     options.rules.scenes = scenes();
     for (const RoomText& room : rooms()) {
-      auto scene = stream::parseSceneText(room.scene, room.name);
+      auto scene = scene::parseSceneText(room.scene, room.name);
       ASSERT_TRUE(scene) << scene.error().message;
       options.rooms.push_back({room.name, *std::move(scene)});
     }
     adjust(options);
-    auto started = app::WaterServer::start(std::move(options));
+    auto started = service::WaterServer::start(std::move(options));
     if (!started && started.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << started.error().message;
     ASSERT_TRUE(started) << started.error().message;
     server_ = *std::move(started);
   }
 
-  app::WaterServer& server() { return *server_; }
-  const app::EncoderThread& encoder() const { return server_->encoder(); }
+  service::WaterServer& server() { return *server_; }
+  const rooms::EncoderThread& encoder() const { return server_->encoder(); }
 
   /// A client that has said hello.
   ScriptedClient client(const std::string& room = "") { return person({}, room); }
@@ -78,7 +78,7 @@ class ServerTest : public testing::Test {
   }
 
  private:
-  std::unique_ptr<app::WaterServer> server_;
+  std::unique_ptr<service::WaterServer> server_;
 };
 
 class WaveServerTest : public ServerTest {
@@ -88,7 +88,7 @@ class WaveServerTest : public ServerTest {
 
 /// Largest elevation of a frame; -1 where it does not decode.
 inline double maxElevation_m(const v1::LayerFrame& frame) {
-  const auto surface = stream::decodeSurface(frame);
+  const auto surface = codec::decodeSurface(frame);
   if (!surface) return -1.0;
   double max_m = 0.0;
   for (const float eta_m : surface->elevation_m) max_m = std::max(max_m, std::abs(static_cast<double>(eta_m)));

@@ -46,7 +46,7 @@ TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValuesWithGrowingTicks) {
     if (frame.layer() == v1::LAYER_SURFACE) {
       EXPECT_GT(frame.tick(), surface_tick);
       surface_tick = frame.tick();
-      const auto surface = stream::decodeSurface(frame);
+      const auto surface = codec::decodeSurface(frame);
       ASSERT_TRUE(surface) << surface.error().message;
       EXPECT_EQ(surface->resolution_count, 32u);
       EXPECT_EQ(surface->side_m, 8.0);
@@ -54,7 +54,7 @@ TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValuesWithGrowingTicks) {
     } else {
       EXPECT_GT(frame.tick(), particle_tick);
       particle_tick = frame.tick();
-      const auto particles = stream::decodeParticles(frame);
+      const auto particles = codec::decodeParticles(frame);
       ASSERT_TRUE(particles) << particles.error().message;
       EXPECT_EQ(particles->count, 512u);
       for (const float x_m : particles->position_m) ASSERT_TRUE(std::isfinite(x_m));

@@ -8,7 +8,7 @@ using testing::HasSubstr;
 
 class HelloDeadline : public WaveServerTest {
  protected:
-  void adjust(app::WaterServerOptions& options) const override { options.hello_patience = std::chrono::seconds(1); }
+  void adjust(service::WaterServerOptions& options) const override { options.hello_patience = std::chrono::seconds(1); }
 };
 
 TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedHoweverManyPingsItSends) {
@@ -35,8 +35,8 @@ TEST_F(HelloDeadline, ASessionThatSaidHelloStays) {
 
 class BeforeHello : public WaveServerTest {
  protected:
-  void adjust(app::WaterServerOptions& options) const override {
-    auto access = app::Access::parse("operator token-of-some-operator\n", "tokens", std::nullopt);
+  void adjust(service::WaterServerOptions& options) const override {
+    auto access = service::Access::parse("operator token-of-some-operator\n", "tokens", std::nullopt);
     ASSERT_TRUE(access);
     options.access = *access;
   }

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/frame_decoder.h>
 
 #include "server_fixture.h"
 
@@ -33,13 +33,13 @@ TEST_F(Harbour, SendsParticlesOnlyWhereWaterBroke) {
   const auto calm = one.nextFrame(v1::LAYER_PARTICLES);
   ASSERT_TRUE(calm);
   EXPECT_EQ(calm->particles_fixed12().count(), 0u);
-  EXPECT_TRUE(stream::decodeParticles(*calm)) << "a frame of no particles is a frame";
+  EXPECT_TRUE(codec::decodeParticles(*calm)) << "a frame of no particles is a frame";
   ASSERT_TRUE(one.apply(splash(0.85)));
   const auto broken = one.waitFor([](const v1::ServerMessage& m) {
     return m.has_frame() && m.frame().layer() == v1::LAYER_PARTICLES && m.frame().particles_fixed12().count() > 5;
   });
   ASSERT_TRUE(broken);
-  const auto samples = stream::decodeParticles(broken->frame());
+  const auto samples = codec::decodeParticles(broken->frame());
   ASSERT_TRUE(samples) << samples.error().message;
   EXPECT_GT(*std::max_element(samples->foam.begin(), samples->foam.end()), 100) << "spray is white";
   one.subscribe(v1::LAYER_DIAGNOSTICS);
@@ -58,7 +58,7 @@ TEST_F(Harbour, SendsFoamOfWhatBroke) {
   EXPECT_EQ(calm->foam_fixed8().resolution_count(), 32u);
   ASSERT_TRUE(one.apply(splash(0.85)));
   EXPECT_TRUE(one.waitFor([](const v1::ServerMessage& m) {
-    if (!m.has_frame() || m.frame().layer() != v1::LAYER_FOAM || !stream::decodeFoam(m.frame())) return false;
+    if (!m.has_frame() || m.frame().layer() != v1::LAYER_FOAM || !codec::decodeFoam(m.frame())) return false;
     return std::ranges::any_of(m.frame().payload(), [](char byte) { return static_cast<unsigned char>(byte) > 100; });
   }));
 }
@@ -70,7 +70,7 @@ TEST_F(Harbour, MovesTheBoatThatSomebodySteersForEverybody) {
   const auto first = shore.nextFrame(v1::LAYER_BODIES);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->bodies_fixed28().count(), 1u);
-  EXPECT_TRUE(stream::decodeBodies(*first));
+  EXPECT_TRUE(codec::decodeBodies(*first));
   ASSERT_TRUE(helm.apply(controlBoat(1, 1.0, 0.0)));
   const auto xOf = [](const v1::LayerFrame& frame) {
     std::int32_t x_mm = 0;
@@ -96,7 +96,7 @@ TEST_F(Pool, TakesAnotherNumberOfParticlesWhileItRuns) {
   EXPECT_EQ(told->parameter_changed().applied_tick(), *applied);
   EXPECT_TRUE(two.waitFor([](const v1::ServerMessage& m) {
     return m.has_frame() && m.frame().layer() == v1::LAYER_PARTICLES && m.frame().particles_fixed12().count() > 1500 &&
-           stream::decodeParticles(m.frame());
+           codec::decodeParticles(m.frame());
   }));
   const v1::Reject refused = one.rejected(setParameter("particles.count", 2'000'000));
   EXPECT_EQ(refused.reason(), v1::REJECT_REASON_OUT_OF_RANGE);

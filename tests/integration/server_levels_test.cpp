@@ -3,10 +3,10 @@
 #include <map>
 #include <thread>
 
+#include <spindrift/bench/levels.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/sim/water_sim.h>
 
-#include "commands/bench_levels.h"
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -49,13 +49,13 @@ TEST_F(LevelsOfAPool, EachClientGetsTheLevelThatItAskedFor) {
     const auto surface = one.nextFrame(v1::LAYER_SURFACE);
     ASSERT_TRUE(surface);
     EXPECT_EQ(surface->level(), expected);
-    const auto samples = stream::decodeSurface(*surface);
+    const auto samples = codec::decodeSurface(*surface);
     ASSERT_TRUE(samples) << samples.error().message;
     resolution_count[level] = samples->resolution_count;
     const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
     ASSERT_TRUE(particles);
     EXPECT_EQ(particles->level(), expected);
-    const auto places = stream::decodeParticles(*particles);
+    const auto places = codec::decodeParticles(*particles);
     ASSERT_TRUE(places) << places.error().message;
     particle_count[level] = places->count;
   }
@@ -70,7 +70,7 @@ TEST_F(LevelsOfAPool, EachClientGetsTheLevelThatItAskedFor) {
 
 TEST_F(LevelsOfAPool, PackedLevelsCanAllBeReadWhileOneMovesBetweenThem) {
   ScriptedClient one = client();
-  stream::PackedSurfaceDecoder decoder;
+  codec::PackedSurfaceDecoder decoder;
   for (const v1::Level level : {v1::LEVEL_FULL, v1::LEVEL_COARSE, v1::LEVEL_FULL, v1::LEVEL_COARSE}) {
     one.subscribe(subscription(v1::LAYER_SURFACE, level, v1::PACKING_PACKED));
     one.subscribe(subscription(v1::LAYER_PARTICLES, level, v1::PACKING_PACKED));
@@ -90,14 +90,14 @@ TEST_F(LevelsOfAPool, PackedLevelsCanAllBeReadWhileOneMovesBetweenThem) {
     }
     const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
     ASSERT_TRUE(particles);
-    EXPECT_TRUE(stream::decodePackedParticles(*particles));
+    EXPECT_TRUE(codec::decodePackedParticles(*particles));
   }
 }
 
 TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
   const auto frames = [this](core::Level level) {
-    const stream::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
-    return encoder().costs()[stream::indexOf(packed)][core::indexOf(level)].frame_count;
+    const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
+    return encoder().costs()[codec::indexOf(packed)][core::indexOf(level)].frame_count;
   };
   std::vector<ScriptedClient> full, coarse;
   for (int k = 0; k < 3; ++k) {
@@ -125,7 +125,7 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
 
 TEST(LevelBudgets, AreKeptByAPoolOfTheLargestOne) {
   // Half a second after a splash, when the surface is at its busiest.
-  const auto parsed = stream::parseSceneText(R"(
+  const auto parsed = scene::parseSceneText(R"(
     tick_rate_hz: 60
     wave { resolution_count: 512 side_m: 24 depth_m: 1.5 damping_per_s: 0.15 }
     particles { count: 131072 layers_count: 3 headroom_m: 5 sound_speed_mps: 14 max_speed_mps: 8 viscosity_pas: 60 }
@@ -133,18 +133,18 @@ TEST(LevelBudgets, AreKeptByAPoolOfTheLargestOne) {
     foam { surface: true }
     events { at_s: 0.05 effect { splash { x_m: -2 z_m: 1.5 radius_m: 2.2 depth_m: 1.3 duration_s: 0.25 } } }
   )",
-                                             "budget.textproto");
+                                            "budget.textproto");
   ASSERT_TRUE(parsed) << parsed.error().message;
   auto context = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
   if (!context) GTEST_SKIP() << "no software EGL device here: " << context.error().message;
-  const core::Scene scene = stream::toCore(*parsed);
+  const core::Scene scene = scene::toCore(*parsed);
   auto sim = sim::WaterSim::create(**context, scene);
   ASSERT_TRUE(sim) << sim.error().message;
-  app::LevelMeter meter(scene.stream.frame_rate_hz);
+  bench::LevelMeter meter(scene.stream.frame_rate_hz);
   for (int tick = 0; tick < 20; ++tick) {
     (*sim)->step();
     if (tick % 2 != 0) continue;
-    ASSERT_TRUE((*sim)->requestFrame(app::LevelMeter::request(scene)));
+    ASSERT_TRUE((*sim)->requestFrame(bench::LevelMeter::request(scene)));
     (*context)->finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) meter.add(frame);
   }
@@ -182,7 +182,7 @@ TEST_F(LevelsOfAWave, ASlowClientComesDownByItselfClimbsBackAndHarmsNobody) {
     while (std::chrono::steady_clock::now() < end) {
       const auto bytes = slow.ws().receive();
       if (!bytes) return std::nullopt;
-      const auto message = stream::parseServerMessage(*bytes);
+      const auto message = codec::parseServerMessage(*bytes);
       if (message && message->has_level_changed()) return message->level_changed().level();
       std::this_thread::sleep_for(between);
     }

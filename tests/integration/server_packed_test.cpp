@@ -23,7 +23,7 @@ TEST_F(PackedFrames, CanAllBeReadAndMostBuildOnTheOneBefore) {
     message.mutable_command()->set_command_id(77);
     return message;
   }());
-  stream::PackedSurfaceDecoder decoder;
+  codec::PackedSurfaceDecoder decoder;
   int continuing_count = 0;
   double highest_m = 0.0;
   for (int i = 0; i < 40; ++i) {
@@ -47,7 +47,7 @@ TEST_F(PackedFrames, HoldTheSamplesOfThePlainOnes) {
   ASSERT_TRUE(packed.apply(splash()));
   watch(packed);
   plain.subscribe(v1::LAYER_SURFACE);
-  stream::PackedSurfaceDecoder decoder;
+  codec::PackedSurfaceDecoder decoder;
   std::map<std::uint64_t, std::vector<float>> by_tick;
   for (int i = 0; i < 20; ++i) {
     const auto frame = packed.nextFrame(v1::LAYER_SURFACE);
@@ -60,7 +60,7 @@ TEST_F(PackedFrames, HoldTheSamplesOfThePlainOnes) {
   for (int i = 0; i < 20; ++i) {
     const auto frame = plain.nextFrame(v1::LAYER_SURFACE);
     ASSERT_TRUE(frame);
-    const auto surface = stream::decodeSurface(*frame);
+    const auto surface = codec::decodeSurface(*frame);
     ASSERT_TRUE(surface) << "the other packing does not reach whoever asked for plain";
     const auto same = by_tick.find(frame->tick());
     if (same == by_tick.end()) continue;
@@ -73,8 +73,8 @@ TEST_F(PackedFrames, HoldTheSamplesOfThePlainOnes) {
 TEST_F(PackedFrames, ALatecomerBeginsWithAKeyframeAndDisturbsNobody) {
   ScriptedClient early = client();
   watch(early);
-  stream::PackedSurfaceDecoder early_decoder, late_decoder;
-  const auto readOne = [](ScriptedClient& one, stream::PackedSurfaceDecoder& decoder) {
+  codec::PackedSurfaceDecoder early_decoder, late_decoder;
+  const auto readOne = [](ScriptedClient& one, codec::PackedSurfaceDecoder& decoder) {
     const auto frame = one.nextFrame(v1::LAYER_SURFACE);
     EXPECT_TRUE(frame);
     if (frame) {
@@ -100,7 +100,7 @@ TEST_F(PackedFrames, AtALowerRateAreWholeEachTime) {
   watch(slow, 5.0);
   ScriptedClient fast = client();
   watch(fast);
-  stream::PackedSurfaceDecoder decoder;
+  codec::PackedSurfaceDecoder decoder;
   std::uint64_t last_tick = 0;
   for (int i = 0; i < 5; ++i) {
     const auto frame = slow.nextFrame(v1::LAYER_SURFACE);
@@ -137,7 +137,7 @@ TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotForNobody) {
   }
   const auto end = clients[0].apply(setSpeed(1.0));
   ASSERT_TRUE(end);
-  const stream::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
+  const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
   EXPECT_GE(server().encoder().encodeCount("main", packed), 15u);
   EXPECT_LE(server().encoder().encodeCount("main", packed), *end - *begin + 1);
   EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), 0u) << "nobody asked for plain frames";
@@ -153,7 +153,7 @@ TEST_F(PackedParticles, AreAsManyAndAsFiniteAsThePlainOnes) {
     ASSERT_TRUE(frame);
     ASSERT_TRUE(frame->has_particles_by_cell());
     EXPECT_LT(frame->payload().size(), 512u * 12 / 3) << "less than a third of the plain bytes";
-    const auto particles = stream::decodePackedParticles(*frame);
+    const auto particles = codec::decodePackedParticles(*frame);
     ASSERT_TRUE(particles) << particles.error().message;
     EXPECT_EQ(particles->count, 512u);
     for (const float x_m : particles->position_m) ASSERT_LE(std::abs(x_m), 8.0f);

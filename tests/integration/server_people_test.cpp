@@ -21,7 +21,7 @@ constexpr const char* kBrief = "brief-brief-brief-1";
 class People : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kLagoon}}; }
-  void adjust(app::WaterServerOptions& options) const override {
+  void adjust(service::WaterServerOptions& options) const override {
     // Tokens live for a while; the brief one ends while its client is connected.
     const auto soon =
         std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()) + std::chrono::seconds(3);
@@ -30,7 +30,7 @@ class People : public ServerTest {
     std::strftime(until, sizeof until, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&at));
     const std::string tokens = std::string("operator ") + kOperator + "\nplayer " + kPlayer + "\nplayer " + kBrief +
                                " until=" + until + "\nplayer expired-expired-1 until=2020-01-01T00:00:00Z\n";
-    auto access = app::Access::parse(tokens, "tokens", guests());
+    auto access = service::Access::parse(tokens, "tokens", guests());
     ASSERT_TRUE(access) << access.error().message;
     options.access = *std::move(access);
     options.rules.grace = grace();
@@ -198,7 +198,7 @@ TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
   const auto throttle = [&]() -> double {
     const auto frame = bob.nextFrame(v1::LAYER_BODIES);
     if (!frame) return -1.0;
-    const auto bodies = stream::decodeBodies(*frame);
+    const auto bodies = codec::decodeBodies(*frame);
     if (!bodies) return -1.0;
     for (const auto& body : *bodies) {
       if (body.boat_id == boat_id) return body.throttle_ratio;

@@ -2,7 +2,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "replay.h"
+#include <spindrift/rooms/replay.h>
+
 #include "server_fixture.h"
 #include "temporary_folder.h"
 
@@ -23,11 +24,11 @@ class Recorded : public ServerTest {
       boats { capacity_count: 4 boats { x_m: 2 z_m: 0 } }
     )"}};
   }
-  app::SceneCatalog scenes() const override {
+  rooms::SceneCatalog scenes() const override {
     folder_.write("pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
-    return app::SceneCatalog(folder_.path());
+    return rooms::SceneCatalog(folder_.path());
   }
-  void adjust(app::WaterServerOptions& options) const override {
+  void adjust(service::WaterServerOptions& options) const override {
     options.rules.record_folder = folder_.path() / "logs";
     options.rules.hash_interval_ticks = 5;
   }
@@ -37,12 +38,12 @@ class Recorded : public ServerTest {
     return {};
   }
 
-  static core::Result<app::ReplayOutcome> replayed(const fs::path& file) {
-    auto log = app::CommandLogReader::open(file);
+  static core::Result<rooms::ReplayOutcome> replayed(const fs::path& file) {
+    auto log = rooms::CommandLogReader::open(file);
     if (!log) return log.error();
     gpu::DeviceChoice device;
     device.kind = gpu::DeviceChoice::Kind::kSoftware;
-    return app::replayLog(device, **log);
+    return rooms::replayLog(device, **log);
   }
 
   /// A session of everything that touches the water, recorded; the server has stopped.
@@ -115,10 +116,10 @@ TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndSaysSo) {
 TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
   live();
   // The same log with the first splash left out.
-  const auto log = app::CommandLogReader::open(logFile());
+  const auto log = rooms::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);
   v1::RecordHeader header = (*log)->header();
-  auto changed = app::CommandLogWriter::create(folder_.path() / "changed", header);
+  auto changed = rooms::CommandLogWriter::create(folder_.path() / "changed", header);
   ASSERT_TRUE(changed);
   std::uint64_t splash_tick = 0;
   std::uint64_t next_hash_tick = 0;
@@ -139,12 +140,12 @@ TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
 
 TEST_F(Recorded, AnotherDriverThanTheLogsIsTold) {
   live();
-  const auto log = app::CommandLogReader::open(logFile());
+  const auto log = rooms::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);
   EXPECT_FALSE((*log)->header().gl_version().empty());
   v1::RecordHeader header = (*log)->header();
   header.set_gl_version("4.5 (Core Profile) Mesa 99.0");
-  auto changed = app::CommandLogWriter::create(folder_.path() / "changed", header);
+  auto changed = rooms::CommandLogWriter::create(folder_.path() / "changed", header);
   ASSERT_TRUE(changed);
   while (const auto record = (*log)->next()) (*changed)->write(*record);
   const auto outcome = replayed((*changed)->file());

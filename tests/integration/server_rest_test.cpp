@@ -30,13 +30,13 @@ struct Answer {
 class Rest : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillPool}}; }
-  app::SceneCatalog scenes() const override {
+  rooms::SceneCatalog scenes() const override {
     folder_.write("pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
     folder_.write("bay.textproto", std::string(kSleepy));
     folder_.write("broken.textproto", "wave { depth_m: 2000 }");
-    return app::SceneCatalog(folder_.path());
+    return rooms::SceneCatalog(folder_.path());
   }
-  void adjust(app::WaterServerOptions& options) const override { options.max_room_count = 3; }
+  void adjust(service::WaterServerOptions& options) const override { options.max_room_count = 3; }
 
   Answer ask(const std::string& method, const std::string& path, const std::string& body = "",
              const std::string& token = "") {
@@ -69,9 +69,9 @@ class Rest : public ServerTest {
 };
 
 class RestByRole : public Rest {
-  void adjust(app::WaterServerOptions& options) const override {
-    auto access =
-        app::Access::parse(std::string("operator ") + kOperator + "\nplayer " + kPlayer, "tokens", core::Role::kViewer);
+  void adjust(service::WaterServerOptions& options) const override {
+    auto access = service::Access::parse(std::string("operator ") + kOperator + "\nplayer " + kPlayer, "tokens",
+                                         core::Role::kViewer);
     ASSERT_TRUE(access);
     options.access = *std::move(access);
   }

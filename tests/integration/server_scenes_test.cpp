@@ -13,7 +13,7 @@ using testing::HasSubstr;
 class Scenes : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}, {"other", kStillWave}}; }
-  app::SceneCatalog scenes() const override {
+  rooms::SceneCatalog scenes() const override {
     folder_.write("pond.textproto",
                   "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }\nstream { frame_rate_hz: 60 }");
     folder_.write("box.textproto",
@@ -22,7 +22,7 @@ class Scenes : public ServerTest {
     folder_.write("quay.textproto", "wave { resolution_count: 48 side_m: 16 depth_m: 1 }\nboats { boats { x_m: -4 } }");
     folder_.write("broken.textproto", "wave { depth_m: 200 }\nparticles { count: 0 }\n");
     folder_.write("impossible.textproto", "particles { count: 10 }\n");
-    return app::SceneCatalog(folder_.path());
+    return rooms::SceneCatalog(folder_.path());
   }
 
   /// Changes the scene as soon as the room lets us; the tick of its Ack.
@@ -83,7 +83,7 @@ TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
   const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
   ASSERT_TRUE(particles) << "a layer asked for before the room had it";
   EXPECT_GE(particles->tick(), *box);
-  EXPECT_TRUE(stream::decodeParticles(*particles));
+  EXPECT_TRUE(codec::decodeParticles(*particles));
   const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
   ASSERT_TRUE(greeting);
   EXPECT_THAT(greeting->greeting().layers(), ElementsAre(v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS));
@@ -95,7 +95,7 @@ TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
     return m.has_frame() && m.frame().layer() == v1::LAYER_SURFACE && m.frame().tick() >= *pond;
   });
   ASSERT_TRUE(surface);
-  EXPECT_TRUE(stream::decodeSurface(surface->frame()));
+  EXPECT_TRUE(codec::decodeSurface(surface->frame()));
   EXPECT_TRUE(
       one.waitFor([&](const v1::ServerMessage& m) { return m.has_diagnostics() && m.diagnostics().tick() > *pond; }));
 }
@@ -147,7 +147,7 @@ TEST_F(Scenes, DoNotChangeFasterThanTheRoomCanBuildThem) {
 class ShippedScenes : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
-  app::SceneCatalog scenes() const override { return app::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
+  rooms::SceneCatalog scenes() const override { return rooms::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
 };
 
 TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
@@ -176,10 +176,10 @@ TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
       });
       ASSERT_TRUE(frame) << name << " layer " << layer;
       if (layer == v1::LAYER_SURFACE) {
-        EXPECT_TRUE(stream::decodeSurface(frame->frame()));
+        EXPECT_TRUE(codec::decodeSurface(frame->frame()));
       }
       if (layer == v1::LAYER_PARTICLES) {
-        EXPECT_TRUE(stream::decodeParticles(frame->frame()));
+        EXPECT_TRUE(codec::decodeParticles(frame->frame()));
       }
     }
     const auto splashed = one.apply(splash(0.3, 0.3));

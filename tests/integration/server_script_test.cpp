@@ -1,6 +1,7 @@
 // Scripted clients against a live server: what a script expects holds, and what does not hold is told.
-#include "script/script_file.h"
-#include "script/script_runner.h"
+#include <spindrift/script/script_file.h>
+#include <spindrift/script/script_runner.h>
+
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -19,20 +20,20 @@ constexpr const char* kLagoon = R"(
 class Script : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kLagoon}, {"other", kStillWave}}; }
-  void adjust(app::WaterServerOptions& options) const override { options.rules.grace = std::chrono::hours(1); }
+  void adjust(service::WaterServerOptions& options) const override { options.rules.grace = std::chrono::hours(1); }
 
-  app::ScriptReport run(const std::string& text) {
-    auto script = app::parseScript(text, "test");
+  script::ScriptReport run(const std::string& text) {
+    auto script = script::parseScript(text, "test");
     EXPECT_TRUE(script) << script.error().message;
     const auto there = url();
-    return script ? app::runScript(*script, *there) : app::ScriptReport{};
+    return script ? script::runScript(*script, *there) : script::ScriptReport{};
   }
   core::Result<net::ClientUrl> url() {
     return net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string(server().port()));
   }
-  static std::string failures(const app::ScriptReport& report) {
+  static std::string failures(const script::ScriptReport& report) {
     std::string out;
-    for (const app::StepReport& step : report.steps) {
+    for (const script::StepReport& step : report.steps) {
       if (!step.passed) out += std::to_string(step.index) + " " + step.what + ": " + step.detail + "\n";
     }
     return out;
@@ -145,7 +146,7 @@ TEST_F(Script, SeesEventsAndRefusals) {
 
 TEST_F(Script, BadScriptsAreNamedWithTheirPlace) {
   const auto error = [](const std::string& text) {
-    const auto script = app::parseScript(text, "test");
+    const auto script = script::parseScript(text, "test");
     return script ? std::string("(accepted)") : script.error().message;
   };
   EXPECT_THAT(error("steps {"), HasSubstr("test:1:"));

@@ -19,7 +19,7 @@ const char* longStorm_s() {
 class Storm : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kHarborLike}, {"other", kStillWave}}; }
-  app::SceneCatalog scenes() const override { return app::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
+  rooms::SceneCatalog scenes() const override { return rooms::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
 
   static constexpr const char* kHarborLike = R"(
     wave { resolution_count: 128 side_m: 24 depth_m: 1.5 }
@@ -86,9 +86,9 @@ class StormOfEveryRole : public Storm {
   static constexpr const char* kPlayer = "token-of-some-player";
   static constexpr const char* kOperator = "token-of-some-operator";
 
-  void adjust(app::WaterServerOptions& options) const override {
-    auto access = app::Access::parse(fmt::format("viewer {}\nplayer {}\noperator {}\n", kViewer, kPlayer, kOperator),
-                                     "tokens", core::Role::kViewer);
+  void adjust(service::WaterServerOptions& options) const override {
+    auto access = service::Access::parse(
+        fmt::format("viewer {}\nplayer {}\noperator {}\n", kViewer, kPlayer, kOperator), "tokens", core::Role::kViewer);
     ASSERT_TRUE(access) << access.error().message;
     options.access = *access;
   }

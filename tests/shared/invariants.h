@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/frame_decoder.h>
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::test {
 
@@ -38,19 +38,19 @@ inline bool isFinite(const core::Action& action) {
 }
 
 /// What parseClientMessage() promises about its result.
-inline bool isHarmless(const stream::ClientMessage& message) {
-  if (const auto* hello = std::get_if<stream::Hello>(&message)) {
-    return hello->client.size() <= stream::kClientNameMaxBytes && hello->name.size() <= stream::kPersonNameMaxBytes;
+inline bool isHarmless(const wire::ClientMessage& message) {
+  if (const auto* hello = std::get_if<wire::Hello>(&message)) {
+    return hello->client.size() <= wire::kClientNameMaxBytes && hello->name.size() <= wire::kPersonNameMaxBytes;
   }
-  if (const auto* subscribe = std::get_if<stream::Subscribe>(&message)) {
+  if (const auto* subscribe = std::get_if<wire::Subscribe>(&message)) {
     return subscribe->max_rate_hz >= 0 && subscribe->max_rate_hz <= 240 && v1::Layer_IsValid(subscribe->layer);
   }
-  if (const auto* ping = std::get_if<stream::Ping>(&message)) return std::isfinite(ping->client_time_s);
+  if (const auto* ping = std::get_if<wire::Ping>(&message)) return std::isfinite(ping->client_time_s);
   if (const auto* command = std::get_if<core::Command>(&message)) return isFinite(command->action);
-  if (const auto* rejection = std::get_if<stream::CommandRejection>(&message)) {
+  if (const auto* rejection = std::get_if<wire::CommandRejection>(&message)) {
     return rejection->reason != v1::REJECT_REASON_UNSPECIFIED && !rejection->message.empty();
   }
-  return !std::get<stream::Malformed>(message).message.empty();
+  return !std::get<wire::Malformed>(message).message.empty();
 }
 
 inline bool allFinite(const std::vector<float>& values) {
@@ -61,17 +61,17 @@ inline bool allFinite(const std::vector<float>& values) {
 }
 
 /// As many values as the frame's numbers say, all finite.
-inline bool isWhole(const stream::SurfaceSamples& surface) {
+inline bool isWhole(const codec::SurfaceSamples& surface) {
   return surface.elevation_m.size() == std::size_t{surface.resolution_count} * surface.resolution_count &&
          allFinite(surface.elevation_m);
 }
-inline bool isWhole(const stream::ParticleSamples& particles) {
+inline bool isWhole(const codec::ParticleSamples& particles) {
   return particles.position_m.size() == std::size_t{3} * particles.count &&
          particles.velocity_mps.size() == std::size_t{3} * particles.count &&
          particles.tint.size() == particles.count && particles.foam.size() == particles.count &&
          allFinite(particles.position_m) && allFinite(particles.velocity_mps);
 }
-inline bool isWhole(const stream::FoamSamples& foam) {
+inline bool isWhole(const codec::FoamSamples& foam) {
   return foam.foam.size() == std::size_t{foam.resolution_count} * foam.resolution_count;
 }
 

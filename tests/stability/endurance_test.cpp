@@ -79,7 +79,7 @@ TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarborAsFastAsAFreshOne)
   const int commands = wanted("SPINDRIFT_COMMANDS", 1000);
   const int ticks = commands * 36 / 100;  // 10,000 in a minute
   const v1::Scene scene = shipped("harbor");
-  sim::WaterSim& water = make(stream::toCore(scene));
+  sim::WaterSim& water = make(scene::toCore(scene));
   Crowd crowd(scene);
   double max_elevation_m = 0;
   int sent = 0;
@@ -107,7 +107,7 @@ TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarborAsFastAsAFreshOne)
   EXPECT_EQ(crowd.untouched(), std::vector<std::string>{"particles.count"});
   EXPECT_EQ(water.recoveredCount(), 0u);
 
-  ASSERT_NO_FATAL_FAILURE(expectAsFastAsFresh(*ctx_, water, stream::toCore(scene)));
+  ASSERT_NO_FATAL_FAILURE(expectAsFastAsFresh(*ctx_, water, scene::toCore(scene)));
   EXPECT_EQ(water.recoveredCount(), 0u);
   EXPECT_EQ(water.nonfiniteCount(), 0u);
 }
@@ -116,7 +116,7 @@ TEST_F(Endurance, RandomParticleCountsLeaveASplashOfParticlesAsFastAsAFreshOne) 
   const int changes = wanted("SPINDRIFT_COUNT_CHANGES", 40);
   // The parameter goes to 1,048,576; a software device takes seconds a tick there, so that a short run stops below.
   const double most = wanted("SPINDRIFT_COUNT_MAX", 32768);
-  const core::Scene scene = stream::toCore(shipped("splash_particles"));
+  const core::Scene scene = scene::toCore(shipped("splash_particles"));
   sim::WaterSim& water = make(scene);
   Dice dice(11);
   int accepted = 0;
@@ -138,7 +138,7 @@ TEST_F(Endurance, RandomParticleCountsLeaveASplashOfParticlesAsFastAsAFreshOne) 
 
 TEST_F(Endurance, TheLedgerOfSurfaceAndParticlesIsExact) {
   const int ticks = wanted("SPINDRIFT_LEDGER_TICKS", 1500);
-  core::Scene scene = stream::toCore(shipped("harbor"));
+  core::Scene scene = scene::toCore(shipped("harbor"));
   scene.wave->resolution_count = 96;
   scene.storm->level_ratio = 1.0;
   scene.coupling->droplet_spacing_m = 0.25;
@@ -170,7 +170,7 @@ double rootMeanSquareSpeed(const sim::WaterSim& water) {
 
 TEST_F(Endurance, StillPoolStaysStillForAMinute) {
   const int ticks = 3600;
-  core::Scene scene = stream::toCore(shipped("still_pool"));
+  core::Scene scene = scene::toCore(shipped("still_pool"));
   sim::WaterSim& water = make(scene);
   double first_mps = 0;
   double later_mps = 0;
@@ -188,7 +188,7 @@ TEST_F(Endurance, StillPoolStaysStillForAMinute) {
 }
 
 TEST_F(Endurance, StillPoolStaysStillForAMinuteWithPositionsSolvedFor) {
-  core::Scene scene = stream::toCore(shipped("still_pool"));
+  core::Scene scene = scene::toCore(shipped("still_pool"));
   scene.particles->solver = core::PressureSolver::kPositionBased;
   sim::WaterSim& water = make(scene);
   const int ticks = wanted("SPINDRIFT_STILL_TICKS", 900);
@@ -204,7 +204,7 @@ TEST_F(Endurance, StillPoolStaysStillForAMinuteWithPositionsSolvedFor) {
 }
 
 TEST_F(Endurance, NoParticleStaysBelowTheSurfaceOrInARock) {
-  core::Scene scene = stream::toCore(shipped("harbor"));
+  core::Scene scene = scene::toCore(shipped("harbor"));
   sim::WaterSim& water = make(scene);
   const auto n = static_cast<int>(scene.wave->resolution_count);
   const double cell_m = scene.wave->side_m / n;

@@ -16,7 +16,7 @@
 
 #include <shared/fixed_point.h>
 
-#include <spindrift/stream/parameters.h>
+#include <spindrift/scene/parameters.h>
 
 #include "basin.h"
 #include "stability_scene.h"
@@ -35,7 +35,7 @@ std::vector<std::string> sceneNames(Which which) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(sceneFolder())) {
     if (entry.path().extension() != ".textproto") continue;
-    const auto scene = stream::loadSceneFile(entry.path());
+    const auto scene = scene::loadSceneFile(entry.path());
     if (which == Which::kAll || !scene || scene->has_wave()) names.insert(entry.path().stem().string());
   }
   // "splash_wave" is the wave of "splash" by itself: the same once the particles of "splash" are left out.
@@ -122,13 +122,13 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
   /// the range (a boat needs water to float in, a pool's drops need a column to come from) the nearest value that they
   /// take stands for it.
   void sweep(const v1::Scene& scene, int between, int ticks, int bad_depth_ticks) {
-    sim::WaterSim& water = make(stream::toCore(scene));
+    sim::WaterSim& water = make(scene::toCore(scene));
     v1::Scene changed;
     const auto takes = [&](const std::string& path, double value) {
       changed = scene;
-      return !stream::setParameter(changed, path, value) && water.setScene(stream::toCore(changed));
+      return !scene::setParameter(changed, path, value) && water.setScene(scene::toCore(changed));
     };
-    for (const v1::ParameterDescription& parameter : stream::describeParameters(scene)) {
+    for (const v1::ParameterDescription& parameter : scene::describeParameters(scene)) {
       const std::string& path = parameter.path();
       const bool is_depth = path == "wave.depth_m";
       int taken_count = 0;
@@ -138,7 +138,7 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
         if (!takes(path, value) || value == parameter.value()) continue;
         ++taken_count;
         const int value_ticks = is_depth && value < 10 ? std::max(ticks, bad_depth_ticks) : ticks;
-        ASSERT_NO_FATAL_FAILURE(run(water, stream::toCore(changed), value_ticks, path + " = " + std::to_string(value)));
+        ASSERT_NO_FATAL_FAILURE(run(water, scene::toCore(changed), value_ticks, path + " = " + std::to_string(value)));
       }
       ASSERT_TRUE(takes(path, parameter.value())) << "back from " << path;
       if (taken_count == 0) refused_.insert(path);

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/client_message.h>
-#include <spindrift/stream/parameters.h>
-#include <spindrift/stream/scene_loader.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift {
 
@@ -35,12 +35,12 @@ class Crowd {
   enum class Sends { kEverything, kEffectsAndBoats };
 
   explicit Crowd(v1::Scene scene, Sends sends = Sends::kEverything)
-      : scene_(std::move(scene)), parameters_(stream::describeParameters(scene_)), sends_(sends) {}
+      : scene_(std::move(scene)), parameters_(scene::describeParameters(scene_)), sends_(sends) {}
 
   /// Sends one command; whether the scene allowed it.
   bool send(sim::WaterSim& water) {
     const core::Action action = any(water);
-    if (stream::checkAgainstScene(core::Command{{}, 1, action}, scene_)) return false;
+    if (wire::checkAgainstScene(core::Command{{}, 1, action}, scene_)) return false;
     if (const auto* splash = std::get_if<core::Splash>(&action)) return static_cast<bool>(water.start(*splash));
     if (const auto* wave = std::get_if<core::BreakingWave>(&action)) return static_cast<bool>(water.start(*wave));
     if (const auto* spawn = std::get_if<core::SpawnBoat>(&action))
@@ -51,8 +51,8 @@ class Crowd {
       return static_cast<bool>(water.removeBoat(remove->boat_id));
     if (const auto* set = std::get_if<core::SetParameter>(&action)) {
       v1::Scene changed = scene_;
-      if (stream::setParameter(changed, set->path, set->value)) return false;
-      if (!water.setScene(stream::toCore(changed))) return false;
+      if (scene::setParameter(changed, set->path, set->value)) return false;
+      if (!water.setScene(scene::toCore(changed))) return false;
       scene_ = std::move(changed);
       ++accepted_[set->path];
       return true;

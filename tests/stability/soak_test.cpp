@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/gpu/context.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/scene_loader.h>
 
 namespace spindrift {
 namespace {
@@ -33,9 +33,9 @@ std::size_t residentBytes() {
 TEST(Soak, DefaultSceneStaysHealthyAndGrowsNeitherInEnergyNorInMemory) {
   auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
   if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
-  auto scene = stream::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes/pool.textproto");
+  auto scene = scene::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes/pool.textproto");
   ASSERT_TRUE(scene) << scene.error().message;
-  auto made = sim::WaterSim::create(**ctx, stream::toCore(*scene));
+  auto made = sim::WaterSim::create(**ctx, scene::toCore(*scene));
   ASSERT_TRUE(made) << made.error().message;
   sim::WaterSim& water = **made;
 

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/gpu/context.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/scene_loader.h>
 
 namespace spindrift {
 
@@ -31,7 +31,7 @@ class Endurance : public ::testing::Test {
 
   static v1::Scene shipped(const std::string& name) {
     auto scene =
-        stream::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes" / (name + ".textproto"));
+        scene::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes" / (name + ".textproto"));
     if (!scene) throw std::runtime_error(scene.error().message);
     return *scene;
   }

@@ -5,17 +5,17 @@
 #include <filesystem>
 
 #include <spindrift/gpu/context.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/stream/scene_loader.h>
 
 int main(int count, char** arguments) {
   using namespace spindrift;
   if (count != 3) return std::fprintf(stderr, "usage: state_hash SCENE_FILE TICKS\n"), 2;
   auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
   if (!ctx) return std::fprintf(stderr, "%s\n", ctx.error().message.c_str()), 3;
-  const auto scene = stream::loadSceneFile(arguments[1]);
+  const auto scene = scene::loadSceneFile(arguments[1]);
   if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 2;
-  auto water = sim::WaterSim::create(**ctx, stream::toCore(*scene));
+  auto water = sim::WaterSim::create(**ctx, scene::toCore(*scene));
   if (!water) return std::fprintf(stderr, "%s\n", water.error().message.c_str()), 1;
   const int ticks = std::atoi(arguments[2]);
   for (int tick = 0; tick < ticks; ++tick) {

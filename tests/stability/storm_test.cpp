@@ -51,7 +51,7 @@ class Storm : public Endurance {
  protected:
   /// `ticks` of a scene with random commands, its boats at full speed; the bed is looked at every third tick.
   Extremes run(const v1::Scene& scene, Crowd::Sends sends, int ticks, double commands_per_tick = 2.8) {
-    sim::WaterSim& water = make(stream::toCore(scene));
+    sim::WaterSim& water = make(scene::toCore(scene));
     Crowd crowd(scene, sends);
     Extremes out;
     double commands = 0.0;

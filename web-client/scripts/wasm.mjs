@@ -1,4 +1,4 @@
-// Compiles the frame reader (server/stream/decode) to WebAssembly and puts it into src/gen as text: the worker needs no
+// Compiles the frame reader (server/codec/decode) to WebAssembly and puts it into src/gen as text: the worker needs no
 // second request, and tests and benchmarks read with the very same module. Debian's clang, lld and libc++ for wasm32;
 // CLANG names another clang.
 import { spawnSync } from "node:child_process";
@@ -8,14 +8,14 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 
 const clientRoot = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
-const streamRoot = path.join(clientRoot, "..", "server", "stream");
+const codecRoot = path.join(clientRoot, "..", "server", "codec");
 const outFile = path.join(clientRoot, "src", "gen", "frame_reader_wasm.ts");
 const clang = process.env.CLANG ?? "clang";
 const kStackBytes = 64 * 1024;
 const kMemoryMaxBytes = 1024 * 1024 * 1024;
 
 const sources = ["decode", "wasm"].flatMap((folder) =>
-  readdirSync(path.join(streamRoot, folder)).filter((name) => name.endsWith(".cpp")).map((name) => path.join(streamRoot, folder, name)),
+  readdirSync(path.join(codecRoot, folder)).filter((name) => name.endsWith(".cpp")).map((name) => path.join(codecRoot, folder, name)),
 );
 const options = [
   "--target=wasm32-wasi", "-std=c++20", "-O3", "-msimd128", "-mbulk-memory",
@@ -26,7 +26,7 @@ const options = [
 const folder = mkdtempSync(path.join(tmpdir(), "spindrift-wasm-"));
 try {
   const module = path.join(folder, "frame_reader.wasm");
-  const run = spawnSync(clang, [...options, `-I${streamRoot}`, ...sources, "-o", module], { stdio: "inherit" });
+  const run = spawnSync(clang, [...options, `-I${codecRoot}`, ...sources, "-o", module], { stdio: "inherit" });
   if (run.error || run.status !== 0) {
     const why = run.error ? run.error.message : `exit code ${run.status}`;
     console.error(`wasm: "${clang}" made no WebAssembly (${why}); it takes Debian's clang, lld and libc++-14-dev-wasm32`);

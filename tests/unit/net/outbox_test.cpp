@@ -133,17 +133,17 @@ TEST(Outbox, HoldsOneFrameALayerHoweverManyAreOffered) {
 TEST(Outbox, ContinuesWhereTheClientHasTheFrameBefore) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_whole) << "it has nothing yet";
+  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe) << "it has nothing yet";
   outbox.offerFrame(1, {{}, shared("2 on 1")}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "nothing that it could not read";
   const auto whole = shared("3");
   outbox.offerFrame(1, {whole, shared("3 on 2")}, later());
-  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_whole);
+  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe);
   EXPECT_EQ(outbox.next().message, whole);
   const auto continuing = shared("4 on 3");
   outbox.offerFrame(1, {shared("4"), continuing}, later());
   EXPECT_EQ(outbox.next().message, continuing);
-  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_whole);
+  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe);
 }
 
 TEST(Outbox, BeginsAgainWithAWholeFrameAfterALoss) {
@@ -151,10 +151,10 @@ TEST(Outbox, BeginsAgainWithAWholeFrameAfterALoss) {
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
   EXPECT_TRUE(outbox.offerFrame(1, {{}, shared("2 on 1")}, later()).dropped) << "1 was not sent: 2 has no ground";
-  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_whole) << "nobody reads";
+  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe) << "nobody reads";
   outbox.offerFrame(1, {{}, shared("3 on 2")}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_whole) << "the writer is free again";
+  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe) << "the writer is free again";
   const auto whole = shared("4");
   outbox.offerFrame(1, {whole, shared("4 on 3")}, later());
   EXPECT_EQ(outbox.next().message, whole);
@@ -177,9 +177,9 @@ TEST(Outbox, ASlowerWatchTakesWholeFramesOnly) {
   int asked_count = 0;
   for (int k = 0; k < 30; ++k) {  // 30 frames a second, of which every third is taken
     now += std::chrono::microseconds(33'333);
-    const bool wants_whole = outbox.demand(1, 0, now).wants_whole;
-    asked_count += wants_whole ? 1 : 0;
-    outbox.offerFrame(1, {wants_whole ? shared("w") : core::SharedBytes(), shared("c")}, now);
+    const bool wants_keyframe = outbox.demand(1, 0, now).wants_keyframe;
+    asked_count += wants_keyframe ? 1 : 0;
+    outbox.offerFrame(1, {wants_keyframe ? shared("w") : core::SharedBytes(), shared("c")}, now);
     if (const auto sent = outbox.next().message) taken.emplace_back(sent->begin(), sent->end());
   }
   EXPECT_GE(taken.size(), 9u);
@@ -189,8 +189,8 @@ TEST(Outbox, ASlowerWatchTakesWholeFramesOnly) {
 }
 
 LayerBytes levelFrame(core::Level level, std::uint32_t reduced_count, bool is_whole = true) {
-  return {.whole = is_whole ? shared("whole") : nullptr,
-          .continuing = shared("continuing"),
+  return {.keyframe = is_whole ? shared("whole") : nullptr,
+          .delta = shared("continuing"),
           .level = level,
           .reduced_count = reduced_count};
 }
@@ -222,7 +222,7 @@ TEST(Outbox, NeverContinuesAFrameOfAnotherLevel) {
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
   EXPECT_EQ(textOf(outbox.next().message), "continuing");
   // Another scene, in which the level is the full one.
-  EXPECT_TRUE(outbox.demand(1, 1, later()).wants_whole);
+  EXPECT_TRUE(outbox.demand(1, 1, later()).wants_keyframe);
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
   EXPECT_EQ(textOf(outbox.next().message), "whole");
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
@@ -290,7 +290,7 @@ TEST(Outbox, AskingForALayerAgainBeginsWithAWholeFrame) {
   outbox.offerFrame(1, {shared("1"), {}}, later());
   outbox.next();
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_whole);
+  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe);
 }
 
 TEST(Outbox, TakesLayersInTurn) {

@@ -14,7 +14,7 @@ struct RecordingLink final : SessionLink {
   int control_count = 0;
   int frame_count = 0;
   int clear_count = 0;
-  bool wants_whole = false;
+  bool wants_keyframe = false;
   std::optional<double> rate_hz;
   core::Level level = core::Level::kFull;
   std::optional<CloseCode> closed;
@@ -24,7 +24,7 @@ struct RecordingLink final : SessionLink {
   void sendState(const StateTopic&, core::SharedBytes) override { ++control_count; }
   void offerFrame(LayerIndex, const LayerBytes&) override { ++frame_count; }
   Outbox::Demand demand(LayerIndex, std::uint32_t reduced_count) const override {
-    return {.level = core::effectiveLevel(level, reduced_count), .wants_whole = wants_whole};
+    return {.level = core::effectiveLevel(level, reduced_count), .wants_keyframe = wants_keyframe};
   }
   void setWatch(LayerIndex, const std::optional<Watch>& watch) override {
     rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
@@ -52,20 +52,20 @@ TEST_F(RoomHubTest, KnowsWhatEachLevelsWatchersNeed) {
   hub.join(1, "pool");
   hub.join(2, "pool");
   hub.watch(1, 3, {.max_rate_hz = 30.0});
-  bob->wants_whole = true;
+  bob->wants_keyframe = true;
   const auto at = [&](const char* room, LayerIndex layer, std::uint32_t reduced_count, Level level) {
     return hub.demand(room, layer, reduced_count)[core::indexOf(level)];
   };
   EXPECT_EQ(at("pool", 3, 2, Level::kFull).watcher_count, 1U);
-  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_whole) << "he does not watch it";
+  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_keyframe) << "he does not watch it";
   hub.watch(2, 3, {.max_rate_hz = 30.0, .level = Level::kMedium});
-  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_whole) << "he watches another level";
+  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_keyframe) << "he watches another level";
   EXPECT_EQ(at("pool", 3, 2, Level::kMedium).watcher_count, 1U);
-  EXPECT_TRUE(at("pool", 3, 2, Level::kMedium).wants_whole);
+  EXPECT_TRUE(at("pool", 3, 2, Level::kMedium).wants_keyframe);
   EXPECT_EQ(at("pool", 3, 2, Level::kCoarse).watcher_count, 0U);
   // Where the medium level leaves nothing out, it is the full one.
   EXPECT_EQ(at("pool", 3, 1, Level::kFull).watcher_count, 2U);
-  EXPECT_TRUE(at("pool", 3, 1, Level::kFull).wants_whole);
+  EXPECT_TRUE(at("pool", 3, 1, Level::kFull).wants_keyframe);
   EXPECT_EQ(at("pool", 4, 2, Level::kFull).watcher_count, 0U);
   EXPECT_EQ(at("pond", 3, 2, Level::kFull).watcher_count, 0U);
 }

@@ -44,8 +44,8 @@ inline bool eventually(const std::function<bool()>& holds) {
 /// Watchers of a layer, whatever the level.
 inline std::size_t watcherCount(const net::Hub& hub, const std::string& room, net::LayerIndex layer) {
   std::size_t count = 0;
-  const net::LayerDemand demand = hub.demand(room, layer, 0);
-  for (const net::LevelDemand& level : demand) count += level.watcher_count;
+  const core::LayerDemand demand = hub.demand(room, layer, 0);
+  for (const core::LevelDemand& level : demand) count += level.watcher_count;
   return count;
 }
 

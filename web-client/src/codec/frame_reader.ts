@@ -1,10 +1,10 @@
-// The readers of packed frames: server/stream/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance a layer.
+// The readers of packed frames: server/codec/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance a layer.
 import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
 
 /** Of a packed plane. */
 export const kWeightCount = 10;
 
-/** server/stream/wasm/frame_reader.cpp; places in memory, counts, truth as 0 and 1. */
+/** server/codec/wasm/frame_reader.cpp; places in memory, counts, truth as 0 and 1. */
 interface Exports {
   memory: WebAssembly.Memory;
   prepareParticles(count: number, payloadBytes: number): number;
@@ -12,8 +12,8 @@ interface Exports {
   preparePlane(resolutionCount: number, payloadBytes: number): number;
   weights(): number;
   earlierWeights(): number;
-  readWholePlane(): number;
-  readContinuingPlane(): number;
+  readKeyframePlane(): number;
+  readDeltaPlane(): number;
   surfaceSamples(): number;
   foamSamples(): number;
   prepareChecksum(payloadBytes: number): number;
@@ -72,17 +72,17 @@ export class ParticleReader extends Reader {
 
 /** The planes of one layer. A reader that has met damage continues nothing. */
 export class PlaneReader extends Reader {
-  readWhole(payload: Uint8Array, resolutionCount: number, weights: readonly number[], earlierWeights: readonly number[]): boolean {
+  readKeyframe(payload: Uint8Array, resolutionCount: number, weights: readonly number[], earlierWeights: readonly number[]): boolean {
     if (!this.put(payload, this.exports.preparePlane(resolutionCount, payload.length))) return false;
     this.putWeights(weights, this.exports.weights());
     this.putWeights(earlierWeights, this.exports.earlierWeights());
-    return this.exports.readWholePlane() !== 0;
+    return this.exports.readKeyframePlane() !== 0;
   }
 
-  readContinuing(payload: Uint8Array, resolutionCount: number, weights: readonly number[]): boolean {
+  readDelta(payload: Uint8Array, resolutionCount: number, weights: readonly number[]): boolean {
     if (!this.put(payload, this.exports.preparePlane(resolutionCount, payload.length))) return false;
     this.putWeights(weights, this.exports.weights());
-    return this.exports.readContinuingPlane() !== 0;
+    return this.exports.readDeltaPlane() !== 0;
   }
 
   /** Of the plane read last, two bytes each. */

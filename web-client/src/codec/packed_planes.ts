@@ -44,8 +44,8 @@ class PlaneRow<H extends FrameHeader> {
     if (baseTick !== undefined && (!known || known.tick !== baseTick || !this.isSame(known, header))) return { kind: "missingBase" };
     const isRead =
       baseTick === undefined
-        ? reader.readWhole(payload, resolutionCount, weights, earlierWeights)
-        : reader.readContinuing(payload, resolutionCount, weights);
+        ? reader.readKeyframe(payload, resolutionCount, weights, earlierWeights)
+        : reader.readDelta(payload, resolutionCount, weights);
     if (!isRead) return malformed("a packed plane: the payload's end does not fit its beginning");
     this.header = header;
     return { kind: "plane", reader };

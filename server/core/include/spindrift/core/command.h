@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace spindrift::core {
@@ -97,12 +99,20 @@ using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused
 /// What somebody may do; each includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
 
-/// The least that an action asks for.
+/// "viewer", "player", "operator".
+std::string_view roleName(Role role);
+/// nullopt for a name that is not a role.
+std::optional<Role> parseRole(std::string_view name);
+
+/// The lowest role that may carry out the action.
 Role roleFor(const Action& action);
+
+/// Identifies one connection for the life of the process; never 0, never reused.
+using SessionId = std::uint64_t;
 
 /// Who asks: a session, or a request by HTTP. Exactly one id is not 0, unless the room itself asks.
 struct Sender {
-  std::uint64_t session_id = 0;
+  SessionId session_id = 0;
   std::uint64_t request_id = 0;
   std::uint32_t person_id = 0;  ///< of the session, in its room; 0: nobody in particular
   Role role = Role::kOperator;

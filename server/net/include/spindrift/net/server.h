@@ -16,13 +16,14 @@
 #include <vector>
 
 #include <spindrift/core/bytes.h>
+#include <spindrift/core/command.h>
 #include <spindrift/core/level.h>
+#include <spindrift/core/level_demand.h>
 #include <spindrift/core/result.h>
 
 namespace spindrift::net {
 
-/// Identifies one WebSocket session for the life of the process; never 0, never reused.
-using SessionId = std::uint64_t;
+using core::SessionId;
 
 /// Data-plane layers; the number indexes the newest-frame slots of an outbox.
 using LayerIndex = std::uint32_t;
@@ -30,8 +31,8 @@ inline constexpr LayerIndex kMaxLayerCount = 16;
 
 /// One frame of a layer in the forms that its watchers need; either may be null, not both.
 struct LayerBytes {
-  core::SharedBytes whole;       ///< stands by itself
-  core::SharedBytes continuing;  ///< needs the frame of this level that was published before it
+  core::SharedBytes keyframe;  ///< stands by itself
+  core::SharedBytes delta;     ///< needs the frame of this level that was published before it
   core::Level level = core::Level::kFull;
   std::uint32_t reduced_count = 0;  ///< levels of the layer from this one on are all kFull
 };
@@ -53,14 +54,6 @@ struct Watch {
   core::Level level = core::Level::kFull;
   bool adapts = false;  ///< it may be given a lower level while its link cannot carry this one
 };
-
-/// What the watchers of one level of a layer need.
-struct LevelDemand {
-  std::size_t watcher_count = 0;
-  /// One of them could take the next frame, but only whole: it just came, lost one, or takes only some.
-  bool wants_whole = false;
-};
-using LayerDemand = std::array<LevelDemand, core::kLevelCount>;
 
 /// WebSocket close codes that this server sends (RFC 6455 section 7.4).
 enum class CloseCode : std::uint16_t {
@@ -123,13 +116,13 @@ class Hub {
   /// Data plane: one write in flight and one newest slot per layer; an unsent older frame in the slot is dropped and
   /// counted. `room` is the group the sessions joined; only sessions that watch `layer` get it, no faster than the rate
   /// they asked for (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted). A
-  /// session that has the frame before gets the continuing form where there is one, any other the whole one; where that
+  /// session that has the frame before gets the delta where there is one, any other the keyframe; where that
   /// is missing it gets nothing, and demand() says so. Levels are published one by one; a session gets its own.
   virtual void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) = 0;
 
   /// Which levels of the layer somebody watches now, in which form: what nobody watches, nobody makes. Of
   /// `reduced_count` levels that leave something out; who asked for one beyond them is counted at kFull.
-  virtual LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const = 0;
+  virtual core::LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const = 0;
 
   /// Puts the session into a room (it leaves the one before; its watches follow, unsent frames do not).
   virtual void join(SessionId session, const std::string& room) = 0;

@@ -1,0 +1,263 @@
+#include <atomic>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include <boost/json.hpp>
+#include <fmt/format.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <spindrift/bench/crowd.h>
+#include <spindrift/bench/fanout.h>
+#include <spindrift/bench/scene_crowd.h>
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/net/server.h>
+#include <spindrift/service/water_server.h>
+
+namespace spindrift::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kRoom = "bench";
+
+double threadCpu_s(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double resident_mb() {
+  std::ifstream statm("/proc/self/statm");
+  double total_pages = 0.0, resident_pages = 0.0;
+  statm >> total_pages >> resident_pages;
+  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+core::SharedBytes message(char verb, std::uint64_t number) {
+  core::Bytes out(1 + sizeof number);
+  out[0] = static_cast<std::uint8_t>(verb);
+  std::memcpy(out.data() + 1, &number, sizeof number);
+  return core::share(std::move(out));
+}
+
+/// Everybody watches layer 0; "c" + number is answered with "a" + number.
+class EchoApplication final : public net::Application {
+ public:
+  void serverStarts(net::Hub& hub) override { hub_ = &hub; }
+  core::Result<void> acceptSession(const std::string&) override { return {}; }
+  void sessionOpened(net::SessionId session, const std::string&, const std::string&) override {
+    std::call_once(clock_once_, [&] {
+      clockid_t clock{};
+      pthread_getcpuclockid(pthread_self(), &clock);  // there is one I/O thread
+      io_clock_ = clock;
+    });
+    hub_->join(session, kRoom);
+    hub_->watch(session, 0, {.max_rate_hz = kWatchRate_hz});
+  }
+  void sessionMessage(net::SessionId session, core::ByteView bytes) override {
+    std::uint64_t number = 0;
+    if (bytes.size() != 1 + sizeof number || bytes[0] != 'c') return;
+    std::memcpy(&number, bytes.data() + 1, sizeof number);
+    hub_->sendAnswer(session, message('a', number));
+  }
+  void sessionClosed(net::SessionId, const net::SessionEnd&) override {}
+  void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
+
+  [[nodiscard]] double ioCpu_s() const { return threadCpu_s(io_clock_); }
+
+ private:
+  static constexpr double kWatchRate_hz = 1000.0;
+  net::Hub* hub_ = nullptr;
+  std::once_flag clock_once_;
+  std::atomic<clockid_t> io_clock_{CLOCK_PROCESS_CPUTIME_ID};
+};
+
+/// A frame begins with 'f' and the time of its publication.
+core::SharedBytes frameNow(std::size_t size_bytes) {
+  core::Bytes out(size_bytes);
+  out[0] = 'f';
+  const auto now = Clock::now().time_since_epoch().count();
+  std::memcpy(out.data() + 1, &now, sizeof now);
+  return core::share(std::move(out));
+}
+
+Sighting look(core::ByteView bytes) {
+  Sighting out;
+  std::int64_t number = 0;
+  if (bytes.size() < 1 + sizeof number) return out;
+  std::memcpy(&number, bytes.data() + 1, sizeof number);
+  if (bytes[0] == 'f') {
+    out.kind = Sighting::Kind::kFrame;
+    out.published = Clock::time_point(Clock::duration(number));
+  } else if (bytes[0] == 'a') {
+    out.kind = Sighting::Kind::kAnswer;
+    out.number = static_cast<std::uint64_t>(number);
+  }
+  return out;
+}
+
+struct Case {
+  std::string name;
+  std::size_t frame_bytes = 200'000;
+  double rate_hz = 20.0;
+  CrowdOptions crowd;
+};
+
+struct Row {
+  std::string name;
+  CrowdReport crowd{};
+  net::ServerStats before{};
+  net::ServerStats after{};
+  double io_cpu_s = 0.0;  ///< of the I/O thread; 0 where it is not known
+  double resident_grown_mb = 0.0;
+  double real_time_factor = 0.0;
+};
+
+core::Result<Row> measure(const Case& test) {
+  EchoApplication application;
+  net::ServerOptions options;
+  options.port = 0;
+  options.max_session_count = 1024;
+  auto server = net::Server::start(options, application);
+  if (!server) return server.error();
+  std::atomic<bool> stopping{false};
+  std::thread publisher([&] {
+    auto next = Clock::now();
+    while (!stopping) {
+      (*server)->hub().publish(kRoom, 0, {frameNow(test.frame_bytes), nullptr});
+      next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / test.rate_hz));
+      std::this_thread::sleep_until(next);
+    }
+  });
+  Row out{.name = test.name};
+  const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string((*server)->port()) + "/ws");
+  double begin_cpu_s = 0.0;
+  double begin_mb = 0.0;
+  out.crowd = runCrowd(
+      *url, test.crowd,
+      [&] {
+        begin_cpu_s = application.ioCpu_s();
+        out.before = (*server)->stats();
+        begin_mb = resident_mb();
+      },
+      [&] {
+        out.io_cpu_s = application.ioCpu_s() - begin_cpu_s;
+        out.after = (*server)->stats();
+        out.resident_grown_mb = resident_mb() - begin_mb;
+      });
+  stopping = true;
+  publisher.join();
+  return out;
+}
+
+core::Result<Row> measureServer(const v1::Scene& scene, const gpu::DeviceChoice& device, double seconds) {
+  service::WaterServerOptions options;
+  options.device = device;
+  options.network.port = 0;
+  options.network.max_session_count = 1024;
+  options.rooms.push_back({"main", scene});
+  auto server = service::WaterServer::start(std::move(options));
+  if (!server) return server.error();
+  Row out{.name = fmt::format("{}, 200 clients", scene.name())};
+  const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string((*server)->port()) + "/ws");
+  double begin_mb = 0.0;
+  out.crowd = runCrowd(
+      *url, sceneCrowd(scene, 200, seconds),
+      [&] {
+        out.before = (*server)->networkStats();
+        begin_mb = resident_mb();
+      },
+      [&] {
+        out.after = (*server)->networkStats();
+        out.resident_grown_mb = resident_mb() - begin_mb;
+        out.real_time_factor = (*server)->realTimeFactor();
+      });
+  return out;
+}
+
+void print(std::FILE* out, const Row& row) {
+  const CrowdReport& c = row.crowd;
+  const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
+  // The layers of a real scene do not say when they were published.
+  const auto delay = [&](double ratio) {
+    return c.delays_ms.empty() ? std::string("-") : fmt::format("{:.1f}", quantileOf(c.delays_ms, ratio));
+  };
+  const std::string last = c.last_delays_ms.empty() ? "-" : fmt::format("{:.1f}", quantileOf(c.last_delays_ms, 0.99));
+  fmt::print(out,
+             "{:<30} {:>6} {:>5}/{:>5}/{:>5} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8.1f} {:>8.1f} {:>7.1f} {:>5}\n",
+             row.name, c.connected_count, c.fewest_frames, c.median_frames, c.most_frames, delay(0.5), delay(0.99),
+             last, row.io_cpu_s > 0 ? fmt::format("{:.1f}", 1e6 * row.io_cpu_s / sent) : "-",
+             row.after.dropped_frame_count - row.before.dropped_frame_count, row.after.evicted_session_count,
+             quantileOf(c.answers_ms, 0.5), quantileOf(c.answers_ms, 0.99), row.resident_grown_mb,
+             c.lost_count + c.unanswered_count);
+  if (row.real_time_factor > 0) fmt::print(out, "{:<30} real-time factor {:.2f}\n", "", row.real_time_factor);
+}
+
+boost::json::object toJson(const Row& row) {
+  const CrowdReport& c = row.crowd;
+  const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
+  return {{"name", row.name},
+          {"connected_count", c.connected_count},
+          {"fewest_frames", c.fewest_frames},
+          {"median_frames", c.median_frames},
+          {"most_frames", c.most_frames},
+          {"delay_p50_ms", quantileOf(c.delays_ms, 0.5)},
+          {"delay_p99_ms", quantileOf(c.delays_ms, 0.99)},
+          {"last_delay_p99_ms", quantileOf(c.last_delays_ms, 0.99)},
+          {"io_cpu_us_per_frame_sent", row.io_cpu_s > 0 ? boost::json::value(1e6 * row.io_cpu_s / sent) : nullptr},
+          {"dropped_frames", row.after.dropped_frame_count - row.before.dropped_frame_count},
+          {"evicted_count", row.after.evicted_session_count},
+          {"answer_p50_ms", quantileOf(c.answers_ms, 0.5)},
+          {"answer_p99_ms", quantileOf(c.answers_ms, 0.99)},
+          {"resident_grown_mb", row.resident_grown_mb},
+          {"lost_count", c.lost_count},
+          {"unanswered_count", c.unanswered_count},
+          {"real_time_factor", row.real_time_factor}};
+}
+
+}  // namespace
+
+core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const std::string& device, double seconds,
+                                                std::FILE* out) {
+  const auto choice = gpu::parseDeviceChoice(device);
+  if (!choice) return choice.error();
+  /// Long enough to see the deaf ones go.
+  const std::chrono::duration<double> slow_case(std::max(seconds, 13.0));
+  const auto crowd = [&](std::size_t clients, std::size_t deaf, std::chrono::duration<double> duration) {
+    CrowdOptions options;
+    options.client_count = clients;
+    options.deaf_count = deaf;
+    options.duration = duration;
+    options.commands_per_s = 1.0;
+    options.command = [](std::uint64_t number) { return message('c', number); };
+    options.look = look;
+    return options;
+  };
+  std::vector<Case> cases = {
+      {"100 readers, 200 kB", 200'000, 20.0, crowd(100, 0, std::chrono::duration<double>(seconds))},
+      {"the same, 10 never read", 200'000, 20.0, crowd(100, 10, slow_case)},
+      {"200 readers, 25 kB, visitors", 25'000, 20.0, crowd(200, 0, std::chrono::duration<double>(seconds))}};
+  cases.back().crowd.visitors_per_s = 5.0;
+  fmt::print(out, "fan-out, clients and server in this process\n");
+  fmt::print(out, "{:<30} {:>6} {:>17} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8} {:>8} {:>7} {:>5}\n", "case", "there",
+             "frames, each", "p50 ms", "p99 ms", "last p99", "us/frame", "drops", "evicted", "ack p50", "ack p99",
+             "+MB", "lost");
+  boost::json::array rows;
+  for (const Case& test : cases) {
+    auto row = measure(test);
+    if (!row) return row.error();
+    print(out, *row);
+    rows.push_back(toJson(*row));
+  }
+  auto row = measureServer(scene, *choice, seconds);
+  if (!row) return row.error();
+  print(out, *row);
+  rows.push_back(toJson(*row));
+  return boost::json::object{{"rows", std::move(rows)}};
+}
+
+}  // namespace spindrift::bench

@@ -1,0 +1,49 @@
+// What each level of detail of a scene takes of a link, beside its budget, and beside levels that add to each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+
+#include <boost/json.hpp>
+
+#include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/frame_view.h>
+#include <spindrift/core/result.h>
+#include <spindrift/sim/water_sim.h>
+
+namespace spindrift::bench {
+
+/// Encodes every level of a scene's frames as the server would. One instance a scene; frames in their order.
+class LevelMeter {
+ public:
+  explicit LevelMeter(double frame_rate_hz) : frame_rate_hz_(frame_rate_hz) {}
+
+  /// Every level of what the scene has.
+  static sim::FrameRequest request(const core::Scene& scene);
+  void add(const core::FrameView& frame);
+  /// Prints a table, or one line where the scene has one level only. Numbers that there are not are 0 in the rows.
+  boost::json::array print(std::FILE* out) const;
+
+ private:
+  struct Level {
+    std::uint64_t frame_count = 0;
+    double surface_bytes = 0.0, particle_bytes = 0.0, foam_bytes = 0.0;
+    double encode_ms = 0.0;
+    double particle_sum = 0.0;  ///< over all frames
+    std::uint32_t resolution_count = 0;
+  };
+
+  void addParts(const core::FrameView& frame);
+
+  double frame_rate_hz_;
+  std::uint64_t frame_count_ = 0;
+  core::ReducedCounts counts_;
+  codec::FrameEncoder encoder_;
+  std::array<Level, core::kLevelCount> levels_;
+  /// Of levels that add to each other: bits that the particles up to a level take in all, and how many those are.
+  std::array<double, core::kLevelCount> part_bits_{};
+  std::array<double, core::kLevelCount> part_counts_{};
+};
+
+}  // namespace spindrift::bench

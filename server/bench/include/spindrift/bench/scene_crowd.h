@@ -1,0 +1,13 @@
+// The crowd of a real room: everybody says hello, watches every layer packed at 20 Hz, and splashes now and then.
+#pragma once
+
+#include <cstddef>
+
+#include <spindrift/bench/crowd.h>
+#include <spindrift/v1/scene.pb.h>
+
+namespace spindrift::bench {
+
+CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double seconds);
+
+}  // namespace spindrift::bench

@@ -1,0 +1,19 @@
+// Timings of the simulation's passes on this machine.
+#pragma once
+
+#include <cstdio>
+
+#include <boost/json/array.hpp>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/context.h>
+
+namespace spindrift::bench {
+
+/// Runs the scene, its parts alone and, where its number of particles is fixed, other numbers of particles, for
+/// `seconds` of wall time each. Prints one row per case. Errors are the simulation's, with the case's name.
+core::Result<boost::json::array> measureSteps(gpu::Context& ctx, const core::Scene& scene, double seconds,
+                                              std::FILE* out);
+
+}  // namespace spindrift::bench

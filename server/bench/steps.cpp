@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/json.hpp>
+#include <fmt/format.h>
+
+#include <spindrift/bench/steps.h>
+#include <spindrift/sim/water_sim.h>
+
+namespace spindrift::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since_s(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// One scene at one particle count.
+struct StepCase {
+  std::string name;
+  core::Scene scene;
+};
+
+struct StepResult {
+  std::string name;
+  std::uint32_t particle_count = 0;
+  double neighbours_count = 0.0;
+  std::uint32_t substeps_count = 0;
+  double tick_ms = 0.0;
+  double substep_ms = 0.0;
+  double particle_us = 0.0;       ///< grid + sph passes, a particle and substep
+  double real_time_factor = 0.0;  ///< of the simulation alone
+  std::vector<gpu::PassCost> passes;
+};
+
+/// The scene, its parts alone, and, where the number of particles is the scene's, the thesis's counts.
+std::vector<StepCase> stepCases(const core::Scene& base) {
+  std::vector<StepCase> cases = {{"scene as it is", base}};
+  core::Scene wave_only = base;
+  wave_only.particles.reset();
+  wave_only.coupling.reset();
+  wave_only.foam.reset();
+  wave_only.boats.reset();
+  wave_only.storm.reset();
+  const bool two_way = base.coupling && base.coupling->mode == core::CouplingMode::kTwoWay;
+  if (base.boats || base.storm || base.particles) {
+    core::Scene calm = base;
+    calm.events.clear();
+    calm.boats.reset();
+    calm.storm.reset();
+    cases.push_back({"calm", calm});
+  }
+  if (base.wave && (base.particles || base.boats || base.foam)) cases.push_back({"wave only", wave_only});
+  if (base.wave && base.particles && !two_way) {
+    core::Scene uncoupled = base;
+    uncoupled.coupling.reset();
+    cases.push_back({"not coupled", uncoupled});
+  }
+  if (base.particles && !two_way) {
+    for (const std::uint32_t count : {8192u, 16384u, 32768u, 65536u}) {
+      core::Scene scene = base;
+      scene.particles->count = count;
+      cases.push_back({fmt::format("{} particles", count), scene});
+    }
+  }
+  return cases;
+}
+
+core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double seconds) {
+  auto sim = sim::WaterSim::create(ctx, test.scene);
+  if (!sim) return sim.error();
+  sim::WaterSim& water = **sim;
+  const auto run = [&](double limit_s) {
+    ctx.finish();
+    const auto begin = Clock::now();
+    std::uint32_t ticks = 0;
+    do {
+      water.step();
+      ++ticks;
+      if (!ctx.device().is_software && ticks % 8 == 0)
+        ctx.finish();  // bound the queue, so that the clock sees the work
+    } while (since_s(begin) < limit_s);
+    ctx.finish();
+    return std::pair{since_s(begin), ticks};
+  };
+  run(std::min(0.5, seconds / 4));
+  (void)water.takePassCosts();
+  const auto [elapsed_s, ticks] = run(seconds);
+
+  const sim::Derived& d = water.derived();
+  StepResult r;
+  r.name = test.name;
+  r.particle_count = water.particleCount();
+  r.neighbours_count = d.particles ? d.particles->neighbours_count : 0;
+  r.substeps_count = d.substeps_count;
+  r.tick_ms = elapsed_s * 1e3 / ticks;
+  r.substep_ms = r.tick_ms / d.substeps_count;
+  r.real_time_factor = d.tick_s / (elapsed_s / ticks);
+  r.passes = water.takePassCosts();
+  for (const gpu::PassCost& pass : r.passes) {
+    // A pool's count changes from tick to tick; a cost per particle would say nothing.
+    if (r.particle_count > 0 && d.uniforms.pool_capacity_count == 0 && (pass.name == "grid" || pass.name == "sph"))
+      r.particle_us += pass.total_ms * 1e3 / ticks / d.substeps_count / r.particle_count;
+  }
+  for (gpu::PassCost& pass : r.passes) pass.mean_ms = pass.total_ms / ticks;
+  return r;
+}
+
+boost::json::object toJson(const StepResult& r) {
+  boost::json::object passes;
+  for (const gpu::PassCost& pass : r.passes) passes[pass.name] = pass.mean_ms;
+  return {{"name", r.name},
+          {"particle_count", r.particle_count},
+          {"neighbours_count", r.neighbours_count},
+          {"substeps_count", r.substeps_count},
+          {"tick_ms", r.tick_ms},
+          {"substep_ms", r.substep_ms},
+          {"sph_step_us_per_particle", r.particle_us},
+          {"real_time_factor", r.real_time_factor},
+          {"tick_ms_by_pass", passes}};
+}
+
+void print(std::FILE* out, const StepResult& r) {
+  fmt::print(out, "{:<18} {:>9} {:>8} {:>9.3f} {:>9.3f} {:>11} {:>6.2f}  ", r.name, r.particle_count, r.substeps_count,
+             r.tick_ms, r.substep_ms, r.particle_us > 0 ? fmt::format("{:.3f}", r.particle_us) : "-",
+             r.real_time_factor);
+  for (const gpu::PassCost& pass : r.passes) fmt::print(out, " {} {:.2f}", pass.name, pass.mean_ms);
+  fmt::print(out, "\n");
+}
+
+}  // namespace
+
+core::Result<boost::json::array> measureSteps(gpu::Context& ctx, const core::Scene& scene, double seconds,
+                                              std::FILE* out) {
+  fmt::print(out, "{:<18} {:>9} {:>8} {:>9} {:>9} {:>11} {:>6}   ms a tick by pass\n", "case", "particles", "substeps",
+             "tick ms", "substep ms", "us/particle", "rtf");
+  boost::json::array results;
+  for (const StepCase& test : stepCases(scene)) {
+    auto result = measure(ctx, test, seconds);
+    if (!result) return core::Error{result.error().code, test.name + ": " + result.error().message};
+    print(out, *result);
+    results.push_back(toJson(*result));
+  }
+  return results;
+}
+
+}  // namespace spindrift::bench

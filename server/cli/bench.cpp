@@ -1,0 +1,69 @@
+#include <cstdio>
+#include <thread>
+#include <utility>
+
+#include <boost/json.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <spindrift/bench/codecs.h>
+#include <spindrift/bench/fanout.h>
+#include <spindrift/bench/steps.h>
+#include <spindrift/core/paths.h>
+#include <spindrift/gpu/context.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
+
+#include "commands.h"
+#include "output.h"
+
+namespace spindrift::cli {
+namespace {
+
+/// Not run together with the other suites: the server that it measures has its own GL context.
+int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
+  auto result =
+      bench::measureFanout(scene, options.device, options.seconds, options.json_file == "-" ? stderr : stdout);
+  if (!result) return fail(result.error());
+  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
+  return 0;
+}
+
+}  // namespace
+
+int bench(const BenchOptions& options) {
+  auto device = gpu::parseDeviceChoice(options.device);
+  if (!device) return fail(device.error());
+  auto file = core::findScene(options.scene);
+  if (!file) return fail(file.error());
+  auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
+  if (!loaded) return fail(loaded.error());
+  if (options.suite == "fanout") return benchFanout(options, *loaded);
+  auto ctx = gpu::Context::create(*device);
+  if (!ctx) return fail(ctx.error());
+  const core::Scene scene = scene::toCore(*loaded);
+
+  std::FILE* out = options.json_file == "-" ? stderr : stdout;
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  fmt::print(out, "machine {}, {} hardware threads; device {}, {}; scene {}\n", host,
+             std::thread::hardware_concurrency(), (*ctx)->device().name, (*ctx)->device().gl_version, scene.name);
+  boost::json::object json = {{"threads", std::thread::hardware_concurrency()},
+                              {"device", (*ctx)->device().name},
+                              {"gl_version", (*ctx)->device().gl_version},
+                              {"scene", scene.name}};
+  if (options.suite != "codec") {
+    auto result = bench::measureSteps(**ctx, scene, options.seconds, out);
+    if (!result) return fail(result.error());
+    json["step"] = *std::move(result);
+  }
+  if (options.suite != "step") {
+    auto result = bench::measureCodecs(**ctx, scene, options.seconds, out);
+    if (!result) return fail(result.error());
+    json["codec"] = *std::move(result);
+  }
+  if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
+  return 0;
+}
+
+}  // namespace spindrift::cli

@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include <spindrift/core/paths.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/sim/derive.h>
+
+#include "commands.h"
+
+namespace spindrift::cli {
+namespace {
+
+const char* nameOf(core::WaveBoundary boundary) {
+  switch (boundary) {
+    case core::WaveBoundary::kReflect:
+      return "reflects";
+    case core::WaveBoundary::kAbsorb:
+      return "absorbs";
+    case core::WaveBoundary::kPeriodic:
+      break;
+  }
+  return "periodic";
+}
+
+const char* nameOf(core::Side side) {
+  constexpr const char* kNames[] = {"+x", "-x", "+z", "-z", "a direction"};
+  return kNames[static_cast<int>(side)];
+}
+
+void printWave(const core::Scene& scene) {
+  const core::WaveScene& wave = *scene.wave;
+  fmt::print("  sides      -x {}, +x {}, -z {}, +z {}", nameOf(wave.boundary_minus_x), nameOf(wave.boundary_plus_x),
+             nameOf(wave.boundary_minus_z), nameOf(wave.boundary_plus_z));
+  const bool absorbs = std::ranges::any_of(
+      std::array{wave.boundary_minus_x, wave.boundary_plus_x, wave.boundary_minus_z, wave.boundary_plus_z},
+      [](core::WaveBoundary b) { return b == core::WaveBoundary::kAbsorb; });
+  if (absorbs) fmt::print(", sponge of {:.3g} m", wave.sponge_width_m);
+  fmt::print("\n");
+  if (wave.steepening_ratio > 0) fmt::print("  steepening {:.3g}\n", wave.steepening_ratio);
+  if (!scene.obstacles.empty()) fmt::print("  obstacles  {}\n", scene.obstacles.size());
+  for (const core::Beach& beach : scene.beaches) {
+    fmt::print("  beach      at {}, {:.3g} m wide, up to a depth of {:.3g} m\n", nameOf(beach.side), beach.width_m,
+               beach.shore_depth_m);
+  }
+}
+
+void printParticles(const core::Scene& scene) {
+  const core::ParticleScene& particles = *scene.particles;
+  const bool iterates = particles.solver == core::PressureSolver::kPositionBased;
+  fmt::print("  solver     {}{}\n",
+             iterates ? fmt::format("position-based, {} iterations a substep", particles.iterations_count)
+                      : fmt::format("weakly compressible, {} equation of state, {} pressure force",
+                                    particles.equation_of_state == core::EquationOfState::kTait ? "Tait's" : "linear",
+                                    particles.pressure_force == core::PressureForce::kMean ? "mean" : "conserving"),
+             particles.cohesion ? ", cohesion" : "");
+  if (scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay)
+    fmt::print("  coupling   two-way, droplets of {:.3g} m\n", scene.coupling->droplet_spacing_m);
+}
+
+void printBoats(const core::BoatsScene& boats) {
+  fmt::print("  boats      {} of at most {}\n", boats.boats.size(), boats.capacity_count);
+  for (std::size_t i = 0; i < boats.boats.size(); ++i) {
+    const core::Boat& boat = boats.boats[i];
+    fmt::print("  boat {:<5} {:.3g} x {:.3g} x {:.3g} m, draught {:.3g} m\n", i + 1, boat.length_m, boat.beam_m,
+               boat.height_m, boat.density_ratio * boat.height_m);
+  }
+}
+
+void print(const std::string& file, const v1::Scene& scene, const core::Scene& in, const sim::Derived& d) {
+  fmt::print("{}: fine\n  scene      {} ({}), {}\n  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", file,
+             scene.name(), scene.title(), scene::fidelityName(scene.fidelity()), d.tick_s * 1e3, d.substeps_count,
+             d.dt_s * 1e3);
+  if (d.wave) {
+    fmt::print(
+        "  wave       {0} x {0} cells of {1:.3f} m, speed {2:.2f} m/s, {3} steps a tick, Courant number {4:.3f}\n",
+        d.wave->resolution_count, d.wave->cell_m, d.wave->speed_mps, d.wave->substeps_count, d.wave->courant);
+    printWave(in);
+  }
+  if (d.particles) {
+    const auto& p = *d.particles;
+    // A pool has no lattice: its particles come and go.
+    const std::string count = p.layers_count == 0 ? fmt::format("up to {}", p.count)
+                                                  : fmt::format("{} ({} x {} x {})", p.count, p.columns_x_count,
+                                                                p.layers_count, p.columns_z_count);
+    fmt::print("  particles  {}, spacing {:.3f} m, support radius {:.3f} m, {:.0f} neighbours, mass {:.3f} kg\n", count,
+               p.spacing_m, p.support_radius_m, p.neighbours_count, p.mass_kg);
+    fmt::print("  grid       {} x {} x {} cells\n", p.cells[0], p.cells[1], p.cells[2]);
+    printParticles(in);
+  }
+  if (in.boats) printBoats(*in.boats);
+  if (in.storm) fmt::print("  storm      {:.3g}\n", in.storm->level_ratio);
+  for (const sim::StepRule& rule : d.rules)
+    fmt::print("  rule       step <= {:.3f} ms: {} ({})\n", rule.max_dt_s * 1e3, rule.name, rule.field);
+  fmt::print("  memory     {:.2f} MB on the device\n", static_cast<double>(d.device_bytes) / 1e6);
+}
+
+}  // namespace
+
+int check(const CheckOptions& options) {
+  int code = 0;
+  for (const std::string& name : options.scenes) {
+    auto file = core::findScene(name);
+    if (!file) {
+      code = fail(file.error());
+      continue;
+    }
+    auto scene = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
+    if (!scene) {
+      code = fail(scene.error());
+      continue;
+    }
+    const core::Scene in = scene::toCore(*scene);
+    auto derived = sim::derive(in);
+    if (!derived) {
+      code = fail({derived.error().code, file->string() + ": " + derived.error().message});
+      continue;
+    }
+    print(file->string(), *scene, in, *derived);
+  }
+  return code;
+}
+
+}  // namespace spindrift::cli

@@ -1,0 +1,73 @@
+#include <boost/json.hpp>
+#include <fmt/format.h>
+
+#include <spindrift/gpu/info.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/wire/client_message.h>
+
+#include "commands.h"
+#include "output.h"
+
+namespace spindrift::cli {
+namespace {
+
+boost::json::object toJson(const gpu::DeviceInfo& d) {
+  const gpu::DeviceLimits& l = d.limits;
+  return {{"index", d.index},
+          {"name", d.name},
+          {"vendor", d.vendor},
+          {"gl_version", d.gl_version},
+          {"glsl_version", d.glsl_version},
+          {"egl_driver", d.egl_driver},
+          {"drm_file", d.drm_file},
+          {"is_software", d.is_software},
+          {"problem", d.problem},
+          {"limits", boost::json::object{{"max_ssbo_bytes", l.max_ssbo_bytes},
+                                         {"max_texel_buffer_elements", l.max_texel_buffer_elements},
+                                         {"max_uniform_block_bytes", l.max_uniform_block_bytes},
+                                         {"max_work_group_invocations", l.max_work_group_invocations},
+                                         {"max_work_group_count_x", l.max_work_group_count_x},
+                                         {"max_shared_memory_bytes", l.max_shared_memory_bytes},
+                                         {"max_ssbo_bindings", l.max_ssbo_bindings}}}};
+}
+
+}  // namespace
+
+int info(const InfoOptions& options) {
+  if (options.parameters) {
+    fmt::print("{}", scene::parameterReferenceMarkdown());
+    return 0;
+  }
+  const gpu::GpuInfo gpu = gpu::collectInfo({});
+  boost::json::array devices;
+  for (const gpu::DeviceInfo& d : gpu.devices) devices.push_back(toJson(d));
+  const boost::json::object json = {
+      {"program", "spindrift " SPINDRIFT_VERSION},
+      {"wire", fmt::format("{}.{}", wire::kWireMajor, wire::kWireMinor)},
+      {"egl_client_version", gpu.egl_client_version},
+      {"shader_count", gpu.shader_count},
+      {"devices", devices},
+      {"chosen", gpu.chosen ? boost::json::value(toJson(*gpu.chosen)) : boost::json::value()},
+      {"why", gpu.why}};
+  if (options.json_file != "-") {
+    fmt::print("program   spindrift {}, wire {}.{}, {} shaders\nEGL       {}\n", SPINDRIFT_VERSION, wire::kWireMajor,
+               wire::kWireMinor, gpu.shader_count, gpu.egl_client_version);
+    for (const gpu::DeviceInfo& d : gpu.devices) {
+      fmt::print("device {:>2} {}\n", d.is_software ? "sw" : std::to_string(d.index), d.name);
+      if (!d.problem.empty()) {
+        fmt::print("          cannot be used: {}\n", d.problem);
+        continue;
+      }
+      fmt::print("          {}, OpenGL {}, EGL {}\n", d.vendor, d.gl_version, d.egl_driver);
+      fmt::print(
+          "          storage block {} MB, buffer texture {} M texels, group {} invocations, shared memory {} KB\n",
+          d.limits.max_ssbo_bytes >> 20, d.limits.max_texel_buffer_elements >> 20, d.limits.max_work_group_invocations,
+          d.limits.max_shared_memory_bytes >> 10);
+    }
+    fmt::print("auto      {}\n", gpu.why);
+  }
+  if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
+  return gpu.chosen ? 0 : core::exitCode(core::ErrorCode::kNoDevice);
+}
+
+}  // namespace spindrift::cli

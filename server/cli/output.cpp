@@ -1,0 +1,35 @@
+#include "output.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include <boost/json/serialize.hpp>
+
+#include "commands.h"
+
+namespace spindrift::cli {
+
+core::Result<void> writeJson(const std::string& file, const boost::json::value& value) {
+  if (file.empty()) return {};
+  const std::string text = boost::json::serialize(value) + "\n";
+  if (file == "-") {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return {};
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    return core::Error{core::ErrorCode::kUnavailable,
+                       "--json '" + file + "': cannot be written: " + std::strerror(errno)};
+  return {};
+}
+
+int fail(const core::Error& error) {
+  std::fprintf(stderr, "spindrift: %s\n", error.message.c_str());
+  return core::exitCode(error.code);
+}
+
+}  // namespace spindrift::cli

@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/core/paths.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/service/water_server.h>
+
+#include "commands.h"
+
+namespace spindrift::cli {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::string& scene,
+                                        const std::string& fidelity) {
+  if (!rooms::isRoomName(name)) {
+    return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
+  }
+  auto file = core::findScene(scene);
+  if (!file) return file.error();
+  auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(fidelity));
+  if (!loaded) return loaded.error();
+  return rooms::RoomSetup{name, *std::move(loaded)};
+}
+
+core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& options) {
+  std::vector<rooms::RoomSetup> rooms;
+  auto first = loadRoom("main", options.scene, options.fidelity);
+  if (!first) return first.error();
+  rooms.push_back(*std::move(first));
+  for (const std::string& text : options.rooms) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      return Error{ErrorCode::kInvalidInput, "--room '" + text + "': write NAME=SCENE"};
+    auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1), options.fidelity);
+    if (!room) return room.error();
+    for (const rooms::RoomSetup& known : rooms) {
+      if (known.name == room->name)
+        return Error{ErrorCode::kInvalidInput,
+                     "--room '" + text + "': there is a room of this name already; 'main' is the one of --scene"};
+    }
+    rooms.push_back(*std::move(room));
+  }
+  return rooms;
+}
+
+/// The tokens of the file, or of the environment, and what guests are.
+core::Result<service::Access> loadAccess(const ServeOptions& options) {
+  std::string text;
+  std::string label = "SPINDRIFT_TOKENS";
+  bool has_tokens = false;
+  if (!options.token_file.empty()) {
+    std::ifstream file(options.token_file);
+    if (!file) return Error{ErrorCode::kUnavailable, "--tokens " + options.token_file + ": the file cannot be read"};
+    text.assign(std::istreambuf_iterator<char>(file), {});
+    label = options.token_file;
+    has_tokens = true;
+  } else if (const char* const set = std::getenv("SPINDRIFT_TOKENS"); set && *set) {
+    text = set;
+    std::ranges::replace(text, ';', '\n');  // one line is what an environment can hold well
+    has_tokens = true;
+  }
+  std::optional<core::Role> guest = has_tokens ? core::Role::kViewer : core::Role::kOperator;
+  if (!options.guest_role.empty()) guest = core::parseRole(options.guest_role);  // "none" is no role
+  auto access = service::Access::parse(text, label, guest);
+  if (access && has_tokens && access->tokenCount() == 0) {
+    return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
+  }
+  if (access && !guest && access->tokenCount() == 0) {
+    return Error{ErrorCode::kInvalidInput, "--guests none lets nobody in without tokens: give --tokens FILE"};
+  }
+  return access;
+}
+
+/// Blocks SIGINT and SIGTERM in this thread and those it starts, so that wait() gets them.
+class StopSignals {
+ public:
+  StopSignals() {
+    sigemptyset(&set_);
+    sigaddset(&set_, SIGINT);
+    sigaddset(&set_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+  }
+  int wait() {
+    int signal = 0;
+    sigwait(&set_, &signal);
+    return signal;
+  }
+
+ private:
+  sigset_t set_{};
+};
+
+std::string forUrl(const std::string& address) {
+  return address.find(':') != std::string::npos ? "[" + address + "]" : address;
+}
+
+}  // namespace
+
+int serve(const ServeOptions& options) {
+  StopSignals signals;
+  auto device = gpu::parseDeviceChoice(options.device);
+  if (!device) return fail(device.error());
+  auto rooms = loadRooms(options);
+  if (!rooms) return fail(rooms.error());
+
+  auto access = loadAccess(options);
+  if (!access) return fail(access.error());
+  const bool is_open_to_all =
+      access->guest() == core::Role::kOperator && !options.address.starts_with("127.") && options.address != "::1";
+
+  service::WaterServerOptions server_options;
+  server_options.device = *device;
+  server_options.rooms = *std::move(rooms);
+  server_options.rules.scenes = rooms::SceneCatalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
+  server_options.rules.grace =
+      std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(options.grace_s * 1e3));
+  server_options.rules.record_folder = options.record_folder;
+  server_options.rules.hash_interval_ticks = options.hash_interval_ticks;
+  server_options.max_room_count = options.max_room_count;
+  server_options.access = *std::move(access);
+  server_options.network.allowed_origins = options.origins;
+  server_options.network.address = options.address;
+  server_options.network.port = options.port;
+  server_options.network.thread_count = options.thread_count;
+  server_options.network.address_session_share = options.address_session_share;
+  server_options.network.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;
+  const bool has_page = !server_options.network.web_root.empty();
+  auto server = service::WaterServer::start(std::move(server_options));
+  if (!server) return fail(server.error());
+
+  spdlog::info("simulation runs on {}", (*server)->deviceLine());
+  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
+  if (is_open_to_all) {
+    spdlog::warn(
+        "whoever reaches {} may do everything here, close rooms included: give --tokens, or --guests player, to change "
+        "that",
+        options.address);
+  }
+  std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
+  std::fflush(stdout);
+  const int signal = signals.wait();
+  spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
+  (*server)->stop();
+  const net::ServerStats stats = (*server)->networkStats();
+  for (const std::string& line : (*server)->summary()) spdlog::info("{}", line);
+  spdlog::info("{} sessions, {} frames and {:.1f} MB sent, {} frames dropped for slow clients, {} sessions evicted",
+               stats.accepted_session_count, stats.sent_frame_count, static_cast<double>(stats.sent_bytes_count) / 1e6,
+               stats.dropped_frame_count, stats.evicted_session_count);
+  return 0;
+}
+
+}  // namespace spindrift::cli

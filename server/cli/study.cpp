@@ -1,0 +1,46 @@
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <spindrift/study_suites/suites.h>
+
+#include "commands.h"
+#include "output.h"
+
+namespace spindrift::cli {
+
+int study(const StudyOptions& options) {
+  auto device = gpu::parseDeviceChoice(options.device);
+  if (!device) return fail(device.error());
+  study_suites::StudyJournal journal(options.journal_file);
+  if (auto usable = journal.check(); !usable) return fail(usable.error());
+  auto ctx = gpu::Context::create(*device);
+  if (!ctx) return fail(ctx.error());
+
+  std::FILE* out = options.json_file == "-" ? stderr : stdout;
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  const gpu::DeviceInfo& info = (*ctx)->device();
+  fmt::print(out, "{}{}; machine {}, {} hardware threads; device {}, {}\n", options.suite,
+             options.quick ? ", quick" : "", host, std::thread::hardware_concurrency(), info.name, info.gl_version);
+  const auto suite = options.suite == "stability" ? study_suites::studyStability
+                     : options.suite == "trade"   ? study_suites::studyTrade
+                                                  : study_suites::studyAccuracy;
+  auto result = suite(**ctx, options, journal, out);
+  if (!result) return fail(result.error());
+  fmt::print(out, "{} within bounds, {} missed\n", result->held_count, result->missed_count);
+  boost::json::object json = std::move(result->json);
+  json["suite"] = options.suite;
+  json["quick"] = options.quick;
+  json["threads"] = std::thread::hardware_concurrency();
+  json["device"] = info.name;
+  json["gl_version"] = info.gl_version;
+  json["held"] = result->held_count;
+  json["missed"] = result->missed_count;
+  if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
+  return result->missed_count == 0 ? 0 : 1;
+}
+
+}  // namespace spindrift::cli

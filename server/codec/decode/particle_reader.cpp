@@ -1,0 +1,271 @@
+#include "particle_reader.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "format/particle_format.h"
+#include "prefix_slots.h"
+#include "residual_reader.h"
+#include "short_vectors.h"
+
+namespace spindrift::codec {
+namespace {
+
+constexpr std::uint32_t kUsualOffsetBits = 5;
+
+bool isWithinBounds(const ParticleShape& shape) {
+  if (shape.count > kParticleReadMaxCount || shape.offset_bits < 1 || shape.offset_bits > kOffsetBitsMax) return false;
+  std::uint64_t total = 1;
+  for (const std::uint32_t cells : shape.cells_count) {
+    if (cells < 1 || cells > kCoordinateMaxCount >> shape.offset_bits) return false;
+    total *= cells;
+  }
+  return total <= kCellMaxCount;
+}
+
+std::uint32_t getGamma(BitSource& in) {
+  std::uint32_t bits = 0;
+  while (bits < kMaxGammaBits && in.get(1) == 0) ++bits;
+  return ((1u << bits) | in.get(bits)) - 1;
+}
+
+/// x, z, y of 16 bits each, as they stand in a particle's words.
+constexpr std::uint64_t placeOf(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  return x | z << 16 | y << 32;
+}
+
+/// For the counts of four eighths, two bits each: how many particles lie before the end of each, a byte each.
+constexpr std::array<std::uint32_t, kHalfSymbolCount> makeEnds() {
+  std::array<std::uint32_t, kHalfSymbolCount> ends{};
+  for (std::uint32_t symbol = 0; symbol < ends.size(); ++symbol) {
+    for (std::uint32_t e = 0, count = 0; e < 4; ++e) {
+      count += symbol >> (2 * e) & 3u;
+      ends[symbol] |= count << (8 * e);
+    }
+  }
+  return ends;
+}
+constexpr std::array<std::uint32_t, kHalfSymbolCount> kEnds = makeEnds();
+
+/// Writes what cells hold: for each particle the place of its eighth.
+class CellReader {
+ public:
+  CellReader(const ParticleShape& shape, std::uint8_t* out) : shape_(shape), out_(out), left_(shape.count) {
+    const std::uint32_t low = shape.offset_bits - 1;
+    for (std::size_t e = 0; e < 8; ++e) eighths_[e] = placeOf(e >> 2, e & 1, e >> 1 & 1) << low;
+  }
+
+  bool read(BitSource& from) {
+    PrefixSlots half_code, gap_code;
+    if (!half_code.read(kHalfSymbolCount, from) || !gap_code.read(kGapSymbolCount, from)) return false;
+    BitSource bits = from;  // a copy stays in registers
+    const auto [cells_x, cells_y, cells_z] = shape_.cells_count;
+    std::uint32_t x = 0, y = 0, z = 0;
+    for (; left_ > 0; ++y) {
+      // At most 11 bits of the gap, 23 that are raw, 22 of the halves.
+      bits.prepare();
+      std::uint64_t window = bits.peek();
+      const Slot gap = gap_code[window];
+      const std::uint32_t raw_bits = gap.symbol - (gap.symbol > 0 ? 1u : 0u);
+      window >>= gap.length;
+      const std::uint32_t one = gap.symbol > 0 ? 1u : 0u;
+      y += (one << raw_bits) + (static_cast<std::uint32_t>(window) & ((1u << raw_bits) - 1));
+      window >>= raw_bits;
+      // Mostly the next column, if another at all: no branch to foresee.
+      const std::uint32_t is_beyond = y >= cells_y ? 1 : 0;
+      y -= cells_y & (0 - is_beyond);
+      x += is_beyond;
+      if (y >= cells_y) {
+        x += y / cells_y;
+        y %= cells_y;
+      }
+      if (x >= cells_x) {
+        z += x / cells_x;
+        x %= cells_x;
+        if (z >= cells_z) return false;
+      }
+      const Slot low_half = half_code[window], high_half = half_code[window >> low_half.length];
+      bits.take(gap.length + raw_bits + low_half.length + high_half.length);
+      const std::uint32_t halves = low_half.symbol | static_cast<std::uint32_t>(high_half.symbol) << 8;
+      if (halves == 0) return false;  // a cell that is named holds something
+      const std::uint64_t corner = placeOf(x, y, z) << shape_.offset_bits;
+      const bool has_many = (halves & halves >> 1 & 0x5555u) != 0;
+      if (!has_many && left_ >= kSureCount)
+        putFew(corner, low_half.symbol, high_half.symbol);
+      else if (!putMany(corner, halves, bits))
+        return false;
+    }
+    from = bits;
+    return true;
+  }
+
+ private:
+  /// As many as eight eighths of at most two hold.
+  static constexpr std::uint32_t kSureCount = 16;
+
+  static void put(std::uint8_t* at, std::uint64_t place) { std::memcpy(at, &place, sizeof place); }
+  /// No eighth holds more than two: two are written for each, and the next eighth begins behind those that are there.
+  void putFew(std::uint64_t corner, std::size_t low_half, std::size_t high_half) {
+    const std::uint32_t low_ends = kEnds[low_half];
+    const std::uint32_t high_ends = kEnds[high_half] + (low_ends >> 24) * 0x01010101u;
+    const std::uint64_t ends = low_ends | std::uint64_t{high_ends} << 32;
+    const std::uint64_t begins = ends << 8;
+    std::uint8_t* const out = out_;
+    for (std::size_t e = 0; e < 8; ++e) {
+      std::uint8_t* const at = out + kParticleWordBytes * (begins >> (8 * e) & 0xffu);
+      const std::uint64_t place = corner + eighths_[e];
+      put(at, place);
+      put(at + kParticleWordBytes, place);
+    }
+    left_ -= high_ends >> 24;
+    out_ = out + kParticleWordBytes * (high_ends >> 24);
+  }
+  bool putMany(std::uint64_t corner, std::uint32_t halves, BitSource& bits) {
+    for (std::size_t e = 0; e < 8; ++e, halves >>= 2) {
+      std::uint32_t count = halves & 3u;
+      if (count == kManyCount) count += getGamma(bits);
+      if (count > left_) return false;
+      left_ -= count;
+      for (; count > 0; --count, out_ += kParticleWordBytes) put(out_, corner + eighths_[e]);
+    }
+    return true;
+  }
+
+  const ParticleShape shape_;
+  std::uint8_t* out_;
+  std::uint32_t left_;
+  std::array<std::uint64_t, 8> eighths_;
+};
+
+/// One attribute of the particles from group to group: values are the mean plus what differs from it.
+struct Attribute {
+  ResidualGroup values;
+  std::int16_t mean = 0;
+  std::uint32_t mean_class = 0;
+  std::uint32_t group_class = 0;
+
+  void read(ResidualReader& in, std::size_t count) {
+    ResidualGroup& step = values;
+    mean_class = in.group(step, 1, mean_class, mean_class);
+    mean = static_cast<std::int16_t>(mean + step.of[0]);
+    group_class = in.group(values, count, group_class, group_class);
+    if (group_class == 0) return fill64(values.of.data(), mean);
+    for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value + mean);
+  }
+};
+
+Shorts clamped(Shorts v, std::int16_t least, std::int16_t most) {
+  const Shorts low = Shorts{} + least, high = Shorts{} + most;
+  v = v < low ? low : v;
+  return v > high ? high : v;
+}
+Shorts bytesOf(Shorts velocities) {
+  return clamped(velocities, -127, 127) & 0xff;
+}
+/// 255 / 7 of a tint, rounded down, is this much over 32.
+constexpr int kTintScale = 1166;
+static_assert([] {
+  for (int tint = 0; tint < 8; ++tint) {
+    if (tint * kTintScale / 32 != tint * 255 / 7) return false;
+  }
+  return true;
+}());
+Shorts tintsOf(Shorts tints) {
+  return clamped(tints, 0, 7) * kTintScale >> 5;
+}
+Shorts foamsOf(Shorts foams) {
+  return clamped(foams, 0, 3) * 85;
+}
+
+/// Velocity, tint and foam of a group: the last six bytes of each particle, two and four of them.
+struct Tails {
+  alignas(16) std::array<std::uint16_t, kGroupMaxCount> first;
+  alignas(16) std::array<std::uint32_t, kGroupMaxCount> second;
+};
+
+class AttributeReader {
+ public:
+  void read(ResidualReader& in, std::size_t count, Tails& out) {
+    for (Attribute* attribute : {&vx_, &vy_, &vz_, &foam_, &tint_}) attribute->read(in, count);
+    for (std::size_t k = 0; k < kGroupMaxCount; k += 8) {
+      const auto valuesOf = [k](const Attribute& attribute) {
+        return loadVector<Shorts>(attribute.values.of.data() + k);
+      };
+      storeVector(out.first.data() + k, bytesOf(valuesOf(vx_)) | bytesOf(valuesOf(vy_)) << 8);
+      const Shorts low = bytesOf(valuesOf(vz_)) | tintsOf(valuesOf(tint_)) << 8, high = foamsOf(valuesOf(foam_));
+      storeVector(out.second.data() + k, interleaveLow(low, high));
+      storeVector(out.second.data() + k + 4, interleaveHigh(low, high));
+    }
+  }
+
+ private:
+  Attribute vx_, vy_, vz_, foam_, tint_;
+};
+
+/// Adds a group's low bits of places and its tails to what the cells gave. `place` is that of its bits.
+void putGroup(const BitSource& bits, std::uint32_t place, std::uint32_t low, const Tails& tails, std::size_t count,
+              std::uint8_t* out) {
+  const std::uint64_t mask = (1u << low) - 1;
+  for (std::size_t k = 0; k < count; ++k, out += kParticleWordBytes, place += 3 * low) {
+    const std::uint64_t offsets = bits.peekAt(place);
+    std::uint64_t word = 0;
+    std::memcpy(&word, out, sizeof word);
+    word |= (offsets & mask) | (offsets >> low & mask) << 16 | (offsets >> 2 * low & mask) << 32 |
+            std::uint64_t{tails.first[k]} << 48;
+    std::memcpy(out, &word, sizeof word);
+    std::memcpy(out + sizeof word, &tails.second[k], sizeof tails.second[k]);
+  }
+}
+
+/// The same for cells of 32 quanta, as the server makes them: shifts by constants.
+void putUsualGroup(const BitSource& bits, std::uint32_t place, const Tails& tails, std::size_t count,
+                   std::uint8_t* out) {
+  constexpr std::uint32_t kLow = kUsualOffsetBits - 1, kAtOnce = 4;
+  static_assert(kAtOnce * 3 * kLow <= 57);
+  std::size_t k = 0;
+  for (; k + kAtOnce <= count; k += kAtOnce, place += kAtOnce * 3 * kLow) {
+    const std::uint64_t window = bits.peekAt(place);
+    for (std::size_t i = k; i < k + kAtOnce; ++i, out += kParticleWordBytes) {
+      const std::uint64_t offsets = window >> (i - k) * 3 * kLow;
+      std::uint64_t word = 0;
+      std::memcpy(&word, out, sizeof word);
+      word |=
+          (offsets & 0xfu) | (offsets & 0xf0u) << 12 | (offsets & 0xf00u) << 24 | std::uint64_t{tails.first[i]} << 48;
+      std::memcpy(out, &word, sizeof word);
+      std::memcpy(out + sizeof word, &tails.second[i], sizeof tails.second[i]);
+    }
+  }
+  if (k == count) return;
+  Tails rest;
+  std::copy(tails.first.begin() + k, tails.first.begin() + count, rest.first.begin());
+  std::copy(tails.second.begin() + k, tails.second.begin() + count, rest.second.begin());
+  putGroup(bits, place, kLow, rest, count - k, out);
+}
+
+}  // namespace
+
+bool readParticles(const std::uint8_t* payload, std::uint32_t byte_count, const ParticleShape& shape,
+                   std::uint8_t* out) {
+  if (!isWithinBounds(shape) || byte_count > BitSource::kMaxBytes) return false;
+  ResidualReader in(payload, byte_count);
+  if (!CellReader(shape, out).read(in.bits())) return false;
+  const BitSource offsets = in.bits();
+  const std::uint32_t low = shape.offset_bits - 1;
+  if (!in.bits().skip(std::uint64_t{shape.count} * 3 * low)) return false;
+  AttributeReader attributes;
+  Tails tails;
+  std::uint32_t place = offsets.place();
+  for (std::size_t begin = 0; begin < shape.count; begin += kGroupMaxCount) {
+    const std::size_t count = std::min(kGroupMaxCount, shape.count - begin);
+    attributes.read(in, count, tails);
+    if (shape.offset_bits == kUsualOffsetBits)
+      putUsualGroup(offsets, place, tails, count, out + begin * kParticleWordBytes);
+    else
+      putGroup(offsets, place, low, tails, count, out + begin * kParticleWordBytes);
+    place += std::uint32_t{kGroupMaxCount} * 3 * low;
+  }
+  return in.isAtEnd();
+}
+
+}  // namespace spindrift::codec

@@ -1,0 +1,134 @@
+#include "plane_reader.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "band_prediction.h"
+
+namespace spindrift::codec {
+namespace {
+
+/// Parts of memory one behind the other; from null, only how much they take.
+class Parts {
+ public:
+  explicit Parts(std::uint8_t* memory) : memory_(memory) {}
+  template <typename Element>
+  Element* take(std::size_t count) {
+    Element* const part = memory_ != nullptr ? reinterpret_cast<Element*>(memory_ + used_) : nullptr;
+    used_ += (count * sizeof(Element) + PlaneRow::kAlignment - 1) / PlaneRow::kAlignment * PlaneRow::kAlignment;
+    return part;
+  }
+  [[nodiscard]] std::size_t usedBytes() const { return used_; }
+
+ private:
+  std::uint8_t* memory_;
+  std::size_t used_ = 0;
+};
+
+std::size_t sumsStrideOf(const PlaneLayout& layout) {
+  return kSumsLeft + kTile * layout.tilesCount() + kSumsRight;
+}
+
+}  // namespace
+
+std::size_t PlaneRow::takeParts(std::uint8_t* memory) {
+  Parts parts(memory);
+  for (std::int16_t** plane : {&next_, &before_, &earlier_}) *plane = parts.take<std::int16_t>(layout_.sampleCount());
+  residuals_ = parts.take<ResidualGroup>(layout_.tilesCount());
+  sums_ = parts.take<std::uint32_t>(kTile * sumsStrideOf(layout_));
+  classes_ = parts.take<std::uint8_t>(layout_.tilesCount());
+  return parts.usedBytes();
+}
+
+std::size_t PlaneRow::bytesFor(std::size_t n) {
+  PlaneRow row;
+  row.layout_.n = n;
+  return row.takeParts(nullptr);
+}
+
+void PlaneRow::place(std::uint8_t* memory, std::size_t n) {
+  layout_.n = n;
+  std::memset(memory, 0, takeParts(memory));
+  has_row_ = false;
+}
+
+bool PlaneRow::readKeyframe(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights,
+                            const SurfaceWeights& earlier_weights) {
+  has_row_ = false;
+  if (byte_count > BitSource::kMaxBytes) return false;
+  ResidualReader in(payload, byte_count);
+  readPlane(in, {nullptr, nullptr}, weights, before_);
+  readPlane(in, {before_, nullptr}, earlier_weights, earlier_);
+  has_row_ = in.isAtEnd();
+  return has_row_;
+}
+
+bool PlaneRow::readDelta(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights) {
+  if (!std::exchange(has_row_, false) || byte_count > BitSource::kMaxBytes) return false;
+  ResidualReader in(payload, byte_count);
+  readPlane(in, {before_, earlier_}, weights, next_);
+  std::swap(earlier_, before_);
+  std::swap(before_, next_);
+  has_row_ = in.isAtEnd();
+  return has_row_;
+}
+
+void PlaneRow::readPlane(ResidualReader& in, const History& history, const SurfaceWeights& weights,
+                         std::int16_t* plane) {
+  // A plane that is not there counts for nothing.
+  SurfaceWeights known = weights;
+  if (history.earlier == nullptr) std::fill_n(known.of.begin() + SurfaceWeights::kEarlier, 3, 0);
+  const std::int16_t* const earlier = history.earlier != nullptr ? history.earlier : history.before;
+  const std::size_t stride = layout_.stride(), sums_stride = sumsStrideOf(layout_);
+  std::memset(classes_, 0, layout_.tilesCount());
+  std::memset(plane + layout_.placeOf(-1), 0, stride * sizeof *plane);
+  for (std::size_t top = 0; top < layout_.n; top += kTile) {
+    readTiles(in, std::min(kTile, layout_.n - top));
+    const std::size_t begin = layout_.placeOf(static_cast<std::ptrdiff_t>(top));
+    for (std::size_t j = 0; j < kTile; ++j) {
+      const std::size_t row = begin + j * stride;
+      std::uint32_t* const sums = sums_ + j * sums_stride + kSumsLeft;
+      if (history.before == nullptr)
+        sumResiduals(residuals_, j, layout_.tilesCount(), sums);
+      else
+        sumHistory({history.before + row, earlier + row, stride}, known, residuals_, j, layout_.tilesCount(), sums);
+    }
+    predictBand(sums_ + kSumsLeft, sums_stride, known, top == 0, plane + begin, stride, layout_.n);
+  }
+  fillBorder(plane);
+}
+
+void PlaneRow::readTiles(ResidualReader& in, std::size_t rows) {
+  std::uint32_t left = 0;
+  for (std::size_t tile = 0; tile < layout_.tilesCount(); ++tile) {
+    const std::size_t columns = std::min(kTile, layout_.n - tile * kTile);
+    ResidualGroup& group = residuals_[tile];
+    left = in.group(group, rows * columns, left, classes_[tile]);
+    classes_[tile] = static_cast<std::uint8_t>(left);
+    if (columns == kTile) continue;
+    // Narrow rows take their places in the tile, the last one first.
+    for (std::size_t j = rows; j-- > 0;)
+      std::memmove(group.of.data() + j * kTile, group.of.data() + j * columns, columns * sizeof group.of[0]);
+  }
+}
+
+void PlaneRow::fillBorder(std::int16_t* plane) const {
+  const auto last = static_cast<std::ptrdiff_t>(layout_.n) - 1;
+  for (std::ptrdiff_t z = 0; z <= last; ++z) {
+    std::int16_t* r = plane + layout_.placeOf(z);
+    r[-1] = r[-2] = r[0];
+    r[last + 1] = r[last + 2] = r[last];
+  }
+  const auto copyRow = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+    std::memcpy(plane + layout_.placeOf(to) - PlaneLayout::kBorder,
+                plane + layout_.placeOf(from) - PlaneLayout::kBorder,
+                (layout_.n + 2 * PlaneLayout::kBorder) * sizeof *plane);
+  };
+  for (const std::ptrdiff_t beyond : {1, 2}) {
+    copyRow(0, -beyond);
+    copyRow(last, last + beyond);
+  }
+}
+
+}  // namespace spindrift::codec

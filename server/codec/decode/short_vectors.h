@@ -1,0 +1,85 @@
+// Vectors of 128 bits for both compilers and both machines (SSE2, WebAssembly): the compilers' own vector types, and
+// the one operation that these lack.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#if defined(__wasm_simd128__)
+#include <wasm_simd128.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace spindrift::codec {
+
+using Shorts = std::int16_t __attribute__((vector_size(16)));
+using Words = std::uint32_t __attribute__((vector_size(16)));
+using SignedWords = std::int32_t __attribute__((vector_size(16)));
+
+/// From and to any address.
+template <typename Vector, typename Element>
+Vector loadVector(const Element* from) {
+  Vector out;
+  std::memcpy(&out, from, sizeof out);
+  return out;
+}
+template <typename Vector, typename Element>
+void storeVector(Element* to, Vector vector) {
+  std::memcpy(to, &vector, sizeof vector);
+}
+
+/// 64 times the same number. Stores and nothing else: a compiler that sees the number makes memory.fill or rep stos of
+/// them, slow for so few bytes.
+inline void fill64(std::int16_t* to, std::int16_t value) {
+  asm("" : "+r"(value));
+  const Shorts v{value, value, value, value, value, value, value, value};
+  storeVector(to, v);
+  storeVector(to + 8, v);
+  storeVector(to + 16, v);
+  storeVector(to + 24, v);
+  storeVector(to + 32, v);
+  storeVector(to + 40, v);
+  storeVector(to + 48, v);
+  storeVector(to + 56, v);
+}
+
+/// a[0], b[0], a[1], b[1], ... of the lower or the upper halves.
+inline Shorts interleaveLow(Shorts a, Shorts b) {
+  return __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
+}
+inline Shorts interleaveHigh(Shorts a, Shorts b) {
+  return __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
+}
+inline Words interleaveLow(Words a, Words b) {
+  return __builtin_shufflevector(a, b, 0, 4, 1, 5);
+}
+inline Words interleaveHigh(Words a, Words b) {
+  return __builtin_shufflevector(a, b, 2, 6, 3, 7);
+}
+
+/// a[0] b[0] + a[1] b[1], a[2] b[2] + a[3] b[3], ...; wraps around at 32 bits.
+inline Words sumsOfProducts(Shorts a, Shorts b) {
+#if defined(__wasm_simd128__)
+  return Words(wasm_i32x4_dot_i16x8(v128_t(a), v128_t(b)));
+#elif defined(__SSE2__)
+  return Words(_mm_madd_epi16(__m128i(a), __m128i(b)));
+#else
+  const auto low = [](Shorts v) { return Words(SignedWords(Words(v) << 16) >> 16); };
+  const auto high = [](Shorts v) { return Words(SignedWords(v) >> 16); };
+  return low(a) * low(b) + high(a) * high(b);
+#endif
+}
+
+/// The low halves of both, one behind the other; each has to be a sign-extended number of 16 bits.
+inline Shorts narrowed(SignedWords a, SignedWords b) {
+#if defined(__wasm_simd128__)
+  return Shorts(wasm_i16x8_narrow_i32x4(v128_t(a), v128_t(b)));
+#elif defined(__SSE2__)
+  return Shorts(_mm_packs_epi32(__m128i(a), __m128i(b)));
+#else
+  return __builtin_shufflevector(Shorts(a), Shorts(b), 0, 2, 4, 6, 8, 10, 12, 14);
+#endif
+}
+
+}  // namespace spindrift::codec

@@ -1,0 +1,318 @@
+// The writing half of residual_coder.h. It is inlined into whoever writes many groups, so that the bits at hand stay in
+// registers and the caller decides what processor it is compiled for.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstdlib>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "processor.h"
+#include "residual_coder.h"
+#include "residual_codes.h"
+
+namespace spindrift::codec {
+
+#if defined(__SSE2__)
+
+/// A group in registers, and what is asked of all its residuals at once.
+class GroupRows {
+ public:
+  /// Eight residuals from each of eight places, `stride` apart.
+  SPINDRIFT_INLINE GroupRows(const std::int16_t* first, std::size_t stride) {
+    for (std::size_t j = 0; j < 8; ++j)
+      rows_[j] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(first + j * stride));
+  }
+  SPINDRIFT_INLINE void store(ResidualGroup& out) const {
+    for (std::size_t j = 0; j < 8; ++j) _mm_store_si128(reinterpret_cast<__m128i*>(out.of.data() + 8 * j), rows_[j]);
+  }
+  [[nodiscard]] SPINDRIFT_INLINE bool areZero() const {
+    __m128i any = rows_[0];
+    for (std::size_t j = 1; j < 8; ++j) any = _mm_or_si128(any, rows_[j]);
+    return _mm_movemask_epi8(_mm_cmpeq_epi8(any, _mm_setzero_si128())) == 0xffff;
+  }
+  /// Magnitudes of -32768 count as 32767.
+  SPINDRIFT_INLINE void sumUp(std::uint32_t& magnitudes_sum, int& largest_magnitude, int& signed_sum) const {
+    const __m128i ones = _mm_set1_epi16(1);
+    __m128i sum = _mm_setzero_si128(), largest = sum, plain = sum;
+    for (const __m128i& r : rows_) {
+      const __m128i magnitude = _mm_max_epi16(r, _mm_subs_epi16(_mm_setzero_si128(), r));
+      sum = _mm_add_epi32(sum, _mm_madd_epi16(magnitude, ones));
+      plain = _mm_add_epi32(plain, _mm_madd_epi16(r, ones));
+      largest = _mm_max_epi16(largest, magnitude);
+    }
+    // Both sums side by side, two halves each.
+    __m128i sums = _mm_add_epi32(_mm_unpacklo_epi32(sum, plain), _mm_unpackhi_epi32(sum, plain));
+    sums = _mm_add_epi32(sums, _mm_shuffle_epi32(sums, _MM_SHUFFLE(1, 0, 3, 2)));
+    largest = _mm_max_epi16(largest, _mm_shuffle_epi32(largest, _MM_SHUFFLE(1, 0, 3, 2)));
+    largest = _mm_max_epi16(largest, _mm_shuffle_epi32(largest, _MM_SHUFFLE(2, 3, 0, 1)));
+    largest = _mm_max_epi16(largest, _mm_srli_epi32(largest, 16));
+    magnitudes_sum = static_cast<std::uint32_t>(_mm_cvtsi128_si32(sums));
+    signed_sum = _mm_cvtsi128_si32(_mm_shuffle_epi32(sums, _MM_SHUFFLE(1, 1, 1, 1)));
+    largest_magnitude = static_cast<std::int16_t>(_mm_cvtsi128_si32(largest));
+  }
+  [[nodiscard]] SPINDRIFT_INLINE int sum() const {
+    const __m128i ones = _mm_set1_epi16(1);
+    __m128i sum = _mm_setzero_si128();
+    for (const __m128i& r : rows_) sum = _mm_add_epi32(sum, _mm_madd_epi16(r, ones));
+    sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(1, 0, 3, 2)));
+    return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(2, 3, 0, 1))));
+  }
+  /// Bit k: residual k is beyond `largest`, or below its negative; of all but -32768, which counts as 32767.
+  [[nodiscard]] SPINDRIFT_INLINE std::uint64_t beyond(int largest) const {
+    const __m128i bound = _mm_set1_epi16(static_cast<std::int16_t>(largest));
+    std::uint64_t out = 0;
+    for (std::size_t j = 0; j < 8; j += 2) {
+      const auto isBeyond = [&](__m128i r) {
+        return _mm_cmpgt_epi16(_mm_max_epi16(r, _mm_subs_epi16(_mm_setzero_si128(), r)), bound);
+      };
+      const __m128i bytes = _mm_packs_epi16(isBeyond(rows_[j]), isBeyond(rows_[j + 1]));
+      out |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(bytes))} << (8 * j);
+    }
+    return out;
+  }
+  /// Bit k: residual k is not 0, or is below 0; all of them from -1 to 1.
+  SPINDRIFT_INLINE void signs(std::uint64_t& not_zero, std::uint64_t& below_zero) const {
+    not_zero = below_zero = 0;
+    for (std::size_t j = 0; j < 8; j += 2) {
+      const __m128i bytes = _mm_packs_epi16(rows_[j], rows_[j + 1]);
+      const auto zero = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(bytes, _mm_setzero_si128())));
+      not_zero |= std::uint64_t{zero ^ 0xffffu} << (8 * j);
+      below_zero |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(bytes))} << (8 * j);
+    }
+  }
+  /// One symbol for each four residuals, all of them from -1 to 1; out[4 i] and out[4 i + 2] are those of row i.
+  SPINDRIFT_INLINE void symbolsOfFours(std::uint32_t* out) const {
+    const __m128i factors = _mm_setr_epi16(1, 3, 9, 27, 1, 3, 9, 27);
+    for (std::size_t j = 0; j < 8; ++j) {
+      const __m128i pairs = _mm_madd_epi16(rows_[j], factors);
+      const __m128i fours =
+          _mm_add_epi32(_mm_add_epi32(pairs, _mm_srli_epi64(pairs, 32)), _mm_set1_epi32(1 + 3 + 9 + 27));
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(out + 4 * j), fours);
+    }
+  }
+  /// One for each two, all of them from -4 to 4.
+  SPINDRIFT_INLINE void symbolsOfPairs(std::uint32_t* out) const {
+    const __m128i factors = _mm_setr_epi16(1, 9, 1, 9, 1, 9, 1, 9);
+    for (std::size_t j = 0; j < 8; ++j) {
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(out + 4 * j),
+                       _mm_add_epi32(_mm_madd_epi16(rows_[j], factors), _mm_set1_epi32(4 + 36)));
+    }
+  }
+
+ private:
+  __m128i rows_[8];
+};
+
+#else
+
+class GroupRows {
+ public:
+  GroupRows(const std::int16_t* first, std::size_t stride) {
+    for (std::size_t j = 0; j < 8; ++j) std::copy_n(first + j * stride, 8, group_.of.data() + 8 * j);
+  }
+  void store(ResidualGroup& out) const { out = group_; }
+  [[nodiscard]] bool areZero() const {
+    return std::ranges::all_of(group_.of, [](std::int16_t r) { return r == 0; });
+  }
+  void sumUp(std::uint32_t& magnitudes_sum, int& largest_magnitude, int& signed_sum) const {
+    magnitudes_sum = 0;
+    largest_magnitude = signed_sum = 0;
+    for (const std::int16_t r : group_.of) {
+      const int magnitude = std::min(std::abs(int{r}), 32767);
+      magnitudes_sum += static_cast<std::uint32_t>(magnitude);
+      largest_magnitude = std::max(largest_magnitude, magnitude);
+      signed_sum += r;
+    }
+  }
+  [[nodiscard]] int sum() const {
+    int sum = 0;
+    for (const std::int16_t r : group_.of) sum += r;
+    return sum;
+  }
+  [[nodiscard]] std::uint64_t beyond(int largest) const {
+    std::uint64_t out = 0;
+    for (std::size_t k = 0; k < kGroupMaxCount; ++k) out |= std::uint64_t{std::abs(int{group_.of[k]}) > largest} << k;
+    return out;
+  }
+  void signs(std::uint64_t& not_zero, std::uint64_t& below_zero) const {
+    not_zero = below_zero = 0;
+    for (std::size_t k = 0; k < kGroupMaxCount; ++k) {
+      not_zero |= std::uint64_t{group_.of[k] != 0} << k;
+      below_zero |= std::uint64_t{group_.of[k] < 0} << k;
+    }
+  }
+  void symbolsOfFours(std::uint32_t* out) const {
+    for (std::size_t i = 0; i < kGroupMaxCount; i += 4) {
+      const std::int16_t* r = group_.of.data() + i;
+      out[i / 2] = static_cast<std::uint32_t>(r[0] + 3 * r[1] + 9 * r[2] + 27 * r[3] + 40);
+    }
+  }
+  void symbolsOfPairs(std::uint32_t* out) const {
+    for (std::size_t i = 0; i < kGroupMaxCount; i += 2)
+      out[i / 2] = static_cast<std::uint32_t>(group_.of[i] + 9 * group_.of[i + 1] + 40);
+  }
+
+ private:
+  ResidualGroup group_;
+};
+
+#endif
+
+/// From class 5 on: the one whose mean magnitude is nearest to sum / count.
+SPINDRIFT_INLINE std::uint32_t meanClassOf(std::uint32_t sum, std::size_t count) {
+  const std::uint64_t whole = std::uint64_t{sum} * 1024;
+  const std::uint64_t scaled = count == kGroupMaxCount ? whole : whole * kGroupMaxCount / count;  // 65536 * mean
+  const int bits = static_cast<int>(std::bit_width(scaled)) - 1;
+  const std::uint64_t thousands = scaled * 1000 >> bits;  // from 1000 to 1999
+  const int doubled_log2 = 2 * (bits - 16) + (thousands > 1189 ? 1 : 0) + (thousands > 1682 ? 1 : 0);
+  return static_cast<std::uint32_t>(std::clamp(doubled_log2 + 13, 5, static_cast<int>(kResidualClassCount) - 1));
+}
+
+/// Writes groups one behind the other. From ResidualEncoder::begin(), and back to its end().
+struct GroupWriter {
+  /// Room for a class and 64 residuals behind an escape each.
+  static constexpr std::size_t kGroupMaxBytes = 4 + kGroupMaxCount * 5;
+  static constexpr std::uint32_t kPlaceBits = 6;
+
+  const ResidualWriters& codes;
+  BitCursor out;
+  std::uint32_t residual_sum = 0;
+
+  /// As ResidualEncoder::putGroup().
+  SPINDRIFT_INLINE std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
+                                          std::uint32_t above) {
+    assert(count >= 1 && count <= kGroupMaxCount);
+    const GroupRows rows(residuals.of.data(), 8);
+    return rows.areZero() ? putZeros(left, above) : putRows(rows, count, left, above);
+  }
+  /// A whole group from eight rows of eight, `stride` apart.
+  SPINDRIFT_INLINE std::uint32_t putTile(const std::int16_t* first, std::size_t stride, std::uint32_t left,
+                                         std::uint32_t above) {
+    const GroupRows rows(first, stride);
+    return rows.areZero() ? putZeros(left, above) : putRows(rows, kGroupMaxCount, left, above);
+  }
+  /// A group of one residual; `before`: the class of the one before it.
+  SPINDRIFT_INLINE std::uint32_t putOne(std::int16_t residual, std::uint32_t before) {
+    if (residual == 0) return putZeros(before, before);
+    const auto magnitude = static_cast<std::uint32_t>(std::min(std::abs(int{residual}), 32767));
+    const std::uint32_t group_class = magnitude == 1 ? 1 : meanClassOf(magnitude, 1);
+    putClass(group_class, before, before);
+    if (magnitude == 1)
+      out.put(residual < 0 ? 1u << kPlaceBits : 0, kPlaceBits + 1);
+    else
+      putSingles(&residual, 1, group_class);  // two alone have class 15 already
+    out.flush();
+    residual_sum += static_cast<std::uint32_t>(int{residual});
+    return group_class;
+  }
+
+ private:
+  SPINDRIFT_INLINE std::uint32_t putZeros(std::uint32_t left, std::uint32_t above) {
+    codes.of_class_step[expectClass(left, above).code].put(0, out);
+    out.flush();
+    return 0;
+  }
+
+  SPINDRIFT_INLINE std::uint32_t putRows(const GroupRows& rows, std::size_t count, std::uint32_t left,
+                                         std::uint32_t above) {
+    std::uint32_t sum = 0;
+    int largest = 0, signed_sum = 0;
+    rows.sumUp(sum, largest, signed_sum);
+    residual_sum += static_cast<std::uint32_t>(signed_sum);
+    const std::uint32_t c = largest <= 1 && sum <= kLastSparseClass ? sum : meanClassOf(sum, count);
+    putClass(c, left, above);
+    if (c <= kLastSparseClass) {
+      putPlaces(rows);
+      return c;
+    }
+    out.flush();
+    if (c <= kLastFourClass) {
+      putJoint<4, 1>(rows, count, largest > 1, codes.ofClass(c), kFourEscapeClass);
+    } else if (c <= kLastPairClass) {
+      putJoint<2, kPairLargest>(rows, count, largest > kPairLargest, codes.ofClass(c), kPairEscapeClass);
+    } else {
+      ResidualGroup residuals;
+      rows.store(residuals);
+      putSingles(residuals.of.data(), count, c);
+    }
+    return c;
+  }
+
+  SPINDRIFT_INLINE void putClass(std::uint32_t group_class, std::uint32_t left, std::uint32_t above) {
+    const ClassExpectation expectation = expectClass(left, above);
+    const PrefixWriter& code = codes.of_class_step[expectation.code];
+    const std::uint32_t step = group_class + kClassReach + 1 - expectation.expected;
+    if (step >= 1 && step < kClassEscape) {
+      code.put(step, out);
+    } else {
+      code.put(kClassEscape, out);
+      out.put(group_class, kRawClassBits);
+    }
+  }
+
+  /// At most kLastSparseClass residuals that are not 0, behind a class: less than 56 bits.
+  SPINDRIFT_INLINE void putPlaces(const GroupRows& rows) {
+    std::uint64_t not_zero = 0, below_zero = 0;
+    for (rows.signs(not_zero, below_zero); not_zero != 0; not_zero &= not_zero - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(not_zero));
+      out.put(k | static_cast<std::uint32_t>(below_zero >> k & 1) << kPlaceBits, kPlaceBits + 1);
+    }
+    out.flush();
+  }
+
+  /// Fours (Count 4) or pairs.
+  template <std::size_t Count, int Largest>
+  SPINDRIFT_INLINE void putJoint(const GroupRows& rows, std::size_t count, bool has_larger, const PrefixWriter& code,
+                                 std::uint32_t escape_class) {
+    static_assert(kFourEscape == kPairEscape);
+    std::uint32_t symbols[kGroupMaxCount / 2];
+    if constexpr (Count == 4)
+      rows.symbolsOfFours(symbols);
+    else
+      rows.symbolsOfPairs(symbols);
+    const std::uint64_t larger = has_larger ? rows.beyond(Largest) : 0;
+    ResidualGroup residuals;
+    if (has_larger) rows.store(residuals);
+    constexpr std::uint64_t kSymbol = (std::uint64_t{1} << Count) - 1,
+                            kFourSymbols = (std::uint64_t{1} << 4 * Count) - 1;
+    for (std::size_t i = 0; i < count; i += 4 * Count) {
+      if ((larger >> i & kFourSymbols) == 0 && i + 4 * Count <= count) {
+        code.putFour(symbols[i / 2], symbols[(i + Count) / 2], symbols[(i + 2 * Count) / 2],
+                     symbols[(i + 3 * Count) / 2], out);
+        out.flush();
+        continue;
+      }
+      for (std::size_t k = i; k < std::min(i + 4 * Count, count); k += Count) {
+        const bool is_escape = (larger >> k & kSymbol) != 0;
+        code.put(is_escape ? kFourEscape : symbols[k / 2], out);
+        out.flush();
+        if (is_escape) putSingles(residuals.of.data() + k, Count, escape_class);
+      }
+    }
+  }
+
+  SPINDRIFT_INLINE void putSingles(const std::int16_t* residuals, std::size_t count, std::uint32_t as_class) {
+    const SingleCode single = singleCodeOf(as_class);
+    const PrefixWriter& code = codes.ofClass(single.coded_as);
+    for (std::size_t i = 0; i < count; ++i) {
+      const int raised = residuals[i] + (1 << single.shift >> 1);
+      const auto symbol = static_cast<std::uint32_t>((raised >> single.shift) + single.largest);
+      if (symbol < single.escape()) {
+        code.put(symbol, out);
+        out.put(static_cast<std::uint32_t>(raised) & ((1u << single.shift) - 1), single.shift);
+      } else {
+        code.put(single.escape(), out);
+        out.put(static_cast<std::uint16_t>(residuals[i]), kRawResidualBits);
+      }
+      if (i % 2 != 0) out.flush();
+    }
+    out.flush();
+  }
+};
+
+}  // namespace spindrift::codec

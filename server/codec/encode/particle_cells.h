@@ -1,0 +1,52 @@
+// Particles as what each cell of a grid holds. A cell is cut into eight; the counts of its eighths take the place of
+// the highest bit of every coordinate, and since the order of particles means nothing they cost less than those bits.
+// Empty cells cost a run length. The other bits of a place are as good as random and go out as they are.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "format/particle_format.h"
+#include "particle_order.h"
+#include "residual_coder.h"
+
+namespace spindrift::codec {
+
+/// Cells along x, y, z; the linear index of a cell is (z * cells x + x) * cells y + y, so that columns lie together, in
+/// the order in which the simulation has them.
+struct CellGrid {
+  std::array<std::uint32_t, 3> cells_count{};
+  std::uint32_t offset_bits = 5;  ///< a cell's side is 2^offset_bits quanta; 1..8
+
+  [[nodiscard]] std::uint64_t totalCount() const {
+    return std::uint64_t{cells_count[0]} * cells_count[1] * cells_count[2];
+  }
+};
+
+/// From the words of core::ParticleView to quanta, place = u16 * scale along each axis, velocity = i8 * speed_scale.
+struct ParticleScale {
+  std::array<float, 3> place{};
+  float speed = 0.0f;  ///< 0..1
+};
+
+/// Sorts the particles into the order of the wire and writes them: cells, places within them, then in groups of 64
+/// particles the velocities along x, y, z, foam, tint. Keeps its memory from frame to frame.
+class ParticleCellsEncoder {
+ public:
+  /// Three words a particle, as in core::ParticleView.
+  void encode(std::span<const std::uint32_t> words, const ParticleScale& scale, const CellGrid& grid,
+              ResidualEncoder& out);
+
+ private:
+  void putCells(BitWriter& out) const;
+  void putPlaces(std::uint32_t bit_count, BitWriter& out) const;
+  void putAttributes(ResidualEncoder& out) const;
+
+  std::vector<std::uint32_t> keys_;
+  std::vector<std::uint64_t> items_;
+  ParticleOrder order_;
+};
+
+}  // namespace spindrift::codec

@@ -1,0 +1,40 @@
+#include "plane_chain.h"
+
+#include <utility>
+
+#include "surface_fit.h"
+
+namespace spindrift::codec {
+
+PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
+  const bool is_first = before_.resolution() != next_.resolution();
+  if (is_first) before_ = earlier_ = next_;
+  Forms out;
+  if (!is_first) out.delta = delta();
+  if (is_first || wants_keyframe) out.keyframe = keyframe();
+  std::swap(earlier_, before_);
+  std::swap(before_, next_);
+  return out;
+}
+
+PlaneChainEncoder::Form PlaneChainEncoder::delta() {
+  Form out;
+  const SurfaceHistory history{&before_, &earlier_};
+  out.weights = fitWeights(next_, history);
+  encodePlane(next_, history, out.weights, residuals_);
+  residuals_.finish(out.payload);
+  return out;
+}
+
+PlaneChainEncoder::Form PlaneChainEncoder::keyframe() {
+  Form out;
+  out.weights = fitWeights(next_, {});
+  encodePlane(next_, {}, out.weights, residuals_);
+  const SurfaceHistory history{&next_, nullptr};
+  out.earlier_weights = fitWeights(before_, history);
+  encodePlane(before_, history, out.earlier_weights, residuals_);
+  residuals_.finish(out.payload);
+  return out;
+}
+
+}  // namespace spindrift::codec

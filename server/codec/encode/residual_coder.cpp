@@ -1,0 +1,33 @@
+#include "residual_coder.h"
+
+#include <algorithm>
+
+#include "group_writer.h"
+#include "residual_codes.h"
+
+namespace spindrift::codec {
+
+std::uint32_t ResidualEncoder::putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
+                                        std::uint32_t above) {
+  GroupWriter writer = begin(1);
+  const std::uint32_t group_class = writer.putGroup(residuals, count, left, above);
+  end(writer);
+  return group_class;
+}
+
+GroupWriter ResidualEncoder::begin(std::size_t group_count) {
+  return {residualWriters(), bits_.begin(group_count * GroupWriter::kGroupMaxBytes)};
+}
+
+void ResidualEncoder::end(const GroupWriter& writer) {
+  bits_.end(writer.out);
+  residual_sum_ += writer.residual_sum;
+}
+
+void ResidualEncoder::finish(core::Bytes& out) {
+  bits_.put(residual_sum_ & ((1u << kSumBits) - 1), kSumBits);
+  residual_sum_ = 0;
+  bits_.finish(out);
+}
+
+}  // namespace spindrift::codec

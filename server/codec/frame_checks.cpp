@@ -1,0 +1,56 @@
+#include "frame_checks.h"
+
+#include <cmath>
+#include <utility>
+
+#include <spindrift/codec/crc32c.h>
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/core/text.h>
+
+namespace spindrift::codec {
+
+core::Error invalid(std::string message) {
+  return {core::ErrorCode::kInvalidInput, std::move(message)};
+}
+
+core::ByteView viewOf(const std::string& bytes) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+std::optional<core::Error> checkRange(const char* name, double value, double min) {
+  if (value >= min && value <= kMaxMagnitude) return std::nullopt;
+  return invalid(std::string(name) + ": " + core::formatNumber(value) + " is not a finite number from " +
+                 core::formatNumber(min) + " to " + core::formatNumber(kMaxMagnitude) + "; the frame is damaged");
+}
+
+std::optional<core::Error> checkResolution(std::uint32_t resolution_count) {
+  if (resolution_count >= 1 && resolution_count <= kSurfaceMaxResolutionCount) return std::nullopt;
+  return invalid("resolution_count: " + std::to_string(resolution_count) + " is not from 1 to " +
+                 std::to_string(kSurfaceMaxResolutionCount));
+}
+
+std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer) {
+  if (frame.layer() != layer) {
+    return invalid("layer: " + std::to_string(frame.layer()) + " is not " + v1::Layer_Name(layer));
+  }
+  if (!std::isfinite(frame.time_s()))
+    return invalid("time_s: " + core::formatNumber(frame.time_s()) + " is not finite");
+  if (!std::isfinite(frame.server_time_s()))
+    return invalid("server_time_s: " + core::formatNumber(frame.server_time_s()) + " is not finite");
+  if (const std::uint32_t crc = crc32c(viewOf(frame.payload())); crc != frame.crc32c()) {
+    return invalid("crc32c: the frame says " + std::to_string(frame.crc32c()) + ", its payload has " +
+                   std::to_string(crc));
+  }
+  return std::nullopt;
+}
+
+std::optional<core::Error> checkPlainFrame(const v1::LayerFrame& frame, v1::Layer layer, std::size_t payload_bytes) {
+  if (!frame.keyframe()) return invalid("keyframe: false, but frames of this codec always stand by themselves");
+  if (frame.payload().size() != payload_bytes) {
+    return invalid("payload: " + std::to_string(frame.payload().size()) + " bytes, but the header calls for " +
+                   std::to_string(payload_bytes));
+  }
+  return checkFrame(frame, layer);
+}
+
+}  // namespace spindrift::codec

@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <google/protobuf/stubs/logging.h>
+
+#include <spindrift/codec/frame_decoder.h>
+
+#include "frame_checks.h"
+
+namespace spindrift::codec {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "payload integers are loaded as they lie in memory");
+
+constexpr std::size_t kSampleBytes = 2;
+constexpr std::size_t kParticleBytes = 12;
+constexpr std::size_t kBodyBytes = 28;
+template <typename Integer>
+Integer load(const std::uint8_t* at) {
+  Integer value{};
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
+  if (!frame.has_surface_fixed16()) return invalid("codec: not surface_fixed16, the only surface codec known here");
+  const v1::SurfaceFixed16& header = frame.surface_fixed16();
+  const std::size_t n = header.resolution_count();
+  if (auto error = checkResolution(header.resolution_count())) return error;
+  // Bounds of 0 would make every sample lie in one place, or be flat whatever the payload says.
+  if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
+  if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return error;
+  return checkPlainFrame(frame, v1::LAYER_SURFACE, n * n * kSampleBytes);
+}
+
+std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
+  if (!frame.has_particles_fixed12()) {
+    return invalid("codec: not particles_fixed12, the only particle codec known here");
+  }
+  const v1::ParticlesFixed12& header = frame.particles_fixed12();
+  if (header.count() > kParticleMaxCount) {
+    return invalid("count: " + std::to_string(header.count()) + " is above " + std::to_string(kParticleMaxCount));
+  }
+  if (auto error = checkRange("min_x_m", header.min_x_m(), -kMaxMagnitude)) return error;
+  if (auto error = checkRange("min_y_m", header.min_y_m(), -kMaxMagnitude)) return error;
+  if (auto error = checkRange("min_z_m", header.min_z_m(), -kMaxMagnitude)) return error;
+  if (auto error = checkRange("max_x_m", header.max_x_m(), header.min_x_m())) return error;
+  if (auto error = checkRange("max_y_m", header.max_y_m(), header.min_y_m())) return error;
+  if (auto error = checkRange("max_z_m", header.max_z_m(), header.min_z_m())) return error;
+  if (auto error = checkRange("max_speed_mps", header.max_speed_mps(), 0.0)) return error;
+  if (auto error = checkRange("radius_m", header.radius_m(), 0.0)) return error;
+  return checkPlainFrame(frame, v1::LAYER_PARTICLES, header.count() * kParticleBytes);
+}
+
+std::optional<core::Error> checkFoam(const v1::LayerFrame& frame) {
+  if (!frame.has_foam_fixed8()) return invalid("codec: not foam_fixed8, the only foam codec known here");
+  const v1::FoamFixed8& header = frame.foam_fixed8();
+  const std::size_t n = header.resolution_count();
+  if (auto error = checkResolution(header.resolution_count())) return error;
+  if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
+  return checkPlainFrame(frame, v1::LAYER_FOAM, n * n);
+}
+
+std::optional<core::Error> checkBodies(const v1::LayerFrame& frame) {
+  if (!frame.has_bodies_fixed28()) return invalid("codec: not bodies_fixed28, the only codec of bodies known here");
+  const std::size_t count = frame.bodies_fixed28().count();
+  if (count > kBodyMaxCount) {
+    return invalid("count: " + std::to_string(count) + " is above " + std::to_string(kBodyMaxCount));
+  }
+  return checkPlainFrame(frame, v1::LAYER_BODIES, count * kBodyBytes);
+}
+
+}  // namespace
+
+core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes) {
+  if (bytes.size() > kServerMessageMaxBytes) {
+    return invalid("message of " + std::to_string(bytes.size()) + " bytes is above " +
+                   std::to_string(kServerMessageMaxBytes));
+  }
+  const google::protobuf::LogSilencer silencer;
+  v1::ServerMessage message;
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return invalid("not a spindrift.v1.ServerMessage: the bytes are damaged or cut short");
+  }
+  if (message.message_case() == v1::ServerMessage::MESSAGE_NOT_SET) {
+    return invalid("server message of a kind that this client does not know");
+  }
+  return message;
+}
+
+core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame) {
+  if (auto error = checkSurface(frame)) return *error;
+  const v1::SurfaceFixed16& header = frame.surface_fixed16();
+  SurfaceSamples out;
+  out.resolution_count = header.resolution_count();
+  out.side_m = header.side_m();
+  out.quantum_m = header.quantum_m();
+  const core::ByteView payload = viewOf(frame.payload());
+  out.elevation_m.resize(payload.size() / kSampleBytes);
+  for (std::size_t i = 0; i < out.elevation_m.size(); ++i) {
+    out.elevation_m[i] = static_cast<float>(load<std::int16_t>(payload.data() + i * kSampleBytes) * header.quantum_m());
+  }
+  return out;
+}
+
+core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame) {
+  if (auto error = checkParticles(frame)) return *error;
+  const v1::ParticlesFixed12& header = frame.particles_fixed12();
+  const std::size_t count = header.count();
+  ParticleSamples out;
+  out.count = header.count();
+  out.radius_m = header.radius_m();
+  out.position_m.resize(3 * count);
+  out.velocity_mps.resize(3 * count);
+  out.tint.resize(count);
+  out.foam.resize(count);
+  const auto position = [](std::uint16_t value, double min_m, double max_m) {
+    return static_cast<float>(min_m + value / 65535.0 * (max_m - min_m));
+  };
+  const auto velocity = [&](std::uint8_t byte) {
+    return static_cast<float>(static_cast<std::int8_t>(byte) / 127.0 * header.max_speed_mps());
+  };
+  const core::ByteView payload = viewOf(frame.payload());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* at = payload.data() + i * kParticleBytes;
+    out.position_m[3 * i + 0] = position(load<std::uint16_t>(at + 0), header.min_x_m(), header.max_x_m());
+    out.position_m[3 * i + 2] = position(load<std::uint16_t>(at + 2), header.min_z_m(), header.max_z_m());
+    out.position_m[3 * i + 1] = position(load<std::uint16_t>(at + 4), header.min_y_m(), header.max_y_m());
+    for (std::size_t axis = 0; axis < 3; ++axis) out.velocity_mps[3 * i + axis] = velocity(at[6 + axis]);
+    out.tint[i] = at[9];
+    out.foam[i] = at[10];
+  }
+  return out;
+}
+
+core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame) {
+  if (auto error = checkFoam(frame)) return *error;
+  FoamSamples out;
+  out.resolution_count = frame.foam_fixed8().resolution_count();
+  out.side_m = frame.foam_fixed8().side_m();
+  const core::ByteView payload = viewOf(frame.payload());
+  out.foam.assign(payload.begin(), payload.end());
+  return out;
+}
+
+core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame) {
+  if (auto error = checkBodies(frame)) return *error;
+  const core::ByteView payload = viewOf(frame.payload());
+  const auto angle = [](std::int16_t value) { return value / 32767.0 * std::numbers::pi; };
+  const auto ratio = [](std::uint8_t byte) { return std::max(static_cast<std::int8_t>(byte) / 127.0, -1.0); };
+  std::vector<BodySample> out;
+  for (std::size_t i = 0; i < frame.bodies_fixed28().count(); ++i) {
+    const std::uint8_t* at = payload.data() + i * kBodyBytes;
+    BodySample body;
+    body.boat_id = load<std::uint32_t>(at);
+    if (body.boat_id == 0) return invalid("boat_id: 0 is no boat; the frame is damaged");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      body.position_m[axis] = load<std::int32_t>(at + 4 + 4 * axis) / 1000.0;
+      if (auto error = checkRange("position_m", body.position_m[axis], -kMaxMagnitude)) return *error;
+    }
+    body.heading_rad = angle(load<std::int16_t>(at + 16));
+    body.pitch_rad = angle(load<std::int16_t>(at + 18));
+    body.roll_rad = angle(load<std::int16_t>(at + 20));
+    body.speed_mps = load<std::int16_t>(at + 22) / 100.0;
+    body.throttle_ratio = ratio(at[24]);
+    body.rudder_ratio = ratio(at[25]);
+    out.push_back(body);
+  }
+  return out;
+}
+
+}  // namespace spindrift::codec

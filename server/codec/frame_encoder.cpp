@@ -1,0 +1,130 @@
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include <spindrift/codec/frame_encoder.h>
+
+#include "frame_message.h"
+#include "layer_codec.h"
+
+namespace spindrift::codec {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "packed words are sent as they lie in memory");
+
+/// A keyframe with the words as its payload.
+EncodedFrame plain(const core::FrameView& frame, v1::Layer layer, const v1::LayerFrame& codec,
+                   std::span<const std::uint32_t> words) {
+  const auto* payload = reinterpret_cast<const std::uint8_t*>(words.data());
+  return {.keyframe = serializeFrame(frame, layer, std::nullopt, codec, {payload, words.size_bytes()}),
+          .delta = nullptr};
+}
+
+class SurfaceFixed16Codec final : public LayerCodec {
+ public:
+  EncodedFrame encode(const core::FrameView& frame, bool) override {
+    if (!frame.surface) return {};
+    const core::SurfaceView& surface = *frame.surface;
+    assert(surface.words.size() * 2 == std::size_t{surface.resolution_count} * surface.resolution_count);
+    v1::LayerFrame codec;
+    v1::SurfaceFixed16& header = *codec.mutable_surface_fixed16();
+    header.set_resolution_count(surface.resolution_count);
+    header.set_side_m(surface.side_m);
+    header.set_quantum_m(surface.quantum_m);
+    return plain(frame, v1::LAYER_SURFACE, codec, surface.words);
+  }
+};
+
+class ParticlesFixed12Codec final : public LayerCodec {
+ public:
+  EncodedFrame encode(const core::FrameView& frame, bool) override {
+    if (!frame.particles) return {};
+    const core::ParticleView& particles = *frame.particles;
+    assert(particles.words.size() == std::size_t{3} * particles.count);
+    v1::LayerFrame codec;
+    v1::ParticlesFixed12& header = *codec.mutable_particles_fixed12();
+    header.set_count(particles.count);
+    header.set_min_x_m(particles.min_m[0]);
+    header.set_min_y_m(particles.min_m[1]);
+    header.set_min_z_m(particles.min_m[2]);
+    header.set_max_x_m(particles.max_m[0]);
+    header.set_max_y_m(particles.max_m[1]);
+    header.set_max_z_m(particles.max_m[2]);
+    header.set_max_speed_mps(particles.max_speed_mps);
+    header.set_radius_m(particles.radius_m);
+    return plain(frame, v1::LAYER_PARTICLES, codec, particles.words);
+  }
+};
+
+class FoamFixed8Codec final : public LayerCodec {
+ public:
+  EncodedFrame encode(const core::FrameView& frame, bool) override {
+    if (!frame.foam) return {};
+    const core::FoamView& foam = *frame.foam;
+    assert(foam.words.size() * 4 == std::size_t{foam.resolution_count} * foam.resolution_count);
+    v1::LayerFrame codec;
+    codec.mutable_foam_fixed8()->set_resolution_count(foam.resolution_count);
+    codec.mutable_foam_fixed8()->set_side_m(foam.side_m);
+    return plain(frame, v1::LAYER_FOAM, codec, foam.words);
+  }
+};
+
+class BodiesFixed28Codec final : public LayerCodec {
+ public:
+  EncodedFrame encode(const core::FrameView& frame, bool) override {
+    if (!frame.bodies) return {};
+    assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
+    v1::LayerFrame codec;
+    codec.mutable_bodies_fixed28()->set_count(frame.bodies->count);
+    return plain(frame, v1::LAYER_BODIES, codec, frame.bodies->words);
+  }
+};
+
+class DiagnosticsCodec final : public LayerCodec {
+ public:
+  EncodedFrame encode(const core::FrameView& frame, bool) override { return {serializeDiagnostics(frame), nullptr}; }
+};
+
+/// Null for a stream that there is not.
+std::unique_ptr<LayerCodec> makeCodec(Stream stream) {
+  const bool is_packed = stream.packing == v1::PACKING_PACKED;
+  switch (stream.layer) {
+    case v1::LAYER_SURFACE:
+      return is_packed ? makeSurfacePredictedCodec() : std::make_unique<SurfaceFixed16Codec>();
+    case v1::LAYER_PARTICLES:
+      return is_packed ? makeParticlesByCellCodec() : std::make_unique<ParticlesFixed12Codec>();
+    case v1::LAYER_FOAM:
+      return is_packed ? makeFoamPredictedCodec() : std::make_unique<FoamFixed8Codec>();
+    case v1::LAYER_BODIES:
+      return is_packed ? nullptr : std::make_unique<BodiesFixed28Codec>();
+    case v1::LAYER_DIAGNOSTICS:
+      return is_packed ? nullptr : std::make_unique<DiagnosticsCodec>();
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace
+
+FrameEncoder::FrameEncoder() = default;
+FrameEncoder::~FrameEncoder() = default;
+
+EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, bool wants_keyframe) {
+  Slot& slot = slots_.at(indexOf(stream));
+  std::unique_ptr<LayerCodec>& codec = slot.codecs[core::indexOf(frame.level)];
+  if (!codec) codec = makeCodec(stream);
+  if (!codec) return {};
+  EncodedFrame encoded = codec->encode(frame, wants_keyframe);
+  if (encoded.keyframe || encoded.delta) slot.encode_count.fetch_add(1, std::memory_order_relaxed);
+  return encoded;
+}
+
+std::uint64_t FrameEncoder::encodeCount(Stream stream) const {
+  return slots_.at(indexOf(stream)).encode_count.load(std::memory_order_relaxed);
+}
+
+}  // namespace spindrift::codec

@@ -1,0 +1,106 @@
+// The client's side in C++: bytes from a server to samples, every bound checked. For the scripted client and tests.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <spindrift/core/bytes.h>
+#include <spindrift/core/result.h>
+#include <spindrift/v1/wire.pb.h>
+
+namespace spindrift::codec {
+
+/// Bounds on what a server may send.
+inline constexpr std::uint32_t kSurfaceMaxResolutionCount = 4096;
+inline constexpr std::uint32_t kParticleMaxCount = 4 * 1024 * 1024;
+inline constexpr std::uint32_t kBodyMaxCount = 1024;
+inline constexpr std::size_t kServerMessageMaxBytes = 64 * 1024 * 1024;
+
+/// Elevations on a square grid, row by row (x fastest); sample (i, k) lies at x = (i + 1/2) side_m / n - side_m / 2,
+/// z likewise with k, n = resolution_count.
+struct SurfaceSamples {
+  std::uint32_t resolution_count = 0;
+  double side_m = 0.0;
+  double quantum_m = 0.0;
+  std::vector<float> elevation_m;  ///< n * n values
+};
+
+/// Particles in the order of the wire.
+struct ParticleSamples {
+  std::uint32_t count = 0;
+  double radius_m = 0.0;
+  std::vector<float> position_m;    ///< x, y, z a particle: 3 * count values
+  std::vector<float> velocity_mps;  ///< x, y, z a particle: 3 * count values
+  std::vector<std::uint8_t> tint;   ///< density over rest density from 0.5 (0) to 1.1 (255): count values
+  std::vector<std::uint8_t> foam;   ///< none (0) to white (255): count values
+};
+
+/// White water on the surface; samples lie as the surface's do.
+struct FoamSamples {
+  std::uint32_t resolution_count = 0;
+  double side_m = 0.0;
+  std::vector<std::uint8_t> foam;  ///< none (0) to white (255): n * n values
+};
+
+/// One boat as it floats. Heading turns from +x toward +z, pitch lifts the bow, roll lowers starboard.
+struct BodySample {
+  std::uint32_t boat_id = 0;
+  double position_m[3] = {0, 0, 0};  ///< of the hull's centre
+  double heading_rad = 0.0;          ///< angles within about +-pi
+  double pitch_rad = 0.0;
+  double roll_rad = 0.0;
+  double speed_mps = 0.0;  ///< along the heading
+  double throttle_ratio = 0.0;
+  double rudder_ratio = 0.0;
+};
+
+/// Parses one server message. Error kInvalidInput: over kServerMessageMaxBytes, unparseable, or a kind unknown here.
+core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes);
+
+/// Decodes a frame of the surface layer. Error kInvalidInput names what is wrong: another layer or codec, a resolution
+/// of 0 or over kSurfaceMaxResolutionCount, payload length, checksum, numbers not finite or out of bounds.
+core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame);
+
+/// Keeps what the next packed frame of a plane builds on: the last two. One instance a subscription.
+class PackedPlaneDecoder {
+ public:
+  PackedPlaneDecoder(const PackedPlaneDecoder&) = delete;
+  PackedPlaneDecoder& operator=(const PackedPlaneDecoder&) = delete;
+
+ protected:
+  PackedPlaneDecoder();
+  ~PackedPlaneDecoder();
+
+  struct History;
+  std::unique_ptr<History> history_;
+};
+
+/// Reads the packed surface. Errors as decodeSurface()'s; kUnavailable: the frame builds on one that is not here. After
+/// an error only a keyframe helps: subscribe again.
+class PackedSurfaceDecoder : public PackedPlaneDecoder {
+ public:
+  core::Result<SurfaceSamples> decode(const v1::LayerFrame& frame);
+};
+
+/// Reads the packed foam; errors likewise.
+class PackedFoamDecoder : public PackedPlaneDecoder {
+ public:
+  core::Result<FoamSamples> decode(const v1::LayerFrame& frame);
+};
+
+/// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is fine).
+core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame);
+
+/// Decodes a packed frame of the particle layer; errors likewise. Tint and foam come in fewer steps than plain ones.
+core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame);
+
+/// Decodes a frame of the foam layer; errors as for the surface.
+core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame);
+
+/// Decodes a frame of the bodies layer; errors likewise, count at most kBodyMaxCount (0 is fine), ids above 0,
+/// positions within 10^6 m.
+core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame);
+
+}  // namespace spindrift::codec

@@ -1,0 +1,27 @@
+// How one layer becomes bytes, in one packing and at one level. A new codec is a new implementation in FrameEncoder's
+// list; nothing else changes.
+#pragma once
+
+#include <memory>
+
+#include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/frame_view.h>
+
+namespace spindrift::codec {
+
+/// Owned and called by one thread; may keep state between frames.
+class LayerCodec {
+ public:
+  virtual ~LayerCodec() = default;
+  /// Keeps nothing of the frame's memory. Without `wants_keyframe` the keyframe is left out where there is a delta.
+  virtual EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) = 0;
+};
+
+/// SurfacePredicted.
+std::unique_ptr<LayerCodec> makeSurfacePredictedCodec();
+/// FoamPredicted.
+std::unique_ptr<LayerCodec> makeFoamPredictedCodec();
+/// ParticlesByCell.
+std::unique_ptr<LayerCodec> makeParticlesByCellCodec();
+
+}  // namespace spindrift::codec

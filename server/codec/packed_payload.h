@@ -1,0 +1,49 @@
+// Memory for the readers of decode/, which have none of their own.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <spindrift/core/bytes.h>
+
+#include "decode/bit_source.h"
+#include "decode/plane_reader.h"
+
+namespace spindrift::codec {
+
+/// A payload with the zeros behind it that its readers want. Longer than they take: empty, which they refuse.
+class PackedPayload {
+ public:
+  explicit PackedPayload(core::ByteView payload)
+      : size_(payload.size() <= BitSource::kMaxBytes ? static_cast<std::uint32_t>(payload.size()) : 0),
+        bytes_(size_ + BitSource::kSlackBytes) {
+    std::copy_n(payload.data(), size_, bytes_.data());
+  }
+  [[nodiscard]] const std::uint8_t* data() const { return bytes_.data(); }
+  [[nodiscard]] std::uint32_t size() const { return size_; }
+
+ private:
+  std::uint32_t size_;
+  core::Bytes bytes_;
+};
+
+/// A row of planes and what it lies in.
+class PlaneMemory {
+ public:
+  /// Another size forgets the row. 1 <= resolution_count <= PlaneRow::kMaxResolutionCount.
+  void resize(std::size_t resolution_count) {
+    if (resolution_count == row_.resolution()) return;
+    blocks_.resize(PlaneRow::bytesFor(resolution_count) / sizeof(Block));
+    row_.place(blocks_.data()->bytes, resolution_count);
+  }
+  [[nodiscard]] PlaneRow& row() { return row_; }
+
+ private:
+  struct alignas(PlaneRow::kAlignment) Block {
+    std::uint8_t bytes[PlaneRow::kAlignment];
+  };
+  std::vector<Block> blocks_;
+  PlaneRow row_;
+};
+
+}  // namespace spindrift::codec

@@ -1,0 +1,206 @@
+// The packed forms of the layers that are planes, both ways: SurfacePredicted and FoamPredicted in wire.proto.
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/codec/frame_encoder.h>
+
+#include "encode/plane_chain.h"
+#include "frame_checks.h"
+#include "frame_message.h"
+#include "layer_codec.h"
+#include "packed_payload.h"
+
+namespace spindrift::codec {
+namespace {
+
+/// Writes the forms of a plane as messages; `headerOf` gives a LayerFrame with the codec's member and no weights.
+class PlaneMessages {
+ public:
+  template <typename Header>
+  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, bool wants_keyframe, Header header_of) {
+    const PlaneChainEncoder::Forms forms = chain_.encode(wants_keyframe);
+    const auto message = [&](const std::optional<PlaneChainEncoder::Form>& form,
+                             std::optional<std::uint64_t> base_tick) -> core::SharedBytes {
+      if (!form) return nullptr;
+      v1::LayerFrame codec;
+      auto& header = header_of(codec);
+      header.mutable_weights()->Add(form->weights.of.begin(), form->weights.of.end());
+      if (!base_tick)
+        header.mutable_earlier_weights()->Add(form->earlier_weights.of.begin(), form->earlier_weights.of.end());
+      return serializeFrame(frame, layer, base_tick, codec, form->payload);
+    };
+    EncodedFrame out{.keyframe = message(forms.keyframe, std::nullopt), .delta = message(forms.delta, tick_)};
+    tick_ = frame.tick;
+    return out;
+  }
+  void restart() { chain_.restart(); }
+  /// The plane that encode() is about.
+  SurfacePlane& plane() { return chain_.next(); }
+
+ private:
+  PlaneChainEncoder chain_;
+  std::uint64_t tick_ = 0;  ///< of the plane encoded last
+};
+
+class SurfacePredictedCodec final : public LayerCodec {
+ public:
+  EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) override {
+    if (!frame.surface) return {};
+    const core::SurfaceView& surface = *frame.surface;
+    if (side_m_ != surface.side_m || quantum_m_ != surface.quantum_m) messages_.restart();
+    side_m_ = surface.side_m;
+    quantum_m_ = surface.quantum_m;
+    messages_.plane().resize(surface.resolution_count);
+    messages_.plane().assign(
+        std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), 2 * surface.words.size()));
+    return messages_.encode(frame, v1::LAYER_SURFACE, wants_keyframe,
+                            [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
+                              v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
+                              header.set_resolution_count(surface.resolution_count);
+                              header.set_side_m(surface.side_m);
+                              header.set_quantum_m(surface.quantum_m);
+                              return header;
+                            });
+  }
+
+ private:
+  PlaneMessages messages_;
+  double side_m_ = 0.0;
+  double quantum_m_ = 0.0;
+};
+
+class FoamPredictedCodec final : public LayerCodec {
+ public:
+  EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) override {
+    if (!frame.foam) return {};
+    const core::FoamView& foam = *frame.foam;
+    if (side_m_ != foam.side_m) messages_.restart();
+    side_m_ = foam.side_m;
+    messages_.plane().resize(foam.resolution_count);
+    messages_.plane().assign(
+        std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.words.size_bytes()));
+    return messages_.encode(frame, v1::LAYER_FOAM, wants_keyframe, [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
+      v1::FoamPredicted& header = *codec.mutable_foam_predicted();
+      header.set_resolution_count(foam.resolution_count);
+      header.set_side_m(foam.side_m);
+      return header;
+    });
+  }
+
+ private:
+  PlaneMessages messages_;
+  double side_m_ = 0.0;
+};
+
+/// False: not as many as there have to be.
+template <typename Field>
+bool takeWeights(const Field& field, SurfaceWeights& weights) {
+  if (field.size() != static_cast<int>(weights.of.size())) return false;
+  std::ranges::copy(field, weights.of.begin());
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<LayerCodec> makeSurfacePredictedCodec() {
+  return std::make_unique<SurfacePredictedCodec>();
+}
+std::unique_ptr<LayerCodec> makeFoamPredictedCodec() {
+  return std::make_unique<FoamPredictedCodec>();
+}
+
+/// The row of planes that a client has read, and of what it is.
+struct PackedPlaneDecoder::History {
+  PlaneMemory memory;
+  double side_m = 0.0;
+  double quantum_m = 0.0;
+  std::uint64_t tick = 0;
+
+  /// Reads a frame's plane; `memory` holds it afterwards, and nothing after an error.
+  template <typename Header>
+  std::optional<core::Error> read(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
+                                  double header_quantum_m) {
+    const auto error = check(frame, layer, header, header_quantum_m);
+    if (error) memory.row().forget();
+    side_m = header.side_m();
+    quantum_m = header_quantum_m;
+    tick = frame.tick();
+    return error;
+  }
+
+ private:
+  template <typename Header>
+  std::optional<core::Error> check(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
+                                   double header_quantum_m) {
+    if (auto error = checkResolution(header.resolution_count())) return error;
+    if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
+    if (auto error = checkRange("quantum_m", header_quantum_m, 1e-9)) return error;
+    if (auto error = checkFrame(frame, layer)) return error;
+    SurfaceWeights weights, earlier_weights;
+    if (!takeWeights(header.weights(), weights))
+      return invalid("weights: " + std::to_string(header.weights_size()) + ", there have to be 10");
+    const PackedPayload payload(viewOf(frame.payload()));
+    PlaneRow& row = memory.row();
+    bool is_read = false;
+    if (frame.keyframe()) {
+      if (!takeWeights(header.earlier_weights(), earlier_weights))
+        return invalid("earlier_weights: " + std::to_string(header.earlier_weights_size()) + ", there have to be 10");
+      memory.resize(header.resolution_count());
+      is_read = row.readKeyframe(payload.data(), payload.size(), weights, earlier_weights);
+    } else {
+      if (!row.hasRow() || row.resolution() != header.resolution_count() || frame.base_tick() != tick ||
+          header.side_m() != side_m || header_quantum_m != quantum_m) {
+        return core::Error{core::ErrorCode::kUnavailable, "base_tick: the frame builds on tick " +
+                                                              std::to_string(frame.base_tick()) +
+                                                              ", which is not here: subscribe again for a keyframe"};
+      }
+      is_read = row.readDelta(payload.data(), payload.size(), weights);
+    }
+    if (!is_read) return invalid("payload: its end does not fit its beginning; the frame is damaged");
+    return std::nullopt;
+  }
+};
+
+PackedPlaneDecoder::PackedPlaneDecoder() : history_(std::make_unique<History>()) {}
+PackedPlaneDecoder::~PackedPlaneDecoder() = default;
+
+core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& frame) {
+  if (!frame.has_surface_predicted()) return invalid("codec: not surface_predicted");
+  const v1::SurfacePredicted& header = frame.surface_predicted();
+  if (auto error = history_->read(frame, v1::LAYER_SURFACE, header, header.quantum_m())) return *error;
+  SurfaceSamples out;
+  out.resolution_count = header.resolution_count();
+  out.side_m = header.side_m();
+  out.quantum_m = header.quantum_m();
+  const PlaneRow& plane = history_->memory.row();
+  const std::size_t n = plane.resolution();
+  const double quantum_m = header.quantum_m();
+  out.elevation_m.resize(n * n);
+  for (std::size_t z = 0; z < n; ++z) {
+    std::transform(plane.row(z), plane.row(z) + n, out.elevation_m.begin() + static_cast<std::ptrdiff_t>(z * n),
+                   [quantum_m](std::int16_t sample) { return static_cast<float>(sample * quantum_m); });
+  }
+  return out;
+}
+
+core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame) {
+  if (!frame.has_foam_predicted()) return invalid("codec: not foam_predicted");
+  const v1::FoamPredicted& header = frame.foam_predicted();
+  constexpr double kQuantum = 1.0;
+  if (auto error = history_->read(frame, v1::LAYER_FOAM, header, kQuantum)) return *error;
+  FoamSamples out;
+  out.resolution_count = header.resolution_count();
+  out.side_m = header.side_m();
+  const PlaneRow& plane = history_->memory.row();
+  const std::size_t n = plane.resolution();
+  out.foam.resize(n * n);
+  for (std::size_t z = 0; z < n; ++z) {
+    std::transform(plane.row(z), plane.row(z) + n, out.foam.begin() + static_cast<std::ptrdiff_t>(z * n),
+                   [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); });
+  }
+  return out;
+}
+
+}  // namespace spindrift::codec

@@ -1,0 +1,51 @@
+#include <algorithm>
+#include <array>
+
+#include <spindrift/codec/stream.h>
+
+namespace spindrift::codec {
+namespace {
+
+/// By core::Level.
+constexpr std::array<v1::Level, core::kLevelCount> kWireLevels{v1::LEVEL_COARSE, v1::LEVEL_MEDIUM, v1::LEVEL_FINE,
+                                                               v1::LEVEL_FULL};
+
+}  // namespace
+
+Stream streamOf(v1::Layer layer, v1::Packing packing) {
+  return {layer, hasLevels(layer) ? packing : v1::PACKING_PLAIN};  // the same layers have a packed form
+}
+
+std::span<const Stream> allStreams() {
+  static constexpr std::array kStreams = {Stream{v1::LAYER_SURFACE},   Stream{v1::LAYER_SURFACE, v1::PACKING_PACKED},
+                                          Stream{v1::LAYER_PARTICLES}, Stream{v1::LAYER_PARTICLES, v1::PACKING_PACKED},
+                                          Stream{v1::LAYER_FOAM},      Stream{v1::LAYER_FOAM, v1::PACKING_PACKED},
+                                          Stream{v1::LAYER_BODIES},    Stream{v1::LAYER_DIAGNOSTICS}};
+  return kStreams;
+}
+
+bool hasLevels(v1::Layer layer) {
+  return layer == v1::LAYER_SURFACE || layer == v1::LAYER_PARTICLES || layer == v1::LAYER_FOAM;
+}
+
+std::string nameOf(core::Level level) {
+  static constexpr std::array<const char*, core::kLevelCount> kNames{"coarse", "medium", "fine", "full"};
+  return kNames[core::indexOf(level)];
+}
+
+std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts) {
+  if (layer == v1::LAYER_PARTICLES) return counts.particles;
+  return hasLevels(layer) ? counts.planes : 0;
+}
+
+v1::Level toWire(core::Level level) {
+  return kWireLevels[core::indexOf(level)];
+}
+
+std::optional<core::Level> fromWire(v1::Level level) {
+  const auto at = std::ranges::find(kWireLevels, level);
+  if (at == kWireLevels.end()) return std::nullopt;
+  return static_cast<core::Level>(at - kWireLevels.begin());
+}
+
+}  // namespace spindrift::codec

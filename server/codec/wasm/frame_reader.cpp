@@ -1,0 +1,119 @@
+// The readers of decode/ as a WebAssembly module for the page's worker. An instance reads one layer: its memory holds,
+// behind the module's own, what that layer needs and nothing else. Every function takes and gives plain numbers; places
+// in memory hold until the next call that prepares.
+#include <algorithm>
+
+#include "decode/checksum.h"
+#include "decode/particle_reader.h"
+#include "decode/plane_reader.h"
+
+#define SPINDRIFT_EXPORT(name) extern "C" __attribute__((export_name(#name)))
+
+/// Where the module's own memory ends; from the linker.
+extern "C" std::uint8_t __heap_base;
+
+namespace spindrift::codec {
+namespace {
+
+constexpr std::size_t kPageBytes = 64 * 1024;
+constexpr std::size_t kAlignment = PlaneRow::kAlignment;
+
+std::uint8_t* payload;
+std::uint32_t payload_bytes;
+std::uint8_t* words;
+PlaneRow row;
+SurfaceWeights weights, earlier_weights;
+std::uint8_t* plain_samples;
+
+std::size_t aligned(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+std::uint8_t* heapBegin() {
+  return reinterpret_cast<std::uint8_t*>(aligned(reinterpret_cast<std::size_t>(&__heap_base)));
+}
+
+/// `before_bytes` for the layer and room for a payload behind them. Null: the payload is too long, or there is no more
+/// memory.
+std::uint8_t* makeRoom(std::size_t before_bytes, std::uint32_t byte_count) {
+  if (byte_count > BitSource::kMaxBytes) return nullptr;
+  payload = heapBegin() + aligned(before_bytes);
+  payload_bytes = byte_count;
+  const std::size_t end = reinterpret_cast<std::size_t>(payload) + byte_count + BitSource::kSlackBytes;
+  const std::size_t pages = (end + kPageBytes - 1) / kPageBytes, has_pages = __builtin_wasm_memory_size(0);
+  if (pages > has_pages && __builtin_wasm_memory_grow(0, pages - has_pages) == static_cast<std::size_t>(-1))
+    return nullptr;
+  std::fill_n(payload + byte_count, BitSource::kSlackBytes, std::uint8_t{0});
+  return payload;
+}
+
+}  // namespace
+}  // namespace spindrift::codec
+
+using namespace spindrift::codec;
+
+/// Room for the payload of so many particles. 0: there is none.
+SPINDRIFT_EXPORT(prepareParticles) std::uint8_t* prepareParticles(std::uint32_t count, std::uint32_t byte_count) {
+  words = heapBegin();
+  if (count > kParticleReadMaxCount) return nullptr;
+  return makeRoom(count * kParticleWordBytes + kParticleSlackBytes, byte_count);
+}
+/// Where kParticleWordBytes a particle lie. 0: the payload is damaged.
+SPINDRIFT_EXPORT(readParticles)
+std::uint8_t* readPreparedParticles(std::uint32_t count, std::uint32_t cells_x, std::uint32_t cells_y,
+                                    std::uint32_t cells_z, std::uint32_t offset_bits) {
+  return readParticles(payload, payload_bytes, {count, {cells_x, cells_y, cells_z}, offset_bits}, words) ? words
+                                                                                                         : nullptr;
+}
+
+/// Room for the payload of a plane of so many samples a side. 0: there is none. Another size forgets the row.
+SPINDRIFT_EXPORT(preparePlane) std::uint8_t* preparePlane(std::uint32_t n, std::uint32_t byte_count) {
+  if (n < 1 || n > PlaneRow::kMaxResolutionCount) return nullptr;
+  const std::size_t row_bytes = aligned(PlaneRow::bytesFor(n));
+  std::uint8_t* const room = makeRoom(row_bytes + n * n * sizeof(std::int16_t), byte_count);
+  if (room == nullptr) {
+    row.forget();
+  } else if (n != row.resolution()) {
+    row.place(heapBegin(), n);
+    plain_samples = heapBegin() + row_bytes;
+  }
+  return room;
+}
+/// Where ten weights go, then ten of the earlier plane.
+SPINDRIFT_EXPORT(weights) std::int32_t* weightsRoom() {
+  return weights.of.data();
+}
+SPINDRIFT_EXPORT(earlierWeights) std::int32_t* earlierWeightsRoom() {
+  return earlier_weights.of.data();
+}
+/// A plane that stands by itself, or one that continues the row. 0: the payload is damaged or there is no row.
+SPINDRIFT_EXPORT(readKeyframePlane) bool readKeyframePlane() {
+  return row.readKeyframe(payload, payload_bytes, weights, earlier_weights);
+}
+SPINDRIFT_EXPORT(readDeltaPlane) bool readDeltaPlane() {
+  return row.readDelta(payload, payload_bytes, weights);
+}
+/// The n x n samples of the plane read last, row by row: 16 bits each.
+SPINDRIFT_EXPORT(surfaceSamples) std::int16_t* surfaceSamples() {
+  auto* const out = reinterpret_cast<std::int16_t*>(plain_samples);
+  const std::size_t n = row.resolution();
+  for (std::size_t z = 0; z < n; ++z) std::copy_n(row.row(z), n, out + z * n);
+  return out;
+}
+/// The same as bytes, 0 to 255.
+SPINDRIFT_EXPORT(foamSamples) std::uint8_t* foamSamples() {
+  const std::size_t n = row.resolution();
+  for (std::size_t z = 0; z < n; ++z) {
+    std::transform(row.row(z), row.row(z) + n, plain_samples + z * n,
+                   [](std::int16_t s) { return static_cast<std::uint8_t>(std::clamp<std::int16_t>(s, 0, 255)); });
+  }
+  return plain_samples;
+}
+
+/// Room for any payload whose checksum is wanted. 0: there is none.
+SPINDRIFT_EXPORT(prepareChecksum) std::uint8_t* prepareChecksum(std::uint32_t byte_count) {
+  return makeRoom(0, byte_count);
+}
+SPINDRIFT_EXPORT(checksum) std::uint32_t checksum() {
+  return crc32cByTables(payload, payload_bytes);
+}

@@ -1,0 +1,13 @@
+// One visitor out of several lambdas, for std::visit.
+#pragma once
+
+namespace spindrift::core {
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+}  // namespace spindrift::core

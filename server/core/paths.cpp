@@ -1,0 +1,55 @@
+#include <system_error>
+#include <vector>
+
+#include <spindrift/core/paths.h>
+
+namespace spindrift::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first of `candidates`, relative to a folder above the program, that is a directory.
+fs::path findAboveProgram(const std::vector<fs::path>& candidates) {
+  std::error_code error;
+  fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (int level = 0; level < 5 && !folder.empty(); ++level, folder = folder.parent_path()) {
+    for (const fs::path& candidate : candidates) {
+      if (fs::is_directory(folder / candidate, error)) return folder / candidate;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+fs::path findSceneFolder() {
+  return findAboveProgram({"share/spindrift/scenes", "server/scenes"});
+}
+
+fs::path findWebRoot() {
+  return findAboveProgram({"share/spindrift/web", "web-client/dist"});
+}
+
+core::Result<fs::path> findScene(const std::string& given) {
+  std::error_code error;
+  const fs::path folder = findSceneFolder();
+  const bool is_name = given.find('/') == std::string::npos && !given.empty();
+  // A name means the shipped scene, also where a file without an ending happens to be called so: ./NAME is that file.
+  if (is_name && !folder.empty()) {
+    if (const fs::path shipped = folder / (given + ".textproto"); fs::exists(shipped, error)) return shipped;
+  }
+  if (fs::exists(given, error)) return fs::path(given);
+  if (is_name && !folder.empty()) {
+    std::string names;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (entry.path().extension() == ".textproto") names += (names.empty() ? "" : ", ") + entry.path().stem().string();
+    }
+    return core::Error{core::ErrorCode::kUnavailable,
+                       "scene '" + given + "': neither a file nor a shipped scene; shipped are: " + names};
+  }
+  return core::Error{
+      core::ErrorCode::kUnavailable,
+      "scene '" + given + "': no such file: give the path of a .textproto file or the name of a shipped scene"};
+}
+
+}  // namespace spindrift::core

@@ -1,0 +1,112 @@
+#include <chrono>
+#include <utility>
+
+#include <spindrift/rooms/encoder_thread.h>
+
+namespace spindrift::rooms {
+
+EncoderThread::EncoderThread(FrameOutlet& outlet) : outlet_(outlet), thread_([this] { loop(); }) {}
+
+EncoderThread::~EncoderThread() {
+  stop();
+}
+
+void EncoderThread::submit(const std::string& room, core::FrameView frame) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) return;
+    auto [it, is_new] = waiting_.try_emplace(room);
+    if (!is_new) {
+      ++replaced_count_;
+      // Diagnostics are news, not a picture: they survive a newer frame without any.
+      if (!frame.diagnostics) frame.diagnostics = std::move(it->second.diagnostics);
+    }
+    it->second = std::move(frame);
+  }
+  wake_.notify_one();
+}
+
+void EncoderThread::forget(const std::string& room) {
+  const std::lock_guard lock(mutex_);
+  waiting_.erase(room);
+  encoders_.erase(room);
+}
+
+EncoderThread::Costs EncoderThread::costs() const {
+  const std::lock_guard lock(mutex_);
+  return costs_;
+}
+
+void EncoderThread::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  waiting_.clear();  // frames are read from their device's memory, which goes next
+}
+
+std::uint64_t EncoderThread::replacedCount() const {
+  const std::lock_guard lock(mutex_);
+  return replaced_count_;
+}
+
+std::uint64_t EncoderThread::encodeCount(const std::string& room, codec::Stream stream) const {
+  const std::lock_guard lock(mutex_);
+  const auto it = encoders_.find(room);
+  return it == encoders_.end() ? 0 : it->second->encodeCount(stream);
+}
+
+void EncoderThread::loop() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });
+    if (stopping_) return;
+    auto node = waiting_.extract(waiting_.begin());
+    auto& kept = encoders_[node.key()];
+    if (!kept) kept = std::make_shared<codec::FrameEncoder>();
+    const auto encoder = kept;  // the room may be forgotten meanwhile
+    lock.unlock();
+    const Costs spent = encode(node.key(), node.mapped(), *encoder);
+    node.mapped() = {};  // frees the readback slot
+    lock.lock();
+    for (std::size_t k = 0; k < costs_.size(); ++k) {
+      for (std::size_t level = 0; level < core::kLevelCount; ++level) {
+        costs_[k][level].frame_count += spent[k][level].frame_count;
+        costs_[k][level].bytes_count += spent[k][level].bytes_count;
+        costs_[k][level].encode_s += spent[k][level].encode_s;
+      }
+    }
+  }
+}
+
+EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
+                                           codec::FrameEncoder& encoder) {
+  Costs spent{};
+  std::array<core::FrameView, core::kReducedLevelCount> reduced;
+  for (std::size_t k = 0; k < reduced.size(); ++k) reduced[k] = core::frameAt(frame, core::kLevels[k]);
+  for (const codec::Stream stream : codec::allStreams()) {
+    const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
+    const core::LayerDemand demand = outlet_.demand(room, stream, reduced_count);
+    for (const core::Level level : core::kLevels) {
+      const core::FrameView& view = level == core::Level::kFull ? frame : reduced[core::indexOf(level)];
+      const core::LevelDemand& wanted = demand[core::indexOf(level)];
+      if (wanted.watcher_count == 0) continue;
+      const auto begin = std::chrono::steady_clock::now();
+      const codec::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_keyframe);
+      StreamCost& cost = spent[codec::indexOf(stream)][core::indexOf(level)];
+      cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (!encoded.keyframe && !encoded.delta) continue;
+      cost.frame_count = 1;
+      for (const core::SharedBytes& form : {encoded.keyframe, encoded.delta}) {
+        if (form) cost.bytes_count += form->size();
+      }
+      outlet_.publish(room, stream, encoded, level, reduced_count);
+    }
+  }
+  return spent;
+}
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,39 @@
+// A thread that carries out pieces of work beside the simulation, one at a time.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace spindrift::rooms {
+
+/// In order of arrival. What waits is bounded by the callers.
+class Worker {
+ public:
+  /// `niceness`: 0 as everybody else, up to 19 for work that gives way. `done` is called on the worker's thread after
+  /// each piece of work.
+  explicit Worker(int niceness, std::function<void()> done = {});
+  /// Ends the thread after the work at hand; each piece that waits is called with runs = false.
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  using Work = std::function<void(bool runs)>;
+  /// Any thread.
+  void push(Work work);
+
+ private:
+  void loop();
+
+  const int niceness_;
+  const std::function<void()> done_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Work> work_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,93 @@
+#include <variant>
+
+#include <fmt/format.h>
+
+#include <spindrift/rooms/replay.h>
+#include <spindrift/rooms/stage.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/client_message.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+core::Result<void> carryOut(Stage& stage, const v1::Record& record) {
+  const auto failed = [&](const std::string& why) {
+    return Error{ErrorCode::kCheckFailed,
+                 fmt::format("tick {}: a command of the log is not carried out now: {}", record.tick(), why)};
+  };
+  const auto checked = wire::checkCommand(record.command());
+  if (const auto* rejected = std::get_if<wire::CommandRejection>(&checked)) {
+    return failed(rejected->field + " " + rejected->message);
+  }
+  const auto& command = std::get<core::Command>(checked);
+  if (!Stage::takes(command.action)) return failed("it is of a kind that no log holds");
+  if (auto rejected = stage.apply(command.action)) return failed(rejected->field + " " + rejected->message);
+  return {};
+}
+
+}  // namespace
+
+core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLogReader& log,
+                                      const std::function<void(std::uint64_t)>& progress) {
+  constexpr std::uint64_t kProgressInterval_ticks = 60;
+  v1::Scene start = log.header().scene();
+  scene::fillDefaults(start);
+  auto water = Water::create(device, std::move(start));
+  if (!water) return water.error();
+  Stage stage(*std::move(water));
+
+  ReplayOutcome out;
+  out.device_difference = deviceDifference(log.header(), stage.device());
+  std::uint64_t last_equal_tick = 0;
+  while (const auto record = log.next()) {
+    while (stage.tick() < record->tick() && !record->has_scene()) {
+      stage.step();
+      if (const auto& error = stage.water().deviceError()) return *error;
+      if (progress && stage.tick() % kProgressInterval_ticks == 0) progress(stage.tick());
+    }
+    out.tick_count = record->tick();
+    switch (record->what_case()) {
+      case v1::Record::kCommand:
+        if (auto done = carryOut(stage, *record); !done) return done.error();
+        ++out.command_count;
+        break;
+      case v1::Record::kScene: {
+        // Written after the change, which takes one tick.
+        while (stage.tick() + 1 < record->tick()) {
+          stage.step();
+          if (const auto& error = stage.water().deviceError()) return *error;
+        }
+        v1::Scene scene = record->scene();
+        scene::fillDefaults(scene);
+        auto next = Water::create(device, std::move(scene));
+        if (!next) return next.error();
+        stage.replaceWater(*std::move(next)).reset();
+        stage.bind();  // the old water's end left no context current
+        break;
+      }
+      case v1::Record::kStateHash: {
+        const std::uint64_t found = stage.water().stateHash();
+        ++out.hash_count;
+        if (found != record->state_hash()) {
+          out.difference = {record->tick(), last_equal_tick, record->state_hash(), found};
+          return out;
+        }
+        last_equal_tick = record->tick();
+        break;
+      }
+      case v1::Record::kRecovered:
+        if (!out.recovered_tick) out.recovered_tick = record->tick();
+        break;
+      case v1::Record::kHeader:
+      case v1::Record::WHAT_NOT_SET:
+        break;
+    }
+  }
+  out.truncation = log.truncation();
+  return out;
+}
+
+}  // namespace spindrift::rooms

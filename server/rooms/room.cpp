@@ -1,0 +1,330 @@
+#include <algorithm>
+#include <array>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/monotonic.h>
+#include <spindrift/rooms/room.h>
+#include <spindrift/scene/scene_loader.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::duration;
+
+/// Share of the wall time that heavy commands may take, and how much of it at once: ticks come first.
+constexpr double kHeavyShare = 0.25;
+constexpr auto kHeavyBurst = 30ms;
+/// A paused room still shows newcomers its water.
+constexpr auto kPausedFrameInterval = 250ms;
+/// A paused room's frame that found no free slot is asked for again.
+constexpr auto kDroppedFrameRetry = 10ms;
+/// While the device works on a frame, look for it this often.
+constexpr auto kReadbackPollInterval = 1ms;
+/// A room whose scene sleeps unwatched still shows the last of a splash to somebody who comes right back.
+constexpr auto kSleepPatience = 2s;
+constexpr auto kVitalsInterval = 250ms;
+constexpr double kSlowFactor = 0.9;
+constexpr auto kSlowPatience = 5s;
+constexpr auto kSlowWarningInterval = 60s;
+
+}  // namespace
+
+Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
+           std::unique_ptr<Stage> stage, std::unique_ptr<CommandLogWriter> log)
+    : name_(std::move(name)),
+      rules_(rules),
+      builder_(builder),
+      outlets_(outlets),
+      stage_(std::move(stage)),
+      log_(std::move(log)),
+      heavy_budget_(kHeavyShare, kHeavyBurst),
+      roster_(rules.grace),
+      clock_(stage_->water().derived().tick_s),
+      boats_(stage_->boats()) {
+  recovery_news_.restart(stage_->water().recoveredCount());
+  tick_cost_.restart(stage_->warmTick_ms());
+  publishSnapshot();
+  publishVitals({});
+}
+
+core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
+                                                 WaterBuilder& builder, RoomOutlets& outlets) {
+  auto stage = std::make_unique<Stage>(std::move(water));
+  std::unique_ptr<CommandLogWriter> log;
+  if (!rules.record_folder.empty()) {
+    v1::RecordHeader header;
+    header.set_server("spindrift " SPINDRIFT_VERSION);
+    describeDevice(header, stage->device());
+    header.set_room(name);
+    *header.mutable_scene() = stage->scene();
+    header.set_hash_interval_ticks(rules.hash_interval_ticks);
+    auto opened = CommandLogWriter::create(rules.record_folder, header);
+    if (!opened) return opened.error();
+    log = *std::move(opened);
+    spdlog::info("room {}: recorded to {}", name, log->file().string());
+  }
+  return std::shared_ptr<Room>(new Room(std::move(name), rules, builder, outlets, std::move(stage), std::move(log)));
+}
+
+bool isRoomName(const std::string& name) {
+  constexpr std::size_t kNameMaxBytes = 32;
+  return scene::isSceneName(name) && name.size() <= kNameMaxBytes;
+}
+
+std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
+  const std::lock_guard lock(snapshot_mutex_);
+  return snapshot_;
+}
+
+void Room::publishSnapshot() {
+  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{stage_->scene(), paused_, clock_.speed(), boats_});
+  const std::lock_guard lock(snapshot_mutex_);
+  snapshot_ = std::move(fresh);
+}
+
+std::shared_ptr<const RoomVitals> Room::vitals() const {
+  const std::lock_guard lock(snapshot_mutex_);
+  return vitals_;
+}
+
+void Room::publishVitals(TimePoint now) {
+  next_vitals_ = now + kVitalsInterval;
+  auto fresh = std::make_shared<RoomVitals>();
+  fresh->tick = tick();
+  fresh->time_s = stage_->water().time_s();
+  fresh->asleep = asleep_;
+  fresh->lost = is_lost_;
+  fresh->waiting_command_count = static_cast<std::uint32_t>(commands_.size());
+  fresh->dropped_frame_count = dropped_frames_;
+  fresh->diagnostics = diagnostics();
+  const std::lock_guard lock(snapshot_mutex_);
+  vitals_ = std::move(fresh);
+}
+
+void Room::publishLoss() {
+  auto fresh = std::make_shared<RoomVitals>(*vitals());
+  fresh->lost = true;
+  const std::lock_guard lock(snapshot_mutex_);
+  vitals_ = std::move(fresh);
+}
+
+void Room::record(v1::Record record) {
+  if (!log_) return;
+  record.set_tick(tick());
+  log_->write(record);
+}
+
+// One tick
+
+void Room::start(TimePoint now) {
+  clock_.restart(now);
+  last_run_ = last_watched_ = now;
+}
+
+Room::TimePoint Room::due(TimePoint now) const {
+  if (is_lost_ || change_) return now + 10ms;
+  if (pending_tick_count_ > 0) return now;
+  const TimePoint next = paused_ || asleep_ ? now + 10ms : clock_.due();
+  return stage_->water().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
+}
+
+void Room::run(TimePoint now) {
+  stage_->bind();
+  session_count_ = outlets_.sessionCount();
+  adoptWater(now);
+  if (isLost(now)) {
+    announce();
+    return;
+  }
+  const bool stands_still = paused_ || asleep_;
+  if (!stands_still) unpaused_wall_s_ += duration<double>(now - last_run_).count();
+  last_run_ = now;
+  handOverFrames();
+  watchOverSleep(now);
+  settlePeople(now);
+  finishChange();
+  if (paused_ || asleep_ || now >= clock_.due()) applyCommands(now);
+  announce();
+  if (change_) {
+    // The state stands still until the particles are laid out.
+  } else if (paused_) {
+    advancePaused(now);
+  } else if (!asleep_ && now >= clock_.due()) {
+    step(now);
+  }
+  announceRecovery(now);
+  handOverFrames();
+  if (now >= next_vitals_) publishVitals(now);
+}
+
+void Room::watchOverSleep(TimePoint now) {
+  if (stage_->scene().unwatched() != v1::UNWATCHED_SLEEP || outlets_.sessionCount(*this) > 0) {
+    last_watched_ = now;
+    if (!asleep_) return;
+    asleep_ = false;
+    clock_.restart(now);
+  } else if (!asleep_ && now - last_watched_ >= kSleepPatience) {
+    asleep_ = true;
+    publishVitals(now);
+  }
+}
+
+void Room::step(TimePoint now) {
+  const TimePoint end = timedStep();
+  run_s_ += stage_->water().derived().tick_s;
+  unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
+  last_run_ = end;
+  clock_.ticked(end);
+  if (stage_->water().time_s() + 1e-9 >= next_frame_s_) requestFrame(end);
+  watchRealTime(end);
+}
+
+void Room::advancePaused(TimePoint now) {
+  if (pending_tick_count_ > 0) {
+    const TimePoint end = timedStep();
+    if (--pending_tick_count_ == 0) next_idle_frame_ = end;  // what was asked for is there to see at once
+    now = end;
+  }
+  if (now >= next_idle_frame_) requestFrame(now);
+}
+
+Room::TimePoint Room::timedStep() {
+  const auto begin = std::chrono::steady_clock::now();
+  stage_->step();
+  const auto end = std::chrono::steady_clock::now();
+  const double step_ms = duration<double, std::milli>(end - begin).count();
+  tick_cost_.note(step_ms);
+  step_ms_sum_ += step_ms;
+  ++step_count_;
+  if (log_ && !log_->ended()) {
+    if (const std::uint64_t count = stage_->water().recoveredCount(); count != logged_recovery_count_) {
+      logged_recovery_count_ = count;
+      v1::Record recovered;
+      recovered.set_recovered(true);
+      record(std::move(recovered));
+    }
+    if (tick() % log_->hashInterval_ticks() == 0) {
+      v1::Record hash;
+      hash.set_state_hash(stage_->water().stateHash());
+      record(std::move(hash));
+    }
+  }
+  return end;
+}
+
+// Frames
+
+bool Room::isDue(core::Level level) const {
+  return paused_ || frame_count_ % core::frameStride(level, stage_->scene().stream().frame_rate_hz()) == 0;
+}
+
+void Room::requestFrame(TimePoint now) {
+  const double interval_s =
+      clock_.speed() / stage_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
+  if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, stage_->water().time_s());
+  next_idle_frame_ = now + kPausedFrameInterval;
+  const v1::Scene& scene = stage_->scene();
+  const WatchedLayers watched = outlets_.watched(*this, stage_->water().reducedCounts());
+  wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
+  const auto due = [&](bool has_it, WatchedLayers::Levels levels) {
+    for (const core::Level level : core::kLevels) levels[core::indexOf(level)] &= has_it && isDue(level);
+    return levels;
+  };
+  const auto surface = due(scene.has_wave(), watched.surface);
+  const auto particles = due(scene.has_particles(), watched.particles);
+  const auto foam = due(scene.foam().surface(), watched.foam);
+  sim::FrameRequest request{.surface = surface.back(),
+                            .particles = particles.back(),
+                            .foam = foam.back(),
+                            .bodies = scene.has_boats() && watched.bodies,
+                            .asked_s = monotonic_s(now),
+                            .state_id = stage_->stateId()};
+  for (std::size_t level = 0; level < request.reduced.size(); ++level)
+    request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};
+  ++frame_count_;
+  if (request.isEmpty()) return;
+  if (!stage_->water().requestFrame(request)) {
+    ++dropped_frames_;
+    next_idle_frame_ = now + kDroppedFrameRetry;
+  }
+}
+
+void Room::handOverFrames() {
+  for (core::FrameView& frame : stage_->water().takeFrames()) {
+    frame.tick = stage_->tickOf(frame.tick);
+    if (wants_diagnostics_) frame.diagnostics = diagnostics();
+    wants_diagnostics_ = false;
+    outlets_.frameReady(*this, std::move(frame));
+  }
+  if (wants_diagnostics_ && stage_->water().framesInFlight() == 0) {
+    wants_diagnostics_ = false;
+    core::FrameView frame;
+    frame.tick = tick();
+    frame.time_s = stage_->water().time_s();
+    frame.state_id = stage_->stateId();
+    frame.diagnostics = diagnostics();
+    outlets_.frameReady(*this, std::move(frame));
+  }
+}
+
+core::DiagnosticsView Room::diagnostics() {
+  if (step_count_ > 0) last_step_ms_ = step_ms_sum_ / step_count_;
+  sim::WaterSim& water = stage_->water();
+  const sim::Health& h = water.health();
+  const sim::Derived& d = water.derived();
+  core::DiagnosticsView out;
+  out.step_ms = last_step_ms_;
+  out.real_time_factor = paused_ || asleep_ ? 0.0 : clock_.realTimeFactor();
+  out.substeps_count = d.substeps_count;
+  out.particle_count = water.particleCount();
+  out.max_particle_speed_mps = h.max_speed_mps;
+  out.max_elevation_m = h.max_elevation_m;
+  out.kinetic_energy_j = h.kinetic_energy_j;
+  out.potential_energy_j = h.potential_energy_j;
+  out.wave_energy_j = h.wave_energy_j;
+  out.mean_density_ratio = h.mean_density_ratio;
+  out.max_density_ratio = h.max_density_ratio;
+  out.nonfinite_count = water.nonfiniteCount();
+  out.escaped_count = water.escapedCount();
+  out.recovered_count = water.recoveredCount();
+  out.boat_count = water.boatCount();
+  out.volume_error_units = h.volume_error_units;
+  out.emitted_m3 = h.emitted_m3;
+  out.absorbed_m3 = h.absorbed_m3;
+  out.breaking_ratio = h.breaking_ratio;
+  if (step_count_ > 0) {
+    last_passes_.clear();
+    for (const gpu::PassCost& pass : water.takePassCosts())
+      last_passes_.push_back({pass.name, pass.total_ms / step_count_});
+  }
+  out.passes = last_passes_;
+  step_ms_sum_ = 0.0;
+  step_count_ = 0;
+  return out;
+}
+
+void Room::watchRealTime(TimePoint now) {
+  const double factor = clock_.realTimeFactor();
+  if (factor == 0.0 || factor >= kSlowFactor * clock_.speed()) {
+    slow_since_ = now;
+    return;
+  }
+  if (slow_since_ == TimePoint{}) slow_since_ = now;
+  if (now - slow_since_ < kSlowPatience || now < next_slow_warning_) return;
+  next_slow_warning_ = now + kSlowWarningInterval;
+  spdlog::warn(
+      "room {}: time runs at {:.2f} of {:.2f} wanted: this machine cannot keep up; use fewer particles, a coarser wave "
+      "or a lower speed",
+      name_, factor, clock_.speed());
+}
+
+double Room::meanRealTimeFactor(TimePoint now) const {
+  const double open_s = paused_ || asleep_ ? 0.0 : duration<double>(now - last_run_).count();
+  const double wall_s = unpaused_wall_s_ + open_s;
+  return wall_s > 0 ? run_s_ / wall_s : 0.0;
+}
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,84 @@
+// How a room gives its parameters other values. Most take effect at once; another number of particles is worked out on
+// another thread while the room's ticks wait, so that other rooms and this one's frames and answers go on.
+#include <iterator>
+#include <ranges>
+#include <utility>
+#include <variant>
+
+#include <spindrift/rooms/room.h>
+
+namespace spindrift::rooms {
+
+using namespace std::chrono_literals;
+
+void Room::applyNewest(Values values) {
+  bool is_taken = false;
+  while (!values.untried.empty() && !is_taken) {
+    core::Command command = std::move(values.untried.back());
+    values.untried.pop_back();
+    if (beginChange(command, values)) return;
+    Outcome outcome = apply(command);
+    is_taken = !outcome;
+    const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
+    values.tried.push_back(
+        {std::move(command), std::move(outcome), is_taken && is_spawn ? stage_->spawnedBoatId() : 0});
+  }
+  conclude(std::move(values));
+}
+
+void Room::conclude(Values values) {
+  answer(std::move(values.untried), {});
+  std::ranges::move(values.tried | std::views::reverse, std::back_inserter(answers_));
+}
+
+bool Room::beginChange(const core::Command& command, Values& others) {
+  const auto* value = std::get_if<core::SetParameter>(&command.action);
+  if (!value || wire::checkAgainstScene(command, stage_->scene()) || refuseSlowChange(command, *value)) return false;
+  auto relayout = stage_->relayout(command.action);
+  if (!relayout) return false;
+  auto prepared = builder_.prepare(relayout->wanted, std::exchange(relayout->basis, {}));
+  commands_.hold({command});
+  change_.emplace(
+      Change{command, std::move(others), *std::move(relayout), std::move(prepared), std::chrono::steady_clock::now()});
+  return true;
+}
+
+void Room::finishChange() {
+  if (!change_ || change_->prepared.wait_for(0s) != std::future_status::ready) return;
+  Change change = *std::move(change_);
+  change_.reset();
+  commands_.release({change.command});
+  Outcome outcome = stage_->adopt(std::move(change.relayout), change.prepared.get());
+  heavy_budget_.spend(std::chrono::steady_clock::now() - change.begin);
+  const bool is_taken = !outcome;
+  if (is_taken) {
+    recordCommand(change.command);
+    parameterChanged(std::get<core::SetParameter>(change.command.action));
+  }
+  change.others.tried.push_back({std::move(change.command), std::move(outcome)});
+  if (is_taken) return conclude(std::move(change.others));
+  applyNewest(std::move(change.others));
+}
+
+void Room::abandonChange(const wire::CommandRejection& rejection) {
+  if (!change_) return;
+  Change change = *std::move(change_);
+  change_.reset();
+  commands_.release({change.command});
+  answer(std::move(change.others.untried), rejection);
+  change.others.tried.push_back({std::move(change.command), rejection});
+  conclude({.untried = {}, .tried = std::move(change.others.tried)});
+}
+
+Room::Outcome Room::refuseSlowChange(const core::Command& command, const core::SetParameter& change) const {
+  const auto wanted = stage_->workWith(change);
+  if (!wanted) return {};
+  return refuseSlow(command.sender, change.path, tick_cost_.predict_ms(stage_->work(), *wanted), kTickMax_ms);
+}
+
+void Room::parameterChanged(const core::SetParameter& change) {
+  next_frame_s_ = 0.0;  // of another rate, perhaps: the one before may have been a second away
+  news_.parameters[change.path] = change.value;
+}
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,147 @@
+// How a room changes its scene: the new water is built and warmed beside the running one, then takes its place between
+// two ticks. The senders are answered when it has.
+#include <variant>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/rooms/room.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Everybody in the room loads the new scene.
+constexpr auto kSceneChangeInterval = 1s;
+constexpr const char* kField = "change_scene.name";
+
+}  // namespace
+
+void Room::beginScene(Batch batch) {
+  const std::string name = std::get<core::ChangeScene>(batch.front().action).name;
+  if (!rules_.scenes.has(name)) {
+    return answer(std::move(batch), rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField,
+                                              "there is no scene '" + name + "'; the greeting lists what there is"));
+  }
+  if (std::chrono::steady_clock::now() < next_scene_change_) {
+    return answer(std::move(batch), rejection(v1::REJECT_REASON_BUSY, kField,
+                                              "the scene was changed a moment ago; try again in a second"));
+  }
+  auto scene = rules_.scenes.load(name);
+  if (!scene) {
+    return answer(std::move(batch),
+                  rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField, firstLine(scene.error().message)));
+  }
+  commands_.hold(batch);
+  build_.emplace(WaterBuild{std::move(batch), builder_.build(*std::move(scene))});
+}
+
+void Room::adoptWater(TimePoint now) {
+  if (!build_ || change_ || build_->water.wait_for(0s) != std::future_status::ready) return;
+  WaterBuild build = *std::move(build_);
+  build_.reset();
+  commands_.release(build.commands);
+  WaterBuilder::Built water = build.water.get();
+  if (build.commands.empty()) return finishRebuild(now, std::move(water));
+  const core::Command first = build.commands.front();
+  const std::string name = std::get<core::ChangeScene>(first.action).name;
+  if (!water) {
+    return answer(std::move(build.commands), rejection(v1::REJECT_REASON_OUT_OF_RANGE, kField,
+                                                       "scene '" + name + "': " + firstLine(water.error().message)));
+  }
+  if (auto slow = refuseSlow(first.sender, kField, (*water)->warmTick_ms(), kSceneTickMax_ms)) {
+    builder_.dispose(*std::move(water));
+    return answer(std::move(build.commands), slow);
+  }
+  replaceWater(*std::move(water));
+  answer(std::move(build.commands), {});
+  answer(commands_.takeEqual(first.action), {});
+}
+
+void Room::replaceWater(std::unique_ptr<Water> water) {
+  builder_.dispose(stage_->replaceWater(std::move(water)));
+  is_lost_ = false;
+  restartScene();
+}
+
+Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
+                               double max_ms) const {
+  const double now_ms = tick_cost_.predict_ms({}, {});
+  const std::size_t own_count = sender.session_id != 0 ? 1 : 0;
+  if (session_count_ <= own_count || tick_ms <= std::max(max_ms, now_ms)) return {};
+  return rejection(
+      v1::REJECT_REASON_BUSY, field,
+      fmt::format("a tick would take about {:.0f} ms on this device, {:.0f} ms are the most while others are "
+                  "connected: choose less, or try again when nobody else is here",
+                  tick_ms, max_ms));
+}
+
+// A device that fails
+
+bool Room::isLost(TimePoint now) {
+  if (!is_lost_) {
+    const auto failure = stage_->failure();
+    if (!failure) return false;
+    spdlog::error("room {}: {}; scene {} is built anew from its start", name_, *failure, stage_->scene().name());
+    is_lost_ = true;
+    rebuild_pause_ = 1s;
+    next_rebuild_ = now;
+    publishLoss();
+  }
+  if (!build_ && now >= next_rebuild_) build_.emplace(WaterBuild{{}, builder_.build(stage_->scene())});
+  const auto failed =
+      rejection(v1::REJECT_REASON_BUSY, "", "the device failed and the room's water is being built anew: try again");
+  abandonChange(failed);
+  answer(commands_.drain(), failed);
+  return true;
+}
+
+void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
+  constexpr std::chrono::seconds kLongestPause{30};
+  if (!water) {
+    spdlog::error("room {}: its water cannot be built anew ({}); the next try is in {} s", name_, water.error().message,
+                  rebuild_pause_.count());
+    next_rebuild_ = now + rebuild_pause_;
+    rebuild_pause_ = std::min(2 * rebuild_pause_, kLongestPause);
+    return;
+  }
+  replaceWater(*std::move(water));
+  news_.rebuilt = true;
+  publishVitals(now);
+  spdlog::warn("room {}: runs again, from the start of scene {}", name_, stage_->scene().name());
+}
+
+void Room::restartScene() {
+  if (log_) {
+    v1::Record line;
+    *line.mutable_scene() = stage_->scene();
+    record(std::move(line));
+  }
+  const double speed = clock_.speed();
+  clock_ = RealTimeClock(stage_->water().derived().tick_s);
+  clock_.setSpeed(speed);
+  const auto ready = std::chrono::steady_clock::now();
+  clock_.restart(ready);
+  last_run_ = last_watched_ = ready;
+  asleep_ = false;
+  next_scene_change_ = ready + kSceneChangeInterval;
+  next_frame_s_ = 0.0;
+  next_idle_frame_ = {};
+  pending_tick_count_ = 0;
+  wants_diagnostics_ = false;
+  step_ms_sum_ = last_step_ms_ = 0.0;
+  step_count_ = 0;
+  last_passes_.clear();
+  slow_since_ = {};
+  tick_cost_.restart(stage_->warmTick_ms());
+  recovery_news_.restart(stage_->water().recoveredCount());
+  logged_recovery_count_ = stage_->water().recoveredCount();
+  boats_ = stage_->boats();
+  news_ = {};            // the greeting says it all
+  roster_.keepOnly({});  // the new scene's boats are nobody's yet, whatever their numbers
+  publishSnapshot();
+  spdlog::info("room {}: scene {}", name_, stage_->scene().name());
+  outlets_.sceneChanged(*this);
+}
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <array>
+#include <random>
+
+#include <fmt/format.h>
+
+#include <spindrift/rooms/roster.h>
+#include <spindrift/wire/client_message.h>
+
+namespace spindrift::rooms {
+namespace {
+
+/// Told apart from each other and from water.
+constexpr std::array<std::uint32_t, 10> kColors{0xE4572E, 0xF3A712, 0x9BC53D, 0xC3423F, 0xFDE74C,
+                                                0x8E4585, 0xFF6F91, 0x5BC0BE, 0xD4A373, 0xF7F7FF};
+
+/// 128 bits of the system's own randomness.
+std::string newSecret() {
+  std::random_device device;
+  std::string out;
+  for (int k = 0; k < 4; ++k) out += fmt::format("{:08x}", static_cast<std::uint32_t>(device()));
+  return out;
+}
+
+}  // namespace
+
+Admission Roster::arrive(const Arrival& arrival) {
+  const std::lock_guard lock(mutex_);
+  is_news_ = true;
+  Admission out;
+  const auto known = std::ranges::find_if(people_, [&](const auto& entry) {
+    return !arrival.resume_key.empty() && entry.second.resume_key == arrival.resume_key;
+  });
+  out.resumed = known != people_.end();
+  out.person_id = out.resumed ? known->first : ++last_person_id_;
+  Person& person = people_[out.person_id];
+  if (out.resumed && person.session != 0) out.displaced = person.session;
+  if (!out.resumed) {
+    person.resume_key = newSecret();
+    person.name = fmt::format("guest {}", out.person_id);
+    person.color_rgb = kColors[out.person_id % kColors.size()];
+  }
+  if (!arrival.name.empty()) person.name = arrival.name;
+  if (arrival.color_rgb != 0) person.color_rgb = arrival.color_rgb;
+  person.role = arrival.role;
+  person.session = arrival.session;
+  person.boats_stopped = false;
+  out.resume_key = person.resume_key;
+  return out;
+}
+
+void Roster::leave(core::SessionId session, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find_if(people_, [&](const auto& entry) { return entry.second.session == session; });
+  if (session == 0 || found == people_.end()) return;
+  is_news_ = true;
+  if (found->second.boats.empty()) {
+    people_.erase(found);
+    return;
+  }
+  found->second.session = 0;
+  found->second.away_since = now;
+}
+
+std::uint32_t Roster::ownerOf(std::uint32_t boat_id) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, person] : people_) {
+    if (person.boats.contains(boat_id)) return id;
+  }
+  return 0;
+}
+
+bool Roster::hasBoat(std::uint32_t person_id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = people_.find(person_id);
+  return found != people_.end() && !found->second.boats.empty();
+}
+
+void Roster::give(std::uint32_t boat_id, std::uint32_t person_id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = people_.find(person_id);
+  if (found == people_.end()) return;
+  for (auto& [id, person] : people_) person.boats.erase(boat_id);
+  found->second.boats.insert(boat_id);
+  is_news_ = true;
+}
+
+void Roster::keepOnly(const std::set<std::uint32_t>& boat_ids) {
+  const std::lock_guard lock(mutex_);
+  for (auto& [id, person] : people_) {
+    is_news_ |= std::erase_if(person.boats, [&](std::uint32_t boat) { return !boat_ids.contains(boat); }) > 0;
+  }
+}
+
+Roster::Turn Roster::settle(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  Turn out;
+  for (auto it = people_.begin(); it != people_.end();) {
+    Person& person = it->second;
+    if (person.session == 0 && !person.boats_stopped) {
+      person.boats_stopped = true;
+      out.boats_to_stop.insert(out.boats_to_stop.end(), person.boats.begin(), person.boats.end());
+    }
+    if (person.session == 0 && (person.boats.empty() || now - person.away_since >= grace_)) {
+      it = people_.erase(it);
+      is_news_ = true;
+    } else {
+      ++it;
+    }
+  }
+  out.is_news = std::exchange(is_news_, false);
+  return out;
+}
+
+v1::People Roster::people() const {
+  const std::lock_guard lock(mutex_);
+  v1::People out;
+  for (const auto& [id, person] : people_) {
+    v1::Person& wire = *out.add_people();
+    wire.set_person_id(id);
+    wire.set_name(person.name);
+    wire.set_color_rgb(person.color_rgb);
+    wire.set_role(wire::toWire(person.role));
+    for (const std::uint32_t boat : person.boats) wire.add_boat_ids(boat);
+    wire.set_away(person.session == 0);
+  }
+  return out;
+}
+
+}  // namespace spindrift::rooms

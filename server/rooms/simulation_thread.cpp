@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <spindrift/rooms/simulation_thread.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+/// Openings and closings that may wait.
+constexpr std::size_t kChangeMaxCount = 16;
+
+}  // namespace
+
+core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gpu::DeviceChoice& device,
+                                                                        std::vector<RoomSetup> setups, RoomRules rules,
+                                                                        std::size_t max_room_count,
+                                                                        RoomOutlets& outlets) {
+  auto self = std::unique_ptr<SimulationThread>(new SimulationThread(outlets));
+  self->rules_ = std::move(rules);
+  self->max_room_count_ = std::max(max_room_count, setups.size());
+  self->builder_ = std::make_unique<WaterBuilder>(device, [raw = self.get()] {
+    {
+      const std::lock_guard lock(raw->mutex_);
+      raw->was_built_ = true;
+    }
+    raw->wake_.notify_one();
+  });
+  std::promise<core::Result<void>> built;
+  auto outcome = built.get_future();
+  self->thread_ = std::thread([raw = self.get(), &built, setups = std::move(setups)]() mutable {
+    auto result = raw->build(std::move(setups));
+    const bool ok = static_cast<bool>(result);
+    if (!ok) raw->rooms_.clear();
+    built.set_value(std::move(result));
+    if (ok) raw->loop();
+  });
+  auto result = outcome.get();
+  if (!result) {
+    self->thread_.join();
+    return result.error();
+  }
+  return self;
+}
+
+SimulationThread::~SimulationThread() {
+  stop();
+}
+
+core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
+  for (RoomSetup& setup : setups) {
+    auto water = builder_->build(std::move(setup.scene)).get();
+    if (auto added = add(std::move(setup.name), std::move(water)); !added) return added.error();
+  }
+  return {};
+}
+
+void SimulationThread::run() {
+  {
+    const std::lock_guard lock(mutex_);
+    running_ = true;
+  }
+  wake_.notify_one();
+}
+
+void SimulationThread::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::vector<std::shared_ptr<Room>> SimulationThread::rooms() const {
+  const std::lock_guard lock(rooms_mutex_);
+  return rooms_;
+}
+
+std::shared_ptr<Room> SimulationThread::find(const std::string& name) const {
+  const std::lock_guard lock(rooms_mutex_);
+  if (name.empty()) return rooms_.empty() ? nullptr : rooms_.front();
+  const auto it = std::ranges::find_if(rooms_, [&](const auto& room) { return room->name() == name; });
+  return it == rooms_.end() ? nullptr : *it;
+}
+
+double SimulationThread::sinceLastRound_s() const {
+  const std::lock_guard lock(mutex_);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_round_).count();
+}
+
+// Opening and closing
+
+void SimulationThread::openRoom(RoomSetup setup, Done done) {
+  auto shared = std::make_shared<RoomSetup>(std::move(setup));
+  carryOut(
+      [this, shared, done](bool runs) {
+        if (runs) return open(std::move(*shared), done);
+        done(Error{ErrorCode::kUnavailable, "the server shuts down"});
+      },
+      done);
+}
+
+void SimulationThread::closeRoom(std::string name, std::function<void(const Room&)> before, Done done) {
+  carryOut(
+      [this, name = std::move(name), before = std::move(before), done](bool runs) {
+        done(runs ? close(name, before) : Error{ErrorCode::kUnavailable, "the server shuts down"});
+      },
+      done);
+}
+
+void SimulationThread::carryOut(Change change, const Done& done) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!stopping_ && changes_.size() < kChangeMaxCount) {
+      changes_.push_back(std::move(change));
+      wake_.notify_one();
+      return;
+    }
+  }
+  done(Error{ErrorCode::kUnavailable, "too many rooms are being opened or closed: try again"});
+}
+
+void SimulationThread::open(RoomSetup setup, Done done) {
+  if (rooms().size() + openings_.size() >= max_room_count_) {
+    return done(Error{ErrorCode::kUnavailable,
+                      fmt::format("there are {} rooms, as many as may be: close one, or start the server with more "
+                                  "--max-rooms",
+                                  max_room_count_)});
+  }
+  if (find(setup.name) || std::ranges::any_of(openings_, [&](const auto& one) { return one.name == setup.name; })) {
+    return done(Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"});
+  }
+  openings_.push_back({std::move(setup.name), builder_->build(std::move(setup.scene)), std::move(done)});
+}
+
+void SimulationThread::finishOpenings() {
+  const auto is_ready = [](const Opening& opening) {
+    return opening.water.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  };
+  for (auto opening = openings_.begin(); opening != openings_.end();) {
+    if (!is_ready(*opening)) {
+      ++opening;
+      continue;
+    }
+    opening->done(add(std::move(opening->name), opening->water.get()));
+    opening = openings_.erase(opening);
+  }
+}
+
+core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water) {
+  if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
+  (*water)->bind();
+  if (device_line_.empty()) device_line_ = (*water)->context().device().name;
+  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_);
+  if (!room) return room.error();
+  (*room)->start(std::chrono::steady_clock::now());
+  const std::lock_guard lock(rooms_mutex_);
+  rooms_.push_back(*std::move(room));
+  return {};
+}
+
+core::Result<void> SimulationThread::close(const std::string& name, const std::function<void(const Room&)>& before) {
+  const auto room = find(name);
+  if (!room) return Error{ErrorCode::kInvalidInput, "there is no room '" + name + "'"};
+  if (room == find("")) {
+    return Error{ErrorCode::kInvalidInput, "room '" + name + "' is the default room: it stays as long as the server"};
+  }
+  {
+    const std::lock_guard lock(rooms_mutex_);
+    std::erase(rooms_, room);
+  }
+  before(*room);
+  room->abandonCommands();
+  summarise(*room);
+  outlets_.closed(*room);
+  room->releaseDevice();
+  return {};
+}
+
+void SimulationThread::summarise(const Room& room) {
+  summary_.push_back(
+      fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, guard stepped in {} times",
+                  room.name(), room.tick(), room.meanRealTimeFactor(std::chrono::steady_clock::now()),
+                  room.droppedFrameCount(), room.water().recoveredCount()));
+}
+
+void SimulationThread::loop() {
+  using Clock = std::chrono::steady_clock;
+  std::unique_lock lock(mutex_);
+  wake_.wait(lock, [&] { return stopping_ || running_; });
+  for (const auto& room : rooms_) room->start(Clock::now());
+  while (!stopping_) {
+    last_round_ = Clock::now();
+    const auto changes = std::exchange(changes_, {});
+    lock.unlock();
+    for (const Change& change : changes) change(true);
+    finishOpenings();
+    auto due = Clock::now() + std::chrono::milliseconds(100);
+    for (const auto& room : rooms_) {
+      room->run(Clock::now());
+    }
+    const auto now = Clock::now();
+    for (const auto& room : rooms_) due = std::min(due, room->due(now));
+    lock.lock();
+    wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty() || std::exchange(was_built_, false); });
+  }
+  const auto changes = std::exchange(changes_, {});
+  lock.unlock();
+  for (const Change& change : changes) change(false);
+  for (Opening& opening : std::exchange(openings_, {}))
+    opening.done(Error{ErrorCode::kUnavailable, "the server shuts down"});
+  for (const auto& room : rooms_) {
+    summarise(*room);
+    room->releaseDevice();
+  }
+}
+
+}  // namespace spindrift::rooms

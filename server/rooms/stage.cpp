@@ -1,0 +1,166 @@
+#include <cassert>
+#include <utility>
+#include <variant>
+
+#include <spindrift/core/overloaded.h>
+#include <spindrift/rooms/stage.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
+
+namespace spindrift::rooms {
+namespace {
+
+/// Why a running room does not take `wanted`, which `change` makes of its scene.
+wire::CommandRejection whyNot(const core::SetParameter& change, core::Scene wanted, const core::Error& error) {
+  // The message begins with the field that breaks a rule, which Reject.field says already where it is this one.
+  const std::string own = change.path + ": ";
+  const std::string message = error.message.starts_with(own) ? error.message.substr(own.size()) : error.message;
+  const auto reason = [&] {
+    if (error.code == core::ErrorCode::kUnavailable) return v1::REJECT_REASON_BUSY;
+    // What could be started afresh only needs other buffers or programs than the room has.
+    if (sim::derive(wanted)) return v1::REJECT_REASON_NEEDS_RESTART;
+    wanted.allow_unstable = true;
+    wanted.fixed_substeps_count = 1;
+    return sim::derive(wanted) ? v1::REJECT_REASON_BREAKS_STEP_RULE : v1::REJECT_REASON_OUT_OF_RANGE;
+  };
+  return rejection(reason(), change.path, message);
+}
+
+}  // namespace
+
+wire::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message) {
+  return {.command_id = 0, .reason = reason, .field = std::move(field), .message = std::move(message)};
+}
+
+std::string firstLine(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  return end == std::string::npos ? text : text.substr(0, end) + " (and more)";
+}
+
+Stage::Stage(std::unique_ptr<Water> water) : water_(std::move(water)), tick_shift_(0 - water_->sim().tick()) {}
+
+bool Stage::takes(const core::Action& action) {
+  return std::visit(
+      core::Overloaded{[](const core::SetPaused&) { return false; }, [](const core::SetSpeed&) { return false; },
+                       [](const core::Step&) { return false; }, [](const core::ChangeScene&) { return false; },
+                       [](const core::TakeBoat&) { return false; }, [](const auto&) { return true; }},
+      action);
+}
+
+Stage::Outcome Stage::apply(const core::Action& action) {
+  assert(takes(action));
+  Outcome outcome = std::visit(core::Overloaded{[&](const core::Splash& splash) { return startEffect(splash); },
+                                                [&](const core::BreakingWave& wave) { return startEffect(wave); },
+                                                [&](const core::SetParameter& change) { return setParameter(change); },
+                                                [&](const core::Reset&) -> Outcome {
+                                                  water().reset();
+                                                  return {};
+                                                },
+                                                [&](const core::SpawnBoat& spawn) { return spawnBoat(spawn); },
+                                                [&](const core::ControlBoat& control) { return controlBoat(control); },
+                                                [&](const core::RemoveBoat& remove) { return removeBoat(remove); },
+                                                [&](const auto&) -> Outcome { return {}; }},
+                               action);
+  if (!outcome) ++state_id_;
+  return outcome;
+}
+
+Stage::Outcome Stage::startEffect(const core::Effect& effect) {
+  const auto started = water().start(effect);
+  if (started) return {};
+  const bool busy = started.error().code == core::ErrorCode::kUnavailable;
+  return rejection(busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "", started.error().message);
+}
+
+Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
+  v1::Scene changed = scene();
+  if (auto error = scene::setParameter(changed, change.path, change.value)) {
+    return rejection(error->reason, error->field, error->message);
+  }
+  const core::Scene wanted = scene::toCore(changed);
+  if (auto applied = water().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());
+  water_->scene() = std::move(changed);
+  return {};
+}
+
+std::optional<Stage::Relayout> Stage::relayout(const core::Action& action) {
+  const auto* change = std::get_if<core::SetParameter>(&action);
+  if (!change) return std::nullopt;
+  v1::Scene changed = scene();
+  if (scene::setParameter(changed, change->path, change->value)) return std::nullopt;
+  core::Scene wanted = scene::toCore(changed);
+  if (!water().relaysParticles(wanted)) return std::nullopt;
+  sim::SceneBasis basis = water().sceneBasis(wanted);
+  return Relayout{*change, std::move(changed), std::move(wanted), std::move(basis)};
+}
+
+Stage::Outcome Stage::adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared) {
+  if (!prepared) return whyNot(relayout.change, relayout.wanted, prepared.error());
+  if (auto adopted = water().adopt(*std::move(prepared)); !adopted) {
+    return whyNot(relayout.change, relayout.wanted, adopted.error());
+  }
+  water_->scene() = std::move(relayout.changed);
+  ++state_id_;
+  return {};
+}
+
+TickWork Stage::work() const {
+  return workOf(water().scene(), water().derived());
+}
+
+std::optional<TickWork> Stage::workWith(const core::SetParameter& change) const {
+  v1::Scene changed = scene();
+  if (scene::setParameter(changed, change.path, change.value)) return std::nullopt;
+  const core::Scene wanted = scene::toCore(changed);
+  const auto derived = sim::derive(wanted);
+  return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
+}
+
+Stage::Outcome Stage::spawnBoat(const core::SpawnBoat& spawn) {
+  const auto boat_id = water().spawnBoat(spawn.boat);
+  if (!boat_id) {
+    const bool full = boat_id.error().code == core::ErrorCode::kUnavailable;
+    return rejection(full ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "spawn_boat",
+                     boat_id.error().message);
+  }
+  spawned_boat_id_ = *boat_id;
+  return {};
+}
+
+Stage::Outcome Stage::controlBoat(const core::ControlBoat& control) {
+  const auto done = water().controlBoat(control.boat_id, control.throttle_ratio, control.rudder_ratio);
+  if (done) return {};
+  return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "control_boat.boat_id", done.error().message);
+}
+
+Stage::Outcome Stage::removeBoat(const core::RemoveBoat& remove) {
+  const auto done = water().removeBoat(remove.boat_id);
+  if (done) return {};
+  return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "remove_boat.boat_id", done.error().message);
+}
+
+std::unique_ptr<Water> Stage::replaceWater(std::unique_ptr<Water> water) {
+  const std::uint64_t first_tick = tick() + 1;
+  const std::uint32_t first_boat_id = water_->sim().nextBoatId();
+  std::swap(water_, water);
+  water_->bind();
+  water_->sim().numberBoatsFrom(first_boat_id);
+  ++state_id_;
+  tick_shift_ = first_tick - water_->sim().tick();
+  return water;
+}
+
+v1::BoatList Stage::boats() const {
+  v1::BoatList out;
+  for (const sim::BoatRecord& boat : water().boats()) {
+    v1::BoatInfo& info = *out.add_boats();
+    info.set_boat_id(boat.boat_id);
+    info.set_length_m(boat.length_m);
+    info.set_beam_m(boat.beam_m);
+    info.set_height_m(boat.height_m);
+    info.set_draught_m(boat.draught_m);
+  }
+  return out;
+}
+
+}  // namespace spindrift::rooms

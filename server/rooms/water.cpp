@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/rooms/water.h>
+#include <spindrift/scene/scene_loader.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A step's shaders are compiled when they first run, which takes a software device seconds; diagnostics run every
+/// fourth tick, so as many ticks leave their rhythm as it was.
+constexpr int kWarmUpTickCount = 4;
+/// The encoder holds a frame for milliseconds; whoever holds one longer has lost it.
+constexpr auto kFramePatience = 5s;
+
+/// What the cheapest of the ticks took [ms].
+double warmUp(gpu::Context& context, sim::WaterSim& sim) {
+  double tick_ms = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kWarmUpTickCount; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    sim.step();
+    context.finish();
+    tick_ms =
+        std::min(tick_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  }
+  (void)sim.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+  context.finish();
+  (void)sim.takeFrames();
+  (void)sim.takePassCosts();
+  sim.reset();
+  return tick_ms;
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& device, v1::Scene scene) {
+  auto context = gpu::Context::create(device);
+  if (!context) return context.error();
+  auto sim = sim::WaterSim::create(**context, scene::toCore(scene));
+  if (!sim) return sim.error();
+  const double tick_ms = warmUp(**context, **sim);
+  return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));
+}
+
+Water::Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
+             double warm_tick_ms)
+    : context_(std::move(context)), sim_(std::move(sim)), scene_(std::move(scene)), warm_tick_ms_(warm_tick_ms) {}
+
+Water::~Water() {
+  bind();
+  sim_.reset();
+  const auto deadline = std::chrono::steady_clock::now() + kFramePatience;
+  for (context_->collectRetired(); context_->hasRetired() && std::chrono::steady_clock::now() < deadline;
+       context_->collectRetired()) {
+    std::this_thread::sleep_for(1ms);
+  }
+}
+
+std::optional<std::string> Water::failure() {
+  if (context_->isLost()) return "the device was lost (" + context_->device().name + ")";
+  if (const auto& error = sim_->deviceError()) return error->message;
+  return std::nullopt;
+}
+
+void Water::bind() {
+  if (context_->isOwnedHere() || context_->makeCurrent()) return;
+  // Only a bug of ours gets here: two threads with one water.
+  spdlog::error("room's GL context cannot be bound: another thread has not released it");
+}
+
+void Water::release() {
+  if (context_->isOwnedHere()) context_->release();
+}
+
+}  // namespace spindrift::rooms

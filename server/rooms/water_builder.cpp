@@ -1,0 +1,47 @@
+#include <utility>
+
+#include <spindrift/rooms/water_builder.h>
+
+namespace spindrift::rooms {
+namespace {
+
+/// Ticks of running rooms come before a build.
+constexpr int kBuildNiceness = 10;
+
+core::Error shutDown() {
+  return {core::ErrorCode::kUnavailable, "the server shuts down"};
+}
+
+}  // namespace
+
+WaterBuilder::WaterBuilder(gpu::DeviceChoice device, std::function<void()> done)
+    : device_(std::move(device)), builds_(kBuildNiceness, done), changes_(0, done) {}
+
+std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {
+  auto promise = std::make_shared<std::promise<Built>>();
+  auto future = promise->get_future();
+  builds_.push([this, promise, scene = std::move(scene)](bool runs) mutable {
+    if (!runs) return promise->set_value(shutDown());
+    Built built = Water::create(device_, std::move(scene));
+    if (built) (*built)->release();
+    promise->set_value(std::move(built));
+  });
+  return future;
+}
+
+std::future<WaterBuilder::Prepared> WaterBuilder::prepare(core::Scene scene, sim::SceneBasis basis) {
+  auto promise = std::make_shared<std::promise<Prepared>>();
+  auto future = promise->get_future();
+  changes_.push([promise, scene = std::move(scene), basis = std::move(basis)](bool runs) {
+    promise->set_value(runs ? sim::prepareScene(scene, basis) : Prepared(shutDown()));
+  });
+  return future;
+}
+
+void WaterBuilder::dispose(std::unique_ptr<Water> water) {
+  if (!water) return;
+  water->release();
+  builds_.push([kept = std::shared_ptr<Water>(std::move(water))](bool) mutable { kept.reset(); });
+}
+
+}  // namespace spindrift::rooms

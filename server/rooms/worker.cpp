@@ -1,0 +1,47 @@
+#include <utility>
+
+#include <sys/resource.h>
+
+#include <spindrift/rooms/worker.h>
+
+namespace spindrift::rooms {
+
+Worker::Worker(int niceness, std::function<void()> done)
+    : niceness_(niceness), done_(std::move(done)), thread_([this] { loop(); }) {}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void Worker::push(Work work) {
+  {
+    const std::lock_guard lock(mutex_);
+    work_.push_back(std::move(work));
+  }
+  wake_.notify_one();
+}
+
+void Worker::loop() {
+  // Of this thread alone, which Linux allows. Best effort.
+  if (niceness_ != 0) (void)setpriority(PRIO_PROCESS, 0, niceness_);
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, [this] { return stopping_ || !work_.empty(); });
+    if (work_.empty()) return;
+    Work work = std::move(work_.front());
+    work_.pop_front();
+    const bool runs = !stopping_;
+    lock.unlock();
+    work(runs);
+    work = nullptr;
+    if (done_) done_();
+    lock.lock();
+  }
+}
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/fields.h>
+#include <spindrift/scene/scene_loader.h>
+
+namespace spindrift::scene {
+namespace {
+
+/// What a level makes of BALANCED's numbers, and what it chooses where the scene leaves it out.
+struct Level {
+  v1::Fidelity fidelity;
+  double wave_scale;      ///< of the wave's resolution
+  double particle_scale;  ///< of the particles' number across the water: spacings shrink by it
+  double tick_scale;      ///< of the tick rate, and so at least of the number of steps
+  std::uint32_t lattice_count;
+  std::uint32_t iterations_count;
+  double surface_quantum_m;
+};
+
+constexpr std::array<Level, 4> kLevels = {{
+    {v1::FIDELITY_DRAFT, 0.5, 0.7, 1.0, 3, 3, 0.002},
+    {v1::FIDELITY_BALANCED, 1.0, 1.0, 1.0, 3, 4, 0.001},
+    {v1::FIDELITY_FINE, 1.5, 1.7, 1.0, 5, 4, 0.0005},
+    {v1::FIDELITY_REFERENCE, 2.5, 2.2, 2.0, 5, 8, 0.0005},
+}};
+
+const Level& levelOf(v1::Fidelity fidelity) {
+  const auto level = std::ranges::find(kLevels, fidelity, &Level::fidelity);
+  return level != kLevels.end() ? *level : kLevels[1];
+}
+
+/// Multiplies a number by `factor`, as far as its range goes, rounded to what it may be.
+void scaleNumber(google::protobuf::Message& message, const char* name, double factor) {
+  if (factor == 1.0) return;
+  const auto& field = *message.GetDescriptor()->FindFieldByName(name);
+  const v1::ParameterOptions& options = *parameterOptions(field);
+  const double step = options.multiple_of() > 0 ? options.multiple_of() : options.step();
+  double value = std::round(numberOf(message, field) * factor / step) * step;
+  setNumber(message, field, std::clamp(value, options.min(), options.max()));
+}
+
+double layersOf(const v1::ParticleScene& particles) {
+  return numberOf(particles, *v1::ParticleScene::descriptor()->FindFieldByName("layers_count"));
+}
+
+}  // namespace
+
+std::optional<v1::Fidelity> parseFidelity(std::string_view name) {
+  std::string upper = "FIDELITY_";
+  for (const char c : name) upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  v1::Fidelity fidelity = v1::FIDELITY_UNSPECIFIED;
+  if (!v1::Fidelity_Parse(upper, &fidelity) || fidelity == v1::FIDELITY_UNSPECIFIED) return std::nullopt;
+  return fidelity;
+}
+
+std::string fidelityName(v1::Fidelity fidelity) {
+  std::string name = v1::Fidelity_Name(levelOf(fidelity).fidelity).substr(9);
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
+}
+
+void applyFidelity(v1::Scene& scene) {
+  const Level& level = levelOf(scene.fidelity());
+  const bool is_two_way = scene.coupling().mode() == v1::COUPLING_MODE_TWO_WAY;
+  scaleNumber(scene, "tick_rate_hz", level.tick_scale);
+  if (scene.has_wave()) {
+    v1::WaveScene& wave = *scene.mutable_wave();
+    scaleNumber(wave, "resolution_count", level.wave_scale);
+    // At every level: rings of the 9-point stencil are 1.3 to 1.5 times as far off at the same step, as far off at each
+    // stencil's own largest step, and carry twice the faces (`spindrift study --suite accuracy --case round-hump`).
+    if (wave.stencil() == v1::STENCIL_UNSPECIFIED) wave.set_stencil(v1::STENCIL_FIVE_POINT);
+  }
+  if (scene.has_particles()) {
+    v1::ParticleScene& particles = *scene.mutable_particles();
+    if (is_two_way) {
+      scaleNumber(particles, "count", std::pow(level.particle_scale, 3));  // the spray's volume
+    } else if (scene.has_wave()) {
+      scaleNumber(particles, "count", std::pow(level.particle_scale, 2));  // a band of the same layers, thinner
+    } else {
+      // As deep as before: whole layers decide.
+      const double layers_count = layersOf(particles);
+      scaleNumber(particles, "layers_count", level.particle_scale);
+      scaleNumber(particles, "count", std::pow(layersOf(particles) / layers_count, 3));
+    }
+    if (!particles.has_iterations_count()) particles.set_iterations_count(level.iterations_count);
+  }
+  if (scene.has_coupling()) {
+    v1::CouplingScene& coupling = *scene.mutable_coupling();
+    if (is_two_way) scaleNumber(coupling, "droplet_spacing_m", 1 / level.particle_scale);
+    if (!coupling.has_lattice_count()) coupling.set_lattice_count(level.lattice_count);
+  }
+  if (!scene.stream().has_surface_quantum_m()) scene.mutable_stream()->set_surface_quantum_m(level.surface_quantum_m);
+}
+
+}  // namespace spindrift::scene

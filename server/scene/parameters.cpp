@@ -1,0 +1,161 @@
+#include <utility>
+
+#include <google/protobuf/descriptor.h>
+
+#include <spindrift/core/text.h>
+#include <spindrift/scene/fields.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_rules.h>
+
+namespace spindrift::scene {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+/// Bytes of an unknown path that are echoed: longer than any real one.
+constexpr std::size_t kPathEchoMaxBytes = 64;
+
+v1::ParameterDescription describe(const v1::ParameterOptions& options, const std::string& path, double value) {
+  v1::ParameterDescription out;
+  out.set_path(path);
+  out.set_label(options.label());
+  out.set_unit(options.unit());
+  out.set_min(options.min());
+  out.set_max(options.max());
+  out.set_step(options.step());
+  out.set_default_(options.default_());
+  out.set_value(value);
+  out.set_help(options.help());
+  return out;
+}
+
+void describePart(const Message& part, const std::string& prefix, std::vector<v1::ParameterDescription>& out) {
+  const Descriptor& type = *part.GetDescriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    if (field.is_repeated()) continue;
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      if (!part.GetReflection()->HasField(part, &field)) continue;
+      describePart(part.GetReflection()->GetMessage(part, &field), prefix + field.name() + ".", out);
+    } else if (const v1::ParameterOptions* options = parameterOptions(field); options && !options->restart()) {
+      out.push_back(describe(*options, prefix + field.name(), numberOf(part, field)));
+    }
+  }
+}
+
+/// Where a path leads: the part that holds the field (null where the scene lacks the part), and the field.
+struct Target {
+  const Message* part = nullptr;
+  const FieldDescriptor* field = nullptr;
+  std::string absent_part;
+};
+
+/// nullopt = no scene has a parameter of this path.
+std::optional<Target> findTarget(const v1::Scene& scene, std::string_view path) {
+  Target target{&scene, nullptr, {}};
+  const Descriptor* type = scene.GetDescriptor();
+  for (std::string_view rest = path;;) {
+    const std::size_t dot = rest.find('.');
+    const FieldDescriptor* field = type->FindFieldByName(std::string(rest.substr(0, dot)));
+    if (field == nullptr || field->is_repeated()) return std::nullopt;
+    if (dot == std::string_view::npos) {
+      if (parameterOptions(*field) == nullptr) return std::nullopt;
+      target.field = field;
+      return target;
+    }
+    if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) return std::nullopt;
+    if (target.part != nullptr) {
+      const google::protobuf::Reflection& reflection = *target.part->GetReflection();
+      if (reflection.HasField(*target.part, field)) {
+        target.part = &reflection.GetMessage(*target.part, field);
+      } else {
+        target.part = nullptr;
+        target.absent_part = field->name();
+      }
+    }
+    type = field->message_type();
+    rest.remove_prefix(dot + 1);
+  }
+}
+
+std::optional<ParameterError> checkTarget(const std::optional<Target>& target, std::string_view path, double value) {
+  const std::string shown = core::cleanText(path, kPathEchoMaxBytes);
+  if (!target) {
+    return ParameterError{v1::REJECT_REASON_UNKNOWN_PARAMETER, shown,
+                          "no parameter of this name; the greeting lists what can be set"};
+  }
+  if (target->part == nullptr) {
+    return ParameterError{v1::REJECT_REASON_ABSENT_PART, shown,
+                          "this scene has no " + target->absent_part + "; choose a scene that has"};
+  }
+  const v1::ParameterOptions& options = *parameterOptions(*target->field);
+  if (options.restart()) {
+    return ParameterError{v1::REJECT_REASON_NEEDS_RESTART, shown,
+                          "fixed while the room runs at " +
+                              core::formatQuantity(numberOf(*target->part, *target->field), options.unit()) +
+                              "; change it in the scene file and start again"};
+  }
+  if (auto issue = checkNumber(*target->field, value)) return ParameterError{issue->reason, shown, issue->message};
+  return std::nullopt;
+}
+
+/// What the rest of the scene says against a value that is fine in itself: water too shallow for a boat, ...
+std::optional<ParameterError> checkChanged(const v1::Scene& changed, std::string_view path) {
+  if (!changed.has_wave()) return std::nullopt;
+  const std::vector<FieldIssue> issues = checkWater(changed);
+  if (issues.empty()) return std::nullopt;
+  const FieldIssue& issue = issues.front();
+  return ParameterError{issue.reason, std::string(path),
+                        issue.path == path ? issue.message : issue.path + ": " + issue.message};
+}
+
+void appendReference(const Descriptor& type, const std::string& prefix, std::string& table) {
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      appendReference(*field.message_type(), prefix + field.name() + (field.is_repeated() ? "[]." : "."), table);
+    } else if (const v1::ParameterOptions* options = parameterOptions(field)) {
+      table += "| `" + prefix + field.name() + "` | " + options->label() + " | " + options->unit() + " | " +
+               core::formatNumber(options->min()) + " to " + core::formatNumber(options->max());
+      if (options->multiple_of() > 0) table += ", multiple of " + core::formatNumber(options->multiple_of());
+      table += " | " + core::formatNumber(options->default_()) + " | " + (options->restart() ? "restart" : "live") +
+               " | " + options->help() + " |\n";
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene) {
+  std::vector<v1::ParameterDescription> out;
+  describePart(scene, "", out);
+  return out;
+}
+
+std::optional<ParameterError> checkParameter(const v1::Scene& scene, std::string_view path, double value) {
+  v1::Scene changed = scene;
+  return setParameter(changed, path, value);
+}
+
+std::optional<ParameterError> setParameter(v1::Scene& scene, std::string_view path, double value) {
+  v1::Scene changed = scene;
+  const std::optional<Target> target = findTarget(changed, path);
+  if (auto error = checkTarget(target, path, value)) return error;
+  // The part belongs to `changed`, which is ours.
+  setNumber(const_cast<Message&>(*target->part), *target->field, value);
+  if (auto error = checkChanged(changed, path)) return error;
+  scene = std::move(changed);
+  return std::nullopt;
+}
+
+std::string parameterReferenceMarkdown() {
+  std::string table =
+      "| Parameter | Name | Unit | Range | Default | Change | What changes when it changes |\n"
+      "|---|---|---|---|---|---|---|\n";
+  appendReference(*v1::Scene::descriptor(), "", table);
+  return table;
+}
+
+}  // namespace spindrift::scene

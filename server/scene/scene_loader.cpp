@@ -1,0 +1,273 @@
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/text_format.h>
+
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/fields.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
+
+namespace spindrift::scene {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::TextFormat;
+
+/// After this many errors a person has enough to do, and hostile input cannot make the report grow further.
+constexpr std::size_t kMaxReportedErrorCount = 100;
+/// One more shows that there are more; finding the place of an error reads the text from its start.
+constexpr std::size_t kMaxKeptErrorCount = kMaxReportedErrorCount + 1;
+/// Nesting of braces; a scene needs four.
+constexpr int kMaxNestingDepth = 32;
+
+/// Zero-based, as Protobuf counts.
+struct Location {
+  int line = 0;
+  int column = 0;
+};
+
+struct LocatedError {
+  Location location;
+  std::string message;
+};
+
+/// Columns as Protobuf's tokenizer counts them: bytes, a tab reaching to the next multiple of 8.
+int nextColumn(char c, int column) {
+  constexpr int kTabWidth = 8;
+  return c == '\t' ? column + kTabWidth - column % kTabWidth : column + 1;
+}
+
+Location locationOf(std::string_view text, std::size_t offset) {
+  Location at;
+  for (const char c : text.substr(0, offset)) {
+    at = c == '\n' ? Location{at.line + 1, 0} : Location{at.line, nextColumn(c, at.column)};
+  }
+  return at;
+}
+
+std::size_t offsetOf(std::string_view text, Location wanted) {
+  Location at;
+  std::size_t offset = 0;
+  while (offset < text.size() && std::pair(at.line, at.column) < std::pair(wanted.line, wanted.column)) {
+    at = text[offset] == '\n' ? Location{at.line + 1, 0} : Location{at.line, nextColumn(text[offset], at.column)};
+    ++offset;
+  }
+  return offset;
+}
+
+/// Some errors are found only when the parser stands behind the word they complain about, perhaps lines behind. They
+/// quote the word, so the true place is where it last stood before.
+Location placeOf(std::string_view text, Location reported, std::string_view message) {
+  for (const std::string_view phrase :
+       {std::string_view("Unknown enumeration value of \""), std::string_view("has no field named \""),
+        std::string_view("Non-repeated field \""), std::string_view("Value: \"")}) {
+    const std::size_t found = message.rfind(phrase);
+    if (found == std::string_view::npos) continue;
+    std::string_view word = message.substr(found + phrase.size());
+    word = word.substr(0, word.find('"'));
+    const std::size_t offset = offsetOf(text, reported);
+    if (word.empty() || offset == 0) return reported;
+    const std::size_t place = text.rfind(word, offset - 1);
+    return place == std::string_view::npos ? reported : locationOf(text, place);
+  }
+  return reported;
+}
+
+class ErrorCollector : public google::protobuf::io::ErrorCollector {
+ public:
+  ErrorCollector(std::string_view text, std::vector<LocatedError>& errors) : text_(text), errors_(errors) {}
+  void AddError(int line, int column, const std::string& message) override {
+    add(line, column, message);
+    failed_line_ = errors_.back().location.line;
+  }
+  /// Unknown fields arrive as warnings because the parser was asked to go on after them.
+  void AddWarning(int line, int column, const std::string& message) override {
+    if (errors_.size() < kMaxKeptErrorCount) add(line, column, message);
+  }
+  int failedLine() const { return failed_line_; }
+
+ private:
+  void add(int line, int column, const std::string& message) {
+    errors_.push_back({placeOf(text_, {std::max(line, 0), std::max(column, 0)}, message), message});
+  }
+
+  std::string_view text_;
+  std::vector<LocatedError>& errors_;
+  int failed_line_ = -1;
+};
+
+/// Blanks a line that holds one "field: value" and nothing of the text's structure, so that parsing can go on behind
+/// it.
+bool blankSimpleLine(std::string& text, int line) {
+  std::size_t begin = 0;
+  for (int i = 0; i < line; ++i) {
+    begin = text.find('\n', begin);
+    if (begin == std::string::npos) return false;
+    ++begin;
+  }
+  const std::size_t end = std::min(text.find('\n', begin), text.size());
+  const std::string_view content(text.data() + begin, end - begin);
+  const bool simple = content.find(':') != std::string_view::npos && content.find_first_of("{}<>[]") == content.npos;
+  if (!simple) return false;
+  std::fill(text.begin() + static_cast<std::ptrdiff_t>(begin), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+  return true;
+}
+
+/// The parser recurses once a brace; braces in strings and comments count as well, which errs on the safe side.
+bool nestsTooDeep(std::string_view text) {
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '{' || c == '<' || c == '[') ++depth;
+    if ((c == '}' || c == '>' || c == ']') && depth > 0) --depth;
+    if (depth > kMaxNestingDepth) return true;
+  }
+  return false;
+}
+
+/// Parses as far as it goes, adding every syntax error, unknown field and wrong type found on the way.
+std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene& scene,
+                                                     std::vector<LocatedError>& errors) {
+  for (;;) {
+    std::vector<LocatedError> found;
+    ErrorCollector collector(text, found);
+    auto tree = std::make_unique<TextFormat::ParseInfoTree>();
+    TextFormat::Parser parser;
+    parser.RecordErrorsTo(&collector);
+    parser.AllowUnknownField(true);
+    parser.WriteLocationsTo(tree.get());
+    const bool parsed = parser.ParseFromString(text, &scene);
+    // A later attempt meets the unknown fields of an earlier one again.
+    for (LocatedError& error : found) {
+      const bool known = std::any_of(errors.begin(), errors.end(), [&](const LocatedError& other) {
+        return other.location.line == error.location.line && other.message == error.message;
+      });
+      if (!known) errors.push_back(std::move(error));
+    }
+    const bool give_up = errors.size() >= kMaxReportedErrorCount || collector.failedLine() < 0 ||
+                         !blankSimpleLine(text, collector.failedLine());
+    if (parsed || give_up) return tree;
+  }
+}
+
+/// Where a path ("events[1].effect.splash") stands in the text; the innermost part that does where the field was left
+/// out.
+Location locate(const TextFormat::ParseInfoTree& root, std::string_view path) {
+  Location best;
+  const TextFormat::ParseInfoTree* tree = &root;
+  const Descriptor* type = v1::Scene::descriptor();
+  while (tree != nullptr && type != nullptr && !path.empty()) {
+    const std::string_view segment = path.substr(0, path.find('.'));
+    path.remove_prefix(std::min(path.size(), segment.size() + 1));
+    const std::size_t bracket = segment.find('[');
+    const FieldDescriptor* field = type->FindFieldByName(std::string(segment.substr(0, bracket)));
+    if (field == nullptr) break;
+    int index = -1;
+    if (bracket != std::string_view::npos) {
+      std::from_chars(segment.data() + bracket + 1, segment.data() + segment.size(), index);
+    }
+    if (field->is_repeated() != (index >= 0)) break;
+    const TextFormat::ParseLocation location = tree->GetLocation(field, index);
+    if (location.line < 0) break;
+    best = {location.line, location.column};
+    type = field->message_type();
+    tree = type != nullptr ? tree->GetTreeForNested(field, index) : nullptr;
+  }
+  return best;
+}
+
+std::string report(const std::string& file_label, std::vector<LocatedError> errors) {
+  std::stable_sort(errors.begin(), errors.end(), [](const LocatedError& a, const LocatedError& b) {
+    return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
+  });
+  std::string text;
+  const std::size_t shown = std::min(errors.size(), kMaxReportedErrorCount);
+  for (std::size_t i = 0; i < shown; ++i) {
+    if (i > 0) text += '\n';
+    text += file_label + ':' + std::to_string(errors[i].location.line + 1) + ':' +
+            std::to_string(errors[i].location.column + 1) + ": " + errors[i].message;
+  }
+  if (errors.size() > shown) text += '\n' + file_label + ": and more; correct these first";
+  return text;
+}
+
+core::Error unavailable(const std::string& file, const std::string& why) {
+  return {core::ErrorCode::kUnavailable, file + ": " + why};
+}
+
+}  // namespace
+
+core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
+                                       std::optional<v1::Fidelity> fidelity) {
+  const auto invalid = [&](std::string message) {
+    return core::Error{core::ErrorCode::kInvalidInput, std::move(message)};
+  };
+  if (text.size() > kSceneFileMaxBytes) {
+    return invalid(file_label + ": " + std::to_string(text.size()) + " bytes are more than " +
+                   std::to_string(kSceneFileMaxBytes) + "; a scene is a small text");
+  }
+  if (nestsTooDeep(text)) {
+    return invalid(file_label + ": braces nest deeper than " + std::to_string(kMaxNestingDepth) +
+                   "; a scene needs four levels");
+  }
+  v1::Scene scene;
+  std::vector<LocatedError> errors;
+  const auto tree = parseText(std::string(text), scene, errors);
+  const bool text_is_fine = errors.empty();
+
+  std::vector<FieldIssue> issues;
+  checkFields(scene, "", issues);
+  if (text_is_fine) {
+    const bool numbers_are_fine = issues.empty();
+    if (fidelity) scene.set_fidelity(*fidelity);
+    if (numbers_are_fine) applyFidelity(scene);
+    fillDefaults(scene);
+    if (scene.name().empty()) scene.set_name(std::filesystem::path(file_label).stem().string());
+    for (FieldIssue& issue : checkStructure(scene)) issues.push_back(std::move(issue));
+    if (numbers_are_fine) {
+      for (FieldIssue& issue : checkNumbers(scene)) issues.push_back(std::move(issue));
+    }
+  }
+  for (FieldIssue& issue : issues) {
+    errors.push_back({locate(*tree, issue.path), issue.path + ": " + issue.message});
+  }
+  if (!errors.empty()) return invalid(report(file_label, std::move(errors)));
+  return scene;
+}
+
+core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file, std::optional<v1::Fidelity> fidelity) {
+  const std::string label = file.string();
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) return unavailable(label, "no such scene file; check the path");
+  if (std::filesystem::is_directory(status)) return unavailable(label, "is a directory; name a scene file in it");
+  if (!std::filesystem::is_regular_file(status)) return unavailable(label, "is no regular file; name a scene file");
+
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(label.c_str(), "rb"), &std::fclose);
+  if (!stream)
+    return unavailable(label, std::string("cannot be opened: ") + std::strerror(errno) + "; check its permissions");
+  // One byte more than allowed tells a file that is too big from one that just fits, whatever its reported size.
+  std::string text(kSceneFileMaxBytes + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
+  if (std::ferror(stream.get()) != 0) {
+    return unavailable(label, std::string("cannot be read: ") + std::strerror(errno) + "; check the file");
+  }
+  if (text.size() > kSceneFileMaxBytes) {
+    return core::Error{
+        core::ErrorCode::kInvalidInput,
+        label + ": is bigger than " + std::to_string(kSceneFileMaxBytes) + " bytes; a scene is a small text"};
+  }
+  return parseSceneText(text, label, fidelity);
+}
+
+}  // namespace spindrift::scene

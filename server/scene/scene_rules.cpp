@@ -1,0 +1,230 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <spindrift/core/text.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
+
+namespace spindrift::scene {
+namespace {
+
+/// A depression or crest beyond this share of the depth would bare the ground or leave the wave equation's range.
+constexpr double kMaxEffectDepthRatio = 0.9;
+/// Absorbs the rounding of "shift + scale * side / 2" where a patch ends exactly at the edge.
+constexpr double kEdgeToleranceRatio = 1e-9;
+constexpr std::size_t kNameMaxBytes = 64;
+constexpr std::size_t kTitleMaxBytes = 200;
+constexpr std::size_t kDescriptionMaxBytes = 4000;
+
+std::string metres(double value) {
+  return core::formatQuantity(value, "m");
+}
+
+void checkHeight(double value_m, double depth_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  const double max_m = kMaxEffectDepthRatio * depth_m;
+  if (value_m <= max_m) return;
+  addRange(issues, path,
+           metres(value_m) + " is above " + metres(max_m) + ", 0.9 of the water's depth of " + metres(depth_m) +
+               "; choose at most " + metres(max_m) + " or a deeper water");
+}
+
+void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  if (std::abs(value_m) <= 0.5 * side_m) return;
+  addRange(issues, path,
+           metres(value_m) + " lies outside of the water; choose " + core::formatNumber(-0.5 * side_m) + " to " +
+               metres(0.5 * side_m));
+}
+
+void checkPatch(double shift_m, double scale, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  const double reach_m = 0.5 * side_m * (1.0 - scale);
+  if (std::abs(shift_m) <= reach_m + kEdgeToleranceRatio * side_m) return;
+  addRange(issues, path,
+           metres(shift_m) + " pushes the particle patch over the edge of the water; choose " +
+               core::formatNumber(reach_m > 0 ? -reach_m : 0) + " to " + metres(reach_m) + " or a smaller patch_scale");
+}
+
+void checkText(const std::string& text, std::size_t max_bytes, const std::string& path,
+               std::vector<FieldIssue>& issues) {
+  if (text.size() > max_bytes) {
+    addRange(issues, path,
+             std::to_string(text.size()) + " bytes are more than " + std::to_string(max_bytes) + "; shorten the text");
+  }
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = core::utf8SequenceLength(text, at);
+    if (length == 0) {
+      addRange(issues, path, "byte " + std::to_string(at) + " is no UTF-8; save the file as UTF-8");
+      return;
+    }
+    at += length;
+  }
+}
+
+void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  if (!scene.has_wave() && !scene.has_particles()) {
+    addAbsent(issues, "wave", "missing, and so is particles; a scene needs at least one of them: add \"wave {}\"");
+  }
+  if (scene.has_coupling() && !scene.has_wave()) {
+    addAbsent(issues, "coupling", "needs a wave; add \"wave {}\" or remove coupling");
+  }
+  if (scene.has_coupling() && !scene.has_particles()) {
+    addAbsent(issues, "coupling", "needs particles; add \"particles {}\" or remove coupling");
+  }
+  if (scene.has_foam() && !scene.has_particles() && !scene.foam().surface()) {
+    addAbsent(
+        issues, "foam",
+        "needs particles, or a field on the surface; add \"particles {}\", say \"surface: true\" where there is a "
+        "wave, or remove foam");
+  }
+  if (scene.foam().surface() && !scene.has_wave()) {
+    addAbsent(issues, "foam.surface", "needs a wave; add \"wave {}\" or remove surface");
+  }
+  if (scene.coupling().patch_follow() == v1::PATCH_FOLLOW_BOAT && !scene.has_boats()) {
+    addAbsent(issues, "coupling.patch_follow",
+              "PATCH_FOLLOW_BOAT needs boats; add \"boats {}\" or follow something else");
+  }
+  if (scene.has_wave()) return;
+  const auto needsWave = [&](const char* path, const std::string& part) {
+    addAbsent(issues, path, "needs a wave; add \"wave {}\" or remove " + part);
+  };
+  if (scene.obstacles_size() > 0) needsWave("obstacles[0]", "the obstacles");
+  if (scene.beaches_size() > 0) needsWave("beaches[0]", "the beaches");
+  if (scene.has_storm()) needsWave("storm", "storm");
+}
+
+void checkCount(int count, int max_count, const std::string& path, const char* what, std::vector<FieldIssue>& issues) {
+  if (count <= max_count) return;
+  addRange(issues, path + "[" + std::to_string(max_count) + "]",
+           std::to_string(count) + " " + what + " are more than " + std::to_string(max_count) + "; remove some");
+}
+
+void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  checkCount(scene.obstacles_size(), kSceneObstacleMaxCount, "obstacles", "obstacles", issues);
+  checkCount(scene.beaches_size(), kSceneBeachMaxCount, "beaches", "beaches", issues);
+  checkCount(scene.boats().boats_size(), static_cast<int>(core::kMaxBoats), "boats.boats", "boats", issues);
+  for (int i = 0; i < scene.obstacles_size(); ++i) {
+    if (scene.obstacles(i).shape_case() != v1::Obstacle::SHAPE_NOT_SET) continue;
+    issues.push_back({v1::REJECT_REASON_MALFORMED, "obstacles[" + std::to_string(i) + "]",
+                      "has no shape; say what stands there: \"rock {}\" or \"breakwater {}\""});
+  }
+}
+
+std::string eventPrefix(int index) {
+  return "events[" + std::to_string(index) + "].";
+}
+
+void checkEffectPart(const v1::TimedEvent& event, const std::string& prefix, std::vector<FieldIssue>& issues) {
+  const v1::Effect& effect = event.effect();
+  if (effect.effect_case() == v1::Effect::EFFECT_NOT_SET) {
+    issues.push_back({v1::REJECT_REASON_MALFORMED, prefix + "effect",
+                      "missing; say what happens: \"effect { splash {} }\" or \"effect { breaking_wave {} }\""});
+  }
+}
+
+void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, const std::string& prefix,
+                       std::vector<FieldIssue>& issues) {
+  const double tick_s = 1.0 / scene.tick_rate_hz();
+  if (event.every_s() > 0 && event.every_s() < tick_s) {
+    addRange(issues, prefix + "every_s",
+             core::formatQuantity(event.every_s(), "s") + " is shorter than a tick of " +
+                 core::formatQuantity(tick_s, "s") + "; choose 0 (once) or at least a tick");
+  }
+  if (event.effect().effect_case() == v1::Effect::EFFECT_NOT_SET) return;
+  const core::Effect effect = event.effect().has_splash() ? core::Effect(toCore(event.effect().splash()))
+                                                          : core::Effect(toCore(event.effect().breaking_wave()));
+  for (FieldIssue& issue : checkEffect(effect, scene)) {
+    issue.path = prefix + "effect." + issue.path;
+    issues.push_back(std::move(issue));
+  }
+}
+
+/// The side of the water that a wave from there runs along. A wave in a direction may run along either.
+double sideAlong(core::Side side, const WaterExtents& water) {
+  if (side == core::Side::kPlusX || side == core::Side::kMinusX) return water.side_x_m;
+  if (side == core::Side::kPlusZ || side == core::Side::kMinusZ) return water.side_z_m;
+  return water.shorterSide_m();
+}
+
+}  // namespace
+
+WaterExtents waterExtentsOf(const v1::Scene& scene) {
+  if (scene.has_wave()) return {scene.wave().side_m(), scene.wave().side_m(), scene.wave().depth_m()};
+  const v1::ParticleScene& p = scene.particles();
+  const double width_m = p.box_width_m() > 0 ? p.box_width_m() : p.box_side_m();
+  const double area_m2 = p.box_side_m() * p.fill_x_ratio() * width_m * p.fill_z_ratio();
+  return {p.box_side_m(), width_m, p.layers_count() * std::sqrt(area_m2 * p.layers_count() / std::max(p.count(), 1u))};
+}
+
+bool isSceneName(const std::string& name) {
+  const char* const allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  return !name.empty() && name.size() <= kNameMaxBytes && name.find_first_not_of(allowed) == std::string::npos;
+}
+
+std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  const bool is_splash = std::holds_alternative<core::Splash>(effect);
+  const WaterExtents water = waterExtentsOf(scene);
+  const double depth_m = water.depth_m;
+  if (is_splash) {
+    const core::Splash& splash = std::get<core::Splash>(effect);
+    checkPosition(splash.x_m, water.side_x_m, "splash.x_m", issues);
+    checkPosition(splash.z_m, water.side_z_m, "splash.z_m", issues);
+    const double max_radius_m = 0.5 * water.shorterSide_m();
+    if (splash.radius_m > max_radius_m) {
+      addRange(
+          issues, "splash.radius_m",
+          metres(splash.radius_m) + " is more than half the side of the water; choose at most " + metres(max_radius_m));
+    }
+    checkHeight(splash.depth_m, depth_m, "splash.depth_m", issues);
+  } else {
+    const core::BreakingWave& wave = std::get<core::BreakingWave>(effect);
+    checkHeight(wave.amplitude_m, depth_m, "breaking_wave.amplitude_m", issues);
+    const double side_m = sideAlong(wave.side, water);
+    if (wave.length_m > side_m) {
+      addRange(issues, "breaking_wave.length_m",
+               metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m));
+    }
+  }
+  return issues;
+}
+
+std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  if (!isSceneName(scene.name())) {
+    addRange(
+        issues, "name",
+        "\"" + core::cleanText(scene.name(), kNameMaxBytes) +
+            "\" is no name; use 1 to 64 letters, digits, '_' and '-' (the file's name counts where it is left out)");
+  }
+  checkText(scene.title(), kTitleMaxBytes, "title", issues);
+  checkText(scene.description(), kDescriptionMaxBytes, "description", issues);
+  checkParts(scene, issues);
+  checkLists(scene, issues);
+  if (scene.events_size() > kSceneEventMaxCount) {
+    addRange(issues, "events[" + std::to_string(kSceneEventMaxCount) + "]",
+             std::to_string(scene.events_size()) + " events are more than " + std::to_string(kSceneEventMaxCount) +
+                 "; remove some, or repeat one with every_s");
+  }
+  for (int i = 0; i < scene.events_size(); ++i) {
+    checkEffectPart(scene.events(i), eventPrefix(i), issues);
+  }
+  return issues;
+}
+
+std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  // The range is 3 to 5; the lattice needs a point under the particle, so it cannot be even.
+  if (scene.coupling().lattice_count() == 4) addRange(issues, "coupling.lattice_count", "4 is even; choose 3 or 5");
+  if (scene.has_particles()) {
+    const v1::ParticleScene& particles = scene.particles();
+    const double side_m = scene.has_wave() ? scene.wave().side_m() : particles.box_side_m();
+    checkPatch(particles.patch_shift_x_m(), particles.patch_scale(), side_m, "particles.patch_shift_x_m", issues);
+    checkPatch(particles.patch_shift_z_m(), particles.patch_scale(), side_m, "particles.patch_shift_z_m", issues);
+  }
+  for (FieldIssue& issue : checkWater(scene)) issues.push_back(std::move(issue));
+  for (int i = 0; i < scene.events_size(); ++i) checkEventNumbers(scene.events(i), scene, eventPrefix(i), issues);
+  return issues;
+}
+
+}  // namespace spindrift::scene

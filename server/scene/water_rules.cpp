@@ -1,0 +1,261 @@
+// Rules between the water and what stands and floats in it: sides, sponge, obstacles, beaches, boats.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <spindrift/core/text.h>
+#include <spindrift/scene/scene_rules.h>
+
+namespace spindrift::scene {
+namespace {
+
+/// A boat longer than this share of the water's side would have no water left to sail.
+constexpr double kMaxBoatSideRatio = 0.25;
+/// Absorbs the rounding of positions that lie exactly on an edge.
+constexpr double kEdgeToleranceRatio = 1e-9;
+
+std::string metres(double value) {
+  return core::formatQuantity(value, "m");
+}
+
+std::string indexed(const char* list, int index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+/// A rectangle seen from above; half_z along its heading's left, heading from +x toward +z.
+struct Footprint {
+  double x_m, z_m;
+  double half_length_m, half_width_m;
+  double cosine, sine;
+
+  Footprint(double x, double z, double length_m, double width_m, double heading_deg)
+      : x_m(x),
+        z_m(z),
+        half_length_m(length_m / 2),
+        half_width_m(width_m / 2),
+        cosine(std::cos(heading_deg * std::numbers::pi / 180)),
+        sine(std::sin(heading_deg * std::numbers::pi / 180)) {}
+
+  [[nodiscard]] double reachX_m() const { return std::abs(cosine) * half_length_m + std::abs(sine) * half_width_m; }
+  [[nodiscard]] double reachZ_m() const { return std::abs(sine) * half_length_m + std::abs(cosine) * half_width_m; }
+  /// Half of its extent along a direction.
+  [[nodiscard]] double reach_m(double direction_x, double direction_z) const {
+    return std::abs(direction_x * cosine + direction_z * sine) * half_length_m +
+           std::abs(direction_z * cosine - direction_x * sine) * half_width_m;
+  }
+};
+
+/// Separating axes: two rectangles are apart where their extents along one of their sides are.
+bool overlap(const Footprint& a, const Footprint& b) {
+  const std::array<std::array<double, 2>, 4> axes = {
+      {{a.cosine, a.sine}, {-a.sine, a.cosine}, {b.cosine, b.sine}, {-b.sine, b.cosine}}};
+  return std::ranges::none_of(axes, [&](const std::array<double, 2>& axis) {
+    const double distance_m = std::abs((b.x_m - a.x_m) * axis[0] + (b.z_m - a.z_m) * axis[1]);
+    return distance_m >= a.reach_m(axis[0], axis[1]) + b.reach_m(axis[0], axis[1]);
+  });
+}
+
+bool overlap(const Footprint& a, const v1::Rock& rock) {
+  const double dx = rock.x_m() - a.x_m;
+  const double dz = rock.z_m() - a.z_m;
+  const double along_m = std::max(0.0, std::abs(dx * a.cosine + dz * a.sine) - a.half_length_m);
+  const double across_m = std::max(0.0, std::abs(dz * a.cosine - dx * a.sine) - a.half_width_m);
+  return std::hypot(along_m, across_m) < rock.radius_m();
+}
+
+Footprint footprintOf(const core::Boat& boat) {
+  return {boat.x_m, boat.z_m, boat.length_m, boat.beam_m, boat.heading_deg};
+}
+
+Footprint footprintOf(const v1::Breakwater& wall) {
+  return {wall.x_m(), wall.z_m(), wall.length_m(), wall.width_m(), wall.heading_deg()};
+}
+
+/// A thing that reaches `reach_m` to both sides of its centre has to lie in the water along one axis.
+void checkInside(double centre_m, double reach_m, double side_m, const std::string& path,
+                 std::vector<FieldIssue>& issues) {
+  const double max_m = 0.5 * side_m - reach_m;
+  if (std::abs(centre_m) <= max_m + kEdgeToleranceRatio * side_m) return;
+  if (max_m <= 0) {
+    addRange(issues, path,
+             "is " + metres(2 * reach_m) + " wide along this axis, more than the water's side of " + metres(side_m) +
+                 "; make it smaller");
+    return;
+  }
+  addRange(issues, path,
+           metres(centre_m) + " puts it over the edge of the water; choose " + core::formatNumber(-max_m) + " to " +
+               metres(max_m));
+}
+
+v1::WaveBoundary boundaryOf(const v1::WaveScene& wave, v1::Side side) {
+  switch (side) {
+    case v1::SIDE_MINUS_X:
+      return wave.boundary_minus_x();
+    case v1::SIDE_PLUS_Z:
+      return wave.boundary_plus_z();
+    case v1::SIDE_MINUS_Z:
+      return wave.boundary_minus_z();
+    default:
+      return wave.boundary_plus_x();
+  }
+}
+
+void checkPair(v1::WaveBoundary minus, v1::WaveBoundary plus, const char* minus_path, const char* plus_path,
+               std::vector<FieldIssue>& issues) {
+  const bool minus_periodic = minus == v1::WAVE_BOUNDARY_PERIODIC;
+  if (minus_periodic == (plus == v1::WAVE_BOUNDARY_PERIODIC)) return;
+  const char* periodic_path = minus_periodic ? minus_path : plus_path;
+  const char* other_path = minus_periodic ? plus_path : minus_path;
+  addRange(issues, std::string("wave.") + other_path,
+           v1::WaveBoundary_Name(minus_periodic ? plus : minus) + " is not periodic, but " + periodic_path +
+               " is (also where it is left out); make both WAVE_BOUNDARY_PERIODIC or neither");
+}
+
+void checkSides(const v1::WaveScene& wave, std::vector<FieldIssue>& issues) {
+  checkPair(wave.boundary_minus_x(), wave.boundary_plus_x(), "boundary_minus_x", "boundary_plus_x", issues);
+  checkPair(wave.boundary_minus_z(), wave.boundary_plus_z(), "boundary_minus_z", "boundary_plus_z", issues);
+  const bool absorbs =
+      std::ranges::any_of(std::array{v1::SIDE_PLUS_X, v1::SIDE_MINUS_X, v1::SIDE_PLUS_Z, v1::SIDE_MINUS_Z},
+                          [&](v1::Side side) { return boundaryOf(wave, side) == v1::WAVE_BOUNDARY_ABSORB; });
+  if (absorbs && wave.sponge_width_m() > 0.5 * wave.side_m()) {
+    addRange(issues, "wave.sponge_width_m",
+             metres(wave.sponge_width_m()) + " is more than half the side of the water of " + metres(wave.side_m()) +
+                 "; choose at most " + metres(0.5 * wave.side_m()));
+  }
+}
+
+void checkObstacles(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  const double side_m = scene.wave().side_m();
+  for (int i = 0; i < scene.obstacles_size(); ++i) {
+    const v1::Obstacle& obstacle = scene.obstacles(i);
+    if (obstacle.has_rock()) {
+      const std::string prefix = indexed("obstacles", i) + ".rock.";
+      if (obstacle.rock().radius_m() > 0.5 * side_m) {
+        addRange(issues, prefix + "radius_m",
+                 metres(obstacle.rock().radius_m()) + " is more than half the side of the water; choose at most " +
+                     metres(0.5 * side_m));
+        continue;
+      }
+      checkInside(obstacle.rock().x_m(), obstacle.rock().radius_m(), side_m, prefix + "x_m", issues);
+      checkInside(obstacle.rock().z_m(), obstacle.rock().radius_m(), side_m, prefix + "z_m", issues);
+    } else if (obstacle.has_breakwater()) {
+      const std::string prefix = indexed("obstacles", i) + ".breakwater.";
+      const Footprint wall = footprintOf(obstacle.breakwater());
+      checkInside(wall.x_m, wall.reachX_m(), side_m, prefix + "x_m", issues);
+      checkInside(wall.z_m, wall.reachZ_m(), side_m, prefix + "z_m", issues);
+    }
+  }
+}
+
+void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  const v1::WaveScene& wave = scene.wave();
+  for (int i = 0; i < scene.beaches_size(); ++i) {
+    const v1::Beach& beach = scene.beaches(i);
+    const std::string prefix = indexed("beaches", i) + ".";
+    if (beach.side() == v1::SIDE_DIRECTION) {
+      addRange(issues, prefix + "side", "SIDE_DIRECTION is for waves; a beach lies along one of the four sides");
+      continue;
+    }
+    if (boundaryOf(wave, beach.side()) == v1::WAVE_BOUNDARY_PERIODIC) {
+      addRange(issues, prefix + "side",
+               v1::Side_Name(beach.side()) +
+                   " is periodic, which has no shore; make it WAVE_BOUNDARY_REFLECT or "
+                   "WAVE_BOUNDARY_ABSORB, and the opposite side too");
+    }
+    for (int k = 0; k < i; ++k) {
+      if (scene.beaches(k).side() != beach.side()) continue;
+      addRange(issues, prefix + "side",
+               v1::Side_Name(beach.side()) + " has " + indexed("beaches", k) + " already; one a side");
+    }
+    if (beach.width_m() > wave.side_m()) {
+      addRange(
+          issues, prefix + "width_m",
+          metres(beach.width_m()) + " is more than the side of the water; choose at most " + metres(wave.side_m()));
+    }
+    if (beach.shore_depth_m() > wave.depth_m()) {
+      addRange(issues, prefix + "shore_depth_m",
+               metres(beach.shore_depth_m()) + " is deeper than the water of " + metres(wave.depth_m()) +
+                   "; choose at most " + metres(wave.depth_m()));
+    }
+  }
+}
+
+void checkHull(const core::Boat& boat, const WaterExtents& water, const std::string& prefix,
+               std::vector<FieldIssue>& issues) {
+  const double max_length_m = kMaxBoatSideRatio * water.shorterSide_m();
+  if (boat.length_m > max_length_m) {
+    addRange(issues, prefix + "length_m",
+             metres(boat.length_m) + " is more than a quarter of the water's side of " + metres(water.shorterSide_m()) +
+                 "; choose at most " + metres(max_length_m));
+  }
+  if (boat.beam_m > boat.length_m) {
+    addRange(issues, prefix + "beam_m",
+             metres(boat.beam_m) + " is more than the boat's length; choose at most " + metres(boat.length_m));
+  }
+  const double draught_m = boat.density_ratio * boat.height_m;
+  if (draught_m >= water.depth_m) {
+    addRange(issues, prefix + "height_m",
+             metres(boat.height_m) + " at a density of " + core::formatNumber(boat.density_ratio) + " draws " +
+                 metres(draught_m) + ", and the water is " + metres(water.depth_m) + " deep; choose less than " +
+                 metres(water.depth_m / boat.density_ratio) + " or a lighter boat");
+  }
+}
+
+void checkBoats(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  const v1::BoatsScene& boats = scene.boats();
+  if (boats.boats_size() > static_cast<int>(boats.capacity_count())) {
+    addRange(issues, indexed("boats.boats", static_cast<int>(boats.capacity_count())),
+             std::to_string(boats.boats_size()) + " boats are more than the capacity_count of " +
+                 std::to_string(boats.capacity_count()) + "; remove some or raise it");
+  }
+  const int count = std::min(boats.boats_size(), static_cast<int>(core::kMaxBoats));
+  for (int i = 0; i < count; ++i) {
+    const core::Boat boat = toCore(boats.boats(i));
+    const std::string prefix = indexed("boats.boats", i) + ".";
+    for (FieldIssue& issue : checkBoat(boat, scene, prefix)) issues.push_back(std::move(issue));
+    for (int k = 0; k < i; ++k) {
+      if (!overlap(footprintOf(boat), footprintOf(toCore(boats.boats(k))))) continue;
+      addRange(issues, prefix + "x_m",
+               metres(boat.x_m) + ", z " + metres(boat.z_m) + " overlaps " + indexed("boats.boats", k) +
+                   "; move one of them");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix) {
+  std::vector<FieldIssue> issues;
+  const WaterExtents water = waterExtentsOf(scene);
+  checkHull(boat, water, prefix, issues);
+  const Footprint hull = footprintOf(boat);
+  checkInside(boat.x_m, hull.reachX_m(), water.side_x_m, prefix + "x_m", issues);
+  checkInside(boat.z_m, hull.reachZ_m(), water.side_z_m, prefix + "z_m", issues);
+  for (int i = 0; i < scene.obstacles_size(); ++i) {
+    const v1::Obstacle& obstacle = scene.obstacles(i);
+    const bool hits = obstacle.has_rock()         ? overlap(hull, obstacle.rock())
+                      : obstacle.has_breakwater() ? overlap(hull, footprintOf(obstacle.breakwater()))
+                                                  : false;
+    if (!hits) continue;
+    addRange(issues, prefix + "x_m",
+             metres(boat.x_m) + ", z " + metres(boat.z_m) + " lies in " + indexed("obstacles", i) +
+                 "; choose a place in open water");
+  }
+  return issues;
+}
+
+std::vector<FieldIssue> checkWater(const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  if (scene.has_wave()) {
+    checkSides(scene.wave(), issues);
+    checkObstacles(scene, issues);
+    checkBeaches(scene, issues);
+  }
+  if (scene.has_boats()) checkBoats(scene, issues);
+  return issues;
+}
+
+}  // namespace spindrift::scene

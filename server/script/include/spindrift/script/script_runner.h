@@ -1,0 +1,50 @@
+// Runs a script's steps one after another against a server and says what held.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/net/client.h>
+#include <spindrift/v1/script.pb.h>
+
+namespace spindrift::script {
+
+struct StepReport {
+  int index = 0;  ///< of the script's steps
+  std::string client;
+  std::string what;  ///< "command splash", "surface", ...
+  std::string note;  ///< the script's own
+  bool passed = false;
+  std::string detail;  ///< what was seen; for a failure also what was wanted
+  double took_s = 0.0;
+};
+
+struct ClientReport {
+  std::string name;
+  std::uint64_t received_bytes = 0;
+  std::uint64_t malformed_count = 0;
+  struct Layer {
+    std::string name;
+    std::uint64_t frame_count = 0;
+    std::uint64_t state_count = 0;  ///< different states that they showed
+    double longest_gap_s = 0.0;
+  };
+  std::vector<Layer> layers;
+  std::size_t answer_count = 0;
+  double answer_p50_ms = 0.0;  ///< from sending a command to its answer
+  double answer_p99_ms = 0.0;
+};
+
+struct ScriptReport {
+  std::vector<StepReport> steps;  ///< those that were run
+  std::vector<ClientReport> clients;
+  int step_count = 0;  ///< those that there are
+  [[nodiscard]] bool passed() const;
+};
+
+/// `script` is loadScript()'s. Without a server at the URL the first step fails.
+ScriptReport runScript(const v1::Script& script, const net::ClientUrl& url);
+
+}  // namespace spindrift::script

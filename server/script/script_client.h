@@ -1,0 +1,100 @@
+// One client of a script: its connection, and what it has seen so far. Everything runs on the thread that drives the
+// pool.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <spindrift/net/client.h>
+#include <spindrift/v1/script.pb.h>
+#include <spindrift/v1/wire.pb.h>
+
+namespace spindrift::script {
+
+class ScriptClient {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// What came of a command.
+  struct Answer {
+    std::optional<v1::Ack> ack;
+    std::optional<v1::Reject> reject;
+  };
+  /// Of one layer, diagnostics included.
+  struct LayerTally {
+    std::uint64_t frame_count = 0;
+    std::uint64_t state_count = 0;  ///< different states of the water that the frames showed: a paused room repeats its
+    std::uint64_t state_id = 0;     ///< of the last frame
+    std::optional<Clock::time_point> last;  ///< or the subscription
+    double longest_gap_s = 0.0;             ///< since the subscription or the last resetGap()
+    double longest_gap_ever_s = 0.0;
+  };
+
+  /// `setup` outlives it; so does the pool.
+  ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, net::ClientUrl url);
+
+  /// Hello and the subscriptions follow by themselves. Again after the end: as the same person.
+  void connect();
+  void disconnect(bool vanish);
+  void send(const v1::ClientMessage& message);
+  void subscribe(const v1::Subscribe& subscribe);
+  /// Subscribes, plain, unless it is subscribed already.
+  void needLayer(v1::Layer layer);
+  /// Sends under a fresh number, which it returns.
+  std::uint64_t command(v1::Command command);
+
+  [[nodiscard]] const std::string& name() const { return setup_.name(); }
+  [[nodiscard]] bool wasConnected() const { return connection_ != nullptr; }
+  [[nodiscard]] bool isWelcome() const { return welcome_.has_value() && !end_; }
+  /// Why the connection ended, or never was.
+  struct End {
+    std::uint16_t code = 0;
+    std::string reason;
+  };
+  [[nodiscard]] const std::optional<End>& end() const { return end_; }
+  [[nodiscard]] const Answer* answerTo(std::uint64_t command_id) const;
+  [[nodiscard]] const v1::LayerFrame* newest(v1::Layer layer) const;
+  [[nodiscard]] const LayerTally& tally(v1::Layer layer) const { return tallies_[static_cast<std::size_t>(layer)]; }
+  [[nodiscard]] const v1::People& people() const { return people_; }
+  [[nodiscard]] std::uint64_t eventCount(v1::RoomEventKind kind) const;
+  /// The longest gap so far, the open one at the end included; a new measurement begins.
+  double takeLongestGap_s(v1::Layer layer);
+
+  // For the report.
+  [[nodiscard]] std::uint64_t receivedBytes() const { return received_bytes_; }
+  [[nodiscard]] const std::vector<double>& answerTimes_ms() const { return answer_times_ms_; }
+  [[nodiscard]] std::uint64_t malformedCount() const { return malformed_count_; }
+
+ private:
+  void take(core::ByteView bytes);
+  void frame(v1::Layer layer, std::uint64_t state_id);
+
+  const v1::ScriptClient& setup_;
+  net::ClientPool& pool_;
+  const net::ClientUrl url_;
+  std::shared_ptr<net::Client> connection_;
+  std::uint64_t connection_number_ = 0;  ///< callbacks of an earlier connection say nothing any more
+  std::optional<v1::Welcome> welcome_;
+  std::optional<End> end_;
+  std::string refusal_;
+  std::string resume_key_;
+  std::map<v1::Layer, v1::Subscribe> subscriptions_;
+  std::uint64_t last_command_id_ = 0;
+  std::map<std::uint64_t, Clock::time_point> sent_at_;
+  std::map<std::uint64_t, Answer> answers_;  ///< one a command of the script
+  std::array<std::optional<v1::LayerFrame>, v1::Layer_ARRAYSIZE> newest_;
+  std::array<LayerTally, v1::Layer_ARRAYSIZE> tallies_;
+  v1::People people_;
+  std::map<v1::RoomEventKind, std::uint64_t> events_;
+  std::uint64_t received_bytes_ = 0;
+  std::uint64_t malformed_count_ = 0;
+  std::vector<double> answer_times_ms_;
+};
+
+}  // namespace spindrift::script

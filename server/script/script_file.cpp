@@ -1,0 +1,103 @@
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include <fmt/format.h>
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/text_format.h>
+
+#include <spindrift/script/script_file.h>
+
+namespace spindrift::script {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+class FirstError final : public google::protobuf::io::ErrorCollector {
+ public:
+  explicit FirstError(const std::string& label) : label_(label) {}
+  void AddError(int line, google::protobuf::io::ColumnNumber column, const std::string& message) override {
+    if (text.empty()) text = fmt::format("{}:{}:{}: {}", label_, line + 1, column + 1, message);
+  }
+  std::string text;
+
+ private:
+  const std::string& label_;
+};
+
+/// Empty, or what is wrong with the step.
+std::string checkStep(const v1::ScriptStep& step, const std::set<std::string>& names) {
+  if (!names.contains(step.client())) return "there is no client \"" + step.client() + "\"";
+  if (!std::isfinite(step.at_s()) || step.at_s() < 0) return "at_s has to be 0 or more";
+  switch (step.what_case()) {
+    case v1::ScriptStep::WHAT_NOT_SET:
+      return "it says neither what to do nor what to expect";
+    case v1::ScriptStep::kCommand: {
+      const v1::ScriptCommand& command = step.command();
+      if (command.command().action_case() == v1::Command::ACTION_NOT_SET) return "command.command is empty";
+      if (!command.save_boat().empty() && !command.command().has_spawn_boat()) return "save_boat goes with spawn_boat";
+      if (!command.rejected_field().empty() && command.rejected() == v1::REJECT_REASON_UNSPECIFIED) {
+        return "rejected_field goes with rejected";
+      }
+      return "";
+    }
+    case v1::ScriptStep::kBoat:
+      return step.boat().boat().empty() == (step.boat().boat_id() == 0) ? "name the boat, or give its boat_id" : "";
+    case v1::ScriptStep::kSurface:
+      return step.surface().has_min_m() || step.surface().has_max_m() ? "" : "surface needs min_m or max_m";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+core::Result<v1::Script> parseScript(const std::string& text, const std::string& label) {
+  v1::Script script;
+  FirstError errors(label);
+  google::protobuf::TextFormat::Parser parser;
+  parser.RecordErrorsTo(&errors);
+  if (!parser.ParseFromString(text, &script)) return Error{ErrorCode::kInvalidInput, errors.text};
+  const auto refuse = [&](const std::string& why) { return Error{ErrorCode::kInvalidInput, label + ": " + why}; };
+  if (script.clients_size() == 0) script.add_clients()->set_name("client");
+  if (script.clients_size() > kScriptClientMaxCount) {
+    return refuse(fmt::format("{} clients; at most {}", script.clients_size(), kScriptClientMaxCount));
+  }
+  if (script.steps_size() == 0) return refuse("there are no steps");
+  if (script.steps_size() > kScriptStepMaxCount) {
+    return refuse(fmt::format("{} steps; at most {}", script.steps_size(), kScriptStepMaxCount));
+  }
+  std::set<std::string> names;
+  for (const v1::ScriptClient& client : script.clients()) {
+    if (client.name().empty()) return refuse("every client needs a name");
+    if (!names.insert(client.name()).second) return refuse("two clients are called \"" + client.name() + "\"");
+  }
+  for (int k = 0; k < script.steps_size(); ++k) {
+    v1::ScriptStep& step = *script.mutable_steps(k);
+    if (step.client().empty()) step.set_client(script.clients(0).name());
+    if (const std::string why = checkStep(step, names); !why.empty()) {
+      return refuse(fmt::format("steps[{}]: {}", k, why));
+    }
+  }
+  return script;
+}
+
+core::Result<v1::Script> loadScript(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    return Error{ErrorCode::kUnavailable, "there is no script " + file.string()};
+  }
+  constexpr std::uintmax_t kFileMaxBytes = 4u << 20;
+  if (std::filesystem::file_size(file, error) > kFileMaxBytes) {
+    return Error{ErrorCode::kInvalidInput,
+                 fmt::format("{}: a script has at most {} bytes", file.string(), kFileMaxBytes)};
+  }
+  std::ifstream in(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad()) return Error{ErrorCode::kUnavailable, "the script " + file.string() + " cannot be read"};
+  return parseScript(text, file.string());
+}
+
+}  // namespace spindrift::script

@@ -1,0 +1,51 @@
+// Who may do what: tokens with their roles, and what guests are.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/core/command.h>
+#include <spindrift/core/result.h>
+
+namespace spindrift::service {
+
+/// Shorter tokens could be guessed.
+inline constexpr std::size_t kTokenMinBytes = 16;
+
+struct Grant {
+  core::Role role = core::Role::kViewer;
+  std::optional<std::chrono::system_clock::time_point> expires;  ///< never, where it is not set
+};
+
+/// Immutable once made; any thread.
+class Access {
+ public:
+  /// Without tokens guests are operators: a server for oneself.
+  Access() = default;
+
+  /// Reads the tokens' text: one a line, `ROLE TOKEN [until=2030-01-31T12:00:00Z]`, '#' begins a comment. `guest` is
+  /// what somebody without a token is; nullopt: nobody. Error: kInvalidInput with `label`, line and what is wrong,
+  /// never with a token.
+  static core::Result<Access> parse(std::string_view text, const std::string& label, std::optional<core::Role> guest);
+
+  /// What a token grants, the empty one what a guest may; an error's line says why nothing, without the token.
+  [[nodiscard]] core::Result<Grant> resolve(std::string_view token, std::chrono::system_clock::time_point now) const;
+  /// The token of an `Authorization: Bearer TOKEN` header; empty for an empty header. kInvalidInput for other schemes.
+  static core::Result<std::string> bearerToken(std::string_view authorization);
+
+  [[nodiscard]] std::optional<core::Role> guest() const { return guest_; }
+  [[nodiscard]] std::size_t tokenCount() const { return tokens_.size(); }
+
+ private:
+  struct Token {
+    std::string secret;
+    Grant grant;
+  };
+  std::vector<Token> tokens_;
+  std::optional<core::Role> guest_ = core::Role::kOperator;
+};
+
+}  // namespace spindrift::service

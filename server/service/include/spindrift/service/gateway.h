@@ -1,0 +1,105 @@
+// Between the network and the rooms: what the bytes of a session mean. Implements net::Application; runs on I/O
+// threads.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <spindrift/core/token_bucket.h>
+#include <spindrift/net/server.h>
+#include <spindrift/rooms/encoder_thread.h>
+#include <spindrift/rooms/frame_outlet.h>
+#include <spindrift/rooms/room_outlets.h>
+#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/service/access.h>
+#include <spindrift/service/metrics.h>
+#include <spindrift/service/rest_api.h>
+
+namespace spindrift::service {
+
+struct GatewayOptions {
+  Access access;
+  std::size_t message_max_bytes = 16 * 1024;  ///< as the network has it; told in greetings
+  double messages_per_s = 500.0;              ///< likewise
+  double message_burst_count = 1000.0;        ///< likewise
+  double commands_per_s = 200.0;              ///< token bucket per session; commands beyond it are rejected as BUSY
+  double command_burst_count = 400.0;
+  std::chrono::milliseconds hello_patience{10'000};  ///< sessions without Hello are closed after it
+};
+
+class Gateway final : public net::Application, public rooms::RoomOutlets, public rooms::FrameOutlet {
+ public:
+  /// `sources` outlives the gateway.
+  Gateway(GatewayOptions options, const MetricsSources& sources);
+  /// Before the network starts: whose rooms these are, and who encodes their frames. Both outlive the gateway's use by
+  /// the network, though their threads may have ended.
+  void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
+
+  void serverStarts(net::Hub& hub) override;
+  core::Result<void> acceptSession(const std::string& room) override;
+  void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
+  void sessionMessage(net::SessionId session, core::ByteView message) override;
+  void sessionLevelChanged(net::SessionId session, core::Level level) override;
+  void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
+  void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
+
+  // RoomOutlets
+  /// Greets everybody in the room again; their layers go on.
+  void sceneChanged(const rooms::Room& room) override;
+  void timeChanged(const rooms::Room& room, bool paused, double speed) override;
+  void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
+  void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
+  void peopleChanged(const rooms::Room& room, const v1::People& people) override;
+  void wasReset(const rooms::Room& room) override;
+  void hasRecovered(const rooms::Room& room, const std::string& how) override;
+  void closed(const rooms::Room& room) override;
+  void frameReady(const rooms::Room& room, core::FrameView frame) override;
+  [[nodiscard]] rooms::WatchedLayers watched(const rooms::Room& room, const core::ReducedCounts& counts) const override;
+  [[nodiscard]] std::size_t sessionCount(const rooms::Room& room) const override;
+  [[nodiscard]] std::size_t sessionCount() const override;
+  void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
+  void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) override;
+
+  // FrameOutlet
+  [[nodiscard]] core::LayerDemand demand(const std::string& room, codec::Stream stream,
+                                         std::uint32_t reduced_count) const override;
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
+               std::uint32_t reduced_count) override;
+
+ private:
+  struct Session {
+    std::shared_ptr<rooms::Room> room;
+    std::shared_ptr<const rooms::RoomSnapshot> greeted;  ///< what the last greeting described
+    core::TokenBucket commands;
+    bool said_hello = false;
+    core::Role role = core::Role::kViewer;
+    std::uint32_t person_id = 0;
+  };
+
+  [[nodiscard]] net::Hub& hub() const { return *hub_; }
+  [[nodiscard]] rooms::SimulationThread& simulation() const { return *rooms_; }
+  /// Sends a greeting with the room's state now, and notes that state.
+  void greet(net::SessionId session, const rooms::Room& room);
+  void hello(net::SessionId session, const Session& state, const wire::Hello& hello);
+  void subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe);
+  void command(net::SessionId session, const Session& state, core::Command command);
+  /// Whether the session may send another command now.
+  bool takeCommand(net::SessionId session);
+  void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
+  /// Sends everybody away: the room closes.
+  void dismiss(const rooms::Room& room);
+
+  const GatewayOptions options_;
+  rooms::SimulationThread* rooms_ = nullptr;  ///< set before any session exists
+  rooms::EncoderThread* encoder_ = nullptr;   ///< likewise
+  CommandCounters counters_;
+  RestApi rest_;
+  net::Hub* hub_ = nullptr;  ///< set before any session exists
+  std::mutex mutex_;
+  std::map<net::SessionId, Session> sessions_;
+};
+
+}  // namespace spindrift::service

@@ -1,0 +1,41 @@
+// What the program counts, and /metrics in Prometheus' text format.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include <spindrift/net/server.h>
+#include <spindrift/rooms/encoder_thread.h>
+#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/v1/wire.pb.h>
+
+namespace spindrift::service {
+
+/// Answers to commands since the start, from sessions and requests alike. Thread-safe.
+class CommandCounters {
+ public:
+  void applied() { ++applied_count_; }
+  void rejected(v1::RejectReason reason) { ++rejected_count_[static_cast<std::size_t>(reason)]; }
+  [[nodiscard]] std::uint64_t appliedCount() const { return applied_count_; }
+  [[nodiscard]] std::uint64_t rejectedCount(v1::RejectReason reason) const {
+    return rejected_count_[static_cast<std::size_t>(reason)];
+  }
+
+ private:
+  std::atomic<std::uint64_t> applied_count_{0};
+  std::array<std::atomic<std::uint64_t>, v1::RejectReason_ARRAYSIZE> rejected_count_{};
+};
+
+/// Parts of the server that start after the gateway; null until then.
+struct MetricsSources {
+  std::atomic<const net::Server*> network{nullptr};
+  std::atomic<const rooms::EncoderThread*> encoder{nullptr};
+};
+
+/// The whole page. Times are seconds, sizes bytes; counters end in _total.
+std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
+                        const MetricsSources& sources);
+
+}  // namespace spindrift::service

@@ -1,0 +1,24 @@
+// What a room's state messages are about: of each topic only the newest waits for a client.
+#pragma once
+
+#include <string>
+
+#include <spindrift/net/server.h>
+
+namespace spindrift::service::topic {
+
+// A greeting says again what these say.
+inline const net::StateTopic kGreeting{.name = "greeting", .scope = net::StateTopic::Scope::kWhole};
+inline const net::StateTopic kRoomState{.name = "room_state", .scope = net::StateTopic::Scope::kPart};
+inline const net::StateTopic kBoats{.name = "boats", .scope = net::StateTopic::Scope::kPart};
+/// As many as the scene has live parameters.
+inline net::StateTopic ofParameter(const std::string& path) {
+  return {.name = "parameter:" + path, .scope = net::StateTopic::Scope::kPart};
+}
+
+inline const net::StateTopic kPeople{.name = "people"};
+inline const net::StateTopic kLevel{.name = "level"};
+inline const net::StateTopic kReset{.name = "reset"};
+inline const net::StateTopic kRecovered{.name = "recovered"};
+
+}  // namespace spindrift::service::topic

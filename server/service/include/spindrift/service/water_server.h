@@ -1,0 +1,59 @@
+// A whole server in one object: simulation, encoder, network, in the order they start and the reverse they stop.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/device.h>
+#include <spindrift/net/server.h>
+#include <spindrift/rooms/encoder_thread.h>
+#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/service/gateway.h>
+
+namespace spindrift::service {
+
+struct WaterServerOptions {
+  gpu::DeviceChoice device;
+  net::ServerOptions network;
+  std::vector<rooms::RoomSetup> rooms;  ///< at least one; the first is the default room
+  rooms::RoomRules rules;               ///< what they have in common
+  std::size_t max_room_count = 8;
+  Access access;
+  std::chrono::milliseconds hello_patience{10'000};  ///< sessions that do not say Hello are closed after it
+};
+
+class WaterServer {
+ public:
+  /// Errors: the device's, the rooms', the port's.
+  static core::Result<std::unique_ptr<WaterServer>> start(WaterServerOptions options);
+  ~WaterServer();
+  WaterServer(const WaterServer&) = delete;
+  WaterServer& operator=(const WaterServer&) = delete;
+
+  /// Sessions are closed with 1001, then the simulation ends. Idempotent.
+  void stop();
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] const std::string& deviceLine() const { return simulation_->deviceLine(); }
+  /// Of the default room, over the last second.
+  [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
+  [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
+  [[nodiscard]] const rooms::EncoderThread& encoder() const { return *encoder_; }
+  /// One line a room; filled by stop().
+  [[nodiscard]] const std::vector<std::string>& summary() const { return simulation_->summary(); }
+
+ private:
+  WaterServer() = default;
+
+  MetricsSources sources_;
+  std::unique_ptr<Gateway> gateway_;
+  std::unique_ptr<rooms::EncoderThread> encoder_;
+  std::unique_ptr<rooms::SimulationThread> simulation_;
+  std::unique_ptr<net::Server> network_;
+  std::uint16_t port_ = 0;
+};
+
+}  // namespace spindrift::service

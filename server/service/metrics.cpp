@@ -1,0 +1,162 @@
+#include <cctype>
+
+#include <fmt/format.h>
+
+#include <spindrift/service/metrics.h>
+
+namespace spindrift::service {
+namespace {
+
+/// Collects samples under their names: all samples of one name stand together, as the format wants.
+class Page {
+ public:
+  void head(const char* name, const char* type, const char* help) {
+    text_ += fmt::format("# HELP spindrift_{} {}\n# TYPE spindrift_{} {}\n", name, help, name, type);
+    name_ = name;
+  }
+  /// `labels` as in `room="main"`; values of labels are names of ours, without quotes or backslashes.
+  template <typename Number>
+  void sample(const std::string& labels, Number value) {
+    text_ += labels.empty() ? fmt::format("spindrift_{} {}\n", name_, value)
+                            : fmt::format("spindrift_{}{{{}}} {}\n", name_, labels, value);
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+  std::string name_;
+};
+
+/// "REJECT_REASON_OUT_OF_RANGE" -> "out_of_range".
+std::string shortName(const std::string& name, std::size_t prefix_bytes) {
+  std::string out = name.substr(prefix_bytes);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+struct RoomSample {
+  std::string label;
+  std::size_t session_count;
+  int person_count;
+  std::shared_ptr<const rooms::RoomVitals> vitals;
+};
+
+void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
+  const auto each = [&](const char* name, const char* type, const char* help, auto&& value) {
+    page.head(name, type, help);
+    for (const RoomSample& room : rooms) page.sample(room.label, value(room));
+  };
+  using Sample = const RoomSample&;
+  each("room_ticks_total", "counter", "Ticks since the room opened.", [](Sample r) { return r.vitals->tick; });
+  each("room_real_time_factor", "gauge", "Simulated seconds per second over the last second; 0 while paused or asleep.",
+       [](Sample r) { return r.vitals->diagnostics.real_time_factor; });
+  each("room_asleep", "gauge", "1 while nobody is connected and the scene sleeps then.",
+       [](Sample r) { return r.vitals->asleep ? 1 : 0; });
+  each("room_step_seconds", "gauge", "Time of a tick on the simulation thread, mean of the last quarter second.",
+       [](Sample r) { return r.vitals->diagnostics.step_ms / 1e3; });
+  each("room_substeps", "gauge", "Substeps a tick.", [](Sample r) { return r.vitals->diagnostics.substeps_count; });
+  each("room_particles", "gauge", "Particles now.", [](Sample r) { return r.vitals->diagnostics.particle_count; });
+  each("room_boats", "gauge", "Boats on the water.", [](Sample r) { return r.vitals->diagnostics.boat_count; });
+  each("room_sessions", "gauge", "Sessions in the room.", [](Sample r) { return r.session_count; });
+  each("room_people", "gauge", "People in the room, those away included.", [](Sample r) { return r.person_count; });
+  each("room_command_queue", "gauge", "Commands that wait for the next tick.",
+       [](Sample r) { return r.vitals->waiting_command_count; });
+  each("room_frames_dropped_total", "counter", "Frames not read back because earlier ones were still on their way.",
+       [](Sample r) { return r.vitals->dropped_frame_count; });
+  each("room_recovered_total", "counter", "Times the guard put the water back to its last good state.",
+       [](Sample r) { return r.vitals->diagnostics.recovered_count; });
+  each("room_nonfinite_total", "counter", "Numbers that were not finite, seen by the guard.",
+       [](Sample r) { return r.vitals->diagnostics.nonfinite_count; });
+  each("room_escaped_total", "counter", "Particles that left the domain, seen by the guard.",
+       [](Sample r) { return r.vitals->diagnostics.escaped_count; });
+  page.head("room_pass_seconds", "gauge", "Device time of a pass in a tick, where the device can tell.");
+  for (const RoomSample& room : rooms) {
+    for (const auto& pass : room.vitals->diagnostics.passes) {
+      page.sample(fmt::format("{},pass=\"{}\"", room.label, pass.name), pass.ms / 1e3);
+    }
+  }
+}
+
+void writeNetwork(Page& page, const net::ServerStats& stats) {
+  const auto one = [&](const char* name, const char* type, const char* help, std::uint64_t value) {
+    page.head(name, type, help);
+    page.sample("", value);
+  };
+  one("sessions", "gauge", "WebSocket sessions open now.", stats.open_session_count);
+  one("sessions_accepted_total", "counter", "WebSocket sessions since the start.", stats.accepted_session_count);
+  one("sent_bytes_total", "counter", "Bytes of messages sent, without WebSocket headers.", stats.sent_bytes_count);
+  one("sent_frames_total", "counter", "Layer frames sent.", stats.sent_frame_count);
+  one("dropped_frames_total", "counter", "Layer frames that a newer one replaced before they were sent.",
+      stats.dropped_frame_count);
+  one("evicted_sessions_total", "counter", "Sessions that did not read: a stalled write or a full control queue.",
+      stats.evicted_session_count);
+  one("lowered_levels_total", "counter", "Times a session was given a lower level of detail.",
+      stats.lowered_level_count);
+  one("raised_levels_total", "counter", "Times a session was given a higher level of detail again.",
+      stats.raised_level_count);
+  one("delayed_messages_total", "counter", "Messages that waited for the rate of their address.",
+      stats.delayed_message_count);
+  one("control_queue", "gauge", "Control messages that wait to be sent, over all sessions.",
+      stats.waiting_control_count);
+  one("frame_queue", "gauge", "Layer frames that wait to be sent, over all sessions.", stats.waiting_frame_count);
+  page.head("refused_total", "counter", "Requests and upgrades refused before they reached a room.");
+  for (std::size_t k = 0; k < net::kRefusedCount; ++k) {
+    page.sample(fmt::format("reason=\"{}\"", net::kRefusedNames[k]), stats.refused_count[k]);
+  }
+  page.head("sessions_closed_total", "counter", "Sessions ended, by close code; 0: the connection broke.");
+  for (const auto& [code, count] : stats.closed_by_code) page.sample(fmt::format("code=\"{}\"", code), count);
+}
+
+void writeEncoder(Page& page, const rooms::EncoderThread& encoder) {
+  const auto costs = encoder.costs();
+  const auto each = [&](const char* name, const char* help, auto&& value) {
+    page.head(name, "counter", help);
+    for (const codec::Stream stream : codec::allStreams()) {
+      for (const core::Level level : core::kLevels) {
+        const rooms::EncoderThread::StreamCost& cost = costs[codec::indexOf(stream)][core::indexOf(level)];
+        if (level != core::Level::kFull && cost.frame_count == 0) continue;  // nobody has asked for it so far
+        page.sample(fmt::format("layer=\"{}\",packing=\"{}\",level=\"{}\"",
+                                shortName(v1::Layer_Name(stream.layer), sizeof("LAYER")),
+                                shortName(v1::Packing_Name(stream.packing), sizeof("PACKING")), codec::nameOf(level)),
+                    value(cost));
+      }
+    }
+  };
+  using Cost = const rooms::EncoderThread::StreamCost&;
+  each("encoded_frames_total", "Frames encoded, once each whatever the number of clients.",
+       [](Cost c) { return c.frame_count; });
+  each("encoded_bytes_total", "Bytes of encoded frames.", [](Cost c) { return c.bytes_count; });
+  each("encode_seconds_total", "Time spent encoding.", [](Cost c) { return c.encode_s; });
+  page.head("encoder_replaced_total", "counter", "Frames that a newer one replaced before they were encoded.");
+  page.sample("", encoder.replacedCount());
+}
+
+void writeCommands(Page& page, const CommandCounters& commands) {
+  page.head("commands_applied_total", "counter", "Commands carried out.");
+  page.sample("", commands.appliedCount());
+  page.head("commands_rejected_total", "counter", "Commands not carried out, by reason.");
+  for (int k = v1::RejectReason_MIN + 1; k < v1::RejectReason_ARRAYSIZE; ++k) {
+    const auto reason = static_cast<v1::RejectReason>(k);
+    page.sample(fmt::format("reason=\"{}\"", shortName(v1::RejectReason_Name(reason), sizeof("REJECT_REASON"))),
+                commands.rejectedCount(reason));
+  }
+}
+
+}  // namespace
+
+std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
+                        const MetricsSources& sources) {
+  std::vector<RoomSample> samples;
+  for (const auto& room : rooms.rooms()) {
+    samples.push_back({fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
+                       room->roster().people().people_size(), room->vitals()});
+  }
+  Page page;
+  writeRooms(page, samples);
+  if (const net::Server* network = sources.network) writeNetwork(page, network->stats());
+  if (const rooms::EncoderThread* encoder = sources.encoder) writeEncoder(page, *encoder);
+  writeCommands(page, commands);
+  return page.take();
+}
+
+}  // namespace spindrift::service

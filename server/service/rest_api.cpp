@@ -1,0 +1,276 @@
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <utility>
+
+#include <spindrift/scene/parameters.h>
+#include <spindrift/service/rest_api.h>
+#include <spindrift/v1/api.pb.h>
+#include <spindrift/wire/api_message.h>
+
+namespace spindrift::service {
+namespace {
+
+using core::ErrorCode;
+using net::HttpReply;
+
+constexpr std::string_view kRoot = "/api/v1/";
+
+HttpReply json(unsigned status, const google::protobuf::Message& message) {
+  return {.status = status, .content_type = "application/json", .body = wire::toJson(message) + "\n"};
+}
+
+HttpReply problem(unsigned status, std::string line) {
+  v1::Problem out;
+  out.set_message(std::move(line));
+  return json(status, out);
+}
+
+/// RFC 9110 section 15.5.6: Allow lists what may be asked.
+HttpReply wrongMethod(const std::string& allowed) {
+  HttpReply out = problem(405, "the method is not allowed here: use " + allowed);
+  out.headers.emplace_back("Allow", allowed);
+  return out;
+}
+
+/// RFC 9110 section 15.5.2: WWW-Authenticate names the scheme.
+HttpReply unauthorized(std::string line) {
+  HttpReply out = problem(401, std::move(line));
+  out.headers.emplace_back("WWW-Authenticate", "Bearer");
+  return out;
+}
+
+HttpReply text(unsigned status, std::string body) {
+  return {.status = status, .content_type = "text/plain; charset=utf-8", .body = std::move(body)};
+}
+
+unsigned statusOf(const core::Error& error) {
+  return error.code == ErrorCode::kUnavailable ? 503 : error.code == ErrorCode::kInvalidInput ? 409 : 500;
+}
+
+HttpReply rejected(const wire::CommandRejection& rejection) {
+  v1::CommandAnswer out;
+  *out.mutable_reject() = wire::toWire(rejection);
+  return json(httpStatusOf(rejection.reason), out);
+}
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> out;
+  while (!path.empty()) {
+    const std::size_t slash = path.find('/');
+    out.emplace_back(path.substr(0, slash));
+    path = slash == std::string_view::npos ? std::string_view() : path.substr(slash + 1);
+  }
+  return out;
+}
+
+/// RFC 9110 section 8.3.1: names of media types are not case-sensitive, and parameters may follow.
+bool isJson(std::string_view content_type) {
+  std::string name(content_type.substr(0, content_type.find(';')));
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  name.erase(name.find_last_not_of(" \t") + 1);
+  return name == "application/json";
+}
+
+}  // namespace
+
+unsigned httpStatusOf(v1::RejectReason reason) {
+  switch (reason) {
+    case v1::REJECT_REASON_MALFORMED:
+      return 400;
+    case v1::REJECT_REASON_FORBIDDEN:
+    case v1::REJECT_REASON_NOT_YOURS:
+      return 403;
+    case v1::REJECT_REASON_UNKNOWN_BOAT:
+    case v1::REJECT_REASON_UNKNOWN_SCENE:
+    case v1::REJECT_REASON_UNKNOWN_PARAMETER:
+      return 404;
+    case v1::REJECT_REASON_BUSY:
+      return 503;
+    default:
+      return 422;
+  }
+}
+
+RestApi::RestApi(const Access& access, CommandCounters& counters, const MetricsSources& sources,
+                 std::function<void(const rooms::Room&)> dismiss)
+    : access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
+
+void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond) {
+  /// Far above any tick that a room allows while people are connected.
+  constexpr double kStuck_s = 5.0;
+  const bool is_probe = request.path == "/healthz" || request.path == "/readyz" || request.path == "/metrics";
+  if (is_probe && request.method != "GET") return respond(wrongMethod("GET"));
+  if (request.path == "/healthz") return respond(text(200, "ok\n"));
+  if (request.path == "/readyz") {
+    const double since_s = rooms_->sinceLastRound_s();
+    if (since_s >= kStuck_s)
+      return respond(text(503, "the simulation has stood still for " + std::to_string(since_s) + " s\n"));
+    for (const auto& room : rooms_->rooms()) {
+      if (room->vitals()->lost)
+        return respond(text(503, "room " + room->name() + ": the device failed, its water is being built anew\n"));
+    }
+    return respond(text(200, "ready\n"));
+  }
+  if (request.path == "/metrics") {
+    return respond(HttpReply{.status = 200,
+                             .content_type = "text/plain; version=0.0.4; charset=utf-8",
+                             .body = metricsText(*rooms_, *hub_, counters_, sources_)});
+  }
+  if (!request.path.starts_with(kRoot)) return respond(std::nullopt);
+
+  const auto token = Access::bearerToken(request.authorization);
+  const auto grant =
+      token ? access_.resolve(*token, std::chrono::system_clock::now()) : core::Result<Grant>(token.error());
+  if (!grant) return respond(unauthorized(grant.error().message));
+  const Call call{request, split(std::string_view(request.path).substr(kRoot.size())), grant->role};
+  if (call.path.empty()) return respond(std::nullopt);
+  if (call.path[0] == "scenes" && call.path.size() == 1) {
+    if (request.method != "GET") return respond(wrongMethod("GET"));
+    v1::SceneList out;
+    for (const std::string& name : rooms_->rules().scenes.names()) out.add_scenes(name);
+    return respond(json(200, out));
+  }
+  if (call.path[0] != "rooms") return respond(std::nullopt);
+  if (call.path.size() == 1) return rooms(call, std::move(respond));
+  room(call, std::move(respond));
+}
+
+void RestApi::rooms(const Call& call, net::HttpResponder respond) {
+  if (call.request.method == "POST") return createRoom(call, std::move(respond));
+  if (call.request.method != "GET") return respond(wrongMethod("GET, POST"));
+  v1::RoomList out;
+  for (const auto& room : rooms_->rooms()) fillRoomInfo(*room, *out.add_rooms());
+  respond(json(200, out));
+}
+
+void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
+  if (call.role < core::Role::kOperator) return respond(problem(403, "opening a room takes the role of operator"));
+  if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
+  const core::ByteView body = call.request.body;
+  const auto wanted = wire::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
+  if (!wanted) return respond(problem(400, wanted.error().message));
+  if (!rooms::isRoomName(wanted->name())) {
+    return respond(problem(422, "name: a room's name has 1 to 32 letters, digits, '_' or '-'"));
+  }
+  if (!rooms_->rules().scenes.has(wanted->scene())) {
+    return respond(problem(404, "scene: there is none of that name; /api/v1/scenes lists what there is"));
+  }
+  if (!v1::Fidelity_IsValid(wanted->fidelity())) return respond(problem(422, "fidelity: no level of that number"));
+  const auto fidelity =
+      wanted->fidelity() == v1::FIDELITY_UNSPECIFIED ? std::nullopt : std::optional(wanted->fidelity());
+  auto scene = rooms_->rules().scenes.load(wanted->scene(), fidelity);
+  if (!scene) return respond(problem(500, "scene: " + rooms::firstLine(scene.error().message)));
+  rooms_->openRoom({wanted->name(), *std::move(scene)},
+                   [this, name = wanted->name(), respond = std::move(respond)](const core::Result<void>& opened) {
+                     if (!opened)
+                       return respond(problem(statusOf(opened.error()), rooms::firstLine(opened.error().message)));
+                     v1::RoomInfo out;
+                     if (const auto room = rooms_->find(name)) fillRoomInfo(*room, out);
+                     respond(json(201, out));
+                   });
+}
+
+void RestApi::room(const Call& call, net::HttpResponder respond) {
+  const auto room = rooms_->find(call.path[1]);
+  if (!room || call.path[1].empty()) {
+    // Only a name that a room may have is echoed: any other can hold whatever bytes a stranger sends.
+    const std::string named =
+        rooms::isRoomName(call.path[1]) ? "there is no room '" + call.path[1] + "'" : "there is no such room";
+    return respond(problem(404, named + "; /api/v1/rooms lists what there is"));
+  }
+  const std::string& method = call.request.method;
+  if (call.path.size() == 2) {
+    if (method == "DELETE") return closeRoom(call, std::move(respond));
+    if (method != "GET") return respond(wrongMethod("GET, DELETE"));
+    v1::RoomInfo out;
+    fillRoomInfo(*room, out);
+    return respond(json(200, out));
+  }
+  if (call.path.size() != 3) return respond(std::nullopt);
+  const std::string& part = call.path[2];
+  if (part == "commands") {
+    if (method != "POST") return respond(wrongMethod("POST"));
+    return command(call, room, std::move(respond));
+  }
+  if (part != "scene" && part != "parameters" && part != "people") return respond(std::nullopt);
+  if (method != "GET") return respond(wrongMethod("GET"));
+  if (part == "scene") return respond(json(200, room->snapshot()->scene));
+  if (part == "people") return respond(json(200, room->roster().people()));
+  v1::ParameterList out;
+  for (v1::ParameterDescription& known : scene::describeParameters(room->snapshot()->scene)) {
+    *out.add_parameters() = std::move(known);
+  }
+  respond(json(200, out));
+}
+
+void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
+  if (call.role < core::Role::kOperator) return respond(problem(403, "closing a room takes the role of operator"));
+  rooms_->closeRoom(call.path[1], dismiss_, [respond = std::move(respond)](const core::Result<void>& closed) {
+    if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
+    respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
+  });
+}
+
+void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond) {
+  // What a form of a foreign page can send is never JSON by its type.
+  if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
+  const core::ByteView body = call.request.body;
+  auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(body.data()), body.size()});
+  if (const auto* malformed = std::get_if<wire::Malformed>(&parsed)) {
+    counters_.rejected(v1::REJECT_REASON_MALFORMED);
+    return respond(problem(400, malformed->message));
+  }
+  if (const auto* rejection = std::get_if<wire::CommandRejection>(&parsed)) {
+    counters_.rejected(rejection->reason);
+    return respond(rejected(*rejection));
+  }
+  auto& command = std::get<core::Command>(parsed);
+  command.sender = {.request_id = ++last_request_id_, .role = call.role};
+  {
+    const std::lock_guard lock(mutex_);
+    pending_[command.sender.request_id] = std::move(respond);
+  }
+  if (const auto rejection = room->admit(command)) {
+    counters_.rejected(rejection->reason);
+    commandRejected(command, *rejection);
+  }
+}
+
+net::HttpResponder RestApi::takePending(std::uint64_t request_id) {
+  const std::lock_guard lock(mutex_);
+  auto node = pending_.extract(request_id);
+  return node ? std::move(node.mapped()) : net::HttpResponder();
+}
+
+void RestApi::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+  const auto respond = takePending(command.sender.request_id);
+  if (!respond) return;
+  v1::CommandAnswer out;
+  out.mutable_ack()->set_command_id(command.command_id);
+  out.mutable_ack()->set_applied_tick(tick);
+  out.mutable_ack()->set_boat_id(boat_id);
+  respond(json(200, out));
+}
+
+void RestApi::commandRejected(const core::Command& command, const wire::CommandRejection& rejection) {
+  if (const auto respond = takePending(command.sender.request_id)) respond(rejected(rejection));
+}
+
+void RestApi::fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const {
+  const auto snapshot = room.snapshot();
+  const auto vitals = room.vitals();
+  out.set_name(room.name());
+  out.set_scene(snapshot->scene.name());
+  out.set_title(snapshot->scene.title());
+  out.set_paused(snapshot->paused);
+  out.set_speed(snapshot->speed);
+  out.set_asleep(vitals->asleep);
+  out.set_tick(vitals->tick);
+  out.set_time_s(vitals->time_s);
+  out.set_real_time_factor(vitals->diagnostics.real_time_factor);
+  out.set_session_count(static_cast<std::uint32_t>(hub_->sessionCount(room.name())));
+  out.set_boat_count(static_cast<std::uint32_t>(snapshot->boats.boats_size()));
+}
+
+}  // namespace spindrift::service

@@ -1,0 +1,39 @@
+#include <spindrift/service/water_server.h>
+
+namespace spindrift::service {
+
+core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions options) {
+  auto self = std::unique_ptr<WaterServer>(new WaterServer);
+  self->gateway_ = std::make_unique<Gateway>(GatewayOptions{.access = std::move(options.access),
+                                                            .message_max_bytes = options.network.read_message_max_bytes,
+                                                            .messages_per_s = options.network.messages_per_s,
+                                                            .message_burst_count = options.network.message_burst_count,
+                                                            .hello_patience = options.hello_patience},
+                                             self->sources_);
+  self->encoder_ = std::make_unique<rooms::EncoderThread>(*self->gateway_);
+  self->sources_.encoder = self->encoder_.get();
+  auto simulation = rooms::SimulationThread::start(options.device, std::move(options.rooms), std::move(options.rules),
+                                                   options.max_room_count, *self->gateway_);
+  if (!simulation) return simulation.error();
+  self->simulation_ = *std::move(simulation);
+  self->gateway_->serve(*self->simulation_, *self->encoder_);
+  auto network = net::Server::start(options.network, *self->gateway_);
+  if (!network) return network.error();
+  self->network_ = *std::move(network);
+  self->sources_.network = self->network_.get();
+  self->simulation_->run();
+  self->port_ = self->network_->port();
+  return self;
+}
+
+WaterServer::~WaterServer() {
+  stop();
+}
+
+void WaterServer::stop() {
+  if (network_) network_->stop();
+  if (encoder_) encoder_->stop();  // lets go of the frames before their devices end
+  if (simulation_) simulation_->stop();
+}
+
+}  // namespace spindrift::service

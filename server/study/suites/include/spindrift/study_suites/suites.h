@@ -1,0 +1,42 @@
+// The suites of `spindrift study`. Each prints its table row by row, keeps finished cases in a journal, so that a long
+// run can be continued, and counts the results outside of their bounds.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include <boost/json/object.hpp>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/context.h>
+#include <spindrift/study_suites/journal.h>
+
+namespace spindrift::study_suites {
+
+struct SuiteOptions {
+  std::string only;         ///< one case; empty: all
+  std::string plot_folder;  ///< charts are written into it; empty: none
+  bool quick = false;
+};
+
+struct SuiteResult {
+  boost::json::object json;
+  std::size_t held_count = 0;
+  std::size_t missed_count = 0;
+};
+
+core::Result<SuiteResult> studyAccuracy(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
+                                        std::FILE* out);
+core::Result<SuiteResult> studyStability(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
+                                         std::FILE* out);
+core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
+                                     std::FILE* out);
+
+/// Shows what is running, on standard error if that is a terminal; an empty text clears the line.
+void showProgress(const std::string& text);
+
+/// Returns "suite name quick|full version device": everything that a result depends on.
+std::string journalKey(const std::string& suite, const std::string& name, const SuiteOptions& options,
+                       const gpu::Context& ctx);
+
+}  // namespace spindrift::study_suites

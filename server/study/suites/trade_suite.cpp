@@ -1,0 +1,374 @@
+// What accuracy costs: every way to run a scene beside a run finer than the finest that is offered.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include <boost/json.hpp>
+#include <fmt/format.h>
+
+#include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/paths.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/study/trade.h>
+#include <spindrift/study/water_record.h>
+#include <spindrift/study_suites/chart.h>
+#include <spindrift/study_suites/suites.h>
+
+#include "trade_rows.h"
+
+namespace spindrift::study_suites {
+namespace {
+
+/// A shipped scene and how much of it is looked at.
+struct TradeScene {
+  const char* name;
+  double seconds;
+  double quick_seconds;  ///< of the quick form, whose yardstick is REFERENCE itself; 0: no part of it
+};
+constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.1},
+                                       {"breaking_wave", 4.5, 0.0},
+                                       {"boat_wake", 4.0, 0.0},
+                                       {"thesis", 3.0, 0.0},
+                                       {"dam_break", 1.4, 0.4}};
+constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
+                                    v1::FIDELITY_REFERENCE};
+constexpr const char* kLevelKnob = "fidelity";
+/// Each of the shipped effects as it is, as the wave alone, and as particles alone (thesis, section 3.8.1).
+constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
+
+/// Differences of less than this share are chance at least: the same scene with another seed is off by so much more or
+/// less, and costs so much more or less when the machine is quiet.
+constexpr double kChance = 0.05;
+constexpr const char* kSeedKnob = "seed";
+
+/// Counts what the room's encoder would send.
+study::FrameBytes frameBytes() {
+  auto encoder = std::make_shared<codec::FrameEncoder>();
+  return [encoder](const core::FrameView& frame) {
+    std::size_t bytes = 0;
+    for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES}) {
+      if (const auto message = encoder->encode(layer, frame)) bytes += message->size();
+    }
+    return bytes;
+  };
+}
+
+core::Result<core::Scene> loadLevel(const std::string& name, v1::Fidelity level) {
+  auto file = core::findScene(name);
+  if (!file) return file.error();
+  auto scene = scene::loadSceneFile(*file, level);
+  if (!scene) return scene.error();
+  return scene::toCore(*scene);
+}
+
+/// The levels first, then BALANCED with one thing changed.
+core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool quick) {
+  std::vector<TradeChoice> choices;
+  for (const v1::Fidelity level : kLevels) {
+    auto loaded = loadLevel(scene.name, level);
+    if (!loaded) return loaded.error();
+    choices.push_back({kLevelKnob, scene::fidelityName(level), *std::move(loaded)});
+  }
+  if (quick) return choices;
+  for (TradeChoice& knob : study::singleKnobs(choices[1].scene)) choices.push_back(std::move(knob));
+  return choices;
+}
+
+/// Whether it is another way to the same water: not another chance, nor less water to be right about.
+bool isComparable(const auto& choice) {
+  return choice.knob != kSeedKnob && choice.knob != "coupling";
+}
+
+/// What chance does to a cost and an error: as much as it did to those of another seed beside `balanced`, in the same
+/// run.
+study::CostAndError chanceOf(const study::CostAndError& seed, const study::CostAndError& balanced) {
+  const auto share = [](double a, double b) { return std::max(kChance, 1 - std::min(a / b, b / a)); };
+  return {share(seed.cost, balanced.cost), share(seed.error, balanced.error)};
+}
+
+void markFront(std::vector<TradeRow>& rows) {
+  study::CostAndError chance{kChance, kChance};
+  for (const TradeRow& row : rows) {
+    if (row.knob == kSeedKnob && row.refused.empty())
+      chance = chanceOf({row.wall_ms_per_s, row.errors.height_rms_ratio},
+                        {rows[1].wall_ms_per_s, rows[1].errors.height_rms_ratio});
+  }
+  std::vector<study::CostAndError> points;
+  for (const TradeRow& row : rows) {
+    const bool counts = row.refused.empty() && isComparable(row);
+    points.push_back(counts ? study::CostAndError{row.wall_ms_per_s, row.errors.height_rms_ratio}
+                            : study::CostAndError{HUGE_VAL, HUGE_VAL});
+  }
+  const std::vector<bool> front = study::paretoFront(points, chance);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i] && std::isfinite(points[i].cost);
+}
+
+double secondsOf(const TradeScene& scene, bool quick) {
+  return quick ? scene.quick_seconds : scene.seconds;
+}
+
+/// Runs what the journal does not know yet; the finest run only when something is left to compare.
+class TradeRuns {
+ public:
+  TradeRuns(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal)
+      : ctx_(ctx), options_(options), journal_(journal) {}
+
+  core::Result<std::vector<TradeRow>> run(const TradeScene& scene) {
+    auto choices = choicesOf(scene, options_.quick);
+    if (!choices) return choices.error();
+    // The quick form judges by the finest that is offered, the full one by a run that is finer still.
+    core::Scene finest_scene = (*choices)[3].scene;
+    if (options_.quick)
+      choices->resize(3);
+    else
+      finest_scene = study::finerThan(finest_scene);
+    const study::RecordOptions record{
+        .seconds = secondsOf(scene, options_.quick), .sample_interval_s = 0.1, .frame_bytes = frameBytes()};
+    std::vector<TradeRow> rows;
+    std::optional<WaterRecord> finest_run;
+    for (std::size_t i = 0; i < choices->size(); ++i) {
+      const TradeChoice& choice = (*choices)[i];
+      const std::string key =
+          journalKey("trade", fmt::format("{}/{}/{}", scene.name, choice.knob, choice.setting), options_, ctx_);
+      if (const auto known = journal_.find(key)) {
+        rows.push_back(rowFromJson(known->as_object()));
+        continue;
+      }
+      if (!finest_run) {
+        showProgress(fmt::format("{}: the run to judge by", scene.name));
+        auto finest = study::record(ctx_, finest_scene, record);
+        if (!finest) return core::Error{finest.error().code, std::string(scene.name) + ": " + finest.error().message};
+        finest_run = *std::move(finest);
+      }
+      showProgress(fmt::format("{}: [{}/{}] {} {}", scene.name, i + 1, choices->size(), choice.knob, choice.setting));
+      auto made = study::record(ctx_, choice.scene, record);
+      TradeRow row;
+      if (made) {
+        row = rowOf(choice, *made);
+        row.errors = study::compare(*made, *finest_run, choice.scene);
+      } else if (made.error().code == core::ErrorCode::kInvalidInput) {
+        row.knob = choice.knob;
+        row.setting = choice.setting;
+        row.refused = made.error().message;
+      } else {
+        return made.error();
+      }
+      if (auto kept = journal_.add(key, toJson(row)); !kept) return kept.error();
+      rows.push_back(std::move(row));
+    }
+    showProgress("");
+    markFront(rows);
+    return rows;
+  }
+
+  /// What scenes cost, without a look at them.
+  core::Result<std::vector<TradeRow>> costs(const std::vector<TradeChoice>& choices, double seconds) {
+    std::vector<TradeRow> rows;
+    for (const TradeChoice& choice : choices) {
+      const std::string key =
+          journalKey("trade", fmt::format("cost/{}/{}", choice.knob, choice.setting), options_, ctx_);
+      if (const auto known = journal_.find(key)) {
+        rows.push_back(rowFromJson(known->as_object()));
+        continue;
+      }
+      showProgress(fmt::format("cost: {} {}", choice.knob, choice.setting));
+      auto made = study::record(
+          ctx_, choice.scene, {.seconds = seconds, .sample_interval_s = 0.1, .has_samples = false, .frame_bytes = {}});
+      if (!made) return made.error();
+      rows.push_back(rowOf(choice, *made));
+      if (auto kept = journal_.add(key, toJson(rows.back())); !kept) return kept.error();
+    }
+    showProgress("");
+    return rows;
+  }
+
+ private:
+  gpu::Context& ctx_;
+  const SuiteOptions& options_;
+  StudyJournal& journal_;
+};
+
+/// In every scene no level is closer than REFERENCE by more than chance.
+void judgeScene(const std::vector<TradeRow>& rows, SuiteResult& result, std::FILE* out) {
+  const TradeRow* closest = nullptr;
+  const TradeRow* finest = nullptr;
+  for (const TradeRow& row : rows) {
+    if (row.knob != kLevelKnob) continue;
+    finest = &row;
+    if (closest == nullptr || row.errors.height_rms_ratio < closest->errors.height_rms_ratio) closest = &row;
+  }
+  const bool holds = (1 - kChance) * finest->errors.height_rms_ratio <= closest->errors.height_rms_ratio;
+  ++(holds ? result.held_count : result.missed_count);
+  fmt::print(out, "  {} the closest level is {}: {:.3g} %, {}: {:.3g} % (differences of {:.0f} % are chance)\n",
+             holds ? "ok  " : "MISS", closest->setting, 100 * closest->errors.height_rms_ratio, finest->setting,
+             100 * finest->errors.height_rms_ratio, 100 * kChance);
+}
+
+/// One way to run every scene: geometric means of what it costs and how far it is off, over those of BALANCED. A scene
+/// that lacks the knob counts as BALANCED.
+struct MeanChoice {
+  std::string knob, setting;
+  double cost = 1.0;
+  double error = 1.0;
+  bool is_on_front = false;
+};
+
+std::vector<MeanChoice> meansOver(const std::vector<std::vector<TradeRow>>& scenes) {
+  std::vector<MeanChoice> means;
+  const double share = 1.0 / static_cast<double>(scenes.size());
+  for (const std::vector<TradeRow>& rows : scenes) {
+    const TradeRow& balanced = rows[1];
+    for (const TradeRow& row : rows) {
+      if (!row.refused.empty()) continue;
+      auto mean = std::ranges::find_if(
+          means, [&](const MeanChoice& m) { return m.knob == row.knob && m.setting == row.setting; });
+      if (mean == means.end()) mean = means.insert(means.end(), MeanChoice{row.knob, row.setting});
+      mean->cost *= std::pow(row.wall_ms_per_s / balanced.wall_ms_per_s, share);
+      mean->error *= std::pow(row.errors.height_rms_ratio / balanced.errors.height_rms_ratio, share);
+    }
+  }
+  study::CostAndError chance{kChance, kChance};
+  std::vector<study::CostAndError> points;
+  for (const MeanChoice& mean : means) {
+    if (mean.knob == kSeedKnob) chance = chanceOf({mean.cost, mean.error}, {1.0, 1.0});
+    points.push_back(isComparable(mean) ? study::CostAndError{mean.cost, mean.error}
+                                        : study::CostAndError{HUGE_VAL, HUGE_VAL});
+  }
+  const std::vector<bool> front = study::paretoFront(points, chance);
+  for (std::size_t i = 0; i < means.size(); ++i) means[i].is_on_front = front[i] && std::isfinite(points[i].cost);
+  return means;
+}
+
+/// The levels hold what they promise: over all scenes each is on the front, and finer ones are closer.
+void judgeLevels(const std::vector<MeanChoice>& means, SuiteResult& result, std::FILE* out) {
+  fmt::print(out, "over all scenes, against balanced; * = not beaten in cost and height both\n");
+  const MeanChoice* before = nullptr;
+  for (const MeanChoice& mean : means) {
+    const bool is_level = mean.knob == kLevelKnob;
+    const bool is_closer = before == nullptr || mean.error < before->error;
+    const bool holds = !is_level || (mean.is_on_front && is_closer);
+    fmt::print(out, "{} {:<17} {:<20} cost x {:>6.2f}  error x {:>5.2f}{}\n", mean.is_on_front ? "*" : " ", mean.knob,
+               mean.setting, mean.cost, mean.error,
+               holds       ? ""
+               : is_closer ? "  MISS: beaten in both"
+                           : "  MISS: no closer than the level before");
+    if (!is_level) continue;
+    ++(holds ? result.held_count : result.missed_count);
+    before = &mean;
+  }
+}
+
+/// Cost against error of every way to run a scene, and the front.
+Chart tradeChart(const TradeScene& scene, const std::vector<TradeRow>& rows) {
+  Chart chart;
+  chart.title = fmt::format("What accuracy costs: {}", scene.name);
+  chart.x = {"wall time of a simulated second [ms]", true};
+  chart.y = {"error of the water's height, RMS [%]", true};
+  Chart::Series front{"not beaten in both", {}, Chart::Mark::kLine};
+  Chart::Series levels{"fidelity levels", {}, Chart::Mark::kLargeDot};
+  Chart::Series knobs{"one thing changed", {}, Chart::Mark::kDot};
+  for (const TradeRow& row : rows) {
+    if (!row.refused.empty()) continue;
+    const Chart::Point point{row.wall_ms_per_s, 100 * row.errors.height_rms_ratio,
+                             row.knob == kLevelKnob ? row.setting
+                             : row.is_on_front      ? row.knob + " " + row.setting
+                                                    : ""};
+    (row.knob == kLevelKnob ? levels : knobs).points.push_back(point);
+    if (row.is_on_front) front.points.push_back({point.x, point.y, ""});
+  }
+  std::ranges::sort(front.points, {}, &Chart::Point::x);
+  chart.vertical_line = {{1000.0, "real time"}};
+  chart.series = {front, knobs, levels};
+  return chart;
+}
+
+}  // namespace
+
+core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
+                                     std::FILE* out) {
+  SuiteResult result;
+  TradeRuns runs(ctx, options, journal);
+  boost::json::array json_scenes;
+  Chart levels_chart;
+  levels_chart.title = "What accuracy costs: the fidelity levels";
+  levels_chart.x = {"wall time of a simulated second [ms]", true};
+  levels_chart.y = {"error of the water's height, RMS [%]", true};
+  levels_chart.vertical_line = {{1000.0, "real time"}};
+  bool found = false;
+  std::vector<std::vector<TradeRow>> all_rows;
+  for (const TradeScene& scene : kTradeScenes) {
+    if (options.quick && scene.quick_seconds == 0.0) continue;
+    if (!options.only.empty() && options.only != scene.name) continue;
+    found = true;
+    fmt::print(out, "{}, {} s, against {}; * = not beaten in cost and height both\n", scene.name,
+               secondsOf(scene, options.quick), options.quick ? "reference" : "a run finer than reference");
+    std::fflush(out);
+    auto rows = runs.run(scene);
+    if (!rows) return core::Error{rows.error().code, std::string(scene.name) + ": " + rows.error().message};
+    printTradeHeader(out);
+    for (const TradeRow& row : *rows) print(out, row, (*rows)[1]);
+    judgeScene(*rows, result, out);
+    all_rows.push_back(*rows);
+    std::fflush(out);
+    if (!options.plot_folder.empty()) {
+      if (auto drawn =
+              writeChart(options.plot_folder, fmt::format("trade_{}.svg", scene.name), tradeChart(scene, *rows));
+          !drawn)
+        return drawn.error();
+    }
+    Chart::Series series{scene.name, {}, Chart::Mark::kLineAndDots};
+    for (const TradeRow& row : *rows) {
+      if (row.knob == kLevelKnob)
+        series.points.push_back({row.wall_ms_per_s, 100 * row.errors.height_rms_ratio, row.setting});
+    }
+    levels_chart.series.push_back(std::move(series));
+    json_scenes.push_back({{"scene", scene.name}, {"rows", toJson(*rows)}});
+  }
+  result.json["scenes"] = std::move(json_scenes);
+  if (all_rows.size() > 1) {
+    const std::vector<MeanChoice> means = meansOver(all_rows);
+    judgeLevels(means, result, out);
+    boost::json::array json_means;
+    for (const MeanChoice& mean : means)
+      json_means.push_back({{"knob", mean.knob},
+                            {"setting", mean.setting},
+                            {"cost_ratio", mean.cost},
+                            {"error_ratio", mean.error},
+                            {"on_front", mean.is_on_front}});
+    result.json["over_all_scenes"] = std::move(json_means);
+  }
+  if (found && !options.plot_folder.empty() && options.only.empty()) {
+    if (auto drawn = writeChart(options.plot_folder, "trade.svg", levels_chart); !drawn) return drawn.error();
+  }
+
+  if (!options.quick && (options.only.empty() || options.only == "cost")) {
+    found = true;
+    fmt::print(out, "cost of particles, waves and both, and of the effects in each form\n");
+    std::fflush(out);
+    auto sweep = runs.costs(study::costSweep(), 0.5);
+    if (!sweep) return sweep.error();
+    std::vector<TradeChoice> effects;
+    for (const std::string effect : kEffects) {
+      for (const char* form : {"", "_wave", "_particles"}) {
+        auto scene = loadLevel(effect + form, v1::FIDELITY_BALANCED);
+        if (!scene) return scene.error();
+        effects.push_back({effect, *form == '\0' ? "coupled" : form + 1, *std::move(scene)});
+      }
+    }
+    auto shown = runs.costs(effects, 4.0);
+    if (!shown) return shown.error();
+    sweep->insert(sweep->end(), shown->begin(), shown->end());
+    printCosts(out, *sweep);
+    result.json["costs"] = toJson(*sweep);
+  }
+  if (!found) {
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       "--case: there is no '" + options.only + "'" + (options.quick ? " in the quick form" : "") +
+                           "; choose one of splash, breaking_wave, boat_wake, thesis, dam_break, cost"};
+  }
+  return result;
+}
+
+}  // namespace spindrift::study_suites

@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <exception>
+#include <utility>
+
+#include <google/protobuf/stubs/logging.h>
+#include <google/protobuf/util/json_util.h>
+
+#include <spindrift/core/text.h>
+#include <spindrift/wire/api_message.h>
+
+#include "json_check.h"
+
+namespace spindrift::wire {
+namespace {
+
+constexpr std::size_t kReasonMaxBytes = 200;
+
+/// What Protobuf says of a value that does not fit its field: `(splash.depth_m): invalid value "deep" for type
+/// TYPE_DOUBLE`, in our words; other messages as they are.
+std::string inOurWords(const std::string& reason) {
+  constexpr std::string_view kBegin = "(", kValue = "): invalid value ", kType = " for type ";
+  constexpr std::string_view kScalar = "TYPE_", kNamed = "type.googleapis.com/spindrift.v1.";
+  const std::size_t value = reason.find(kValue), type = reason.rfind(kType);
+  if (!reason.starts_with(kBegin) || value == std::string::npos || type == std::string::npos || type < value) {
+    return reason;
+  }
+  std::string name = reason.substr(type + kType.size());
+  if (name.starts_with(kScalar)) {
+    name.erase(0, kScalar.size());
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  } else if (name.starts_with(kNamed)) {
+    name.erase(0, kNamed.size());
+  }
+  const std::size_t value_begin = value + kValue.size();
+  return reason.substr(kBegin.size(), value - kBegin.size()) + ": " + reason.substr(value_begin, type - value_begin) +
+         " is no " + name;
+}
+
+/// Empty, or why the text is no such message.
+std::string readJson(std::string_view json, google::protobuf::Message& out) {
+  const std::string what = "the body is no JSON of spindrift.v1." + out.GetDescriptor()->name() + ": ";
+  if (const auto why = checkJson(json, *out.GetDescriptor())) return what + *why;
+  try {
+    const google::protobuf::LogSilencer silencer;
+    const auto status =
+        google::protobuf::util::JsonStringToMessage(google::protobuf::StringPiece(json.data(), json.size()), &out);
+    if (status.ok()) return "";
+    const auto reason = status.message();
+    const std::string line(reason.data(), reason.size());
+    // Behind the first line Protobuf points into the text.
+    return what + core::cleanText(inOurWords(line.substr(0, line.find('\n'))), kReasonMaxBytes);
+  } catch (const std::exception& error) {
+    return std::string("the body could not be read: ") + error.what();
+  }
+}
+
+}  // namespace
+
+std::string toJson(const google::protobuf::Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.always_print_primitive_fields = true;
+  options.preserve_proto_field_names = true;
+  std::string out;
+  [[maybe_unused]] const auto status = google::protobuf::util::MessageToJsonString(message, &out, options);
+  assert(status.ok());
+  return out;
+}
+
+std::variant<core::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json) {
+  v1::Command command;
+  if (std::string why = readJson(json, command); !why.empty()) return Malformed{std::move(why)};
+  return std::visit(
+      [](auto&& checked) -> std::variant<core::Command, CommandRejection, Malformed> { return std::move(checked); },
+      checkCommand(command));
+}
+
+core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {
+  v1::CreateRoom create;
+  if (std::string why = readJson(json, create); !why.empty()) {
+    return core::Error{core::ErrorCode::kInvalidInput, std::move(why)};
+  }
+  return create;
+}
+
+}  // namespace spindrift::wire

@@ -1,0 +1,53 @@
+// Server messages of the control plane: facts in, one serialized ServerMessage out, ready to be shared by every outbox.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spindrift/core/bytes.h>
+#include <spindrift/core/level.h>
+#include <spindrift/v1/scene.pb.h>
+#include <spindrift/v1/wire.pb.h>
+#include <spindrift/wire/client_message.h>
+
+namespace spindrift::wire {
+
+/// What a session learns first. The scene has its defaults filled in; parameter descriptions and the version of the
+/// wire follow from it and from kWireMajor/kWireMinor.
+struct GreetingFacts {
+  std::string server;  ///< program name and version
+  std::string device;  ///< what the simulation runs on
+  std::string room;
+  std::uint64_t session_id = 0;
+  std::vector<v1::Layer> layers;  ///< what the room can send
+  std::uint32_t message_max_bytes = 0;
+  double commands_per_s = 0.0;
+  double command_burst_count = 0.0;
+  double messages_per_s = 0.0;
+  double message_burst_count = 0.0;
+  double hello_within_s = 0.0;
+  double frame_rate_max_hz = 0.0;
+  double server_time_s = 0.0;  ///< monotonic clock
+  bool paused = false;
+  double speed = 1.0;
+  v1::BoatList boats;               ///< on the water now
+  std::vector<std::string> scenes;  ///< what ChangeScene takes
+};
+
+core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene);
+/// `boat_id` is the new boat's, for SpawnBoat.
+core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0);
+core::SharedBytes reject(const CommandRejection& rejection);
+core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
+core::SharedBytes roomState(bool paused, double speed);
+core::SharedBytes boatList(const v1::BoatList& boats);
+core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view message);
+core::SharedBytes welcome(const v1::Welcome& welcome);
+core::SharedBytes people(const v1::People& people);
+core::SharedBytes levelChanged(core::Level level);
+core::SharedBytes pong(double client_time_s, double server_time_s);
+core::SharedBytes refusal(std::string_view message);
+
+}  // namespace spindrift::wire

@@ -1,0 +1,252 @@
+#include "json_check.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <spindrift/core/text.h>
+
+namespace spindrift::wire {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+
+/// Bytes of a name that are echoed.
+constexpr std::size_t kEchoMaxBytes = 64;
+
+enum class Kind { kObject, kArray, kString, kNumber, kBoolean, kNull };
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool isHexDigit(char c) {
+  return isDigit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+}
+
+const FieldDescriptor* fieldOf(const Descriptor& type, const std::string& name) {
+  if (const FieldDescriptor* field = type.FindFieldByName(name)) return field;
+  for (int i = 0; i < type.field_count(); ++i) {
+    if (type.field(i)->json_name() == name) return type.field(i);
+  }
+  return nullptr;
+}
+
+/// What a field takes, in words; empty if it takes a value of this kind. Null is "left out" everywhere. The field is
+/// not repeated, or the value is an element.
+std::string wantedBy(const FieldDescriptor& field, Kind kind) {
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return kind == Kind::kObject ? "" : "an object {...}";
+    case FieldDescriptor::CPPTYPE_STRING:
+      return kind == Kind::kString ? "" : "a string";
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return kind == Kind::kBoolean || kind == Kind::kString ? "" : "true or false";
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return kind == Kind::kString || kind == Kind::kNumber ? "" : "the name of a value";
+    default:
+      return kind == Kind::kNumber || kind == Kind::kString ? "" : "a number";
+  }
+}
+
+/// Recursive descent over the grammar of RFC 8259. Each read...() returns false after the first error, which is kept.
+class Checker {
+ public:
+  explicit Checker(std::string_view text) : text_(text) {}
+
+  std::optional<std::string> check(const Descriptor& type) {
+    skipSpace();
+    if (at_ == text_.size()) return "it is empty; send a JSON object {...}";
+    if (text_[at_] != '{') {
+      (void)fail("a JSON object {...} is expected");
+    } else if (readObject(&type, "", 1)) {
+      skipSpace();
+      if (at_ < text_.size()) (void)fail("nothing is expected behind the object");
+    }
+    return error_.empty() ? std::nullopt : std::optional(error_);
+  }
+
+ private:
+  bool fail(const std::string& what) {
+    const std::string_view before = text_.substr(0, at_);
+    const auto line = std::ranges::count(before, '\n') + 1;
+    const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
+    error_ = "line " + std::to_string(line) + ", column " + std::to_string(at_ - line_begin + 1) + ": " + what;
+    if (at_ == text_.size()) {
+      error_ += ", and the text ends";
+    } else if (const char c = text_[at_]; c > 0x20 && c < 0x7f) {
+      error_ += std::string(", not ") + c;
+    }
+    return false;
+  }
+  bool failField(const std::string& path, const std::string& what) {
+    error_ = path + ": " + what;
+    return false;
+  }
+
+  void skipSpace() {
+    while (at_ < text_.size() && std::string_view(" \t\n\r").find(text_[at_]) != std::string_view::npos) ++at_;
+  }
+  bool take(char c) {
+    if (at_ == text_.size() || text_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+
+  /// Of a value that begins here; nullopt: none does.
+  [[nodiscard]] std::optional<Kind> kindHere() const {
+    if (at_ == text_.size()) return std::nullopt;
+    const char c = text_[at_];
+    if (isDigit(c) || c == '-') return Kind::kNumber;
+    constexpr std::pair<char, Kind> kKinds[] = {{'{', Kind::kObject},  {'[', Kind::kArray},   {'"', Kind::kString},
+                                                {'t', Kind::kBoolean}, {'f', Kind::kBoolean}, {'n', Kind::kNull}};
+    for (const auto& [first, kind] : kKinds) {
+      if (c == first) return kind;
+    }
+    return std::nullopt;
+  }
+
+  /// `field` null: anything may stand here. `is_element`: of a repeated field.
+  bool readValue(const FieldDescriptor* field, bool is_element, const std::string& path, std::size_t depth) {
+    const auto kind = kindHere();
+    if (!kind) return fail("a value is expected");
+    if (field != nullptr && *kind != Kind::kNull) {
+      const std::string wanted =
+          field->is_repeated() && !is_element ? (*kind == Kind::kArray ? "" : "a list [...]") : wantedBy(*field, *kind);
+      if (!wanted.empty()) return failField(path, "has to be " + wanted);
+    }
+    switch (*kind) {
+      case Kind::kObject:
+        return readObject(field != nullptr ? field->message_type() : nullptr, path, depth);
+      case Kind::kArray:
+        return readArray(field, path, depth);
+      case Kind::kString: {
+        std::string unused;
+        return readString(unused);
+      }
+      case Kind::kNumber:
+        return readNumber();
+      case Kind::kBoolean:
+        return readWord(text_[at_] == 't' ? "true" : "false");
+      case Kind::kNull:
+        break;
+    }
+    return readWord("null");
+  }
+
+  bool readObject(const Descriptor* type, const std::string& path, std::size_t depth) {
+    if (depth > kJsonMaxDepth) return fail("at most " + std::to_string(kJsonMaxDepth) + " values within one another");
+    ++at_;  // {
+    skipSpace();
+    if (take('}')) return true;
+    // Of each choice of fields (an optional field is one of its own) the one that was set.
+    std::vector<std::pair<const google::protobuf::OneofDescriptor*, std::string>> chosen;
+    while (true) {
+      if (at_ == text_.size() || text_[at_] != '"') return fail("a name in double quotes is expected");
+      std::string name;
+      if (!readString(name)) return false;
+      skipSpace();
+      if (!take(':')) return fail("a colon is expected");
+      skipSpace();
+      const FieldDescriptor* field = nullptr;
+      const std::string member_path = (path.empty() ? "" : path + ".") + core::cleanText(name, kEchoMaxBytes);
+      if (type != nullptr) {
+        field = fieldOf(*type, name);
+        if (field == nullptr) return failField(member_path, type->name() + " has no such field");
+        const bool is_null = kindHere() == Kind::kNull;
+        if (const auto* choice = field->containing_oneof(); choice != nullptr && !is_null) {
+          const auto other = std::ranges::find(chosen, choice, [](const auto& entry) { return entry.first; });
+          if (other != chosen.end() && other->second == field->name()) return failField(member_path, "is given twice");
+          if (other != chosen.end()) return failField(member_path, "cannot be given together with " + other->second);
+          chosen.emplace_back(choice, field->name());
+        }
+      }
+      if (!readValue(field, false, member_path, depth + 1)) return false;
+      skipSpace();
+      if (take('}')) return true;
+      if (!take(',')) return fail("a comma or } is expected");
+      skipSpace();
+    }
+  }
+
+  bool readArray(const FieldDescriptor* field, const std::string& path, std::size_t depth) {
+    if (depth > kJsonMaxDepth) return fail("at most " + std::to_string(kJsonMaxDepth) + " values within one another");
+    ++at_;  // [
+    skipSpace();
+    if (take(']')) return true;
+    for (std::size_t index = 0;; ++index) {
+      if (!readValue(field, true, path + "[" + std::to_string(index) + "]", depth + 1)) return false;
+      skipSpace();
+      if (take(']')) return true;
+      if (!take(',')) return fail("a comma or ] is expected");
+      skipSpace();
+    }
+  }
+
+  /// `out`: the characters; those behind escapes with a code are left out, which no field's name needs.
+  bool readString(std::string& out) {
+    ++at_;  // "
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"') {
+        ++at_;
+        return true;
+      }
+      if (static_cast<unsigned char>(c) < 0x20) return fail("control characters in a string have to be escaped");
+      if (c == '\\') {
+        if (!readEscape(out)) return false;
+        continue;
+      }
+      const std::size_t length = core::utf8SequenceLength(text_, at_);
+      if (length == 0) return fail("the text has to be UTF-8");
+      out.append(text_.substr(at_, length));
+      at_ += length;
+    }
+    return fail("a closing double quote is expected");
+  }
+  bool readEscape(std::string& out) {
+    ++at_;  // backslash
+    constexpr std::string_view kLetters = "\"\\/bfnrt";
+    if (at_ < text_.size() && kLetters.find(text_[at_]) != std::string_view::npos) {
+      out.push_back(text_[at_++]);
+      return true;
+    }
+    if (!take('u')) return fail("one of \" \\ / b f n r t u is expected behind a backslash");
+    for (int k = 0; k < 4; ++k, ++at_) {
+      if (at_ == text_.size() || !isHexDigit(text_[at_]))
+        return fail("four hexadecimal digits are expected behind \\u");
+    }
+    return true;
+  }
+  bool readDigits() {
+    if (at_ == text_.size() || !isDigit(text_[at_])) return fail("a digit is expected");
+    while (at_ < text_.size() && isDigit(text_[at_])) ++at_;
+    return true;
+  }
+  bool readNumber() {
+    (void)take('-');
+    if (!take('0') && !readDigits()) return false;
+    if (at_ < text_.size() && isDigit(text_[at_])) return fail("a number does not begin with 0 and another digit");
+    if (take('.') && !readDigits()) return false;
+    if (!take('e') && !take('E')) return true;
+    if (!take('+')) (void)take('-');
+    return readDigits();
+  }
+  bool readWord(std::string_view word) {
+    if (text_.substr(at_, word.size()) != word) return fail(std::string(word) + " is expected");
+    at_ += word.size();
+    return true;
+  }
+
+  const std::string_view text_;
+  std::size_t at_ = 0;
+  std::string error_;
+};
+
+}  // namespace
+
+std::optional<std::string> checkJson(std::string_view json, const Descriptor& type) {
+  return Checker(json).check(type);
+}
+
+}  // namespace spindrift::wire

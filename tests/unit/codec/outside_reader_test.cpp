@@ -1,0 +1,151 @@
+// The packed frames as proto/README.md describes them: tests/wire/packed_reader.py was written from its text alone and
+// has to read what the encoder writes, to the same values as the decoder here.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/codec/frame_encoder.h>
+
+#include "temporary_folder.h"
+
+namespace spindrift::codec {
+namespace {
+
+/// A folder of cases like tests/golden.
+class Cases {
+ public:
+  /// `follows`: the file of the frame before, or empty.
+  std::string add(const core::Bytes& message, const std::string& follows, const std::string& values) {
+    const std::string file = std::to_string(count_++) + ".bin";
+    folder_.write(file, std::string(message.begin(), message.end()));
+    json_ += (json_.empty() ? "[\n" : ",\n") + std::string("{\"file\": \"") + file +
+             "\", \"verdict\": \"ok\", \"kind\": \"frame\", \"follows\": \"" + follows + "\", " + values + "}";
+    return file;
+  }
+  /// The reader's exit status over all of them; what it says goes to standard output.
+  int readOutside() {
+    folder_.write("golden.json", json_ + "]\n");
+    const std::string command =
+        "python3 -B '" SPINDRIFT_SOURCE_DIR "/tests/wire/packed_reader.py' '" + folder_.path().string() + "'";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+  std::string json_;
+  int count_ = 0;
+};
+
+template <typename Values>
+std::string list(const std::string& name, const Values& values) {
+  std::string text = "\"" + name + "\": [";
+  for (const auto value : values) {
+    std::array<char, 40> number{};
+    std::snprintf(number.data(), number.size(), "%s%.9g", text.back() == '[' ? "" : ", ", static_cast<double>(value));
+    text += number.data();
+  }
+  return text + "]";
+}
+
+v1::LayerFrame frameOf(const core::Bytes& bytes) {
+  return parseServerMessage(bytes)->frame();
+}
+
+TEST(OutsideReader, ReadsPlanesOfEverySizeOfResidual) {
+  Cases cases;
+  std::mt19937 random(1);
+  // From a plane that does not move to noise over all 16 bits; sides that tiles of 8 fit into and others.
+  for (const int noise_bits : {0, 1, 2, 3, 5, 7, 9, 11, 13, 15, 16}) {
+    const std::uint32_t n = noise_bits % 2 == 0 ? 24 : 18;
+    FrameEncoder encoder;
+    PackedSurfaceDecoder decoder;
+    std::string follows;
+    for (std::uint32_t step = 0; step < 4; ++step) {
+      std::vector<std::uint32_t> words(n * n / 2);
+      for (std::uint32_t i = 0; i < n * n; ++i) {
+        const auto noise = static_cast<std::int32_t>(random() & ((1u << noise_bits) - 1)) - (1 << noise_bits) / 2;
+        const auto value = static_cast<std::int16_t>(noise + static_cast<std::int32_t>(i % n * step));
+        words[i / 2] |= static_cast<std::uint32_t>(static_cast<std::uint16_t>(value)) << (16 * (i % 2));
+      }
+      core::FrameView view;
+      view.tick = 10 + step;
+      view.surface = core::SurfaceView{n, 8.0, 0.0009765625, words};
+      const EncodedFrame encoded = encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, false);
+      const core::Bytes& bytes = encoded.delta ? *encoded.delta : *encoded.keyframe;
+      const auto samples = decoder.decode(frameOf(bytes));
+      ASSERT_TRUE(samples) << samples.error().message;
+      follows = cases.add(bytes, follows, list("elevation_m", samples->elevation_m));
+    }
+  }
+  EXPECT_EQ(cases.readOutside(), 0);
+}
+
+TEST(OutsideReader, ReadsParticlesInCellsOfEverySize) {
+  Cases cases;
+  std::mt19937 random(2);
+  struct Shape {
+    std::uint32_t count;
+    double length_m;  ///< along x; 4 m along the others
+    double radius_m;
+    std::uint32_t spread;  ///< of the 65536 places along each axis
+  };
+  // Empty; one; a block of 64 and one more; crowded into one eighth; spread wide; so long that cells have fewer bits;
+  // too many cells for any bits.
+  std::vector<bool> seen_offset_bits(9);
+  for (const Shape& shape :
+       {Shape{0, 8, 0.1, 1}, Shape{1, 8, 0.1, 65536}, Shape{65, 8, 0.1, 3000}, Shape{700, 8, 0.1, 2},
+        Shape{900, 8, 0.05, 65536}, Shape{400, 500, 0.05, 65536}, Shape{400, 900, 0.05, 65536},
+        Shape{300, 1800, 0.05, 65536}, Shape{300, 90000, 0.05, 65536}}) {
+    std::vector<std::uint32_t> words;
+    for (std::uint32_t i = 0; i < shape.count; ++i) {
+      const auto place = [&] { return static_cast<std::uint32_t>(random() % shape.spread); };
+      const std::uint32_t x = place(), y = place(), z = place();
+      words.push_back(x | z << 16);
+      words.push_back(y | static_cast<std::uint32_t>(random() & 0xFFFFu) << 16);
+      words.push_back(static_cast<std::uint32_t>(random() & 0xFFFFFFu));
+    }
+    core::ParticleView particles;
+    particles.count = shape.count;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      particles.max_m[axis] = axis == 0 ? shape.length_m / 2 : 2;
+      particles.min_m[axis] = -particles.max_m[axis];
+    }
+    particles.max_speed_mps = 12.0;
+    particles.radius_m = shape.radius_m;
+    particles.words = words;
+    core::FrameView view;
+    view.tick = 7;
+    view.particles = particles;
+    const core::Bytes bytes = *FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).keyframe;
+    const v1::LayerFrame frame = frameOf(bytes);
+    seen_offset_bits[frame.particles_by_cell().offset_bits()] = true;
+    const auto samples = decodePackedParticles(frame);
+    ASSERT_TRUE(samples) << samples.error().message;
+    (void)cases.add(bytes, "",
+                    list("position_m", samples->position_m) + ", " + list("velocity_mps", samples->velocity_mps) +
+                        ", " + list("tint", samples->tint) + ", " + list("foam", samples->foam));
+  }
+  EXPECT_EQ(cases.readOutside(), 0);
+  EXPECT_GE(std::ranges::count(seen_offset_bits, true), 4) << "cells of several sizes were made";
+}
+
+TEST(OutsideReader, SaysSoWhereValuesDiffer) {
+  Cases cases;
+  const std::vector<std::uint32_t> words(2 * 2 / 2);
+  core::FrameView view;
+  view.surface = core::SurfaceView{2, 8.0, 0.0009765625, words};
+  const core::Bytes bytes = *FrameEncoder().encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, true).keyframe;
+  (void)cases.add(bytes, "", "\"elevation_m\": [0, 0, 0, 0.001]");
+  EXPECT_EQ(cases.readOutside(), 1);
+}
+
+}  // namespace
+}  // namespace spindrift::codec

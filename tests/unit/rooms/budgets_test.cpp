@@ -1,0 +1,67 @@
+// What ticks and heavy commands may cost.
+#include <gtest/gtest.h>
+
+#include <spindrift/rooms/tick_cost.h>
+#include <spindrift/rooms/work_budget.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(WorkBudget, TakesItsShareOfTheTimeAndPaysDebtsFirst) {
+  WorkBudget budget(0.25, 30ms);
+  auto now = WorkBudget::Clock::time_point{} + 1h;
+  EXPECT_TRUE(budget.isOpen(now));
+  budget.spend(130ms);  // known afterwards only
+  EXPECT_FALSE(budget.isOpen(now += 390ms)) << "97.5 of 100 ms are paid";
+  EXPECT_TRUE(budget.isOpen(now += 20ms));
+  EXPECT_TRUE(budget.isOpen(now += 1h));
+  budget.spend(31ms);
+  EXPECT_FALSE(budget.isOpen(now)) << "what is not used does not add up beyond the burst";
+}
+
+TEST(WorkBudget, TakesNoMoreThanItsShareInALongRun) {
+  WorkBudget budget(0.25, 30ms);
+  auto now = WorkBudget::Clock::time_point{} + 1h;
+  auto spent = 0ms;
+  for (int k = 0; k < 6000; ++k, now += 10ms) {
+    if (!budget.isOpen(now)) continue;
+    budget.spend(14ms);
+    spent += 14ms;
+  }
+  EXPECT_LE(spent, 15s + 50ms);
+  EXPECT_GE(spent, 14s);
+}
+
+TEST(TickCost, GrowsWithTheDearerPart) {
+  TickCost cost;
+  cost.restart(10.0);
+  const TickWork now{.particle_step_count = 1000, .wave_step_count = 500};
+  EXPECT_DOUBLE_EQ(cost.predict_ms(now, {.particle_step_count = 3000, .wave_step_count = 500}), 30.0);
+  EXPECT_DOUBLE_EQ(cost.predict_ms(now, {.particle_step_count = 1000, .wave_step_count = 2000}), 40.0);
+  EXPECT_DOUBLE_EQ(cost.predict_ms(now, {.particle_step_count = 1, .wave_step_count = 1}), 10.0);
+}
+
+TEST(TickCost, FollowsWhatTicksTake) {
+  TickCost cost;
+  cost.restart(10.0);
+  for (int k = 0; k < 100; ++k) cost.note(50.0);
+  EXPECT_NEAR(cost.predict_ms({}, {}), 50.0, 0.1);
+}
+
+TEST(TickCost, KnowsWhatASceneAsksFor) {
+  core::Scene scene;
+  scene.particles.emplace();
+  scene.particles->solver = core::PressureSolver::kPositionBased;
+  scene.particles->iterations_count = 4;
+  sim::Derived derived;
+  derived.substeps_count = 3;
+  derived.particles.emplace();
+  derived.particles->count = 100;
+  EXPECT_EQ(workOf(scene, derived).particle_step_count, 5 * 3 * 100);
+  EXPECT_EQ(workOf(scene, derived).wave_step_count, 0.0);
+}
+
+}  // namespace
+}  // namespace spindrift::rooms

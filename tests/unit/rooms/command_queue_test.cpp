@@ -1,0 +1,164 @@
+#include <map>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+#include <spindrift/rooms/command_queue.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+CommandQueue::TimePoint at(std::chrono::milliseconds ms) {
+  return CommandQueue::TimePoint{} + 1h + ms;
+}
+
+core::Command from(std::uint64_t session_id, std::uint64_t command_id, core::Action action) {
+  return {.sender = {.session_id = session_id}, .command_id = command_id, .action = std::move(action)};
+}
+core::Action set(const std::string& path, double value) {
+  return core::SetParameter{path, value};
+}
+
+class CommandQueueTest : public testing::Test {
+ protected:
+  void push(CommandQueue& queue, core::Command command, std::chrono::milliseconds ms = 0ms) {
+    const auto full = queue.tryPush(std::move(command), at(ms));
+    ASSERT_FALSE(full) << *full;
+  }
+  /// The command ids of the next batch; empty if there is none.
+  static std::vector<std::uint64_t> next(CommandQueue& queue, const CommandQueue::Allowed& allowed = {}) {
+    return idsOf(queue.next(allowed).value_or(CommandQueue::Batch{}));
+  }
+  static std::vector<std::uint64_t> idsOf(const CommandQueue::Batch& batch) {
+    std::vector<std::uint64_t> out;
+    for (const core::Command& command : batch) out.push_back(command.command_id);
+    return out;
+  }
+
+  CommandQueue queue_;
+};
+
+TEST_F(CommandQueueTest, LanesTakeTurnsAndKeepTheirOrder) {
+  for (std::uint64_t k = 1; k <= 3; ++k) push(queue_, from(1, k, core::Splash{}));
+  push(queue_, from(2, 21, core::Splash{}));
+  EXPECT_THAT(next(queue_), ElementsAre(1));
+  EXPECT_THAT(next(queue_), ElementsAre(21)) << "nobody waits behind what another one sent";
+  EXPECT_THAT(next(queue_), ElementsAre(2));
+  EXPECT_THAT(next(queue_), ElementsAre(3));
+  EXPECT_THAT(next(queue_), ElementsAre());
+  EXPECT_EQ(queue_.size(), 0u);
+}
+
+TEST_F(CommandQueueTest, WithoutBudgetLightCommandsOfOthersGoOn) {
+  push(queue_, from(1, 1, core::Reset{}));
+  push(queue_, from(1, 2, core::Splash{}));
+  push(queue_, from(2, 21, core::Splash{}));
+  EXPECT_THAT(next(queue_, {.heavy = false}), ElementsAre(21));
+  EXPECT_THAT(next(queue_, {.heavy = false}), ElementsAre()) << "2 was sent after the reset and stays after it";
+  EXPECT_THAT(next(queue_), ElementsAre(1));
+  EXPECT_THAT(next(queue_), ElementsAre(2));
+}
+
+TEST_F(CommandQueueTest, EqualResetsAreOnePieceOfWorkWhoeverSentThem) {
+  for (std::uint64_t k = 1; k <= 50; ++k) push(queue_, from(1, k, core::Reset{}));
+  push(queue_, from(2, 100, core::Splash{}));
+  push(queue_, from(2, 101, core::Reset{}));
+  push(queue_, from(3, 102, core::Reset{}));
+  const auto batch = queue_.next({});
+  ASSERT_TRUE(batch);
+  EXPECT_EQ(batch->size(), 51u) << "all but 101, which has a splash before it";
+  EXPECT_THAT(next(queue_), ElementsAre(100));
+  EXPECT_THAT(next(queue_), ElementsAre(101));
+}
+
+TEST_F(CommandQueueTest, ValuesForOneParameterComeTogether) {
+  push(queue_, from(1, 1, set("wave.depth_m", 1)));
+  push(queue_, from(1, 2, set("wave.depth_m", 2)));
+  push(queue_, from(1, 3, set("wave.damping_per_s", 0.1)));
+  push(queue_, from(1, 4, set("wave.depth_m", 3)));
+  EXPECT_THAT(next(queue_), ElementsAre(1, 2));
+  EXPECT_THAT(next(queue_), ElementsAre(3));
+  EXPECT_THAT(next(queue_), ElementsAre(4));
+}
+
+TEST_F(CommandQueueTest, SceneChangesWaitForTheOneUnderWay) {
+  push(queue_, from(1, 1, core::ChangeScene{"pond"}));
+  push(queue_, from(1, 2, core::Splash{}));
+  const auto under_way = queue_.next({});
+  ASSERT_TRUE(under_way);
+  queue_.hold(*under_way);
+  push(queue_, from(2, 21, core::ChangeScene{"sea"}));
+  push(queue_, from(3, 31, core::ChangeScene{"pond"}));
+  push(queue_, from(4, 41, core::Splash{}));
+  EXPECT_THAT(next(queue_, {.scene_change = false}), ElementsAre(41));
+  EXPECT_THAT(next(queue_, {.scene_change = false}), ElementsAre()) << "2 was sent for the new scene";
+  EXPECT_THAT(idsOf(queue_.takeEqual(core::ChangeScene{"pond"})), ElementsAre(31));
+  queue_.release(*under_way);
+  EXPECT_THAT(next(queue_, {.scene_change = false}), ElementsAre(2));
+  EXPECT_THAT(next(queue_), ElementsAre(21));
+}
+
+TEST_F(CommandQueueTest, RefusesBeyondEachBoundAndSaysWhich) {
+  CommandQueue queue({.max_count = 5, .lane_max_count = 3, .lane_heavy_max_count = 2});
+  push(queue, from(1, 1, core::Reset{}));
+  push(queue, from(1, 2, core::Reset{}));
+  const auto heavy = queue.tryPush(from(1, 3, core::Reset{}), at(0ms));
+  ASSERT_TRUE(heavy);
+  EXPECT_THAT(*heavy, testing::HasSubstr("2 of your resets"));
+  push(queue, from(1, 4, core::Splash{}));
+  const auto lane = queue.tryPush(from(1, 5, core::Splash{}), at(0ms));
+  ASSERT_TRUE(lane);
+  EXPECT_THAT(*lane, testing::HasSubstr("3 of your commands"));
+  push(queue, from(2, 6, core::Splash{}));
+  push(queue, from(3, 7, core::Splash{}));
+  const auto all = queue.tryPush(from(4, 8, core::Splash{}), at(0ms));
+  ASSERT_TRUE(all);
+  EXPECT_THAT(*all, testing::HasSubstr("5 commands wait"));
+}
+
+TEST_F(CommandQueueTest, HeavyCommandsThatWaitTooLongAreGivenUp) {
+  push(queue_, from(1, 1, core::Reset{}), 0ms);
+  push(queue_, from(1, 2, core::Splash{}), 0ms);
+  push(queue_, from(2, 21, core::Reset{}), 900ms);
+  EXPECT_THAT(idsOf(queue_.takeExpired(at(1000ms))), ElementsAre());
+  EXPECT_THAT(idsOf(queue_.takeExpired(at(1001ms))), ElementsAre(1));
+  EXPECT_THAT(next(queue_, {.heavy = false}), ElementsAre(2));
+}
+
+TEST_F(CommandQueueTest, DrainTakesEverything) {
+  push(queue_, from(1, 1, core::Reset{}));
+  push(queue_, from(2, 2, core::Splash{}));
+  EXPECT_EQ(queue_.drain().size(), 2u);
+  EXPECT_EQ(queue_.size(), 0u);
+  push(queue_, from(1, 3, core::Splash{}));
+  EXPECT_THAT(next(queue_), ElementsAre(3));
+}
+
+TEST_F(CommandQueueTest, LosesAndInventsNothingWithManyProducers) {
+  constexpr std::uint64_t kProducers = 4;
+  constexpr std::uint64_t kCommands = 2000;
+  std::vector<std::jthread> producers;
+  for (std::uint64_t session = 1; session <= kProducers; ++session) {
+    producers.emplace_back([this, session] {
+      for (std::uint64_t k = 1; k <= kCommands; ++k) {
+        while (queue_.tryPush(from(session, k, core::Splash{}), at(0ms))) std::this_thread::yield();  // full
+      }
+    });
+  }
+  std::map<std::uint64_t, std::uint64_t> last_id;
+  for (std::uint64_t taken = 0; taken < kProducers * kCommands;) {
+    const auto batch = queue_.next({});
+    if (!batch) continue;
+    for (const core::Command& command : *batch) {
+      ASSERT_EQ(command.command_id, ++last_id[command.sender.session_id]) << "in order, each once";
+      ++taken;
+    }
+  }
+  EXPECT_EQ(queue_.size(), 0u);
+}
+
+}  // namespace
+}  // namespace spindrift::rooms

@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include <spindrift/rooms/real_time_clock.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+const RealTimeClock::TimePoint kStart{1000s};
+
+TEST(RealTimeClock, IsDueOnceATickAndMeasuresFullSpeedAsOne) {
+  RealTimeClock clock(0.01);
+  clock.restart(kStart);
+  EXPECT_EQ(clock.due(), kStart);
+  for (int i = 0; i < 200; ++i) clock.ticked(clock.due());
+  EXPECT_EQ(clock.due(), kStart + 2s);
+  EXPECT_NEAR(clock.realTimeFactor(), 1.0, 1e-9);
+}
+
+TEST(RealTimeClock, SlowsDownAndSaysSoWhenTicksTakeTooLong) {
+  RealTimeClock clock(0.01);
+  clock.restart(kStart);
+  auto now = kStart;
+  for (int i = 0; i < 300; ++i) {
+    now += 20ms;
+    clock.ticked(now);
+    EXPECT_GE(clock.due(), now - 100ms) << "debt is dropped, so that the water never rushes to catch up";
+  }
+  EXPECT_NEAR(clock.realTimeFactor(), 0.5, 1e-6);
+}
+
+TEST(RealTimeClock, CatchesUpAShortHiccup) {
+  RealTimeClock clock(0.01);
+  clock.restart(kStart);
+  clock.ticked(kStart + 50ms);
+  EXPECT_EQ(clock.due(), kStart + 10ms);
+}
+
+TEST(RealTimeClock, FollowsTheWantedSpeed) {
+  RealTimeClock clock(0.01);
+  clock.restart(kStart);
+  clock.setSpeed(2.0);
+  for (int i = 0; i < 400; ++i) clock.ticked(clock.due());
+  EXPECT_NEAR(clock.realTimeFactor(), 2.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace spindrift::rooms

@@ -1,0 +1,101 @@
+// What the fidelity levels make of a scene's numbers.
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
+
+namespace spindrift::scene {
+namespace {
+
+v1::Scene parsed(const std::string& text, std::optional<v1::Fidelity> fidelity = std::nullopt) {
+  auto scene = parseSceneText(text, "pool.textproto", fidelity);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? *std::move(scene) : v1::Scene();
+}
+
+const std::string kPool =
+    "wave { resolution_count: 192 side_m: 16 } particles { count: 6000 layers_count: 3 } coupling {}";
+
+TEST(Fidelity, BalancedIsTheSceneAsItIsWritten) {
+  const v1::Scene scene = parsed(kPool);
+  EXPECT_EQ(scene.fidelity(), v1::FIDELITY_BALANCED);
+  EXPECT_EQ(scene.wave().resolution_count(), 192u);
+  EXPECT_EQ(scene.particles().count(), 6000u);
+  EXPECT_EQ(scene.tick_rate_hz(), 60.0);
+  EXPECT_EQ(parsed(kPool, v1::FIDELITY_BALANCED).SerializeAsString(), scene.SerializeAsString());
+}
+
+TEST(Fidelity, RisesInEveryNumberFromDraftToReference) {
+  v1::Scene before = parsed(kPool, v1::FIDELITY_DRAFT);
+  for (const auto level : {v1::FIDELITY_BALANCED, v1::FIDELITY_FINE, v1::FIDELITY_REFERENCE}) {
+    const v1::Scene scene = parsed(kPool, level);
+    EXPECT_GT(scene.wave().resolution_count(), before.wave().resolution_count());
+    EXPECT_EQ(scene.wave().resolution_count() % 16, 0u);
+    EXPECT_GT(scene.particles().count(), before.particles().count());
+    EXPECT_EQ(scene.particles().layers_count(), 3.0) << "a band on the surface gets thinner instead";
+    EXPECT_GE(scene.tick_rate_hz(), before.tick_rate_hz());
+    EXPECT_LE(scene.stream().surface_quantum_m(), before.stream().surface_quantum_m());
+    before = scene;
+  }
+}
+
+TEST(Fidelity, TakesTheStencilThatIsMoreAccurateAtEveryLevel) {
+  for (const auto level : {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE, v1::FIDELITY_REFERENCE})
+    EXPECT_EQ(parsed(kPool, level).wave().stencil(), v1::STENCIL_FIVE_POINT) << fidelityName(level);
+  EXPECT_EQ(parsed("fidelity: FIDELITY_FINE wave { stencil: STENCIL_NINE_POINT }").wave().stencil(),
+            v1::STENCIL_NINE_POINT)
+      << "a scene may choose";
+}
+
+TEST(Fidelity, KeepsWhatTheSceneChose) {
+  const v1::Scene scene = parsed(
+      "fidelity: FIDELITY_REFERENCE wave { stencil: STENCIL_FIVE_POINT } particles { iterations_count: 3 }\n"
+      "coupling { lattice_count: 3 } stream { surface_quantum_m: 0.01 }");
+  EXPECT_EQ(scene.fidelity(), v1::FIDELITY_REFERENCE);
+  EXPECT_EQ(scene.wave().stencil(), v1::STENCIL_FIVE_POINT);
+  EXPECT_EQ(scene.particles().iterations_count(), 3u);
+  EXPECT_EQ(scene.coupling().lattice_count(), 3u);
+  EXPECT_EQ(scene.stream().surface_quantum_m(), 0.01);
+}
+
+TEST(Fidelity, FillsABoxWithMoreLayersAndMakesDropsSmaller) {
+  const v1::Scene box = parsed("particles { count: 1000 layers_count: 10 box_side_m: 2 }", v1::FIDELITY_REFERENCE);
+  EXPECT_EQ(box.particles().layers_count(), 22.0);
+  EXPECT_EQ(box.particles().count(), 10648u) << "as deep as before";
+  const v1::Scene spray =
+      parsed("wave {} particles { count: 1000 } coupling { mode: COUPLING_MODE_TWO_WAY droplet_spacing_m: 0.2 }",
+             v1::FIDELITY_REFERENCE);
+  EXPECT_EQ(spray.particles().count(), 10648u);
+  EXPECT_NEAR(spray.coupling().droplet_spacing_m(), 0.2 / 2.2, 0.006) << "rounded to whole centimetres";
+}
+
+TEST(Fidelity, StaysInsideTheRanges) {
+  const v1::Scene fine =
+      parsed("tick_rate_hz: 200 wave { resolution_count: 1024 } particles { count: 1000000 }", v1::FIDELITY_REFERENCE);
+  EXPECT_EQ(fine.wave().resolution_count(), 1024u);
+  EXPECT_EQ(fine.particles().count(), 1048576u);
+  EXPECT_EQ(fine.tick_rate_hz(), 240.0);
+  const v1::Scene coarse = parsed("wave { resolution_count: 32 } particles { count: 1 }", v1::FIDELITY_DRAFT);
+  EXPECT_EQ(coarse.wave().resolution_count(), 32u);
+  EXPECT_GE(coarse.particles().count(), 1u);
+}
+
+TEST(Fidelity, HasNames) {
+  for (const auto level : {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE, v1::FIDELITY_REFERENCE})
+    EXPECT_EQ(parseFidelity(fidelityName(level)), level);
+  EXPECT_EQ(parseFidelity("Draft"), v1::FIDELITY_DRAFT);
+  EXPECT_FALSE(parseFidelity(""));
+  EXPECT_FALSE(parseFidelity("unspecified"));
+  EXPECT_FALSE(parseFidelity("best"));
+}
+
+TEST(Fidelity, AWrongNumberIsAnErrorAtEveryLevel) {
+  const auto scene = parseSceneText("wave { resolution_count: 8 }", "pool.textproto", v1::FIDELITY_REFERENCE);
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().message.find("wave.resolution_count"), std::string::npos) << scene.error().message;
+}
+
+}  // namespace
+}  // namespace spindrift::scene

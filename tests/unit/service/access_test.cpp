@@ -1,0 +1,85 @@
+#include <gmock/gmock.h>
+
+#include <spindrift/service/access.h>
+
+namespace spindrift::service {
+namespace {
+
+using core::Role;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::chrono::system_clock::time_point kNow = std::chrono::sys_days(std::chrono::year(2026) / 11 / 21);
+
+Access parsed(const std::string& text, std::optional<Role> guest = Role::kViewer) {
+  auto access = Access::parse(text, "tokens", guest);
+  EXPECT_TRUE(access) << access.error().message;
+  return access ? *std::move(access) : Access();
+}
+
+std::string refusal(const std::string& text) {
+  const auto access = Access::parse(text, "tokens", std::nullopt);
+  return access ? "(accepted)" : access.error().message;
+}
+
+TEST(Access, WithoutTokensEverybodyIsAnOperator) {
+  const auto grant = Access().resolve("", kNow);
+  ASSERT_TRUE(grant);
+  EXPECT_EQ(grant->role, Role::kOperator);
+}
+
+TEST(Access, TokensGiveTheirRoles) {
+  const Access access =
+      parsed("# people\noperator aaaaaaaaaaaaaaaa\n\n  player bbbbbbbbbbbbbbbb # the class\nviewer cccccccccccccccc");
+  EXPECT_EQ(access.tokenCount(), 3U);
+  EXPECT_EQ(access.resolve("aaaaaaaaaaaaaaaa", kNow)->role, Role::kOperator);
+  EXPECT_EQ(access.resolve("bbbbbbbbbbbbbbbb", kNow)->role, Role::kPlayer);
+  EXPECT_EQ(access.resolve("cccccccccccccccc", kNow)->role, Role::kViewer);
+  EXPECT_EQ(access.resolve("", kNow)->role, Role::kViewer);
+}
+
+TEST(Access, UnknownTokensGiveNothingAndAreNotRepeated) {
+  const Access access = parsed("operator aaaaaaaaaaaaaaaa", Role::kOperator);
+  for (const char* wrong : {"aaaaaaaaaaaaaaab", "aaaaaaaaaaaaaaa", "aaaaaaaaaaaaaaaaa", "x"}) {
+    const auto grant = access.resolve(wrong, kNow);
+    ASSERT_FALSE(grant) << wrong;
+    EXPECT_THAT(grant.error().message, Not(HasSubstr("aaa")));
+  }
+}
+
+TEST(Access, GuestsMayBeTurnedAway) {
+  const auto grant = parsed("operator aaaaaaaaaaaaaaaa", std::nullopt).resolve("", kNow);
+  ASSERT_FALSE(grant);
+  EXPECT_THAT(grant.error().message, HasSubstr("send a token"));
+}
+
+TEST(Access, TokensExpire) {
+  const Access access = parsed("player aaaaaaaaaaaaaaaa until=2026-11-21T00:00:10Z");
+  const auto grant = access.resolve("aaaaaaaaaaaaaaaa", kNow);
+  ASSERT_TRUE(grant);
+  EXPECT_EQ(grant->expires, kNow + std::chrono::seconds(10));
+  const auto late = access.resolve("aaaaaaaaaaaaaaaa", kNow + std::chrono::seconds(10));
+  ASSERT_FALSE(late);
+  EXPECT_THAT(late.error().message, HasSubstr("expired"));
+}
+
+TEST(Access, BadLinesAreNamedWithoutTheirToken) {
+  EXPECT_THAT(refusal("king aaaaaaaaaaaaaaaa"), HasSubstr("tokens:1:"));
+  EXPECT_THAT(refusal("\noperator"), HasSubstr("tokens:2:"));
+  EXPECT_THAT(refusal("operator short"), HasSubstr("at least 16"));
+  EXPECT_THAT(refusal("operator secretsecretsecret for=ever"), HasSubstr("until="));
+  EXPECT_THAT(refusal("operator secretsecretsecret until=2026-02-30T00:00:00Z"), HasSubstr("until="));
+  EXPECT_THAT(refusal("operator secretsecretsecret until=9999-02-03T00:00:00Z"), HasSubstr("until="));
+  EXPECT_THAT(refusal("operator secretsecretsecret until=2026-02-03T00:00:00Z more"), Not(HasSubstr("secretsecret")));
+  EXPECT_THAT(refusal("operator secretsecretsecret\nviewer secretsecretsecret"), HasSubstr("earlier line"));
+}
+
+TEST(Access, ReadsABearerHeader) {
+  EXPECT_EQ(*Access::bearerToken(""), "");
+  EXPECT_EQ(*Access::bearerToken("Bearer abc"), "abc");
+  EXPECT_FALSE(Access::bearerToken("Basic abc"));
+  EXPECT_FALSE(Access::bearerToken("Bearer "));
+}
+
+}  // namespace
+}  // namespace spindrift::service

@@ -1,0 +1,159 @@
+// Commands about boats, steps and scenes: what arrives, what is rejected before it reaches the room.
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/client_message.h>
+
+namespace spindrift::wire {
+namespace {
+
+using testing::HasSubstr;
+
+ClientMessage parseCommand(const std::function<void(v1::Command&)>& fill) {
+  v1::ClientMessage message;
+  message.mutable_command()->set_command_id(42);
+  fill(*message.mutable_command());
+  const std::string bytes = message.SerializeAsString();
+  return parseClientMessage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+core::Action actionOf(const std::function<void(v1::Command&)>& fill) {
+  const ClientMessage message = parseCommand(fill);
+  if (const auto* command = std::get_if<core::Command>(&message)) return command->action;
+  ADD_FAILURE() << "no command";
+  return core::Reset{};
+}
+
+CommandRejection rejectionOf(const std::function<void(v1::Command&)>& fill) {
+  const ClientMessage message = parseCommand(fill);
+  if (const auto* rejection = std::get_if<CommandRejection>(&message)) return *rejection;
+  ADD_FAILURE() << "not rejected";
+  return {};
+}
+
+TEST(BoatCommands, ArriveWithTheirValuesAndDefaults) {
+  const auto spawn = std::get<core::SpawnBoat>(actionOf([](v1::Command& c) {
+    c.mutable_spawn_boat()->mutable_boat()->set_x_m(-3);
+    c.mutable_spawn_boat()->mutable_boat()->set_rudder_ratio(0.5);
+  }));
+  EXPECT_EQ(spawn.boat.x_m, -3.0);
+  EXPECT_EQ(spawn.boat.rudder_ratio, 0.5);
+  EXPECT_EQ(spawn.boat.length_m, core::Boat{}.length_m);
+  const auto plain = std::get<core::SpawnBoat>(actionOf([](v1::Command& c) { c.mutable_spawn_boat(); }));
+  EXPECT_EQ(plain.boat.density_ratio, core::Boat{}.density_ratio);
+
+  const auto control = std::get<core::ControlBoat>(actionOf([](v1::Command& c) {
+    c.mutable_control_boat()->set_boat_id(7);
+    c.mutable_control_boat()->set_throttle_ratio(-1);
+    c.mutable_control_boat()->set_rudder_ratio(0.25);
+  }));
+  EXPECT_EQ(control.boat_id, 7u);
+  EXPECT_EQ(control.throttle_ratio, -1.0);
+  EXPECT_EQ(control.rudder_ratio, 0.25);
+  EXPECT_EQ(
+      std::get<core::RemoveBoat>(actionOf([](v1::Command& c) { c.mutable_remove_boat()->set_boat_id(9); })).boat_id,
+      9u);
+}
+
+TEST(BoatCommands, OutOfRangeOrNotFiniteAreRejectedWithTheirField) {
+  const auto fast = rejectionOf([](v1::Command& c) { c.mutable_control_boat()->set_throttle_ratio(1.5); });
+  EXPECT_EQ(fast.reason, v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(fast.field, "control_boat.throttle_ratio");
+  EXPECT_THAT(fast.message, HasSubstr("choose -1 to 1"));
+  const auto nan = rejectionOf(
+      [](v1::Command& c) { c.mutable_control_boat()->set_rudder_ratio(std::numeric_limits<double>::quiet_NaN()); });
+  EXPECT_EQ(nan.reason, v1::REJECT_REASON_NOT_FINITE);
+  EXPECT_EQ(nan.field, "control_boat.rudder_ratio");
+  const auto wide = rejectionOf([](v1::Command& c) { c.mutable_spawn_boat()->mutable_boat()->set_beam_m(16); });
+  EXPECT_EQ(wide.reason, v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(wide.field, "spawn_boat.boat.beam_m");
+}
+
+TEST(StepCommands, TakeTheirRangeAndOneTickByDefault) {
+  EXPECT_EQ(std::get<core::Step>(actionOf([](v1::Command& c) { c.mutable_step(); })).tick_count, 1u);
+  EXPECT_EQ(std::get<core::Step>(actionOf([](v1::Command& c) { c.mutable_step()->set_tick_count(600); })).tick_count,
+            600u);
+  for (const std::uint32_t count : {0u, 601u}) {
+    const auto rejection = rejectionOf([&](v1::Command& c) { c.mutable_step()->set_tick_count(count); });
+    EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
+    EXPECT_EQ(rejection.field, "step.tick_count");
+    EXPECT_THAT(rejection.message, HasSubstr("choose 1 to 600 ticks"));
+  }
+}
+
+TEST(SceneCommands, TakeNamesAndNoPaths) {
+  EXPECT_EQ(std::get<core::ChangeScene>(actionOf([](v1::Command& c) {
+              c.mutable_change_scene()->set_name("wave_only");
+            })).name,
+            "wave_only");
+  for (const std::string& name : {std::string(), std::string("../etc/passwd"), std::string("a b"), std::string(65, 'a'),
+                                  std::string("a\nb"), std::string(5000, 'x')}) {
+    const auto rejection = rejectionOf([&](v1::Command& c) { c.mutable_change_scene()->set_name(name); });
+    EXPECT_EQ(rejection.reason, v1::REJECT_REASON_UNKNOWN_SCENE);
+    EXPECT_EQ(rejection.field, "change_scene.name");
+    EXPECT_LT(rejection.message.size(), 200u);
+    EXPECT_EQ(rejection.message.find('\n'), std::string::npos);
+  }
+}
+
+v1::Scene harbour() {
+  const auto scene = scene::parseSceneText(
+      "wave { side_m: 16 depth_m: 1 }\nobstacles { rock { x_m: 4 } }\nboats { boats { x_m: -4 } }", "harbour");
+  EXPECT_TRUE(scene) << scene.error().message;
+  return *scene;
+}
+
+TEST(BoatCommands, NeedASceneWithBoats) {
+  const auto scene = scene::parseSceneText("wave {}", "pool.textproto");
+  ASSERT_TRUE(scene);
+  const std::pair<core::Action, std::string> cases[] = {
+      {core::SpawnBoat{}, "spawn_boat"}, {core::ControlBoat{}, "control_boat"}, {core::RemoveBoat{}, "remove_boat"}};
+  for (const auto& [action, field] : cases) {
+    const auto rejection = checkAgainstScene(core::Command{{}, 2, action}, *scene);
+    ASSERT_TRUE(rejection) << field;
+    EXPECT_EQ(rejection->command_id, 2u);
+    EXPECT_EQ(rejection->reason, v1::REJECT_REASON_ABSENT_PART);
+    EXPECT_EQ(rejection->field, field);
+    EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, action}, harbour()));
+  }
+}
+
+TEST(BoatCommands, ThatPutABoatWhereTheSceneForbidsItAreRejected) {
+  const auto rejectionFor = [](const core::Boat& boat) {
+    return checkAgainstScene(core::Command{{}, 2, core::SpawnBoat{boat}}, harbour()).value_or(CommandRejection{});
+  };
+  EXPECT_EQ(rejectionFor({.x_m = 7.5}).field, "spawn_boat.boat.x_m");
+  EXPECT_EQ(rejectionFor({.z_m = -8.0}).field, "spawn_boat.boat.z_m");
+  EXPECT_EQ(rejectionFor({.length_m = 5.0}).field, "spawn_boat.boat.length_m");
+  EXPECT_EQ(rejectionFor({.beam_m = 3.0}).field, "spawn_boat.boat.beam_m");
+  EXPECT_EQ(rejectionFor({.height_m = 3.0}).field, "spawn_boat.boat.height_m");
+  const CommandRejection aground = rejectionFor({.x_m = 4.0});
+  EXPECT_EQ(aground.reason, v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_THAT(aground.message, HasSubstr("obstacles[0]"));
+  EXPECT_EQ(rejectionFor({.z_m = 5.0}).reason, v1::REJECT_REASON_UNSPECIFIED) << "open water";
+}
+
+TEST(SceneCommands, AndStepsAreLeftToTheRoom) {
+  for (const core::Action& action : {core::Action(core::Step{5}), core::Action(core::ChangeScene{"anything"})}) {
+    EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, action}, harbour()));
+  }
+}
+
+TEST(WavesInADirection, AreBoundLikeThoseOfASide) {
+  const core::BreakingWave fine{.side = core::Side::kDirection, .amplitude_m = 0.5, .direction_deg = 33};
+  EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, fine}, harbour()));
+  core::BreakingWave high = fine;
+  high.amplitude_m = 0.95;
+  EXPECT_EQ(checkAgainstScene(core::Command{{}, 2, high}, harbour())->field, "breaking_wave.amplitude_m");
+  core::BreakingWave longer = fine;
+  longer.length_m = 17;
+  EXPECT_EQ(checkAgainstScene(core::Command{{}, 2, longer}, harbour())->field, "breaking_wave.length_m");
+}
+
+}  // namespace
+}  // namespace spindrift::wire

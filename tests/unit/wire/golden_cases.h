@@ -1,0 +1,31 @@
+// The messages whose bytes are frozen in tests/golden, and what a client must make of each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <spindrift/core/bytes.h>
+
+namespace spindrift::wire {
+
+/// What a client must make of the bytes.
+enum class GoldenVerdict {
+  kOk,          ///< parses and, being a frame, decodes to the values expected
+  kBadFrame,    ///< parses as a ServerMessage, but its frame must be refused
+  kBadMessage,  ///< must not be taken for a ServerMessage
+};
+
+struct GoldenCase {
+  std::string file;  ///< name below tests/golden
+  GoldenVerdict verdict = GoldenVerdict::kOk;
+  std::string expected_json;  ///< members of the case's JSON object besides file and verdict
+  core::Bytes bytes;
+};
+
+/// Every case, in a fixed order.
+std::vector<GoldenCase> goldenCases();
+
+/// The text of tests/golden/golden.json.
+std::string goldenJson(const std::vector<GoldenCase>& cases);
+
+}  // namespace spindrift::wire

@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/server_message.h>
+
+namespace spindrift::wire {
+namespace {
+
+v1::ServerMessage read(const core::SharedBytes& bytes) {
+  const auto message = codec::parseServerMessage(*bytes);
+  EXPECT_TRUE(message) << message.error().message;
+  return message ? *message : v1::ServerMessage();
+}
+
+TEST(ServerMessages, GreetingTellsAllAClientNeeds) {
+  const auto scene = scene::parseSceneText("wave { depth_m: 2 } particles {}", "pool.textproto");
+  ASSERT_TRUE(scene) << scene.error().message;
+  GreetingFacts facts;
+  facts.server = "spindrift 0.1.0";
+  facts.device = "llvmpipe";
+  facts.room = "pool";
+  facts.session_id = 17;
+  facts.layers = {v1::LAYER_SURFACE, v1::LAYER_PARTICLES};
+  facts.message_max_bytes = 16384;
+  facts.commands_per_s = 200;
+  facts.frame_rate_max_hz = 60;
+  facts.server_time_s = 12.5;
+  facts.paused = true;
+  facts.speed = 0.5;
+  facts.boats.add_boats()->set_boat_id(3);
+  facts.scenes = {"harbour", "pool"};
+  const v1::Greeting out = read(greeting(facts, *scene)).greeting();
+  EXPECT_EQ(out.version().major(), kWireMajor);
+  EXPECT_EQ(out.version().minor(), kWireMinor);
+  EXPECT_EQ(out.server(), "spindrift 0.1.0");
+  EXPECT_EQ(out.device(), "llvmpipe");
+  EXPECT_EQ(out.room(), "pool");
+  EXPECT_EQ(out.session_id(), 17u);
+  ASSERT_EQ(out.layers_size(), 2);
+  EXPECT_EQ(out.layers(1), v1::LAYER_PARTICLES);
+  EXPECT_EQ(out.limits().message_max_bytes(), 16384u);
+  EXPECT_EQ(out.limits().commands_per_s(), 200.0);
+  EXPECT_EQ(out.limits().frame_rate_max_hz(), 60.0);
+  EXPECT_EQ(out.scene().SerializeAsString(), scene->SerializeAsString());
+  EXPECT_EQ(out.parameters_size(), static_cast<int>(scene::describeParameters(*scene).size()));
+  EXPECT_EQ(out.server_time_s(), 12.5);
+  EXPECT_TRUE(out.room_state().paused());
+  EXPECT_EQ(out.room_state().speed(), 0.5);
+  ASSERT_EQ(out.boat_list().boats_size(), 1);
+  EXPECT_EQ(out.boat_list().boats(0).boat_id(), 3u);
+  ASSERT_EQ(out.scenes_size(), 2);
+  EXPECT_EQ(out.scenes(0), "harbour");
+}
+
+TEST(ServerMessages, AnswersCarryIdTickReasonAndField) {
+  const v1::Ack acknowledged = read(ack(7, 1234)).ack();
+  EXPECT_EQ(acknowledged.command_id(), 7u);
+  EXPECT_EQ(acknowledged.applied_tick(), 1234u);
+  EXPECT_EQ(acknowledged.boat_id(), 0u);
+  EXPECT_EQ(read(ack(7, 1234, 5)).ack().boat_id(), 5u);
+  const v1::Reject rejected = read(reject({8, v1::REJECT_REASON_OUT_OF_RANGE, "splash.x_m", "too far"})).reject();
+  EXPECT_EQ(rejected.command_id(), 8u);
+  EXPECT_EQ(rejected.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(rejected.field(), "splash.x_m");
+  EXPECT_EQ(rejected.message(), "too far");
+  EXPECT_EQ(read(reject({9, v1::REJECT_REASON_BUSY, "", "try again"})).reject().reason(), v1::REJECT_REASON_BUSY);
+}
+
+TEST(ServerMessages, NewsOfTheRoomCarryTheirValues) {
+  const v1::ParameterChanged changed = read(parameterChanged("wave.depth_m", 2.5, 99)).parameter_changed();
+  EXPECT_EQ(changed.path(), "wave.depth_m");
+  EXPECT_EQ(changed.value(), 2.5);
+  EXPECT_EQ(changed.applied_tick(), 99u);
+  const v1::RoomState state = read(roomState(true, 2.0)).room_state();
+  EXPECT_TRUE(state.paused());
+  EXPECT_EQ(state.speed(), 2.0);
+  v1::BoatList boats;
+  boats.add_boats()->set_draught_m(0.25);
+  EXPECT_EQ(read(boatList(boats)).boat_list().boats(0).draught_m(), 0.25);
+  const v1::RoomEvent event = read(roomEvent(v1::ROOM_EVENT_KIND_RESET, 12, "started again")).room_event();
+  EXPECT_EQ(event.kind(), v1::ROOM_EVENT_KIND_RESET);
+  EXPECT_EQ(event.tick(), 12u);
+  EXPECT_EQ(event.message(), "started again");
+  const v1::Pong answer = read(pong(1.5, 2.5)).pong();
+  EXPECT_EQ(answer.client_time_s(), 1.5);
+  EXPECT_EQ(answer.server_time_s(), 2.5);
+  EXPECT_EQ(read(refusal("wrong version")).refusal().message(), "wrong version");
+}
+
+TEST(ServerMessages, AMessageOfDefaultsOnlyIsStillOfItsKind) {
+  EXPECT_TRUE(read(roomState(false, 0.0)).has_room_state());
+  EXPECT_TRUE(read(ack(0, 0)).has_ack());
+  EXPECT_TRUE(read(boatList({})).has_boat_list()) << "the last boat left";
+}
+
+}  // namespace
+}  // namespace spindrift::wire
