@@ -18,7 +18,8 @@ struct ServeOptions {
   std::uint16_t port = 8080;
   std::string fidelity;  ///< takes the place of the scenes' own; empty: theirs
   std::string device = "auto";
-  std::string web_root;  ///< empty: found beside the program
+  std::string web_root;       ///< empty: found beside the program
+  std::string shader_folder;  ///< empty: the shaders of the program
   std::size_t thread_count = 1;
   double address_session_share = 0.5;  ///< share of the sessions that one address may hold
   std::size_t max_room_count = 8;

@@ -59,6 +59,10 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   serve_command->add_option("--web-root", serve_options.web_root,
                             "Folder with the built web client (default: the one beside the program)");
+  serve_command
+      ->add_option("--shader-dir", serve_options.shader_folder,
+                   "For work on shaders: read them from this folder (shaders/), again whenever a file changes")
+      ->check(CLI::ExistingDirectory);
   serve_command->add_option("--threads", serve_options.thread_count, "I/O threads")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

@@ -122,6 +122,7 @@ int serve(const ServeOptions& options) {
 
   service::WaterServerOptions server_options;
   server_options.device = *device;
+  server_options.device.shader_folder = options.shader_folder;
   server_options.rooms = *std::move(rooms);
   server_options.rules.scenes = rooms::SceneCatalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
   server_options.rules.grace =

@@ -12,6 +12,7 @@
 
 #include "device_needs.h"
 #include "program_resources.h"
+#include "shader_folder.h"
 #include "shuffled_groups.h"
 
 namespace spindrift::gpu {
@@ -108,18 +109,27 @@ void checkNeeds(Context& ctx, const CompiledProgram& program) {
 core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context& ctx, std::string_view shader_path,
                                                                         const Defines& defines) {
   assert(ctx.isOwnedHere());
-  const EmbeddedShader* embedded = findShader(shader_path);
+  const EmbeddedShader* const embedded = findShader(shader_path);
   if (!embedded) {
     return core::Error{core::ErrorCode::kInternal,
                        "shader \"" + std::string(shader_path) + "\" is not embedded; embedded are " +
                            std::to_string(embeddedShaders().size()) + " files shaders/**/*.comp"};
+  }
+  EmbeddedShader source = *embedded;
+  ShaderFolder::Source read;
+  if (const ShaderFolder* const folder = ctx.shaderFolder()) {
+    auto expanded = folder->expand(shader_path);
+    if (!expanded) return expanded.error();
+    read = *std::move(expanded);
+    source.text = read.text;
+    source.lines = read.lines;
   }
   std::string text(kVersionLine);
   for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
   // The driver counts the lines of the expanded text, and all of it in one string: each string has its own number.
   text += "#line 1\n";
   const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;
-  text += shuffle_seed == 0 ? std::string(embedded->text) : shuffledGroups(embedded->text, shuffle_seed);
+  text += shuffle_seed == 0 ? std::string(source.text) : shuffledGroups(source.text, shuffle_seed);
 
   const GLchar* const pointer = text.data();
   const auto length = static_cast<GLint>(text.size());
@@ -128,7 +138,7 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   glCompileShader(shader);
   GLint is_fine = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &is_fine);
-  const std::string log = translateLog(*embedded, shaderLog(shader));
+  const std::string log = translateLog(source, shaderLog(shader));
   if (!is_fine) {
     glDeleteShader(shader);
     return core::Error{core::ErrorCode::kInternal, std::string(shader_path) + " does not compile: " + log};
@@ -145,15 +155,26 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   glGetProgramiv(program->id, GL_LINK_STATUS, &is_fine);
   if (!is_fine) {
     return core::Error{core::ErrorCode::kInternal, std::string(shader_path) + " does not link: " +
-                                                       translateLog(*embedded, programLog(program->id))};
+                                                       translateLog(source, programLog(program->id))};
   }
   GLint size[3] = {0, 0, 0};
   glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);
   for (std::size_t axis = 0; axis < 3; ++axis) program->group_size[axis] = static_cast<std::uint32_t>(size[axis]);
   glObjectLabel(GL_PROGRAM, program->id, static_cast<GLsizei>(shader_path.size()), shader_path.data());
-  program->uses = usesOf(program->id, *embedded);
+  program->uses = usesOf(program->id, source);
   checkNeeds(ctx, *program);
+  program->files = std::move(read.files);
   return program;
+}
+
+void CompiledProgram::become(CompiledProgram& fresh) {
+  std::swap(id, fresh.id);
+  std::swap(uses, fresh.uses);
+  std::swap(files, fresh.files);
+  locations.clear();
+  touched.clear();
+  uniforms_of = 0;
+  ++generation;
 }
 
 CompiledProgram::~CompiledProgram() {
@@ -171,8 +192,24 @@ core::Result<std::shared_ptr<CompiledProgram>> ProgramCache::get(Context& ctx, s
   auto compiled = CompiledProgram::compile(ctx, shader_path, defines);
   if (!compiled) return compiled.error();
   dropUnused();
-  by_key_[key] = entries_.insert(entries_.end(), Entry{key, *compiled});
+  by_key_[key] = entries_.insert(entries_.end(), Entry{key, std::string(shader_path), defines, *compiled});
   return *compiled;
+}
+
+void ProgramCache::reload(Context& ctx, const std::set<std::string>& files) {
+  for (const Entry& entry : entries_) {
+    const auto is_changed = [&](const std::string& file) { return files.contains(file); };
+    if (std::ranges::none_of(entry.program->files, is_changed)) continue;
+    auto fresh = CompiledProgram::compile(ctx, entry.shader_path, entry.defines);
+    if (!fresh) {
+      spdlog::error("{}; the program goes on as it was", fresh.error().message);
+    } else if ((*fresh)->group_size != entry.program->group_size) {
+      spdlog::error("{}: another group size needs a restart; the program goes on as it was", entry.shader_path);
+    } else {
+      entry.program->become(**fresh);
+      spdlog::info("{}: compiled anew", entry.shader_path);
+    }
+  }
 }
 
 void ProgramCache::dropUnused() {

@@ -8,6 +8,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +29,13 @@ struct CompiledProgram {
   CompiledProgram(const CompiledProgram&) = delete;
   CompiledProgram& operator=(const CompiledProgram&) = delete;
 
+  /// Goes on as `fresh`, the same shader compiled from changed files.
+  void become(CompiledProgram& fresh);
+
   std::uint32_t id = 0;
+  std::uint32_t generation = 0;  ///< counts become(): locations of uniforms are others then
   std::array<std::uint32_t, 3> group_size = {1, 1, 1};
+  std::set<std::string> files;  ///< that it was compiled from; empty for an embedded shader
   std::map<std::string, std::int32_t, std::less<>> locations;
   ProgramUses uses;
 
@@ -49,11 +55,16 @@ class ProgramCache {
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
   std::uint64_t newHandle() { return ++last_handle_; }
   void clear() { entries_.clear(); }
+  /// Compiles those anew that were compiled from one of these files of the context's shader folder. Errors are logged,
+  /// and the program goes on as it was.
+  void reload(Context& ctx, const std::set<std::string>& files);
 
  private:
   static constexpr std::size_t kMaxUnused = 256;  // a room has about 30; all variants that scenes ask for are about 90
   struct Entry {
     std::string key;
+    std::string shader_path;
+    Defines defines;
     std::shared_ptr<CompiledProgram> program;
   };
   void dropUnused();

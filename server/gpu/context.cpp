@@ -17,6 +17,7 @@
 #include "device_probe.h"
 #include "device_selection.h"
 #include "egl_display.h"
+#include "shader_folder.h"
 #include "staging.h"
 
 namespace spindrift::gpu {
@@ -88,10 +89,11 @@ core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choic
   core::Result<Selection> chosen = selectDevice(egl::candidates(), choice, openUsable, egl::close);
   if (!chosen) return chosen.error();
   return std::unique_ptr<Context>(new Context(std::make_unique<Egl>(Egl{chosen->handles}), std::move(chosen->info),
-                                              std::move(chosen->why), checks));
+                                              std::move(chosen->why), checks, choice.shader_folder));
 }
 
-Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, const Checks& checks)
+Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, const Checks& checks,
+                 const std::string& shader_folder)
     : egl_(std::move(egl)),
       device_(std::move(device)),
       why_(std::move(why)),
@@ -99,7 +101,8 @@ Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, c
       messages_(std::make_unique<Messages>()),
       accesses_(std::make_unique<AccessTracker>(checks.barriers)),
       staging_(std::make_unique<Staging>(*this)),
-      programs_(std::make_unique<ProgramCache>()) {
+      programs_(std::make_unique<ProgramCache>()),
+      shader_folder_(shader_folder.empty() ? nullptr : std::make_unique<ShaderFolder>(shader_folder)) {
   fence_delay_.set(checks.lag_fences_count);
   glEnable(GL_DEBUG_OUTPUT);
 #ifndef NDEBUG
@@ -171,6 +174,12 @@ void Context::flush() {
 void Context::finish() {
   assert(isOwnedHere());
   glFinish();
+}
+
+void Context::reloadChangedShaders() {
+  if (!shader_folder_) return;
+  assert(isOwnedHere());
+  if (const auto changed = shader_folder_->takeChanged(); !changed.empty()) programs_->reload(*this, changed);
 }
 
 bool Context::isLost() {

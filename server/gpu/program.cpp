@@ -46,6 +46,7 @@ core::Result<Program> Program::create(Context& ctx, std::string_view shader_path
   program.ctx_ = &ctx;
   program.path_ = shader_path;
   program.compiled_ = *std::move(compiled);
+  program.generation_ = program.compiled_->generation;
   program.handle_ = ctx.programs().newHandle();
   ++ctx.ledgerEntry().program_count;
   return program;
@@ -62,6 +63,7 @@ Program::Program(Program&& other) noexcept
       path_(std::move(other.path_)),
       compiled_(std::move(other.compiled_)),
       handle_(other.handle_),
+      generation_(other.generation_),
       uniforms_(std::move(other.uniforms_)) {}
 
 Program& Program::operator=(Program&& other) noexcept {
@@ -71,6 +73,7 @@ Program& Program::operator=(Program&& other) noexcept {
   std::swap(path_, moved.path_);
   std::swap(compiled_, moved.compiled_);
   std::swap(handle_, moved.handle_);
+  std::swap(generation_, moved.generation_);
   std::swap(uniforms_, moved.uniforms_);
   return *this;
 }
@@ -117,11 +120,22 @@ void Program::dispatchIndirect(const Buffer& arguments, std::size_t offset_bytes
   ++ctx_->ledgerEntry().dispatch_count;
 }
 
+void Program::followReload() {
+  if (generation_ == compiled_->generation) return;
+  generation_ = compiled_->generation;
+  for (UniformValue& value : uniforms_) value.location = location(value.name);
+  std::erase_if(uniforms_, [](const UniformValue& value) { return value.location < 0; });
+  for (const UniformValue& value : uniforms_) {
+    if (!findLocation(compiled_->touched, value.location)) compiled_->touched.push_back(value);
+  }
+}
+
 void Program::prepare(const Buffer* arguments) {
+  followReload();
   // The values of another Program that shares the compiled one give way to ours; what we never set is zero.
   if (compiled_->uniforms_of != handle_) {
     for (const UniformValue& value : compiled_->touched) {
-      if (!findLocation(uniforms_, value.location)) apply(compiled_->id, {value.location, value.type, 0});
+      if (!findLocation(uniforms_, value.location)) apply(compiled_->id, {value.name, value.location, value.type, 0});
     }
     for (const UniformValue& value : uniforms_) apply(compiled_->id, value);
     compiled_->uniforms_of = handle_;
@@ -146,7 +160,8 @@ std::int32_t Program::location(std::string_view name) {
 }
 
 void Program::setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits) {
-  const UniformValue value{location(name), type, bits};
+  followReload();
+  const UniformValue value{std::string(name), location(name), type, bits};
   if (value.location < 0) return;
   if (UniformValue* const known = findLocation(uniforms_, value.location)) {
     *known = value;

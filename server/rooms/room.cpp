@@ -133,6 +133,7 @@ Room::TimePoint Room::due(TimePoint now) const {
 
 void Room::run(TimePoint now) {
   stage_->bind();
+  stage_->reloadChangedShaders();
   session_count_ = outlets_.sessionCount();
   adoptWater(now);
   if (isLost(now)) {

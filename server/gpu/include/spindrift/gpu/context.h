@@ -18,6 +18,7 @@ namespace spindrift::gpu {
 
 class AccessTracker;
 class ProgramCache;
+class ShaderFolder;
 class Staging;
 
 /// What the next reader of shader writes is going to be; combine with |.
@@ -120,6 +121,11 @@ class Context {
   /// What isLost() last answered, without asking the driver. Any thread.
   [[nodiscard]] bool wasLost() const { return is_lost_.load(); }
 
+  /// Compiles the programs anew whose files in DeviceChoice::shader_folder changed since the last look, at most one look
+  /// in 0.3 s; does nothing without such a folder. What does not compile is logged with file and line, and the program
+  /// goes on as it was. Headers in shared/ are C++ as well: what changes there needs a build.
+  void reloadChangedShaders();
+
   /// OpenGL errors seen by the debug callback, and refused dispatches. 0 in a healthy program.
   [[nodiscard]] std::uint64_t debugErrorCount() const { return debug_error_count_.load(); }
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
@@ -143,6 +149,8 @@ class Context {
   AccessTracker& accesses() { return *accesses_; }
   Staging& staging() { return *staging_; }
   ProgramCache& programs() { return *programs_; }
+  /// Null: shaders are the embedded ones.
+  [[nodiscard]] const ShaderFolder* shaderFolder() const { return shader_folder_.get(); }
   /// Issues the barrier with these OpenGL bits; nothing for 0.
   void barrierBits(std::uint32_t bits);
   /// Takes over the storage of a readback ring that was destroyed while views of it were still held; it is deleted once
@@ -165,7 +173,8 @@ class Context {
     std::function<bool()> in_use;
   };
 
-  Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, const Checks& checks);
+  Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, const Checks& checks,
+          const std::string& shader_folder);
 
   std::unique_ptr<Egl> egl_;
   DeviceInfo device_;
@@ -180,6 +189,7 @@ class Context {
   std::unique_ptr<AccessTracker> accesses_;
   std::unique_ptr<Staging> staging_;
   std::unique_ptr<ProgramCache> programs_;
+  std::unique_ptr<ShaderFolder> shader_folder_;
 };
 
 }  // namespace spindrift::gpu

@@ -19,6 +19,9 @@ struct DeviceChoice {
   };
   Kind kind = Kind::kAuto;
   int index = 0;  ///< for kIndex only
+  /// For work on shaders: their folder, read in place of the embedded ones; empty: those. See
+  /// Context::reloadChangedShaders().
+  std::string shader_folder{};
 };
 
 /// "auto", "software" or a device index (0…1023). Error kInvalidInput otherwise.

@@ -30,6 +30,7 @@ struct BlockLayout {
 /// A plain uniform as OpenGL takes it.
 struct UniformValue {
   enum class Type { kUint, kInt, kFloat };
+  std::string name;
   std::int32_t location = -1;
   Type type = Type::kUint;
   std::uint32_t bits = 0;
@@ -78,13 +79,16 @@ class Program {
  private:
   [[nodiscard]] std::int32_t location(std::string_view name);
   void setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits);
+  /// Finds the uniforms' locations again when the shader was compiled anew.
+  void followReload();
   /// Makes the program, its uniforms and the memory that it reads ready for a dispatch.
   void prepare(const Buffer* arguments);
 
   Context* ctx_ = nullptr;
   std::string path_;
   std::shared_ptr<CompiledProgram> compiled_;
-  std::uint64_t handle_ = 0;  ///< unlike that of any other Program of the context
+  std::uint64_t handle_ = 0;      ///< unlike that of any other Program of the context
+  std::uint32_t generation_ = 0;  ///< of `compiled_`, which `uniforms_` were located in
   std::vector<UniformValue> uniforms_;
 };
 

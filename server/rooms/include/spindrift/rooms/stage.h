@@ -59,6 +59,8 @@ class Stage {
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);
   /// Makes this stage's GL context current; call it before anything else when another one may be.
   void bind() { water_->bind(); }
+  /// gpu::Context::reloadChangedShaders().
+  void reloadChangedShaders() { water_->context().reloadChangedShaders(); }
   void step() {
     water().step();
     ++state_id_;

@@ -1,0 +1,131 @@
+#include "shader_folder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <utility>
+
+namespace spindrift::gpu {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Error;
+using core::ErrorCode;
+
+constexpr auto kLookInterval = std::chrono::milliseconds(300);
+
+Error invalid(std::string message) {
+  return {ErrorCode::kInvalidInput, std::move(message)};
+}
+
+/// What follows `#NAME` in a line, without blanks around it; nullopt where the line is no such directive.
+std::optional<std::string_view> directive(std::string_view line, std::string_view name) {
+  const auto skipBlanks = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+  skipBlanks();
+  if (!line.starts_with('#')) return std::nullopt;
+  line.remove_prefix(1);
+  skipBlanks();
+  if (!line.starts_with(name)) return std::nullopt;
+  line.remove_prefix(name.size());
+  skipBlanks();
+  return line;
+}
+
+/// "SPINDRIFT_ONCE_include_splat_glsl" for "include/splat.glsl".
+std::string guardOf(const std::string& name) {
+  std::string out = "SPINDRIFT_ONCE_" + name;
+  std::ranges::replace_if(out, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  return out;
+}
+
+/// Lines of one file that follow each other, and where they go.
+class Lines {
+ public:
+  Lines(ShaderFolder::Source& out, const std::string& name) : out_(out), name_(out.names.emplace_back(name)) {}
+
+  /// `number`: of the line in the file, from 1.
+  void add(std::string_view line, std::uint32_t number) {
+    out_.text.append(line).push_back('\n');
+    out_.lines.push_back({++out_.line_count, name_, number});
+  }
+
+ private:
+  ShaderFolder::Source& out_;
+  const std::string& name_;
+};
+
+}  // namespace
+
+ShaderFolder::ShaderFolder(fs::path root) : root_(std::move(root)), times_(times()) {}
+
+core::Result<ShaderFolder::Source> ShaderFolder::expand(std::string_view entry) const {
+  Source out;
+  if (auto done = expand(std::string(entry), {}, out); !done) return done.error();
+  return out;
+}
+
+core::Result<void> ShaderFolder::expand(const std::string& name, const std::vector<std::string>& stack,
+                                        Source& out) const {
+  if (std::ranges::find(stack, name) != stack.end()) return invalid("include cycle: " + stack.back() + " -> " + name);
+  std::ifstream file(root_ / name);
+  if (!file) return invalid("no file \"" + name + "\" below " + root_.string());
+  out.files.insert(name);
+  std::vector<std::string> inside = stack;
+  inside.push_back(name);
+  Lines lines(out, name);
+  std::uint32_t number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    const std::string where = name + ":" + std::to_string(number);
+    if (directive(line, "version")) return invalid(where + ": remove #version, the program puts it first");
+    const auto included = directive(line, "include");
+    // <...> is the C++ side of a header in shared/.
+    const bool is_dropped = (directive(line, "pragma") == "once") || (included && included->starts_with('<'));
+    if (!included || is_dropped) {
+      lines.add(is_dropped ? "" : line, number);
+      continue;
+    }
+    const std::size_t end = included->find('"', 1);
+    if (!included->starts_with('"') || end == std::string_view::npos)
+      return invalid(where + ": write #include \"file\", relative to the shader folder");
+    const std::string other(included->substr(1, end - 1));
+    if (other.find("..") != std::string::npos || !fs::is_regular_file(root_ / other))
+      return invalid(where + ": no file \"" + other + "\" below " + root_.string());
+    // A file counts once, whichever of the places that include it the preprocessor comes to first.
+    lines.add("#ifndef " + guardOf(other), number);
+    lines.add("#define " + guardOf(other), number);
+    if (auto done = expand(other, inside, out); !done) return done;
+    lines.add("#endif", number);
+  }
+  return {};
+}
+
+ShaderFolder::Times ShaderFolder::times() const {
+  Times out;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(root_, error), end; !error && at != end; at.increment(error)) {
+    std::error_code unread;
+    if (const auto written = at->last_write_time(unread); !unread && at->is_regular_file(unread))
+      out[at->path().lexically_relative(root_).generic_string()] = written;
+  }
+  return out;
+}
+
+std::set<std::string> ShaderFolder::takeChanged() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_look_) return {};
+  next_look_ = now + kLookInterval;
+  Times fresh = times();
+  std::set<std::string> out;
+  for (const auto& [name, time] : fresh) {
+    const auto known = times_.find(name);
+    if (known == times_.end() || known->second != time) out.insert(name);
+  }
+  for (const auto& [name, time] : times_) {
+    if (!fresh.contains(name)) out.insert(name);
+  }
+  times_ = std::move(fresh);
+  return out;
+}
+
+}  // namespace spindrift::gpu
