@@ -21,7 +21,7 @@ FENCE = re.compile(r"^ {0,3}(```+|~~~+)")
 CODE = re.compile(r"(`+)(.+?)\1")
 FUNCTION = re.compile(r"([\w.@/-]*\w\.(?:cpp|h|comp|glsl|proto|ts|mjs|py|sh)):((?:\w+::)*~?[A-Za-z_]\w*)")
 PATH = re.compile(r"(?:\.ci|docker|docs|proto|server|shaders|tests|web-client)/[\w./-]*")
-PLACEHOLDER = re.compile(r"NAME|TARGET|FILE")
+PLACEHOLDER = re.compile(r"\b(?:NAME|TARGET|FILE|SUBJECT|VERB)\b")
 
 
 def is_record(name):
