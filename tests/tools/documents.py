@@ -64,26 +64,29 @@ class Checkout:
 
 
 class Document:
-    """One Markdown file: its lines with and without code, and its anchors."""
+    """One Markdown file: its lines, its links with their line numbers, and its anchors."""
 
     def __init__(self, name, text):
         self.name = name
         self.lines = text.splitlines()
-        self.prose = []  # the same lines, empty inside of fenced code, without code in back quotes
         self.anchors = set()
+        prose = []  # the same lines, empty inside of fenced code, without code in back quotes
         fence = None
         for line in self.lines:
             mark = FENCE.match(line)
             if mark and (fence is None or mark.group(1).startswith(fence)):
                 fence = mark.group(1) if fence is None else None
-                self.prose.append("")
+                prose.append("")
                 continue
-            self.prose.append("" if fence else CODE.sub(lambda code: "`" * len(code.group(0)), line))
+            prose.append("" if fence else CODE.sub(lambda code: "`" * len(code.group(0)), line))
             heading = None if fence else HEADING.match(line)
             if heading:
                 self._add_anchor(anchor_of(heading.group(2)))
             if not fence:
                 self.anchors.update(re.findall(r"<a (?:id|name)=\"([^\"]+)\"", line))
+        text = "\n".join(prose)  # a link's text may go on in the next line
+        found = [*LINK.finditer(text), *LINK_IN_LINK.finditer(text)]
+        self.links = dict.fromkeys((text.count("\n", 0, link.start(1)) + 1, link.group(1)) for link in found)
 
     def _add_anchor(self, anchor):
         unique, number = anchor, 0
@@ -120,32 +123,32 @@ def check_function(checkout, name, function):
     files = checkout.matches(name)
     if not files:
         return f"{name}:{function}: there is no such file"
-    words = [set(re.findall(r"~?\w+", checkout.text(file))) | set(re.findall(r"\w+", checkout.text(file))) for file in files]
-    if not any(all(part in known for part in function.split("::")) for known in words):
+    words = [set(re.findall(r"\w+", checkout.text(file))) for file in files]
+    if not any(all(part.lstrip("~") in known for part in function.split("::")) for known in words):
         return f"{name}:{function}: {' and '.join(sorted(files))} does not contain that name"
     return None
 
 
 def faults(root):
-    """Every fault, in the order of files and lines."""
+    """Returns every fault, by file and line, and the number of documents."""
     checkout = Checkout(root)
     names = sorted(name for name in checkout.files if name.endswith(".md"))
     documents = {name: Document(name, checkout.text(name)) for name in names}
     linked = set()
     out = []
     for document in documents.values():
-        for number, (line, prose) in enumerate(zip(document.lines, document.prose), start=1):
-            targets = [link.group(1) for link in LINK.finditer(prose)] + LINK_IN_LINK.findall(prose)
-            found = [check_link(checkout, documents, document, target, linked) for target in dict.fromkeys(targets)]
-            found += [check_function(checkout, *match) for match in FUNCTION.findall(line)]
+        found = [(number, check_link(checkout, documents, document, target, linked)) for number, target in document.links]
+        for number, line in enumerate(document.lines, start=1):
+            found += [(number, check_function(checkout, *match)) for match in FUNCTION.findall(line)]
             if not is_record(document.name):
                 for _, code in CODE.findall(line):
                     path = code.rstrip("/")
                     if not PATH.fullmatch(code) or PLACEHOLDER.search(code) or checkout.has(path):
                         continue
                     if not checkout.is_ignored(path):
-                        found.append(f"`{code}` does not exist")
-            out += [f"{document.name}:{number}: {fault}" for fault in found if fault]
+                        found.append((number, f"`{code}` does not exist"))
+        found.sort(key=lambda entry: entry[0])
+        out += [f"{document.name}:{number}: {fault}" for number, fault in found if fault]
     out += [f"{name}:1: no other document links it" for name in names if name.startswith("docs/") and name not in linked]
     return out, len(names)
 

@@ -77,6 +77,7 @@ describe("documents.py", () => {
       ["[gone](docs/missing.md)", "README.md:2: link docs/missing.md: there is no docs/missing.md"],
       ["![gone](missing.png)", "README.md:2: link missing.png: there is no missing.png"],
       ["[![gone](missing.png)](docs/guide.md)", "README.md:2: link missing.png: there is no missing.png"],
+      ["[a text that\ngoes on](missing.md)", "README.md:3: link missing.md: there is no missing.md"],
       ["[built](build/page.html)", "README.md:2: link build/page.html: there is no build/page.html"],
       ["[out](../other/README.md)", "README.md:2: link ../other/README.md leads out of the repository"],
       ["[anchor](docs/guide.md#two-word)", "README.md:2: link docs/guide.md#two-word: docs/guide.md has no heading #two-word"],
