@@ -98,7 +98,7 @@ usage: ./dev test [--preset release|debug|asan|tsan] [PART…]
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
-(./dev itself and the bundle), fuzz (parsers and decoders under hostile input, some seconds each), threads (network
+(./dev itself, the bundle, the documents), fuzz (parsers and decoders under hostile input, some seconds each), threads (network
 and encoder under the thread sanitizer). The last two have presets of their own. The last line is `N passed, N failed, N skipped`; exit code 1 when
 anything failed. Reports: build/reports/*.xml, logs: build/logs.
 TEXT

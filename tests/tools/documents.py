@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Checks the Markdown documents of a Git checkout: `documents.py FOLDER`.
+
+Reports, one per line as FILE:LINE: MESSAGE,
+* relative links to a file or folder that Git does not know, and #anchors without a heading;
+* `file:function` where the file does not exist or does not contain the function's name;
+* paths in back quotes that begin with a folder of the repository and do not exist;
+* documents below docs/ that no other document links.
+Exit code 1 when there is a fault. Decisions and the changelog are records: the paths in them may be old.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import urllib.parse
+
+LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\[\]]*\])*\]\(\s*<?([^()\s<>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
+LINK_IN_LINK = re.compile(r"!\[[^\[\]]*\]\(([^()\s]+)\)")
+HEADING = re.compile(r"^ {0,3}(#{1,6})\s+(.*?)\s*#*\s*$")
+FENCE = re.compile(r"^ {0,3}(```+|~~~+)")
+CODE = re.compile(r"(`+)(.+?)\1")
+FUNCTION = re.compile(r"([\w.@/-]*\w\.(?:cpp|h|comp|glsl|proto|ts|mjs|py|sh)):((?:\w+::)*~?[A-Za-z_]\w*)")
+PATH = re.compile(r"(?:\.ci|docker|docs|proto|server|shaders|tests|web-client)/[\w./-]*")
+PLACEHOLDER = re.compile(r"\b(?:NAME|TARGET|FILE|SUBJECT|VERB)\b")
+
+
+def is_record(name):
+    """Whether the document tells what was true when it was written."""
+    return name == "CHANGELOG.md" or name.startswith("docs/decisions/")
+
+
+def anchor_of(heading):
+    """The anchor that GitHub gives a heading."""
+    text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading).lower()
+    return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+
+
+class Checkout:
+    """What Git knows of a folder: committed files and those about to be."""
+
+    def __init__(self, root):
+        self.root = root
+        listed = self.git("ls-files", "-z", "--cached", "--others", "--exclude-standard")
+        self.files = {name for name in listed.split("\0") if name and (root / name).is_file()}
+        self.folders = {str(parent) for name in self.files for parent in pathlib.PurePosixPath(name).parents}
+
+    def git(self, *arguments):
+        command = ["git", "-c", "safe.directory=*", "-C", str(self.root), *arguments]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+    def has(self, name):
+        return name in self.files or name in self.folders
+
+    def is_ignored(self, name):
+        command = ["git", "-c", "safe.directory=*", "-C", str(self.root), "check-ignore", "--quiet", "--no-index", name]
+        return subprocess.run(command, check=False).returncode == 0
+
+    def text(self, name):
+        return (self.root / name).read_text(encoding="utf-8")
+
+    def matches(self, name):
+        """The files that `name` can mean: a path from the root, or the end of one."""
+        return [name] if name in self.files else [known for known in self.files if known.endswith("/" + name)]
+
+
+class Document:
+    """One Markdown file: its lines, its links with their line numbers, and its anchors."""
+
+    def __init__(self, name, text):
+        self.name = name
+        self.lines = text.splitlines()
+        self.anchors = set()
+        prose = []  # the same lines, empty inside of fenced code, without code in back quotes
+        fence = None
+        for line in self.lines:
+            mark = FENCE.match(line)
+            if mark and (fence is None or mark.group(1).startswith(fence)):
+                fence = mark.group(1) if fence is None else None
+                prose.append("")
+                continue
+            prose.append("" if fence else CODE.sub(lambda code: "`" * len(code.group(0)), line))
+            heading = None if fence else HEADING.match(line)
+            if heading:
+                self._add_anchor(anchor_of(heading.group(2)))
+            if not fence:
+                self.anchors.update(re.findall(r"<a (?:id|name)=\"([^\"]+)\"", line))
+        text = "\n".join(prose)  # a link's text may go on in the next line
+        found = [*LINK.finditer(text), *LINK_IN_LINK.finditer(text)]
+        self.links = dict.fromkeys((text.count("\n", 0, link.start(1)) + 1, link.group(1)) for link in found)
+
+    def _add_anchor(self, anchor):
+        unique, number = anchor, 0
+        while unique in self.anchors:
+            number += 1
+            unique = f"{anchor}-{number}"
+        self.anchors.add(unique)
+
+
+def check_link(checkout, documents, document, target, linked):
+    """The fault of one link, or None; notes in `linked` which document it leads to."""
+    if re.match(r"[a-zA-Z][a-zA-Z0-9+.-]*:", target):
+        return None
+    path, _, anchor = target.partition("#")
+    name = document.name
+    if path:
+        start = pathlib.PurePosixPath(document.name).parent
+        try:
+            found = (checkout.root / start / urllib.parse.unquote(path)).resolve().relative_to(checkout.root)
+        except ValueError:
+            return f"link {target} leads out of the repository"
+        name = found.as_posix()
+        if not checkout.has(name):
+            return f"link {target}: there is no {name}"
+    if name != document.name:
+        linked.add(name)
+    if anchor and name in documents and anchor not in documents[name].anchors:
+        return f"link {target}: {name} has no heading #{anchor}"
+    return None
+
+
+def check_function(checkout, name, function):
+    """The fault of one `file:function`, or None."""
+    files = checkout.matches(name)
+    if not files:
+        return f"{name}:{function}: there is no such file"
+    words = [set(re.findall(r"\w+", checkout.text(file))) for file in files]
+    if not any(all(part.lstrip("~") in known for part in function.split("::")) for known in words):
+        return f"{name}:{function}: {' and '.join(sorted(files))} does not contain that name"
+    return None
+
+
+def faults(root):
+    """Returns every fault, by file and line, and the number of documents."""
+    checkout = Checkout(root)
+    names = sorted(name for name in checkout.files if name.endswith(".md"))
+    documents = {name: Document(name, checkout.text(name)) for name in names}
+    linked = set()
+    out = []
+    for document in documents.values():
+        found = [(number, check_link(checkout, documents, document, target, linked)) for number, target in document.links]
+        for number, line in enumerate(document.lines, start=1):
+            found += [(number, check_function(checkout, *match)) for match in FUNCTION.findall(line)]
+            if not is_record(document.name):
+                for _, code in CODE.findall(line):
+                    path = code.rstrip("/")
+                    if not PATH.fullmatch(code) or PLACEHOLDER.search(code) or checkout.has(path):
+                        continue
+                    if not checkout.is_ignored(path):
+                        found.append((number, f"`{code}` does not exist"))
+        found.sort(key=lambda entry: entry[0])
+        out += [f"{document.name}:{number}: {fault}" for number, fault in found if fault]
+    out += [f"{name}:1: no other document links it" for name in names if name.startswith("docs/") and name not in linked]
+    return out, len(names)
+
+
+def main():
+    if len(sys.argv) != 2:
+        print("usage: documents.py FOLDER", file=sys.stderr)
+        return 2
+    found, count = faults(pathlib.Path(sys.argv[1]).resolve())
+    for fault in found:
+        print(fault)
+    print(f"{count} documents, {len(found)} faults")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,113 @@
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { afterEach, beforeEach, describe, it } from "node:test";
+
+import { repository } from "./workshop.mjs";
+
+/** Runs the check over a folder; returns its exit code and its lines without the total. */
+function check(folder) {
+  const result = spawnSync("python3", [join(repository, "tests/tools/documents.py"), folder], { encoding: "utf8" });
+  assert.equal(result.stderr, "");
+  return { code: result.status, faults: result.stdout.trimEnd().split("\n").slice(0, -1) };
+}
+
+describe("the documents", () => {
+  it("link what exists and name functions and files that exist", () => {
+    const { code, faults } = check(repository);
+    assert.deepEqual(faults, []);
+    assert.equal(code, 0);
+  });
+
+  it("list in docs/cli.md every command and option that the program has, and no other", () => {
+    const text = readFileSync(join(repository, "docs/cli.md"), "utf8");
+    const help = (args) => {
+      const result = spawnSync(process.env.SPINDRIFT_BINARY, [...args, "--help"], { encoding: "utf8" });
+      assert.equal(result.status, 0, `${args.join(" ")} --help: ${result.error ?? result.stderr}`);
+      return result.stdout;
+    };
+    const optionsOf = (usage) => [...usage.matchAll(/^ {2}(?:-\w,)?(--[a-z-]+)/gm)].map((match) => match[1]).filter((name) => name !== "--help");
+    const rowsOf = (section) => [...section.matchAll(/^\| `(--[a-z-]+)/gm)].map((match) => match[1]).filter((name) => name !== "--help");
+    const overview = help([]);
+    const commands = [...overview.slice(overview.indexOf("Subcommands:")).matchAll(/^ {2}(\w+) /gm)].map((match) => match[1]);
+    const sections = new Map(text.split(/^### `spindrift /m).slice(1).map((section) => [section.match(/^\w+/)[0], section.split(/^## /m)[0]]));
+    assert.deepEqual([...sections.keys()].sort(), commands.sort());
+    for (const command of commands) {
+      assert.deepEqual(rowsOf(sections.get(command)).sort(), optionsOf(help([command])).sort(), command);
+    }
+    const common = text.split("## `spindrift`")[1].split("### ")[0];
+    assert.deepEqual(rowsOf(common).sort(), optionsOf(overview).sort());
+  });
+});
+
+describe("documents.py", () => {
+  let folder;
+  const write = (path, text) => {
+    mkdirSync(dirname(join(folder, path)), { recursive: true });
+    writeFileSync(join(folder, path), text);
+  };
+  beforeEach(() => {
+    folder = mkdtempSync(join(tmpdir(), "spindrift docs "));
+    assert.equal(spawnSync("git", ["init", "--quiet", folder]).status, 0);
+    write(".gitignore", "/build/\n");
+    write("server/net/session.cpp", "void Session::readMessages() { parse(); }\n");
+    write("server/net/session.h", "class Session;\n");
+    write("docs/guide.md", "# Guide\n\n## Two words, `code`\n\n## Twice\n\n## Twice\n");
+  });
+  afterEach(() => rmSync(folder, { recursive: true }));
+
+  it("is content with links, anchors, functions and paths that exist", () => {
+    write("pictures/a.png", "");
+    write(
+      "README.md",
+      [
+        "# Title",
+        "[a](docs/guide.md) [b](docs/guide.md#two-words-code) [c](docs/guide.md#twice-1) [d](#title) [e](docs/) [f](https://example.org/x#y)",
+        "![picture](pictures/a.png) [![inside](pictures/a.png)](docs/guide.md) `server/net/session.cpp:Session::readMessages`",
+        "session.cpp:parse, `server/net/`, `build/release/bin/x`, `server/scenes/NAME.textproto`, `docs/*.md`",
+      ].join("\n"),
+    );
+    assert.deepEqual(check(folder), { code: 0, faults: [] });
+  });
+
+  it("reports each link, anchor, function, path and lonely document that is wrong, with file and line", () => {
+    const cases = [
+      ["[gone](docs/missing.md)", "README.md:2: link docs/missing.md: there is no docs/missing.md"],
+      ["![gone](missing.png)", "README.md:2: link missing.png: there is no missing.png"],
+      ["[![gone](missing.png)](docs/guide.md)", "README.md:2: link missing.png: there is no missing.png"],
+      ["[a text that\ngoes on](missing.md)", "README.md:3: link missing.md: there is no missing.md"],
+      ["[built](build/page.html)", "README.md:2: link build/page.html: there is no build/page.html"],
+      ["[out](../other/README.md)", "README.md:2: link ../other/README.md leads out of the repository"],
+      ["[anchor](docs/guide.md#two-word)", "README.md:2: link docs/guide.md#two-word: docs/guide.md has no heading #two-word"],
+      ["[anchor](#nowhere)", "README.md:2: link #nowhere: README.md has no heading #nowhere"],
+      ["`server/net/session.cpp:writeMessages`", "README.md:2: server/net/session.cpp:writeMessages: server/net/session.cpp does not contain that name"],
+      ["session.cpp:Session::read", "README.md:2: session.cpp:Session::read: server/net/session.cpp does not contain that name"],
+      ["net/sessions.cpp:read", "README.md:2: net/sessions.cpp:read: there is no such file"],
+      ["`server/net/sessions.cpp`", "README.md:2: `server/net/sessions.cpp` does not exist"],
+    ];
+    write("build/page.html", "");
+    for (const [line, fault] of cases) {
+      write("README.md", `[guide](docs/guide.md)\n${line}\n`);
+      assert.deepEqual(check(folder), { code: 1, faults: [fault] }, line);
+    }
+    write("README.md", "# Title\n");
+    assert.deepEqual(check(folder), { code: 1, faults: ["docs/guide.md:1: no other document links it"] });
+  });
+
+  it("takes what stands in code for no link, but reads functions there", () => {
+    write("README.md", "[guide](docs/guide.md) `[a](b.md)`\n\n```\n# [c](d.md)\nserver/net/session.cpp:nothing\n```\n[e](f.md)\n");
+    assert.deepEqual(check(folder).faults, [
+      "README.md:5: server/net/session.cpp:nothing: server/net/session.cpp does not contain that name",
+      "README.md:7: link f.md: there is no f.md",
+    ]);
+  });
+
+  it("forgives old paths in decisions and the changelog, but no link", () => {
+    write("README.md", "[guide](docs/guide.md) [log](CHANGELOG.md) [why](docs/decisions/001-why.md)\n");
+    write("CHANGELOG.md", "`server/old/file.cpp`\n");
+    write("docs/decisions/001-why.md", "`server/old/file.cpp` [x](002-gone.md)\n");
+    assert.deepEqual(check(folder).faults, ["docs/decisions/001-why.md:1: link 002-gone.md: there is no docs/decisions/002-gone.md"]);
+  });
+});
