@@ -27,6 +27,7 @@ run_part() {
 test_native() {
   local name="$1" filter=()
   [[ -z "${3:-}" ]] || filter=(--label-regex "^$3\$")
+  [[ -z "$test_regex" ]] || filter+=(--tests-regex "$test_regex")
   run_part "$name" "$ctest_limit_s" ctest --test-dir "build/$2" --parallel 2 --output-on-failure --timeout 600 \
     --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
 }
@@ -93,20 +94,31 @@ node_tests() {
 command_test() {
   if wants_help "$@"; then
     cat <<'TEXT'
-usage: ./dev test [--preset release|debug|asan|tsan] [PART…]
+usage: ./dev test [--preset release|debug|asan|tsan] [PART…] [-R REGEX]
 
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
-(./dev itself, the bundle, the documents), fuzz (parsers and decoders under hostile input, some seconds each), threads (network
-and encoder under the thread sanitizer). The last two have presets of their own. The last line is `N passed, N failed, N skipped`; exit code 1 when
-anything failed. Reports: build/reports/*.xml, logs: build/logs.
+(./dev itself, formatting and types, the bundle, the documents), fuzz (parsers and decoders under hostile input, some
+seconds each), threads (network and encoder under the thread sanitizer). The last two have presets of their own.
+-R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only what holds them.
+The last line is `N passed, N failed, N skipped`; exit code 1 when anything failed. Reports: build/reports/*.xml, logs:
+build/logs.
 TEXT
     return
   fi
-  local preset rest part parts reports=()
+  local preset rest part parts=() reports=() test_regex=""
   take_preset "$@"
-  parts=("${rest[@]}")
+  while ((${#rest[@]} > 0)); do
+    case "${rest[0]}" in
+      -R) ((${#rest[@]} > 1)) || fail 2 "-R needs a regular expression; see ./dev test --help"
+        test_regex="${rest[1]}"
+        rest=("${rest[@]:2}") ;;
+      *) parts+=("${rest[0]}")
+        rest=("${rest[@]:1}") ;;
+    esac
+  done
+  [[ -z "$test_regex" ]] || ((${#parts[@]} > 0)) || parts=(native)
   ((${#parts[@]} > 0)) || parts=(native zink web wire browser tools fuzz threads)
   for part in "${parts[@]}"; do
     case "$part" in
@@ -140,7 +152,7 @@ prepare_tests() {
   local groups=(server driver) wanted=" $* " with_native=false with_node=false
   [[ "$wanted" != *" zink "* ]] || groups+=(zink)
   [[ "$wanted" != *" browser "* ]] || groups+=(browser)
-  [[ "$wanted" != *" tools "* ]] || groups+=(bundle lint)
+  [[ "$wanted" != *" tools "* ]] || groups+=(bundle format lint)
   [[ ! "$wanted" =~ \ (native|unit|integration|accuracy|stability|gpu|zink)\  ]] || with_native=true
   [[ ! "$wanted" =~ \ (web|wire|browser|tools)\  ]] || with_node=true
 
@@ -148,7 +160,12 @@ prepare_tests() {
   lock_build
   mkdir -p build/reports build/logs
   ! "$with_node" || need_web
-  if "$with_native"; then
+  if "$with_native" && [[ -n "$test_regex" ]]; then
+    local targets
+    targets="$(python3 tests/tools/test_targets.py "$test_regex")" || fail 2 "no C++ test is named like -R '$test_regex'"
+    # shellcheck disable=SC2086
+    build_server "$preset" $targets
+  elif "$with_native"; then
     build_server "$preset"
   elif [[ "$wanted" =~ \ (wire|browser|tools)\  ]]; then
     build_server "$preset" spindrift

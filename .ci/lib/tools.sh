@@ -61,38 +61,55 @@ check_format() { list_sources | xargs -0 --no-run-if-empty clang-format --dry-ru
 command_lint() {
   if wants_help "$@"; then
     cat <<'TEXT'
-usage: ./dev lint [--tidy]
+usage: ./dev lint [--tidy] [PART…]
 
-Checks the formatting, the shell scripts and the types of the web client; --tidy adds clang-tidy over the
-server (minutes). Fails when any of them complains.
+Checks the formatting of the C++ sources (format), the shell scripts (shell) and the types of the web client (web), or the
+parts named; --tidy adds clang-tidy over the server (minutes). Fails when any of them complains.
 TEXT
     return
   fi
-  local code=0 with_tidy=false
-  case "${1:-}" in
-    "") ;;
-    --tidy) with_tidy=true ;;
-    *) fail 2 "lint does not know '$1'; see ./dev lint --help" ;;
-  esac
-  need_packages server driver format lint
+  local code=0 part parts=()
+  for part in "$@"; do
+    case "$part" in
+      format | shell | web) parts+=("$part") ;;
+      --tidy) ;;
+      *) fail 2 "lint does not know '$part'; see ./dev lint --help" ;;
+    esac
+  done
+  ((${#parts[@]} > 0)) || parts=(format shell web)
+  [[ " $* " != *" --tidy "* ]] || parts+=(tidy)
+  for part in "${parts[@]}"; do "lint_$part" || code=1; done
+  return "$code"
+}
+
+lint_format() {
+  need_packages format
   say "formatting"
-  check_format || code=1
+  check_format
+}
+
+lint_shell() {
+  need_packages lint
   say "shell scripts"
-  shellcheck --external-sources --check-sourced dev .ci/run .ci/bundle/spindrift docker/healthcheck || code=1
+  shellcheck --external-sources --check-sourced dev .ci/run .ci/bundle/spindrift docker/healthcheck
+}
+
+lint_web() {
   say "web client"
   lock_build
   need_web
   npm_install web-client web
-  npm run --silent --prefix web-client lint || code=1
-  if "$with_tidy"; then
-    need_packages tidy
-    build_server release
-    say "clang-tidy"
-    # server/codec/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
-    git ls-files -z -- 'server/*.cpp' ':!server/codec/wasm' | xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" \
-      clang-tidy --quiet -p build/release || code=1
-  fi
-  return "$code"
+  unlock_build
+  npm run --silent --prefix web-client lint
+}
+
+lint_tidy() {
+  need_packages server driver tidy
+  build_server release
+  say "clang-tidy"
+  # server/codec/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
+  git ls-files -z -- 'server/*.cpp' ':!server/codec/wasm' | xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" \
+    clang-tidy --quiet -p build/release
 }
 
 command_clean() {

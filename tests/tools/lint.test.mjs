@@ -1,0 +1,21 @@
+// What `./dev lint` checks, a test each, so that it cannot go wrong unseen.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { describe, it } from "node:test";
+
+import { repository } from "./workshop.mjs";
+
+describe("./dev lint", () => {
+  for (const part of ["format", "shell", "web"]) {
+    it(`finds nothing in ${part}`, { timeout: 600_000 }, () => {
+      const run = spawnSync("./dev", ["lint", part], { cwd: repository, encoding: "utf8" });
+      assert.equal(run.status, 0, run.stdout + run.stderr);
+    });
+  }
+
+  it("does not know other parts", () => {
+    const run = spawnSync("./dev", ["lint", "grammar"], { cwd: repository, encoding: "utf8" });
+    assert.equal(run.status, 2);
+    assert.match(run.stderr, /lint does not know 'grammar'/);
+  });
+});
