@@ -33,7 +33,7 @@ struct Objects {
 
 /// Empty, or what the compiler or the linker says.
 std::string compile(GLuint& program) {
-  const EmbeddedShader* const shader = findShader("check/probe.comp");
+  const EmbeddedShader* const shader = findShader("device/probe.comp");
   if (!shader) return "the probe's shader is not embedded";
   const std::string text = "#version 450 core\n#line 1\n" + std::string(shader->text);
   const char* const pointer = text.c_str();

@@ -11,7 +11,7 @@ namespace spindrift::gpu {
 /// run. On failure the context is closed and `info.problem` says why.
 egl::Attempt openUsable(const egl::Candidate& candidate);
 
-/// Runs shaders/check/probe.comp in the current context and looks at its result: storage and texel reads, a uniform
+/// Runs shaders/device/probe.comp in the current context and looks at its result: storage and texel reads, a uniform
 /// block, shared memory with a barrier, atomics and an indirect dispatch. Empty when it is right, else one line.
 std::string runProbe();
 

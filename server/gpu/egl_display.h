@@ -1,4 +1,4 @@
-// EGL without a window system: which devices there are, and a context on one of them. Private to this room.
+// EGL without a window system: which devices there are, and a context on one of them. Private to this module.
 #pragma once
 
 #include <optional>

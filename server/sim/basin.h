@@ -15,7 +15,7 @@ namespace spindrift::sim {
 /// n x n cells, x fastest.
 struct Basin {
   std::vector<float> depth_m;  ///< still depth at cell centres; 0 inside obstacles and on dry beaches
-  /// Conductance [m] of the faces that a cell owns, in the order of shaders/include/wave_faces.glsl: toward +x, toward
+  /// Conductance [m] of the faces that a cell owns, in the order of shaders/wave/wave_faces.glsl: toward +x, toward
   /// +z, and the two diagonals of the 9-point stencil. Depth at the face (harmonic mean, so that a dry cell closes it)
   /// times the stencil's weight; 0 across reflecting and absorbing sides.
   std::vector<std::array<float, 4>> conductance_m;
@@ -32,7 +32,7 @@ double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
 
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);
 
-/// The ground as particles and boats see it, n x n, for shaders/include/terrain_texels.glsl.
+/// The ground as particles and boats see it, n x n, for shaders/common/terrain_texels.glsl.
 struct Terrain {
   /// Signed distance to the nearest obstacle, its gradient (x, z), still depth (0 on dry ground, minus the obstacle's
   /// height inside one).

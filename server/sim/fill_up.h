@@ -6,7 +6,7 @@
 
 namespace spindrift::sim {
 
-/// Still depth [units] as the shaders see it (shaders/include/water_column.glsl): of the float, cut to whole units.
+/// Still depth [units] as the shaders see it (shaders/wave/water_column.glsl): of the float, cut to whole units.
 std::int64_t bedUnits(double depth_m);
 
 enum class Lack {

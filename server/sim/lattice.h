@@ -14,7 +14,7 @@ inline constexpr double kVirtualDepthRatio = 0.5;
 /// stop. Larger values lift still water, smaller ones let particles come close to the virtual ones.
 inline constexpr double kFloorGapRatio = 0.1;
 
-/// Factors of the shapes in shaders/include/kernels.glsl, from the support radius H [m].
+/// Factors of the shapes in shaders/particles/kernels.glsl, from the support radius H [m].
 double densityNorm(core::KernelSet set, double H);
 double slopeNorm(core::KernelSet set, double H);
 double viscosityNorm(double H);  ///< 45 / (pi H^6)
@@ -24,7 +24,7 @@ double cubicNorm(double H);      ///< 8 / (pi H^3)
 double densityKernel(core::KernelSet set, double r, double H);
 double pressureSlope(core::KernelSet set, double r, double H);
 
-/// Pressure [Pa] from density; k = c0^2. Not clamped. The same as shaders/include/pressure.glsl.
+/// Pressure [Pa] from density; k = c0^2. Not clamped. The same as shaders/sph/pressure.glsl.
 double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho);
 
 /// Neighbours of a particle inside a cubic lattice of spacing s, within H, itself not counted.

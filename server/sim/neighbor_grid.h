@@ -29,7 +29,7 @@ class NeighborGrid {
 
   /// First particle of each cell, cell_count + 1 entries.
   [[nodiscard]] const gpu::TexelBuffer& cellStart() const { return cell_start_; }
-  /// Two words, include/candidates.glsl: particles, summed over the substeps since creation, that had more neighbour
+  /// Two words, grid/candidates.glsl: particles, summed over the substeps since creation, that had more neighbour
   /// candidates than they looked at, modulo 2^32. build() binds it for the passes that count.
   [[nodiscard]] const gpu::TexelBuffer& crowded() const { return crowded_; }
 

@@ -13,7 +13,7 @@ inline constexpr std::uint32_t kMaxCellCount = 1u << 26;
 /// `volume_m3`: of the water, when it is given; else the scene's layers decide. Errors as derive()'s.
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3 = 0.0);
 
-/// Standard deviation, in wave cells, of a spread over 4 reach_count + 1 cells (shaders/include/splat.glsl).
+/// Standard deviation, in wave cells, of a spread over 4 reach_count + 1 cells (shaders/coupling/splat.glsl).
 double splatWidth(std::uint32_t reach_count);
 
 /// k of p = k (rho - rho0): c0^2 over what the lattice makes of it.

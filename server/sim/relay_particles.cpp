@@ -22,7 +22,7 @@ double weightOf(core::KernelSet set, double q) {
   return u * u * u * u * (4 * q + 1);
 }
 
-/// The old particles in the order of their cells, y fastest as in shaders/include/grid_hash.glsl, so that the
+/// The old particles in the order of their cells, y fastest as in shaders/grid/grid_hash.glsl, so that the
 /// neighbours in a column of cells are one run.
 class OldParticles {
  public:

@@ -9,7 +9,7 @@ namespace {
 
 using core::WaveBoundary;
 
-/// As shaders/include/kernels.glsl numbers them.
+/// As shaders/particles/kernels.glsl numbers them.
 int kernelSetNumber(core::KernelSet set) {
   switch (set) {
     case core::KernelSet::kMuller:

@@ -13,7 +13,7 @@ double chooseThree(int x) {
   return x < 3 ? 0.0 : x * (x - 1.0) * (x - 2.0) / 6.0;
 }
 
-/// As splatWeight() of shaders/include/splat.glsl.
+/// As splatWeight() of shaders/coupling/splat.glsl.
 double weight(int offset, int reach) {
   const int k = 2 * reach - std::abs(offset);
   if (k < 0) return 0.0;

@@ -14,7 +14,7 @@ struct SprayBlocks {
 
 /// The smallest blocks with which a tick takes at most half of the depth from a cell; the largest there are where none
 /// does (the water is then too shallow to emit at rest). `droplet_m`: a particle's volume over a cell's area.
-/// `reach_count`: it is spread over 4 of these + 1 cells an axis, with the weights of shaders/include/splat.glsl.
+/// `reach_count`: it is spread over 4 of these + 1 cells an axis, with the weights of shaders/coupling/splat.glsl.
 SprayBlocks sprayBlocks(std::uint32_t reach_count, double droplet_m, double depth_m);
 
 }  // namespace spindrift::sim

@@ -18,7 +18,7 @@ bool isTwoWay(const core::Scene& scene) {
   return scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
 }
 
-/// `scale` times as many particles across the water: the rules of stream's fidelity levels.
+/// `scale` times as many particles across the water: the rules of the fidelity levels (scene/fidelity.cpp).
 core::Scene withFinerParticles(core::Scene scene, double scale) {
   core::ParticleScene& p = *scene.particles;
   double count_ratio = std::pow(scale, scene.wave && !isTwoWay(scene) ? 2 : 3);

@@ -8,10 +8,10 @@
 // boats, obstacles, shallow ground and sides; overlap is shared half and half, the approaching speed is lost.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
 // variants: WAVE=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
-#include "include/boat.glsl"
-#include "include/wave_cell.glsl"
+#include "bodies/boat.glsl"
+#include "wave/wave_cell.glsl"
 #if WAVE
-#include "include/surface_sample.glsl"
+#include "bodies/surface_sample.glsl"
 #else
 // Without a wave boats swim at the resting level, in water that stands still.
 vec4 surfaceUnder(vec2 xz, out vec2 flow_mps) {
@@ -20,7 +20,7 @@ vec4 surfaceUnder(vec2 xz, out vec2 flow_mps) {
 }
 #endif
 #if VARIED
-#include "include/terrain.glsl"
+#include "common/terrain.glsl"
 #endif
 
 layout(local_size_x = MAX_BOATS) in;

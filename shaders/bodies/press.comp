@@ -5,8 +5,8 @@
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
-#include "include/boat.glsl"
-#include "include/wave_cell.glsl"
+#include "bodies/boat.glsl"
+#include "wave/wave_cell.glsl"
 
 layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
 

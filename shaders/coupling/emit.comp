@@ -6,10 +6,10 @@
 // the sort orders particles by where they are.
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "include/hash.glsl"
-#include "include/transfer.glsl"
+#include "common/hash.glsl"
+#include "wave/transfer.glsl"
 #include "shared/pool.h"
-#include "include/spray_source.glsl"
+#include "coupling/spray_source.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

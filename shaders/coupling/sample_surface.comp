@@ -3,8 +3,8 @@
 // Equations: differences in metres (thesis, algorithm 9); d eta/dt = -div q; velocity = q / d, from the faces around a cell.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
-#include "include/transfer.glsl"
-#include "include/wave_faces.glsl"
+#include "wave/transfer.glsl"
+#include "wave/wave_faces.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 

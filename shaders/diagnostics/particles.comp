@@ -5,8 +5,8 @@
 // Particles that were absorbed in the last substep are left out.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "include/finite.glsl"
-#include "include/population.glsl"
+#include "common/finite.glsl"
+#include "particles/population.glsl"
 
 layout(local_size_x = REDUCE_GROUP) in;
 

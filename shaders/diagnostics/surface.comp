@@ -5,8 +5,8 @@
 // sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers: the volume to the last unit).
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 HULLS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1 HULLS=1
 #include "shared/groups.h"
-#include "include/transfer.glsl"
-#include "include/wave_faces.glsl"
+#include "wave/transfer.glsl"
+#include "wave/wave_faces.glsl"
 
 layout(local_size_x = REDUCE_GROUP) in;
 
@@ -16,7 +16,7 @@ layout(binding = FLOW) uniform samplerBuffer flow;
 layout(binding = OUTFLOW) uniform usamplerBuffer outflow;
 #endif
 #if HULLS
-#include "include/boat.glsl"
+#include "bodies/boat.glsl"
 layout(binding = BOATS) uniform samplerBuffer boats;
 #endif
 #if BREAKERS

@@ -3,9 +3,9 @@
 // Equation: semi-Lagrangian transport, f(x, t + dt) = f(x - u dt, t) exp(-dt/lifetime) + source; each share of white is at most 1.
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 HULLS=0 LANDINGS=0 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 HULLS=1 LANDINGS=1
 #include "shared/groups.h"
-#include "include/wave_cell.glsl"
+#include "wave/wave_cell.glsl"
 #if HULLS
-#include "include/boat.glsl"
+#include "bodies/boat.glsl"
 layout(binding = BOATS) uniform samplerBuffer boats;
 #endif
 

@@ -4,8 +4,8 @@
 // last cell. The arrival order is not repeatable; grid/reorder.comp makes the final order so.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "include/grid_hash.glsl"
-#include "include/population.glsl"
+#include "grid/grid_hash.glsl"
+#include "particles/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

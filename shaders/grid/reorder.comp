@@ -5,7 +5,7 @@
 // Cost: a particle counts the smaller indices in its cell, so n particles in one cell cost n^2, up to ORDERED_MAX of them.
 #include "shared/groups.h"
 #include "shared/grid.h"
-#include "include/population.glsl"
+#include "particles/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

@@ -3,7 +3,7 @@
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "shared/grid.h"
-#include "include/population.glsl"
+#include "particles/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

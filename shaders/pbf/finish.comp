@@ -4,12 +4,12 @@
 // Equation: the weakly compressible solver's viscosity, mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W (thesis 3.18), over one step.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=1 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 FOAM=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 FOAM=1 NEIGHBOUR_FOAM=1
 #include "shared/groups.h"
-#include "include/population.glsl"
-#include "include/candidates.glsl"
-#include "include/boundary.glsl"
-#include "include/finite.glsl"
-#include "include/foam.glsl"
-#include "include/surroundings.glsl"
+#include "particles/population.glsl"
+#include "grid/candidates.glsl"
+#include "particles/boundary.glsl"
+#include "common/finite.glsl"
+#include "particles/foam.glsl"
+#include "particles/surroundings.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

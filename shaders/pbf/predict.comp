@@ -5,10 +5,10 @@
 // Invariant: not faster than max_speed_mps.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1
 #include "shared/groups.h"
-#include "include/finite.glsl"
-#include "include/population.glsl"
-#include "include/floor.glsl"
-#include "include/sides.glsl"
+#include "common/finite.glsl"
+#include "particles/population.glsl"
+#include "particles/floor.glsl"
+#include "particles/sides.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

@@ -4,7 +4,7 @@
 // Equation: v = (x - x_old) / dt (Macklin & Mueller 2013, algorithm 1), not faster than max_speed_mps.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "include/population.glsl"
+#include "particles/population.glsl"
 #include "shared/sim_uniforms.h"
 
 layout(local_size_x = PARTICLE_GROUP) in;

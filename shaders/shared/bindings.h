@@ -71,7 +71,7 @@
 #define LANDED 30
 // The simulation's uniforms as storage (at PARTIAL_SUM's place; no pass has both), for the one pass that moves the particle patch.
 #define SIM_UNIFORMS_STORAGE 18
-// Particles that had too many neighbour candidates, two words; include/candidates.glsl (at EMITTER's place: no pass has both).
+// Particles that had too many neighbour candidates, two words; grid/candidates.glsl (at EMITTER's place: no pass has both).
 #define CROWDED 31
 // Foam from few neighbours, one float a particle [0..1], in scenes that count neighbours (at PACKED_WORDS' place; likewise).
 #define FOAM_SOURCE 17

@@ -1,4 +1,4 @@
-// Effects that act on the wave during one wave step. Each displaces gain * V(x, z), include/event_shapes.glsl; the gains of an
+// Effects that act on the wave during one wave step. Each displaces gain * V(x, z), common/event_shapes.glsl; the gains of an
 // effect's pulse sum to its full amplitude.
 #ifndef SPINDRIFT_SHARED_EVENT_UNIFORMS_H
 #define SPINDRIFT_SHARED_EVENT_UNIFORMS_H

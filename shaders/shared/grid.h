@@ -1,4 +1,4 @@
-// Numbers of the neighbour grid (shaders/grid, include/grid_hash.glsl).
+// Numbers of the neighbour grid (shaders/grid, grid/grid_hash.glsl).
 #ifndef SPINDRIFT_SHARED_GRID_H
 #define SPINDRIFT_SHARED_GRID_H
 

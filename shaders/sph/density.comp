@@ -2,18 +2,18 @@
 // Reads SORTED_POSITION, SORTED_VELOCITY, CELL_START, floor and walls. Writes PRESSURE_POINT (position, p/rho^2, with MEAN_FORCE
 // p), MOTION_POINT (velocity, m/rho), ACCELERATION.w (rho) and, with NEIGHBOUR_FOAM, FOAM_SOURCE; counts in CROWDED.
 // Equations: rho_i = sum_j m W(r_ij) (thesis 3.6), plus the floor's virtual particles, cubic kernel (thesis, algorithm
-// 10), and the walls' shares; p_i from the equation of state (include/pressure.glsl).
+// 10), and the walls' shares; p_i from the equation of state (sph/pressure.glsl).
 // Invariant: rho_i >= m W(0) > 0, so the divisions are safe.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
 #define COUNT_CROWDED
 #include "shared/groups.h"
-#include "include/candidates.glsl"
-#include "include/population.glsl"
-#include "include/floor.glsl"
-#include "include/kernels.glsl"
-#include "include/boundary.glsl"
-#include "include/foam.glsl"
-#include "include/pressure.glsl"
+#include "grid/candidates.glsl"
+#include "particles/population.glsl"
+#include "particles/floor.glsl"
+#include "particles/kernels.glsl"
+#include "particles/boundary.glsl"
+#include "particles/foam.glsl"
+#include "sph/pressure.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

@@ -7,9 +7,9 @@
 // Invariant: the pair terms are antisymmetric up to rounding (not with MEAN_FORCE); the particle itself adds nothing (r = 0).
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=3 TAIT=0 COHESION=0 MEAN_FORCE=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 TAIT=1 COHESION=0 MEAN_FORCE=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 TAIT=1 COHESION=1 MEAN_FORCE=0 NEIGHBOUR_FOAM=1
 #include "shared/groups.h"
-#include "include/candidates.glsl"
-#include "include/population.glsl"
-#include "include/boundary.glsl"
+#include "grid/candidates.glsl"
+#include "particles/population.glsl"
+#include "particles/boundary.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

@@ -6,9 +6,9 @@
 // Invariant: nothing moves by more than a quarter of the spacing in a tick, or out of the walls.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0
 #include "shared/groups.h"
-#include "include/event_shapes.glsl"
-#include "include/finite.glsl"
-#include "include/population.glsl"
+#include "common/event_shapes.glsl"
+#include "common/finite.glsl"
+#include "particles/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

@@ -1,6 +1,6 @@
 // Quantizes boats for the stream, seven words each without gaps: BodiesFixed28 in wire.proto. One invocation: there are few.
 // Reads BOATS, BoatControls. Writes PACKED_WORDS from first_word on.
-#include "include/boat.glsl"
+#include "bodies/boat.glsl"
 
 layout(local_size_x = 1) in;
 

@@ -3,7 +3,7 @@
 // Reads FOAM_FIELD [(n/2)^2]. Writes PACKED_WORDS [target_count^2 / 4 from first_word on].
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
-#include "include/cover.glsl"
+#include "stream/cover.glsl"
 
 layout(local_size_x = WAVE_GROUP_X) in;
 

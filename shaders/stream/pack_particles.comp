@@ -5,8 +5,8 @@
 // particles in every frame while their number stays, and those of a smaller budget among them.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "include/hash.glsl"
-#include "include/population.glsl"
+#include "common/hash.glsl"
+#include "particles/population.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 

@@ -4,7 +4,7 @@
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
-#include "include/cover.glsl"
+#include "stream/cover.glsl"
 
 layout(local_size_x = WAVE_GROUP_X) in;
 

@@ -7,11 +7,11 @@
 // with the crest: a cell inherits the age of the oldest cell that broke where the crest may have come from.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
 #include "shared/groups.h"
-#include "include/wave_faces.glsl"
-#include "include/emission.glsl"
-#include "include/surface_rate.glsl"
+#include "wave/wave_faces.glsl"
+#include "coupling/emission.glsl"
+#include "wave/surface_rate.glsl"
 #if POOL_PARTICLES
-#include "include/spray_source.glsl"
+#include "coupling/spray_source.glsl"
 #endif
 #include "shared/event_uniforms.h"
 

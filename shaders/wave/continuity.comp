@@ -10,7 +10,7 @@
 // Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit; no cell loses more than it holds.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1
 #include "shared/groups.h"
-#include "include/water_column.glsl"
+#include "wave/water_column.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 

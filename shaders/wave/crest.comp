@@ -4,8 +4,8 @@
 // Invariant: a face's transfer is computed by one invocation; nothing passes a closed face.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
-#include "include/displacement.glsl"
-#include "include/event_shapes.glsl"
+#include "wave/displacement.glsl"
+#include "common/event_shapes.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 

@@ -12,8 +12,8 @@
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=0 BREAKERS=0 STEEPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 HEAD=1 BREAKERS=1 STEEPEN=1 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=1 BREAKERS=0 STEEPEN=1
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
-#include "include/transfer.glsl"
-#include "include/water_column.glsl"
+#include "wave/transfer.glsl"
+#include "wave/water_column.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 

@@ -1,4 +1,5 @@
-// What holds for anything that hostile bytes may be taken for: the claims of the headers of stream, as questions.
+// What holds for anything that hostile bytes may be taken for: the claims of the headers of wire and codec, as
+// questions.
 #pragma once
 
 #include <cmath>

@@ -19,7 +19,7 @@ using testing::SizeIs;
 
 constexpr std::uint32_t kCount = 256;
 
-/// Layout of the block in shaders/check/block.glsl.
+/// Layout of the block in shaders/tests/block.glsl.
 struct CheckBlock {
   std::uint32_t item_count = kCount / 4;
   float gain = 1.0f;
@@ -39,8 +39,8 @@ class BarrierTest : public GpuTest {
     take(counts, Buffer::create(*ctx, "counts", 8));
     take(differences, Buffer::create(*ctx, "differences", 4));
     take(block, Buffer::create(*ctx, "block", sizeof(CheckBlock), BufferUse::kUpdatable));
-    take(write, Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}}));
-    take(compare, Program::create(*ctx, "check/texel_equals_storage.comp"));
+    take(write, Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}}));
+    take(compare, Program::create(*ctx, "tests/texel_equals_storage.comp"));
     block.uploadValue(CheckBlock{});
     write.setUniform("item_count", kCount);
     ctx->barrier(kAll);
@@ -91,8 +91,8 @@ TEST_F(BarrierTest, AForgottenBarrierIsReportedWithBothProgramsAndTheBuffer) {
   runWrite();
   ctx->barrier(Barrier::kStorage);  // the texels are forgotten
   runCompare();
-  EXPECT_THAT(ctx->takeFaults(), ElementsAre(AllOf(HasSubstr("check/texel_equals_storage.comp reads buffer \"values\""),
-                                                   HasSubstr("check/iota.comp"), HasSubstr("Barrier::kTexel"))));
+  EXPECT_THAT(ctx->takeFaults(), ElementsAre(AllOf(HasSubstr("tests/texel_equals_storage.comp reads buffer \"values\""),
+                                                   HasSubstr("tests/iota.comp"), HasSubstr("Barrier::kTexel"))));
   runWrite();
   ctx->barrier(Barrier::kTexel);  // the storage is forgotten, for what is read and for what is written
   runCompare();
@@ -114,7 +114,7 @@ TEST_F(BarrierTest, AStoreOverWhatIsStillReadIsAFault) {
   runCompare();
   runWrite();
   EXPECT_THAT(ctx->takeFaults(),
-              ElementsAre(AllOf(HasSubstr("check/iota.comp writes buffer \"values\""), HasSubstr("may still read"))));
+              ElementsAre(AllOf(HasSubstr("tests/iota.comp writes buffer \"values\""), HasSubstr("may still read"))));
 }
 
 TEST_F(BarrierTest, ADisjointWriteIsDeclaredInsteadOfSeparated) {
@@ -219,7 +219,7 @@ TEST(BarrierDeathTest, FaultsThatNoTestTakesEndTheProcess) {
     auto ctx = Context::create(*testDevice(), Checks{.barriers = true});
     if (!ctx) return;
     {
-      auto program = Program::create(**ctx, "check/iota.comp", {{"GROUP", "64"}});
+      auto program = Program::create(**ctx, "tests/iota.comp", {{"GROUP", "64"}});
       auto values = Buffer::create(**ctx, "values", 256);
       auto counts = Buffer::create(**ctx, "counts", 8);
       values->bindStorage(0);

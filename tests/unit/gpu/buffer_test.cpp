@@ -161,7 +161,7 @@ TEST_F(BufferTest, TexelFormatsHaveTheSizeOfTheirWords) {
   }
 }
 
-/// Layout of the block in shaders/check/block.glsl.
+/// Layout of the block in shaders/tests/block.glsl.
 struct CheckBlock {
   std::uint32_t item_count;
   float gain;
@@ -175,7 +175,7 @@ TEST_F(BufferTest, TexelViewEqualsStorageBitForBit) {
   auto values = TexelBuffer::create(*ctx, "values", kCount, TexelFormat::kRGBA32F);
   auto differences = Buffer::create(*ctx, "differences", 4);
   auto block = Buffer::create(*ctx, "block", sizeof(CheckBlock));
-  auto program = Program::create(*ctx, "check/texel_equals_storage.comp");
+  auto program = Program::create(*ctx, "tests/texel_equals_storage.comp");
   ASSERT_TRUE(values && differences && block);
   ASSERT_TRUE(program) << program.error().message;
   std::vector<float> floats(4 * kCount);
@@ -204,8 +204,8 @@ TEST_F(BufferTest, TexelViewSeesWhatAShaderWroteBefore) {
   auto expected = Buffer::create(*ctx, "expected", kCount * 4);
   auto counts = Buffer::create(*ctx, "counts", 8);
   auto block = Buffer::create(*ctx, "block", sizeof(CheckBlock));
-  auto write = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
-  auto compare = Program::create(*ctx, "check/texel_equals_storage.comp");
+  auto write = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
+  auto compare = Program::create(*ctx, "tests/texel_equals_storage.comp");
   ASSERT_TRUE(values && expected && counts && block && write && compare);
   std::vector<std::int32_t> numbers(kCount);
   std::iota(numbers.begin(), numbers.end(), 0x3f800000);  // the bits of floats just above 1

@@ -41,23 +41,23 @@ TEST(EmbeddedShader, IsFoundByItsExactPath) {
   EXPECT_TRUE(
       std::is_sorted(shaders.begin(), shaders.end(), [](const auto& a, const auto& b) { return a.path < b.path; }));
   for (const EmbeddedShader& shader : shaders) EXPECT_EQ(findShader(shader.path), &shader);
-  EXPECT_NE(findShader("check/iota.comp"), nullptr);
-  EXPECT_EQ(findShader("check/iota"), nullptr);
+  EXPECT_NE(findShader("tests/iota.comp"), nullptr);
+  EXPECT_EQ(findShader("tests/iota"), nullptr);
   EXPECT_EQ(findShader(""), nullptr);
   EXPECT_EQ(findShader("zzz"), nullptr);
 }
 
 TEST(EmbeddedShader, KnowsTheOriginOfEachLineOfAnExpandedShader) {
-  const EmbeddedShader* shader = findShader("check/texel_equals_storage.comp");
+  const EmbeddedShader* shader = findShader("tests/texel_equals_storage.comp");
   ASSERT_NE(shader, nullptr);
   const auto lineOf = [&](std::string_view text) {
     const std::size_t at = shader->text.find(text);
     return static_cast<std::uint32_t>(
         1 + std::count(shader->text.begin(), shader->text.begin() + std::ptrdiff_t(at), '\n'));
   };
-  EXPECT_EQ(sourcePosition(*shader, 1), "check/texel_equals_storage.comp:1");
-  EXPECT_EQ(sourcePosition(*shader, lineOf("uniform Check")), "check/block.glsl:2");
-  EXPECT_EQ(sourcePosition(*shader, lineOf("local_size_x")), "check/texel_equals_storage.comp:4");
+  EXPECT_EQ(sourcePosition(*shader, 1), "tests/texel_equals_storage.comp:1");
+  EXPECT_EQ(sourcePosition(*shader, lineOf("uniform Check")), "tests/block.glsl:2");
+  EXPECT_EQ(sourcePosition(*shader, lineOf("local_size_x")), "tests/texel_equals_storage.comp:4");
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ TEST_F(DeviceLossTest, FreesTheSlotsInFlightInsteadOfHandingOutWhatTheyHold) {
 
 TEST_F(DeviceLossTest, DownloadsGiveZerosAndObjectsCanStillBeMadeAndDropped) {
   auto buffer = Buffer::create(*ctx, "before", 64);
-  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
   ASSERT_TRUE(buffer && program);
   buffer->clear(0x55555555);
   ctx->simulateLoss();

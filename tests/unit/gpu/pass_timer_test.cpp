@@ -15,7 +15,7 @@ class PassTimersTest : public GpuTest {
   void SetUp() override {
     GpuTest::SetUp();
     if (!ctx) return;
-    auto made = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+    auto made = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
     auto v = Buffer::create(*ctx, "values", 4 * kCount);
     auto c = Buffer::create(*ctx, "counts", 8);
     ASSERT_TRUE(made && v && c);

@@ -14,24 +14,24 @@ using testing::HasSubstr;
 using ProgramTest = GpuTest;
 
 TEST_F(ProgramTest, CompileErrorNamesFileAndLineOfTheInclude) {
-  const auto broken = Program::create(*ctx, "check/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
+  const auto broken = Program::create(*ctx, "tests/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
   ASSERT_FALSE(broken);
-  EXPECT_THAT(broken.error().message, HasSubstr("check/texel_equals_storage.comp does not compile"));
-  EXPECT_THAT(broken.error().message, HasSubstr("check/block.glsl:10"));
+  EXPECT_THAT(broken.error().message, HasSubstr("tests/texel_equals_storage.comp does not compile"));
+  EXPECT_THAT(broken.error().message, HasSubstr("tests/block.glsl:10"));
   EXPECT_THAT(broken.error().message, HasSubstr("no_such_name"));
   EXPECT_EQ(ctx->ledger().program_count, 0u);
 }
 
 TEST_F(ProgramTest, RefusesAShaderThatWasNotEmbedded) {
-  const auto none = Program::create(*ctx, "check/none.comp");
+  const auto none = Program::create(*ctx, "tests/none.comp");
   ASSERT_FALSE(none);
-  EXPECT_THAT(none.error().message, HasSubstr("\"check/none.comp\" is not embedded"));
+  EXPECT_THAT(none.error().message, HasSubstr("\"tests/none.comp\" is not embedded"));
 }
 
 TEST_F(ProgramTest, ReflectsTheGroupSize) {
-  const auto wide = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
-  const auto odd = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
-  const auto flat = Program::create(*ctx, "check/texel_equals_storage.comp");
+  const auto wide = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
+  const auto odd = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
+  const auto flat = Program::create(*ctx, "tests/texel_equals_storage.comp");
   ASSERT_TRUE(wide && odd && flat);
   EXPECT_EQ(wide->groupSize(), (std::array<std::uint32_t, 3>{64, 1, 1}));
   EXPECT_EQ(odd->groupSize(), (std::array<std::uint32_t, 3>{24, 1, 1}));
@@ -39,7 +39,7 @@ TEST_F(ProgramTest, ReflectsTheGroupSize) {
 }
 
 TEST_F(ProgramTest, DispatchCoversSizesThatDivideByNothing) {
-  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+  auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
   ASSERT_TRUE(program);
   for (const std::uint32_t count : {1u, 23u, 24u, 25u, 1009u}) {
     auto values = Buffer::create(*ctx, "values", 4 * (count + 8));
@@ -60,7 +60,7 @@ TEST_F(ProgramTest, DispatchCoversSizesThatDivideByNothing) {
 }
 
 TEST_F(ProgramTest, DispatchOfNothingRunsNothing) {
-  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
   ASSERT_TRUE(program);
   EXPECT_TRUE(program->dispatch(0));
   EXPECT_TRUE(program->dispatch(10, 0));
@@ -68,7 +68,7 @@ TEST_F(ProgramTest, DispatchOfNothingRunsNothing) {
 }
 
 TEST_F(ProgramTest, DispatchOverTheDeviceLimitIsRefusedAndCounted) {
-  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
   ASSERT_TRUE(program);
   const auto over = ctx->limits().max_work_group_count_y + 1;
   EXPECT_FALSE(program->dispatchGroups(1, static_cast<std::uint32_t>(over), 1));
@@ -77,7 +77,7 @@ TEST_F(ProgramTest, DispatchOverTheDeviceLimitIsRefusedAndCounted) {
 }
 
 TEST_F(ProgramTest, RunsTheGroupCountsInABuffer) {
-  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
   auto values = Buffer::create(*ctx, "values", 4 * 192);
   auto counts = Buffer::create(*ctx, "counts", 8);
   auto arguments = Buffer::create(*ctx, "arguments", 16);
@@ -91,7 +91,7 @@ TEST_F(ProgramTest, RunsTheGroupCountsInABuffer) {
 }
 
 TEST_F(ProgramTest, DescribesBlocksAsTheDriverLaidThemOut) {
-  const auto program = Program::create(*ctx, "check/texel_equals_storage.comp");
+  const auto program = Program::create(*ctx, "tests/texel_equals_storage.comp");
   ASSERT_TRUE(program);
   const auto blocks = program->blocks();
   ASSERT_TRUE(blocks.contains("Check"));
@@ -112,7 +112,7 @@ TEST_F(ProgramTest, DescribesBlocksAsTheDriverLaidThemOut) {
 TEST_F(ProgramTest, LedgerCountsProgramsAndDispatches) {
   const Ledger& ledger = ctx->ledger();
   {
-    auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+    auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
     auto values = Buffer::create(*ctx, "values", 256);
     auto counts = Buffer::create(*ctx, "counts", 8);
     ASSERT_TRUE(program && values && counts);

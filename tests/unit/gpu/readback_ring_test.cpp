@@ -55,7 +55,7 @@ TEST_F(ReadbackRingTest, ReturnsWhatWasCopiedInOrderOfSubmission) {
 TEST_F(ReadbackRingTest, GathersSeveralCopiesAndSeesShaderWrites) {
   constexpr std::uint32_t kCount = 77;
   auto ring = ReadbackRing::create(*ctx, "frames", 4096, 1);
-  auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+  auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
   auto values = Buffer::create(*ctx, "values", 4 * kCount, BufferUse::kDeviceOnly);
   auto counts = Buffer::create(*ctx, "counts", 8);
   ASSERT_TRUE(ring && program && values && counts);

@@ -53,7 +53,7 @@ TEST_F(TestModes, ShuffledGroupsCoverEveryInvocationOnce) {
   for (const std::uint32_t seed : {1u, 2u, 7u, 1000u}) {
     make({.shuffle_seed = seed});
     if (!ctx) return;
-    auto program = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+    auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
     ASSERT_TRUE(program) << program.error().message;
     for (const std::uint32_t count : {1u, 24u, 25u, 1009u, 24u * 7919u}) {  // the last: as many groups as the factor
       auto values = Buffer::create(*ctx, "values", 4 * count);
@@ -78,7 +78,7 @@ TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
   const auto ascendingCount = [&](std::uint32_t seed) -> std::uint32_t {
     make({.shuffle_seed = seed});
     if (!ctx) return 0;
-    auto program = Program::create(*ctx, "check/group_order.comp");
+    auto program = Program::create(*ctx, "tests/group_order.comp");
     auto order = Buffer::create(*ctx, "order", 4 * (1 + kGroups));
     EXPECT_TRUE(program && order);
     order->bindStorage(0);
@@ -105,9 +105,9 @@ TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
 TEST_F(TestModes, CompileErrorsOfShuffledShadersNameTheirLines) {
   make({.shuffle_seed = 5});
   if (!ctx) return;
-  const auto broken = Program::create(*ctx, "check/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
+  const auto broken = Program::create(*ctx, "tests/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
   ASSERT_FALSE(broken);
-  EXPECT_THAT(broken.error().message, HasSubstr("check/block.glsl:10"));
+  EXPECT_THAT(broken.error().message, HasSubstr("tests/block.glsl:10"));
 }
 
 using ProgramCacheTest = GpuTest;
@@ -115,9 +115,9 @@ using ProgramCacheTest = GpuTest;
 TEST_F(ProgramCacheTest, AVariantIsCompiledOncePerContext) {
   const Ledger& ledger = ctx->ledger();
   {
-    const auto first = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
-    const auto second = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
-    const auto other = Program::create(*ctx, "check/iota.comp", {{"GROUP", "24"}});
+    const auto first = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
+    const auto second = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
+    const auto other = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
     ASSERT_TRUE(first && second && other);
     EXPECT_EQ(ledger.programs_made_count, 2u);
     EXPECT_EQ(ledger.program_count, 3u);
@@ -125,13 +125,13 @@ TEST_F(ProgramCacheTest, AVariantIsCompiledOncePerContext) {
     EXPECT_NE(first->id(), other->id());
   }
   EXPECT_EQ(ledger.program_count, 0u);
-  const auto again = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  const auto again = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
   ASSERT_TRUE(again);
   EXPECT_EQ(ledger.programs_made_count, 2u) << "kept for the next room";
   auto beside = Context::create(*testDevice());
   ASSERT_TRUE(beside);
   {
-    const auto elsewhere = Program::create(**beside, "check/iota.comp", {{"GROUP", "64"}});
+    const auto elsewhere = Program::create(**beside, "tests/iota.comp", {{"GROUP", "64"}});
     ASSERT_TRUE(elsewhere);
     EXPECT_EQ((*beside)->ledger().programs_made_count, 1u) << "contexts share nothing";
   }
@@ -141,7 +141,7 @@ TEST_F(ProgramCacheTest, AVariantIsCompiledOncePerContext) {
 
 TEST_F(ProgramCacheTest, AnErrorIsNotKept) {
   for (int i = 0; i < 2; ++i) {
-    const auto broken = Program::create(*ctx, "check/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
+    const auto broken = Program::create(*ctx, "tests/texel_equals_storage.comp", {{"BREAK_ON_REQUEST", "1"}});
     ASSERT_FALSE(broken);
     EXPECT_THAT(broken.error().message, HasSubstr("no_such_name"));
   }
@@ -150,8 +150,8 @@ TEST_F(ProgramCacheTest, AnErrorIsNotKept) {
 TEST_F(ProgramCacheTest, UniformsAreEachOnesOwnThoughTheProgramIsShared) {
   auto values = Buffer::create(*ctx, "values", 16);
   auto counts = Buffer::create(*ctx, "counts", 8);
-  auto ten = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
-  auto zero = Program::create(*ctx, "check/iota.comp", {{"GROUP", "64"}});
+  auto ten = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
+  auto zero = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
   ASSERT_TRUE(values && counts && ten && zero);
   values->bindStorage(0);
   counts->bindStorage(1);

@@ -69,7 +69,7 @@ TEST_F(KernelsOnDevice, EqualTheDoublePrecisionOnes) {
   const std::uint32_t count = 1001;
   for (const KernelSet set : kSets) {
     const int number = set == KernelSet::kMuller ? 1 : set == KernelSet::kCubicSpline ? 2 : 3;
-    auto program = gpu::Program::create(*ctx_, "check/kernels.comp", {{"KERNEL_SET", std::to_string(number)}});
+    auto program = gpu::Program::create(*ctx_, "tests/kernels.comp", {{"KERNEL_SET", std::to_string(number)}});
     ASSERT_TRUE(program) << program.error().message;
     auto values = gpu::Buffer::create(*ctx_, "kernel values", count * 16);
     ASSERT_TRUE(values);

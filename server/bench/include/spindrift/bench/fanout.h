@@ -10,7 +10,7 @@
 
 namespace spindrift::bench {
 
-/// The network room alone with made-up frames (100 readers; the same with ten that never read; 200 small ones with
+/// The network module alone with made-up frames (100 readers; the same with ten that never read; 200 small ones with
 /// visitors and commands), then the whole server with the scene and 200 clients. `seconds` measured per case, clients
 /// and server in this process. Prints a row a case.
 core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const std::string& device, double seconds,

@@ -9,7 +9,7 @@
 
 namespace spindrift::core {
 
-/// Why something failed; app maps each to the program's exit code.
+/// Why something failed; cli maps each to the program's exit code.
 enum class ErrorCode {
   kInvalidInput,  ///< bad flag, scene, file, message: exit code 2
   kUnavailable,   ///< port in use, file missing, web client not built: exit code 2

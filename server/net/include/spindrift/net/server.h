@@ -1,6 +1,6 @@
-// The network room: one port for HTTP and WebSocket. It moves bytes and never parses a message; what they mean is the
-// Application's business (implemented in app). Threads: Server runs `thread_count` I/O threads; every Application call
-// comes from one of them, for one session never two at a time.
+// The network module: one port for HTTP and WebSocket. It moves bytes and never parses a message; what they mean is the
+// Application's business (service implements it). Threads: Server runs `thread_count` I/O threads; every Application
+// call comes from one of them, for one session never two at a time.
 #pragma once
 
 #include <array>
@@ -143,8 +143,8 @@ class Hub {
                        std::string reason) = 0;
 };
 
-/// What the server does for: implemented by app, outlives the Server. An exception from a callback is logged and ends
-/// that session (kInternalError) or request (HTTP 500), nothing else.
+/// What the server does for: implemented by service, outlives the Server. An exception from a callback is logged and
+/// ends that session (kInternalError) or request (HTTP 500), nothing else.
 class Application {
  public:
   virtual ~Application() = default;

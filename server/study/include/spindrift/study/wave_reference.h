@@ -16,7 +16,7 @@ struct ReferenceBed {
   std::vector<double> elevation_loss_per_s;  ///< in sponges
 };
 
-/// Water of one moment. Flow through the faces that a cell owns, in the order of shaders/include/wave_faces.glsl:
+/// Water of one moment. Flow through the faces that a cell owns, in the order of shaders/wave/wave_faces.glsl:
 /// toward +x, toward +z, and with the 9-point stencil the two diagonals.
 struct ReferenceWater {
   std::vector<double> elevation_m;

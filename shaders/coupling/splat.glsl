@@ -5,10 +5,10 @@
 #ifndef SPINDRIFT_SPLAT
 #define SPINDRIFT_SPLAT
 
-#include "include/wave_cell.glsl"
+#include "wave/wave_cell.glsl"
 
 #if VARIED
-#include "include/terrain_texels.glsl"
+#include "common/terrain_texels.glsl"
 layout(binding = LANDING) uniform isamplerBuffer landing;
 #endif
 

@@ -3,7 +3,7 @@
 #ifndef SPINDRIFT_WATER_COLUMN
 #define SPINDRIFT_WATER_COLUMN
 
-#include "include/wave_faces.glsl"
+#include "wave/wave_faces.glsl"
 #include "shared/fixed_point.h"
 
 #if VARIED

@@ -3,7 +3,7 @@
 #ifndef SPINDRIFT_FLOOR
 #define SPINDRIFT_FLOOR
 
-#include "include/wave_cell.glsl"
+#include "wave/wave_cell.glsl"
 #include "shared/sim_uniforms.h"
 
 #if COUPLED

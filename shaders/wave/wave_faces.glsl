@@ -6,7 +6,7 @@
 #ifndef SPINDRIFT_WAVE_FACES
 #define SPINDRIFT_WAVE_FACES
 
-#include "include/wave_cell.glsl"
+#include "wave/wave_cell.glsl"
 
 #if STENCIL == 9
 #define Flow vec4

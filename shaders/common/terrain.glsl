@@ -2,8 +2,8 @@
 #ifndef SPINDRIFT_TERRAIN
 #define SPINDRIFT_TERRAIN
 
-#include "include/terrain_texels.glsl"
-#include "include/wave_cell.glsl"
+#include "common/terrain_texels.glsl"
+#include "wave/wave_cell.glsl"
 
 /// (signed distance, its gradient, still depth; minus its height above the water inside an obstacle) under a place, the distance
 /// carried from the cell's centre along the gradient.

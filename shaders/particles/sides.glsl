@@ -2,7 +2,7 @@
 #ifndef SPINDRIFT_SIDES
 #define SPINDRIFT_SIDES
 
-#include "include/floor.glsl"
+#include "particles/floor.glsl"
 #include "shared/sim_uniforms.h"
 
 /// One axis with walls: stops at the wall.

@@ -3,16 +3,16 @@
 #ifndef SPINDRIFT_SURROUNDINGS
 #define SPINDRIFT_SURROUNDINGS
 
-#include "include/floor.glsl"
-#include "include/sides.glsl"
+#include "particles/floor.glsl"
+#include "particles/sides.glsl"
 #if POOL_PARTICLES
-#include "include/absorption.glsl"
+#include "coupling/absorption.glsl"
 #endif
 #if COUPLED && VARIED
-#include "include/terrain.glsl"
+#include "common/terrain.glsl"
 #endif
 #if HULLS
-#include "include/hull.glsl"
+#include "bodies/hull.glsl"
 #endif
 
 /// Moves x and v to where they may be. False: the particle has become water.

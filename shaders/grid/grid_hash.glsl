@@ -5,7 +5,7 @@
 #ifndef SPINDRIFT_GRID_HASH
 #define SPINDRIFT_GRID_HASH
 
-#include "include/finite.glsl"
+#include "common/finite.glsl"
 #include "shared/grid.h"
 #include "shared/sim_uniforms.h"
 

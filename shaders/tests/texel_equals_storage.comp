@@ -1,6 +1,6 @@
 // Counts the items whose texelFetch and whose storage load differ in any bit.
 // Reads TEXELS [item_count] both ways. Adds to DIFFERENCES [1].
-#include "check/block.glsl"
+#include "tests/block.glsl"
 layout(local_size_x = 32, local_size_y = 2) in;
 
 layout(binding = 3) uniform samplerBuffer texels;

@@ -2,8 +2,8 @@
 #ifndef SPINDRIFT_HULL
 #define SPINDRIFT_HULL
 
-#include "include/boat.glsl"
-#include "include/wave_cell.glsl"
+#include "bodies/boat.glsl"
+#include "wave/wave_cell.glsl"
 
 layout(binding = BOATS) uniform samplerBuffer boats;
 

@@ -2,8 +2,8 @@
 #ifndef SPINDRIFT_ABSORPTION
 #define SPINDRIFT_ABSORPTION
 
-#include "include/splat.glsl"
-#include "include/transfer.glsl"
+#include "coupling/splat.glsl"
+#include "wave/transfer.glsl"
 #include "shared/pool.h"
 
 layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };

@@ -2,8 +2,8 @@
 #ifndef SPINDRIFT_EMISSION
 #define SPINDRIFT_EMISSION
 
-#include "include/hash.glsl"
-#include "include/transfer.glsl"
+#include "common/hash.glsl"
+#include "wave/transfer.glsl"
 #include "shared/sim_uniforms.h"
 
 #if POOL_PARTICLES

@@ -4,9 +4,9 @@
 #ifndef SPINDRIFT_SPRAY_SOURCE
 #define SPINDRIFT_SPRAY_SOURCE
 
-#include "include/splat.glsl"
-#include "include/surface_rate.glsl"
-#include "include/water_column.glsl"
+#include "coupling/splat.glsl"
+#include "wave/surface_rate.glsl"
+#include "wave/water_column.glsl"
 
 /// Water over the bed when the surface was sampled, before any emission, less what its floats may hide. [m]
 float heldBeforeSpray(int i) {

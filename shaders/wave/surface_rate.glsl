@@ -2,7 +2,7 @@
 #ifndef SPINDRIFT_SURFACE_RATE
 #define SPINDRIFT_SURFACE_RATE
 
-#include "include/wave_cell.glsl"
+#include "wave/wave_cell.glsl"
 
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 

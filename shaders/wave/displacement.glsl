@@ -2,8 +2,8 @@
 #ifndef SPINDRIFT_DISPLACEMENT
 #define SPINDRIFT_DISPLACEMENT
 
-#include "include/transfer.glsl"
-#include "include/water_column.glsl"
+#include "wave/transfer.glsl"
+#include "wave/water_column.glsl"
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(std430, binding = TRANSFER) restrict buffer Transfer { int transfer[]; };

@@ -1,4 +1,4 @@
-// What the particles miss beyond floor and walls. The floor has its virtual lattice (include/floor_support.glsl); a wall has a
+// What the particles miss beyond floor and walls. The floor has its virtual lattice (particles/floor_support.glsl); a wall has a
 // share of the rest density that depends on the distance d alone, f(d) = C max(1 - d/D, 0)^2, with C and D from derive(): a
 // particle half a spacing from the wall gets exactly the density of the layers that are missing beyond it, and the gradient is
 // twice theirs, because a wall particle pushes with its own pressure only while a missing neighbour would have brought its
@@ -7,7 +7,7 @@
 #ifndef SPINDRIFT_BOUNDARY
 #define SPINDRIFT_BOUNDARY
 
-#include "include/floor_support.glsl"
+#include "particles/floor_support.glsl"
 
 #define HAS_WALLS (PERIODIC_X == 0 || PERIODIC_Z == 0)
 

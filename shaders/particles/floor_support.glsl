@@ -1,4 +1,4 @@
-// The floor's support. A flat floor (!COUPLED) supports like a wall (include/boundary.glsl): f(d) = C max(1 - d/D, 0)^2 of the rest
+// The floor's support. A flat floor (!COUPLED) supports like a wall (particles/boundary.glsl): f(d) = C max(1 - d/D, 0)^2 of the rest
 // density, whose slope carries the lowest layer at the pressure of its depth.
 // Under coupled water it is virtual particles: a LATTICE x LATTICE grid at spacing s, centred under the particle and snapped to
 // half a spacing below the floor, where the next layer of the water would be, seen by particles closer to it than H (thesis,
@@ -8,8 +8,8 @@
 #ifndef SPINDRIFT_FLOOR_SUPPORT
 #define SPINDRIFT_FLOOR_SUPPORT
 
-#include "include/floor.glsl"
-#include "include/kernels.glsl"
+#include "particles/floor.glsl"
+#include "particles/kernels.glsl"
 
 #if POOL_PARTICLES || PERIODIC_Y
 // In two-way scenes the surface takes particles in instead of carrying them; a box that is periodic in y has no floor.

@@ -4,7 +4,7 @@
 #ifndef SPINDRIFT_CANDIDATES
 #define SPINDRIFT_CANDIDATES
 
-#include "include/grid_hash.glsl"
+#include "grid/grid_hash.glsl"
 
 layout(binding = CELL_START) uniform usamplerBuffer cell_start;
 

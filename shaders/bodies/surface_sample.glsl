@@ -2,7 +2,7 @@
 #ifndef SPINDRIFT_SURFACE_SAMPLE
 #define SPINDRIFT_SURFACE_SAMPLE
 
-#include "include/wave_cell.glsl"
+#include "wave/wave_cell.glsl"
 
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
