@@ -31,7 +31,7 @@ std::optional<std::string_view> directive(std::string_view line, std::string_vie
   return line;
 }
 
-/// "SPINDRIFT_ONCE_include_splat_glsl" for "include/splat.glsl".
+/// "SPINDRIFT_ONCE_coupling_splat_glsl" for "coupling/splat.glsl".
 std::string guardOf(const std::string& name) {
   std::string out = "SPINDRIFT_ONCE_" + name;
   std::ranges::replace_if(out, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');

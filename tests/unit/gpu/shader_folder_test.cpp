@@ -58,9 +58,9 @@ TEST_F(ShaderFolderTest, ExpandsEveryEntryPointToWhatTheBuildEmbeds) {
     return out;
   };
   // Without includes both are the same to the letter.
-  const auto plain = shaders.expand("check/iota.comp");
+  const auto plain = shaders.expand("tests/iota.comp");
   ASSERT_TRUE(plain) << plain.error().message;
-  EXPECT_EQ(words(plain->text), words(findShader("check/iota.comp")->text));
+  EXPECT_EQ(words(plain->text), words(findShader("tests/iota.comp")->text));
   for (const EmbeddedShader& shader : embeddedShaders()) {
     const auto expanded = shaders.expand(shader.path);
     ASSERT_TRUE(expanded) << expanded.error().message;
@@ -70,15 +70,15 @@ TEST_F(ShaderFolderTest, ExpandsEveryEntryPointToWhatTheBuildEmbeds) {
 }
 
 TEST_F(ShaderFolderTest, NamesFileAndLineOfAnIncludeThatIsNotThere) {
-  write("check/iota.comp", "// first\n#include \"check/nothere.glsl\"\n");
-  const auto expanded = ShaderFolder(root()).expand("check/iota.comp");
+  write("tests/iota.comp", "// first\n#include \"tests/nothere.glsl\"\n");
+  const auto expanded = ShaderFolder(root()).expand("tests/iota.comp");
   ASSERT_FALSE(expanded);
-  EXPECT_THAT(expanded.error().message, HasSubstr("check/iota.comp:2: no file \"check/nothere.glsl\""));
+  EXPECT_THAT(expanded.error().message, HasSubstr("tests/iota.comp:2: no file \"tests/nothere.glsl\""));
 }
 
 TEST_F(ShaderFolderTest, RefusesACycle) {
-  write("check/block.glsl", "#include \"check/texel_equals_storage.comp\"\n");
-  const auto expanded = ShaderFolder(root()).expand("check/texel_equals_storage.comp");
+  write("tests/block.glsl", "#include \"tests/texel_equals_storage.comp\"\n");
+  const auto expanded = ShaderFolder(root()).expand("tests/texel_equals_storage.comp");
   ASSERT_FALSE(expanded);
   EXPECT_THAT(expanded.error().message, HasSubstr("cycle"));
 }
@@ -94,7 +94,7 @@ class LiveShader : public ShaderFolderTest {
     if (!made) GTEST_SKIP() << made.error().message;
     ctx_ = *std::move(made);
   }
-  /// What check/iota.comp writes for item 3 with offset 5.
+  /// What tests/iota.comp writes for item 3 with offset 5.
   std::int32_t fourth(Program& program) {
     auto values = Buffer::create(*ctx_, "values", 4 * 32);
     auto counts = Buffer::create(*ctx_, "counts", 8);
@@ -116,26 +116,26 @@ class LiveShader : public ShaderFolderTest {
 };
 
 TEST_F(LiveShader, RunsAsItsFileSaysNowAndKeepsItsUniforms) {
-  auto program = Program::create(*ctx_, "check/iota.comp", {{"GROUP", "32"}});
+  auto program = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "32"}});
   ASSERT_TRUE(program) << program.error().message;
   EXPECT_EQ(fourth(*program), 8);
-  replace("check/iota.comp", "+ offset", "+ 2 * offset");
+  replace("tests/iota.comp", "+ offset", "+ 2 * offset");
   waitForALook();
   EXPECT_EQ(fourth(*program), 13);
   EXPECT_EQ(ctx_->debugErrorCount(), 0u);
 }
 
 TEST_F(LiveShader, GoesOnAsItWasWhenItsFileDoesNotCompile) {
-  auto program = Program::create(*ctx_, "check/iota.comp", {{"GROUP", "32"}});
+  auto program = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "32"}});
   ASSERT_TRUE(program) << program.error().message;
-  replace("check/iota.comp", "+ offset", "+ no_such_name");
+  replace("tests/iota.comp", "+ offset", "+ no_such_name");
   waitForALook();
   EXPECT_EQ(fourth(*program), 8);
-  const auto again = Program::create(*ctx_, "check/iota.comp", {{"GROUP", "16"}});
+  const auto again = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "16"}});
   ASSERT_FALSE(again) << "a new program is compiled from the file as it is";
-  EXPECT_THAT(again.error().message, HasSubstr("check/iota.comp:"));
+  EXPECT_THAT(again.error().message, HasSubstr("tests/iota.comp:"));
   EXPECT_THAT(again.error().message, HasSubstr("no_such_name"));
-  replace("check/iota.comp", "+ no_such_name", "+ 3 * offset");
+  replace("tests/iota.comp", "+ no_such_name", "+ 3 * offset");
   waitForALook();
   EXPECT_EQ(fourth(*program), 18);
 }
