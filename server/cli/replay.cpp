@@ -19,7 +19,8 @@ void print(const rooms::ReplayOutcome& outcome) {
     fmt::print("the log has no end: {}; everything before it was replayed\n", *outcome.truncation);
   if (outcome.recovered_tick) {
     fmt::print(
-        "the guard stepped in at tick {}: when it does depends on the machine's speed, so states after it may differ\n",
+        "the watchdog stepped in at tick {}: when it does depends on the machine's speed, so states after it may "
+        "differ\n",
         *outcome.recovered_tick);
   }
   if (outcome.difference && outcome.device_difference)

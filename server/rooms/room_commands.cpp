@@ -280,7 +280,7 @@ void Room::announceRecovery(TimePoint now) {
   const std::uint64_t count = stage_->water().recoveredCount();
   if (!recovery_news_.tell(count, now)) return;
   outlets_.hasRecovered(*this,
-                        fmt::format("the guard put the water back to its last good state ({} times so far)", count));
+                        fmt::format("the watchdog put the water back to its last good state ({} times so far)", count));
   boatsChanged();
 }
 

@@ -184,7 +184,7 @@ core::Result<void> SimulationThread::close(const std::string& name, const std::f
 
 void SimulationThread::summarise(const Room& room) {
   summary_.push_back(
-      fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, guard stepped in {} times",
+      fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, watchdog stepped in {} times",
                   room.name(), room.tick(), room.meanRealTimeFactor(std::chrono::steady_clock::now()),
                   room.droppedFrameCount(), room.water().recoveredCount()));
 }

@@ -63,11 +63,11 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
        [](Sample r) { return r.vitals->waiting_command_count; });
   each("room_frames_dropped_total", "counter", "Frames not read back because earlier ones were still on their way.",
        [](Sample r) { return r.vitals->dropped_frame_count; });
-  each("room_recovered_total", "counter", "Times the guard put the water back to its last good state.",
+  each("room_recovered_total", "counter", "Times the watchdog put the water back to its last good state.",
        [](Sample r) { return r.vitals->diagnostics.recovered_count; });
-  each("room_nonfinite_total", "counter", "Numbers that were not finite, seen by the guard.",
+  each("room_nonfinite_total", "counter", "Numbers that were not finite, seen by the watchdog.",
        [](Sample r) { return r.vitals->diagnostics.nonfinite_count; });
-  each("room_escaped_total", "counter", "Particles that left the domain, seen by the guard.",
+  each("room_escaped_total", "counter", "Particles that left the domain, seen by the watchdog.",
        [](Sample r) { return r.vitals->diagnostics.escaped_count; });
   page.head("room_pass_seconds", "gauge", "Device time of a pass in a tick, where the device can tell.");
   for (const RoomSample& room : rooms) {

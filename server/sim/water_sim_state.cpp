@@ -78,7 +78,7 @@ void WaterSim::recover(const Health& breach) {
   if (recovered_count_ <= 10 || recovered_count_ % 100 == 0) {
     spdlog::warn(
         "scene {}: tick {} has {} values out of range and {} escaped particles; went back to {} with half the step for "
-        "{} s (guard stepped in {} times)",
+        "{} s (watchdog stepped in {} times)",
         scene_.name, breach.tick, breach.nonfinite_count, breach.escaped_count,
         restored ? "the last good checkpoint" : "the start", kCareful_s, recovered_count_);
   }

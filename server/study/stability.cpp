@@ -68,8 +68,8 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
     if (scale_j == 0.0 && water.time_s() > start_s + 0.5) scale_j = energyOf(health);
     if (scale_j > 0.0) out.energy_growth = std::max(out.energy_growth, energyOf(health) / scale_j);
   }
-  out.guard_count = water.recoveredCount();
-  out.is_stable = out.guard_count == 0 && out.energy_growth <= sweep.stable_growth &&
+  out.recovered_count = water.recoveredCount();
+  out.is_stable = out.recovered_count == 0 && out.energy_growth <= sweep.stable_growth &&
                   out.max_density_ratio <= sweep.stable_density_ratio &&
                   out.max_elevation_m <= sweep.stable_elevation_m;
 
@@ -81,12 +81,12 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
   for (int k = 0; k < 8; ++k) {  // news of the last breach is still under way
     if (auto done = step(); !done) return done.error();
   }
-  const std::uint64_t guard_count = water.recoveredCount();
+  const std::uint64_t recovered_count = water.recoveredCount();
   const double after_s = water.time_s();
   while (water.time_s() < after_s + sweep.seconds_after) {
     if (auto done = step(); !done) return done.error();
   }
-  out.is_well_after = water.recoveredCount() == guard_count && water.health().isGood();
+  out.is_well_after = water.recoveredCount() == recovered_count && water.health().isGood();
   return out;
 }
 

@@ -281,7 +281,7 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   out.seconds = water.time_s() - begin_s;
   out.passes = water.takePassCosts();
   out.frame_bytes = frame_count > 0 ? frame_bytes / static_cast<double>(frame_count) : 0.0;
-  out.guard_count = water.recoveredCount();
+  out.recovered_count = water.recoveredCount();
 
   const double once_s = times.sum();
   for (int run = 1; run < kTimedRuns && once_s < options.repeat_below_s; ++run) {

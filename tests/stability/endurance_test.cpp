@@ -21,7 +21,7 @@ bool allFinite(const std::vector<float>& values) {
 
 /// Elevations are integers that saturate at 32.767 m, particles and foam are integers anyway; what a frame can still
 /// get wrong is its extent. The largest elevation in `max_m`: it grows when people raise gravity or depth again and
-/// again while the water stands high, as 10,000 commands do (they pump energy in; the guard's bound is 64 m).
+/// again while the water stands high, as 10,000 commands do (they pump energy in; the watchdog's bound is 64 m).
 void expectSane(const core::FrameView& frame, const v1::Scene& scene, double& max_m) {
   ASSERT_TRUE(frame.surface && frame.particles && frame.foam && frame.bodies);
   const core::SurfaceView& surface = *frame.surface;
@@ -99,8 +99,8 @@ TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarborAsFastAsAFreshOne)
                   allFinite(state.boats));
     }
   }
-  std::printf("%d commands in %d ticks, %d of them accepted; guard stepped in %llu times\n", commands, ticks, accepted,
-              static_cast<unsigned long long>(water.recoveredCount()));
+  std::printf("%d commands in %d ticks, %d of them accepted; watchdog stepped in %llu times\n", commands, ticks,
+              accepted, static_cast<unsigned long long>(water.recoveredCount()));
   std::printf("waves of up to %.1f m\n", max_elevation_m);
   EXPECT_GT(accepted, commands / 3);
   // The size of a two-way scene's pool is fixed while it runs, so that the harbor refuses it: the next test sets it.

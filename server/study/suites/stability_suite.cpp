@@ -22,7 +22,7 @@ boost::json::object toJson(const StabilityPoint& p) {
   return {{"value", p.value},
           {"refused", p.refused},
           {"frames_finite", p.are_frames_finite},
-          {"guard_count", p.guard_count},
+          {"guard_count", p.recovered_count},
           {"well_after", p.is_well_after},
           {"max_density_ratio", p.max_density_ratio},
           {"energy_growth", p.energy_growth},
@@ -35,7 +35,7 @@ StabilityPoint fromJson(const boost::json::object& json) {
   p.value = json.at("value").to_number<double>();
   p.refused = json.at("refused").as_string();
   p.are_frames_finite = json.at("frames_finite").as_bool();
-  p.guard_count = json.at("guard_count").to_number<std::uint64_t>();
+  p.recovered_count = json.at("guard_count").to_number<std::uint64_t>();
   p.is_well_after = json.at("well_after").as_bool();
   p.max_density_ratio = json.at("max_density_ratio").to_number<double>();
   p.energy_growth = json.at("energy_growth").to_number<double>();
@@ -49,10 +49,10 @@ void print(std::FILE* out, const Sweep& sweep, const StabilityPoint& p) {
     fmt::print(out, "  {:>8.4g} {:<10} refused: {}\n", p.value, sweep.unit, p.refused);
     return;
   }
-  fmt::print(out,
-             "  {:>8.4g} {:<10} {:<8} guard {:>2}  {:<9}  density {:>6.3f}  energy {:>9.3g}  slowest step {:.0f} ms\n",
-             p.value, sweep.unit, p.is_stable ? "stable" : "unstable", p.guard_count,
-             p.is_well_after ? "recovers" : "LOST", p.max_density_ratio, p.energy_growth, 1e3 * p.slowest_step_s);
+  fmt::print(
+      out, "  {:>8.4g} {:<10} {:<8} watchdog {:>2}  {:<9}  density {:>6.3f}  energy {:>9.3g}  slowest step {:.0f} ms\n",
+      p.value, sweep.unit, p.is_stable ? "stable" : "unstable", p.recovered_count,
+      p.is_well_after ? "recovers" : "LOST", p.max_density_ratio, p.energy_growth, 1e3 * p.slowest_step_s);
 }
 
 core::Result<std::vector<StabilityPoint>> measure(gpu::Context& ctx, const Sweep& sweep, const std::string& key,
@@ -82,7 +82,7 @@ std::string fileName(const std::string& sweep) {
   return name + ".svg";
 }
 
-/// How much energy grew at each value; where the guard stepped in and how often; the bound that the rules predict.
+/// How much energy grew at each value; where the watchdog stepped in and how often; the bound that the rules predict.
 Chart chartOf(const Sweep& sweep, const std::vector<StabilityPoint>& points) {
   Chart chart;
   chart.title = "Stability: " + sweep.name;
@@ -94,7 +94,7 @@ Chart chartOf(const Sweep& sweep, const std::vector<StabilityPoint>& points) {
   Chart::Series lost{"lost", {}, Chart::Mark::kLargeDot};
   for (const StabilityPoint& point : points) {
     if (!point.refused.empty()) continue;
-    const std::string label = point.guard_count > 0 ? fmt::format("guard {}", point.guard_count) : "";
+    const std::string label = point.recovered_count > 0 ? fmt::format("watchdog {}", point.recovered_count) : "";
     Chart::Series& series = point.is_stable ? stable : point.isSafe() ? unstable : lost;
     series.points.push_back({point.value, std::max(point.energy_growth, 1e-6), label});
   }

@@ -32,7 +32,7 @@ boost::json::object toJson(const TradeRow& r) {
           {"wave_cells", r.wave_cells_count},
           {"particles", r.particle_count},
           {"substeps_per_s", r.substeps_per_s_count},
-          {"guard_count", r.guard_count},
+          {"guard_count", r.recovered_count},
           {"pass_ms_per_s", r.pass_ms_per_s},
           {"height_rms_ratio", r.errors.height_rms_ratio},
           {"surface_rms_ratio", toJson(r.errors.surface_rms_ratio)},
@@ -55,7 +55,7 @@ TradeRow rowFromJson(const boost::json::object& json) {
   r.wave_cells_count = json.at("wave_cells").to_number<std::uint32_t>();
   r.particle_count = json.at("particles").to_number<std::uint32_t>();
   r.substeps_per_s_count = json.at("substeps_per_s").to_number<std::uint32_t>();
-  r.guard_count = json.at("guard_count").to_number<std::uint64_t>();
+  r.recovered_count = json.at("guard_count").to_number<std::uint64_t>();
   r.pass_ms_per_s = json.at("pass_ms_per_s").as_object();
   r.errors.height_rms_ratio = json.at("height_rms_ratio").to_number<double>();
   r.errors.surface_rms_ratio = optionalNumber(json, "surface_rms_ratio");
@@ -88,7 +88,7 @@ TradeRow rowOf(const TradeChoice& choice, const WaterRecord& run) {
   row.wave_cells_count = run.wave_cells_count;
   row.particle_count = run.particle_count;
   row.substeps_per_s_count = run.substeps_per_s_count;
-  row.guard_count = run.guard_count;
+  row.recovered_count = run.recovered_count;
   for (const gpu::PassCost& pass : run.passes) row.pass_ms_per_s[pass.name] = pass.total_ms / run.seconds;
   return row;
 }
@@ -113,7 +113,7 @@ void print(std::FILE* out, const TradeRow& row, const TradeRow& balanced) {
       row.device_mb, row.stream_mbit_per_s, 100 * e.height_rms_ratio,
       e.height_rms_ratio / balanced.errors.height_rms_ratio, percent(e.surface_rms_ratio), percent(e.surface_max_ratio),
       percent(e.spectrum_ratio), percent(e.column_rms_ratio), percent(e.density_rms_ratio), percent(e.front_rms_ratio),
-      100 * e.energy_rms_ratio, row.guard_count > 0 ? fmt::format("  guard {}", row.guard_count) : "");
+      100 * e.energy_rms_ratio, row.recovered_count > 0 ? fmt::format("  watchdog {}", row.recovered_count) : "");
 }
 
 void printCosts(std::FILE* out, const std::vector<TradeRow>& rows) {

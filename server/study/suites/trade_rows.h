@@ -26,7 +26,7 @@ struct TradeRow {
   double device_mb = 0.0;
   double stream_mbit_per_s = 0.0;
   std::uint32_t wave_cells_count = 0, particle_count = 0, substeps_per_s_count = 0;
-  std::uint64_t guard_count = 0;
+  std::uint64_t recovered_count = 0;
   boost::json::object pass_ms_per_s;
   RecordErrors errors;
   bool is_on_front = false;

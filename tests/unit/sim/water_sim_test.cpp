@@ -1,4 +1,4 @@
-// The room's water as a whole: frames, commands, guards, repeatability, and that absent parts cost nothing.
+// The room's water as a whole: frames, commands, the watchdog, repeatability, and that absent parts cost nothing.
 #include <cmath>
 #include <limits>
 

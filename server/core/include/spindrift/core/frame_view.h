@@ -65,7 +65,7 @@ struct DiagnosticsView {
   double max_density_ratio = 0.0;
   std::uint64_t nonfinite_count = 0;  ///< values found non-finite since the start (0 in a healthy room)
   std::uint64_t escaped_count = 0;    ///< particles found outside the domain since the start (0 in a healthy room)
-  std::uint64_t recovered_count = 0;  ///< times the guard stepped in since the start
+  std::uint64_t recovered_count = 0;  ///< times the watchdog stepped in since the start
   std::uint32_t boat_count = 0;
   std::int64_t volume_error_units = 0;  ///< of the ledger of surface and particles; 0 in a healthy room
   double emitted_m3 = 0.0;              ///< water turned into particles since the start

@@ -103,7 +103,7 @@ struct ParticleScene {
   double support_ratio = 2.0;  ///< H / s
   double rest_density_kgpm3 = 1000.0;
   double sound_speed_mps = 14.0;  ///< c0; stiffness k = c0^2 in p = k (rho - rho0)
-  double max_speed_mps = 8.0;     ///< U_max for the step-size rules; also the guard's and the clamp's bound
+  double max_speed_mps = 8.0;     ///< U_max for the step-size rules; also the watchdog's and the clamp's bound
   double viscosity_pas = 60.0;    ///< dynamic viscosity mu
   double jitter_ratio = 0.02;     ///< initial jitter over s, 0..0.05
   KernelSet kernel_set = KernelSet::kWendlandC2;

@@ -24,7 +24,7 @@ struct ReplayOutcome {
     std::uint64_t found = 0;
   };
   std::optional<Difference> difference;
-  std::optional<std::uint64_t> recovered_tick;  ///< the guard had stepped in: what follows need not repeat
+  std::optional<std::uint64_t> recovered_tick;  ///< the watchdog had stepped in: what follows need not repeat
   /// Another device or driver than the log's: states may differ for that alone.
   std::optional<std::string> device_difference;
   std::optional<std::string> truncation;  ///< the log has no end: where and why

@@ -1,4 +1,5 @@
-// Where the simulation stays finite, where its guard steps in, and that it always comes back: sweeps of one value each.
+// Where the simulation stays finite, where its watchdog steps in, and that it always comes back: sweeps of one value
+// each.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +18,14 @@ namespace spindrift::study {
 /// What became of one value.
 struct StabilityPoint {
   double value = 0.0;
-  std::string refused;             ///< why no room was made of it; empty: one was
-  bool are_frames_finite = true;   ///< bounds of every frame; what is in them are integers
-  std::uint64_t guard_count = 0;   ///< how often the guard stepped in
-  bool is_well_after = true;       ///< two seconds with the rules' own steps: finite, the guard silent
-  double max_density_ratio = 0.0;  ///< largest rho / rho0; 0 without particles
-  double energy_growth = 0.0;      ///< largest energy over what there was to begin with
-  double max_elevation_m = 0.0;    ///< largest |elevation|; 0 without a wave
-  double slowest_step_s = 0.0;     ///< wall time of a substep, mean of the slowest tick
+  std::string refused;                ///< why no room was made of it; empty: one was
+  bool are_frames_finite = true;      ///< bounds of every frame; what is in them are integers
+  std::uint64_t recovered_count = 0;  ///< how often the watchdog stepped in
+  bool is_well_after = true;          ///< two seconds with the rules' own steps: finite, the watchdog silent
+  double max_density_ratio = 0.0;     ///< largest rho / rho0; 0 without particles
+  double energy_growth = 0.0;         ///< largest energy over what there was to begin with
+  double max_elevation_m = 0.0;       ///< largest |elevation|; 0 without a wave
+  double slowest_step_s = 0.0;        ///< wall time of a substep, mean of the slowest tick
 
   /// No breach, and no more energy and density than the sweep's bounds.
   bool is_stable = false;

@@ -40,7 +40,7 @@ struct WaterRecord {
   std::uint32_t substeps_per_s_count = 0;
   std::uint32_t particle_count = 0;  ///< a pool's: its capacity
   std::uint32_t wave_cells_count = 0;
-  std::uint64_t guard_count = 0;
+  std::uint64_t recovered_count = 0;
 
   /// A sample's fields, x fastest: elevation on kSurfaceCells^2 cells, averaged or interpolated [m]; volume of
   /// particles in columns of the box over its mean. Empty where the scene lacks the part.

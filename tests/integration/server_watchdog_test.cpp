@@ -1,4 +1,4 @@
-// The guard from end to end: a room whose water really becomes unstable goes back, says so, and sends no nonsense.
+// The watchdog from end to end: a room whose water really becomes unstable goes back, says so, and sends no nonsense.
 #include <chrono>
 #include <cstdio>
 #include <thread>
@@ -24,14 +24,14 @@ constexpr const char* kHopeless = R"(
   stream { frame_rate_hz: 60 }
 )";
 
-class Guard : public ServerTest {
+class Watchdog : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override {
     return {{"main", kUnstable}, {"calm", kStillWave}, {"hopeless", kHopeless}};
   }
 };
 
-TEST_F(Guard, SaysThatItPutARoomBackAndTheRoomGoesOn) {
+TEST_F(Watchdog, SaysThatItPutARoomBackAndTheRoomGoesOn) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ScriptedClient elsewhere = client("calm");
@@ -41,7 +41,7 @@ TEST_F(Guard, SaysThatItPutARoomBackAndTheRoomGoesOn) {
   std::uint64_t tick = 0;
   for (ScriptedClient* each : {&one, &two}) {
     const auto news = each->waitFor(recovered);
-    ASSERT_TRUE(news) << "the guard never stepped in";
+    ASSERT_TRUE(news) << "the watchdog never stepped in";
     EXPECT_GT(news->room_event().tick(), 12u) << "not before the splash";
     EXPECT_THAT(news->room_event().message(), testing::HasSubstr("1 times"));
     tick = news->room_event().tick();
@@ -65,7 +65,7 @@ TEST_F(Guard, SaysThatItPutARoomBackAndTheRoomGoesOn) {
   EXPECT_FALSE(elsewhere.hasReceived(v1::ServerMessage::kRoomEvent));
 }
 
-TEST_F(Guard, SpeaksUpAgainWhenItStepsInAgain) {
+TEST_F(Watchdog, SpeaksUpAgainWhenItStepsInAgain) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.apply(setSpeed(4)));
   const auto recovered = [](const char* times) {
@@ -79,7 +79,7 @@ TEST_F(Guard, SpeaksUpAgainWhenItStepsInAgain) {
   EXPECT_TRUE(one.waitFor(recovered("2 times"))) << "the careful seconds are over, the step is too long again";
 }
 
-TEST_F(Guard, SpeaksUpAtMostOnceASecondHoweverOftenItStepsIn) {
+TEST_F(Watchdog, SpeaksUpAtMostOnceASecondHoweverOftenItStepsIn) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   ScriptedClient one = client("hopeless");
@@ -98,7 +98,7 @@ TEST_F(Guard, SpeaksUpAtMostOnceASecondHoweverOftenItStepsIn) {
   one.subscribe(v1::LAYER_DIAGNOSTICS);
   const auto message = one.waitFor(v1::ServerMessage::kDiagnostics);
   ASSERT_TRUE(message);
-  std::printf("%d messages in %.1f s, the guard stepped in %llu times\n", told, elapsed_s,
+  std::printf("%d messages in %.1f s, the watchdog stepped in %llu times\n", told, elapsed_s,
               static_cast<unsigned long long>(message->diagnostics().recovered_count()));
   EXPECT_GE(told, 2);
   EXPECT_LE(told, static_cast<int>(elapsed_s) + 1);
