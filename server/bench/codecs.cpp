@@ -24,7 +24,7 @@ double sinceMs(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Of one way to send one layer, over all frames.
+/// One way to send one layer, summed over all frames.
 struct CodecRow {
   std::string name;
   std::size_t frame_count = 0;
@@ -34,7 +34,8 @@ struct CodecRow {
   double encode_ms = 0.0;
   double decode_ms = 0.0;
   double max_error = 0.0;  ///< over the quantum; of particles: distance along an axis
-  /// Of unordered places: as dense as resting water, and of so few anywhere in their box (bits of all frames' items).
+  /// Lower bounds for unordered places [bits, all items of all frames]: packed as densely as resting water; and this
+  /// number of them anywhere in their box.
   std::optional<double> bound_bits = {};
   double sparse_bits = 0.0;
   bool is_installed = true;
@@ -45,7 +46,7 @@ struct CodecRow {
     most_bytes = std::max(most_bytes, static_cast<double>(frame_bytes));
     item_count += static_cast<double>(items);
   }
-  /// Of a codec that may not be installed. `error`: over the quantum, where what came back is what went in.
+  /// Adds the result of a codec that may not be installed. `error`: largest difference over the quantum.
   void add(const std::optional<BaselineResult>& result, std::size_t items, double error) {
     is_installed = result.has_value();
     add(result ? result->bytes : 0, items);

@@ -26,7 +26,7 @@ std::optional<core::Error> checkResolution(std::uint32_t resolution_count);
 /// Layer, time and checksum.
 std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer);
 
-/// Of a plain frame also that it is whole and as long as its header says.
+/// The same for a plain frame, which must be a keyframe with a payload of `payload_bytes`.
 std::optional<core::Error> checkPlainFrame(const v1::LayerFrame& frame, v1::Layer layer, std::size_t payload_bytes);
 
 }  // namespace spindrift::codec

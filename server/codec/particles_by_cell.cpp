@@ -17,7 +17,8 @@
 namespace spindrift::codec {
 namespace {
 
-/// Of the particles' spacing: a cell holds about eight of them, and a quantum is a sixteenth.
+/// Side of a cell in spacings of the particles: a cell holds about eight of them. A quantum is a sixteenth of a
+/// spacing.
 constexpr double kCellSpacings = 2.0;
 constexpr std::uint32_t kOffsetBits = 5;
 /// A page moves particles on by their velocity for some frames; over this time the velocity's quantum is two of the

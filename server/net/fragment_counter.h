@@ -43,7 +43,7 @@ class FragmentCounter {
   [[nodiscard]] std::size_t extendedBytes() const {
     return shortLength() == kSixtyFourBits ? 8 : shortLength() == kSixteenBits ? 2 : 0;
   }
-  /// Of the header that is being read, as far as its first two bytes tell.
+  /// Length of the header that is being read, as far as its first two bytes tell.
   [[nodiscard]] std::size_t headerBytes() const {
     constexpr std::uint8_t kMasked = 0x80;
     constexpr std::size_t kMaskBytes = 4;

@@ -35,7 +35,7 @@ namespace spindrift::net {
 /// Whether the composed write is known to count bytes beyond those that it offered. Session and outflow tests hold it.
 inline constexpr bool kWriteTakesRestAlong = BOOST_VERSION == 108100;
 
-/// Of one strand, as its base.
+/// Used on one strand, as its base class is.
 class MessageStream : public boost::beast::tcp_stream {
  public:
   explicit MessageStream(boost::beast::tcp_stream&& stream) : boost::beast::tcp_stream(std::move(stream)) {}

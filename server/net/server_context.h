@@ -55,7 +55,7 @@ inline constexpr std::size_t kSpareConnectionCount = 512;
 /// The subprotocol of proto/spindrift/v1.
 inline constexpr const char* kSubprotocol = "spindrift.v1";
 
-/// Of an address as ServerOptions has it.
+/// `address` as in ServerOptions.
 inline bool isLoopback(std::string_view address) {
   return address.starts_with("127.") || address == "::1";
 }

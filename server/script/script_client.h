@@ -26,7 +26,7 @@ class ScriptClient {
     std::optional<v1::Ack> ack;
     std::optional<v1::Reject> reject;
   };
-  /// Of one layer, diagnostics included.
+  /// What came of one layer, diagnostics included.
   struct LayerTally {
     std::uint64_t frame_count = 0;
     std::uint64_t state_count = 0;  ///< different states of the water that the frames showed: a paused room repeats its

@@ -25,7 +25,7 @@ core::Result<std::vector<double>> amplitudes(sim::WaterSim& water, const std::fu
 struct Recurrence {
   double b = 0.0;
   double r = 1.0;
-  /// Of exp(-decay t) cos(omega t). [rad/s], [1/s]
+  /// omega [rad/s] and decay [1/s] of exp(-decay t) cos(omega t).
   [[nodiscard]] double omega_radps(double dt_s) const;
   [[nodiscard]] double decay_per_s(double dt_s) const;
 };

@@ -93,7 +93,7 @@ class Checker {
     return true;
   }
 
-  /// Of a value that begins here; nullopt: none does.
+  /// Kind of the value that begins here; nullopt when none does.
   [[nodiscard]] std::optional<Kind> kindHere() const {
     if (at_ == text_.size()) return std::nullopt;
     const char c = text_[at_];
@@ -139,7 +139,7 @@ class Checker {
     ++at_;  // {
     skipSpace();
     if (take('}')) return true;
-    // Of each choice of fields (an optional field is one of its own) the one that was set.
+    // The field that was set in each oneof (an optional field is a oneof of its own).
     std::vector<std::pair<const google::protobuf::OneofDescriptor*, std::string>> chosen;
     while (true) {
       if (at_ == text_.size() || text_[at_] != '"') return fail("a name in double quotes is expected");

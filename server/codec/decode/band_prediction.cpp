@@ -31,7 +31,7 @@ struct NarrowPair {
                                                        static_cast<std::uint32_t>(b) << 16)))) {}
   Words operator()(Shorts pairs) const { return sumsOfProducts(pairs, weights); }
 };
-/// Of any size.
+/// Two vectors of any size.
 struct WidePair {
   Words a, b;
   WidePair(std::int32_t of_a, std::int32_t of_b) : a(splat(of_a)), b(splat(of_b)) {}

@@ -23,7 +23,7 @@ struct PlaneLayout {
   [[nodiscard]] std::size_t tilesCount() const { return (n + kTile - 1) / kTile; }
   [[nodiscard]] std::size_t stride() const { return kLeft + kTile * tilesCount() + kRight; }
   [[nodiscard]] std::size_t sampleCount() const { return stride() * (2 * kBorder + kTile * tilesCount()) + kRight; }
-  /// Of sample 0 of row z, from row -2 on.
+  /// Index of sample 0 of row z; rows begin at -2.
   [[nodiscard]] std::size_t placeOf(std::ptrdiff_t z) const {
     return static_cast<std::size_t>(z + static_cast<std::ptrdiff_t>(kBorder)) * stride() + kLeft;
   }

@@ -39,8 +39,8 @@ class ParticleOrder {
   std::vector<std::uint64_t> items_;
   std::vector<OccupiedCell> cells_;
   std::vector<std::uint32_t> extras_;
-  /// Of a cell's eighths, a byte each; later how many particles come before. All zero between two frames; a multiple
-  /// of 64.
+  /// Particles in each eighth of a cell, a byte each; later the number of particles before it. All zero between two
+  /// frames; the size is a multiple of 64.
   std::vector<std::uint64_t> counts_;
   std::vector<std::uint32_t> begins_;  ///< of cells
   std::vector<std::uint8_t> ranks_;    ///< of particles in their eighths

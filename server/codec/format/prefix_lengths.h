@@ -11,7 +11,7 @@ namespace spindrift::codec {
 
 inline constexpr std::uint32_t kMaxCodeBits = 11;
 inline constexpr std::size_t kMaxSymbolCount = 256;
-/// Of the length of a symbol's code in a code that is sent along.
+/// Bits for the length of one symbol's code, where the payload carries the code.
 inline constexpr std::uint32_t kLengthBits = 4;
 
 /// Calls use(symbol, code, length) for each symbol of a code, the code with its highest bit lowest. False: the lengths

@@ -59,7 +59,7 @@ constexpr ClassExpectation expectClass(std::uint32_t left, std::uint32_t above) 
 }
 /// A residual of a sparse group: its place, and a bit that is 1 for -1.
 inline constexpr std::uint32_t kPlaceBits = 6;
-/// Of the sum of all residuals that ends a payload.
+/// Bits of the sum of all residuals, at the end of a payload.
 inline constexpr std::uint32_t kSumBits = 16;
 
 /// Lengths of the symbols' codes, one digit each to the base of 16. Fours: r0 + 3 r1 + 9 r2 + 27 r3 with -1 as 0;

@@ -61,7 +61,7 @@ core::Bytes surfaceBytes() {
   return *codec::FrameEncoder().encode(v1::LAYER_SURFACE, frame);
 }
 
-/// Of a server that numbers its states; the other golden frames are of one that does not.
+/// A frame of a server that numbers its states; the other golden frames have no number.
 core::Bytes numberedBytes() {
   const std::vector<std::uint32_t> words = goldenBodyWords();
   core::FrameView frame;

@@ -48,7 +48,7 @@ struct CrowdReport {
       0;  ///< commands without an answer at the end, those of the last half second left out
 };
 
-/// Of sorted values; 0 for none.
+/// Quantile of sorted values; 0 for none.
 double quantileOf(const std::vector<double>& sorted, double ratio);
 
 /// Connects, watches, and goes. `begin` is called when the measured time begins, `end` when it is over.

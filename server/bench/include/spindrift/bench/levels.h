@@ -41,7 +41,7 @@ class LevelMeter {
   core::ReducedCounts counts_;
   codec::FrameEncoder encoder_;
   std::array<Level, core::kLevelCount> levels_;
-  /// Of levels that add to each other: bits that the particles up to a level take in all, and how many those are.
+  /// If levels added to each other: bits of all particles up to a level, and their number.
   std::array<double, core::kLevelCount> part_bits_{};
   std::array<double, core::kLevelCount> part_counts_{};
 };

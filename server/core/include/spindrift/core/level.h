@@ -33,7 +33,7 @@ struct ReducedCounts {
   std::uint32_t particles = 0;
 };
 
-/// Of a surface with so many samples along each side, and of so many particles at most.
+/// For a surface with this number of samples along each side, and at most this number of particles.
 constexpr ReducedCounts reducedCounts(std::uint32_t surface_resolution_count, std::uint32_t particle_count) {
   ReducedCounts out;
   for (const LevelBudget& budget : kLevelBudgets) {

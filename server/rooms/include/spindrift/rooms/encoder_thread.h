@@ -35,7 +35,7 @@ class EncoderThread {
   /// Messages encoded for a stream of a room so far: one a frame and level, however many clients watch.
   [[nodiscard]] std::uint64_t encodeCount(const std::string& room, codec::Stream stream) const;
 
-  /// Of one level of a stream, over all rooms since the start.
+  /// Cost of one level of a stream, summed over all rooms since the start.
   struct StreamCost {
     std::uint64_t frame_count = 0;
     std::uint64_t bytes_count = 0;

@@ -79,7 +79,7 @@ class Stage {
   /// Number of the state now: another one after every tick and every change by apply() and replaceWater(). Never 0, and
   /// it never goes back.
   [[nodiscard]] std::uint64_t stateId() const { return state_id_; }
-  /// Of the last SpawnBoat that was applied.
+  /// Boat id of the last SpawnBoat that was applied.
   [[nodiscard]] std::uint32_t spawnedBoatId() const { return spawned_boat_id_; }
   /// The boats on the water now.
   [[nodiscard]] v1::BoatList boats() const;
