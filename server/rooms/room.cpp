@@ -19,6 +19,9 @@ constexpr double kHeavyShare = 0.25;
 constexpr auto kHeavyBurst = 30ms;
 /// A paused room still shows newcomers its water.
 constexpr auto kPausedFrameInterval = 250ms;
+/// Frames follow simulated time. Where the machine cannot keep up they would become as rare as slow ticks make them:
+/// from this interval on they follow the wall's, at most as often as the scene says.
+constexpr auto kSlowFrameInterval = 200ms;
 /// A paused room's frame that found no free slot is asked for again.
 constexpr auto kDroppedFrameRetry = 10ms;
 /// While the device works on a frame, look for it this often.
@@ -179,7 +182,7 @@ void Room::step(TimePoint now) {
   unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
   last_run_ = end;
   clock_.ticked(end);
-  if (stage_->water().time_s() + 1e-9 >= next_frame_s_) requestFrame(end);
+  if (isFrameDue(end)) requestFrame(end);
   watchRealTime(end);
 }
 
@@ -218,6 +221,12 @@ Room::TimePoint Room::timedStep() {
 
 // Frames
 
+bool Room::isFrameDue(TimePoint now) const {
+  if (stage_->water().time_s() + 1e-9 >= next_frame_s_) return true;
+  const duration<double> interval(1.0 / stage_->scene().stream().frame_rate_hz());
+  return now - last_frame_ >= std::max<duration<double>>(interval, kSlowFrameInterval);
+}
+
 bool Room::isDue(core::Level level) const {
   return paused_ || frame_count_ % core::frameStride(level, stage_->scene().stream().frame_rate_hz()) == 0;
 }
@@ -227,6 +236,7 @@ void Room::requestFrame(TimePoint now) {
       clock_.speed() / stage_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
   if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, stage_->water().time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
+  last_frame_ = now;
   const v1::Scene& scene = stage_->scene();
   const WatchedLayers watched = outlets_.watched(*this, stage_->water().reducedCounts());
   wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
@@ -241,7 +251,7 @@ void Room::requestFrame(TimePoint now) {
                             .particles = particles.back(),
                             .foam = foam.back(),
                             .bodies = scene.has_boats() && watched.bodies,
-                            .asked_s = monotonic_s(now),
+                            .asked_s = core::monotonic_s(now),
                             .state_id = stage_->stateId()};
   for (std::size_t level = 0; level < request.reduced.size(); ++level)
     request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};

@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 struct RecordingOutlets final : rooms::RoomOutlets {
   int scene_count = 0;
   int recovered_count = 0;
+  int frame_count = 0;
   std::vector<std::uint64_t> applied;
   std::vector<std::string> rejected;
   std::vector<std::uint64_t> rejected_ids;
@@ -35,7 +36,7 @@ struct RecordingOutlets final : rooms::RoomOutlets {
     rejected.push_back(rejection.message);
     rejected_ids.push_back(rejection.command_id);
   }
-  void frameReady(const rooms::Room&, core::FrameView) override {}
+  void frameReady(const rooms::Room&, core::FrameView) override { ++frame_count; }
   rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&) const override {
     rooms::WatchedLayers out{.bodies = true, .diagnostics = true};
     out.surface.back() = out.particles.back() = out.foam.back() = true;

@@ -1,5 +1,5 @@
 // What must hold however long it runs and whatever people do: the ledger, still water, ten thousand commands, where
-// particles are. Each is a short form; variables of the environment make it as long as README says.
+// particles are. Each is a short form; variables of the environment make it as long as docs/operations.md says.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -215,6 +215,8 @@ class Room {
   /// Says in the vitals that the device failed, without asking it for anything.
   void publishLoss();
 
+  /// While the room runs.
+  [[nodiscard]] bool isFrameDue(TimePoint now) const;
   void requestFrame(TimePoint now);
   /// Whether the next frame holds the level: all do while the room is paused, then every so many.
   [[nodiscard]] bool isDue(core::Level level) const;
@@ -258,6 +260,7 @@ class Room {
   double next_frame_s_ = 0.0;      ///< simulation time
   std::uint64_t frame_count_ = 0;  ///< that were due
   TimePoint next_idle_frame_{};    ///< wall time, while paused
+  TimePoint last_frame_{};         ///< wall time of the last request
   bool wants_diagnostics_ = false;
   std::uint64_t dropped_frames_ = 0;
 
