@@ -24,7 +24,7 @@ double sinceMs(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Of one way to send one layer, over all frames.
+/// Sums of one way to send one layer, over all frames.
 struct CodecRow {
   std::string name;
   std::size_t frame_count = 0;

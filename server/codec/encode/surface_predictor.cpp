@@ -20,7 +20,7 @@ class TileBand {
   }
   /// Of the tiles coded last in each column.
   [[nodiscard]] std::span<std::uint32_t> classes() { return classes_; }
-  /// Of one row, for whoever predicts it.
+  /// Sums of one row, for the function that predicts it.
   [[nodiscard]] std::span<std::int32_t> sums() { return sums_; }
   /// Calls code(x, columns, count, left, above) for each tile; it returns the tile's class.
   template <typename Code>

@@ -25,7 +25,7 @@ struct CrowdOptions {
   std::size_t deaf_count = 0;                 ///< of them never read
   double visitors_per_s = 0.0;                ///< come, watch for a second, and go, besides
   double commands_per_s = 0.0;                ///< of every client that reads
-  std::chrono::duration<double> settle{1.0};  ///< until everybody is there; not measured
+  std::chrono::duration<double> settle{1.0};  ///< until all clients are connected; not measured
   std::chrono::duration<double> duration{5.0};
   std::vector<core::SharedBytes> on_open;  ///< what every client says first
   std::function<core::SharedBytes(std::uint64_t number)>
@@ -48,7 +48,7 @@ struct CrowdReport {
       0;  ///< commands without an answer at the end, those of the last half second left out
 };
 
-/// Of sorted values; 0 for none.
+/// Quantile of sorted values; 0 for none.
 double quantileOf(const std::vector<double>& sorted, double ratio);
 
 /// Connects, watches, and goes. `begin` is called when the measured time begins, `end` when it is over.

@@ -1,4 +1,4 @@
-// The data plane's encoder: one frame of a room in, one immutable message a layer out, shared by every client.
+// Encoder of the data plane: makes one immutable message per layer from a frame of a room, shared by all clients.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class LayerCodec;
 /// Serialized ServerMessages of one frame of a layer. Both null where the frame lacks the layer.
 struct EncodedFrame {
   core::SharedBytes whole;       ///< a keyframe
-  core::SharedBytes continuing;  ///< for whoever has the frame that was encoded before it; null: no such form
+  core::SharedBytes continuing;  ///< a delta, for clients that have the frame encoded before it; null: no such form
 };
 
 /// The codecs of one room: one for each stream and level, made when it is first asked for. Methods from one thread (the

@@ -40,7 +40,7 @@ class Gateway final : public net::Application, public rooms::RoomObserver {
   void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
-  /// Greets everybody in the room again; their layers go on.
+  /// Sends a new greeting to all sessions of the room; their subscriptions stay.
   void sceneChanged(const rooms::Room& room) override;
   void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
   void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) override;
@@ -61,10 +61,10 @@ class Gateway final : public net::Application, public rooms::RoomObserver {
   void hello(net::SessionId session, const Session& state, const wire::Hello& hello);
   void subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe);
   void command(net::SessionId session, const Session& state, core::Command command);
-  /// Whether the session may send another command now.
+  /// Takes a token of the session's command rate; false if there is none.
   bool takeCommand(net::SessionId session);
   void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
-  /// Sends everybody away: the room closes.
+  /// Closes all sessions of a room that is being closed.
   void dismiss(const rooms::Room& room);
 
   rooms::SimulationThread& rooms_;

@@ -38,7 +38,7 @@ class WaterServer {
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const std::string& deviceLine() const { return simulation_->deviceLine(); }
-  /// Of the default room, over the last second.
+  /// Real-time factor of the default room over the last second.
   [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
   [[nodiscard]] const rooms::EncoderThread& encoder() const { return *encoder_; }
