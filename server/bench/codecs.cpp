@@ -24,7 +24,7 @@ double sinceMs(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// One way to send one layer, summed over all frames.
+/// Sums of one way to send one layer, over all frames.
 struct CodecRow {
   std::string name;
   std::size_t frame_count = 0;
@@ -34,8 +34,7 @@ struct CodecRow {
   double encode_ms = 0.0;
   double decode_ms = 0.0;
   double max_error = 0.0;  ///< over the quantum; of particles: distance along an axis
-  /// Lower bounds for unordered places [bits, all items of all frames]: packed as densely as resting water; and this
-  /// number of them anywhere in their box.
+  /// Of unordered places: as dense as resting water, and of so few anywhere in their box (bits of all frames' items).
   std::optional<double> bound_bits = {};
   double sparse_bits = 0.0;
   bool is_installed = true;
@@ -46,7 +45,7 @@ struct CodecRow {
     most_bytes = std::max(most_bytes, static_cast<double>(frame_bytes));
     item_count += static_cast<double>(items);
   }
-  /// Adds the result of a codec that may not be installed. `error`: largest difference over the quantum.
+  /// Of a codec that may not be installed. `error`: over the quantum, where what came back is what went in.
   void add(const std::optional<BaselineResult>& result, std::size_t items, double error) {
     is_installed = result.has_value();
     add(result ? result->bytes : 0, items);
@@ -98,7 +97,7 @@ class CodecMeter {
     surface_deflated_.add(deflate(view.words), samples, 0.0);
     surface_zstd_.add(zstd(view.words), samples, 0.0);
 
-    // The continuing frame as a room makes it; the whole one from an encoder of its own, so that times do not mix.
+    // The delta as a room makes it; the keyframe from an encoder of its own, so that times do not mix.
     const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
     begin = Clock::now();
     const codec::EncodedFrame encoded = encoder_.encode(packed, frame, false);

@@ -31,7 +31,7 @@ CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double
     message.mutable_subscribe()->set_packing(v1::PACKING_PACKED);
     out.on_open.push_back(bytesOf(message));
   }
-  // The layer that says whether somebody starves: one that the scene has.
+  // The layer whose frames are counted per client: one that the scene has.
   const v1::Layer counted = scene.has_wave() ? v1::LAYER_SURFACE : v1::LAYER_PARTICLES;
   out.look = [counted](core::ByteView bytes) {
     Sighting sighting;

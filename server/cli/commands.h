@@ -1,5 +1,5 @@
-// What the program's subcommands do; main() parses their flags. Each returns the exit code: 0 fine, 1 a check failed, 2
-// bad usage or input, 3 no usable device.
+// The program's commands and their options; main() parses the flags. Each returns the exit code: 0 fine, 1 a check
+// failed, 2 bad usage or input, 3 no usable device.
 #pragma once
 
 #include <cstdint>

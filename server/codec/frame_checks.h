@@ -1,4 +1,4 @@
-// What a client checks in every layer's frames before it believes their numbers.
+// Checks that a client makes on the frames of every layer before it uses their numbers.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ std::optional<core::Error> checkResolution(std::uint32_t resolution_count);
 /// Layer, time and checksum.
 std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer);
 
-/// The same for a plain frame, which must be a keyframe with a payload of `payload_bytes`.
+/// Checks a plain frame, also that it is a keyframe and as long as its header says.
 std::optional<core::Error> checkPlainFrame(const v1::LayerFrame& frame, v1::Layer layer, std::size_t payload_bytes);
 
 }  // namespace spindrift::codec

@@ -1,5 +1,5 @@
-// How one layer becomes bytes, in one packing and at one level. A new codec is a new implementation in FrameEncoder's
-// list; nothing else changes.
+// Interface of the codecs: one layer in one packing at one level to bytes. A new codec is a new implementation in
+// FrameEncoder's list; nothing else changes.
 #pragma once
 
 #include <memory>

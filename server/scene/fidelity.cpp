@@ -10,7 +10,7 @@
 namespace spindrift::scene {
 namespace {
 
-/// What a level makes of BALANCED's numbers, and what it chooses where the scene leaves it out.
+/// Factors of a level on BALANCED's numbers, and its values for what the scene leaves out.
 struct Level {
   v1::Fidelity fidelity;
   double wave_scale;      ///< of the wave's resolution

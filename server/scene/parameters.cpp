@@ -101,7 +101,8 @@ std::optional<ParameterError> checkTarget(const std::optional<Target>& target, s
   return std::nullopt;
 }
 
-/// What the rest of the scene says against a value that is fine in itself: water too shallow for a boat, ...
+/// Returns why the rest of the scene forbids a value that is within its own range, such as water too shallow for a
+/// boat.
 std::optional<ParameterError> checkChanged(const v1::Scene& changed, std::string_view path) {
   if (!changed.has_wave()) return std::nullopt;
   const std::vector<FieldIssue> issues = checkWater(changed);

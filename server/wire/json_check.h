@@ -1,5 +1,5 @@
-// Whether a text is JSON of a message, before Protobuf reads it: its JSON reader takes single quotes, trailing commas
-// and more that RFC 8259 does not, and its errors are in its own terms.
+// Checks a JSON text against a message type before Protobuf reads it. Protobuf's reader accepts single quotes, trailing
+// commas and more that RFC 8259 forbids, and its errors name internals of the library.
 #pragma once
 
 #include <cstddef>

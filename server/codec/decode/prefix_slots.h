@@ -10,7 +10,7 @@
 
 namespace spindrift::codec {
 
-/// One symbol and the number of bits that it takes.
+/// One symbol and the number of bits that its code takes.
 struct Slot {
   std::uint8_t symbol = 0;
   std::uint8_t length = 0;

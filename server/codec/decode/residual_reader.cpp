@@ -10,7 +10,7 @@
 namespace spindrift::codec {
 namespace {
 
-/// What the next bits of a code for several residuals hold: one symbol or two.
+/// Table entry of a code for several residuals at a time: the next bits hold one symbol or two.
 struct JointSlot {
   std::uint8_t symbol = 0;
   std::uint8_t second = 0;

@@ -1,5 +1,5 @@
-// The writing half of residual_coder.h. It is inlined into whoever writes many groups, so that the bits at hand stay in
-// registers and the caller decides what processor it is compiled for.
+// The writing half of residual_coder.h. It is inlined into the callers that write many groups, so that the bits at hand
+// stay in registers and the caller decides what processor it is compiled for.
 #pragma once
 
 #include <algorithm>

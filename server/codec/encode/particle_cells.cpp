@@ -40,7 +40,7 @@ struct AttributeBits {
 constexpr std::array<AttributeBits, kAttributeCount> kAttributes = {
     {{24, 24, -1}, {16, 24, -1}, {8, 24, -1}, {0, 24, 3}, {0, 26, 7}}};
 
-/// Writes the attributes of up to 64 particles.
+/// Values of up to 64 particles.
 SPINDRIFT_INLINE GroupWriter putAttributes(std::span<const std::uint64_t> items, AttributeStates& states,
                                            GroupWriter out) {
   const std::size_t count = items.size();

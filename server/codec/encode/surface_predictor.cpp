@@ -18,9 +18,9 @@ class TileBand {
   [[nodiscard]] std::span<const std::int16_t> rows(std::size_t count) const {
     return std::span(residuals_).first(count * n_);
   }
-  /// Class of the tile coded last in each column.
+  /// Of the tiles coded last in each column.
   [[nodiscard]] std::span<std::uint32_t> classes() { return classes_; }
-  /// Scratch for the prediction of one row.
+  /// Sums of one row, for the function that predicts it.
   [[nodiscard]] std::span<std::int32_t> sums() { return sums_; }
   /// Calls code(x, columns, count, left, above) for each tile; it returns the tile's class.
   template <typename Code>

@@ -18,7 +18,7 @@ using study::RecordErrors;
 using study::TradeChoice;
 using study::WaterRecord;
 
-/// What is kept of a run.
+/// Results of one run.
 struct TradeRow {
   std::string knob, setting;
   std::string refused;  ///< why the scene could not be run; empty: it was
@@ -42,7 +42,7 @@ TradeRow rowOf(const TradeChoice& choice, const WaterRecord& run);
 
 void printTradeHeader(std::FILE* out);
 void print(std::FILE* out, const TradeRow& row, const TradeRow& balanced);
-/// What scenes cost, without errors.
+/// Costs of scenes, without errors.
 void printCosts(std::FILE* out, const std::vector<TradeRow>& rows);
 
 }  // namespace spindrift::study_suites

@@ -1,4 +1,4 @@
-// What the stream's codecs make of a scene's real frames.
+// Sizes, times and errors of the layer codecs on real frames of a scene.
 #pragma once
 
 #include <cstdio>

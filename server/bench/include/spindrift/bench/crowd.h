@@ -25,7 +25,7 @@ struct CrowdOptions {
   std::size_t deaf_count = 0;                 ///< of them never read
   double visitors_per_s = 0.0;                ///< come, watch for a second, and go, besides
   double commands_per_s = 0.0;                ///< of every client that reads
-  std::chrono::duration<double> settle{1.0};  ///< until everybody is there; not measured
+  std::chrono::duration<double> settle{1.0};  ///< until all clients are connected; not measured
   std::chrono::duration<double> duration{5.0};
   std::vector<core::SharedBytes> on_open;  ///< what every client says first
   std::function<core::SharedBytes(std::uint64_t number)>

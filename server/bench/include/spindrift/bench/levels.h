@@ -1,4 +1,4 @@
-// What each level of detail of a scene takes of a link, beside its budget, and beside levels that add to each other.
+// Bit rate of each level of detail of a scene, compared with its budget and with levels that would add to each other.
 #pragma once
 
 #include <array>

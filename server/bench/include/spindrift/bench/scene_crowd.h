@@ -1,4 +1,4 @@
-// The crowd of a real room: everybody says hello, watches every layer packed at 20 Hz, and splashes now and then.
+// Clients of a real room: each says hello, subscribes to every layer packed at 20 Hz, and sends a splash now and then.
 #pragma once
 
 #include <cstddef>

@@ -13,7 +13,7 @@ std::uint32_t crc32c(core::ByteView bytes);
 /// The same by tables (slicing by 8), on any processor.
 std::uint32_t crc32cTable(core::ByteView bytes);
 
-/// Whether this processor has the SSE4.2 instruction.
+/// Returns whether this processor has the SSE4.2 instruction.
 bool hasCrc32cInstruction();
 
 /// The same by the instruction; only where hasCrc32cInstruction().

@@ -1,4 +1,4 @@
-// The data plane's encoder: one frame of a room in, one immutable message a layer out, shared by every client.
+// Encoder of the data plane: makes one immutable message per layer from a frame of a room, shared by all clients.
 #pragma once
 
 #include <array>

@@ -96,7 +96,7 @@ struct ChangeScene {
 using Action = std::variant<Splash, BreakingWave, SetParameter, Reset, SetPaused, SetSpeed, SpawnBoat, ControlBoat,
                             RemoveBoat, Step, ChangeScene, TakeBoat>;
 
-/// What somebody may do; each includes the ones before.
+/// Permissions of a sender; each role includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
 
 /// "viewer", "player", "operator".

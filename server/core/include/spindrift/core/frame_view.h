@@ -1,4 +1,5 @@
-// What the simulation hands to the encoder: quantized integers as the GPU packed them, in memory that the view keeps.
+// A frame from the simulation to the encoder: quantized integers as the GPU packed them, in memory that the view keeps
+// alive.
 #pragma once
 
 #include <array>

@@ -27,13 +27,13 @@ struct LevelBudget {
 inline constexpr std::array<LevelBudget, kReducedLevelCount> kLevelBudgets{
     {{128, 8192, 20.0}, {256, 32768, 30.0}, {512, 131072, 30.0}}};
 
-/// How many levels have to leave something out: a layer's levels from this one on are all the same, and kFull.
+/// Number of levels that downsample a layer; all levels from this number on equal kFull.
 struct ReducedCounts {
   std::uint32_t planes = 0;  ///< surface and foam
   std::uint32_t particles = 0;
 };
 
-/// For a surface with this number of samples along each side, and at most this number of particles.
+/// Returns the counts for a surface with this many samples along each side and at most this many particles.
 constexpr ReducedCounts reducedCounts(std::uint32_t surface_resolution_count, std::uint32_t particle_count) {
   ReducedCounts out;
   for (const LevelBudget& budget : kLevelBudgets) {

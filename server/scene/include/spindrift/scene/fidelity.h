@@ -1,5 +1,5 @@
-// How finely a scene is simulated: four levels, chosen from what `spindrift study --suite trade` measures
-// (docs/accuracy.md).
+// Fidelity of the simulation: four levels, chosen from what `spindrift study --suite trade` measures (README,
+// "What accuracy costs").
 #pragma once
 
 #include <optional>

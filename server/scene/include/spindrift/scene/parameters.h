@@ -11,8 +11,8 @@
 
 namespace spindrift::scene {
 
-/// What SetParameter takes in this scene, with current values: the fields of the parts present that need no restart, in
-/// the order of the proto file. Events are no parameters.
+/// Returns what SetParameter takes in this scene, with current values: the fields of the present parts that need no
+/// restart, in the order of the proto file. Events are no parameters.
 std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene);
 
 /// Why a parameter was not set.
@@ -22,7 +22,7 @@ struct ParameterError {
   std::string message;  ///< one line for a person: value, bound with unit, what to do
 };
 
-/// Whether `value` may be set at `path` ("particles.viscosity_pas"); nullopt = yes. Reasons: UNKNOWN_PARAMETER,
+/// Checks whether `value` may be set at `path` ("particles.viscosity_pas"); nullopt = yes. Reasons: UNKNOWN_PARAMETER,
 /// ABSENT_PART, NEEDS_RESTART, NOT_FINITE, OUT_OF_RANGE (also a count that is not whole, or what the rest of the scene
 /// forbids: water shallower than a boat's draught). Slider steps are not enforced.
 std::optional<ParameterError> checkParameter(const v1::Scene& scene, std::string_view path, double value);

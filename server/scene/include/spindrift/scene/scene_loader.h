@@ -21,7 +21,7 @@ inline constexpr int kSceneEventMaxCount = 256;
 inline constexpr int kSceneObstacleMaxCount = 64;
 inline constexpr int kSceneBeachMaxCount = 4;
 
-/// Whether a scene may be called that: 1 to 64 letters, digits, '_' and '-'.
+/// Returns whether a scene may have this name: 1 to 64 letters, digits, '_' and '-'.
 bool isSceneName(const std::string& name);
 
 /// Reads, parses and checks a scene file. The result has every default filled in; a scene that leaves out its name gets

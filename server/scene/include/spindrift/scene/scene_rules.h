@@ -11,7 +11,7 @@
 
 namespace spindrift::scene {
 
-/// What effects and boats are measured by: the wave, or the resting water of a box of particles.
+/// Size of the water, which limits effects and boats: that of the wave, or of the resting water of a box of particles.
 struct WaterExtents {
   double side_x_m;
   double side_z_m;
@@ -21,11 +21,11 @@ struct WaterExtents {
 };
 WaterExtents waterExtentsOf(const v1::Scene& scene);
 
-/// What the scene forbids about a splash or a breaking wave; paths start with "splash" or "breaking_wave".
+/// Returns what the scene forbids about a splash or a breaking wave; paths start with "splash" or "breaking_wave".
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene);
 
-/// What the scene forbids about a boat: its place, its size. `prefix` goes in front of each path ("spawn_boat.boat.").
-/// The scene has boats and a wave.
+/// Returns what the scene forbids about the place and the size of a boat. `prefix` goes in front of each path
+/// ("spawn_boat.boat."). The scene has boats and a wave.
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix);
 
 /// Rules between numbers of the water and what stands and floats in it: sides, sponge, obstacles, beaches, boats. They

@@ -1,4 +1,4 @@
-// Reads a script (proto/spindrift/v1/script.proto) and checks what can be checked before anybody connects.
+// Reads a script (proto/spindrift/v1/script.proto) and checks what can be checked before a client connects.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Who may do what: tokens with their roles, and what guests are.
+// Access control: tokens with their roles, and the role of clients without a token.
 #pragma once
 
 #include <chrono>
@@ -27,11 +27,12 @@ class Access {
   Access() = default;
 
   /// Reads the tokens' text: one a line, `ROLE TOKEN [until=2030-01-31T12:00:00Z]`, '#' begins a comment. `guest` is
-  /// what somebody without a token is; nullopt: nobody. Error: kInvalidInput with `label`, line and what is wrong,
-  /// never with a token.
+  /// the role of clients without a token; nullopt: they are refused. Error: kInvalidInput with `label`, line and what
+  /// is wrong, never with a token.
   static core::Result<Access> parse(std::string_view text, const std::string& label, std::optional<core::Role> guest);
 
-  /// What a token grants, the empty one what a guest may; an error's line says why nothing, without the token.
+  /// Returns what a token grants; the empty token stands for a guest. The error says why access is refused and never
+  /// contains the token.
   [[nodiscard]] core::Result<Grant> resolve(std::string_view token, std::chrono::system_clock::time_point now) const;
   /// The token of an `Authorization: Bearer TOKEN` header; empty for an empty header. kInvalidInput for other schemes.
   static core::Result<std::string> bearerToken(std::string_view authorization);

@@ -47,7 +47,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
   // RoomOutlets
-  /// Greets everybody in the room again; their layers go on.
+  /// Sends a new greeting to all sessions of the room; their subscriptions stay.
   void sceneChanged(const rooms::Room& room) override;
   void timeChanged(const rooms::Room& room, bool paused, double speed) override;
   void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
@@ -86,10 +86,10 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void hello(net::SessionId session, const Session& state, const wire::Hello& hello);
   void subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe);
   void command(net::SessionId session, const Session& state, core::Command command);
-  /// Whether the session may send another command now.
+  /// Takes a token of the session's command rate; false if there is none.
   bool takeCommand(net::SessionId session);
   void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
-  /// Sends everybody away: the room closes.
+  /// Closes all sessions of a room that is being closed.
   void dismiss(const rooms::Room& room);
 
   const GatewayOptions options_;

@@ -1,4 +1,4 @@
-// What the program counts, and /metrics in Prometheus' text format.
+// The program's counters, and /metrics in Prometheus' text format.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Client messages, server side: bytes from anybody to checked values. No bytes make any of these functions throw.
+// Parses and checks client messages. The bytes are untrusted: none of these functions throws for any input.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Server messages of the control plane: facts in, one serialized ServerMessage out, ready to be shared by every outbox.
+// Server messages of the control plane, each serialized once into a buffer that all outboxes can share.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace spindrift::wire {
 
-/// What a session learns first. The scene has its defaults filled in; parameter descriptions and the version of the
-/// wire follow from it and from kWireMajor/kWireMinor.
+/// Values of the first message to a session. The scene has its defaults filled in; parameter descriptions and the
+/// version of the wire follow from it and from kWireMajor/kWireMinor.
 struct GreetingFacts {
   std::string server;  ///< program name and version
   std::string device;  ///< what the simulation runs on

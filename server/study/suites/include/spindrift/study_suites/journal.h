@@ -1,4 +1,4 @@
-// What a study has finished, so that an interrupted one goes on.
+// Results of finished cases, so that an interrupted study can be continued.
 #pragma once
 
 #include <optional>
