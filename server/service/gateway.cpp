@@ -188,7 +188,7 @@ void Gateway::hello(net::SessionId session, const Session& state, const wire::He
   // From here on the room's news come, and frames once they are subscribed to. What changed since the greeting is told.
   hub().join(session, state.room->name());
   if (state.room->snapshot() != greeted) greet(session, *state.room);
-  hub().sendState(session, rooms::topic::kPeople, wire::people(state.room->roster().people()));
+  hub().sendState(session, topic::kPeople, wire::people(state.room->roster().people()));
 }
 
 void Gateway::subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe) {
@@ -201,7 +201,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const wire
   for (const codec::Stream stream : codec::allStreams()) {
     if (stream.layer != wanted.layer) continue;
     const bool is_wanted = stream.packing == wanted.packing;
-    hub().watch(session, rooms::layerIndex(stream),
+    hub().watch(session, layerIndex(stream),
                 {.max_rate_hz = is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0,
                  .level = has_levels ? subscribe.level : core::Level::kFull,
                  .adapts = has_levels && subscribe.adapts});
@@ -210,7 +210,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const wire
 
 void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
   spdlog::info("session {} gets level {} now", session, codec::nameOf(level));
-  hub().sendState(session, rooms::topic::kLevel, wire::levelChanged(level));
+  hub().sendState(session, topic::kLevel, wire::levelChanged(level));
 }
 
 void Gateway::command(net::SessionId session, const Session& state, core::Command command) {

@@ -93,7 +93,7 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
       const codec::Stream wanted = codec::streamOf(subscribe->layer, subscribe->packing);
       for (const codec::Stream stream : codec::allStreams()) {
         if (stream.layer != wanted.layer) continue;
-        hub_->watch(session, rooms::layerIndex(stream),
+        hub_->watch(session, service::layerIndex(stream),
                     {.max_rate_hz = stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0,
                      .level = subscribe->level,
                      .adapts = subscribe->adapts});

@@ -13,7 +13,7 @@ struct RosterTest : testing::Test {
   Roster roster{10s};
   Roster::Clock::time_point now{};
 
-  Admission arrive(net::SessionId session, const std::string& name = "", const std::string& resume_key = "") {
+  Admission arrive(core::SessionId session, const std::string& name = "", const std::string& resume_key = "") {
     return roster.arrive({.session = session, .role = core::Role::kPlayer, .name = name, .resume_key = resume_key});
   }
 };
