@@ -169,7 +169,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
 
   step("shows what the scene has and hides what it lacks", async () => {
     for (const id of ["boats-box", "view-boat"]) assert.ok(await page.locator(`#${id}`).isHidden(), `#${id} shows in a scene without boats`);
-    for (const view of ["view-overview", "view-wave", "view-splash"]) {
+    for (const view of ["view-overview", "view-side", "view-above"]) {
       await page.getByTestId(view).click();
       assert.equal(await page.getByTestId(view).getAttribute("aria-pressed"), "true");
     }

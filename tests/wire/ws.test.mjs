@@ -1,6 +1,6 @@
 // An independent WebSocket implementation against the real server: handshake, both packings, commands, closing.
 import { startServer } from "../browser/server.mjs";
-import { PlaneUnpacker } from "../../web-client/src/codec/packed_planes";
+import { FrameUnpacker } from "../../web-client/src/codec/frame_unpacker";
 import { Layer, Level, Packing } from "../../web-client/src/gen/spindrift/v1/wire_pb";
 import { Client } from "./client.mjs";
 
@@ -72,7 +72,7 @@ describe("the npm package ws", () => {
     plain.subscribe(Layer.SURFACE, Packing.PLAIN);
     packed.subscribe(Layer.SURFACE, Packing.PACKED);
     packed.command(1n, { case: "splash", value: { depthM: 0.3 } });
-    const unpacker = new PlaneUnpacker();
+    const unpacker = new FrameUnpacker();
     const plain_by_tick = new Map();
     const packed_by_tick = new Map();
     const both = () => [...packed_by_tick.keys()].filter((tick) => plain_by_tick.has(tick));

@@ -1,10 +1,10 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { frameBox, freeTangents, type PixelRect, type WaterExtent } from "../src/scene/framing";
+import { frameBox, freeTangents, type PixelRect, type ViewedBox } from "../src/scene/framing";
 
 const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
-const waters: WaterExtent[] = [
+const waters: ViewedBox[] = [
   { sideM: 24, minYM: -1.5, maxYM: 1 },
   { sideM: 100, minYM: -3, maxYM: 4 },
   { sideM: 2.4, minYM: 0, maxYM: 1.6 },
@@ -18,7 +18,7 @@ const screens: { widthPx: number; heightPx: number; free: PixelRect }[] = [
 ];
 
 /** The eight corners of the water in pixels, as a camera set up like the page's sees them. */
-function cornersPx(water: WaterExtent, backward: Vector3, screen: (typeof screens)[number]): { xPx: number; yPx: number }[] {
+function cornersPx(water: ViewedBox, backward: Vector3, screen: (typeof screens)[number]): { xPx: number; yPx: number }[] {
   const { widthPx, heightPx, free } = screen;
   const camera = new PerspectiveCamera(47, widthPx / heightPx, 0.1, 1000);
   camera.setViewOffset(widthPx, heightPx, (widthPx - free.leftPx - free.rightPx) / 2, (heightPx - free.topPx - free.bottomPx) / 2, widthPx, heightPx);

@@ -90,7 +90,7 @@ describe("the helm", () => {
 
 describe("limits from the scene", () => {
   const wave = { resolutionCount: 256, sideM: 24, depthM: 1.5, periodicX: true, periodicZ: true };
-  const greeting = (change: Partial<GreetingInfo>) => ({ wave, stage: wave, hasBoats: true, ...change }) as GreetingInfo;
+  const greeting = (change: Partial<GreetingInfo>) => ({ wave, waterExtents: wave, hasBoats: true, ...change }) as GreetingInfo;
 
   it("let waves come from every direction", () => {
     expect(effectLimits(greeting({}))!.waveDirectionDeg).toMatchObject({ min: -180, max: 180, step: 1, default: 0 });
@@ -98,10 +98,10 @@ describe("limits from the scene", () => {
 
   it("keep boats afloat: no longer than a quarter of the side, nor deeper than the water", () => {
     expect(boatLimits(greeting({}))!.lengthM).toMatchObject({ min: 0.3, max: 6, default: 2.4 });
-    const shallow = boatLimits(greeting({ stage: { sideM: 24, depthM: 0.2 } }))!.lengthM;
+    const shallow = boatLimits(greeting({ waterExtents: { sideM: 24, depthM: 0.2 } }))!.lengthM;
     expect(boatOfLength(shallow.max).draughtM).toBeLessThanOrEqual(0.6 * 0.2 + 1e-9);
     expect(boatLimits(greeting({ hasBoats: false }))).toBeUndefined();
-    expect(boatLimits(greeting({ stage: { sideM: 24, depthM: 0 } }))).toBeUndefined();
+    expect(boatLimits(greeting({ waterExtents: { sideM: 24, depthM: 0 } }))).toBeUndefined();
     expect(boatLimits(greeting({}))!.throttleRatio).toMatchObject({ min: -1, max: 1 });
   });
 

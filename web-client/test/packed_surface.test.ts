@@ -1,4 +1,4 @@
-// The packed surface on its way through a connection: what is lost, and how it comes back.
+// The packed surface through a connection: lost frames and how the surface recovers.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
@@ -22,33 +22,33 @@ function liveRig(): Rig {
 }
 
 describe("the packed surface", () => {
-  it("is asked for, and arrives as the plain one does", () => {
+  it("is subscribed to and delivered as plain samples", () => {
     const rig = liveRig();
     expect(rig.socket.sentOf("subscribe").every(({ value }) => value.packing === Packing.PACKED)).toBe(true);
     for (const k of [0, 1, 2]) deliver(rig, k);
-    const arrived = rig.logOf("frame").map(([frame]) => frame as { kind: string; header: { tick: bigint }; payload: Uint8Array });
+    const arrived = rig.frames;
     expect(arrived.map(({ kind, header }) => [kind, header.tick])).toEqual([["surface", 100n], ["surface", 102n], ["surface", 104n]]);
     expect(arrived.every(({ payload }) => payload.length === 2 * 20 * 20)).toBe(true);
   });
 
-  it("begins again with a keyframe where a frame is missing, and asks for one once a second", () => {
+  it("continues with a keyframe after a lost frame, and requests one at most once a second", () => {
     const rig = liveRig();
     const askedCount = (): number => rig.socket.sentOf("subscribe").length;
     const before = askedCount();
     deliver(rig, 1);
-    expect(rig.logOf("frame")).toHaveLength(0);
+    expect(rig.frames).toHaveLength(0);
     const once = askedCount();
     expect(once).toBeGreaterThan(before);
     deliver(rig, 2);
     expect(askedCount()).toBe(once);
     deliver(rig, 0);
     deliver(rig, 1);
-    expect(rig.logOf("frame")).toHaveLength(2);
+    expect(rig.frames).toHaveLength(2);
     deliver(rig, 1); // builds on 0, but 1 is the last one
-    expect(rig.logOf("frame")).toHaveLength(2);
+    expect(rig.frames).toHaveLength(2);
   });
 
-  it("counts on nothing from before a reconnection", () => {
+  it("uses no plane from before a reconnection", () => {
     const rig = liveRig();
     deliver(rig, 0);
     rig.connection.stop();
@@ -56,6 +56,6 @@ describe("the packed surface", () => {
     rig.socket.open();
     rig.socket.deliver(greeting());
     deliver(rig, 1);
-    expect(rig.logOf("frame")).toHaveLength(1);
+    expect(rig.frames).toHaveLength(1);
   });
 });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { crc32c } from "../src/codec/crc32c";
-import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frames";
+import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frame_types";
 import { parse } from "../src/codec/parse";
 import { Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
 import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
@@ -101,7 +101,7 @@ describe("parse", () => {
     expectMalformed(encode(surfaceFrame([0, 0, 0, 0], { codec: { case: "surfaceFixed16", value: { resolutionCount: 5000, sideM: 1, quantumM: 1 } } as never })), /5000 samples/);
   });
 
-  it("refuses a wrong checksum, a predicted frame, a foreign layer and an unknown codec", () => {
+  it("refuses a wrong checksum, a delta, a foreign layer and an unknown codec", () => {
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { crc32c: 1 })), /crc32c/);
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { keyframe: false })), /keyframes/);
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { layer: Layer.PARTICLES })), /carries a surface/);
@@ -160,7 +160,7 @@ describe("parse of what stands and floats in the water", () => {
     expectMalformed(encode(bodiesFrame(new Uint8Array(28), {}, 0)), /payload of 28 bytes, header says 0/);
   });
 
-  it("refuses a wrong checksum, layer, time and a predicted frame of the new layers", () => {
+  it("refuses a wrong checksum, layer, time and a delta of the new layers", () => {
     const payload = bodiesPayload([{}]);
     expectMalformed(encode(foamFrame(new Uint8Array(4), { crc32c: 1 })), /crc32c/);
     expectMalformed(encode(bodiesFrame(payload, { crc32c: 1 })), /crc32c/);

@@ -69,11 +69,11 @@ describe("a parameter's slider", () => {
 
   it("follows another person's change, but not while it is being moved", () => {
     const { time, model, changedCount } = rig(40);
-    model.serverSays(70);
+    model.setServerValue(70);
     expect(model.shownValue).toBe(70);
     expect(changedCount()).toBe(1);
     model.input(90);
-    model.serverSays(75);
+    model.setServerValue(75);
     expect(model.shownValue).toBe(90);
     time.advance(kDebounceMs);
     model.reject(1, "no");

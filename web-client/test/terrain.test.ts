@@ -94,7 +94,7 @@ describe("the lace of foam", () => {
 });
 
 describe("a new boat's place", () => {
-  const water = { sideM: 40, stage: { sideM: 40, depthM: 3 }, beaches: [...bed.beaches], obstacles: [rock, wall] };
+  const water = { sideM: 40, waterExtents: { sideM: 40, depthM: 3 }, beaches: [...bed.beaches], obstacles: [rock, wall] };
 
   it("measures the way to rocks and turned walls", () => {
     expect(clearanceM(rock, 5, -3)).toBeCloseTo(1, 9);

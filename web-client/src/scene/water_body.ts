@@ -1,4 +1,4 @@
-// The water as one body: a grid lifted by the field, and a skirt round it down to the floor.
+// The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor.
 import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Group, Mesh, Vector2, Vector3, Vector4, type RawShaderMaterial, type Texture } from "three";
 
 import { makeMaterial, type Uniforms } from "./shaders";
@@ -66,7 +66,7 @@ export class WaterBody {
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
-  /** `foam` absent: a room that sends none. `hasSolids`: there is something over the water to mirror. */
+  /** `foam` undefined: the room sends none. `hasSolids`: the water reflects solids as well as the sky. */
   constructor(sky: Sky, field: Texture, behind: BehindTextures, bed: Bed, noise: Texture, foam: Uniforms | undefined, hasSolids: boolean, quality: { surfaceCellsCount: number; plain: boolean }) {
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);

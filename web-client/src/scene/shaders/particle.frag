@@ -35,7 +35,7 @@ void main() {
   vec3 world_ray = mat3(u_camera_world) * ray;
   float over_m = v_world_y_m + normal.y * u_radius_m - highest_m;
   if (over_m > 0.0 && world_ray.y < -0.02) hit += ray * min(over_m / -world_ray.y, 2.0 * u_radius_m);
-  // A soft edge lets whatever comes later and lies behind it draw over it, rather than leave a rim of the background.
+  // A soft edge pixel is moved back, so that what is drawn later behind it covers it and no rim of the background remains.
   if (covered < 1.0) hit += ray * 2.0 * v_radius_m;
   vec4 clip = projectionMatrix * vec4(hit, 1.0);
   gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
@@ -48,7 +48,7 @@ void main() {
   vec3 ambient = mix(kAmbientBelow, kAmbientAbove, normal.y * 0.5 + 0.5);
   vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * lightReaching(v_world_y_m, u_depth_m, out_of_water);
 
-  // Water in water does not shine.
+  // No gloss inside the water.
   float gloss = (1.0 - 0.8 * foam) * out_of_water;
   if (gloss > 0.01) {
     float away = 1.0 - clamp(dot(normal, toward_eye), 0.0, 1.0);

@@ -1,7 +1,6 @@
-// PLAIN: for particle_plain.frag, with the depth of the whole patch.
-// One point a particle, straight from the 12 bytes of the wire: the buffer is read as six u16, the three last of which
-// hold velocity x | velocity y, velocity z | tint, foam | 0. The point's square covers the sphere's silhouette.
-// Points, not instanced quads: software renderers pay for every instance as for a draw call (measured: 3 times the processor time).
+// One point per particle, read from the 12 bytes of the wire as six u16; the last three hold velocity x | velocity y,
+// velocity z | tint, foam | 0. The point's square covers the sphere's silhouette. PLAIN: for particle_plain.frag, one depth per point.
+// Points, not instanced quads: software renderers handle each instance like a draw call (measured: 3 times the processor time).
 in vec3 position;  // x, z, y as fractions of the bounds
 in vec3 a_packed;  // u16 / 65535
 

@@ -1,8 +1,8 @@
-// Shared: a particle's own colour. Deep blue where dense, light cyan where thin, white foam; dimmer in the water.
+// Include: a particle's own colour. Deep blue where dense, light cyan where thin, white foam; dimmer in the water.
 const vec3 kAmbientBelow = vec3(0.20, 0.28, 0.36);
 const vec3 kAmbientAbove = vec3(0.52, 0.66, 0.84);
 
-// Spray over a surface: a particle stands for many droplets, drawn as a smaller ball than its volume, else it reads as beads.
+// Spray over a surface: a particle stands for many droplets and is drawn smaller than its volume, so that it does not look like a bead.
 const float kSprayRadius = 0.62;
 
 float outOfWater(float above_m, float radius_m) { return smoothstep(0.15, 1.0, above_m / radius_m); }
