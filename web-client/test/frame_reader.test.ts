@@ -79,7 +79,7 @@ describe("the frame reader", () => {
     for (let length = 0; length < payload.length; length += 3) expect(read(file, payload.slice(0, length))).toMatchObject({ kind: "malformed" });
   });
 
-  it.each(kFiles)("refuses %s with more behind its end", (file) => {
+  it.each(kFiles)("refuses %s with extra bytes", (file) => {
     const { payload } = frameOf(messageOf(file));
     for (const more of [1, 8, 1000]) {
       const longer = new Uint8Array(payload.length + more);
@@ -88,7 +88,7 @@ describe("the frame reader", () => {
     }
   });
 
-  it.each(kFiles)("reads %s with flipped bits or says no, and then the good one again", (file) => {
+  it.each(kFiles)("reads or refuses %s with flipped bits, and reads the good frame afterwards", (file) => {
     const { payload } = frameOf(messageOf(file));
     const good = read(file).payload!.slice();
     for (let bit = 0; bit < 8 * payload.length; bit += 13) {

@@ -37,7 +37,7 @@ function cornersPx(water: ViewedBox, backward: Vector3, screen: (typeof screens)
 }
 
 describe("a view of the water", () => {
-  it("holds every corner in the free part and fills it one way, from every side, on every screen", () => {
+  it("shows every corner in the free part and fills its width or height, from every side, on every screen", () => {
     for (const water of waters)
       for (const backward of backwards)
         for (const screen of screens) {
@@ -58,7 +58,7 @@ describe("a view of the water", () => {
         }
   });
 
-  it("is the same picture of twice the water from twice as far", () => {
+  it("scales with the water: twice the size from twice the distance", () => {
     const tangents = freeTangents(47, 800, 1280, screens[0]!.free);
     const near = frameBox({ sideM: 10, minYM: -1, maxYM: 1 }, backwards[0]!, tangents);
     const far = frameBox({ sideM: 20, minYM: -2, maxYM: 2 }, backwards[0]!, tangents);
@@ -73,7 +73,7 @@ describe("a view of the water", () => {
     expect(moved.positionM.sub(square.positionM).distanceTo(new Vector3(10, 0, -5))).toBeCloseTo(0, 9);
   });
 
-  it("does not ask for an endless distance where the panels leave nothing", () => {
+  it("keeps a finite distance where the panels leave no free part", () => {
     const nothing = freeTangents(47, 600, 300, { leftPx: 300, topPx: 600, rightPx: 300, bottomPx: 600 });
     const { positionM } = frameBox(waters[0]!, backwards[0]!, nothing);
     expect(positionM.length()).toBeGreaterThan(24);

@@ -56,7 +56,7 @@ describe("golden bytes", () => {
     expect(unpacked(golden).kind).toBe("malformed");
   });
 
-  it.each(cases.filter((c) => c.verdict === "bad_message"))("takes nothing from $file: $why", ({ file }) => {
+  it.each(cases.filter((c) => c.verdict === "bad_message"))("refuses or ignores $file: $why", ({ file }) => {
     expect(["malformed", "unknown"]).toContain(parse(read(file)).kind);
   });
 

@@ -81,16 +81,26 @@ describe("the imports of src/", () => {
 });
 
 describe("the exports of src/", () => {
-  it("are all used in src/", () => {
-    const own = files.filter((file) => !file.startsWith("gen/") && !kRoots.includes(file));
-    const countOf = (text: string, name: string): number => text.match(new RegExp(`\\b${name}\\b`, "g"))?.length ?? 0;
-    const unused = own.flatMap((file) =>
-      [...texts.get(file)!.matchAll(/^export (?:abstract |async )?(?:class|const|function|interface|type) (\w+)/gm)]
-        .map((match) => match[1]!)
-        .filter((name) => own.concat(kRoots).every((other) => countOf(texts.get(other)!, name) === (other === file ? 1 : 0)))
-        .map((name) => `${file}: ${name}`),
+  const own = files.filter((file) => !file.startsWith("gen/"));
+  const tests = readdirSync(import.meta.dirname, "utf8").map((file) => readFileSync(join(import.meta.dirname, file), "utf8"));
+  const countOf = (text: string, name: string): number => text.match(new RegExp(`\\b${name}\\b`, "g"))?.length ?? 0;
+  const exportsOf = (kinds: string): [file: string, name: string][] =>
+    own
+      .filter((file) => !kRoots.includes(file))
+      .flatMap((file) => [...texts.get(file)!.matchAll(new RegExp(`^export (?:${kinds}) (\\w+)`, "gm"))].map((match): [string, string] => [file, match[1]!]));
+
+  it("all have a use in src/, not only in tests", () => {
+    const unused = exportsOf("class|const|function|interface|type").filter(
+      ([file, name]) => !own.some((other) => countOf(texts.get(other)!, name) > (other === file ? 1 : 0)),
     );
     expect(unused).toEqual([]);
+  });
+
+  it("all have a user in another file, if they are values", () => {
+    const inner = exportsOf("class|const|function").filter(
+      ([file, name]) => !own.some((other) => other !== file && countOf(texts.get(other)!, name) > 0) && !tests.some((text) => countOf(text, name) > 0),
+    );
+    expect(inner).toEqual([]);
   });
 });
 

@@ -1,13 +1,27 @@
 // The packed surface through a connection: lost frames and how the surface recovers.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
+import { fromBinary } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import { Packing } from "../src/gen/spindrift/v1/wire_pb";
+import { crc32c } from "../src/codec/crc32c";
+import { Packing, ServerMessageSchema } from "../src/gen/spindrift/v1/wire_pb";
 import { Rig } from "./fakes";
-import { greeting } from "./wire";
+import { greeting, type ServerBody } from "./wire";
 
-const frames = [0, 1, 2].map((k) => readFileSync(join(import.meta.dirname, "..", "..", "tests", "golden", `surface_packed_${k}.bin`)));
+function golden(name: string): Uint8Array {
+  return readFileSync(join(import.meta.dirname, "..", "..", "tests", "golden", `${name}.bin`));
+}
+
+const frames = [0, 1, 2].map((k) => golden(`surface_packed_${k}`));
+
+/** The frame without the last bytes of its payload, with the checksum of the rest. */
+function damaged(name: string): ServerBody {
+  const { message } = fromBinary(ServerMessageSchema, golden(name));
+  if (message.case !== "frame") throw new Error("not a frame");
+  const payload = message.value.payload.slice(0, -3);
+  return { case: "frame", value: { ...message.value, payload, crc32c: crc32c(payload) } } as ServerBody;
+}
 
 function deliver(rig: Rig, k: number): void {
   const bytes = frames[k]!;
@@ -21,7 +35,7 @@ function liveRig(): Rig {
   return rig;
 }
 
-describe("the packed surface", () => {
+describe("packed frames", () => {
   it("is subscribed to and delivered as plain samples", () => {
     const rig = liveRig();
     expect(rig.socket.sentOf("subscribe").every(({ value }) => value.packing === Packing.PACKED)).toBe(true);
@@ -46,6 +60,18 @@ describe("the packed surface", () => {
     expect(rig.frames).toHaveLength(2);
     deliver(rig, 1); // builds on 0, but 1 is the last one
     expect(rig.frames).toHaveLength(2);
+  });
+
+  it("requests a keyframe after a damaged plane, but not after damaged particles: the next frame of those is one", () => {
+    const rig = liveRig();
+    const askedCount = (): number => rig.socket.sentOf("subscribe").length;
+    const before = askedCount();
+    rig.socket.deliver(damaged("particles_packed"));
+    expect(askedCount()).toBe(before);
+    rig.socket.deliver(damaged("surface_packed_0"));
+    expect(askedCount()).toBeGreaterThan(before);
+    rig.time.advance(500);
+    expect(rig.lastStats()).toMatchObject({ malformedCount: 2, receivedCount: { surface: 0, particles: 0 } });
   });
 
   it("uses no plane from before a reconnection", () => {

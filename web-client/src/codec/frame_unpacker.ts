@@ -1,4 +1,4 @@
-// Packed frames of every layer → plain ones. Planes need the plane before; particles stand for themselves.
+// Packed frames of every layer → plain ones. A delta of a plane needs the plane before it; packed particles need no other frame.
 import { ParticleReader } from "./frame_reader";
 import type { FoamHeader, PackedFrame, PlainFrame, SurfaceHeader } from "./frame_types";
 import { isMalformed, type Malformed } from "./malformed";

@@ -12,5 +12,5 @@ export const kLayers = {
 export type LayerName = keyof typeof kLayers;
 export const kLayerNames = Object.keys(kLayers) as LayerName[];
 
-/** The layers that come as frames; diagnostics are messages of their own. */
+/** The layers that come as frames; diagnostics come as a message of their own kind. */
 export type FrameLayer = Exclude<LayerName, "diagnostics">;

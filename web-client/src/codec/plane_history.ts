@@ -24,7 +24,8 @@ export class PlaneHistory<H extends FrameHeader> {
   unpack(packed: PackedPlane<H>): { kind: "samples"; reader: PlaneReader } | Malformed | MissingBase {
     const { header, resolutionCount, payload, weights, earlierWeights, baseTick } = packed;
     const { last } = this;
-    this.forget(); // until this plane has proved good
+    // A damaged plane leaves no history.
+    this.forget();
     const reader = (this.reader ??= new PlaneReader());
     if (baseTick !== undefined && (!last || last.tick !== baseTick || !this.canFollow(last, header))) return { kind: "missingBase" };
     const isRead =

@@ -19,7 +19,7 @@ const kHullColors: readonly Paint[] = [
   [0.05, 0.17, 0.36, 0], [0.62, 0.10, 0.06, 0], [0.04, 0.28, 0.20, 0], [0.78, 0.47, 0.05, 0], [0.30, 0.31, 0.33, 0], [0.02, 0.30, 0.38, 0],
 ];
 
-export function hullColor(boatId: number): Paint {
+function hullColor(boatId: number): Paint {
   return kHullColors[boatId % kHullColors.length]!;
 }
 

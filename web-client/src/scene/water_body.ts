@@ -10,7 +10,7 @@ export interface BehindTextures {
   depth: Texture;
 }
 
-/** Unit grid, x and z in -1/2..1/2, `cellsCount` cells a side, y = 1 ("on the surface" for the shader). */
+/** Unit grid, x and z in -1/2..1/2, `cellsCount` cells per side, y = 1 ("on the surface" for the shader). */
 function makeGrid(cellsCount: number): BufferGeometry {
   const pointsCount = cellsCount + 1;
   const positions = new Float32Array(pointsCount * pointsCount * 3);
