@@ -1,4 +1,4 @@
-// A sphere hit by the pixel's ray: exact normal and depth, an edge one pixel soft, the sky in what is wet.
+// Intersects the pixel's ray with a sphere: exact normal and depth, an edge one pixel soft, sky reflected outside the water.
 #include <sky>
 #include <particle_color>
 
@@ -28,8 +28,8 @@ void main() {
   vec3 normal_view = normalize(hit - v_center_m);
   vec3 normal = mat3(u_camera_world) * normal_view;
 
-  // A sphere whose centre is in the water does not poke through the surface: its cap is cut just under it, so that
-  // the band of particles reads as water. One that has left the water is whole.
+  // A sphere whose centre is in the water is cut just under the surface, so that the particles below look like water. A sphere that has
+  // left the water is whole.
   float out_of_water = outOfWater(v_above_m, u_radius_m);
   float highest_m = v_world_y_m - v_above_m - 0.2 * u_radius_m + out_of_water * 2.5 * u_radius_m;
   vec3 world_ray = mat3(u_camera_world) * ray;
