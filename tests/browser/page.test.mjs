@@ -1,5 +1,5 @@
-// The page in Chromium against the real server: what people see, click and get back. One browser, one server, tests in
-// order; every wait is for something to happen, with a limit generous enough for WebGL in software on two cores.
+// The page in Chromium with the real server: picture, controls, acknowledgements. One browser, one server, tests in order. Every
+// wait is for an event, with a limit that is long enough for software WebGL on two cores.
 import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -21,9 +21,9 @@ let server;
 let profile;
 let context;
 let page;
-/** What the browser complained about, in its words. */
+/** Errors that the browser reported. */
 const complaints = [];
-/** While the server is down on purpose, a refused connection is no complaint. */
+/** While the server is down on purpose, a refused connection is not an error. */
 let is_server_down = false;
 
 async function openPage(room = "") {
@@ -41,7 +41,7 @@ async function openPage(room = "") {
 
 const statsOf = (target) => target.evaluate(() => window.spindrift?.stats());
 
-/** Waits until `accept(stats)` holds; fails with the last numbers. */
+/** Waits until `accept(stats)` is true; the failure message has the last stats. */
 async function waitFor(target, what, accept) {
   const deadline_ms = Date.now() + WAIT_MS;
   for (;;) {
@@ -52,7 +52,7 @@ async function waitFor(target, what, accept) {
   }
 }
 
-/** The number that a value of the panel shows. */
+/** Returns the number that an element of the panel shows. */
 async function shown(target, test_id) {
   const text = (await target.getByTestId(test_id).textContent()) ?? "";
   const match = /-?\d[\d,. \u202f]*/.exec(text);
@@ -60,20 +60,20 @@ async function shown(target, test_id) {
   return Number(match[0].replace(/[, \u202f]/g, ""));
 }
 
-/** Presses and returns once the server acknowledged a command newer than the last. */
+/** Calls `press` and waits for the acknowledgement of a newer command. */
 async function acknowledged(target, press) {
   const last = (await statsOf(target)).lastAck?.commandId ?? 0;
   await press();
   await waitFor(target, "an acknowledgement", (stats) => (stats.lastAck?.commandId ?? 0) > last);
 }
 
-/** Still water to begin with: the elevations of every test start from zero. */
+/** Resets the room, so that every test starts with still water. */
 async function stillWater(target) {
   await acknowledged(target, () => target.getByTestId("reset").click());
   await waitFor(target, "still water", (stats) => stats.maxElevationM - stats.minElevationM < 0.02);
 }
 
-/** A test that needs the first one to have worked. */
+/** A test that needs the page that the first one opened. */
 function step(name, body) {
   it(name, slow, async () => {
     assert.ok(page, "the page never came up");
@@ -82,7 +82,7 @@ function step(name, body) {
 }
 
 describe("the page in Chromium", { concurrency: 1 }, () => {
-  it("opens the page of a fresh server and goes live", slow, async () => {
+  it("connects to a new server and goes live", slow, async () => {
     server = await startServer();
     profile = mkdtempSync(join(tmpdir(), "spindrift-chromium-"));
     context = await chromium.launchPersistentContext(profile, {
@@ -112,7 +112,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     { timeout: WAIT_MS },
   );
 
-  step("shows a simulation that runs: time, speed, frames, bytes, latency", async () => {
+  step("shows time, speed, frames, bytes and latency of a running simulation", async () => {
     const first = await statsOf(page);
     await waitFor(page, "simulated time to advance by a second", (stats) => stats.simTime > first.simTime + 1);
     await waitFor(page, "ten more surface frames", (stats) => stats.framesReceived.surface > first.framesReceived.surface + 10);
@@ -132,25 +132,25 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.equal((await statsOf(page)).malformedCount, 0);
   });
 
-  step("draws water, not one colour", async () => {
+  step("draws water in many colours", async () => {
     const picture = await measure(page, await shootWater(page));
     assert.ok(picture.colour_count >= 12, `only ${picture.colour_count} colours`);
     assert.ok(picture.deviation > 3, `brightness varies by ${picture.deviation.toFixed(2)} of 255 only`);
   });
 
-  step("turns a click on the water into a splash that moves the surface and the picture", async () => {
+  step("splashes at a click on the water, and surface and picture change", async () => {
     await stillWater(page);
     const before_click = await shootWater(page);
     const box = await page.locator("canvas").first().boundingBox();
     await acknowledged(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.55));
     await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
     const picture = await measure(page, before_click, await shootWater(page));
-    // For people: what the page looked like in this run.
+    // A picture of this run for the report.
     await page.screenshot({ path: join(repository, "build/reports/browser-splash.png"), timeout: 2 * WAIT_MS });
     assert.ok(picture.changed_ratio > 0.005, `${(100 * picture.changed_ratio).toFixed(2)} % of the pixels changed`);
   });
 
-  step("splashes and rolls a breaking wave at the press of a button", async () => {
+  step("splashes and makes a breaking wave when the buttons are pressed", async () => {
     for (const button of ["splash", "wave"]) {
       await stillWater(page);
       await acknowledged(page, () => page.getByTestId(button).click());
@@ -159,7 +159,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     }
   });
 
-  step("rolls a swell from another side when asked to", async () => {
+  step("makes a swell from another side", async () => {
     await stillWater(page);
     await page.getByTestId("wave-side").selectOption({ label: "far side (−z)" });
     await page.getByTestId("wave-shape").selectOption({ label: "swell" });
@@ -167,15 +167,15 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
   });
 
-  step("shows what the scene has and hides what it lacks", async () => {
+  step("hides the boat controls in a scene without boats, and switches views", async () => {
     for (const id of ["boats-box", "view-boat"]) assert.ok(await page.locator(`#${id}`).isHidden(), `#${id} shows in a scene without boats`);
-    for (const view of ["view-overview", "view-wave", "view-splash"]) {
+    for (const view of ["view-overview", "view-side", "view-above"]) {
       await page.getByTestId(view).click();
       assert.equal(await page.getByTestId(view).getAttribute("aria-pressed"), "true");
     }
   });
 
-  step("pauses and resumes for everybody, and a slider moved here moves there", async () => {
+  step("pauses and resumes the room for every page, and moves the other page's slider", async () => {
     const other = await openPage();
     await acknowledged(page, () => page.getByTestId("pause").click());
     await waitFor(other, "the other page to hear of the pause", (stats) => stats.paused === true);
@@ -197,7 +197,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await other.close();
   });
 
-  step("shows less detail when a person asks for it, and all of it again", async () => {
+  step("shows a coarser level when chosen, and the full level again", async () => {
     await page.getByTestId("detail").selectOption("coarse");
     const coarse = await waitFor(page, "a coarse surface", (stats) => stats.surfaceResolutionCount === 128);
     await waitFor(page, "the coarse water to move on", (stats) => stats.level === "coarse" && stats.simTime > coarse.simTime);
@@ -208,7 +208,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.ok(full.delayMs > 0 && full.delayMs < 10_000, `the picture is ${full.delayMs} ms behind`);
   });
 
-  step("drives a boat of its own, which others cannot take, and finds it again after a reload", async () => {
+  step("owns a boat that others cannot take, and keeps it after a reload", async () => {
     const ada = await openPage("marina");
     const bob = await openPage("marina");
     const people = (target) => target.getByTestId("people").locator("li");
@@ -231,7 +231,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await bob.close();
   });
 
-  step("comes back by itself after the server was killed and started again", async () => {
+  step("reconnects after the server was killed and restarted", async () => {
     is_server_down = true;
     await server.stop("SIGKILL");
     await waitFor(page, "the page to notice", (stats) => stats.connectionState.startsWith("retrying"));
@@ -243,7 +243,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await acknowledged(page, () => page.getByTestId("splash").click());
   });
 
-  step("is told 1001 when the server is asked to end, and the server ends with code 0", async () => {
+  step("gets close code 1001 when the server is terminated, and the server exits with 0", async () => {
     // The page's own socket lives in a worker; a second one in the page sees the close code directly.
     await page.evaluate(
       () =>
@@ -260,7 +260,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.equal(await page.evaluate(() => window.__close_code), 1001);
   });
 
-  step("raised no error and broke no content policy in all of that", () => {
+  step("raised no error and violated no content policy", () => {
     assert.deepEqual(complaints, []);
   });
 });

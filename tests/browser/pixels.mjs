@@ -1,6 +1,6 @@
-// What a screenshot shows, measured. The browser itself decodes the PNG, so no library is needed.
+// Measures screenshots. The browser decodes the PNG, so no library is needed.
 
-/** A PNG of the middle of the canvas, where no panel lies over the water. */
+/** Returns a PNG of the middle of the canvas, which no panel covers. */
 export async function shootWater(page) {
   const box = await page.locator("canvas").first().boundingBox();
   const clip = { x: box.x + box.width * 0.3, y: box.y + box.height * 0.25, width: box.width * 0.4, height: box.height * 0.5 };

@@ -1,4 +1,4 @@
-// The real server as a child process: started on a port, told apart by its own line, stopped by signal.
+// The real server as a child process: waits for its ready line, stops it by signal.
 import { spawn } from "node:child_process";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";

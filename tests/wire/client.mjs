@@ -1,15 +1,15 @@
-// A client made of the npm package `ws` and the messages generated from proto/: nothing of the page's own connection.
+// A client built from the npm package `ws` and the messages generated from proto/, without the page's own connection.
 import { create, fromBinary, toBinary } from "../../web-client/node_modules/@bufbuild/protobuf";
 import WebSocket from "ws";
 
 import { parse } from "../../web-client/src/codec/parse";
 import { ClientMessageSchema, ServerMessageSchema } from "../../web-client/src/gen/spindrift/v1/wire_pb";
 
-/** Far above what anything takes; reached only by a test that fails. */
+/** Far longer than any step takes; only a failing test reaches it. */
 const kPatienceMs = 60_000;
 
 export class Client {
-  /** Everything received and not yet asked for, parsed. */
+  /** Parsed messages that were received and not yet read. */
   #inbox = [];
   #wake = () => {};
   #first;
@@ -26,7 +26,7 @@ export class Client {
     this.ws.on("error", () => {}); // "close" follows
   }
 
-  /** The first message that `accept` takes; the ones before it are forgotten. Rejects once closed or out of patience. */
+  /** Returns the first message that `accept` takes and drops the ones before it. Rejects when the socket is closed or after kPatienceMs. */
   async next(accept) {
     const deadline_ms = Date.now() + kPatienceMs;
     for (;;) {
@@ -50,7 +50,7 @@ export class Client {
     return this.next((message) => message.kind === kind);
   }
 
-  /** What the greeting says; the page has no use for it, so parse() leaves it out. */
+  /** Reads the greeting's limit; parse() leaves it out, because the page does not need it. */
   messageMaxBytes() {
     return fromBinary(ServerMessageSchema, new Uint8Array(this.#first)).message.value.limits.messageMaxBytes;
   }
@@ -71,7 +71,7 @@ export class Client {
     this.send({ case: "command", value: { commandId, action } });
   }
 
-  /** The closing handshake; what the server said. */
+  /** Closes the connection; returns the server's code and reason. */
   async close(code = 1000) {
     this.ws.close(code);
     return this.closed;

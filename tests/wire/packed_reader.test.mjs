@@ -1,4 +1,4 @@
-// The golden bytes, read by a program that knows nothing of this project but proto/README.md.
+// The golden bytes, read by a program that was written from proto/README.md alone.
 import { spawnSync } from "node:child_process";
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";

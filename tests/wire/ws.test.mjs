@@ -1,6 +1,6 @@
-// An independent WebSocket implementation against the real server: handshake, both packings, commands, closing.
+// An independent WebSocket client with the real server: handshake, both packings, commands, closing.
 import { startServer } from "../browser/server.mjs";
-import { PlaneUnpacker } from "../../web-client/src/codec/packed_planes";
+import { FrameUnpacker } from "../../web-client/src/codec/frame_unpacker";
 import { Layer, Level, Packing } from "../../web-client/src/gen/spindrift/v1/wire_pb";
 import { Client } from "./client.mjs";
 
@@ -19,7 +19,7 @@ async function greeted() {
 }
 
 describe("the npm package ws", () => {
-  it("agrees on the subprotocol and on no extension, and is greeted first", async () => {
+  it("negotiates the subprotocol and no extension, and receives the greeting first", async () => {
     const client = new Client(server.port);
     const first = await client.next(() => true);
     expect(first.kind).toBe("greeting");
@@ -28,7 +28,7 @@ describe("the npm package ws", () => {
     expect((await client.close()).code).toBe(1000);
   });
 
-  it("is told why an upgrade is refused", async () => {
+  it("receives a status for a refused upgrade", async () => {
     const client = new Client(server.port, "/ws/no_such_room");
     const status = await new Promise((resolve) => client.ws.on("unexpected-response", (_, response) => resolve(response.statusCode)));
     expect(status).toBe(404);
@@ -53,7 +53,7 @@ describe("the npm package ws", () => {
     expect((await client.close()).code).toBe(1000);
   });
 
-  it("gets the level of detail that it asks for, with the server's time", async () => {
+  it("receives the requested level of detail, with the server's time", async () => {
     const client = await greeted();
     client.subscribe(Layer.SURFACE, Packing.PLAIN, { level: Level.COARSE });
     const { header, payload } = await client.nextOf("surface");
@@ -66,13 +66,13 @@ describe("the npm package ws", () => {
     expect((await client.close()).code).toBe(1000);
   });
 
-  it("reads packed surfaces, and they hold the samples of the plain ones", async () => {
+  it("reads packed surfaces with the same samples as the plain ones", async () => {
     const plain = await greeted();
     const packed = await greeted();
     plain.subscribe(Layer.SURFACE, Packing.PLAIN);
     packed.subscribe(Layer.SURFACE, Packing.PACKED);
     packed.command(1n, { case: "splash", value: { depthM: 0.3 } });
-    const unpacker = new PlaneUnpacker();
+    const unpacker = new FrameUnpacker();
     const plain_by_tick = new Map();
     const packed_by_tick = new Map();
     const both = () => [...packed_by_tick.keys()].filter((tick) => plain_by_tick.has(tick));
@@ -94,7 +94,7 @@ describe("the npm package ws", () => {
     await Promise.all([plain.close(), packed.close()]);
   });
 
-  it("sends a splash, gets its Ack, and sees the water move", async () => {
+  it("sends a splash, receives its Ack, and the water moves", async () => {
     const client = await greeted();
     client.subscribe(Layer.SURFACE, Packing.PLAIN);
     client.command(42n, { case: "splash", value: { xM: 1, zM: -1, radiusM: 1.5, depthM: 0.5 } });
@@ -110,7 +110,7 @@ describe("the npm package ws", () => {
     await client.close();
   });
 
-  it("may send a message in pieces, and its pings come back", async () => {
+  it("may fragment a message, and receives pongs", async () => {
     const client = new Client(server.port);
     await client.nextOf("greeting");
     const hello = Client.bytesOf({ case: "hello", value: { version: { major: 1, minor: 0 }, client: "in pieces" } });
@@ -125,7 +125,7 @@ describe("the npm package ws", () => {
     await client.close();
   });
 
-  it("is closed with the code that the wire documents for what it did", async () => {
+  it("is closed with the documented code after each violation", async () => {
     const text = await greeted();
     text.ws.send("text");
     expect((await text.closed).code).toBe(1003);
@@ -146,7 +146,7 @@ describe("the npm package ws", () => {
     expect((await future.closed).code).toBe(1008);
   });
 
-  it("hears from a server that shuts down", async () => {
+  it("receives 1001 when the server shuts down", async () => {
     const client = await greeted();
     client.subscribe(Layer.SURFACE, Packing.PACKED);
     await client.nextOf("packedSurface");

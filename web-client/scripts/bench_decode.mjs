@@ -1,4 +1,4 @@
-// npm run bench -- FRAMES [--chromium]: how long packed frames take to read. FRAMES is a file of
+// npm run bench -- FRAMES [--chromium]: measures the time to read packed frames. FRAMES is a file made by
 // `build/release/tests/packed_frames tests/bench/decode_target.textproto 20 FRAMES`.
 import { spawn } from "node:child_process";
 import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
@@ -35,7 +35,7 @@ async function inNode() {
   return measureDecoding(new Uint8Array(await readFile(file)), kRounds);
 }
 
-/** A page that lets a worker measure and posts what it says. */
+/** Measures in a worker of a page, which posts its result back. */
 async function inChromium() {
   const worker = `import { measureDecoding } from "/bench.mjs";
     const file = new Uint8Array(await (await fetch("/frames")).arrayBuffer());

@@ -1,6 +1,6 @@
-// Compiles the frame reader (server/codec/decode) to WebAssembly and puts it into src/gen as text: the worker needs no
-// second request, and tests and benchmarks read with the very same module. Debian's clang, lld and libc++ for wasm32;
-// CLANG names another clang.
+// Compiles the frame reader (server/codec/decode) to WebAssembly and writes it to src/gen as base64 text: the worker needs no
+// second request, and tests and benchmarks use the same module. Needs Debian's clang, lld and libc++ for wasm32; CLANG names another
+// clang.
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";

@@ -29,13 +29,13 @@ describe("a bodies frame", () => {
     expect(bodies[1]!.rudder).toBeCloseTo(64 / 127, 9);
   });
 
-  it("may hold no boat, in a buffer larger than it needs", () => {
+  it("may be empty, in a larger buffer", () => {
     expect(unpackBodies(frame(1, [], 512)).bodies).toEqual([]);
   });
 });
 
 describe("boats between two frames", () => {
-  it("move on a straight line and turn the short way, across the seam too", () => {
+  it("move on a straight line and turn the shorter way, also across ±180°", () => {
     const poses: BodyPose[] = [];
     const from = state(1, { boatId: 7, xM: 0, yM: 1, zM: -2, headingRad: 3.0, rollRad: 0.2, speedMps: 2 });
     const to = state(1.1, { boatId: 7, xM: 1, yM: 2, zM: -4, headingRad: -3.0, rollRad: -0.2, speedMps: 4 });
@@ -45,7 +45,7 @@ describe("boats between two frames", () => {
     expect(poses[0]!.rollRad).toBeCloseTo(0.1, 9);
   });
 
-  it("are told apart by id whatever their order, and wait where the next frame lacks them", () => {
+  it("are matched by id in any order, and stay in place if the next frame lacks them", () => {
     const poses: BodyPose[] = [];
     const from = state(1, { boatId: 1, xM: 0 }, { boatId: 2, xM: 1 }, { boatId: 3, xM: 2 });
     const to = state(1.1, { boatId: 3, xM: 3 }, { boatId: 9, xM: 9 }, { boatId: 1, xM: 1 });
@@ -53,7 +53,7 @@ describe("boats between two frames", () => {
     expect(poses.map(({ boatId, xM }) => [boatId, xM])).toEqual([[1, 0.5], [2, 1], [3, 2.5]]);
   });
 
-  it("use the same poses again as boats come and go", () => {
+  it("reuse the pose objects when the number of boats changes", () => {
     const poses: BodyPose[] = [];
     const three = state(1, { boatId: 1 }, { boatId: 2 }, { boatId: 3 });
     mixBodies(three, three, 0, poses);
@@ -63,13 +63,13 @@ describe("boats between two frames", () => {
     expect(poses.every((pose, at) => pose === kept[at])).toBe(true);
   });
 
-  it("do not race across the water when they leave one side and enter the other", () => {
+  it("jump, not glide, from one periodic side to the other", () => {
     const poses: BodyPose[] = [];
     mixBodies(state(1, { boatId: 1, xM: 23.9, speedMps: 3 }), state(1.03, { boatId: 1, xM: -23.9, speedMps: 3 }), 0.5, poses);
     expect(poses[0]!.xM).toBe(23.9);
   });
 
-  it("stay within half a turn", () => {
+  it("keep angles between -pi and pi", () => {
     for (let from = -3; from <= 3; from += 0.5)
       for (let to = -3; to <= 3; to += 0.5) {
         const mixed = mixAngle(from, to, 0.5);

@@ -12,14 +12,14 @@ function liveRig(): Rig {
   return rig;
 }
 
-/** Level and freedom of the newest subscription to the surface. */
+/** Level and `adapts` of the newest subscription to the surface. */
 function asked(rig: Rig): { level: Level; adapts: boolean } {
   const { level, adapts } = rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.SURFACE).at(-1)!.value;
   return { level, adapts };
 }
 
 describe("the level of detail", () => {
-  it("is the server's to lower unless a person chose one", () => {
+  it("may be lowered by the server unless the user chose it", () => {
     const rig = liveRig();
     expect(asked(rig)).toEqual({ level: Level.FULL, adapts: true });
     rig.connection.setDetail("medium");
@@ -31,19 +31,19 @@ describe("the level of detail", () => {
     expect(asked(rig)).toEqual({ level: Level.FULL, adapts: true });
   });
 
-  it("says what it is and who holds it down", () => {
+  it("is reported together with what limits it", () => {
     const rig = liveRig();
     rig.time.advance(500);
-    expect(rig.lastStats()).toMatchObject({ level: "full", levelHeldBy: "nobody" });
+    expect(rig.lastStats()).toMatchObject({ level: "full", levelLimitedBy: "none" });
     rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });
     rig.time.advance(500);
-    expect(rig.lastStats()).toMatchObject({ level: "coarse", levelHeldBy: "link" });
+    expect(rig.lastStats()).toMatchObject({ level: "coarse", levelLimitedBy: "link" });
     rig.connection.setDetail("fine");
     rig.time.advance(500);
-    expect(rig.lastStats()).toMatchObject({ level: "fine", levelHeldBy: "choice" });
+    expect(rig.lastStats()).toMatchObject({ level: "fine", levelLimitedBy: "choice" });
   });
 
-  it("forgets the link's level with the link", () => {
+  it("is unlimited again after a reconnection", () => {
     const rig = liveRig();
     rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });
     rig.socket.drop();
@@ -51,32 +51,32 @@ describe("the level of detail", () => {
     rig.socket.open();
     rig.socket.deliver(greeting());
     rig.time.advance(500);
-    expect(rig.lastStats()).toMatchObject({ level: "full", levelHeldBy: "nobody" });
+    expect(rig.lastStats()).toMatchObject({ level: "full", levelLimitedBy: "none" });
   });
 
-  it("falls where unpacking takes most of the time", () => {
+  it("becomes coarser when unpacking takes most of the time", () => {
     const rig = liveRig();
-    // Each frame takes 40 ms to read, twenty come in a second.
+    // Each frame takes 40 ms to read, one comes every 50 ms.
     for (let k = 0; k < 60; ++k) {
       rig.slowReadMs = 40;
       rig.socket.deliver(surfaceFrame([1, 2, 3, 4], { tick: BigInt(k) }));
       rig.time.advance(10);
     }
     expect(asked(rig)).toEqual({ level: Level.FINE, adapts: true });
-    expect(rig.lastStats()).toMatchObject({ level: "fine", levelHeldBy: "device" });
+    expect(rig.lastStats()).toMatchObject({ level: "fine", levelLimitedBy: "device" });
   });
 
-  it("tells the server's clock with the greeting and with every pong", () => {
+  it("comes with the server's clock after the greeting and after every pong", () => {
     const rig = new Rig();
     rig.socket.open();
     rig.socket.deliver(greeting({ serverTimeS: 70 }));
-    expect(rig.logOf("clock")).toEqual([[69_000]]);
+    expect(rig.eventsOf("clock")).toEqual([{ kind: "clock", leadS: 69 }]);
     rig.time.advance(100);
     rig.socket.deliver({ case: "pong", value: { clientTimeS: 1, serverTimeS: 70.06 } });
-    expect(rig.logOf("clock").at(-1)).toEqual([expect.closeTo(69_010, 6)]);
+    expect(rig.eventsOf("clock").at(-1)!.leadS).toBeCloseTo(69.01, 9);
   });
 
-  it("pings often until the clock is known, then now and then", () => {
+  it("is measured with frequent pings at first, then with one every two seconds", () => {
     const rig = liveRig();
     rig.time.advance(2500);
     const early = rig.socket.sentOf("ping").length;
@@ -93,13 +93,13 @@ describe("the load governor", () => {
     return levels;
   };
 
-  it("steps down after two busy seconds, not for a moment", () => {
+  it("steps down after two busy seconds, not after a short load", () => {
     const governor = new LoadGovernor();
     for (let k = 0; k < 30; ++k) expect(governor.note(k % 4 === 0 ? 0.1 : 0.9)).toBe(false);
     expect(run(governor, () => 0.9, 8)).toEqual(["fine", "medium"]);
   });
 
-  it("climbs when there is time for four times as much, and tries what failed less often", () => {
+  it("steps up when there is time for four times as much, and retries a level that failed less often", () => {
     const governor = new LoadGovernor();
     run(governor, () => 0.9, 4);
     expect(governor.level).toBe("fine");
@@ -111,7 +111,7 @@ describe("the load governor", () => {
     expect(run(governor, () => 0.05, 500).at(-1)).toBe("full");
   });
 
-  it("has no level above the first and below the last", () => {
+  it("stays within the four levels", () => {
     const governor = new LoadGovernor();
     expect(run(governor, () => 0.0, 100)).toEqual([]);
     expect(run(governor, () => 1, 100)).toEqual(["fine", "medium", "coarse"]);

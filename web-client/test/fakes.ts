@@ -1,9 +1,10 @@
-// A world under the test's hand: sockets that only it opens and closes, a clock that only it moves.
+// Sockets and a clock that the test controls.
 import { fromBinary } from "@bufbuild/protobuf";
 
+import type { PlainFrame } from "../src/codec/frame_types";
 import { ClientMessageSchema, type ClientMessage } from "../src/gen/spindrift/v1/wire_pb";
-import { Connection, type ConnectionEvents, type ConnectionWorld, type SocketLike } from "../src/net/connection";
-import type { ConnectionState } from "../src/net/messages";
+import { Connection, type ConnectionSink, type ConnectionWorld, type SocketLike } from "../src/net/connection";
+import type { ConnectionEvent, ConnectionState, LinkStats } from "../src/net/messages";
 import { encode, type ServerBody } from "./wire";
 
 export class FakeSocket implements SocketLike {
@@ -46,7 +47,7 @@ export class FakeSocket implements SocketLike {
   }
 }
 
-/** Timers and time in one: advance() runs what falls due, in order. */
+/** Clock and timers: advance() runs the timers that fall due, in order. */
 export class FakeTime {
   nowMs = 1000;
   private nextId = 1;
@@ -81,10 +82,10 @@ export class FakeTime {
 export class Rig {
   readonly time = new FakeTime();
   readonly sockets: FakeSocket[] = [];
-  readonly states: ConnectionState[] = [];
-  readonly log: [string, ...unknown[]][] = [];
+  readonly events: ConnectionEvent[] = [];
+  readonly frames: PlainFrame[] = [];
   readonly connection: Connection;
-  /** The clock moves on by this once it has been looked at: a device that takes its time with the next message. */
+  /** Time that the next message takes to read: the clock advances by this after it is next read. */
   slowReadMs = 0;
 
   constructor(random = 0.5) {
@@ -104,14 +105,11 @@ export class Rig {
       setTimer: (callback, ms) => this.time.setTimer(callback, ms),
       clearTimer: (timer) => this.time.clearTimer(timer),
     };
-    const note = (name: string) => (...args: unknown[]) => void this.log.push([name, ...args]);
-    const events: ConnectionEvents = {
-      state: (state) => this.states.push(state),
-      greeting: note("greeting"), frame: note("frame"), diagnostics: note("diagnostics"), ack: note("ack"), reject: note("reject"),
-      parameterChanged: note("parameterChanged"), roomState: note("roomState"), boatList: note("boatList"),
-      roomEvent: note("roomEvent"), welcome: note("welcome"), people: note("people"), clock: note("clock"), stats: note("stats"),
+    const sink: ConnectionSink = {
+      event: (event) => this.events.push(event),
+      frame: (frame) => this.frames.push(frame),
     };
-    this.connection = new Connection("ws://host/ws", world, events);
+    this.connection = new Connection("ws://host/ws", world, sink);
     this.connection.start();
   }
 
@@ -119,16 +117,19 @@ export class Rig {
     return this.sockets.at(-1)!;
   }
 
+  get states(): ConnectionState[] {
+    return this.eventsOf("state").map(({ state }) => state);
+  }
+
   get state(): ConnectionState {
     return this.states.at(-1)!;
   }
 
-  logOf(name: string): unknown[][] {
-    return this.log.filter(([logged]) => logged === name).map(([, ...args]) => args);
+  eventsOf<K extends ConnectionEvent["kind"]>(kind: K): Extract<ConnectionEvent, { kind: K }>[] {
+    return this.events.filter((event) => event.kind === kind) as Extract<ConnectionEvent, { kind: K }>[];
   }
 
-  lastStats(): Record<string, unknown> {
-    return this.logOf("stats").at(-1)![0] as Record<string, unknown>;
+  lastStats(): LinkStats {
+    return this.eventsOf("stats").at(-1)!.stats;
   }
 }
-

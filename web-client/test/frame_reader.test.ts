@@ -1,4 +1,4 @@
-// The WebAssembly reader under bytes that no server sends: it says no, and reads the next good frame.
+// The WebAssembly reader with bytes that no server sends: it refuses them and reads the next good frame.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it, vi } from "vitest";
@@ -6,11 +6,12 @@ import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
 
 import { crc32c } from "../src/codec/crc32c";
 import { readerFault } from "../src/codec/frame_reader";
-import { PlaneUnpacker } from "../src/codec/packed_planes";
+import { isPacked } from "../src/codec/frame_types";
+import { FrameUnpacker } from "../src/codec/frame_unpacker";
 import { parse } from "../src/codec/parse";
 import { ServerMessageSchema, type LayerFrame, type ServerMessage } from "../src/gen/spindrift/v1/wire_pb";
 
-/** Thousands of frames, also on a machine that has other things to do. */
+/** Thousands of frames, also on a busy machine. */
 vi.setConfig({ testTimeout: 60_000 });
 
 const kFiles = ["surface_packed_0", "surface_packed_1", "foam_packed_0", "foam_packed_1", "particles_packed"];
@@ -32,9 +33,9 @@ function bytesWith(message: ServerMessage, payload: Uint8Array): ArrayBuffer {
   return bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) as ArrayBuffer;
 }
 
-const unpacker = new PlaneUnpacker();
+const unpacker = new FrameUnpacker();
 
-/** What a page makes of the frame, the keyframe before it included. */
+/** Reads the frame as the page does, after the keyframe that a delta needs. */
 function read(file: string, payload?: Uint8Array): { kind: string; reason?: string; payload?: Uint8Array } {
   const message = messageOf(file);
   unpacker.forget();
@@ -44,7 +45,7 @@ function read(file: string, payload?: Uint8Array): { kind: string; reason?: stri
 
 function readInto(bytes: ArrayBuffer): { kind: string; reason?: string; payload?: Uint8Array } {
   const parsed = parse(bytes);
-  return parsed.kind === "packedSurface" || parsed.kind === "packedFoam" ? unpacker.unpack(parsed) : (parsed as { kind: string });
+  return isPacked(parsed) ? unpacker.unpack(parsed) : (parsed as { kind: string });
 }
 
 function expectHarmless(result: { kind: string; reason?: string }): void {
@@ -52,7 +53,7 @@ function expectHarmless(result: { kind: string; reason?: string }): void {
   else expect(["surface", "foam", "particles"]).toContain(result.kind);
 }
 
-/** Numbers that are the same every time. */
+/** Pseudo-random numbers from a fixed seed. */
 function* noise(seed: number): Generator<number> {
   for (let state = seed; ; ) {
     state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
@@ -61,11 +62,11 @@ function* noise(seed: number): Generator<number> {
 }
 
 describe("the frame reader", () => {
-  it("runs on this machine", () => {
+  it("runs here", () => {
     expect(readerFault()).toBeUndefined();
   });
 
-  it("says in one line what a machine lacks that it does not run on", async () => {
+  it("says in one line what a browser lacks", async () => {
     vi.resetModules();
     vi.stubGlobal("WebAssembly", undefined);
     const { readerFault: fault } = await import("../src/codec/frame_reader");
@@ -78,7 +79,7 @@ describe("the frame reader", () => {
     for (let length = 0; length < payload.length; length += 3) expect(read(file, payload.slice(0, length))).toMatchObject({ kind: "malformed" });
   });
 
-  it.each(kFiles)("refuses %s with more behind its end", (file) => {
+  it.each(kFiles)("refuses %s with extra bytes", (file) => {
     const { payload } = frameOf(messageOf(file));
     for (const more of [1, 8, 1000]) {
       const longer = new Uint8Array(payload.length + more);
@@ -87,7 +88,7 @@ describe("the frame reader", () => {
     }
   });
 
-  it.each(kFiles)("reads %s with flipped bits or says no, and then the good one again", (file) => {
+  it.each(kFiles)("reads or refuses %s with flipped bits, and reads the good frame afterwards", (file) => {
     const { payload } = frameOf(messageOf(file));
     const good = read(file).payload!.slice();
     for (let bit = 0; bit < 8 * payload.length; bit += 13) {
@@ -98,7 +99,7 @@ describe("the frame reader", () => {
     expect(read(file).payload).toEqual(good);
   });
 
-  it.each(kFiles)("takes any bytes as %s without harm", (file) => {
+  it.each(kFiles)("survives random bytes as %s", (file) => {
     const random = noise(kFiles.indexOf(file) + 1);
     for (let round = 0; round < 100; ++round) {
       const payload = new Uint8Array(random.next().value! % 3000);
@@ -107,7 +108,7 @@ describe("the frame reader", () => {
     }
   });
 
-  it("refuses a plane and particles of the largest size that no byte stands behind", () => {
+  it("refuses a plane and particles of the largest size with too short a payload", () => {
     for (const file of ["surface_packed_0", "particles_packed"]) {
       const message = messageOf(file);
       const { codec } = frameOf(message);

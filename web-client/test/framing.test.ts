@@ -1,10 +1,10 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { frameBox, freeTangents, type PixelRect, type WaterExtent } from "../src/scene/framing";
+import { frameBox, freeTangents, type PixelRect, type ViewedBox } from "../src/scene/framing";
 
 const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
-const waters: WaterExtent[] = [
+const waters: ViewedBox[] = [
   { sideM: 24, minYM: -1.5, maxYM: 1 },
   { sideM: 100, minYM: -3, maxYM: 4 },
   { sideM: 2.4, minYM: 0, maxYM: 1.6 },
@@ -18,7 +18,7 @@ const screens: { widthPx: number; heightPx: number; free: PixelRect }[] = [
 ];
 
 /** The eight corners of the water in pixels, as a camera set up like the page's sees them. */
-function cornersPx(water: WaterExtent, backward: Vector3, screen: (typeof screens)[number]): { xPx: number; yPx: number }[] {
+function cornersPx(water: ViewedBox, backward: Vector3, screen: (typeof screens)[number]): { xPx: number; yPx: number }[] {
   const { widthPx, heightPx, free } = screen;
   const camera = new PerspectiveCamera(47, widthPx / heightPx, 0.1, 1000);
   camera.setViewOffset(widthPx, heightPx, (widthPx - free.leftPx - free.rightPx) / 2, (heightPx - free.topPx - free.bottomPx) / 2, widthPx, heightPx);
@@ -37,7 +37,7 @@ function cornersPx(water: WaterExtent, backward: Vector3, screen: (typeof screen
 }
 
 describe("a view of the water", () => {
-  it("holds every corner in the free part and fills it one way, from every side, on every screen", () => {
+  it("shows every corner in the free part and fills its width or height, from every side, on every screen", () => {
     for (const water of waters)
       for (const backward of backwards)
         for (const screen of screens) {
@@ -58,7 +58,7 @@ describe("a view of the water", () => {
         }
   });
 
-  it("is the same picture of twice the water from twice as far", () => {
+  it("scales with the water: twice the size from twice the distance", () => {
     const tangents = freeTangents(47, 800, 1280, screens[0]!.free);
     const near = frameBox({ sideM: 10, minYM: -1, maxYM: 1 }, backwards[0]!, tangents);
     const far = frameBox({ sideM: 20, minYM: -2, maxYM: 2 }, backwards[0]!, tangents);
@@ -73,7 +73,7 @@ describe("a view of the water", () => {
     expect(moved.positionM.sub(square.positionM).distanceTo(new Vector3(10, 0, -5))).toBeCloseTo(0, 9);
   });
 
-  it("does not ask for an endless distance where the panels leave nothing", () => {
+  it("keeps a finite distance where the panels leave no free part", () => {
     const nothing = freeTangents(47, 600, 300, { leftPx: 300, topPx: 600, rightPx: 300, bottomPx: 600 });
     const { positionM } = frameBox(waters[0]!, backwards[0]!, nothing);
     expect(positionM.length()).toBeGreaterThan(24);

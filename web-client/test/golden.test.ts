@@ -1,10 +1,11 @@
-// The bytes that the C++ tests freeze, read by this client: both must make the same of them.
+// The golden bytes of the C++ tests, read by this client with the same results.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import type { Malformed } from "../src/codec/malformed";
-import { PlaneUnpacker } from "../src/codec/packed_planes";
+import { isPacked, type PackedFrame } from "../src/codec/frame_types";
+import { FrameUnpacker } from "../src/codec/frame_unpacker";
 import { parse, type ParsedMessage } from "../src/codec/parse";
 import { unpackBodies, type BodyPose } from "../src/scene/bodies";
 import { elevationAtM } from "../src/scene/height_field";
@@ -29,22 +30,22 @@ function camel(name: string): string {
   return name.replace(/_([a-z0-9])/g, (_, letter: string) => letter.toUpperCase());
 }
 
-/** As the connection does: packed surfaces become plain ones, with the golden frames that they build on read before. */
-function unpacked(golden: GoldenCase, unpacker = new PlaneUnpacker()): Exclude<ParsedMessage, { kind: "packedSurface" | "packedFoam" }> | Malformed {
+/** As the connection does: unpacks packed frames, after the golden frames that they build on. */
+function unpacked(golden: GoldenCase, unpacker = new FrameUnpacker()): Exclude<ParsedMessage, PackedFrame> | Malformed {
   const before = cases.find((c) => c.file !== "" && c.file === golden["follows"]);
   if (before) unpacked(before, unpacker);
   const parsed = parse(read(golden.file));
-  if (parsed.kind !== "packedSurface" && parsed.kind !== "packedFoam") return parsed;
+  if (!isPacked(parsed)) return parsed;
   const plain = unpacker.unpack(parsed);
   return plain.kind === "missingBase" ? { kind: "malformed", reason: "the frame before is missing" } : plain;
 }
 
-/** What the tests below read; a kind or a layer that is not here would go unread without a word. */
+/** Kinds and layers that the tests below read; the first test fails if golden.json has another one. */
 const kKinds = ["frame", "diagnostics", "greeting", "ack", "reject", "boat_list", "room_event"];
 const kLayers = ["LAYER_SURFACE", "LAYER_PARTICLES", "LAYER_FOAM", "LAYER_BODIES"];
 
 describe("golden bytes", () => {
-  it("are of every verdict, kind and layer, and of none that no test here reads", () => {
+  it("have only verdicts, kinds and layers that a test here reads", () => {
     expect(new Set(cases.map((c) => c.verdict))).toEqual(new Set(["ok", "bad_frame", "bad_message"]));
     const good = cases.filter((c) => c.verdict === "ok");
     expect(new Set(good.map((c) => c.kind))).toEqual(new Set(kKinds));
@@ -55,7 +56,7 @@ describe("golden bytes", () => {
     expect(unpacked(golden).kind).toBe("malformed");
   });
 
-  it.each(cases.filter((c) => c.verdict === "bad_message"))("takes nothing from $file: $why", ({ file }) => {
+  it.each(cases.filter((c) => c.verdict === "bad_message"))("refuses or ignores $file: $why", ({ file }) => {
     expect(["malformed", "unknown"]).toContain(parse(read(file)).kind);
   });
 
@@ -79,7 +80,7 @@ describe("golden bytes", () => {
   });
 
   it.each(cases.filter((c) => c["layer"] === "LAYER_PARTICLES"))("decodes the particles of $file as the shader does", (golden) => {
-    const parsed = parse(read(golden.file));
+    const parsed = unpacked(golden);
     if (parsed.kind !== "particles") throw new Error(JSON.stringify(parsed));
     const { header, payload } = parsed;
     expect(header).toMatchObject({ tick: BigInt(golden["tick"] as string), count: golden["count"], radiusM: golden["radius_m"] });

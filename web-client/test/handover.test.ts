@@ -16,19 +16,19 @@ function rig(maxUnderWay: number) {
   return { delivered, handover, offer };
 }
 
-describe("the hand-over to a slow page", () => {
-  it("keeps the newest frame and drops those that it overtook", () => {
+describe("the handover to a slow page", () => {
+  it("keeps the newest frame and drops the superseded ones", () => {
     const { delivered, handover, offer } = rig(2);
     for (let id = 0; id < 100; ++id) offer(id);
     expect(delivered.map(({ id }) => id)).toEqual([0, 1]);
-    expect(handover.overtakenCount).toBe(97);
+    expect(handover.supersededCount).toBe(97);
     handover.release(delivered[0]!.buffer);
     expect(delivered.map(({ id }) => id)).toEqual([0, 1, 99]);
     handover.release(delivered[1]!.buffer);
     expect(delivered).toHaveLength(3);
   });
 
-  it("uses returned buffers again and makes new ones for a new size", () => {
+  it("reuses returned buffers and makes new ones for a new size", () => {
     const { delivered, handover, offer } = rig(1);
     offer(0);
     const first = delivered[0]!.buffer;
@@ -54,7 +54,7 @@ describe("the hand-over to a slow page", () => {
     expect(handover.takeBuffer(200_000).byteLength).toBe(262_144);
   });
 
-  it("is not fooled into more frames under way by buffers that nobody lent", () => {
+  it("ignores buffers that it did not hand out", () => {
     const { delivered, handover, offer } = rig(1);
     for (let i = 0; i < 10; ++i) handover.release(new ArrayBuffer(8));
     offer(1);
@@ -64,19 +64,19 @@ describe("the hand-over to a slow page", () => {
 });
 
 describe("the page's ring of frames", () => {
-  interface Numbered {
+  interface TimedState {
     timeS: number;
     stateId: bigint;
   }
-  const at = (timeS: number, stateId = 0n): Numbered => ({ timeS, stateId });
-  const frames = (ring: FrameRing<Numbered>, ...times: number[]) => times.forEach((timeS) => ring.push(at(timeS)));
-  /** A ring that notes which frames it gave back. */
+  const at = (timeS: number, stateId = 0n): TimedState => ({ timeS, stateId });
+  const frames = (ring: FrameRing<TimedState>, ...times: number[]) => times.forEach((timeS) => ring.push(at(timeS)));
+  /** A ring and the frames that it released. */
   const noted = (maxCount: number) => {
-    const released: Numbered[] = [];
-    return { released, ring: new FrameRing<Numbered>(maxCount, (frame) => released.push(frame)) };
+    const released: TimedState[] = [];
+    return { released, ring: new FrameRing<TimedState>(maxCount, (frame) => released.push(frame)) };
   };
 
-  it("gives the oldest back when it is full", () => {
+  it("releases the oldest when it is full", () => {
     const { released, ring } = noted(3);
     frames(ring, 1, 2, 3, 4, 5);
     expect(released).toEqual([at(1), at(2)]);
@@ -93,21 +93,21 @@ describe("the page's ring of frames", () => {
     expect(ring.around(9)).toEqual({ from: at(4), to: at(4), mix: 0 });
   });
 
-  it("starts anew when simulation time goes back", () => {
+  it("starts again when simulation time goes back", () => {
     const { released, ring } = noted(4);
     frames(ring, 7, 8, 0.1);
     expect(released).toEqual([at(7), at(8)]);
     expect(ring.around(8)).toEqual({ from: at(0.1), to: at(0.1), mix: 0 });
   });
 
-  it("puts a repeated frame of a paused room in the place of the newest", () => {
+  it("replaces the newest frame with a repeated frame of a paused room", () => {
     const { released, ring } = noted(4);
     for (const frame of [at(1, 10n), at(2, 20n), at(2, 20n)]) ring.push(frame);
     expect(released).toEqual([at(2, 20n)]);
     expect(ring.around(1.5)).toEqual({ from: at(1, 10n), to: at(2, 20n), mix: 0.5 });
   });
 
-  it("starts anew when a paused room was changed, with or without numbered states", () => {
+  it("starts again when a paused room was changed, with or without numbered states", () => {
     for (const [before, after] of [[20n, 21n], [0n, 0n]] as const) {
       const { released, ring } = noted(4);
       for (const frame of [at(1, before && 10n), at(2, before), at(2, after)]) ring.push(frame);

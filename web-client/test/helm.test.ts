@@ -13,8 +13,8 @@ function sender() {
   return { time, sent, sender: new LatestSender<number>((value) => sent.push([value, time.nowMs]), world, 50) };
 }
 
-describe("orders to the helm", () => {
-  it("go at most twenty times a second, the first at once and the last always", () => {
+describe("helm commands", () => {
+  it("are sent at most twenty times per second, the first at once and the last always", () => {
     const rig = sender();
     for (let ms = 0; ms < 1000; ms += 5) {
       rig.sender.offer(ms);
@@ -29,7 +29,7 @@ describe("orders to the helm", () => {
     expect(rig.time.timerCount).toBe(0);
   });
 
-  it("go at once when flushed and not at all when cancelled", () => {
+  it("are sent at once when flushed and never when cancelled", () => {
     const rig = sender();
     rig.sender.offer(1);
     rig.sender.offer(2);
@@ -44,13 +44,13 @@ describe("orders to the helm", () => {
 });
 
 describe("the helm", () => {
-  it("knows arrows and WASD by their place on the keyboard", () => {
+  it("uses arrows and WASD by their physical position", () => {
     expect(["ArrowUp", "KeyW", "ArrowDown", "KeyS", "ArrowLeft", "KeyA", "ArrowRight", "KeyD", "Space"].map(helmKey)).toEqual([
       "ahead", "ahead", "astern", "astern", "port", "port", "starboard", "starboard", undefined,
     ]);
   });
 
-  it("moves the lever while its key is held and leaves it there", () => {
+  it("moves the throttle while its key is held and keeps it afterwards", () => {
     const helm = new Helm();
     helm.press("ahead");
     for (let i = 0; i < 100; ++i) helm.advance(0.016);
@@ -63,7 +63,7 @@ describe("the helm", () => {
     expect(helm.throttle).toBeCloseTo(0.3, 9);
   });
 
-  it("brings the rudder back amidships when its keys are let go, but not where a slider set it", () => {
+  it("centres the rudder when its keys are released, but not after its slider was used", () => {
     const helm = new Helm();
     helm.press("port");
     helm.advance(0.1);
@@ -76,7 +76,7 @@ describe("the helm", () => {
     expect(helm.rudder).toBe(0.5);
   });
 
-  it("does nothing with both keys of a pair, and forgets every key when centred", () => {
+  it("ignores two opposite keys, and releases every key when centred", () => {
     const helm = new Helm();
     for (const key of ["ahead", "astern"] as const) helm.press(key);
     expect(helm.advance(1)).toBe(false);
@@ -90,22 +90,22 @@ describe("the helm", () => {
 
 describe("limits from the scene", () => {
   const wave = { resolutionCount: 256, sideM: 24, depthM: 1.5, periodicX: true, periodicZ: true };
-  const greeting = (change: Partial<GreetingInfo>) => ({ wave, stage: wave, hasBoats: true, ...change }) as GreetingInfo;
+  const greeting = (change: Partial<GreetingInfo>) => ({ wave, waterExtents: wave, hasBoats: true, ...change }) as GreetingInfo;
 
-  it("let waves come from every direction", () => {
+  it("allow waves from every direction", () => {
     expect(effectLimits(greeting({}))!.waveDirectionDeg).toMatchObject({ min: -180, max: 180, step: 1, default: 0 });
   });
 
   it("keep boats afloat: no longer than a quarter of the side, nor deeper than the water", () => {
     expect(boatLimits(greeting({}))!.lengthM).toMatchObject({ min: 0.3, max: 6, default: 2.4 });
-    const shallow = boatLimits(greeting({ stage: { sideM: 24, depthM: 0.2 } }))!.lengthM;
+    const shallow = boatLimits(greeting({ waterExtents: { sideM: 24, depthM: 0.2 } }))!.lengthM;
     expect(boatOfLength(shallow.max).draughtM).toBeLessThanOrEqual(0.6 * 0.2 + 1e-9);
     expect(boatLimits(greeting({ hasBoats: false }))).toBeUndefined();
-    expect(boatLimits(greeting({ stage: { sideM: 24, depthM: 0 } }))).toBeUndefined();
+    expect(boatLimits(greeting({ waterExtents: { sideM: 24, depthM: 0 } }))).toBeUndefined();
     expect(boatLimits(greeting({}))!.throttleRatio).toMatchObject({ min: -1, max: 1 });
   });
 
-  it("make boats of the proto's own shape", () => {
+  it("give boats the shape of the proto's default boat", () => {
     const boat = boatOfLength(2.4);
     expect(boat.beamM).toBeCloseTo(0.9, 9);
     expect(boat.heightM).toBeCloseTo(0.6, 9);

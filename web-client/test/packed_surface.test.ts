@@ -1,13 +1,27 @@
-// The packed surface on its way through a connection: what is lost, and how it comes back.
+// The packed surface through a connection: lost frames and how the surface recovers.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
+import { fromBinary } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import { Packing } from "../src/gen/spindrift/v1/wire_pb";
+import { crc32c } from "../src/codec/crc32c";
+import { Packing, ServerMessageSchema } from "../src/gen/spindrift/v1/wire_pb";
 import { Rig } from "./fakes";
-import { greeting } from "./wire";
+import { greeting, type ServerBody } from "./wire";
 
-const frames = [0, 1, 2].map((k) => readFileSync(join(import.meta.dirname, "..", "..", "tests", "golden", `surface_packed_${k}.bin`)));
+function golden(name: string): Uint8Array {
+  return readFileSync(join(import.meta.dirname, "..", "..", "tests", "golden", `${name}.bin`));
+}
+
+const frames = [0, 1, 2].map((k) => golden(`surface_packed_${k}`));
+
+/** The frame without the last bytes of its payload, with the checksum of the rest. */
+function damaged(name: string): ServerBody {
+  const { message } = fromBinary(ServerMessageSchema, golden(name));
+  if (message.case !== "frame") throw new Error("not a frame");
+  const payload = message.value.payload.slice(0, -3);
+  return { case: "frame", value: { ...message.value, payload, crc32c: crc32c(payload) } } as ServerBody;
+}
 
 function deliver(rig: Rig, k: number): void {
   const bytes = frames[k]!;
@@ -21,34 +35,46 @@ function liveRig(): Rig {
   return rig;
 }
 
-describe("the packed surface", () => {
-  it("is asked for, and arrives as the plain one does", () => {
+describe("packed frames", () => {
+  it("is subscribed to and delivered as plain samples", () => {
     const rig = liveRig();
     expect(rig.socket.sentOf("subscribe").every(({ value }) => value.packing === Packing.PACKED)).toBe(true);
     for (const k of [0, 1, 2]) deliver(rig, k);
-    const arrived = rig.logOf("frame").map(([frame]) => frame as { kind: string; header: { tick: bigint }; payload: Uint8Array });
+    const arrived = rig.frames;
     expect(arrived.map(({ kind, header }) => [kind, header.tick])).toEqual([["surface", 100n], ["surface", 102n], ["surface", 104n]]);
     expect(arrived.every(({ payload }) => payload.length === 2 * 20 * 20)).toBe(true);
   });
 
-  it("begins again with a keyframe where a frame is missing, and asks for one once a second", () => {
+  it("continues with a keyframe after a lost frame, and requests one at most once a second", () => {
     const rig = liveRig();
     const askedCount = (): number => rig.socket.sentOf("subscribe").length;
     const before = askedCount();
     deliver(rig, 1);
-    expect(rig.logOf("frame")).toHaveLength(0);
+    expect(rig.frames).toHaveLength(0);
     const once = askedCount();
     expect(once).toBeGreaterThan(before);
     deliver(rig, 2);
     expect(askedCount()).toBe(once);
     deliver(rig, 0);
     deliver(rig, 1);
-    expect(rig.logOf("frame")).toHaveLength(2);
+    expect(rig.frames).toHaveLength(2);
     deliver(rig, 1); // builds on 0, but 1 is the last one
-    expect(rig.logOf("frame")).toHaveLength(2);
+    expect(rig.frames).toHaveLength(2);
   });
 
-  it("counts on nothing from before a reconnection", () => {
+  it("requests a keyframe after a damaged plane, but not after damaged particles: the next frame of those is one", () => {
+    const rig = liveRig();
+    const askedCount = (): number => rig.socket.sentOf("subscribe").length;
+    const before = askedCount();
+    rig.socket.deliver(damaged("particles_packed"));
+    expect(askedCount()).toBe(before);
+    rig.socket.deliver(damaged("surface_packed_0"));
+    expect(askedCount()).toBeGreaterThan(before);
+    rig.time.advance(500);
+    expect(rig.lastStats()).toMatchObject({ malformedCount: 2, receivedCount: { surface: 0, particles: 0 } });
+  });
+
+  it("uses no plane from before a reconnection", () => {
     const rig = liveRig();
     deliver(rig, 0);
     rig.connection.stop();
@@ -56,6 +82,6 @@ describe("the packed surface", () => {
     rig.socket.open();
     rig.socket.deliver(greeting());
     deliver(rig, 1);
-    expect(rig.logOf("frame")).toHaveLength(1);
+    expect(rig.frames).toHaveLength(1);
   });
 });

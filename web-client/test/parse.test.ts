@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { crc32c } from "../src/codec/crc32c";
-import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frames";
+import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frame_types";
 import { parse } from "../src/codec/parse";
 import { Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
 import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
@@ -75,7 +75,7 @@ describe("parse", () => {
     expect(parsed.payload.length).toBe(24);
   });
 
-  it("reads every kind of small message", () => {
+  it("reads every other kind of message", () => {
     expect(parse(encode({ case: "ack", value: { commandId: 3n, appliedTick: 99n, boatId: 7 } }))).toEqual({ kind: "ack", commandId: 3n, appliedTick: 99n, boatId: 7 });
     expect(
       parse(encode({ case: "reject", value: { commandId: 4n, reason: RejectReason.OUT_OF_RANGE, field: "splash.radius_m", message: "too wide" } })),
@@ -101,7 +101,7 @@ describe("parse", () => {
     expectMalformed(encode(surfaceFrame([0, 0, 0, 0], { codec: { case: "surfaceFixed16", value: { resolutionCount: 5000, sideM: 1, quantumM: 1 } } as never })), /5000 samples/);
   });
 
-  it("refuses a wrong checksum, a predicted frame, a foreign layer and an unknown codec", () => {
+  it("refuses a wrong checksum, a delta, a foreign layer and an unknown codec", () => {
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { crc32c: 1 })), /crc32c/);
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { keyframe: false })), /keyframes/);
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { layer: Layer.PARTICLES })), /carries a surface/);
@@ -109,7 +109,7 @@ describe("parse", () => {
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { codec: { case: undefined } })), /codec/);
   });
 
-  it("refuses numbers that would spoil the picture", () => {
+  it("refuses numbers that cannot be drawn", () => {
     const { NaN: nan, POSITIVE_INFINITY: infinite } = Number;
     expectMalformed(encode(surfaceFrame([1, 2, 3, 4], { timeS: nan })), /time_s/);
     for (const [sideM, quantumM] of [[0, 1], [1, 0], [nan, 1], [1, infinite], [-1, 1]] as const)
@@ -133,7 +133,7 @@ describe("parse", () => {
   });
 });
 
-describe("parse of what stands and floats in the water", () => {
+describe("parse of foam, boats and obstacles", () => {
   const boat = { boatId: 3, lengthM: 2.4, beamM: 0.9, heightM: 0.6, draughtM: 0.24 };
 
   it("reads foam and bodies as views into the message", () => {
@@ -146,7 +146,7 @@ describe("parse of what stands and floats in the water", () => {
     expect(bodies.payload.buffer).toBe(buffer);
   });
 
-  it("takes frames without a single particle or boat", () => {
+  it("accepts frames without particles or boats", () => {
     expect(parse(encode(particleFrame(new Uint8Array(0))))).toMatchObject({ kind: "particles", header: { count: 0 } });
     expect(parse(encode(bodiesFrame(new Uint8Array(0))))).toMatchObject({ kind: "bodies", header: { count: 0 } });
   });
@@ -160,7 +160,7 @@ describe("parse of what stands and floats in the water", () => {
     expectMalformed(encode(bodiesFrame(new Uint8Array(28), {}, 0)), /payload of 28 bytes, header says 0/);
   });
 
-  it("refuses a wrong checksum, layer, time and a predicted frame of the new layers", () => {
+  it("refuses a wrong checksum, layer, time and a delta of the new layers", () => {
     const payload = bodiesPayload([{}]);
     expectMalformed(encode(foamFrame(new Uint8Array(4), { crc32c: 1 })), /crc32c/);
     expectMalformed(encode(bodiesFrame(payload, { crc32c: 1 })), /crc32c/);
@@ -181,7 +181,7 @@ describe("parse of what stands and floats in the water", () => {
       }
   });
 
-  it("reads boats, events and the ledger", () => {
+  it("reads boats, room events and the volume ledger", () => {
     expect(parse(encode({ case: "boatList", value: { boats: [boat] } }))).toEqual({ kind: "boatList", boats: [boat] });
     for (const bad of [{ lengthM: 0 }, { beamM: Number.NaN }, { heightM: 1e9 }, { draughtM: -1 }])
       expectMalformed(encode({ case: "boatList", value: { boats: [{ ...boat, ...bad }] } }), /boat 3/);
@@ -194,7 +194,7 @@ describe("parse of what stands and floats in the water", () => {
     expect(parse(encode({ case: "diagnostics", value: counted }))).toMatchObject({ kind: "diagnostics", diagnostics: counted });
   });
 
-  it("reads what stands in the water, and leaves out what cannot be drawn", () => {
+  it("reads obstacles and beaches, and leaves out invalid ones", () => {
     const scene = {
       name: "harbor",
       wave: { resolutionCount: 256, sideM: 60, depthM: 3, boundaryMinusX: WaveBoundary.ABSORB, boundaryPlusX: WaveBoundary.REFLECT },

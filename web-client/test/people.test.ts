@@ -13,8 +13,8 @@ function storage(): StorageLike & { map: Map<string, string> } {
   return { map, getItem: (key) => map.get(key) ?? null, setItem: (key, value) => void map.set(key, value) };
 }
 
-describe("people on the wire", () => {
-  it("are read with their colours as CSS has them", () => {
+describe("people in messages", () => {
+  it("are read with CSS colours", () => {
     const person = { personId: 3, name: "Ada", colorRgb: 0x0a0b0c, role: Role.OPERATOR, boatIds: [2, 5], away: true };
     expect(parse(encode({ case: "people", value: { people: [person] } }))).toEqual({
       kind: "people",
@@ -22,18 +22,18 @@ describe("people on the wire", () => {
     });
   });
 
-  it("of a role that this page does not know watch", () => {
+  it("with a role that this page does not know are viewers", () => {
     expect(parse(encode({ case: "welcome", value: { ...welcome.value, role: 9 as Role } }))).toMatchObject({ kind: "welcome", welcome: { role: "viewer" } });
   });
 });
 
-describe("who the page is", () => {
-  it("comes back after a loss with the key that the server gave it", () => {
+describe("the identity of the page", () => {
+  it("reconnects with the resume key of the last Welcome", () => {
     const rig = new Rig();
     rig.socket.open();
     expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { name: "", token: "", resumeKey: "" } });
     rig.socket.deliver(welcome);
-    expect(rig.logOf("welcome")).toEqual([[{ role: "player", personId: 3, resumeKey: "key", resumed: false }]]);
+    expect(rig.eventsOf("welcome")).toEqual([{ kind: "welcome", welcome: { role: "player", personId: 3, resumeKey: "key", resumed: false } }]);
     rig.socket.drop();
     rig.time.advance(8000);
     rig.socket.open();
@@ -41,7 +41,7 @@ describe("who the page is", () => {
     expect(rig.socket.sent[0]).toMatchObject({ value: { resumeKey: "key" } });
   });
 
-  it("connects anew under another name, also after a refusal, and stays the same person", () => {
+  it("reconnects with another name, also after a refusal, as the same person", () => {
     const rig = new Rig();
     rig.socket.open();
     rig.socket.deliver(welcome);
@@ -53,7 +53,7 @@ describe("who the page is", () => {
     expect(rig.socket.url).not.toContain("secret");
   });
 
-  it("is kept for a reload, its key for the same room only", () => {
+  it("is kept for a reload, the resume key for the same room only", () => {
     const kept = storage();
     const ada = { name: "Ada", token: "secret", resumeKey: "key" };
     new IdentityStore(kept, "ws://host/ws").leave(ada);
@@ -62,7 +62,7 @@ describe("who the page is", () => {
     expect(new IdentityStore(kept, "ws://host/ws/other").load()).toEqual({ ...ada, resumeKey: "" });
   });
 
-  it("keeps its key to itself while it is there, so that a duplicated tab is somebody else", () => {
+  it("stores no resume key while the page is open, so that a duplicated tab is another person", () => {
     const kept = storage();
     const ada = { name: "Ada", token: "secret", resumeKey: "key" };
     const first = new IdentityStore(kept, "u");
@@ -74,7 +74,7 @@ describe("who the page is", () => {
     expect(new IdentityStore(kept, "u").load()).toEqual(ada);
   });
 
-  it("is nobody where nothing is kept, or nonsense", () => {
+  it("is empty without storage or with invalid content", () => {
     const nobody = { name: "", token: "", resumeKey: "" };
     expect(new IdentityStore(undefined, "u").load()).toEqual(nobody);
     for (const text of ["", "{", "null", "7", '{"name":7,"url":"u"}']) {

@@ -55,7 +55,7 @@ function steps(pictures: Picture[]): number[] {
 }
 
 describe("the playout clock", () => {
-  it("makes 20 uneven frames a second one even motion at 60 pictures", () => {
+  it("shows 20 uneven frames per second as even motion at 60 pictures per second", () => {
     const pictures = watch({ frameRateHz: 20, transitS: (k) => 0.03 + 0.025 * noise(k) });
     for (const step of steps(pictures)) {
       expect(step).toBeGreaterThan(0.88 / 60);
@@ -65,14 +65,14 @@ describe("the playout clock", () => {
     expect(pictures.filter(({ shownS, newestS }) => shownS >= newestS).length).toBeLessThan(0.01 * pictures.length);
   });
 
-  it("stays two frame intervals behind the fastest frames where they come evenly", () => {
+  it("stays two frame intervals behind frames that arrive evenly", () => {
     for (const { delayS, nowS, shownS } of watch({ frameRateHz: 30, transitS: () => 0.04 })) {
       expect(delayS).toBeCloseTo(0.04 + 2 / 30, 6);
       expect(nowS - shownS).toBeCloseTo(delayS, 2);
     }
   });
 
-  it("stays further behind where the jitter needs it, and no longer than it does", () => {
+  it("stays further behind while there is jitter", () => {
     // One frame in eight takes 0.2 s longer.
     const pictures = watch({ frameRateHz: 30, transitS: (k) => 0.02 + (k % 8 === 0 && k < 240 ? 0.2 : 0), durationS: 16 });
     const during = pictures.filter(({ nowS }) => nowS > 5 && nowS < 8);
@@ -83,7 +83,7 @@ describe("the playout clock", () => {
     for (const step of steps(pictures)) expect(step).toBeLessThan(1.12 / 60);
   });
 
-  it("shows the same time to clients near and far but for their delay", () => {
+  it("shows near and far clients the same time apart from their delay", () => {
     const near = watch({ frameRateHz: 30, transitS: (k) => 0.005 + 0.01 * noise(k), leadS: 5 });
     const far = watch({ frameRateHz: 30, transitS: (k) => 0.105 + 0.01 * noise(k), leadS: -7000 });
     near.forEach((picture, k) => expect(picture.shownS - far[k]!.shownS).toBeCloseTo(0.1, 2));
@@ -94,14 +94,14 @@ describe("the playout clock", () => {
     for (const step of steps(pictures)) expect(step).toBeCloseTo(0.5 / 60, 4);
   });
 
-  it("never runs back, never ahead, and rests on the newest frame when the room is paused", () => {
+  it("never runs back or ahead, and stops at the newest frame when the room is paused", () => {
     const pictures = watch({ frameRateHz: 30, transitS: (k) => 0.02 + (k >= 150 ? 1e6 : 0) + 0.1 * noise(k) });
     for (const step of steps(pictures)) expect(step).toBeGreaterThanOrEqual(0);
     for (const { shownS, newestS } of pictures) expect(shownS).toBeLessThanOrEqual(newestS + 1e-9);
     expect(pictures.at(-1)!.shownS).toBeCloseTo(149 / 30, 6);
   });
 
-  it("starts anew when the simulation does", () => {
+  it("restarts with the simulation", () => {
     const clock = new PlayoutClock();
     for (let frame = 0; frame < 30; ++frame) clock.noteFrame(100 + frame / 30, frame / 30, frame / 30);
     expect(clock.displayTimeS(1)).toBeGreaterThan(100);

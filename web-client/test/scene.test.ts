@@ -25,7 +25,7 @@ function camera(): PerspectiveCamera {
 }
 
 describe("a click on the water", () => {
-  it("lands where the point under the pixel is", () => {
+  it("hits the point under the pixel", () => {
     const eye = camera();
     for (const [xM, zM] of [[0, 0], [3, -2], [-5, 4]] as const) {
       const seen = new Vector3(xM, 0, zM).project(eye);
@@ -35,7 +35,7 @@ describe("a click on the water", () => {
     }
   });
 
-  it("lands on the crest in front, not on the plane behind it", () => {
+  it("hits the crest in front, not the plane behind it", () => {
     const crest: WaterShape = { sideM: 16, minM: 0, maxM: 1, elevationAtM: (_, zM) => Math.exp(-((zM - 2) ** 2)) };
     const eye = camera();
     const seen = new Vector3(0, Math.exp(-0.04), 2.2).project(eye);
@@ -44,7 +44,7 @@ describe("a click on the water", () => {
     expect(place.xM).toBeCloseTo(0, 2);
   });
 
-  it("misses beside the water, above the horizon and behind the eye", () => {
+  it("misses beside the water, above the horizon and behind the camera", () => {
     expect(pickWater({ originM: [0, 5, 0], direction: [0.98, -0.2, 0] }, flat)).toBeUndefined();
     expect(pickWater({ originM: [0, 5, 0], direction: [0, 0.6, 0.8] }, flat)).toBeUndefined();
     expect(pickWater({ originM: [0, -5, 0], direction: [0, -1, 0] }, flat)).toBeUndefined();
@@ -56,7 +56,7 @@ describe("the CPU's view of the surface", () => {
   const values = Int16Array.from({ length: n * n }, (_, at) => 100 * (at % n) + 10 * Math.floor(at / n));
   const frame = { layer: "surface" as const, tick: 1n, stateId: 0n, timeS: 0, serverTimeS: 0, level: "full" as const, resolutionCount: n, sideM: 8, quantumM: 0.01, buffer: values.buffer };
 
-  it("interpolates between samples and holds the edge", () => {
+  it("interpolates between samples and clamps at the edge", () => {
     expect(elevationAtM(frame, -3, -3)).toBeCloseTo(0, 9);
     expect(elevationAtM(frame, -2, -3)).toBeCloseTo(0.5, 9);
     expect(elevationAtM(frame, 1, 1)).toBeCloseTo(2.2, 9);
@@ -65,7 +65,7 @@ describe("the CPU's view of the surface", () => {
     expect(elevationAtM(frame, -100, -100)).toBeCloseTo(0, 9);
   });
 
-  it("knows its extremes", () => {
+  it("has the minimum and maximum of the samples", () => {
     const range = elevationRangeM(frame);
     expect(range.minM).toBe(0);
     expect(range.maxM).toBeCloseTo(3.3, 9);
@@ -73,14 +73,14 @@ describe("the CPU's view of the surface", () => {
 });
 
 describe("the frame governor", () => {
-  it("lowers the resolution step by step to a half while frames stay slow", () => {
+  it("lowers the pixel ratio in steps to 0.5 while frames stay slow", () => {
     const governor = new FrameGovernor(2);
     for (let i = 0; i < 400; ++i) governor.note(80);
     expect(governor.pixelRatio).toBe(kMinPixelRatio);
     expect(governor.remark()).toContain("25 %");
   });
 
-  it("forgives single slow frames and pauses", () => {
+  it("ignores single slow frames and pauses", () => {
     const governor = new FrameGovernor(1);
     for (let i = 0; i < 400; ++i) governor.note(i % 2 ? 80 : 16);
     for (let i = 0; i < 10; ++i) governor.note(60_000);
@@ -88,7 +88,7 @@ describe("the frame governor", () => {
     expect(governor.remark()).toBe("");
   });
 
-  it("leaves a resolution that was asked for alone", () => {
+  it("never changes a requested resolution", () => {
     const governor = new FrameGovernor(2, chooseQuality("?quality=high", "SwiftShader").adaptive);
     for (let i = 0; i < 400; ++i) expect(governor.note(80)).toBe(false);
     expect(governor.pixelRatio).toBe(2);
@@ -108,7 +108,7 @@ describe("the frame governor", () => {
 });
 
 describe("the quality", () => {
-  it("is the address's, or low where software draws", () => {
+  it("comes from the address, or is low on a software renderer", () => {
     expect(chooseQuality("?quality=high", "SwiftShader").remark).toBe("");
     expect(chooseQuality("?quality=low", "A GPU").remark).toBe("low quality");
     expect(chooseQuality("", "ANGLE (Google, Vulkan 1.3 (SwiftShader Device))").remark).toContain("no graphics hardware");
@@ -119,7 +119,7 @@ describe("the quality", () => {
 describe("a tap", () => {
   const at = (id: number, xPx: number, yPx: number, timeMs: number) => ({ id, xPx, yPx, timeMs });
 
-  it("is a short press without a way", () => {
+  it("is a short press without movement", () => {
     const taps = new TapDetector();
     taps.pressed(at(1, 10, 10, 0));
     expect(taps.released(at(1, 13, 12, 200))).toBe(true);

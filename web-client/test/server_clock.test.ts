@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { ServerClock } from "../src/net/server_clock";
 
 describe("the server's clock", () => {
-  it("believes the ping with the shortest round trip", () => {
+  it("uses the ping with the shortest round trip", () => {
     const clock = new ServerClock();
     clock.greeted(50, 1000);
     // The server is 40,000 ms ahead; the way back of the second ping took 300 ms more than the way there.
@@ -13,7 +13,7 @@ describe("the server's clock", () => {
     expect(clock.leadMs()).toBeCloseTo(40_000, 6);
   });
 
-  it("takes the greeting's time before the first ping is back, and the first ping's at once", () => {
+  it("uses the greeting's time until the first pong, and that pong at once", () => {
     const clock = new ServerClock();
     expect(clock.leadMs()).toBeUndefined();
     clock.greeted(50, 1000);
@@ -22,7 +22,7 @@ describe("the server's clock", () => {
     expect(clock.leadMs()).toBeCloseTo(49_050, 6);
   });
 
-  it("corrects a small error little by little and sets a large one", () => {
+  it("corrects a small error gradually and a large one at once", () => {
     const clock = new ServerClock();
     clock.greeted(0, 0);
     clock.answered(0, 0.02, 40);
@@ -37,7 +37,7 @@ describe("the server's clock", () => {
     expect(clock.leadMs()).toBeCloseTo(299_995, 3);
   });
 
-  it("does not believe an answer from before its question", () => {
+  it("ignores a pong that is older than its ping", () => {
     const clock = new ServerClock();
     clock.greeted(1, 1000);
     clock.answered(5000, 99, 4000);

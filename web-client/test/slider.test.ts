@@ -36,7 +36,7 @@ describe("a parameter's slider", () => {
     expect(sent).toEqual([44]);
   });
 
-  it("falls back to the server's value when the server refuses, and says why", () => {
+  it("returns to the server's value after a reject and shows the reason", () => {
     const { time, model } = rig(40);
     model.input(400);
     time.advance(kDebounceMs);
@@ -47,7 +47,7 @@ describe("a parameter's slider", () => {
     expect(model.error).toBe("");
   });
 
-  it("falls back to the last value that was accepted", () => {
+  it("returns to the last accepted value", () => {
     const { time, model } = rig(40);
     model.input(60);
     time.advance(kDebounceMs);
@@ -58,7 +58,7 @@ describe("a parameter's slider", () => {
     expect(model.shownValue).toBe(60);
   });
 
-  it("is not pulled back by the refusal of a value that the user has left", () => {
+  it("ignores the reject of a value that the user has changed since", () => {
     const { time, model } = rig(40);
     model.input(400);
     time.advance(kDebounceMs);
@@ -69,18 +69,18 @@ describe("a parameter's slider", () => {
 
   it("follows another person's change, but not while it is being moved", () => {
     const { time, model, changedCount } = rig(40);
-    model.serverSays(70);
+    model.setServerValue(70);
     expect(model.shownValue).toBe(70);
     expect(changedCount()).toBe(1);
     model.input(90);
-    model.serverSays(75);
+    model.setServerValue(75);
     expect(model.shownValue).toBe(90);
     time.advance(kDebounceMs);
     model.reject(1, "no");
     expect(model.shownValue).toBe(75);
   });
 
-  it("leaves other sliders' answers alone and sends nothing after it is gone", () => {
+  it("ignores answers to other sliders and sends nothing after dispose", () => {
     const { time, sent, model } = rig();
     expect(model.ack(5)).toBe(false);
     expect(model.reject(5, "no")).toBe(false);
@@ -113,7 +113,7 @@ describe("the effect sliders' ranges", () => {
     expect(limits.splashRadiusM.label).toBe("Splash radius");
   });
 
-  it("keep the default inside shallow and small water, and the proto's bound in wide water", () => {
+  it("limit the default in shallow and small water, and keep the proto's bound in wide water", () => {
     const small = enter({ wave: { resolutionCount: 64, sideM: 1, depthM: 0.2 } })!;
     expect(small.splashRadiusM).toMatchObject({ max: 0.5, default: 0.5 });
     expect(small.splashDepthM).toMatchObject({ max: 0.18, default: 0.18 });
@@ -121,7 +121,7 @@ describe("the effect sliders' ranges", () => {
     expect(clampTo(3, small.splashRadiusM)).toBe(0.5);
   });
 
-  it("measure a box of particles by its narrower side and its resting water, as the server does", () => {
+  it("follow from the narrower side and the resting depth of a box of particles, as in the server", () => {
     // 2 layers of 8 particles at 0.5 m: a metre of water.
     const limits = enter({ particles: { boxSideM: 4, boxWidthM: 2, fillXRatio: 0.5, fillZRatio: 1, layersCount: 2, count: 32 } })!;
     expect(limits.splashRadiusM.max).toBe(1);
@@ -129,7 +129,7 @@ describe("the effect sliders' ranges", () => {
     expect(limits.waveLengthM.max).toBe(2);
   });
 
-  it("are absent where no water says how deep it is", () => {
+  it("are undefined for water without a depth", () => {
     expect(enter({ particles: { boxSideM: 2.4 } })).toBeUndefined();
   });
 });

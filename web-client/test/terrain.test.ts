@@ -27,12 +27,12 @@ describe("the bed", () => {
     expect(depthAtM(bed, 5, 17.5)).toBeCloseTo(2, 9);
   });
 
-  it("takes the shallower where two beaches meet", () => {
+  it("has the smaller depth where two beaches meet", () => {
     expect(depthAtM(bed, -17, 20)).toBeCloseTo(0.75, 9);
     expect(depthAtM(bed, -9, 20)).toBeCloseTo(1, 9);
   });
 
-  it("goes on as dry land behind a shore, without a step, and nowhere else", () => {
+  it("continues as dry land behind a shore, without a step, and only there", () => {
     expect(landWidthM(bed, bed.beaches[0]!)).toBeGreaterThan(1);
     expect(landWidthM(bed, bed.beaches[1]!)).toBe(0);
     let before = groundHeightM(bed, -19.99, 0);
@@ -48,7 +48,7 @@ describe("the bed", () => {
     expect(extent.minXM).toBeCloseTo(-20 - landWidthM(bed, bed.beaches[0]!), 9);
   });
 
-  it("tells the shaders the same, side by side", () => {
+  it("gives the shaders the same values per side", () => {
     expect(bedUniformValues(bed)).toEqual({ widthsM: [1, 12, 5, 1], shoreDepthsM: [3, 0, 1, 3] });
   });
 
@@ -60,7 +60,7 @@ describe("the bed", () => {
   });
 });
 
-describe("what stands in the water", () => {
+describe("an obstacle", () => {
   it("is a rock round its place, from the bed to about its height", () => {
     const { min, max } = bounds(makeRockGeometry(rock, 3));
     expect(min.y).toBeLessThanOrEqual(-3);
@@ -86,7 +86,7 @@ describe("what stands in the water", () => {
 });
 
 describe("the lace of foam", () => {
-  it("has every brightness equally often, so that half the foam covers half the water", () => {
+  it("has every brightness equally often, so that foam of 0.5 covers half the water", () => {
     const lace = makeLace(64);
     const sorted = [...lace].sort((a, b) => a - b);
     for (const share of [0.1, 0.5, 0.9]) expect(sorted[Math.floor(share * sorted.length)]! / 256).toBeCloseTo(share, 2);
@@ -94,9 +94,9 @@ describe("the lace of foam", () => {
 });
 
 describe("a new boat's place", () => {
-  const water = { sideM: 40, stage: { sideM: 40, depthM: 3 }, beaches: [...bed.beaches], obstacles: [rock, wall] };
+  const water = { sideM: 40, waterExtents: { sideM: 40, depthM: 3 }, beaches: [...bed.beaches], obstacles: [rock, wall] };
 
-  it("measures the way to rocks and turned walls", () => {
+  it("measures the distance to rocks and turned walls", () => {
     expect(clearanceM(rock, 5, -3)).toBeCloseTo(1, 9);
     expect(clearanceM(rock, 5, -6)).toBeCloseTo(-2, 9);
     const along = (m: number): [number, number] => [1 + m * Math.cos(0.5), 2 + m * Math.sin(0.5)];
@@ -116,7 +116,7 @@ describe("a new boat's place", () => {
     }
   });
 
-  it("is inside of the water even where nothing is free", () => {
+  it("is inside the water even if no place is free", () => {
     const full = { ...water, obstacles: [{ ...rock, xM: 0, zM: 0, radiusM: 100 }] };
     const { xM, zM } = spawnPlace(full, 2.4, 0.24, []);
     expect(Math.max(Math.abs(xM), Math.abs(zM))).toBeLessThan(20);

@@ -1,21 +1,22 @@
-// How long the worker takes for a frame of the surface and one of the particles: `npm run bench`, in Node and, with --chromium,
-// in a worker of a browser.
+// Measures how long the worker takes for one frame of the surface and one of the particles: `npm run bench`, in Node or, with
+// --chromium, in a worker of a browser.
 import { fromBinary } from "@bufbuild/protobuf";
 import { ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
-import { parseFrame } from "./frames";
-import { PlaneUnpacker } from "./packed_planes";
+import { FrameUnpacker } from "./frame_unpacker";
+import { isPacked } from "./frame_types";
+import { parseFrame } from "./parse_frame";
 
 export interface DecodeTimes {
   frames: number;
   particles: number;
   resolution: number;
-  /** Milliseconds of a surface, of the particles, of both; sorted. */
+  /** Milliseconds per surface, per particle frame and for both; sorted. */
   surfaceMs: number[];
   particlesMs: number[];
   bothMs: number[];
 }
 
-/** The messages of a file of tests/bench/packed_frames, in turn surface and particles. */
+/** Messages of a file made by tests/bench/packed_frames, surface and particles in turn. */
 function messagesOf(file: Uint8Array): Uint8Array[] {
   const view = new DataView(file.buffer, file.byteOffset, file.byteLength);
   const messages: Uint8Array[] = [];
@@ -34,20 +35,20 @@ function bufferOf(bytesCount: number): Uint8Array {
   return buffer;
 }
 
-/** Reads all frames `rounds` times after three that do not count, the first frame of each, a keyframe, apart. */
+/** Reads all frames `rounds` times after three warm-up rounds. The first frame of each round, a keyframe, is not counted. */
 export function measureDecoding(file: Uint8Array, rounds: number): DecodeTimes {
   const messages = messagesOf(file);
   const times: DecodeTimes = { frames: messages.length / 2, particles: 0, resolution: 0, surfaceMs: [], particlesMs: [], bothMs: [] };
   for (let round = -3; round < rounds; ++round) {
-    const unpacker = new PlaneUnpacker();
+    const unpacker = new FrameUnpacker();
     let surfaceMs = 0;
     messages.forEach((bytes, k) => {
       const begin = performance.now();
       const message = fromBinary(ServerMessageSchema, bytes);
       if (message.message.case !== "frame") throw new Error("not a frame");
       const parsed = parseFrame(message.message.value);
-      const frame = parsed.kind === "packedSurface" || parsed.kind === "packedFoam" ? unpacker.unpack(parsed) : parsed;
-      // As the worker does: into a buffer that the page has given back.
+      const frame = isPacked(parsed) ? unpacker.unpack(parsed) : parsed;
+      // As the worker does: into a buffer that the page has returned.
       if ("payload" in frame) bufferOf(frame.payload.length).set(frame.payload);
       const ms = performance.now() - begin;
       if (frame.kind === "surface") times.resolution = frame.header.resolutionCount;

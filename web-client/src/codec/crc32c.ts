@@ -3,7 +3,7 @@ import { ChecksumReader } from "./frame_reader";
 
 let reader: ChecksumReader | undefined;
 
-/** Checksum of the bytes as an unsigned 32-bit number; of "123456789" it is 0xE3069283. */
+/** Returns an unsigned 32-bit number; 0xE3069283 for "123456789". */
 export function crc32c(bytes: Uint8Array): number {
   reader ??= new ChecksumReader();
   const crc = reader.read(bytes);

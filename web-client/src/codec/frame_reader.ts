@@ -1,10 +1,10 @@
-// The readers of packed frames: server/codec/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance a layer.
+// The readers of packed frames: server/codec/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance per layer.
 import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
 
-/** Of a packed plane. */
+/** Weights of one packed plane. */
 export const kWeightCount = 10;
 
-/** server/codec/wasm/frame_reader.cpp; places in memory, counts, truth as 0 and 1. */
+/** server/codec/wasm/frame_reader.cpp. All numbers are addresses in `memory`, counts, or booleans as 0 and 1. */
 interface Exports {
   memory: WebAssembly.Memory;
   prepareParticles(count: number, payloadBytes: number): number;
@@ -27,7 +27,7 @@ function instantiate(): Exports {
   return new WebAssembly.Instance(compiled).exports as unknown as Exports;
 }
 
-/** One line for a person where this machine cannot read packed frames. */
+/** Returns one line for the user if this browser cannot read packed frames. */
 export function readerFault(): string | undefined {
   try {
     instantiate();
@@ -37,11 +37,11 @@ export function readerFault(): string | undefined {
   }
 }
 
-/** An instance. What is read lies in the instance's memory: it holds until the next frame is read, and has to be copied by then. */
+/** One instance of the module. Results are views into its memory: copy them before the next frame is read. */
 class Reader {
   protected readonly exports = instantiate();
 
-  /** False: there is no memory for it. */
+  /** False if there was no memory for the payload (address 0). */
   protected put(payload: Uint8Array, at: number): boolean {
     if (at === 0) return false;
     this.view(at, payload.length).set(payload);
@@ -54,7 +54,7 @@ class Reader {
 }
 
 export class ChecksumReader extends Reader {
-  /** CRC-32C; undefined: there is no memory for so many bytes. */
+  /** CRC-32C; undefined if there is no memory for the payload. */
   read(payload: Uint8Array): number | undefined {
     if (!this.put(payload, this.exports.prepareChecksum(payload.length))) return undefined;
     return this.exports.checksum() >>> 0;
@@ -62,7 +62,7 @@ export class ChecksumReader extends Reader {
 }
 
 export class ParticleReader extends Reader {
-  /** 12 bytes a particle, or undefined: the payload is damaged. */
+  /** 12 bytes per particle; undefined if the payload is damaged. */
   read(payload: Uint8Array, count: number, cellsCount: readonly [number, number, number], offsetBits: number): Uint8Array | undefined {
     if (!this.put(payload, this.exports.prepareParticles(count, payload.length))) return undefined;
     const at = this.exports.readParticles(count, ...cellsCount, offsetBits);
@@ -70,7 +70,7 @@ export class ParticleReader extends Reader {
   }
 }
 
-/** The planes of one layer. A reader that has met damage continues nothing. */
+/** The planes of one layer. After a damaged plane only a keyframe can be read. */
 export class PlaneReader extends Reader {
   readKeyframe(payload: Uint8Array, resolutionCount: number, weights: readonly number[], earlierWeights: readonly number[]): boolean {
     if (!this.put(payload, this.exports.preparePlane(resolutionCount, payload.length))) return false;
@@ -85,12 +85,12 @@ export class PlaneReader extends Reader {
     return this.exports.readDeltaPlane() !== 0;
   }
 
-  /** Of the plane read last, two bytes each. */
+  /** Samples of the plane read last, two bytes each. */
   surface(resolutionCount: number): Uint8Array {
     return this.view(this.exports.surfaceSamples(), 2 * resolutionCount * resolutionCount);
   }
 
-  /** Likewise, a byte each. */
+  /** Samples of the plane read last, one byte each. */
   foam(resolutionCount: number): Uint8Array {
     return this.view(this.exports.foamSamples(), resolutionCount * resolutionCount);
   }

@@ -1,10 +1,11 @@
-// The greeting as plain data that survives postMessage: what the page needs of the scene, no Protobuf objects.
+// The greeting as plain data that survives postMessage: what the page needs of the scene, without Protobuf objects.
 import { CouplingMode, type ParticleScene } from "../gen/spindrift/v1/scene_pb";
-import { Layer, type BoatList, type Greeting } from "../gen/spindrift/v1/wire_pb";
+import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
+import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
 import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
 
-/** Major version of the wire that this client speaks. */
+/** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
 export const kWireMinor = 0;
 
@@ -20,16 +21,6 @@ export interface ParameterInfo {
   help: string;
 }
 
-/** A layer of the wire by the name that it has in here. */
-export type LayerName = "surface" | "particles" | "foam" | "bodies" | "diagnostics";
-export const kLayers: Record<LayerName, Layer> = {
-  surface: Layer.SURFACE,
-  particles: Layer.PARTICLES,
-  foam: Layer.FOAM,
-  bodies: Layer.BODIES,
-  diagnostics: Layer.DIAGNOSTICS,
-};
-
 /** A boat's hull, metres. */
 export interface BoatDetail {
   boatId: number;
@@ -37,6 +28,12 @@ export interface BoatDetail {
   beamM: number;
   heightM: number;
   draughtM: number;
+}
+
+/** Side and depth of the resting water, as the server's rules measure them. */
+export interface WaterExtents {
+  sideM: number;
+  depthM: number;
 }
 
 export interface GreetingInfo {
@@ -48,36 +45,36 @@ export interface GreetingInfo {
   sessionId: string;
   layers: LayerName[];
   frameRateMaxHz: number;
-  /** On the server's own clock. */
+  /** On the server's monotonic clock. */
   serverTimeS: number;
-  /** Of the scene; what ChangeScene calls it. */
+  /** The scene's name in ChangeScene. */
   sceneName: string;
   title: string;
   description: string;
-  /** Absent where the scene has no heightfield. */
+  /** Undefined in a scene without a heightfield. */
   wave: WaveInfo | undefined;
   /** Horizontal side of the water, metres. */
   sideM: number;
-  /** The same along z: another one in a narrow tank of particles. */
+  /** Length of the water along z; differs from `sideM` in a narrow tank of particles. */
   widthM: number;
-  /** What effects and boats are measured by: the wave, or the resting water of a box of particles. */
-  stage: { sideM: number; depthM: number };
+  /** Limits of effects and boats follow from these: the wave, or the resting water of a box of particles. */
+  waterExtents: WaterExtents;
   hasParticles: boolean;
   /** Breaking water turns into particles and back. */
   isTwoWay: boolean;
-  /** The room takes boats. */
+  /** The scene allows boats. */
   hasBoats: boolean;
   obstacles: ObstacleInfo[];
   beaches: BeachInfo[];
   boats: BoatDetail[];
-  /** What ChangeScene takes. */
+  /** Scenes that ChangeScene accepts. */
   scenes: string[];
   parameters: ParameterInfo[];
   paused: boolean;
   speed: number;
 }
 
-/** The boats, or why the list cannot be trusted. */
+/** Returns the boats, or why the list cannot be trusted. */
 export function readBoatList(list: BoatList): BoatDetail[] | string {
   const boats = list.boats.map(({ boatId, lengthM, beamM, heightM, draughtM }) => ({ boatId, lengthM, beamM, heightM, draughtM }));
   for (const { boatId, lengthM, beamM, heightM, draughtM } of boats) {
@@ -88,16 +85,16 @@ export function readBoatList(list: BoatList): BoatDetail[] | string {
   return boats;
 }
 
-/** The server's own measure: the box's narrower side, and how deep its particles would lie at rest where they fill it. */
-function boxStage(particles: ParticleScene | undefined): { sideM: number; depthM: number } {
+/** As in the server: the narrower side of the box, and the depth of its particles at rest. */
+function boxExtents(particles: ParticleScene | undefined): WaterExtents {
   const { boxSideM = 0, boxWidthM = 0, fillXRatio = 1, fillZRatio = 1, layersCount = 0, count = 0 } = particles ?? {};
   const widthM = boxWidthM > 0 ? boxWidthM : boxSideM;
   const areaM2 = boxSideM * fillXRatio * widthM * fillZRatio;
   return { sideM: Math.min(boxSideM, widthM), depthM: layersCount * Math.sqrt((areaM2 * layersCount) / Math.max(count, 1)) };
 }
 
-/** A greeting's plain form, or "malformed" where a size that the page draws with is not a positive number. */
-export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: GreetingInfo } | Malformed {
+/** Malformed if a size that the page draws with is not a positive number. */
+export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | Malformed {
   const scene = greeting.scene;
   const wave = scene?.wave && readWave(scene.wave);
   const sideM = wave?.sideM ?? scene?.particles?.boxSideM ?? 0;
@@ -107,7 +104,6 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
   const boats = greeting.boatList ? readBoatList(greeting.boatList) : [];
   if (typeof boats === "string") return malformed(`greeting: ${boats}`);
   return {
-    kind: "greeting",
     greeting: {
       versionMajor: greeting.version?.major ?? 0,
       versionMinor: greeting.version?.minor ?? 0,
@@ -115,7 +111,7 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
       device: greeting.device,
       room: greeting.room,
       sessionId: greeting.sessionId.toString(),
-      layers: (Object.keys(kLayers) as LayerName[]).filter((name) => greeting.layers.includes(kLayers[name])),
+      layers: kLayerNames.filter((name) => greeting.layers.includes(kLayers[name])),
       frameRateMaxHz: greeting.limits?.frameRateMaxHz ?? 0,
       serverTimeS: greeting.serverTimeS,
       sceneName: scene?.name ?? "",
@@ -124,7 +120,7 @@ export function readGreeting(greeting: Greeting): { kind: "greeting"; greeting: 
       wave,
       sideM,
       widthM: (!wave && scene?.particles?.boxWidthM) || sideM,
-      stage: wave ? { sideM, depthM: wave.depthM } : boxStage(scene?.particles),
+      waterExtents: wave ? { sideM, depthM: wave.depthM } : boxExtents(scene?.particles),
       hasParticles: scene?.particles !== undefined,
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
       hasBoats: scene?.boats !== undefined,

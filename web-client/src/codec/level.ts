@@ -1,17 +1,32 @@
-// Levels of detail by name, coarsest first, as the server orders them.
+// The levels of detail by name.
 import { Level } from "../gen/spindrift/v1/wire_pb";
 
-export const kLevelNames = ["coarse", "medium", "fine", "full"] as const;
-export type LevelName = (typeof kLevelNames)[number];
+/** Coarsest first, as the server orders them. */
+export const kLevels = [
+  { name: "coarse", wire: Level.COARSE },
+  { name: "medium", wire: Level.MEDIUM },
+  { name: "fine", wire: Level.FINE },
+  { name: "full", wire: Level.FULL },
+] as const;
 
-export const kLevels: Record<LevelName, Level> = { coarse: Level.COARSE, medium: Level.MEDIUM, fine: Level.FINE, full: Level.FULL };
+export type LevelName = (typeof kLevels)[number]["name"];
 
-/** Of a level that this client does not know: full, since nothing of it tells what would be left out. */
-export function levelName(level: Level): LevelName {
-  return kLevelNames.find((name) => kLevels[name] === level) ?? "full";
+/** Leaves nothing out. */
+export const kFinestLevel: LevelName = kLevels[kLevels.length - 1]!.name;
+
+/** Returns the finest level for a value that this client does not know: the frame itself tells its resolution. */
+export function levelName(wire: Level): LevelName {
+  return kLevels.find((level) => level.wire === wire)?.name ?? kFinestLevel;
 }
 
-/** The coarser one of two. */
-export function lowerLevel(a: LevelName, b: LevelName): LevelName {
-  return kLevelNames[Math.min(kLevelNames.indexOf(a), kLevelNames.indexOf(b))]!;
+export function wireLevel(name: LevelName): Level {
+  return kLevels[indexOf(name)]!.wire;
+}
+
+export function coarserLevel(a: LevelName, b: LevelName): LevelName {
+  return kLevels[Math.min(indexOf(a), indexOf(b))]!.name;
+}
+
+function indexOf(name: LevelName): number {
+  return kLevels.findIndex((level) => level.name === name);
 }

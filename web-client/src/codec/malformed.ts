@@ -1,4 +1,4 @@
-// What cannot be trusted, with the reason: the result of reading it.
+// The result of reading bytes that cannot be trusted.
 export interface Malformed {
   kind: "malformed";
   reason: string;
@@ -6,4 +6,8 @@ export interface Malformed {
 
 export function malformed(reason: string): Malformed {
   return { kind: "malformed", reason };
+}
+
+export function isMalformed(read: object): read is Malformed {
+  return "kind" in read && read.kind === "malformed";
 }

@@ -1,121 +1,76 @@
-// Bytes of one WebSocket message → one member of a discriminated union. Pure: no state, no exception; what cannot be
-// trusted comes back as "malformed" with the reason. Payloads are views into the message, not copies.
+// Bytes of one WebSocket message → one member of a discriminated union. Pure: no state, no exception. What cannot be trusted
+// comes back as "malformed" with the reason. Payloads are views into the message, not copies.
+//
+// kReaders is the one place that declares a server message for the page: the union of messages, the events that the worker posts and
+// the type of the page's handlers follow from it.
 import { fromBinary } from "@bufbuild/protobuf";
 
-import { RejectReason, RoomEventKind, ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
-import { parseFrame, type ParsedFrame } from "./frames";
-import { readBoatList, readGreeting, type BoatDetail, type GreetingInfo } from "./greeting";
-import { levelName, type LevelName } from "./level";
-import { malformed, type Malformed } from "./malformed";
-import { readPeople, readWelcome, type PersonInfo, type WelcomeInfo } from "./people";
-import type { PackedFoam, PackedSurface } from "./packed_planes";
+import {
+  RejectReason,
+  RoomEventKind,
+  ServerMessageSchema,
+  type Diagnostics,
+  type ServerMessage,
+} from "../gen/spindrift/v1/wire_pb";
+import { readBoatList, readGreeting } from "./greeting";
+import type { PackedFrame, PlainFrame } from "./frame_types";
+import { levelName } from "./level";
+import { isMalformed, malformed, type Malformed } from "./malformed";
+import { parseFrame } from "./parse_frame";
+import { readPeople, readWelcome } from "./people";
 
-export interface DiagnosticsInfo {
-  tick: bigint;
-  timeS: number;
-  stepMs: number;
-  realTimeFactor: number;
-  substepsCount: number;
-  particleCount: number;
-  maxParticleSpeedMps: number;
-  maxElevationM: number;
-  meanDensityRatio: number;
-  maxDensityRatio: number;
-  kineticEnergyJ: number;
-  potentialEnergyJ: number;
-  waveEnergyJ: number;
-  nonfiniteCount: bigint;
-  escapedCount: bigint;
-  recoveredCount: bigint;
-  passes: { name: string; ms: number }[];
-  boatCount: number;
-  /** Of the volume ledger, in its own units; 0 in a healthy room. */
-  volumeErrorUnits: bigint;
-  emittedM3: number;
-  absorbedM3: number;
-  breakingRatio: number;
-  /** As FrameHeader.stateId. */
-  stateId: bigint;
-}
+type WireMessage = Exclude<ServerMessage["message"], { case: undefined }>;
+/** Frames have parseFrame(). */
+type Kind = Exclude<WireMessage["case"], "frame">;
+type ReaderOf<K extends Kind> = (value: Extract<WireMessage, { case: K }>["value"]) => object;
 
-export type RoomEventName = "recovered" | "reset" | "other";
+/** Each returns plain data that survives postMessage, or why it cannot be trusted. */
+const kReaders = {
+  greeting: (greeting) => readGreeting(greeting),
+  diagnostics: (diagnostics) => ({ diagnostics: readDiagnostics(diagnostics) }),
+  ack: ({ commandId, appliedTick, boatId }) => ({ commandId, appliedTick, boatId }),
+  reject: ({ commandId, reason, field, message }) => ({ commandId, reason: RejectReason[reason] ?? `${reason}`, field, message }),
+  parameterChanged: ({ path, value, appliedTick }) =>
+    Number.isFinite(value) ? { path, value, appliedTick } : malformed(`parameter ${path} is ${value}`),
+  roomState: ({ paused, speed }) => ({ paused, speed }),
+  boatList: (list) => {
+    const boats = readBoatList(list);
+    return typeof boats === "string" ? malformed(boats) : { boats };
+  },
+  roomEvent: ({ kind, tick, message }) => ({ event: roomEventName(kind), tick, message }),
+  welcome: (welcome) => ({ welcome: readWelcome(welcome) }),
+  people: (people) => ({ people: readPeople(people) }),
+  levelChanged: ({ level }) => ({ level: levelName(level) }),
+  pong: ({ clientTimeS, serverTimeS }) => ({ clientTimeS, serverTimeS }),
+  refusal: ({ message }) => ({ message }),
+} satisfies { [K in Kind]: ReaderOf<K> };
 
-export type ParsedMessage =
-  | { kind: "greeting"; greeting: GreetingInfo }
-  | ParsedFrame
-  | PackedSurface
-  | PackedFoam
-  | { kind: "diagnostics"; diagnostics: DiagnosticsInfo }
-  | { kind: "ack"; commandId: bigint; appliedTick: bigint; boatId: number }
-  | { kind: "reject"; commandId: bigint; reason: string; field: string; message: string }
-  | { kind: "parameterChanged"; path: string; value: number; appliedTick: bigint }
-  | { kind: "roomState"; paused: boolean; speed: number }
-  | { kind: "boatList"; boats: BoatDetail[] }
-  | { kind: "roomEvent"; event: RoomEventName; tick: bigint; message: string }
-  | { kind: "welcome"; welcome: WelcomeInfo }
-  | { kind: "people"; people: PersonInfo[] }
-  | { kind: "levelChanged"; level: LevelName }
-  | { kind: "pong"; clientTimeS: number; serverTimeS: number }
-  | { kind: "refusal"; message: string }
-  | { kind: "unknown" }
-  | Malformed;
+/** A message of the server as read, frames apart. */
+export type ParsedEvent = { [K in Kind]: { kind: K } & Exclude<ReturnType<(typeof kReaders)[K]>, Malformed> }[Kind];
 
-function roomEventName(kind: RoomEventKind): RoomEventName {
-  if (kind === RoomEventKind.RECOVERED) return "recovered";
-  return kind === RoomEventKind.RESET ? "reset" : "other";
-}
+export type ParsedMessage = ParsedEvent | PlainFrame | PackedFrame | { kind: "unknown" } | Malformed;
 
 /** Reads one binary message. Never throws. */
 export function parse(buffer: ArrayBuffer): ParsedMessage {
   try {
     const { message } = fromBinary(ServerMessageSchema, new Uint8Array(buffer));
-    switch (message.case) {
-      case "greeting":
-        return readGreeting(message.value);
-      case "frame":
-        return parseFrame(message.value);
-      case "diagnostics": {
-        const { $typeName: _, $unknown: __, passes, ...numbers } = message.value;
-        return { kind: "diagnostics", diagnostics: { ...numbers, passes: passes.map(({ name, ms }) => ({ name, ms })) } };
-      }
-      case "ack": {
-        const { commandId, appliedTick, boatId } = message.value;
-        return { kind: "ack", commandId, appliedTick, boatId };
-      }
-      case "reject": {
-        const { commandId, reason, field, message: text } = message.value;
-        return { kind: "reject", commandId, reason: RejectReason[reason] ?? `${reason}`, field, message: text };
-      }
-      case "parameterChanged": {
-        const { path, value, appliedTick } = message.value;
-        if (!Number.isFinite(value)) return malformed(`parameter ${path} is ${value}`);
-        return { kind: "parameterChanged", path, value, appliedTick };
-      }
-      case "roomState":
-        return { kind: "roomState", paused: message.value.paused, speed: message.value.speed };
-      case "boatList": {
-        const boats = readBoatList(message.value);
-        return typeof boats === "string" ? malformed(boats) : { kind: "boatList", boats };
-      }
-      case "roomEvent": {
-        const { kind, tick, message: text } = message.value;
-        return { kind: "roomEvent", event: roomEventName(kind), tick, message: text };
-      }
-      case "welcome":
-        return { kind: "welcome", welcome: readWelcome(message.value) };
-      case "people":
-        return { kind: "people", people: readPeople(message.value) };
-      case "levelChanged":
-        return { kind: "levelChanged", level: levelName(message.value.level) };
-      case "pong":
-        return { kind: "pong", clientTimeS: message.value.clientTimeS, serverTimeS: message.value.serverTimeS };
-      case "refusal":
-        return { kind: "refusal", message: message.value.message };
-      case undefined:
-        // A kind that a newer server knows, or an empty message: the wire says to ignore it.
-        return { kind: "unknown" };
-    }
+    // A message that only a newer server knows, or an empty one: the wire says to ignore it.
+    if (message.case === undefined) return { kind: "unknown" };
+    if (message.case === "frame") return parseFrame(message.value);
+    const read = (kReaders[message.case] as (value: unknown) => object)(message.value);
+    return isMalformed(read) ? read : ({ kind: message.case, ...read } as ParsedEvent);
   } catch (error) {
     return malformed(error instanceof Error ? error.message : String(error));
   }
+}
+
+export type DiagnosticsInfo = ReturnType<typeof readDiagnostics>;
+
+function readDiagnostics({ $typeName: _, $unknown: __, passes, ...numbers }: Diagnostics) {
+  return { ...numbers, passes: passes.map(({ name, ms }) => ({ name, ms })) };
+}
+
+function roomEventName(kind: RoomEventKind): "recovered" | "reset" | "other" {
+  if (kind === RoomEventKind.RECOVERED) return "recovered";
+  return kind === RoomEventKind.RESET ? "reset" : "other";
 }

@@ -1,25 +1,25 @@
-// Who is in the room, as plain data that survives postMessage.
+// The people in the room, as plain data that survives postMessage.
 import { Role, type People, type Welcome } from "../gen/spindrift/v1/wire_pb";
 
-/** What somebody may do; each includes the ones before. */
+/** Each role includes the permissions of the ones before. */
 export type RoleName = "viewer" | "player" | "operator";
 
 export interface PersonInfo {
   personId: number;
   name: string;
-  /** As CSS writes it. */
+  /** A CSS color. */
   color: string;
   role: RoleName;
-  /** Their boats; nobody else steers them. */
+  /** Boats that this person owns; only the owner steers them. */
   boatIds: number[];
-  /** The connection was lost; they may come back. */
+  /** The connection was lost; the person may come back within the server's grace time. */
   away: boolean;
 }
 
 export interface WelcomeInfo {
   role: RoleName;
   personId: number;
-  /** Makes a later connection the same person. Secret. */
+  /** Secret. A later connection that sends it is the same person. */
   resumeKey: string;
   resumed: boolean;
 }

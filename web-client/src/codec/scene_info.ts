@@ -1,7 +1,7 @@
-// What the page draws of a scene besides its water: rocks, breakwaters and beaches as plain, finite numbers.
+// The solid parts of a scene: rocks, breakwaters and beaches, as plain, finite numbers.
 import { Side, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
 
-/** More than any scene has; the rest is not drawn. */
+/** More than the server allows; the rest is not drawn. */
 const kMaxObstacleCount = 256;
 
 export interface WaveInfo {
@@ -12,7 +12,7 @@ export interface WaveInfo {
   periodicZ: boolean;
 }
 
-/** `heightM` above the still water, `radiusM` there. */
+/** `heightM` above the still water, `radiusM` at its level. */
 export interface RockInfo {
   shape: "rock";
   xM: number;
@@ -78,7 +78,7 @@ const kSides: Partial<Record<Side, SideName>> = {
   [Side.MINUS_Z]: "-z",
 };
 
-/** One beach a side: the first. */
+/** One beach per side: the first. */
 export function readBeaches(scene: Scene): BeachInfo[] {
   const read: BeachInfo[] = [];
   for (const beach of scene.beaches) {

@@ -1,37 +1,39 @@
-// One room over one WebSocket at a time: hello, subscriptions, commands with their answers, pings, and coming back
-// after a loss. Socket, clock and timers are injected, so tests need no network. Runs in the worker.
-import { create, toBinary } from "@bufbuild/protobuf";
+// One room over one WebSocket at a time: hello, subscriptions, commands and their answers, pings, and reconnecting after a loss.
+// Socket, clock and timers are injected, so tests need no network. Runs in the worker.
+import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 
-import type { ParsedFrame } from "../codec/frames";
-import { kLayers, kWireMajor, kWireMinor, type BoatDetail, type GreetingInfo } from "../codec/greeting";
-import { kLevels as kWireLevels, lowerLevel, type LevelName } from "../codec/level";
-import { PlaneUnpacker } from "../codec/packed_planes";
-import { parse, type DiagnosticsInfo, type RoomEventName } from "../codec/parse";
-import type { PersonInfo, WelcomeInfo } from "../codec/people";
-import { ClientMessageSchema, Packing, type ClientMessage } from "../gen/spindrift/v1/wire_pb";
+import type { PlainFrame } from "../codec/frame_types";
+import { FrameUnpacker } from "../codec/frame_unpacker";
+import { kWireMajor, kWireMinor, type GreetingInfo } from "../codec/greeting";
+import { kLayers } from "../codec/layers";
+import { coarserLevel, kFinestLevel, wireLevel, type LevelName } from "../codec/level";
+import { parse } from "../codec/parse";
+import { ClientMessageSchema, Packing } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import { LinkMeter } from "./link_meter";
 import { LoadGovernor } from "./load_governor";
-import type { CommandAction, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
+import type { CommandAction, ConnectionCalls, ConnectionEvent, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
+import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
 
-export const kSubprotocol = "spindrift.v1";
+const kSubprotocol = "spindrift.v1";
 const kClientName = "spindrift-web 0.1.0";
 const kPingEveryMs = 2000;
-/** So many come as fast as the housekeeping: until they are back, the server's clock is a guess. */
+/** The first pings go with every housekeeping tick: until they are answered, the server's clock is only estimated. */
 const kFirstPings = 5;
 const kHousekeepingEveryMs = 500;
-/** No greeting, or no message at all, for this long: the connection counts as dead. */
+/** Without a greeting, or without any message, for this long the connection counts as lost. */
 const kSilenceMs = 10_000;
-const kAnswerPatienceMs = 10_000;
-const kMaxPendingCount = 64;
+const kAnswerTimeoutMs = 10_000;
 const kMaxUnsentBytes = 256 * 1024;
 const kDiagnosticsRateHz = 10;
 const kFrameRateHz = 60;
-/** A keyframe is asked for at most this often. */
+/** Shortest interval between two requests for a keyframe. */
 const kKeyframeEveryMs = 1000;
-/** Live for this long = a good connection: the next loss starts with the shortest wait again. */
+/** After this long in state "live" the next loss starts with the shortest backoff again. */
 const kSettledMs = 5000;
+
+type ClientBody = Exclude<NonNullable<MessageInitShape<typeof ClientMessageSchema>["message"]>, { case: undefined }>;
 
 /** The part of WebSocket that is used. */
 export interface SocketLike {
@@ -47,6 +49,7 @@ export interface SocketLike {
 
 export interface ConnectionWorld {
   openSocket(url: string, subprotocol: string): SocketLike;
+  /** Unix time in the browser, so that the page can convert what is derived from it. */
   nowMs(): number;
   /** In [0, 1). */
   random(): number;
@@ -54,26 +57,13 @@ export interface ConnectionWorld {
   clearTimer(timer: number): void;
 }
 
-export interface ConnectionEvents {
-  state(state: ConnectionState): void;
-  greeting(greeting: GreetingInfo): void;
-  frame(frame: ParsedFrame): void;
-  diagnostics(diagnostics: DiagnosticsInfo): void;
-  /** `boatId`: of the boat that the command made, else 0. */
-  ack(commandId: number, appliedTick: number, boatId: number): void;
-  reject(commandId: number, reason: string, field: string, message: string): void;
-  parameterChanged(path: string, value: number): void;
-  roomState(paused: boolean, speed: number): void;
-  welcome(welcome: WelcomeInfo): void;
-  people(people: PersonInfo[]): void;
-  boatList(boats: BoatDetail[]): void;
-  roomEvent(event: RoomEventName, message: string): void;
-  /** The server's clock minus that of ConnectionWorld.nowMs() [ms]. */
-  clock(leadMs: number): void;
-  stats(stats: Omit<LinkStats, "overtakenCount">): void;
+export interface ConnectionSink {
+  event(event: ConnectionEvent): void;
+  /** The payload holds until the call returns. */
+  frame(frame: PlainFrame): void;
 }
 
-export class Connection {
+export class Connection implements ConnectionCalls {
   private socket: SocketLike | undefined;
   private state: ConnectionState = { name: "connecting" };
   private failedCount = 0;
@@ -85,20 +75,20 @@ export class Connection {
   private tickTimer: number | undefined;
   private greeting: GreetingInfo | undefined;
   private visible = true;
-  private readonly pendingSinceMs = new Map<number, number>();
+  private readonly pending = new PendingCommands();
   private readonly meter: LinkMeter;
-  private readonly unpacker = new PlaneUnpacker();
+  private readonly unpacker = new FrameUnpacker();
   private readonly clock = new ServerClock();
   private readonly governor = new LoadGovernor();
   private detail: DetailChoice = "auto";
-  /** What the server gives what adapts at most. */
-  private linkLevel: LevelName = "full";
-  private askedForKeyframeMs = -Infinity;
+  /** The finest level that the server sends to adapting subscriptions. */
+  private linkLevel = kFinestLevel;
+  private lastKeyframeRequestMs = -Infinity;
 
   constructor(
     private readonly url: string,
     private readonly world: ConnectionWorld,
-    private readonly events: ConnectionEvents,
+    private readonly sink: ConnectionSink,
     private identity: Identity = { name: "", token: "", resumeKey: "" },
   ) {
     this.meter = new LinkMeter(world.nowMs());
@@ -109,7 +99,7 @@ export class Connection {
     this.connect();
   }
 
-  /** Ends for good. */
+  /** Closes the connection for good. */
   stop(): void {
     if (this.tickTimer !== undefined) this.world.clearTimer(this.tickTimer);
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
@@ -118,14 +108,12 @@ export class Connection {
     this.failPending("the page closed the connection");
   }
 
-  /** Tries now: after a refusal, or instead of waiting. */
   retryNow(): void {
     if (this.state.name !== "retrying" && this.state.name !== "refused") return;
     this.failedCount = 0;
     this.connect();
   }
 
-  /** Another name or token: comes back under it, as the same person where the server still knows them. */
   introduce(name: string, token: string): void {
     this.identity = { ...this.identity, name, token };
     this.failedCount = 0;
@@ -133,29 +121,26 @@ export class Connection {
     this.connect();
   }
 
-  /** How much of the layers to ask for. */
   setDetail(detail: DetailChoice): void {
     if (detail === this.detail) return;
     this.detail = detail;
     if (this.state.name === "live") this.subscribe();
   }
 
-  /** A hidden page is sent no frames; coming back asks for them again. */
   setVisible(visible: boolean): void {
     if (visible === this.visible) return;
     this.visible = visible;
     if (this.state.name === "live") this.subscribe();
   }
 
-  /** Exactly one ack or reject follows: the server's, or a local one where nothing could be sent or nothing came back. */
   command(commandId: number, action: CommandAction): void {
     if (this.state.name !== "live") return this.rejectHere(commandId, "not connected to the server");
-    if (this.pendingSinceMs.size >= kMaxPendingCount)
+    if (this.pending.isFull)
       return this.rejectHere(commandId, `${kMaxPendingCount} commands are waiting for an answer already; try again in a moment`);
     if (this.socket!.bufferedAmount > kMaxUnsentBytes)
       return this.rejectHere(commandId, "the link to the server is congested; try again in a moment");
-    this.pendingSinceMs.set(commandId, this.world.nowMs());
-    this.send(create(ClientMessageSchema, { message: { case: "command", value: { commandId: BigInt(commandId), action } } }));
+    this.pending.add(commandId, this.world.nowMs());
+    this.send({ case: "command", value: { commandId: BigInt(commandId), action } });
   }
 
   private connect(): void {
@@ -175,11 +160,11 @@ export class Connection {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       const version = { major: kWireMajor, minor: kWireMinor };
-      this.send(create(ClientMessageSchema, { message: { case: "hello", value: { version, client: kClientName, ...this.identity } } }));
+      this.send({ case: "hello", value: { version, client: kClientName, ...this.identity } });
     };
     socket.onmessage = (event) => this.receive(event.data);
     socket.onclose = (event) => this.lost(event.reason || `closed by the server or the network (code ${event.code})`);
-    // An error is always followed by a close, which carries what can be told.
+    // A close follows every error and carries the reason.
     socket.onerror = () => {};
   }
 
@@ -189,6 +174,7 @@ export class Connection {
     this.meter.worked(this.world.nowMs() - this.lastHeardMs);
   }
 
+  /** Messages that are not the connection's own business go on to the page as they are. */
   private read(data: unknown): void {
     if (!(data instanceof ArrayBuffer)) return this.meter.malformed("a text message");
     this.meter.bytes(data.byteLength);
@@ -198,45 +184,21 @@ export class Connection {
         return this.meter.malformed(parsed.reason);
       case "unknown":
         return;
-      case "greeting":
-        return this.greeted(parsed.greeting);
       case "packedSurface":
-      case "packedFoam": {
+      case "packedFoam":
+      case "packedParticles": {
         const unpacked = this.unpacker.unpack(parsed);
-        if (unpacked.kind === "surface" || unpacked.kind === "foam") return this.gotFrame(unpacked);
+        if (unpacked.kind !== "malformed" && unpacked.kind !== "missingBase") return this.deliver(unpacked);
         if (unpacked.kind === "malformed") this.meter.malformed(unpacked.reason);
-        return this.askForKeyframe();
+        // The next frame of the particles is a keyframe anyway.
+        if (parsed.kind !== "packedParticles") this.requestKeyframe();
+        return;
       }
       case "surface":
       case "particles":
       case "foam":
       case "bodies":
-        return this.gotFrame(parsed);
-      case "diagnostics":
-        this.meter.diagnostics();
-        return this.events.diagnostics(parsed.diagnostics);
-      case "ack":
-        if (this.pendingSinceMs.delete(Number(parsed.commandId)))
-          this.events.ack(Number(parsed.commandId), Number(parsed.appliedTick), parsed.boatId);
-        return;
-      case "reject":
-        if (this.pendingSinceMs.delete(Number(parsed.commandId)))
-          this.events.reject(Number(parsed.commandId), parsed.reason, parsed.field, parsed.message);
-        return;
-      case "parameterChanged":
-        return this.events.parameterChanged(parsed.path, parsed.value);
-      case "roomState":
-        return this.events.roomState(parsed.paused, parsed.speed);
-      case "welcome":
-        // The next connection goes on as this person.
-        this.identity = { ...this.identity, resumeKey: parsed.welcome.resumeKey };
-        return this.events.welcome(parsed.welcome);
-      case "people":
-        return this.events.people(parsed.people);
-      case "boatList":
-        return this.events.boatList(parsed.boats);
-      case "roomEvent":
-        return this.events.roomEvent(parsed.event, parsed.message);
+        return this.deliver(parsed);
       case "levelChanged":
         this.linkLevel = parsed.level;
         return;
@@ -244,31 +206,45 @@ export class Connection {
         return this.ponged(parsed.clientTimeS * 1000, parsed.serverTimeS);
       case "refusal":
         return this.refuse(parsed.message);
+      case "greeting":
+        return this.greeted(parsed.greeting);
+      case "diagnostics":
+        this.meter.diagnostics();
+        return this.sink.event(parsed);
+      case "ack":
+      case "reject":
+        if (this.pending.answered(Number(parsed.commandId))) this.sink.event(parsed);
+        return;
+      case "welcome":
+        this.identity = { ...this.identity, resumeKey: parsed.welcome.resumeKey };
+        return this.sink.event(parsed);
+      default:
+        return this.sink.event(parsed);
     }
   }
 
-  private gotFrame(frame: ParsedFrame): void {
+  private deliver(frame: PlainFrame): void {
     this.meter.frame(frame.kind, frame.header);
-    this.events.frame(frame);
+    this.sink.frame(frame);
   }
 
   private ponged(sentMs: number, serverTimeS: number): void {
     const nowMs = this.world.nowMs();
     this.meter.roundTrip(nowMs - sentMs);
     this.clock.answered(sentMs, serverTimeS, nowMs);
-    this.tellClock();
+    this.reportClock();
   }
 
-  private tellClock(): void {
+  private reportClock(): void {
     const leadMs = this.clock.leadMs();
-    if (leadMs !== undefined) this.events.clock(leadMs);
+    if (leadMs !== undefined) this.sink.event({ kind: "clock", leadS: leadMs / 1000 });
   }
 
-  /** Subscribing again begins with one. */
-  private askForKeyframe(): void {
+  /** A new subscription begins with a keyframe. */
+  private requestKeyframe(): void {
     const nowMs = this.world.nowMs();
-    if (nowMs - this.askedForKeyframeMs < kKeyframeEveryMs) return;
-    this.askedForKeyframeMs = nowMs;
+    if (nowMs - this.lastKeyframeRequestMs < kKeyframeEveryMs) return;
+    this.lastKeyframeRequestMs = nowMs;
     this.subscribe();
   }
 
@@ -276,14 +252,14 @@ export class Connection {
     if (greeting.versionMajor !== kWireMajor)
       return this.refuse(`the server speaks version ${greeting.versionMajor}.${greeting.versionMinor} of the wire, this page ${kWireMajor}.${kWireMinor}; reload the page`);
     this.greeting = greeting;
-    // A later one, of another scene, knows nothing new about the clock.
+    // The greeting of another scene says nothing new about the clock.
     if (this.clock.leadMs() === undefined) this.clock.greeted(greeting.serverTimeS, this.world.nowMs());
     if (this.state.name !== "live") {
       this.liveSinceMs = this.world.nowMs();
       this.setState({ name: "live" });
     }
-    this.tellClock();
-    this.events.greeting(greeting);
+    this.reportClock();
+    this.sink.event({ kind: "greeting", greeting });
     this.subscribe();
     this.ping();
   }
@@ -292,13 +268,12 @@ export class Connection {
     if (!this.greeting) return;
     const offered = this.greeting.frameRateMaxHz;
     const frameRateHz = offered > 0 ? Math.min(offered, kFrameRateHz) : kFrameRateHz;
+    const adapts = this.detail === "auto";
+    const level = wireLevel(this.detail === "auto" ? this.governor.level : this.detail);
     for (const layer of this.greeting.layers) {
       const rateHz = layer === "diagnostics" ? Math.min(kDiagnosticsRateHz, frameRateHz) : frameRateHz;
       const maxRateHz = this.visible || layer === "diagnostics" ? rateHz : 0;
-      const isAuto = this.detail === "auto";
-      const level = kWireLevels[isAuto ? this.governor.level : (this.detail as LevelName)];
-      const value = { layer: kLayers[layer], maxRateHz, packing: Packing.PACKED, level, adapts: isAuto };
-      this.send(create(ClientMessageSchema, { message: { case: "subscribe", value } }));
+      this.send({ case: "subscribe", value: { layer: kLayers[layer], maxRateHz, packing: Packing.PACKED, level, adapts } });
     }
   }
 
@@ -306,7 +281,7 @@ export class Connection {
     this.lastPingMs = this.world.nowMs();
     if (this.socket!.bufferedAmount > kMaxUnsentBytes) return;
     ++this.pingCount;
-    this.send(create(ClientMessageSchema, { message: { case: "ping", value: { clientTimeS: this.lastPingMs / 1000 } } }));
+    this.send({ case: "ping", value: { clientTimeS: this.lastPingMs / 1000 } });
   }
 
   private scheduleTick(): void {
@@ -318,24 +293,22 @@ export class Connection {
 
   private tick(): void {
     const nowMs = this.world.nowMs();
-    this.events.stats({ ...this.meter.measure(nowMs), ...this.levelNow() });
+    this.sink.event({ kind: "stats", stats: { ...this.meter.measure(nowMs), ...this.currentLevel() } });
     if (this.detail === "auto" && this.state.name === "live" && this.governor.note(this.meter.busyShare)) this.subscribe();
-    for (const [commandId, sinceMs] of this.pendingSinceMs) {
-      if (nowMs - sinceMs < kAnswerPatienceMs) continue;
-      this.pendingSinceMs.delete(commandId);
-      this.rejectHere(commandId, `no answer for ${kAnswerPatienceMs / 1000} s`);
-    }
+    for (const commandId of this.pending.takeOverdue(nowMs, kAnswerTimeoutMs))
+      this.rejectHere(commandId, `no answer for ${kAnswerTimeoutMs / 1000} s`);
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
-    if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(`no word from the server for ${kSilenceMs / 1000} s`);
+    if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(`no message from the server for ${kSilenceMs / 1000} s`);
     const pingEveryMs = this.pingCount < kFirstPings ? 0 : kPingEveryMs;
     if (this.state.name === "live" && nowMs - this.lastPingMs >= pingEveryMs) this.ping();
   }
 
-  private levelNow(): Pick<LinkStats, "level" | "levelHeldBy"> {
-    if (this.detail !== "auto") return { level: this.detail, levelHeldBy: this.detail === "full" ? "nobody" : "choice" };
-    const level = lowerLevel(this.governor.level, this.linkLevel);
-    if (level === "full") return { level, levelHeldBy: "nobody" };
-    return { level, levelHeldBy: level === this.linkLevel ? "link" : "device" };
+  private currentLevel(): Pick<LinkStats, "level" | "levelLimitedBy"> {
+    const isAuto = this.detail === "auto";
+    const level: LevelName = this.detail === "auto" ? coarserLevel(this.governor.level, this.linkLevel) : this.detail;
+    if (level === kFinestLevel) return { level, levelLimitedBy: "none" };
+    if (!isAuto) return { level, levelLimitedBy: "choice" };
+    return { level, levelLimitedBy: level === this.linkLevel ? "link" : "device" };
   }
 
   private lost(why: string): void {
@@ -362,28 +335,26 @@ export class Connection {
     this.meter.forgetRoundTrips();
     this.clock.forget();
     this.pingCount = 0;
-    this.linkLevel = "full";
+    this.linkLevel = kFinestLevel;
     if (!socket) return;
     socket.onopen = socket.onmessage = socket.onclose = socket.onerror = null;
     socket.close();
   }
 
-  private send(message: ClientMessage): void {
-    this.socket?.send(toBinary(ClientMessageSchema, message));
+  private send(message: ClientBody): void {
+    this.socket?.send(toBinary(ClientMessageSchema, create(ClientMessageSchema, { message })));
   }
 
   private setState(state: ConnectionState): void {
     this.state = state;
-    this.events.state(state);
+    this.sink.event({ kind: "state", state });
   }
 
   private rejectHere(commandId: number, message: string): void {
-    this.events.reject(commandId, "NOT_SENT", "", message);
+    this.sink.event({ kind: "reject", commandId: BigInt(commandId), reason: "NOT_SENT", field: "", message });
   }
 
   private failPending(message: string): void {
-    const commandIds = [...this.pendingSinceMs.keys()];
-    this.pendingSinceMs.clear();
-    for (const commandId of commandIds) this.rejectHere(commandId, message);
+    for (const commandId of this.pending.takeAll()) this.rejectHere(commandId, message);
   }
 }

@@ -1,11 +1,11 @@
-// Frames of one layer on their way to the page: at most `maxUnderWay` delivered and not yet given back, plus one newest
-// frame waiting. A slow page therefore never has more than that many messages to chew; older frames are overtaken.
+// Frames of one layer on their way to the page: at most `maxUnderWay` delivered and not yet returned, plus the newest one waiting.
+// A slow page has never more than that many messages in its queue; a waiting frame is superseded by a newer one.
 
-const kLeastGrowingBytes = 1024;
+const kMinGrowingBytes = 1024;
 
-/** Buffers come back by release(); the last few are kept for the next copies. */
+/** Buffers come back by release(); the last few are kept for the next payloads. */
 export class FrameHandover<T extends { buffer: ArrayBuffer }> {
-  overtakenCount = 0;
+  supersededCount = 0;
   private underWayCount = 0;
   private waiting: T | undefined;
   private readonly spares: ArrayBuffer[] = [];
@@ -13,11 +13,11 @@ export class FrameHandover<T extends { buffer: ArrayBuffer }> {
   constructor(
     private readonly deliver: (frame: T) => void,
     private readonly maxUnderWay: number,
-    /** Payloads change their size: buffers are made in powers of two and used for anything that fits. */
+    /** Payloads change their size: buffers have powers of two bytes and are used for any payload that fits. */
     private readonly isGrowing = false,
   ) {}
 
-  /** A buffer of at least this size to copy the next payload into: a returned one where it fits. */
+  /** Returns a buffer of at least this size for the next payload: a returned one if one fits. */
   takeBuffer(bytesCount: number): ArrayBuffer {
     const wanted = this.capacityOf(bytesCount);
     const at = this.spares.findIndex((spare) => (this.isGrowing ? spare.byteLength >= wanted : spare.byteLength === wanted));
@@ -28,7 +28,6 @@ export class FrameHandover<T extends { buffer: ArrayBuffer }> {
     return this.spares.splice(at, 1)[0]!;
   }
 
-  /** Another room: what was kept for the old one's sizes goes. */
   forgetSpares(): void {
     this.spares.length = 0;
   }
@@ -40,7 +39,7 @@ export class FrameHandover<T extends { buffer: ArrayBuffer }> {
       return;
     }
     if (this.waiting) {
-      ++this.overtakenCount;
+      ++this.supersededCount;
       this.keep(this.waiting.buffer);
     }
     this.waiting = frame;
@@ -58,7 +57,7 @@ export class FrameHandover<T extends { buffer: ArrayBuffer }> {
   }
 
   private capacityOf(bytesCount: number): number {
-    return this.isGrowing ? Math.max(2 ** Math.ceil(Math.log2(Math.max(bytesCount, 1))), kLeastGrowingBytes) : bytesCount;
+    return this.isGrowing ? Math.max(2 ** Math.ceil(Math.log2(Math.max(bytesCount, 1))), kMinGrowingBytes) : bytesCount;
   }
 
   private keep(buffer: ArrayBuffer): void {

@@ -1,6 +1,6 @@
-// Who this page is, kept for the tab's life: a reload within the server's grace time finds its boat again. Never in the
-// address, which ends up in histories and logs. The key to one's place is in the store only while no page has it: a browser
-// that duplicates the tab copies the store, and two pages with one key would push each other out.
+// Keeps name, token and resume key for the life of the tab, so that a reload within the server's grace time gets its boat back.
+// They are never in the address, which ends up in histories and logs. The resume key is stored only while no page uses it: a browser
+// that duplicates a tab copies the store, and two pages with the same key would disconnect each other.
 import type { Identity } from "./messages";
 
 /** The part of Storage that is used. */
@@ -11,27 +11,36 @@ export interface StorageLike {
 
 const kKey = "spindrift-identity";
 
-/** A browser without storage (private windows, some frames) keeps nothing, and everything else works. */
+/** Returns undefined where the browser forbids storage: reading the property throws there. */
+export function sessionStorageIfAny(): StorageLike | undefined {
+  try {
+    return window.sessionStorage;
+  } catch {
+    return undefined;
+  }
+}
+
+/** Without storage (private windows, some frames) nothing is kept, and everything else works. */
 export class IdentityStore {
   constructor(
     private readonly storage: StorageLike | undefined,
-    /** Keys are the server's and room's own. */
+    /** Server and room: resume keys are valid for one room only. */
     private readonly url: string,
   ) {}
 
-  /** Takes the key out of the store. */
+  /** Returns the stored identity and removes the resume key from the store. */
   load(): Identity {
     const identity = this.read();
     this.save(identity);
     return identity;
   }
 
-  /** Name and token. */
+  /** Stores name and token. */
   save(identity: Identity): void {
     this.write({ ...identity, resumeKey: "" });
   }
 
-  /** The page goes, perhaps to come back: the key stays for the next one. */
+  /** Stores the resume key as well: the page is closed or reloaded. */
   leave(identity: Identity): void {
     this.write(identity);
   }
@@ -53,7 +62,7 @@ export class IdentityStore {
     try {
       this.storage?.setItem(kKey, JSON.stringify({ ...identity, url: this.url }));
     } catch {
-      // Full or forbidden: the next reload is a new guest.
+      // Full or forbidden: after a reload the server sees a new guest.
     }
   }
 }

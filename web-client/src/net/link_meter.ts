@@ -1,12 +1,12 @@
-// Counts what arrives and turns it into rates: kB/s, frames/s, latency. Frames of two layers that show one state are one
-// frame; a server that does not number its states is taken by its ticks.
-import type { FrameLayer, LinkStats } from "./messages";
+// Measures the link: kB/s, frames/s, latency. Frames of several layers that show the same state count as one frame; for a server
+// that does not number its states, the tick stands for the state.
+import type { FrameLayer } from "../codec/layers";
+import type { LinkStats } from "./messages";
 
 const kRoundTripsKept = 5;
-/** What is counted here. */
-export type MeteredStats = Omit<LinkStats, "overtakenCount" | "level" | "levelHeldBy">;
+type MeteredStats = Omit<LinkStats, "level" | "levelLimitedBy">;
 
-/** A frame older than the newest by less than this is a late part of one that was counted; by more, another room's. */
+/** A state older than the newest by less than this was counted already; by more, it is another room's. */
 const kSameFrameStates = 30n;
 
 export class LinkMeter {
@@ -15,7 +15,7 @@ export class LinkMeter {
   private lastMalformed = "";
   private bytesCount = 0;
   private busyMs = 0;
-  /** Share of the time between the last two measurements that messages took, 0..1. */
+  /** Share of the time between the last two measurements that was spent on messages, 0..1. */
   busyShare = 0;
   private frameCount = 0;
   private lastState = -kSameFrameStates;
@@ -32,7 +32,7 @@ export class LinkMeter {
   frame(layer: FrameLayer, { stateId, tick }: { stateId: bigint; tick: bigint }): void {
     ++this.receivedCount[layer];
     const state = stateId !== 0n ? stateId : tick;
-    // Layers of one state may come in any order, and one of them late.
+    // The layers of one state come in any order.
     if (state <= this.lastState && state > this.lastState - kSameFrameStates) return;
     ++this.frameCount;
     this.lastState = state;
@@ -42,7 +42,7 @@ export class LinkMeter {
     ++this.receivedCount.diagnostics;
   }
 
-  /** The worker was busy with a message for so long. */
+  /** Adds the time that one message took. */
   worked(ms: number): void {
     this.busyMs += ms;
   }
@@ -62,7 +62,7 @@ export class LinkMeter {
     this.roundTripsMs = [];
   }
 
-  /** Rates since the call before this one; both smoothed over about a second. */
+  /** Returns the rates since the previous call, smoothed over about a second. */
   measure(nowMs: number): MeteredStats {
     const seconds = (nowMs - this.sinceMs) / 1000;
     if (seconds > 0) {

@@ -1,35 +1,35 @@
-// Whether this device keeps up with unpacking what it asked for: the share of its time that the worker spends on it decides
-// which level of detail to ask for. The link is the server's business, it sees what waits.
-import { kLevelNames, type LevelName } from "../codec/level";
+// Chooses the level of detail that this device can unpack in time, by the share of time that the worker spends on messages. The
+// server judges the link: it sees what waits in the outbox.
+import { kLevels, type LevelName } from "../codec/level";
 
 const kTooBusy = 0.6;
-/** A level has up to four times what the one below it has. */
+/** A level has up to four times the samples of the next coarser one. */
 const kIdle = 0.12;
 const kBusyNotes = 4;
 const kFirstIdleNotes = 20;
 const kMaxIdleNotes = 240;
 
 export class LoadGovernor {
-  private at = kLevelNames.length - 1;
+  private at = kLevels.length - 1;
   private busyCount = 0;
   private idleCount = 0;
   private idleWanted = kFirstIdleNotes;
   private raised = false;
 
   get level(): LevelName {
-    return kLevelNames[this.at]!;
+    return kLevels[this.at]!.name;
   }
 
-  /** `busyShare` of the last half second, 0..1; whether the level has changed. */
+  /** Takes the busy share of the last half second, 0..1. Returns true if the level changed. */
   note(busyShare: number): boolean {
     this.busyCount = busyShare > kTooBusy ? this.busyCount + 1 : 0;
     this.idleCount = busyShare < kIdle ? this.idleCount + 1 : 0;
     if (this.busyCount >= kBusyNotes && this.at > 0) {
-      // What did not hold is tried again after twice the time.
+      // The finer level was too much: wait twice as long before the next attempt.
       if (this.raised) this.idleWanted = Math.min(2 * this.idleWanted, kMaxIdleNotes);
       return this.step(-1);
     }
-    return this.idleCount >= this.idleWanted && this.at < kLevelNames.length - 1 ? this.step(1) : false;
+    return this.idleCount >= this.idleWanted && this.at < kLevels.length - 1 ? this.step(1) : false;
   }
 
   private step(by: 1 | -1): boolean {

@@ -1,26 +1,27 @@
-// What the page and the worker say to each other by postMessage. Frames travel as transferred ArrayBuffers; the page
-// gives every one back with "release", which is what bounds the frames under way.
+// Messages between the page and the worker. What the server says goes through as codec/parse.ts declares it; calls to the connection
+// go through as ConnectionCalls declares them. Frames travel as transferred ArrayBuffers: the page returns every one with
+// "release", which bounds the frames on their way.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 
-import type { BodiesHeader, FoamHeader, ParticleHeader, SurfaceHeader } from "../codec/frames";
-import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { FrameHeaders, PackedFrame, PlainFrame } from "../codec/frame_types";
+import type { FrameLayer, LayerName } from "../codec/layers";
 import type { LevelName } from "../codec/level";
-import type { DiagnosticsInfo, RoomEventName } from "../codec/parse";
-import type { PersonInfo, WelcomeInfo } from "../codec/people";
+import type { Malformed } from "../codec/malformed";
+import type { ParsedMessage } from "../codec/parse";
 import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";
 
-/** A command's action as plain data, one member of the oneof in wire.proto. */
+/** A command's action as plain data: one member of the oneof in wire.proto. */
 export type CommandAction = Exclude<
   NonNullable<MessageInitShape<typeof CommandSchema>["action"]>,
   { case: undefined }
 >;
 
-/** Who says hello. */
+/** What Hello says about the user. */
 export interface Identity {
   name: string;
-  /** Gives a role; empty: a guest. */
+  /** Gives a role; empty for a guest. */
   token: string;
-  /** Of an earlier welcome, or empty. */
+  /** From an earlier Welcome, or empty. */
   resumeKey: string;
 }
 
@@ -30,75 +31,67 @@ export type ConnectionState =
   | { name: "retrying"; inS: number; why: string }
   | { name: "refused"; reason: string };
 
-/** What the person chose: a level of detail, or whatever link and device can carry. */
+/** The user's choice: a level of detail, or automatic. */
 export type DetailChoice = "auto" | LevelName;
 
-export type FrameLayer = "surface" | "particles" | "foam" | "bodies";
+/** A plain frame whose payload is in a buffer of its own, which may be longer than the payload. */
+export type FrameOf<L extends FrameLayer> = FrameHeaders[L] & { layer: L; buffer: ArrayBuffer };
+export type SurfaceFrame = FrameOf<"surface">;
+export type ParticleFrame = FrameOf<"particles">;
+export type FoamFrame = FrameOf<"foam">;
+export type BodiesFrame = FrameOf<"bodies">;
+export type Frame = { [L in FrameLayer]: FrameOf<L> }[FrameLayer];
 
-export interface SurfaceFrame extends SurfaceHeader {
-  layer: "surface";
-  /** resolutionCount^2 little-endian int16. */
-  buffer: ArrayBuffer;
-}
-
-export interface ParticleFrame extends ParticleHeader {
-  layer: "particles";
-  /** 12 bytes a particle, as on the wire; may be longer than `count` of them. */
-  buffer: ArrayBuffer;
-}
-
-export interface FoamFrame extends FoamHeader {
-  layer: "foam";
-  /** resolutionCount^2 bytes. */
-  buffer: ArrayBuffer;
-}
-
-export interface BodiesFrame extends BodiesHeader {
-  layer: "bodies";
-  /** 28 bytes a boat, as on the wire; may be longer than `count` of them. */
-  buffer: ArrayBuffer;
-}
-
-export type Frame = SurfaceFrame | ParticleFrame | FoamFrame | BodiesFrame;
-
-/** Measured over the last half second; counts since the page was opened. */
+/** Rates over the last half second; counts since the page was opened. */
 export interface LinkStats {
   kilobytesPerS: number;
   framesPerS: number;
-  /** Lowest round trip of the last pings, or undefined before the first answer. */
+  /** Shortest round trip of the last pings; undefined before the first pong. */
   latencyMs: number | undefined;
-  receivedCount: Record<FrameLayer | "diagnostics", number>;
+  receivedCount: Record<LayerName, number>;
   malformedCount: number;
   lastMalformed: string;
-  /** Frames that a newer one overtook because the page was busy. */
-  overtakenCount: number;
-  /** The most that surface and particles come at now, and who holds it down. */
+  /** Finest level at which surface and particles come now, and what limits it. */
   level: LevelName;
-  levelHeldBy: "nobody" | "choice" | "link" | "device";
+  levelLimitedBy: "none" | "choice" | "link" | "device";
 }
 
-export type PageToWorker =
-  | { type: "start"; url: string; identity: Identity }
-  | { type: "introduce"; name: string; token: string }
-  | { type: "command"; commandId: number; action: CommandAction }
-  | { type: "release"; layer: FrameLayer; buffer: ArrayBuffer }
-  | { type: "detail"; detail: DetailChoice }
-  | { type: "visible"; visible: boolean }
-  | { type: "retry" };
+/** Messages that end in the connection. Every other one goes on to the page. */
+type Handled = PlainFrame | PackedFrame | Malformed | { kind: "unknown" | "levelChanged" | "pong" | "refusal" };
 
-export type WorkerToPage =
-  | { type: "state"; state: ConnectionState }
-  | { type: "greeting"; greeting: GreetingInfo }
-  | { type: "frame"; frame: Frame }
-  | { type: "diagnostics"; diagnostics: DiagnosticsInfo }
-  | { type: "ack"; commandId: number; appliedTick: number; boatId: number }
-  | { type: "reject"; commandId: number; reason: string; field: string; message: string }
-  | { type: "parameterChanged"; path: string; value: number }
-  | { type: "roomState"; paused: boolean; speed: number }
-  | { type: "welcome"; welcome: WelcomeInfo }
-  | { type: "people"; people: PersonInfo[] }
-  | { type: "boatList"; boats: BoatDetail[] }
-  | { type: "roomEvent"; event: RoomEventName; message: string }
-  /** The server's clock minus Unix time [s], corrected. */
-  | { type: "clock"; leadS: number }
-  | { type: "stats"; stats: LinkStats };
+/** What the connection reports besides frames. */
+export type ConnectionEvent =
+  | Exclude<ParsedMessage, { kind: Handled["kind"] }>
+  | { kind: "state"; state: ConnectionState }
+  /** The server's clock minus Unix time [s]. */
+  | { kind: "clock"; leadS: number }
+  | { kind: "stats"; stats: LinkStats };
+
+export type PageEvent =
+  | Exclude<ConnectionEvent, { kind: "stats" }>
+  | { kind: "frame"; frame: Frame }
+  /** `supersededCount`: frames dropped for newer ones because the page was busy. */
+  | { kind: "stats"; stats: LinkStats; supersededCount: number };
+
+/** One handler per event; a missing one does not compile. */
+export type PageEventHandlers = { [K in PageEvent["kind"]]: (event: Extract<PageEvent, { kind: K }>) => void };
+
+/** The methods of the connection that the page calls. */
+export interface ConnectionCalls {
+  /** Connects anew with another name or token; the server resumes the same person if it still can. */
+  introduce(name: string, token: string): void;
+  /** Exactly one ack or reject follows: the server's, or a local one if nothing was sent or no answer came. */
+  command(commandId: number, action: CommandAction): void;
+  setDetail(detail: DetailChoice): void;
+  /** A hidden page gets no frames; showing it again subscribes to them again. */
+  setVisible(visible: boolean): void;
+  /** Connects now: after a refusal, or instead of waiting. */
+  retryNow(): void;
+}
+
+type Call = { [K in keyof ConnectionCalls]: { kind: "call"; name: K; args: Parameters<ConnectionCalls[K]> } }[keyof ConnectionCalls];
+
+export type WorkerRequest =
+  | Call
+  | { kind: "start"; url: string; identity: Identity }
+  | { kind: "release"; layer: FrameLayer; buffer: ArrayBuffer };

@@ -1,10 +1,10 @@
-// What time it is at the server: of the last pings the one with the shortest round trip tells, because its way there and back
-// can differ the least. Corrections come little by little, so that nothing that is timed by it jumps.
+// Estimates the server's clock from pings. The ping with the shortest round trip counts, because its two ways can differ the least.
+// Small corrections are made gradually, so that nothing timed by this clock jumps.
 
 const kSampleCount = 8;
-/** A sample older than this says nothing about clocks that drift. */
+/** Clocks drift: older samples are dropped. */
 const kSampleLifeMs = 60_000;
-/** Correction a second of a clock that is only a little off; one that is further off is set. */
+/** Correction per second for errors up to kSetBeyondMs; beyond that the clock is set at once. */
 const kSlewPerS = 0.01;
 const kSetBeyondMs = 250;
 
@@ -19,14 +19,14 @@ export class ServerClock {
   private lead: number | undefined;
   private slewedAtMs = 0;
 
-  /** The greeting's time, as good as any before the first ping comes back. */
+  /** First estimate, until the first pong. */
   greeted(serverTimeS: number, nowMs: number): void {
     this.samples = [];
     this.lead = serverTimeS * 1000 - nowMs;
     this.slewedAtMs = nowMs;
   }
 
-  /** A ping of `sentMs` came back with the server's time at `nowMs`. */
+  /** The pong of a ping sent at `sentMs` arrived at `nowMs`. */
   answered(sentMs: number, serverTimeS: number, nowMs: number): void {
     const roundTripMs = nowMs - sentMs;
     if (!(roundTripMs >= 0) || !Number.isFinite(serverTimeS)) return;

@@ -1,71 +1,43 @@
-// The page's end of the worker: typed events in, commands out. Gives command ids and owns the worker.
-import type { CommandAction, DetailChoice, Frame, FrameLayer, Identity, PageToWorker, WorkerToPage } from "./messages";
-
-/** The part of Worker that is used. */
-export interface WorkerLike {
-  onmessage: ((event: { data: WorkerToPage }) => void) | null;
-  postMessage(message: PageToWorker, transfer: Transferable[]): void;
-  terminate(): void;
-}
-
-export type WaterEvents = {
-  [K in WorkerToPage["type"]]: (message: Extract<WorkerToPage, { type: K }>) => void;
-};
+// The page's end of the worker: typed events in, calls and commands out. Gives out the command ids.
+import type { CommandAction, ConnectionCalls, Frame, Identity, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
 
 export class WaterClient {
   private nextCommandId = 1;
 
   constructor(
-    private readonly worker: WorkerLike,
-    events: WaterEvents,
+    private readonly worker: Worker,
+    handlers: PageEventHandlers,
   ) {
-    worker.onmessage = ({ data }) => (events[data.type] as (message: WorkerToPage) => void)(data);
+    worker.onmessage = ({ data }: MessageEvent<PageEvent>) => (handlers[data.kind] as (event: PageEvent) => void)(data);
   }
 
   start(url: string, identity: Identity): void {
-    this.worker.postMessage({ type: "start", url, identity }, []);
+    this.post({ kind: "start", url, identity });
   }
 
-  /** Connects anew under this name and token. */
-  introduce(name: string, token: string): void {
-    this.worker.postMessage({ type: "introduce", name, token }, []);
+  /** Calls a method of the connection. */
+  call<K extends keyof ConnectionCalls>(name: K, ...args: Parameters<ConnectionCalls[K]>): void {
+    this.post({ kind: "call", name, args } as WorkerRequest);
   }
 
-  /** Sends and returns the id that its ack or reject will carry. */
+  /** Sends a command and returns the id that its ack or reject carries. */
   command(action: CommandAction): number {
     const commandId = this.nextCommandId++;
-    this.worker.postMessage({ type: "command", commandId, action }, []);
+    this.call("command", commandId, action);
     return commandId;
   }
 
-  /** Gives a frame's buffer back; the frame must not be read afterwards. */
-  release(frame: Frame): void {
-    this.releaseBuffer(frame.layer, frame.buffer);
+  /** Returns a frame's buffer to the worker; the frame must not be read afterwards. */
+  release({ layer, buffer }: Frame): void {
+    this.post({ kind: "release", layer, buffer }, [buffer]);
   }
 
-  /** How much of the layers to ask for. */
-  setDetail(detail: DetailChoice): void {
-    this.worker.postMessage({ type: "detail", detail }, []);
-  }
-
-  setVisible(visible: boolean): void {
-    this.worker.postMessage({ type: "visible", visible }, []);
-  }
-
-  retryNow(): void {
-    this.worker.postMessage({ type: "retry" }, []);
-  }
-
-  dispose(): void {
-    this.worker.terminate();
-  }
-
-  private releaseBuffer(layer: FrameLayer, buffer: ArrayBuffer): void {
-    this.worker.postMessage({ type: "release", layer, buffer }, [buffer]);
+  private post(request: WorkerRequest, transfer: Transferable[] = []): void {
+    this.worker.postMessage(request, transfer);
   }
 }
 
-/** ws://HOST/ws, or /ws/ROOM for the page's ?room=ROOM; wss from an https page. */
+/** Returns ws://HOST/ws, or /ws/ROOM for the page's ?room=ROOM; wss for an https page. */
 export function socketUrl(location: { protocol: string; host: string; search: string }): string {
   const room = new URLSearchParams(location.search).get("room");
   const scheme = location.protocol === "https:" ? "wss:" : "ws:";

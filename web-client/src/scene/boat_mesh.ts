@@ -14,22 +14,22 @@ const kInside: Paint = [0.72, 0.73, 0.70, 0];
 const kCabin: Paint = [0.88, 0.88, 0.85, 0];
 const kGlass: Paint = [0.02, 0.045, 0.06, 0];
 const kMetal: Paint = [0.25, 0.27, 0.29, 0];
-/** Hulls one can tell apart from afar, by id. */
+/** By boat id, so that boats can be told apart from a distance. */
 const kHullColors: readonly Paint[] = [
   [0.05, 0.17, 0.36, 0], [0.62, 0.10, 0.06, 0], [0.04, 0.28, 0.20, 0], [0.78, 0.47, 0.05, 0], [0.30, 0.31, 0.33, 0], [0.02, 0.30, 0.38, 0],
 ];
 
-export function hullColor(boatId: number): Paint {
+function hullColor(boatId: number): Paint {
   return kHullColors[boatId % kHullColors.length]!;
 }
 
-/** Half the beam at `along` (-1 stern, 1 bow) over half the greatest beam. */
+/** Returns half the beam at `along` (-1 stern, 1 bow) as a share of half the greatest beam. */
 export function breadthShare(along: number): number {
   if (along < 0) return 1 - 0.2 * along * along;
   return Math.sqrt(Math.max(1 - along ** 2.3, 0));
 }
 
-/** Points from keel to deck at one station, on the starboard side; y from the hull's middle. */
+/** Returns the points from keel to deck at one station, on the starboard side; y from the hull's middle. */
 function section(boat: BoatDetail, along: number): Point[] {
   const { lengthM, beamM, heightM } = boat;
   const half = heightM / 2;
@@ -40,7 +40,7 @@ function section(boat: BoatDetail, along: number): Point[] {
   const waterY = Math.max(-half + boat.draughtM + 0.05 * heightM, keelY + 0.05 * heightM);
   const bootY = waterY + 0.07 * heightM;
   const chineY = keelY + 0.32 * (waterY - keelY);
-  // The stem leans forward: the higher, the further ahead.
+  // The stem leans forward: higher points lie further ahead.
   const x = (y: number): number => (along * lengthM) / 2 - 0.10 * lengthM * bow ** 3 * (1 - (y + half) / (sheerY + half));
   const rail = 0.045 * beamM;
   const deckY = sheerY - 0.14 * heightM;
@@ -73,7 +73,7 @@ export function makeBoatGeometry(boat: BoatDetail): BufferGeometry {
   }
   const rim = stations.map((points) => points[6]!);
   builder.grid([rim, rim.map(mirrored)], kDeck);
-  // The stern, a band at a time like the sides.
+  // The stern, one band at a time like the sides.
   const stern = stations[0]!;
   for (const [from, to, color] of bands.slice(0, 3))
     for (let i = from; i < to; ++i) builder.quad(mirrored(stern[i]!), stern[i]!, stern[i + 1]!, mirrored(stern[i + 1]!), color);
@@ -89,7 +89,7 @@ function addWheelhouse(builder: MeshBuilder, lengthM: number, beamM: number, hei
   const low = { yM: deckY, halfX: 0.17 * lengthM, halfZ: 0.29 * beamM };
   const top = { yM: deckY + high, halfX: 0.145 * lengthM, halfZ: 0.26 * beamM };
   builder.block(xM, 0, low, top, kCabin);
-  // Windows: the wall's upper part once more, a hair further out.
+  // Windows: faces just outside the upper part of the walls.
   const at = (share: number, out: number) => ({
     yM: low.yM + share * high,
     halfX: low.halfX + share * (top.halfX - low.halfX) + out,

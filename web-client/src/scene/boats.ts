@@ -1,4 +1,4 @@
-// The boats: a mesh each, made when a boat comes and thrown away when it goes, placed anew every frame.
+// The boats: one mesh per boat, made when the boat appears, disposed when it is removed, and placed in every frame.
 import { Mesh, Scene, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { BoatDetail } from "../codec/greeting";
@@ -10,20 +10,20 @@ export class Boats {
   private readonly poses: BodyPose[] = [];
   private posesCount = 0;
 
-  /** `material` is shared and stays its owner's. */
+  /** `material` is shared; the caller disposes it. */
   constructor(
     private readonly scene: Scene,
     private readonly material: RawShaderMaterial,
   ) {}
 
-  /** The boats on the water now; those whose hulls are known already keep their meshes. */
+  /** Sets the boats on the water; known boats keep their meshes. */
   setBoats(boats: readonly BoatDetail[]): void {
     const there = new Set(boats.map(({ boatId }) => boatId));
     for (const [boatId, mesh] of this.meshes) if (!there.has(boatId)) this.drop(boatId, mesh);
     for (const boat of boats) {
       if (this.meshes.has(boat.boatId)) continue;
       const mesh = new Mesh(makeBoatGeometry(boat), this.material);
-      // Bow up is a turn about z, starboard down one about x, and headings turn from +x toward +z, against three's y.
+      // Pitch (bow up) turns about z, roll (starboard down) about x. Headings turn from +x toward +z, opposite to three's y rotation.
       mesh.rotation.order = "YZX";
       mesh.visible = false;
       this.meshes.set(boat.boatId, mesh);
@@ -44,15 +44,15 @@ export class Boats {
     }
   }
 
-  /** Where a boat is drawn now; to be read at once, the next frame writes over it. */
+  /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
   poseOf(boatId: number): BodyPose | undefined {
     for (let i = 0; i < this.posesCount; ++i) if (this.poses[i]!.boatId === boatId) return this.poses[i];
     return undefined;
   }
 
-  /** All poses drawn now, the first `count` of them. */
-  drawn(): { poses: readonly BodyPose[]; count: number } {
-    return { poses: this.poses, count: this.posesCount };
+  /** Returns copies of all poses drawn now. */
+  drawn(): BodyPose[] {
+    return this.poses.slice(0, this.posesCount).map((pose) => ({ ...pose }));
   }
 
   dispose(): void {

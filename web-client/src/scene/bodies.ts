@@ -1,5 +1,5 @@
-// Boats between two frames: places and speeds on a straight line, angles the short way round. Pure.
-import { kBodyBytes } from "../codec/frames";
+// Bodies frames: unpacking, and interpolation between two of them. Pure.
+import { kBodyBytes } from "../codec/frame_types";
 import type { BodiesFrame } from "../net/messages";
 
 export interface BodyPose {
@@ -18,7 +18,7 @@ export interface BodyPose {
   rudder: number;
 }
 
-/** One frame unpacked, once, when it comes. */
+/** One unpacked frame. */
 export interface BodiesState {
   timeS: number;
   stateId: bigint;
@@ -49,7 +49,7 @@ export function unpackBodies(frame: BodiesFrame): BodiesState {
   return { timeS: frame.timeS, stateId: frame.stateId, bodies };
 }
 
-/** From one angle to another by the shorter way; the result is in -pi..pi. */
+/** Interpolates between two angles by the shorter way; the result is in -pi..pi. */
 export function mixAngle(from: number, to: number, mix: number): number {
   const way = wrapAngle(to - from);
   return wrapAngle(from + way * mix);
@@ -59,12 +59,12 @@ export function wrapAngle(angle: number): number {
   return angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 }
 
-/** Farther than this many metres in one frame is not sailed: the boat left one periodic side and came in at the other. */
+/** A longer distance in one frame is a jump: the boat left one periodic side and came in at the other. */
 const kJumpM = 3;
 
 /**
- * Writes the boats of `from`, `mix` of the way to `to`, over `poses` and returns how many there are. `poses` grows to the
- * most boats ever seen and is reused. A boat that `to` lacks stays where it is.
+ * Interpolates the boats of `from` toward `to`, writes them to `poses` and returns their count. `poses` grows to the
+ * largest count seen and is reused. A boat that is not in `to` stays where it is.
  */
 export function mixBodies(from: BodiesState, to: BodiesState, mix: number, poses: BodyPose[]): number {
   const count = from.bodies.length;
@@ -89,7 +89,7 @@ export function mixBodies(from: BodiesState, to: BodiesState, mix: number, poses
   return count;
 }
 
-/** Usually at the same place as in the frame before. */
+/** Looks first at `likelyAt`: the order seldom changes between two frames. */
 function bodyOf(state: BodiesState, boatId: number, likelyAt: number): BodyPose | undefined {
   const likely = state.bodies[likelyAt];
   if (likely?.boatId === boatId) return likely;

@@ -1,32 +1,32 @@
-// Where the camera stands for each effect, and the way there.
+// The camera views, the moves between them, and the view that follows a boat.
 import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { wrapAngle } from "./bodies";
-import { frameBox, freeTangents, type PixelRect, type Placement, type WaterExtent } from "./framing";
+import { frameBox, freeTangents, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
-export type ViewName = "splash" | "wave" | "boat" | "overview";
+export type ViewName = "above" | "side" | "boat" | "overview";
 type FixedView = Exclude<ViewName, "boat">;
 
-/** From the water toward the camera; how far away it stands follows from what has to be seen. */
+/** Direction from the water to the camera. The distance follows from the box to be seen. */
 const kBackward: Record<FixedView, Vector3> = {
-  splash: new Vector3(0.43, 0.50, 1.22),
-  wave: new Vector3(0.20, 0.13, 1.30),
+  above: new Vector3(0.43, 0.50, 1.22),
+  side: new Vector3(0.20, 0.13, 1.30),
   overview: new Vector3(-0.30, 1.25, 0.80),
 };
-/** Free parts less wide than this many heights raise the view from above, up to so many times its height. */
+/** A free part narrower than kWideTangents heights raises the view from above, at most by the factor kMostRaised. */
 const kWideTangents = 1.3;
 const kMostRaised = 2.6;
 const kTravelS = 0.9;
-/** The boat's view: behind and above, in boat lengths, and how fast it follows place, heading and its own stand. */
+/** The boat's view: distance behind and above in boat lengths, and the rates at which it follows position, heading and camera position. */
 const kBehindLengths = 2.5;
 const kAboveLengths = 1.05;
 const kFollowPerS = { target: 7, heading: 2.2, eye: 3.2 };
 
-/** A hidden page comes back with one step of at most this; a slow one still keeps up. */
+/** Longest time step of the follow motion; a hidden page comes back with a long one. */
 const kLongestFrameS = 2;
 
-/** What the boat's view follows. */
+/** The boat that the boat's view follows. */
 export interface Followed {
   xM: number;
   yM: number;
@@ -36,14 +36,14 @@ export interface Followed {
 }
 
 export class CameraViews {
-  readonly controls: OrbitControls;
-  private extent: WaterExtent = { sideM: 16, minYM: -1, maxYM: 1 };
+  private readonly controls: OrbitControls;
+  private extent: ViewedBox = { sideM: 16, minYM: -1, maxYM: 1 };
   private free: PixelRect = { leftPx: 0, topPx: 0, rightPx: 1, bottomPx: 1 };
   private widthPx = 1;
   private heightPx = 1;
-  /** The view that the camera stands in or travels to; none after somebody turned it by hand. */
-  private framed: ViewName | undefined = "splash";
-  /** In the boat's view: the heading that the eye stands behind, and whether somebody turned the view by hand since. */
+  /** The view shown or travelled to; undefined after the user turned the camera. */
+  private framed: ViewName | undefined = "above";
+  /** In the boat's view: the smoothed heading, and whether the user has turned the camera since. */
   private following: { headingRad: number; byHand: boolean; lastS: number } | undefined;
   private readonly scratchM = new Vector3();
   private travel: { fromM: Vector3; toM: Vector3; fromTargetM: Vector3; toTargetM: Vector3; startedS: number } | undefined;
@@ -58,7 +58,7 @@ export class CameraViews {
     this.controls.enableDamping = !reducedMotion();
     this.controls.dampingFactor = 0.09;
     this.controls.minPolarAngle = 0.12;
-    // Just above the level of the still water: the page has no under-water view.
+    // Stays above the still water: there is no under-water view.
     this.controls.maxPolarAngle = Math.PI / 2 - 0.03;
     this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("start", () => {
@@ -67,21 +67,21 @@ export class CameraViews {
     });
   }
 
-  /** Other water: back to the first view. */
-  enter(extent: WaterExtent): void {
+  /** New water: back to the first view. */
+  enter(extent: ViewedBox): void {
     this.extent = extent;
-    this.jump("splash");
+    this.jump("above");
   }
 
-  /** The water turned out to be of another height; a view that nobody has left yet follows. */
-  measured(extent: WaterExtent): void {
+  /** The water's height became known. Frames the box again unless the user has turned the camera. */
+  measured(extent: ViewedBox): void {
     this.extent = extent;
     this.frameAgain();
   }
 
   /**
-   * A canvas of this size in CSS pixels, of which the panels leave `free`: the picture is centred there, and a view that
-   * nobody has left yet is framed anew.
+   * Sets the size of the canvas in CSS pixels and the part that the panels leave free. The picture is centred in that part, and the
+   * box is framed again unless the user has turned the camera.
    */
   resize(widthPx: number, heightPx: number, free: PixelRect): void {
     const { camera } = this;
@@ -120,7 +120,7 @@ export class CameraViews {
     };
   }
 
-  /** `followed`: the boat of the boat's view; without one the camera stays where it is. */
+  /** `followed`: the boat of the boat's view; without one the camera does not move. */
   update(nowS: number, followed?: Followed): void {
     if (this.following && followed) this.follow(this.following, followed, nowS);
     if (this.travel) {
@@ -133,10 +133,6 @@ export class CameraViews {
     this.controls.update();
   }
 
-  dispose(): void {
-    this.controls.dispose();
-  }
-
   private follow(following: NonNullable<CameraViews["following"]>, boat: Followed, nowS: number): void {
     const { camera, controls, scratchM } = this;
     const elapsedS = Math.min(Math.max(nowS - following.lastS, 0), kLongestFrameS);
@@ -147,7 +143,7 @@ export class CameraViews {
     const turnRad = wrapAngle(boat.headingRad - following.headingRad) * share(kFollowPerS.heading);
     following.headingRad += turnRad;
     controls.minDistance = boat.lengthM;
-    // The eye relative to the boat, before the boat moves on.
+    // Camera position relative to the boat, before the boat moves.
     const offsetM = scratchM.copy(camera.position).sub(controls.target);
     const follow = share(kFollowPerS.target);
     const { target } = controls;
@@ -170,7 +166,7 @@ export class CameraViews {
     camera.position.lerp(scratchM, share(kFollowPerS.eye));
   }
 
-  /** The view that nobody has left yet, for another canvas or other water. */
+  /** Frames the current view again for another canvas or other water. */
   private frameAgain(): void {
     if (this.framed && this.framed !== "boat") this.jump(this.framed);
   }
@@ -189,8 +185,8 @@ export class CameraViews {
     const { extent, camera } = this;
     const tangents = freeTangents(camera.fov, this.heightPx, this.widthPx, this.free);
     const backward = kBackward[name].clone();
-    // A tall free part shows the square from further above, which fills more of it.
-    if (name === "splash") backward.y *= Math.min(Math.max((kWideTangents * tangents.up) / tangents.across, 1), kMostRaised);
+    // In a tall free part a higher camera fills more of it.
+    if (name === "above") backward.y *= Math.min(Math.max((kWideTangents * tangents.up) / tangents.across, 1), kMostRaised);
     const placement = frameBox(extent, backward, tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);
     this.controls.minDistance = 0.25 * extent.sideM;

@@ -1,4 +1,4 @@
-// Surface frames → the field texture that every shader reads: elevation, slopes, curvature, at the time shown.
+// Surface frames → the field texture that every shader reads: elevation, slopes and curvature at the time shown.
 import {
   ClampToEdgeWrapping,
   DataTexture,
@@ -16,24 +16,20 @@ import {
 } from "three";
 
 import type { SurfaceFrame } from "../net/messages";
+import { FrameTextures } from "./frame_textures";
 import { FullscreenPass } from "./fullscreen";
 import { makeMaterial } from "./shaders";
-
-interface Slot {
-  texture: DataTexture;
-  frame: SurfaceFrame | undefined;
-}
 
 export class FieldPass {
   /** Elevation (m), slope x, slope z, curvature (1/m); u along x and v along z, the water's square is 0..1. */
   readonly texture: Texture;
   private readonly target: WebGLRenderTarget;
-  private slots: [Slot, Slot];
+  private readonly frames: FrameTextures<SurfaceFrame>;
   private readonly pass: FullscreenPass;
 
-  /** Surfaces of `resolutionCount` samples a side at first, drawn into as many texels, at most `fieldCountMax` a side. */
+  /** `resolutionCount`: samples per side of the first surface. The texture has as many texels, at most `fieldCountMax` per side. */
   constructor(
-    private resolutionCount: number,
+    resolutionCount: number,
     private readonly fieldCountMax: number,
     private readonly sideM: number,
     periodicX: boolean,
@@ -50,13 +46,14 @@ export class FieldPass {
       depthBuffer: false,
     });
     this.texture = this.target.texture;
-    this.slots = [this.makeSlot(), this.makeSlot()];
+    this.frames = new FrameTextures<SurfaceFrame>(resolutionCount, makeTexture);
+    const [from, to] = this.frames.textures;
     this.pass = new FullscreenPass(
       makeMaterial(
         "field",
         {
-          u_from: { value: this.slots[0].texture },
-          u_to: { value: this.slots[1].texture },
+          u_from: { value: from },
+          u_to: { value: to },
           u_quantum_m: { value: new Vector2(1, 1) },
           u_mix: { value: 0 },
           u_cell_m: { value: 1 },
@@ -69,22 +66,20 @@ export class FieldPass {
     this.scale();
   }
 
-  /** Draws the field `mix` of the way from one frame to the other; uploads only frames not on the GPU yet. */
+  /** Draws the field `mix` of the way from one frame to the other. */
   render(renderer: WebGLRenderer, from: SurfaceFrame, to: SurfaceFrame, mix: number): void {
-    // Another level of detail: its first frame stands for the last one of the other.
+    // The level of detail changed: frames of two sizes cannot be interpolated.
     if (from.resolutionCount !== to.resolutionCount) from = to;
-    if (to.resolutionCount !== this.resolutionCount) this.resize(to.resolutionCount);
-    const slotFrom = this.slotOf(from, to);
-    const slotTo = from === to ? slotFrom : this.slotOf(to, from);
+    if (to.resolutionCount !== this.frames.resolutionCount) this.resize(to.resolutionCount);
     const uniforms = this.pass.material.uniforms;
-    uniforms["u_from"]!.value = slotFrom.texture;
-    uniforms["u_to"]!.value = slotTo.texture;
+    uniforms["u_from"]!.value = this.frames.textureOf(from, to);
+    uniforms["u_to"]!.value = this.frames.textureOf(to, from);
     (uniforms["u_quantum_m"]!.value as Vector2).set(from.quantumM, to.quantumM);
     uniforms["u_mix"]!.value = mix;
     this.pass.render(renderer, this.target);
   }
 
-  /** The water lies still: before the first frame, so that nothing stale is drawn. */
+  /** Draws water at rest, until the first frame comes. */
   renderStill(renderer: WebGLRenderer): void {
     const uniforms = this.pass.material.uniforms;
     (uniforms["u_quantum_m"]!.value as Vector2).set(0, 0);
@@ -94,13 +89,11 @@ export class FieldPass {
   dispose(): void {
     this.target.dispose();
     this.pass.dispose();
-    for (const slot of this.slots) slot.texture.dispose();
+    this.frames.dispose();
   }
 
   private resize(resolutionCount: number): void {
-    for (const slot of this.slots) slot.texture.dispose();
-    this.resolutionCount = resolutionCount;
-    this.slots = [this.makeSlot(), this.makeSlot()];
+    this.frames.resize(resolutionCount);
     const fieldCount = Math.min(resolutionCount, this.fieldCountMax);
     this.target.setSize(fieldCount, fieldCount);
     this.scale();
@@ -108,30 +101,16 @@ export class FieldPass {
 
   private scale(): void {
     const uniforms = this.pass.material.uniforms;
-    uniforms["u_cell_m"]!.value = this.sideM / this.resolutionCount;
-    uniforms["u_cells_per_texel"]!.value = this.resolutionCount / this.target.width;
+    uniforms["u_cell_m"]!.value = this.sideM / this.frames.resolutionCount;
+    uniforms["u_cells_per_texel"]!.value = this.frames.resolutionCount / this.target.width;
   }
+}
 
-  private makeSlot(): Slot {
-    const n = this.resolutionCount;
-    const texture = new DataTexture(new Int16Array(n * n), n, n, RedIntegerFormat, ShortType);
-    texture.internalFormat = "R16I";
-    texture.minFilter = texture.magFilter = NearestFilter;
-    texture.unpackAlignment = 2;
-    texture.needsUpdate = true;
-    return { texture, frame: undefined };
-  }
-
-  /** The slot that holds `frame`; uploads into the one that does not hold `other` where none does. */
-  private slotOf(frame: SurfaceFrame, other: SurfaceFrame): Slot {
-    const held = this.slots.find((slot) => slot.frame === frame);
-    if (held) return held;
-    const slot = this.slots.find((candidate) => candidate.frame !== other) ?? this.slots[0];
-    // A copy: the frame's buffer goes back to the worker when the ring drops it, the texture may be uploaded again
-    // after a lost context.
-    (slot.texture.image.data as Int16Array).set(new Int16Array(frame.buffer));
-    slot.texture.needsUpdate = true;
-    slot.frame = frame;
-    return slot;
-  }
+function makeTexture(n: number): DataTexture {
+  const texture = new DataTexture(new Int16Array(n * n), n, n, RedIntegerFormat, ShortType);
+  texture.internalFormat = "R16I";
+  texture.minFilter = texture.magFilter = NearestFilter;
+  texture.unpackAlignment = 2;
+  texture.needsUpdate = true;
+  return texture;
 }

@@ -1,5 +1,5 @@
-// Trades pixels for time: frames that stay slower than 50 ms lower the pixel ratio in steps down to 0.5; frames that
-// stay fast raise it again, at most twice, so that it does not swing for ever.
+// Trades resolution for speed: frames that stay slower than 50 ms lower the pixel ratio in steps down to 0.5; frames that stay
+// fast raise it again, at most twice, so that it does not oscillate.
 
 const kSlowMs = 50;
 const kFastMs = 20;
@@ -16,7 +16,7 @@ export class FrameGovernor {
   private fastMs = 0;
   private raisesLeft = 2;
 
-  /** `adaptive` false: the pixel ratio stays as it is. */
+  /** `adaptive` false: the pixel ratio never changes. */
   constructor(
     private readonly wantedPixelRatio: number,
     private readonly adaptive = true,
@@ -24,7 +24,7 @@ export class FrameGovernor {
     this.pixelRatio = wantedPixelRatio;
   }
 
-  /** Notes one frame's time; true when pixelRatio changed. */
+  /** Takes one frame's time; returns true if pixelRatio changed. */
   note(frameMs: number): boolean {
     if (!this.adaptive || frameMs > kPauseMs) return false;
     this.slowMs = frameMs > kSlowMs ? this.slowMs + frameMs : 0;

@@ -1,4 +1,4 @@
-// The last few frames of a layer, oldest first. Owns their buffers until it gives them back through `release`.
+// The last few frames of a layer, oldest first. Owns their buffers until it returns them through `release`.
 
 interface Between<T> {
   from: T;
@@ -16,8 +16,8 @@ export class FrameRing<T extends { timeS: number; stateId: bigint }> {
   ) {}
 
   /**
-   * A frame of the newest one's state (a paused room repeats its frames, perhaps at another level) takes its place. Another
-   * state at no later time means that the simulation started again or was changed while paused: the old frames go.
+   * A frame of the same state as the newest one replaces it: a paused room repeats its frames, perhaps at another level. Another
+   * state at the same or an earlier time means a reset, or a change while paused: the old frames are released.
    */
   push(frame: T): void {
     const newest = this.newest();
@@ -42,8 +42,8 @@ export class FrameRing<T extends { timeS: number; stateId: bigint }> {
   }
 
   /**
-   * The frames on either side of `timeS` and how far between them it lies, 0..1; both the same one at the ends. The answer
-   * is written over by the next call: this runs for every layer of every picture.
+   * Returns the frames before and after `timeS` and its position between them, 0..1; the same frame twice at the ends. The next
+   * call overwrites the result: this runs for every layer of every picture.
    */
   around(timeS: number): Readonly<Between<T>> | undefined {
     const { frames } = this;

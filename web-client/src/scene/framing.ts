@@ -1,4 +1,4 @@
-// Where a camera has to stand to see a whole box inside a part of the canvas. Pure: no DOM, no renderer.
+// Places a camera so that a whole box is seen inside a part of the canvas. Pure: no DOM, no renderer.
 import { Vector3 } from "three";
 
 /** A part of the canvas in CSS pixels from its top left corner. */
@@ -9,12 +9,12 @@ export interface PixelRect {
   bottomPx: number;
 }
 
-/** An upright box round the y axis: a square of `sideM`, from `minYM` up to `maxYM`. */
-export interface WaterExtent {
+/** The box that a view shows: a square of `sideM` round the y axis, from `minYM` up to `maxYM`. */
+export interface ViewedBox {
   sideM: number;
   minYM: number;
   maxYM: number;
-  /** Where more than the square is to be seen: land behind shores. */
+  /** If more than the square is to be seen: the land behind shores. */
   ground?: { minXM: number; maxXM: number; minZM: number; maxZM: number };
 }
 
@@ -26,10 +26,10 @@ export interface Placement {
 
 /** Share of the free part that stays empty on each side. */
 const kMargin = 0.035;
-/** No free part is taken to be smaller than this share of the canvas: the picture has to go somewhere. */
+/** A free part smaller than this share of the canvas is treated as this large. */
 const kMinFreeShare = 0.25;
 
-/** Half the free part's width and height as tangents, under a camera whose picture is centred on that part. */
+/** Returns half the free part's width and height as tangents, for a camera whose picture is centred on that part. */
 export function freeTangents(fovDegrees: number, heightPx: number, widthPx: number, free: PixelRect): { across: number; up: number } {
   const perPx = Math.tan((fovDegrees * Math.PI) / 360) / heightPx;
   const share = 1 - 2 * kMargin;
@@ -39,14 +39,14 @@ export function freeTangents(fovDegrees: number, heightPx: number, widthPx: numb
   };
 }
 
-/** Corners along one axis of the picture: sideways and toward the camera, in the camera's own axes, metres. */
+/** Corners along one axis of the picture, in the camera's axes: sideways and toward the camera. */
 type AxisCorners = [sidewaysM: number, towardM: number][];
 
 /**
- * The least distance at which all corners lie within ±`tangent`, and how far sideways the camera then stands.
+ * Returns the least distance at which all corners lie within ±`tangent`, and the sideways position of the camera there.
  *
  * A corner (x, z) seen from (c, d) is inside the right edge if x - c <= t (d - z), that is c + t d >= x + t z, and
- * likewise at the left one: the corner that asks most of each edge decides, and both together give d and c.
+ * likewise at the left edge. The corner with the largest bound decides at each edge; the two bounds give d and c.
  */
 function fitAxis(corners: AxisCorners, tangent: number): { distanceM: number; sidewaysM: number } {
   const right = Math.max(...corners.map(([x, z]) => x + tangent * z));
@@ -54,9 +54,9 @@ function fitAxis(corners: AxisCorners, tangent: number): { distanceM: number; si
   return { distanceM: (right + left) / (2 * tangent), sidewaysM: (right - left) / 2 };
 }
 
-/** The sideways place that centres the corners seen from `distanceM`, where they fill less than ±`tangent`. */
+/** Returns the sideways position that centres the corners seen from `distanceM`, where they fill less than ±`tangent`. */
 function centreAxis(corners: AxisCorners, tangent: number, distanceM: number): number {
-  // A smaller tangent asks for a greater distance: bisect for the one that asks for exactly this.
+  // A smaller tangent needs a greater distance: bisect for the tangent that needs exactly `distanceM`.
   let low = 0;
   let high = tangent;
   for (let i = 0; i < 50; ++i) {
@@ -67,8 +67,8 @@ function centreAxis(corners: AxisCorners, tangent: number, distanceM: number): n
   return fitAxis(corners, high).sidewaysM;
 }
 
-/** The nearest place from which a camera that looks along -`backward` sees all eight corners within ±`tangents`, centred. */
-export function frameBox(extent: WaterExtent, backward: Vector3, tangents: { across: number; up: number }): Placement {
+/** Returns the nearest position from which a camera that looks along -`backward` sees all eight corners within ±`tangents`, centred. */
+export function frameBox(extent: ViewedBox, backward: Vector3, tangents: { across: number; up: number }): Placement {
   const back = backward.clone().normalize();
   const right = new Vector3(0, 1, 0).cross(back).normalize();
   const up = back.clone().cross(right);

@@ -8,7 +8,7 @@ export class Ground {
   readonly mesh: Mesh<CircleGeometry, RawShaderMaterial>;
   private readonly uniforms: Uniforms;
 
-  /** `field` absent: a floor without water above it. */
+  /** `field` undefined: no water above the floor. */
   constructor(sky: Sky, field: Texture | undefined, sideM: number, widthM: number, depthM: number, plain: boolean) {
     this.uniforms = {
       ...sky.uniforms,

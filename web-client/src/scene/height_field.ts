@@ -1,7 +1,7 @@
-// Elevations on the CPU, straight from a frame's int16: for clicks and for the extremes, never for drawing.
+// Elevations on the CPU, from a frame's int16 samples: for clicks and for minimum and maximum, not for drawing.
 import type { SurfaceFrame } from "../net/messages";
 
-/** Bilinear elevation in metres at (x, z); beyond the water's edge the edge's. */
+/** Returns the bilinear elevation in metres at (x, z), clamped to the water's edge. */
 export function elevationAtM(frame: SurfaceFrame, xM: number, zM: number): number {
   const n = frame.resolutionCount;
   const samples = new Int16Array(frame.buffer);
@@ -17,7 +17,7 @@ export function elevationAtM(frame: SurfaceFrame, xM: number, zM: number): numbe
   return (low * (1 - fv) + high * fv) * frame.quantumM;
 }
 
-/** Lowest and highest elevation of the frame, metres. */
+/** Returns the lowest and highest elevation of the frame. */
 export function elevationRangeM(frame: SurfaceFrame): { minM: number; maxM: number } {
   let min = 32767;
   let max = -32768;

@@ -1,4 +1,4 @@
-// What stands in the water: the bed with its beaches, rocks, breakwaters. Made once a scene.
+// The bed with its beaches, the rocks and the breakwaters. Built once per scene.
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { ObstacleInfo } from "../codec/scene_info";
@@ -9,15 +9,15 @@ import { depthAtM, groundExtent, groundHeightM, type Bed } from "./terrain";
 const kDrySand: Paint = [0.66, 0.53, 0.36, 0.7];
 const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** How far the floor round the water is lowered, in sides, so that it does not fight with the bed. */
+/** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 export const kFloorDropSides = 0.002;
 
-/** The bed as a grid with cut faces all round, down to the floor. */
+/** Returns the bed as a grid with vertical faces on all sides, down to the floor. */
 export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry {
   const { minXM, maxXM, minZM, maxZM } = groundExtent(bed);
   const floorM = -bed.depthM - kFloorDropSides * bed.sideM;
   const columns = Array.from({ length: cellsCount + 1 }, (_, i) => minXM + ((maxXM - minXM) * i) / cellsCount);
-  // From near to far, so that rows go up where columns go right, seen from above.
+  // From near to far: rows go up and columns go right, seen from above.
   const lines = Array.from({ length: cellsCount + 1 }, (_, k) => maxZM - ((maxZM - minZM) * k) / cellsCount);
   const at = (xM: number, zM: number): Point => [xM, groundHeightM(bed, xM, zM), zM];
   const rows = lines.map((zM) => columns.map((xM) => at(xM, zM)));
@@ -36,11 +36,11 @@ export class Landscape {
   readonly group = new Group();
   private readonly geometries: BufferGeometry[] = [];
 
-  /** `material` is shared and stays its owner's. */
+  /** `material` is shared; the caller disposes it. */
   constructor(bed: Bed, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, cellsCount: number) {
     this.add(makeGroundGeometry(bed, cellsCount), material);
     for (const obstacle of obstacles) {
-      // Down to the bed at its middle and a little deeper where the bed falls away.
+      // Down to the bed at the obstacle's middle, and deeper by a quarter of the depth for a sloping bed.
       const depthM = Math.min(depthAtM(bed, obstacle.xM, obstacle.zM) + 0.25 * bed.depthM, bed.depthM);
       if (obstacle.shape === "rock") {
         this.add(makeRockGeometry(obstacle, depthM), material);

@@ -1,5 +1,5 @@
-// Collects coloured triangles of procedural solids: position, normal and colour, whose fourth number is how grainy the
-// material is (0 paint, 1 stone).
+// Collects coloured triangles of procedural solids: position, normal and colour. The fourth number of a colour is the grain of the
+// material (0 paint, 1 stone).
 import { BufferAttribute, BufferGeometry } from "three";
 
 export type Point = readonly [number, number, number];
@@ -10,7 +10,7 @@ export class MeshBuilder {
   private readonly colors: number[] = [];
   private readonly index: number[] = [];
 
-  /** A grid of points, smooth inside and sharp at its edges. Seen from outside, rows go up where columns go right. */
+  /** Adds a grid of points, smooth inside and sharp at its edges. Seen from outside, rows go up and columns go right. */
   grid(rows: readonly (readonly Point[])[], paint: Paint | ((row: number, column: number) => Paint)): this {
     const first = this.positions.length / 3;
     const columnsCount = rows[0]!.length;
@@ -29,12 +29,12 @@ export class MeshBuilder {
     return this;
   }
 
-  /** A flat four-cornered face, corners counter-clockwise seen from outside. */
+  /** Adds a flat face; corners counter-clockwise seen from outside. */
   quad(a: Point, b: Point, c: Point, d: Point, paint: Paint): this {
     return this.grid([[a, b], [d, c]], paint);
   }
 
-  /** An upright block between two heights, its top and bottom as half sizes along x and z round (x, z). */
+  /** Adds an upright block round (x, z) between two heights; top and bottom have half sizes along x and z. */
   block(xM: number, zM: number, low: { yM: number; halfX: number; halfZ: number }, high: { yM: number; halfX: number; halfZ: number }, paint: Paint, topPaint = paint): this {
     const corner = (level: typeof low, sx: number, sz: number): Point => [xM + sx * level.halfX, level.yM, zM + sz * level.halfZ];
     for (const [ax, az, bx, bz] of [[-1, 1, 1, 1], [1, 1, 1, -1], [1, -1, -1, -1], [-1, -1, -1, 1]] as const)
@@ -42,7 +42,7 @@ export class MeshBuilder {
     return this.quad(corner(high, -1, 1), corner(high, 1, 1), corner(high, 1, -1), corner(high, -1, -1), topPaint);
   }
 
-  /** `flat`: every triangle by itself, as broken stone has it. */
+  /** `flat`: one normal per triangle, for broken stone. */
   build(flat = false): BufferGeometry {
     const indexed = new BufferGeometry();
     indexed.setAttribute("position", new BufferAttribute(new Float32Array(this.positions), 3));

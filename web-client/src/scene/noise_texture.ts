@@ -1,12 +1,12 @@
-// A tile of lace: cells with bright walls over cloudy noise, every brightness equally frequent. Foam is cut out of it at
-// its own strength, so that half the foam covers half the water; stone and sand take their grain from it.
+// A repeating noise tile ("lace"): cells with bright walls over cloudy noise, every brightness equally frequent. Foam shows where the
+// tile is brighter than a threshold, so that foam of 0.5 covers half the water. Stone and sand take their grain from it.
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RedFormat, RepeatWrapping, UnsignedByteType } from "three";
 
 import { hash } from "./obstacle_mesh";
 
 const kSide = 256;
 
-/** Distance from (x, y), in cells, to the nearest and the next of one random point a cell; repeats after `period` cells. */
+/** Worley noise, F2 - F1: distance to the second nearest minus distance to the nearest of one random point per cell. Repeats after `period` cells. */
 function cellWalls(x: number, y: number, period: number, seed: number): number {
   let nearest = 9;
   let next = 9;
@@ -32,7 +32,7 @@ function cloud(x: number, y: number, period: number, seed: number): number {
   return (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) + (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
 }
 
-/** 0..1 a sample, row by row; a square that repeats. */
+/** Returns one byte per sample, row by row; the square repeats. */
 export function makeLace(side: number): Uint8Array<ArrayBuffer> {
   const raw = new Float32Array(side * side);
   for (let k = 0; k < side; ++k)

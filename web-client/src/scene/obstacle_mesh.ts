@@ -1,4 +1,4 @@
-// Rocks and breakwaters as triangles, standing on the bed. Their outline at the still water is the scene's.
+// Rocks and breakwaters as triangles, standing on the bed. Their outline at the level of the still water is that of the scene.
 import type { BufferGeometry } from "three";
 
 import type { BreakwaterInfo, RockInfo } from "../codec/scene_info";
@@ -12,7 +12,7 @@ const kWhitePaint: Paint = [0.85, 0.85, 0.82, 0];
 const kRedPaint: Paint = [0.70, 0.07, 0.04, 0];
 const kLamp: Paint = [1.6, 1.2, 0.5, 0];
 
-/** A fixed number in [0, 1) for a place and a seed. */
+/** Returns a fixed pseudo-random number in [0, 1) for three integers. */
 export function hash(a: number, b: number, c: number): number {
   let mixed = Math.imul(a | 0, 0x9e3779b1) ^ Math.imul(b | 0, 0x85ebca6b) ^ Math.imul(c | 0, 0xc2b2ae35);
   mixed = Math.imul(mixed ^ (mixed >>> 15), 0x2c1b3c6d);
@@ -20,7 +20,7 @@ export function hash(a: number, b: number, c: number): number {
   return ((mixed ^ (mixed >>> 15)) >>> 0) / 4294967296;
 }
 
-/** Smooth noise in 0..1 over the unit sphere. */
+/** Smooth value noise in 0..1. */
 function bumps(x: number, y: number, z: number, seed: number): number {
   const [ix, iy, iz] = [Math.floor(x), Math.floor(y), Math.floor(z)];
   const smooth = (t: number): number => t * t * (3 - 2 * t);
@@ -31,7 +31,7 @@ function bumps(x: number, y: number, z: number, seed: number): number {
   return mix(layer(0), layer(1), fz);
 }
 
-/** Planes that break pieces off a boulder: direction and distance from its middle, in shares of its size. */
+/** Returns planes that cut pieces off a boulder: normal, and distance from the middle as a share of its size. */
 function makeCuts(seed: number): [x: number, y: number, z: number, away: number][] {
   return Array.from({ length: kCutsCount }, (_, i) => {
     const round = 2 * Math.PI * ((i + hash(i, 5, seed)) / kCutsCount) * 3;
@@ -40,7 +40,7 @@ function makeCuts(seed: number): [x: number, y: number, z: number, away: number]
   });
 }
 
-/** One boulder: a broken dome over the water, a widening foot under it. */
+/** Adds one boulder: a cut dome over the water, a widening foot under it. */
 function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed: number): void {
   const { radiusM, heightM } = rock;
   const cuts = makeCuts(seed);
@@ -75,7 +75,7 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
   });
 }
 
-/** A boulder of the scene's size with smaller ones leaning on it. `depthM`: of the water where it stands. */
+/** Returns a boulder of the scene's size with smaller ones beside it. `depthM`: water depth at the rock. */
 export function makeRockGeometry(rock: RockInfo, depthM: number): BufferGeometry {
   const builder = new MeshBuilder();
   const seed = Math.round(rock.xM * 131 + rock.zM * 977);
@@ -97,7 +97,7 @@ export function makeRockGeometry(rock: RockInfo, depthM: number): BufferGeometry
   return builder.build(true);
 }
 
-/** A wall of courses of stone with a concrete top and a light at its +x end, along its own x axis round its middle. */
+/** Returns a wall of stone courses with a concrete top and a light at its +x end; its middle is the origin, its length lies along x. */
 export function makeBreakwaterGeometry(wall: BreakwaterInfo, depthM: number): BufferGeometry {
   const { lengthM, widthM, heightM } = wall;
   const builder = new MeshBuilder();
@@ -123,7 +123,7 @@ export function makeBreakwaterGeometry(wall: BreakwaterInfo, depthM: number): Bu
       const size = (yM: number, inset: number) => ({ yM, halfX: halfX - inset, halfZ: halfZ - inset });
       builder.block((fromM + toM) / 2, 0, size(lowM, 0), size(highM - gap, 0.06 * courseM), [0.27 * shade, 0.255 * shade, 0.235 * shade, 1]);
     }
-  // The core closes the joints.
+  // A dark core behind the joints.
   const core = { halfX: 0.96 * (lengthM / 2), halfZ: 0.9 * (widthM / 2) };
   builder.block(0, 0, { yM: bottomM, ...core }, { yM: topM, ...core }, [0.10, 0.10, 0.095, 1]);
   const cap = { halfX: lengthM / 2, halfZ: 0.97 * (widthM / 2) };

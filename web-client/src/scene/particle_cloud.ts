@@ -1,5 +1,5 @@
-// Particles as ray-traced spheres. The wire's 12 bytes go to the GPU as they are: six u16 a particle in one interleaved
-// buffer, unpacked by the vertex shader; no JavaScript touches a particle.
+// Particles as ray-traced spheres. The 12 bytes of a plain particle go to the GPU unchanged, as six u16 in one interleaved buffer;
+// the vertex shader reads them, so no JavaScript runs per particle.
 import {
   BufferGeometry,
   InterleavedBuffer,
@@ -13,7 +13,7 @@ import {
   type Texture,
 } from "three";
 
-import { kParticleBytes } from "../codec/frames";
+import { kParticleBytes } from "../codec/frame_types";
 import type { ParticleFrame } from "../net/messages";
 import { makeMaterial, type Uniforms } from "./shaders";
 import type { Sky } from "./sky";
@@ -27,7 +27,7 @@ export class ParticleCloud {
   private words: InterleavedBuffer | undefined;
   private shown: ParticleFrame | undefined;
 
-  /** `field` absent: particles without a surface over them. `depthM`: how far below y = 0 the light has faded. */
+  /** `field` undefined: no surface over the particles. `depthM`: depth at which light from above has faded. */
   constructor(sky: Sky, field: Texture | undefined, sideM: number, depthM: number, quality: { plain: boolean; samplesCount: number }) {
     this.sunDirection = sky.sunDirection;
     this.uniforms = {
@@ -47,7 +47,7 @@ export class ParticleCloud {
       u_side_m: { value: sideM },
       u_has_water: { value: field !== undefined },
     };
-    // The soft edge: by samples where there are several a pixel, blended where there is one. Both write depth.
+    // Soft edges: by alpha to coverage with several samples per pixel, by blending with one. Both write depth.
     const many = quality.samplesCount > 1;
     const soft = { alphaToCoverage: many, transparent: !many };
     const material = quality.plain
@@ -58,15 +58,15 @@ export class ParticleCloud {
     this.mesh.visible = false;
   }
 
-  /** Shows `frame` moved on by its velocities for `advanceS` seconds. */
+  /** Shows `frame`, extrapolated by its velocities for `advanceS` seconds. */
   show(frame: ParticleFrame, advanceS: number): void {
     this.uniforms["u_advance_s"]!.value = advanceS;
     if (frame === this.shown) return;
     this.shown = frame;
     this.mesh.visible = frame.count > 0;
     if (frame.count === 0) return;
-    // The buffer itself goes back to the worker when the ring drops the frame; the GPU's copy is refreshed from here
-    // once, and a restored context is filled by the next frame. The copy only ever grows, and only what is used travels.
+    // A copy, because the frame's buffer returns to the worker when the ring drops the frame. The copy only grows, and only the used
+    // part is uploaded. After a lost context the next frame fills it again.
     const wordsCount = frame.count * kWordsPerParticle;
     const words = this.words && this.words.array.length >= wordsCount ? this.words : this.rebuild(frame.buffer.byteLength / 2);
     words.array.set(new Uint16Array(frame.buffer, 0, wordsCount));

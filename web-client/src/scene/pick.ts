@@ -1,4 +1,4 @@
-// From a click to a place on the water.
+// Intersects a ray with the water.
 
 export interface Ray {
   originM: readonly [number, number, number];
@@ -8,7 +8,7 @@ export interface Ray {
 
 export interface WaterShape {
   sideM: number;
-  /** Bounds of elevationAtM; both 0 and a flat function for water at rest. */
+  /** Bounds of elevationAtM. */
   minM: number;
   maxM: number;
   elevationAtM(xM: number, zM: number): number;
@@ -17,7 +17,7 @@ export interface WaterShape {
 const kMarchCount = 64;
 const kBisectCount = 20;
 
-/** Where the ray first dips under the water from above; undefined where it misses the square of water. */
+/** Returns the point where the ray first goes under the water from above; undefined if it misses the square of water. */
 export function pickWater(ray: Ray, water: WaterShape): { xM: number; zM: number } | undefined {
   const [ox, oy, oz] = ray.originM;
   const [dx, dy, dz] = ray.direction;

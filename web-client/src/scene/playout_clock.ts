@@ -1,15 +1,15 @@
-// Which simulation time the page shows now. Frames come unevenly; the clock runs evenly, as far behind the server as the frames
-// of the last seconds took to come, so that there is nearly always one on either side to interpolate between.
+// Chooses the simulation time to show. Frames arrive unevenly; this clock runs evenly, and far enough behind the server that there is
+// nearly always a frame before and one after to interpolate between.
 
-/** Frames that rate and interval are taken from, and those that the jitter is. */
+/** Number of frames over which rate and interval are measured, and over which the jitter is. */
 const kRateCount = 16;
 const kJitterCount = 64;
-/** Longer silence (pause, hidden page, lost link) says nothing about the rate of frames. */
+/** A longer gap (pause, hidden page, lost link) is not used for the frame rate. */
 const kGapS = 1.0;
 const kDelayIntervals = 2;
-/** Of the transits, this share is in time. */
+/** Share of the frames that arrive in time. */
 const kInTimeShare = 0.95;
-/** What is off is made good by running faster or slower: by this share of it a second, by so much at most. */
+/** An error is corrected by running faster or slower: by kSlewPerS of it per second, at most by the share kMaxSlew of the rate. */
 const kSlewPerS = 2.5;
 const kMaxSlew = 0.1;
 const kFirstIntervalS = 1 / 30;
@@ -25,7 +25,7 @@ export class PlayoutClock {
   private shownS: number | undefined;
   private shownAtS = 0;
   private leadS = 0;
-  /** From the server's stamp to the picture, client seconds. */
+  /** Time from the server's stamp to the picture [client s]. */
   private behindS = 0;
 
   /** The server's clock minus the client's. */
@@ -34,8 +34,8 @@ export class PlayoutClock {
   }
 
   /**
-   * A frame of simulation time `timeS`, which it was at the server's time `serverTimeS`, came at client time `arrivedS`. Time
-   * going back (Reset) starts anew.
+   * Takes a frame of simulation time `timeS`, simulated at server time `serverTimeS`, that arrived at client time `arrivedS`.
+   * Simulation time that goes back (Reset) restarts the clock.
    */
   noteFrame(timeS: number, serverTimeS: number, arrivedS: number): void {
     const last = this.arrivals.at(-1);
@@ -64,12 +64,12 @@ export class PlayoutClock {
     return count > 0 && serverTimeS > 0 ? Math.min(timeS / serverTimeS, 4) : 1;
   }
 
-  /** How far the picture is behind the server's water, client seconds; undefined before the first frame. */
+  /** Returns the age of the water shown [client s]; undefined before the first frame. */
   delayS(): number | undefined {
     return this.arrivals.length > 0 ? this.behindS : undefined;
   }
 
-  /** Simulation time to show at client time `nowS`; never runs back and never ahead of the newest frame. */
+  /** Returns the simulation time to show at client time `nowS`; it never runs back and never ahead of the newest frame. */
   displayTimeS(nowS: number): number | undefined {
     const newest = this.arrivals.at(-1);
     if (!newest) return this.shownS;
@@ -92,7 +92,7 @@ export class PlayoutClock {
     return this.shownS;
   }
 
-  /** Between the newest frame and the one kRateCount before it. */
+  /** Returns the differences between the newest frame and the one kRateCount before it. */
   private recent(): { count: number; timeS: number; serverTimeS: number } {
     const last = this.arrivals.at(-1);
     const first = this.arrivals.at(-1 - Math.min(kRateCount, this.arrivals.length - 1));
@@ -105,8 +105,8 @@ export class PlayoutClock {
   }
 
   /**
-   * The fastest transit, and on top of it two frame intervals, or, where that is more, the jitter (what 95 % of the frames take
-   * longer at most) and the interval to the frame that is interpolated to.
+   * Returns the fastest transit plus the larger of: two frame intervals; or the jitter (95th percentile of the transits minus the
+   * fastest) and one interval, for the frame that is interpolated to.
    */
   private neededDelayS(): number {
     const { count, serverTimeS } = this.recent();

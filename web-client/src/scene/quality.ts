@@ -1,16 +1,22 @@
-// How much to draw: `?quality=low|high`, or by the name of the renderer. High by request keeps its resolution.
+// Chooses the drawing quality: `?quality=low|high`, or by the name of the renderer. With ?quality=high the resolution is never lowered.
 
-export interface ChosenQuality {
+/** What the scene needs to know. */
+export interface Quality {
+  /** Cells along each side of the drawn surface. */
   surfaceCellsCount: number;
+  /** Samples per pixel for solids and particles. */
   samplesCount: number;
-  /** Shaders without what a software renderer pays dearly for: refraction, caustics, exact spheres. */
+  /** Shaders without the parts that are slow on software renderers: refraction, caustics, exact spheres. */
   plain: boolean;
-  /** Texels a side of the field texture at most; a finer surface is sampled. */
+  /** Most texels along each side of the field texture; a finer surface is sampled. */
   fieldCountMax: number;
-  /** Whether the resolution may be lowered to keep up. */
+}
+
+export interface ChosenQuality extends Quality {
+  /** The resolution may be lowered to keep up. */
   adaptive: boolean;
   maxPixelRatio: number;
-  /** For the HUD; empty for the usual quality. */
+  /** For the HUD; empty at high quality. */
   remark: string;
 }
 

@@ -1,4 +1,4 @@
-// The shader texts with their shared parts put in, and the one way to make a material of them.
+// The shader texts with their includes, and makeMaterial() for all of them.
 import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
 
 import bed from "./shaders/bed.glsl?raw";
@@ -45,7 +45,7 @@ function expand(source: string): string {
 
 export type Uniforms = Record<string, IUniform>;
 
-/** A GLSL ES 3.00 material; `uniforms` is used as it is, so that materials can share entries. */
+/** Makes a GLSL ES 3.00 material. `uniforms` is not copied, so that materials can share entries. */
 export function makeMaterial(
   program: keyof typeof kPrograms,
   uniforms: Uniforms,

@@ -1,4 +1,4 @@
-// The sky: baked once into a cube that the dome, the water's mirror and the particles' gloss all read.
+// The sky: baked once into a cube map that the dome, the water's reflection and the particles' gloss read.
 import {
   BackSide,
   BoxGeometry,
@@ -23,13 +23,13 @@ const kFaceCount = 512;
 export class Sky {
   /** Unit vector toward the sun. */
   readonly sunDirection = new Vector3(-0.42, 0.44, -0.79).normalize();
-  /** What every material that mirrors the sky takes in. */
+  /** For every material that reflects the sky. */
   readonly uniforms: Uniforms;
   readonly dome: Mesh;
   private readonly cube: WebGLCubeRenderTarget;
   private readonly domeUniforms: Uniforms;
 
-  /** `smooth`: with mip levels, for still reflections far away; software renderers are better off without. */
+  /** `smooth`: with mip levels, against flicker in distant reflections; too slow for software renderers. */
   constructor(smooth: boolean) {
     this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 2, {
       type: HalfFloatType,
@@ -45,11 +45,11 @@ export class Sky {
     };
     this.dome = new Mesh(makeFullscreenGeometry(), makeMaterial("skyDome", this.domeUniforms, { depthWrite: false }));
     this.dome.frustumCulled = false;
-    // After everything solid: only the pixels that are left.
+    // After the solids: only the remaining pixels are shaded.
     this.dome.renderOrder = 10;
   }
 
-  /** Draws the cube; again after the WebGL context was lost and restored. */
+  /** Draws the cube map; needed again after the WebGL context was restored. */
   bake(renderer: WebGLRenderer): void {
     const material = makeMaterial("skyBake", { u_sun_direction: { value: this.sunDirection } }, { side: BackSide });
     const box = new Mesh(new BoxGeometry(2, 2, 2), material);

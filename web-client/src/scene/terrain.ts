@@ -1,12 +1,12 @@
-// The bed: level at the scene's depth, rising toward sides with a beach, and some dry land behind a shore. Pure.
+// The bed: level at the scene's depth, rising toward sides with a beach, with dry land behind a shore. Pure.
 import type { GreetingInfo } from "../codec/greeting";
 import type { BeachInfo, SideName } from "../codec/scene_info";
 
 const kSides: readonly SideName[] = ["+x", "-x", "+z", "-z"];
-/** Land behind a shore: this share of the beach's width, at most this share of the water's side. */
+/** Width of the land behind a shore: kLandBeaches of the beach's width, at most kLandSides of the water's side. */
 const kLandBeaches = 0.45;
 const kLandSides = 0.12;
-/** A side shallower than this share of the depth is a shore; a deeper one ends in water. */
+/** A side shallower than this share of the depth is a shore with land behind it. */
 const kShoreDepths = 0.02;
 
 export interface Bed {
@@ -15,23 +15,23 @@ export interface Bed {
   beaches: readonly BeachInfo[];
 }
 
-export function bedOf(greeting: Pick<GreetingInfo, "sideM" | "stage" | "beaches">): Bed {
-  return { sideM: greeting.sideM, depthM: greeting.stage.depthM, beaches: greeting.beaches };
+export function bedOf(greeting: Pick<GreetingInfo, "sideM" | "waterExtents" | "beaches">): Bed {
+  return { sideM: greeting.sideM, depthM: greeting.waterExtents.depthM, beaches: greeting.beaches };
 }
 
-/** How far inside of the side a place lies; negative outside. */
+/** Returns the distance from the side to a point inside the water; negative outside. */
 function insideM(side: SideName, sideM: number, xM: number, zM: number): number {
   const along = side[1] === "x" ? xM : zM;
   return sideM / 2 - (side[0] === "+" ? along : -along);
 }
 
-/** Width of the dry land that is drawn behind this beach; 0 where its side lies under water. */
+/** Returns the width of the dry land drawn behind this beach; 0 if its side is under water. */
 export function landWidthM(bed: Bed, beach: BeachInfo): number {
   if (beach.shoreDepthM > kShoreDepths * bed.depthM) return 0;
   return Math.min(kLandBeaches * beach.widthM, kLandSides * bed.sideM);
 }
 
-/** Still-water depth over the bed inside of the water's square, as the server has it; 0 at a shore. */
+/** Returns the still-water depth inside the water's square, as the server computes it; 0 at a shore. */
 export function depthAtM(bed: Bed, xM: number, zM: number): number {
   let depthM = bed.depthM;
   for (const beach of bed.beaches) {
@@ -41,7 +41,7 @@ export function depthAtM(bed: Bed, xM: number, zM: number): number {
   return depthM;
 }
 
-/** Height of the ground, y = 0 at the still water, with the land behind shores: it goes on rising and levels off. */
+/** Returns the height of the ground with the land behind shores, which rises further and levels off; y = 0 at the still water. */
 export function groundHeightM(bed: Bed, xM: number, zM: number): number {
   let heightM = -depthAtM(bed, xM, zM);
   for (const beach of bed.beaches) {
@@ -54,7 +54,7 @@ export function groundHeightM(bed: Bed, xM: number, zM: number): number {
   return heightM;
 }
 
-/** What is drawn of the ground: the square and the land behind its shores. */
+/** Returns the bounds of the drawn ground: the square and the land behind its shores. */
 export function groundExtent(bed: Bed): { minXM: number; maxXM: number; minZM: number; maxZM: number } {
   const half = bed.sideM / 2;
   const extent = { minXM: -half, maxXM: half, minZM: -half, maxZM: half };
@@ -68,7 +68,7 @@ export function groundExtent(bed: Bed): { minXM: number; maxXM: number; minZM: n
   return extent;
 }
 
-/** For bed.glsl: widths and depths at the sides +x, -x, +z, -z; a side without a beach has the scene's depth. */
+/** Returns the uniforms of bed.glsl: widths and depths at the sides +x, -x, +z, -z; a side without a beach has the scene's depth. */
 export function bedUniformValues(bed: Bed): { widthsM: number[]; shoreDepthsM: number[] } {
   const beachOf = (side: SideName): BeachInfo | undefined => bed.beaches.find((beach) => beach.side === side);
   return {

@@ -1,4 +1,4 @@
-// The water as one body: a grid lifted by the field, and a skirt round it down to the floor.
+// The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor.
 import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Group, Mesh, Vector2, Vector3, Vector4, type RawShaderMaterial, type Texture } from "three";
 
 import { makeMaterial, type Uniforms } from "./shaders";
@@ -10,7 +10,7 @@ export interface BehindTextures {
   depth: Texture;
 }
 
-/** Unit grid, x and z in -1/2..1/2, `cellsCount` cells a side, y = 1 ("on the surface" for the shader). */
+/** Unit grid, x and z in -1/2..1/2, `cellsCount` cells per side, y = 1 ("on the surface" for the shader). */
 function makeGrid(cellsCount: number): BufferGeometry {
   const pointsCount = cellsCount + 1;
   const positions = new Float32Array(pointsCount * pointsCount * 3);
@@ -66,7 +66,7 @@ export class WaterBody {
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
-  /** `foam` absent: a room that sends none. `hasSolids`: there is something over the water to mirror. */
+  /** `foam` undefined: the room sends none. `hasSolids`: the water reflects solids as well as the sky. */
   constructor(sky: Sky, field: Texture, behind: BehindTextures, bed: Bed, noise: Texture, foam: Uniforms | undefined, hasSolids: boolean, quality: { surfaceCellsCount: number; plain: boolean }) {
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);

@@ -1,5 +1,5 @@
-// Everything that is drawn of one room. A frame: field pass → sky, floor, solids, particles into a linear target → the water to
-// the canvas, reading the target for what shines through → the target where no water is.
+// Everything that is drawn of one room. One picture: field pass → sky, floor, solids and particles into a linear target → the water to
+// the canvas, which reads that target for refraction → the target to the canvas where there is no water.
 import {
   DepthTexture,
   HalfFloatType,
@@ -13,7 +13,7 @@ import {
   type WebGLRenderer,
 } from "three";
 
-import { kMaxResolutionCount } from "../codec/frames";
+import { kMaxResolutionCount } from "../codec/frame_types";
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { FoamFrame, Frame, ParticleFrame, SurfaceFrame } from "../net/messages";
 import { unpackBodies, type BodiesState, type BodyPose } from "./bodies";
@@ -22,7 +22,7 @@ import { FieldPass } from "./field_pass";
 import { FoamField } from "./foam_field";
 import { FrameRing } from "./frame_ring";
 import { FullscreenPass } from "./fullscreen";
-import type { WaterExtent } from "./framing";
+import type { ViewedBox } from "./framing";
 import { Ground } from "./ground";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { kFloorDropSides, Landscape } from "./landscape";
@@ -30,29 +30,20 @@ import { makeNoiseTexture } from "./noise_texture";
 import { ParticleCloud } from "./particle_cloud";
 import { PlayoutClock } from "./playout_clock";
 import type { WaterShape } from "./pick";
+import type { Quality } from "./quality";
 import { makeMaterial } from "./shaders";
 import { Sky } from "./sky";
 import { bedOf, groundExtent, type Bed } from "./terrain";
 import { WaterBody } from "./water_body";
 
 const kRingCount = 4;
-/** Particles fly on for at most this many frame intervals; then they wait for news. */
+/** Particles are extrapolated for at most this many frame intervals. */
 const kMaxAdvanceIntervals = 1.5;
-/** Height left for waves in a view, in sides of the water. */
+/** Room for waves above the water in a view, as a share of its side. */
 const kWaveRoom = 0.04;
-/** Cells a side of the drawn bed, where there is more to it than a floor. */
+/** Cells along each side of a bed with beaches or obstacles. */
 const kBedCells = 96;
 const kPlainBedCells = 48;
-
-export interface Quality {
-  /** Cells a side of the drawn surface. */
-  surfaceCellsCount: number;
-  /** Samples a pixel for spheres and floor. */
-  samplesCount: number;
-  /** As in ChosenQuality. */
-  plain: boolean;
-  fieldCountMax: number;
-}
 
 export class WaterScene {
   readonly camera = new PerspectiveCamera(47, 1, 0.1, 1000);
@@ -96,7 +87,7 @@ export class WaterScene {
     this.sky.bake(renderer);
   }
 
-  /** Builds what this room has; an earlier room's is thrown away. */
+  /** Builds the parts of this room and disposes those of the one before. */
   enter(greeting: GreetingInfo): void {
     this.leave();
     this.greeting = greeting;
@@ -125,27 +116,23 @@ export class WaterScene {
     this.camera.updateProjectionMatrix();
   }
 
-  /** A boat came or went. */
+  /** Sets the boats on the water. */
   setBoats(boats: readonly BoatDetail[]): void {
     if (this.greeting) this.greeting.boats = [...boats];
     this.boats?.setBoats(boats);
   }
 
-  /** Where a boat is drawn now; to be read at once. */
+  /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
   poseOf(boatId: number): BodyPose | undefined {
     return this.boats?.poseOf(boatId);
   }
 
-  drawnBoats(): { poses: readonly BodyPose[]; count: number } | undefined {
-    return this.boats?.drawn();
+  drawnBoats(): BodyPose[] {
+    return this.boats?.drawn() ?? [];
   }
 
-  newestFoam(): FoamFrame | undefined {
-    return this.foamFrames.newest();
-  }
-
-  /** What a view has to show: the water with room for its waves, or the particles of the newest frame. */
-  extent(): WaterExtent | undefined {
+  /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particle frame. */
+  viewedBox(): ViewedBox | undefined {
     if (!this.greeting) return undefined;
     const { sideM, wave } = this.greeting;
     if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM, ground: groundExtent(bedOf(this.greeting)) };
@@ -153,7 +140,7 @@ export class WaterScene {
     return frame && { sideM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
   }
 
-  /** Takes over a frame; `nowS` is the client's clock. */
+  /** Takes ownership of a frame; `nowS`: client time. */
   take(frame: Frame, nowS: number): void {
     switch (frame.layer) {
       case "surface":
@@ -170,7 +157,7 @@ export class WaterScene {
         if (!this.greeting?.wave && frame.count > 0) this.ground?.lowerTo(frame.minM[1] - frame.radiusM);
         this.particleFrames.push(frame);
     }
-    // One layer gives the time: those of one tick come apart, and a late one would look like time going back.
+    // Only one layer sets the clock: the layers of a tick arrive one after the other, and a late one would look like time going back.
     if (frame.layer === (this.greeting?.wave ? "surface" : "particles")) this.clock.noteFrame(frame.timeS, frame.serverTimeS, nowS);
   }
 
@@ -178,7 +165,7 @@ export class WaterScene {
     return this.surfaces.newest();
   }
 
-  /** The water as a click sees it: the newest elevations, flat before the first ones. */
+  /** Returns the surface for picking: the newest elevations, or flat water before the first frame. */
   shape(): WaterShape | undefined {
     if (!this.greeting) return undefined;
     const { sideM } = this.greeting;
@@ -210,11 +197,11 @@ export class WaterScene {
     renderer.setRenderTarget(null);
     renderer.clear();
     renderer.render(this.waters, camera);
-    // Last, so that only pixels without water are shaded.
+    // Last, so that it shades only the pixels without water.
     this.present.render(renderer, null);
   }
 
-  /** What lives only on the GPU is drawn again. */
+  /** Draws again what exists only on the GPU. */
   contextRestored(): void {
     this.sky.bake(this.renderer);
     if (this.greeting) this.enter(this.greeting);
@@ -257,7 +244,7 @@ export class WaterScene {
     this.foam = this.landscape = this.boats = this.solid = undefined;
   }
 
-  /** Boats, rocks, walls and a bed that is more than a floor: one material for all of them. */
+  /** Boats, obstacles and a bed with beaches share one material. */
   private enterSolids(greeting: GreetingInfo, bed: Bed): void {
     const isNatural = greeting.obstacles.length > 0 || greeting.beaches.length > 0;
     if (!isNatural && !greeting.hasBoats) return;

@@ -1,7 +1,9 @@
-// Boats: launch one, choose which is mine, steer it by sliders or keys, take it away.
+// Boats: launch one, choose one to steer, steer it with sliders or keys, remove it.
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { PersonInfo } from "../codec/people";
 import type { CommandAction } from "../net/messages";
+import type { BodyPose } from "../scene/bodies";
+import type { Followed } from "../scene/camera_views";
 import { byId, make } from "./dom";
 import { boatLimits, boatOfLength, clampTo, type BoatLimits } from "./effect_limits";
 import { Helm, helmKey, type HelmKey } from "./helm";
@@ -10,8 +12,12 @@ import { SelectRow } from "./select_row";
 import { SliderRow } from "./slider_row";
 import { spawnPlace } from "./spawn_place";
 
-/** At most 20 helm commands a second. */
-export const kHelmEveryMs = 50;
+/** At most 20 helm commands per second. */
+const kHelmEveryMs = 50;
+/** Label of the helm's commands. */
+export const kHelmLabel = "Helm";
+/** Length of a boat whose hull is not known yet. */
+const kUnknownLengthM = 2;
 
 interface HelmOrder {
   boatId: number;
@@ -19,15 +25,8 @@ interface HelmOrder {
   rudderRatio: number;
 }
 
-interface Pose {
-  xM: number;
-  zM: number;
-  throttle: number;
-  rudder: number;
-}
-
 export class BoatPanel {
-  /** The boat that is mine; 0 = none. */
+  /** The boat that this page steers; 0 = none. */
   mineId = 0;
   private readonly helm = new Helm();
   private readonly orders: LatestSender<HelmOrder>;
@@ -51,17 +50,17 @@ export class BoatPanel {
 
   constructor(
     private readonly send: (action: CommandAction, label: string) => number,
-    /** Where a boat is drawn now. */
-    private readonly poseOf: (boatId: number) => Pose | undefined,
-    /** Another boat is mine, or none. */
+    /** The pose in which a boat is drawn now. */
+    private readonly poseOf: (boatId: number) => BodyPose | undefined,
+    /** `mineId` has changed. */
     private readonly chosen: () => void,
   ) {
-    this.orders = new LatestSender((order) => void send({ case: "controlBoat", value: order }, "Helm"), {
+    this.orders = new LatestSender((order) => void send({ case: "controlBoat", value: order }, kHelmLabel), {
       nowMs: () => performance.now(),
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
     }, kHelmEveryMs);
-    this.mine = new SelectRow("my-boat", "My boat", "The boat that the helm steers and the boat view follows.", (value) => this.want(Number(value)));
+    this.mine = new SelectRow("my-boat", "My boat", "The boat that you steer and that the boat view follows.", (value) => this.request(Number(value)));
     byId("my-boat-row").append(this.mine.element);
     this.spawn.addEventListener("click", () => this.launch());
     for (const button of document.querySelectorAll<HTMLElement>("#pad [data-helm]")) {
@@ -106,19 +105,19 @@ export class BoatPanel {
     this.refresh();
   }
 
-  /** Whether this page's role may drive. */
+  /** `isAllowed`: the role of this page may steer boats. */
   setAllowed(isAllowed: boolean): void {
     this.isAllowed = isAllowed;
     this.refresh();
   }
 
-  /** Who this page is in the room; `resumed`: the boat of an earlier connection is mine again. */
+  /** The server's Welcome. `resumed`: the server knows this page from an earlier connection, and its boat is kept. */
   welcomed(personId: number, resumed: boolean): void {
     if (personId !== this.myPersonId && !resumed) this.choose(0);
     this.myPersonId = personId;
   }
 
-  /** Whose boat is whose. */
+  /** Updates the owners of the boats. */
   setPeople(people: readonly PersonInfo[]): void {
     this.owners = new Map(people.flatMap(({ personId, boatIds }) => boatIds.map((boatId): [number, number] => [boatId, personId])));
     const owner = this.owners.get(this.mineId);
@@ -128,9 +127,9 @@ export class BoatPanel {
     this.refresh();
   }
 
-  reject(commandId: number, reason: string): void {
+  reject(commandId: number, _message: string, reason: string): void {
     if (commandId === this.takeId) this.takeId = 0;
-    // Somebody else has the boat, or it became nobody's while this page was away.
+    // The boat has another owner, or lost its owner while this page was disconnected.
     if (reason === "NOT_YOURS" && this.mineId && this.owners.get(this.mineId) !== this.myPersonId) this.choose(0);
     this.refresh();
   }
@@ -143,12 +142,12 @@ export class BoatPanel {
     }
     if (commandId !== this.spawnId || boatId === 0) return;
     this.spawnId = 0;
-    // The list with the new boat may come after its ack.
+    // The boat list with the new boat may arrive after the ack.
     if (!this.boats.some((boat) => boat.boatId === boatId)) this.boats = [...this.boats, { boatId, ...boatOfLength(this.lengthM) }];
     this.choose(boatId);
   }
 
-  /** Whether the key is the helm's; the caller keeps it from scrolling the page then. */
+  /** Returns true for a key of the helm; the caller then prevents the browser's own action, such as scrolling. */
   key(code: string, isDown: boolean): boolean {
     const key = helmKey(code);
     if (!key || !this.mineId) return false;
@@ -156,17 +155,22 @@ export class BoatPanel {
     return true;
   }
 
-  /** Moves what held keys move. */
-  update(nowS: number): void {
+  /** Moves throttle and rudder while their keys are held. Returns the boat that the camera follows, to be read at once. */
+  update(nowS: number): Followed | undefined {
     const elapsedS = Math.min(nowS - this.lastS, 0.1);
     this.lastS = nowS;
-    if (!this.mineId || !this.helm.advance(elapsedS)) return;
-    this.rows?.throttle.show(this.helm.throttle, "");
-    this.rows?.rudder.show(this.helm.rudder, "");
-    this.order();
+    if (!this.mineId) return undefined;
+    if (this.helm.advance(elapsedS)) {
+      this.showHelm();
+      this.order();
+    }
+    const pose = this.poseOf(this.mineId);
+    if (!pose) return undefined;
+    const { xM, yM, zM, headingRad } = pose;
+    return { xM, yM, zM, headingRad, lengthM: this.lengthOf(this.mineId) };
   }
 
-  /** The page lost focus: engine stopped, rudder amidships, once; then no more orders. */
+  /** The page lost focus: stops the engine and centres the rudder, once. */
   leaveHelm(): void {
     if (!this.mineId) return;
     const wasSet = this.helm.throttle !== 0 || this.helm.rudder !== 0;
@@ -177,8 +181,8 @@ export class BoatPanel {
     this.orders.flush();
   }
 
-  lengthOf(boatId: number): number {
-    return this.boats.find((boat) => boat.boatId === boatId)?.lengthM ?? 2;
+  private lengthOf(boatId: number): number {
+    return this.boats.find((boat) => boat.boatId === boatId)?.lengthM ?? kUnknownLengthM;
   }
 
   private hold(key: HelmKey, isDown: boolean): void {
@@ -197,8 +201,8 @@ export class BoatPanel {
     this.chosen();
   }
 
-  /** My own at once, nobody's when the server has given it to me. */
-  private want(boatId: number): void {
+  /** Chooses an own boat at once, and a free one after the server's ack. */
+  private request(boatId: number): void {
     if (boatId === 0 || this.owners.get(boatId) === this.myPersonId) return this.choose(boatId);
     this.takeBoatId = boatId;
     this.takeId = this.send({ case: "takeBoat", value: { boatId } }, `Take boat ${boatId}`);

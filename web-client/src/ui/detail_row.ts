@@ -1,18 +1,16 @@
-// How much of the water the page asks for.
+// Chooses the level of detail.
+import { kLevels } from "../codec/level";
 import type { DetailChoice } from "../net/messages";
 import { byId } from "./dom";
 import { SelectRow } from "./select_row";
 
 const kChoices: { value: DetailChoice; label: string }[] = [
   { value: "auto", label: "automatic" },
-  { value: "full", label: "full" },
-  { value: "fine", label: "fine" },
-  { value: "medium", label: "medium" },
-  { value: "coarse", label: "coarse" },
+  ...kLevels.map(({ name }) => ({ value: name, label: name })).reverse(),
 ];
 
 export function addDetailRow(chosen: (detail: DetailChoice) => void): void {
-  const help = "How much of the water this page is sent; automatic takes what link and device can carry.";
+  const help = "Level of detail that this page gets. Automatic: the finest that the link and this device can carry.";
   const row = new SelectRow("detail", "Detail", help, (value) => chosen(value as DetailChoice));
   row.setChoices(kChoices, "auto");
   byId("detail-row").append(row.element);

@@ -1,6 +1,6 @@
 // Small helpers for the page's elements.
 
-/** The element of the page with this id; its absence is our own bug. */
+/** Returns the element with this id; a missing one is a bug of the page. */
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   const element = document.getElementById(id);
   if (!element) throw new Error(`index.html has no element "${id}"`);
@@ -18,17 +18,17 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** Writes text only when it changed: the HUD writes often, the layout should not. */
+/** Writes the text only if it changed, so that frequent updates cause no layout work. */
 export function setText(element: HTMLElement, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** Whether keys pressed there mean something there already: sliders, lists, text. */
+/** True for elements that use keys themselves: sliders, lists, text fields. */
 export function isTyping(target: EventTarget | null): boolean {
   return target instanceof HTMLElement && (target.matches("input, select, textarea") || target.isContentEditable);
 }
 
-/** A number for people: as many decimals as the step has, at most four. */
+/** Formats a value with as many decimals as the step has, at most four. */
 export function formatBy(step: number, value: number): string {
   const decimals = Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 4);
   return value.toFixed(decimals);

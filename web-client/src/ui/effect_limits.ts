@@ -1,44 +1,40 @@
-// Ranges of the effect sliders: the options in scene.proto, narrowed to what this room's water can take.
+// Ranges of the effect sliders: the options in scene.proto, narrowed to the limits of this room's water.
 import { getOption, type DescField } from "@bufbuild/protobuf";
 
 import type { GreetingInfo } from "../codec/greeting";
 import { parameter } from "../gen/spindrift/v1/options_pb";
 import { BoatSchema, BreakingWaveSchema, SplashSchema } from "../gen/spindrift/v1/scene_pb";
 import { ControlBoatSchema, SetSpeedSchema } from "../gen/spindrift/v1/wire_pb";
+import type { SliderRange } from "./slider_row";
 
-export interface Range {
-  label: string;
-  unit: string;
-  min: number;
-  max: number;
-  step: number;
+export interface EffectRange extends SliderRange {
   default: number;
 }
 
 export interface EffectLimits {
-  splashRadiusM: Range;
-  splashDepthM: Range;
-  waveAmplitudeM: Range;
-  waveLengthM: Range;
-  waveDirectionDeg: Range;
+  splashRadiusM: EffectRange;
+  splashDepthM: EffectRange;
+  waveAmplitudeM: EffectRange;
+  waveLengthM: EffectRange;
+  waveDirectionDeg: EffectRange;
 }
 
-/** The server's own bounds: a splash or a crest as wide as the water, elevations that leave a tenth of its depth. */
+/** The server's bounds: a splash or a crest as wide as the water, elevations up to nine tenths of its depth. */
 const kWidestRadiusSides = 0.5;
 const kLongestWaveSides = 1;
 const kDeepestDepths = 0.9;
 
-function range(field: DescField, largest: number): Range {
+function range(field: DescField, largest: number): EffectRange {
   const { label, unit, min, max, step, default: fallback } = getOption(field, parameter);
-  // Rounded down to a step, so that the slider's end is a value that the server takes.
+  // Rounded down to a step, so that the server accepts the slider's maximum.
   const top = Math.max(Math.floor(Math.min(max, largest) / step + 1e-9) * step, min);
   const rounded = Number(top.toFixed(6));
   return { label, unit, min, max: rounded, step, default: Math.min(fallback, rounded) };
 }
 
-/** undefined where no water says how deep it is: nothing there to splash. */
+/** Undefined if the water has no depth: no effect is possible. */
 export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
-  const { sideM, depthM } = greeting.stage;
+  const { sideM, depthM } = greeting.waterExtents;
   if (!(depthM > 0 && Number.isFinite(depthM))) return undefined;
   return {
     splashRadiusM: range(SplashSchema.field.radiusM, kWidestRadiusSides * sideM),
@@ -50,20 +46,21 @@ export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
 }
 
 export interface BoatLimits {
-  lengthM: Range;
-  throttleRatio: Range;
-  rudderRatio: Range;
+  lengthM: EffectRange;
+  throttleRatio: EffectRange;
+  rudderRatio: EffectRange;
 }
 
-/** A hull at most this share of the water's side long, and so deep that its draught leaves water under it. */
+/** Longest hull as a share of the water's side. */
 const kLongestBoatSides = 0.25;
-/** Beam, height and density of a new boat as shares of its length: those of the proto's own boat. */
+/** Beam and height of a new boat as shares of its length, and its density: the shape of the proto's default boat. */
 const kBoatShape = { beam: 0.375, height: 0.25, density: 0.4 };
+/** Greatest draught as a share of the water's depth. */
 const kDraughtDepths = 0.6;
 
-/** undefined for a scene that takes no boats. */
+/** Undefined for a scene without boats. */
 export function boatLimits(greeting: GreetingInfo): BoatLimits | undefined {
-  const { sideM, depthM } = greeting.stage;
+  const { sideM, depthM } = greeting.waterExtents;
   if (!greeting.hasBoats || !(depthM > 0 && Number.isFinite(depthM))) return undefined;
   const deepest = (kDraughtDepths * depthM) / (kBoatShape.height * kBoatShape.density);
   return {
@@ -73,18 +70,18 @@ export function boatLimits(greeting: GreetingInfo): BoatLimits | undefined {
   };
 }
 
-/** A new boat of this length, within the ranges of its fields. */
+/** Returns a new boat of this length, within the ranges of its fields. */
 export function boatOfLength(lengthM: number): { lengthM: number; beamM: number; heightM: number; densityRatio: number; draughtM: number } {
   const heightM = Math.max(kBoatShape.height * lengthM, range(BoatSchema.field.heightM, Infinity).min);
   const beamM = Math.max(kBoatShape.beam * lengthM, range(BoatSchema.field.beamM, Infinity).min);
   return { lengthM, beamM, heightM, densityRatio: kBoatShape.density, draughtM: kBoatShape.density * heightM };
 }
 
-export function speedRange(): Range {
+export function speedRange(): EffectRange {
   return range(SetSpeedSchema.field.speed, Infinity);
 }
 
-/** Keeps a slider's value inside a new room's range. */
-export function clampTo(value: number, { min, max }: Range): number {
+/** Clamps a slider's value to the range of a new room. */
+export function clampTo(value: number, { min, max }: SliderRange): number {
   return Math.min(Math.max(value, min), max);
 }

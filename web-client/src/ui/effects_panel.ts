@@ -1,7 +1,8 @@
-// The effect sliders and their commands: a splash at a place, a wave from a side.
+// The effect sliders, the buttons for a splash and a wave, and the commands that they send.
 import type { GreetingInfo } from "../codec/greeting";
 import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
 import type { CommandAction } from "../net/messages";
+import { byId } from "./dom";
 import { clampTo, effectLimits, type EffectLimits } from "./effect_limits";
 import { SelectRow, type Choice } from "./select_row";
 import { SliderRow } from "./slider_row";
@@ -10,10 +11,10 @@ type EffectKey = keyof EffectLimits;
 const kKeys: EffectKey[] = ["splashRadiusM", "splashDepthM", "waveAmplitudeM", "waveLengthM", "waveDirectionDeg"];
 const kHelp: Record<EffectKey, string> = {
   splashRadiusM: "Radius of the disc that a splash pushes down.",
-  splashDepthM: "How far a splash pushes the surface down.",
-  waveAmplitudeM: "Height of the crest that a breaking wave starts with.",
-  waveLengthM: "Width of that crest.",
-  waveDirectionDeg: "Where the wave travels to: 0 is +x, 90 is +z.",
+  splashDepthM: "Distance that a splash pushes the surface down.",
+  waveAmplitudeM: "Height of the crest at the start.",
+  waveLengthM: "Width of the crest at the start.",
+  waveDirectionDeg: "Direction in which the wave travels: 0 is +x, 90 is +z.",
 };
 const kSides: readonly Choice[] = [
   { value: String(Side.PLUS_X), label: "right side (+x)" },
@@ -30,16 +31,16 @@ const kShapes: readonly Choice[] = [
 export class EffectsPanel {
   private values: Record<EffectKey, number> | undefined;
   private readonly rows = new Map<EffectKey, SliderRow>();
-
-  private readonly side = new SelectRow("wave-side", "Wave from", "Where the wave is released.", () => this.showDirection());
-  private readonly shape = new SelectRow("wave-shape", "Wave shape", "A front steep enough to break, or a symmetric swell.", () => {});
+  private readonly buttons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
+  private readonly side = new SelectRow("wave-side", "Wave from", "Side at which the wave starts.", () => this.showDirection());
+  private readonly shape = new SelectRow("wave-shape", "Wave shape", "Breaking: a steep front. Swell: a symmetric crest.", () => {});
 
   constructor(private readonly root: HTMLElement) {
     this.side.setChoices(kSides, kSides[0]!.value);
     this.shape.setChoices(kShapes, kShapes[0]!.value);
   }
 
-  /** Values that still fit the new room are kept. */
+  /** Keeps the values that the new room allows. */
   enter(greeting: GreetingInfo): void {
     const limits = effectLimits(greeting);
     this.root.hidden = !limits;
@@ -63,7 +64,7 @@ export class EffectsPanel {
       });
       this.rows.set(key, made);
       this.root.append(made.element);
-      // Under the crest's size, over its direction.
+      // Between the crest's size and its direction.
       if (key === "waveLengthM") this.root.append(this.shape.element, this.side.element);
     }
     this.showDirection();
@@ -71,6 +72,10 @@ export class EffectsPanel {
 
   get available(): boolean {
     return this.values !== undefined;
+  }
+
+  setEnabled(isEnabled: boolean): void {
+    for (const button of this.buttons) button.disabled = !isEnabled || !this.available;
   }
 
   splashAt(xM: number, zM: number): CommandAction | undefined {

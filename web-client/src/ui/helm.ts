@@ -1,5 +1,5 @@
-// Throttle and rudder of one's own boat, from keys and sliders. The throttle is a lever that stays where it was left; the
-// rudder comes back to the middle when its keys are let go. Pure.
+// Throttle and rudder of the user's boat, from keys and sliders. The throttle keeps its position when its keys are released; the
+// rudder returns to the middle. Pure.
 
 export type HelmKey = "ahead" | "astern" | "port" | "starboard";
 
@@ -9,12 +9,12 @@ const kKeys: Record<string, HelmKey> = {
   ArrowLeft: "port", KeyA: "port",
   ArrowRight: "starboard", KeyD: "starboard",
 };
-/** Full travel of the lever takes this many seconds a unit, of the rudder likewise. */
+/** Change of the ratio per second while a key is held, and of the rudder after its keys are released. */
 const kThrottlePerS = 1.4;
 const kRudderPerS = 4;
 const kRudderBackPerS = 6;
 
-/** By KeyboardEvent.code, so that WASD lies where it lies on every keyboard. */
+/** By KeyboardEvent.code: the same physical keys on every keyboard layout. */
 export function helmKey(code: string): HelmKey | undefined {
   return kKeys[code];
 }
@@ -27,7 +27,7 @@ export class Helm {
   throttle = 0;
   rudder = 0;
   private readonly held = new Set<HelmKey>();
-  /** The rudder was last moved by keys, not by its slider. */
+  /** The rudder was last moved with keys, not with its slider. */
   private isRudderByKeys = false;
 
   press(key: HelmKey): void {
@@ -47,21 +47,21 @@ export class Helm {
     this.isRudderByKeys = false;
   }
 
-  /** Another boat, or nobody at the helm. */
+  /** Stops the engine and centres the rudder. */
   centre(): void {
     this.held.clear();
     this.throttle = this.rudder = 0;
     this.isRudderByKeys = false;
   }
 
-  /** Takes over what a boat is set to. */
+  /** Starts from the current setting of a boat. */
   takeOver(throttle: number, rudder: number): void {
     this.centre();
     this.throttle = throttle;
     this.rudder = rudder;
   }
 
-  /** Moves what keys move; true where anything changed. */
+  /** Applies the held keys. Returns true if anything changed. */
   advance(elapsedS: number): boolean {
     const { throttle, rudder } = this;
     const along = Number(this.held.has("ahead")) - Number(this.held.has("astern"));

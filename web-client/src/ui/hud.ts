@@ -1,4 +1,4 @@
-// The numbers: what the server measured and what the page measured. Every value is written as it arrives.
+// The numbers that server and page measure. Every value is written when it arrives.
 import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
 import type { ConnectionState, LinkStats } from "../net/messages";
@@ -41,7 +41,7 @@ export class Hud {
   private readonly remark = byId("remark");
   private readonly health = byId("health");
 
-  /** Shows the rows that this room has numbers for. */
+  /** Shows only the rows that this room has values for. */
   enter(greeting: GreetingInfo): void {
     const breaks = greeting.isTwoWay || greeting.layers.includes("foam");
     const rows: [HTMLElement, boolean][] = [
@@ -82,11 +82,11 @@ export class Hud {
     setText(this.netFps, stats.framesPerS.toFixed(1));
     setText(this.kbps, stats.kilobytesPerS.toFixed(stats.kilobytesPerS < 10 ? 1 : 0));
     setText(this.latency, stats.latencyMs === undefined ? "–" : `${stats.latencyMs.toFixed(1)} ms`);
-    const why = { nobody: "", choice: "", link: " (slow link)", device: " (busy device)" }[stats.levelHeldBy];
+    const why = { none: "", choice: "", link: " (slow link)", device: " (busy device)" }[stats.levelLimitedBy];
     setText(this.level, stats.level + why);
   }
 
-  /** `delayS`: how far the picture is behind the water. */
+  /** `delayS`: age of the water shown. */
   display(framesPerS: number, delayS: number | undefined, remark: string): void {
     setText(this.delay, delayS === undefined ? "–" : `${(1000 * delayS).toFixed(0)} ms`);
     setText(this.displayFps, framesPerS.toFixed(0));

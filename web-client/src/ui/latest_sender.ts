@@ -1,5 +1,5 @@
-// Sends the newest of many values at a bounded rate: the first at once, later ones when their time has come, the last
-// one always. No timers of its own, so tests drive it by hand.
+// Sends the newest of many values at a bounded rate: the first at once, later ones after the shortest interval, the last one
+// always. Clock and timers are injected.
 
 export interface SenderWorld {
   nowMs(): number;
@@ -15,18 +15,18 @@ export class LatestSender<T> {
   constructor(
     private readonly send: (value: T) => void,
     private readonly world: SenderWorld,
-    private readonly leastMs: number,
+    private readonly minIntervalMs: number,
   ) {}
 
   offer(value: T): void {
     this.waiting = { value };
     if (this.timer !== undefined) return;
-    const waitMs = this.sentAtMs + this.leastMs - this.world.nowMs();
+    const waitMs = this.sentAtMs + this.minIntervalMs - this.world.nowMs();
     if (waitMs <= 0) return this.flush();
     this.timer = this.world.setTimer(() => this.flush(), waitMs);
   }
 
-  /** What waits goes now. */
+  /** Sends the waiting value now. */
   flush(): void {
     const waiting = this.waiting;
     this.cancel();
@@ -35,7 +35,7 @@ export class LatestSender<T> {
     this.send(waiting.value);
   }
 
-  /** What waits is forgotten. */
+  /** Drops the waiting value. */
   cancel(): void {
     if (this.timer !== undefined) this.world.clearTimer(this.timer);
     this.timer = undefined;

@@ -1,4 +1,4 @@
-// The scene's parameters as sliders, made from the greeting.
+// The scene's parameters as sliders, built from the greeting.
 import type { ParameterInfo } from "../codec/greeting";
 import type { CommandAction } from "../net/messages";
 import { SliderModel } from "./slider_model";
@@ -10,7 +10,7 @@ export class ParametersPanel {
   constructor(
     private readonly root: HTMLElement,
     private readonly send: (action: CommandAction) => number,
-    /** Parameters with a place of their own, by path. */
+    /** Parameters that are shown in an element of their own, by path. */
     private readonly featured: Readonly<Record<string, HTMLElement>> = {},
   ) {}
 
@@ -33,20 +33,20 @@ export class ParametersPanel {
     }
   }
 
-  /** Whether there is anything to show outside of the featured places. */
+  /** True if there are parameters besides the featured ones. */
   get hasRows(): boolean {
     return this.root.childElementCount > 0;
   }
 
-  ack(commandId: number): boolean {
-    return [...this.models.values()].some((model) => model.ack(commandId));
+  ack(commandId: number): void {
+    for (const model of this.models.values()) model.ack(commandId);
   }
 
-  reject(commandId: number, message: string): boolean {
-    return [...this.models.values()].some((model) => model.reject(commandId, message));
+  reject(commandId: number, message: string): void {
+    for (const model of this.models.values()) model.reject(commandId, message);
   }
 
-  serverSays(path: string, value: number): void {
-    this.models.get(path)?.serverSays(value);
+  setServerValue(path: string, value: number): void {
+    this.models.get(path)?.setServerValue(value);
   }
 }

@@ -1,9 +1,9 @@
-// Who is here: a list with colours, roles and boats, and what I call myself.
+// The people in the room with colour, role and boats, and the user's own name and token.
 import type { PersonInfo, WelcomeInfo } from "../codec/people";
 import type { Identity } from "../net/messages";
 import { byId, make } from "./dom";
 
-/** As the server keeps them. */
+/** The server cuts longer names. */
 const kNameMaxLength = 32;
 
 export class PeoplePanel {
@@ -20,9 +20,9 @@ export class PeoplePanel {
     const form = make("form", { class: "me" }, [
       make("label", { for: "my-name" }, ["My name"]),
       this.name,
-      make("label", { for: "my-token", title: "Gives a role: viewer, player or operator. Without one you are a guest." }, ["Token"]),
+      make("label", { for: "my-token", title: "A token gives a role: viewer, player or operator. Without a token you are a guest." }, ["Token"]),
       this.token,
-      make("button", { type: "submit", "data-testid": "introduce" }, ["Join as this"]),
+      make("button", { type: "submit", "data-testid": "introduce" }, ["Join with this name"]),
     ]);
     form.addEventListener("submit", (event) => {
       event.preventDefault();

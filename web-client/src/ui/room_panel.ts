@@ -1,4 +1,4 @@
-// What changes the room for everybody: pause, single steps, reset, the speed of time, another scene.
+// Controls that affect everybody in the room: pause, single steps, reset, speed, scene.
 import type { GreetingInfo } from "../codec/greeting";
 import type { CommandAction } from "../net/messages";
 import { byId, setText } from "./dom";
@@ -34,7 +34,7 @@ export class RoomPanel {
       clearTimer: (timer) => window.clearTimeout(timer),
       changed: () => this.speedRow.show(this.speed.shownValue, this.speed.error),
     });
-    this.scenes = new SelectRow("scene", "Scene", "Another scene, for everybody in the room.", (name) => {
+    this.scenes = new SelectRow("scene", "Scene", "Changes the scene for everybody in the room.", (name) => {
       this.changeId = send({ case: "changeScene", value: { name } }, `Scene ${name}`);
     });
     byId("room").append(this.scenes.element, this.speedRow.element);
@@ -54,7 +54,7 @@ export class RoomPanel {
     this.refresh();
   }
 
-  /** Whether this page's role may change the room. */
+  /** `isAllowed`: the role of this page may change the room. */
   setAllowed(isAllowed: boolean): void {
     this.isAllowed = isAllowed;
     this.refresh();
@@ -71,7 +71,7 @@ export class RoomPanel {
     this.paused = paused;
     setText(this.pause, paused ? "Resume" : "Pause");
     this.pause.setAttribute("aria-pressed", String(paused));
-    if (speed > 0) this.speed.serverSays(speed);
+    if (speed > 0) this.speed.setServerValue(speed);
     this.setLive(this.isLive);
   }
 

@@ -1,4 +1,4 @@
-// One labelled list to choose from.
+// One labelled drop-down list.
 import { make, setText } from "./dom";
 
 export interface Choice {
@@ -18,7 +18,7 @@ export class SelectRow {
 
   setChoices(choices: readonly Choice[], value: string): void {
     const same = choices.length === this.select.options.length && choices.every((choice, i) => this.select.options[i]!.value === choice.value);
-    // An open list is not torn away from under its user for nothing.
+    // Replacing the options would close a list that the user has open.
     if (!same) this.select.replaceChildren(...choices.map((choice) => make("option", { value: choice.value }, [choice.label])));
     else choices.forEach((choice, i) => setText(this.select.options[i]!, choice.label));
     this.select.value = value;

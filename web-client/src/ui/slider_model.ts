@@ -1,5 +1,5 @@
-// What one parameter slider knows: the server's value, the shown one, what is under way, and why something was refused.
-// No DOM and no timers of its own, so tests drive it by hand.
+// State of one parameter slider: the server's value, the value shown, the commands not yet answered, and the last error. No DOM;
+// timers are injected.
 
 export const kDebounceMs = 80;
 
@@ -26,7 +26,7 @@ export class SliderModel {
     this.shownValue = serverValue;
   }
 
-  /** The user moved the slider: sent when it rests for kDebounceMs. */
+  /** The user moved the slider. The value is sent when the slider has rested for kDebounceMs. */
   input(value: number): void {
     this.shownValue = value;
     this.error = "";
@@ -39,7 +39,7 @@ export class SliderModel {
     this.world.changed();
   }
 
-  /** Whether the command was this slider's. */
+  /** Returns true if the command came from this slider. */
   ack(commandId: number): boolean {
     const value = this.sent.get(commandId);
     if (value === undefined) return false;
@@ -48,7 +48,7 @@ export class SliderModel {
     return true;
   }
 
-  /** Falls back to the server's value, unless the user has moved on since. */
+  /** Returns to the server's value, unless the user has moved the slider since. Returns true as ack() does. */
   reject(commandId: number, message: string): boolean {
     if (!this.sent.delete(commandId)) return false;
     if (commandId === this.newestId && this.timer === undefined) {
@@ -59,8 +59,8 @@ export class SliderModel {
     return true;
   }
 
-  /** The server's word, whoever caused it. A slider that is being moved follows its user until the answer comes. */
-  serverSays(value: number): void {
+  /** The server has another value, set by any user. A slider that is being moved keeps the user's value until the answer comes. */
+  setServerValue(value: number): void {
     this.serverValue = value;
     if (this.timer !== undefined || this.sent.size > 0) return;
     this.shownValue = value;

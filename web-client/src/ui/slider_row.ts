@@ -1,4 +1,4 @@
-// One labelled slider with its value and a line for errors.
+// One labelled slider with its value and an error line.
 import { formatBy, make, setText } from "./dom";
 
 export interface SliderRange {

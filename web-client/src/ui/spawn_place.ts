@@ -1,13 +1,13 @@
-// Where a new boat fits: in water deep enough, clear of what stands and floats there. Pure.
+// Finds a place for a new boat: deep enough, and clear of obstacles and other boats. Pure.
 import type { GreetingInfo } from "../codec/greeting";
 import type { ObstacleInfo } from "../codec/scene_info";
 import { bedOf, depthAtM, type Bed } from "../scene/terrain";
 
 const kTriesCount = 160;
-/** Turns by the golden angle, so that tries fill the square evenly from its middle outward. */
+/** The golden angle: candidates fill the square evenly from the middle outward. */
 const kTurnRad = Math.PI * (3 - Math.sqrt(5));
 
-/** Distance from a place to the outline of an obstacle; negative inside. */
+/** Returns the distance from a point to the outline of an obstacle; negative inside. */
 export function clearanceM(obstacle: ObstacleInfo, xM: number, zM: number): number {
   const dx = xM - obstacle.xM;
   const dz = zM - obstacle.zM;
@@ -18,9 +18,9 @@ export function clearanceM(obstacle: ObstacleInfo, xM: number, zM: number): numb
   return Math.hypot(Math.max(outX, 0), Math.max(outZ, 0)) + Math.min(Math.max(outX, outZ), 0);
 }
 
-/** Free place nearest the middle for a hull of `lengthM`; the roomiest one tried where nothing is quite free. */
+/** Returns the free place nearest to the middle for a hull of `lengthM`; if none is free, the candidate with the most room. */
 export function spawnPlace(
-  greeting: Pick<GreetingInfo, "sideM" | "stage" | "beaches" | "obstacles">,
+  greeting: Pick<GreetingInfo, "sideM" | "waterExtents" | "beaches" | "obstacles">,
   lengthM: number,
   draughtM: number,
   others: readonly { xM: number; zM: number }[],

@@ -1,4 +1,4 @@
-// Tells a click or tap from a drag.
+// Distinguishes a click or tap from a drag.
 
 export interface PointerSample {
   id: number;
@@ -16,18 +16,18 @@ export class TapDetector {
 
   pressed(sample: PointerSample): void {
     this.held.add(sample.id);
-    // A second finger makes it a gesture.
+    // A second finger starts a gesture.
     this.down = this.held.size === 1 ? sample : undefined;
   }
 
-  /** Whether this release ends a tap. */
+  /** Returns true if this release ends a tap. */
   released(sample: PointerSample): boolean {
     this.held.delete(sample.id);
     const down = this.down;
     this.down = undefined;
     if (!down || down.id !== sample.id) return false;
-    const wayPx = Math.hypot(sample.xPx - down.xPx, sample.yPx - down.yPx);
-    return wayPx <= kTapRadiusPx && sample.timeMs - down.timeMs <= kTapMs;
+    const distancePx = Math.hypot(sample.xPx - down.xPx, sample.yPx - down.yPx);
+    return distancePx <= kTapRadiusPx && sample.timeMs - down.timeMs <= kTapMs;
   }
 
   cancelled(id: number): void {
@@ -36,7 +36,7 @@ export class TapDetector {
   }
 }
 
-/** Place on an element → normalized device coordinates, x right and y up, -1..1. */
+/** Position on an element → normalized device coordinates, x right and y up, -1..1. */
 export function toDeviceCoordinates(
   xPx: number,
   yPx: number,

@@ -1,4 +1,4 @@
-// One line that says what became of a command, for a few seconds.
+// One line about the result of a command, shown for a few seconds.
 import { setText } from "./dom";
 
 const kShownMs = 4000;
@@ -14,7 +14,7 @@ export class Toast {
     this.element.dataset["tone"] = tone;
     this.element.classList.add("shown");
     if (this.timer !== undefined) window.clearTimeout(this.timer);
-    // The text stays for those who read it late (and for screen readers); only its display fades.
+    // The text stays in the document for screen readers; only its display fades.
     this.timer = window.setTimeout(() => this.element.classList.remove("shown"), tone === "good" ? kShownMs : kShownLongMs);
   }
 }

@@ -1,4 +1,4 @@
-// Shared: depth of the bed, which rises toward sides with a beach. Sides in the order +x, -x, +z, -z.
+// Include: depth of the bed, which rises toward sides with a beach. Sides in the order +x, -x, +z, -z.
 uniform vec4 u_beach_width_m;
 uniform vec4 u_shore_depth_m;  // the scene's depth where there is no beach
 

@@ -1,4 +1,4 @@
-// Shared: one fixed pseudo-random number in [0, 1) for every whole-numbered cell.
+// Include: a fixed pseudo-random number in [0, 1) for each integer cell.
 float cellHash(vec2 cell) {
   ivec2 whole = ivec2(cell);
   uint mixed = uint(whole.x) * 2654435769u ^ uint(whole.y) * 2246822507u;

@@ -6,7 +6,7 @@ uniform isampler2D u_to;
 uniform vec2 u_quantum_m;
 uniform float u_mix;
 uniform float u_cell_m;
-uniform float u_cells_per_texel;  // 1 or more; with more, the neighbourhood below has wider steps
+uniform float u_cells_per_texel;  // >= 1; above 1 the neighbourhood below has wider steps
 uniform vec2 u_periodic;  // along x and z: 1 or 0
 
 layout(location = 0) out vec4 field;

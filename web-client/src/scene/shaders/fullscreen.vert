@@ -1,4 +1,4 @@
-// One triangle over the whole target, behind everything.
+// One triangle over the whole target, at the far plane.
 in vec3 position;
 out vec2 v_uv;
 

@@ -1,5 +1,5 @@
-// The floor: warm stone outside, tiles under the water, lit through the surface (crests gather light, troughs spread it).
-// PLAIN: without that light.
+// The floor: warm stone outside, tiles under the water, with caustics (crests focus light, troughs spread it).
+// PLAIN: without caustics.
 #include <sky>
 
 in vec3 v_world;
@@ -13,7 +13,7 @@ layout(location = 0) out vec4 color;
 
 #include <cell_hash>
 
-// Slabs of `tile_m` with darker joints: a factor round 1. Whatever is finer than a pixel fades to its mean, so that far
+// Brightness factor of slabs of `tile_m` with darker joints, about 1. Detail finer than a pixel fades to its mean, so that distant
 // slabs neither flicker nor show as blocks.
 float slabs(vec2 at, float tile_m, float uneven, float joint_dark) {
   vec2 cell = at / tile_m;
@@ -37,7 +37,7 @@ void main() {
   vec3 lit;
   if (u_has_water && away_m <= 0.0) {
 #ifndef PLAIN
-    // Sunlight reaching this point crossed the surface further along toward the sun, bent to a steeper path.
+    // Sunlight on this point crossed the surface further toward the sun and was refracted to a steeper path.
     vec2 crossed = at + u_sun_direction.xz / u_sun_direction.y * u_depth_m * 0.62;
     float curvature = texture(u_field, crossed / u_side_m + 0.5).a;
     float gathered = 1.0 / clamp(1.0 + 0.25 * u_depth_m * curvature, 0.35, 4.0);
@@ -48,7 +48,7 @@ void main() {
     float shade = mix(0.50, 1.0, smoothstep(-0.2, 0.14 * u_side_m, away_m));
     lit = vec3(0.47, 0.395, 0.305) * shade * slabs(at, u_side_m / 12.0, 0.12, 0.26) * light;
   }
-  // Clear as far as the water, however far away the eye, and gone before the disc ends: the horizon is the sky's own colour.
+  // Haze begins behind the water, at any distance of the camera, and is complete before the disc ends: the horizon has the sky's colour.
   float clear_m = max(1.2 * u_side_m, length(u_camera_m));
   float far = max(distance_m - clear_m, 0.0) / (3.3 * clear_m);
   float haze = far * far / (1.0 + far * far);

@@ -1,4 +1,4 @@
-// A sphere hit by the pixel's ray: exact normal and depth, an edge one pixel soft, the sky in what is wet.
+// Intersects the pixel's ray with a sphere: exact normal and depth, an edge one pixel soft, sky reflected outside the water.
 #include <sky>
 #include <particle_color>
 
@@ -28,14 +28,14 @@ void main() {
   vec3 normal_view = normalize(hit - v_center_m);
   vec3 normal = mat3(u_camera_world) * normal_view;
 
-  // A sphere whose centre is in the water does not poke through the surface: its cap is cut just under it, so that
-  // the band of particles reads as water. One that has left the water is whole.
+  // A sphere whose centre is in the water is cut just under the surface, so that the particles below look like water. A sphere that has
+  // left the water is whole.
   float out_of_water = outOfWater(v_above_m, u_radius_m);
   float highest_m = v_world_y_m - v_above_m - 0.2 * u_radius_m + out_of_water * 2.5 * u_radius_m;
   vec3 world_ray = mat3(u_camera_world) * ray;
   float over_m = v_world_y_m + normal.y * u_radius_m - highest_m;
   if (over_m > 0.0 && world_ray.y < -0.02) hit += ray * min(over_m / -world_ray.y, 2.0 * u_radius_m);
-  // A soft edge lets whatever comes later and lies behind it draw over it, rather than leave a rim of the background.
+  // A soft edge pixel is moved back, so that what is drawn later behind it covers it and no rim of the background remains.
   if (covered < 1.0) hit += ray * 2.0 * v_radius_m;
   vec4 clip = projectionMatrix * vec4(hit, 1.0);
   gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0);
@@ -48,7 +48,7 @@ void main() {
   vec3 ambient = mix(kAmbientBelow, kAmbientAbove, normal.y * 0.5 + 0.5);
   vec3 lit = albedo * (kSunColor * 1.15 * sun * sun + ambient * (1.0 + 0.35 * foam)) * lightReaching(v_world_y_m, u_depth_m, out_of_water);
 
-  // Water in water does not shine.
+  // No gloss inside the water.
   float gloss = (1.0 - 0.8 * foam) * out_of_water;
   if (gloss > 0.01) {
     float away = 1.0 - clamp(dot(normal, toward_eye), 0.0, 1.0);

@@ -1,7 +1,6 @@
-// PLAIN: for particle_plain.frag, with the depth of the whole patch.
-// One point a particle, straight from the 12 bytes of the wire: the buffer is read as six u16, the three last of which
-// hold velocity x | velocity y, velocity z | tint, foam | 0. The point's square covers the sphere's silhouette.
-// Points, not instanced quads: software renderers pay for every instance as for a draw call (measured: 3 times the processor time).
+// One point per particle, read from the 12 bytes of the wire as six u16; the last three hold velocity x | velocity y,
+// velocity z | tint, foam | 0. The point's square covers the sphere's silhouette. PLAIN: for particle_plain.frag, one depth per point.
+// Points, not instanced quads: software renderers handle each instance like a draw call (measured: 3 times the processor time).
 in vec3 position;  // x, z, y as fractions of the bounds
 in vec3 a_packed;  // u16 / 65535
 
@@ -30,7 +29,7 @@ flat out vec3 v_center_m;
 flat out float v_radius_m;
 flat out vec2 v_tint_foam;
 flat out float v_world_y_m;
-flat out float v_above_m;  // centre over the water's surface; far over it in a scene without one
+flat out float v_above_m;  // height of the centre over the surface; a large number in a scene without a wave
 #endif
 
 float signedByte(uint bits) { return float(int(bits << 24u) >> 24) / 127.0; }
@@ -54,7 +53,7 @@ void main() {
     return;
   }
   gl_Position = projectionMatrix * vec4(center_m, 1.0);
-  // Off the axis a sphere's silhouette is longer than wide: tan(off + half) - tan(off), the far end of it.
+  // Off the axis a sphere's silhouette is longer than wide: its outer half is tan(off + half) - tan(off).
   float off = length(center_m.xy) / ahead_m;
   float half_width = radius_m / sqrt(distance_m * distance_m - radius_m * radius_m);
   float reach = half_width * (1.0 + off * off) / max(1.0 - off * half_width, 0.1);
@@ -63,8 +62,8 @@ void main() {
 #ifdef PLAIN
   v_radius_px = 0.5 * gl_PointSize;
   gl_PointSize += 2.0;
-  // Just under the surface the patch lies behind its sphere, so that the surface covers it; elsewhere in front, so that
-  // the floor does not.
+  // Just under the surface the patch is moved behind its sphere, so that the surface covers it; elsewhere in front of it, so that
+  // the floor does not cover it.
   float under_skin = (1.0 - out_of_water) * smoothstep(-2.5, -1.2, above_m / u_radius_m);
   vec4 pushed = projectionMatrix * vec4(center_m * (1.0 + mix(-0.8, 1.1, under_skin) * u_radius_m / distance_m), 1.0);
   gl_Position.z = pushed.z / pushed.w * gl_Position.w;
@@ -73,7 +72,7 @@ void main() {
   v_ambient_low = lit * kAmbientBelow * (1.0 + 0.35 * foam);
   v_ambient_high = lit * kAmbientAbove * (1.0 + 0.35 * foam);
 #else
-  // One pixel more all round for the soft edge.
+  // One pixel more on each side for the soft edge.
   gl_PointSize += 2.0;
   v_center_m = center_m;
   v_radius_m = radius_m;

@@ -1,5 +1,5 @@
-// A sphere as a round patch: its normal from the place in the point's square, light and colour prepared for each point.
-// A tenth of the work of particle.frag, which a software renderer feels: there are ten fragments for every pixel.
+// A sphere as a round patch: the normal follows from the position in the point's square, light and colour come from the vertex shader.
+// A tenth of the work of particle.frag; with about ten fragments per pixel this matters on software renderers.
 
 flat in vec3 v_sunlit;
 flat in vec3 v_ambient_low;

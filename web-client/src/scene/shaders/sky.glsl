@@ -1,4 +1,4 @@
-// Shared: the sky's light. u_sky holds the baked dome without the sun; the sun is added where it may be sharp.
+// Include: the sky's light. u_sky holds the baked dome without the sun; shaders that show it sharp add the sun.
 uniform samplerCube u_sky;
 uniform vec3 u_sun_direction;
 

@@ -1,4 +1,4 @@
-// Behind everything: the far plane, with the view direction of each corner.
+// The far plane, with the view direction of each corner.
 in vec3 position;
 uniform mat4 u_inverse_projection;
 uniform mat4 u_camera_world;

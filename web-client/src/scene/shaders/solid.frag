@@ -1,5 +1,5 @@
-// Sun and sky on painted or grainy solids; stone and sand are dark where the water wets them, and crests gather light on
-// what lies under them. PLAIN: without that light and without gloss.
+// Sun and sky light on painted or grainy solids. Wet stone and sand are darker; under water, crests focus light (caustics).
+// PLAIN: without caustics and gloss.
 #include <sky>
 
 in vec3 v_world;
@@ -29,7 +29,7 @@ void main() {
   float sun = max(dot(normal, u_sun_direction), 0.0);
 #ifndef PLAIN
   if (v_world.y < 0.0) {
-    // Sunlight reaching this point crossed the surface further along toward the sun, bent to a steeper path.
+    // Sunlight on this point crossed the surface further toward the sun and was refracted to a steeper path.
     vec2 crossed = v_world.xz - u_sun_direction.xz / u_sun_direction.y * v_world.y * 0.62;
     float curvature = texture(u_field, crossed / u_side_m + 0.5).a;
     sun *= mix(0.85, 1.0 / clamp(1.0 - 0.25 * v_world.y * curvature, 0.35, 4.0), 0.75);

@@ -1,7 +1,7 @@
-// The water's skin: mirrored sky by Fresnel, and through it what was drawn before, bent by the slope, its colour absorbed
-// along the path in the water (Beer-Lambert, a per channel), and replaced by scattered light. PLAIN: unbent.
-// MIRROR: what stands in the water shows in it too, as far as it is on the screen.
-// BEACH: ends where the bed comes up. FOAM: with white water on it, cut out of lace at the foam's strength.
+// The water's surface: reflected sky by Fresnel, and through it the scene drawn before, refracted by the slope. Its colour is absorbed
+// along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
+// MIRROR: solids are reflected as well, as far as they are on the screen. BEACH: the water ends where the bed rises above it.
+// FOAM: white water where the noise tile ("lace") is above a threshold that falls with the foam.
 #include <sky>
 
 in vec3 v_world;
@@ -39,7 +39,7 @@ float viewZ(float depth) {
   return near * far / ((far - near) * depth - far);
 }
 
-// Way from `from` along `direction` to the sides or the floor of the water.
+// Distance from `from` along `direction` to the sides or the floor of the water.
 float wayOut(vec3 from, vec3 direction) {
   vec3 high = vec3(0.5 * u_side_m, 1e3, 0.5 * u_side_m);
   vec3 low = vec3(-0.5 * u_side_m, -u_depth_m, -0.5 * u_side_m);
@@ -53,7 +53,7 @@ uniform mat4 projectionMatrix;
 const int kMirrorSteps = 18;
 const int kMirrorHalvings = 4;
 
-// How far (m) a point lies behind what the screen shows there; far in front where it is off the screen.
+// Distance (m) of a point behind what the screen shows there; a large negative number if it is off the screen.
 float behindScreen(vec3 at, out vec2 uv) {
   vec4 view = viewMatrix * vec4(at, 1.0);
   vec4 clip = projectionMatrix * view;
@@ -62,7 +62,7 @@ float behindScreen(vec3 at, out vec2 uv) {
   return viewZ(texture(u_behind_depth, uv).r) - view.z;
 }
 
-// Light along `direction` from `from`: of a solid where the ray meets one on the screen, else of the sky.
+// Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
 vec3 mirroredLight(vec3 from, vec3 direction) {
   vec3 sky = skyLight(direction);
   float reach_m = 0.3 * u_side_m;
@@ -70,7 +70,7 @@ vec3 mirroredLight(vec3 from, vec3 direction) {
   float before_m = 0.0;
   vec2 uv;
   for (int i = 1; i <= kMirrorSteps; ++i) {
-    // Steps grow with the way: near the foot of a hull they have to be short.
+    // Steps grow with the distance: near a hull they have to be short.
     float share = (float(i) - 0.7 * jitter) / float(kMirrorSteps);
     float along_m = reach_m * share * share;
     float deep_m = behindScreen(from + direction * along_m, uv);
@@ -114,12 +114,12 @@ void main() {
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
 
-  // What lies behind. Through the surface it is shifted as by refraction; where the shift would catch something in front, look straight instead.
+  // The scene behind, shifted by refraction. If the shifted pixel lies in front of the water, the unshifted one is used.
   float way_m = wayOut(v_world, ray);
   vec2 shifted_uv = uv;
 #if !defined(SKIRT) && !defined(PLAIN)
   vec3 bent = refract(ray, normal, 0.75);
-  // A reach that does not depend on what stands there: one that did would tear the outlines of what lies near the surface.
+  // The shift does not depend on the depth of what is behind: that would tear the outlines of things near the surface.
   float reach_m = min(0.5 * way_m, 0.45);
   vec3 shift = mat3(viewMatrix) * (bent - ray) * reach_m;
   shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
@@ -131,7 +131,7 @@ void main() {
   float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
   float path_m = clamp(behind_m, 0.0, way_m);
 
-  // Light came down to what is seen before it came up to the eye.
+  // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = exp(-kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = mix(vec3(0.004, 0.085, 0.155), vec3(0.030, 0.34, 0.40), lifted) * 1.2;
@@ -159,7 +159,7 @@ void main() {
   vec2 place = v_world.xz / u_side_m + 0.5;
   float foam = mix(texture(u_foam_from, place).r, texture(u_foam_to, place).r, u_foam_mix);
 #ifdef BEACH
-  // Where the water thins out it is never quite clean.
+  // Shallow water at a beach always has a little foam.
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
 #endif
   if (foam > 0.01) {
@@ -168,11 +168,11 @@ void main() {
 #ifndef PLAIN
     lace = clamp(0.68 * lace + 0.42 * texture(u_noise, at.yx / (0.29 * u_lace_m)).r - 0.05, 0.0, 1.0);
 #endif
-    // Much foam closes, little foam is a few thin threads; what fades also grows see-through.
-    // Fading foam opens early, so that only what just broke is solid white.
+    // Much foam is a closed white area, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
+    // water that has just broken is solid white.
     float strength = min(1.1 * foam * sqrt(foam) + 0.1, 1.0);
     float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
-    // Air under the surface first, then froth on it.
+    // Bubbles below the surface first, then froth on it.
     water = mix(water, vec3(0.16, 0.42, 0.46), 0.45 * foam);
     float sunlit = clamp(dot(normal, u_sun_direction), 0.0, 1.0);
     vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 1.05 * sunlit + vec3(0.40, 0.45, 0.50)) * (0.80 + 0.28 * lace);

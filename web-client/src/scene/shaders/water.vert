@@ -1,4 +1,4 @@
-// Surface: a unit grid lifted by the field. Skirt (SKIRT): the four sides, top edge lifted, bottom edge on the floor.
+// Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
 // BEACH: the floor rises toward some sides.
 
 in vec3 position;  // x, z in -1/2..1/2; y: 1 on the surface, 0 on the floor

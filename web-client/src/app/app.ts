@@ -1,0 +1,171 @@
+// The page: connects the client in the worker, the display and the panels. handlers() takes what the server and the worker say;
+// input.ts calls what the user does.
+import type { WebGLRenderer } from "three";
+
+import type { GreetingInfo } from "../codec/greeting";
+import type { RoleName } from "../codec/people";
+import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
+import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
+import { socketUrl, WaterClient } from "../net/water_client";
+import type { ChosenQuality } from "../scene/quality";
+import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
+import { addDetailRow } from "../ui/detail_row";
+import { byId, setText } from "../ui/dom";
+import { EffectsPanel } from "../ui/effects_panel";
+import { Hud } from "../ui/hud";
+import { ParametersPanel } from "../ui/parameters_panel";
+import { PeoplePanel } from "../ui/people_panel";
+import { RoomPanel } from "../ui/room_panel";
+import { Toast } from "../ui/toast";
+import { ViewButtons } from "../ui/view_buttons";
+import { CommandSender } from "./command_sender";
+import { Display, nowS } from "./display";
+
+/** Shown where the server sends no text. */
+const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", other: "Something happened in the room." };
+
+/** Takes the answers to its own commands and ignores the others. */
+interface AnswerListener {
+  ack(commandId: number, boatId: number): void;
+  reject(commandId: number, message: string, reason: string): void;
+}
+
+export class App {
+  readonly client = new WaterClient(new Worker(new URL("../net/worker.ts", import.meta.url), { type: "module" }), this.handlers());
+  readonly commands = new CommandSender(this.client);
+  readonly display: Display;
+  readonly effects = new EffectsPanel(byId("effects"));
+  readonly room = new RoomPanel(this.commands.send);
+  readonly boats: BoatPanel;
+  readonly viewButtons: ViewButtons;
+  state: ConnectionState = { name: "connecting" };
+  /** "viewer" until the server's Welcome, so that no control is enabled before. */
+  role: RoleName = "viewer";
+  link: LinkStats | undefined;
+  supersededCount = 0;
+  simTimeS = 0;
+  lastAck: { commandId: number; appliedTick: number } | null = null;
+
+  private readonly hud = new Hud();
+  private readonly toast = new Toast(byId("toast"));
+  private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
+  private readonly people: PeoplePanel;
+  private readonly answerListeners: AnswerListener[];
+  private readonly url = socketUrl(location);
+  private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
+  private identity = this.identities.load();
+
+  constructor(renderer: WebGLRenderer, quality: ChosenQuality) {
+    this.display = new Display(renderer, quality, {
+      release: (frame) => this.client.release(frame),
+      update: (atS) => this.boats.update(atS),
+      measured: (framesPerS, delayS, remark) => this.hud.display(framesPerS, delayS, remark),
+    });
+    this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
+    this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
+    this.people = new PeoplePanel(this.identity, (name, token) => {
+      this.identity = { ...this.identity, name, token };
+      this.keepIdentity(false);
+      this.client.call("introduce", name, token);
+    });
+    addDetailRow((detail) => this.client.call("setDetail", detail));
+    this.answerListeners = [this.parameters, this.room, this.boats];
+  }
+
+  start(): void {
+    this.hud.connection(this.state);
+    this.display.start();
+    this.client.start(this.url, this.identity);
+  }
+
+  /** Stores the identity for a reload; with the resume key only while no page uses it. */
+  keepIdentity(withResumeKey: boolean): void {
+    if (withResumeKey) this.identities.leave(this.identity);
+    else this.identities.save(this.identity);
+  }
+
+  private handlers(): PageEventHandlers {
+    return {
+      state: ({ state }) => {
+        this.state = state;
+        this.hud.connection(state);
+        if (state.name !== "live") for (const panel of [this.room, this.boats]) panel.setLive(false);
+        this.showRole();
+      },
+      greeting: ({ greeting }) => this.enter(greeting),
+      welcome: ({ welcome }) => {
+        this.identity = { ...this.identity, resumeKey: welcome.resumeKey };
+        this.role = welcome.role;
+        this.people.welcomed(welcome);
+        this.boats.welcomed(welcome.personId, welcome.resumed);
+        this.showRole();
+      },
+      frame: ({ frame }) => {
+        this.simTimeS = frame.timeS;
+        this.display.take(frame);
+      },
+      diagnostics: ({ diagnostics }) => this.hud.diagnostics(diagnostics),
+      ack: ({ boatId, ...ack }) => {
+        const commandId = Number(ack.commandId);
+        const appliedTick = Number(ack.appliedTick);
+        this.lastAck = { commandId, appliedTick };
+        this.hud.acked(commandId, appliedTick);
+        for (const listener of this.answerListeners) listener.ack(commandId, boatId);
+        const label = this.commands.takeLabel(commandId);
+        // The helm sends up to 20 commands per second.
+        if (label !== kHelmLabel) this.toast.show(`${label}: applied at tick ${appliedTick}`, "good");
+      },
+      reject: ({ reason, message, ...reject }) => {
+        const commandId = Number(reject.commandId);
+        for (const listener of this.answerListeners) listener.reject(commandId, message, reason);
+        this.toast.show(`${this.commands.takeLabel(commandId)}: ${message}`, "bad");
+      },
+      parameterChanged: ({ path, value }) => this.parameters.setServerValue(path, value),
+      roomState: ({ paused, speed }) => this.room.roomState(paused, speed),
+      people: ({ people }) => {
+        this.people.setPeople(people);
+        this.boats.setPeople(people);
+      },
+      boatList: ({ boats }) => {
+        this.display.scene.setBoats(boats);
+        this.boats.setBoats(boats);
+      },
+      roomEvent: ({ event, message }) => this.toast.show(message || kRoomEventTexts[event], event === "recovered" ? "warn" : "good"),
+      clock: ({ leadS }) => this.display.scene.clock.sync(leadS + performance.timeOrigin / 1000),
+      stats: ({ stats, supersededCount }) => {
+        this.link = stats;
+        this.supersededCount = supersededCount;
+        this.hud.link(stats);
+      },
+    };
+  }
+
+  private enter(greeting: GreetingInfo): void {
+    this.display.enter(greeting);
+    this.effects.enter(greeting);
+    this.parameters.enter(greeting.parameters);
+    byId("effects-box").hidden = byId("effect-buttons").hidden = !this.effects.available;
+    setText(byId("title"), greeting.title);
+    setText(byId("description"), greeting.description);
+    document.title = `${greeting.title} – Spindrift`;
+    this.hud.enter(greeting);
+    this.room.enter(greeting);
+    this.boats.enter(greeting);
+    this.viewButtons.hasBoats = this.boats.available;
+    this.showRole();
+    this.viewButtons.refresh();
+    // The card's height has changed with the text.
+    this.display.resize();
+  }
+
+  /** Enables and shows the controls that this role may use. */
+  private showRole(): void {
+    const isPlayer = this.role !== "viewer";
+    const isOperator = this.role === "operator";
+    this.effects.setEnabled(this.state.name === "live" && isPlayer);
+    this.boats.setAllowed(isPlayer);
+    this.room.setAllowed(isOperator);
+    byId("parameters-box").hidden = !this.parameters.hasRows || !isOperator;
+    byId("storm").hidden = !isOperator;
+  }
+}

@@ -1,0 +1,24 @@
+// Sends commands and remembers what the user called each of them, for the line that reports its answer.
+import type { CommandAction } from "../net/messages";
+import type { WaterClient } from "../net/water_client";
+
+export class CommandSender {
+  private readonly labels = new Map<number, string>();
+
+  constructor(private readonly client: WaterClient) {}
+
+  /** Returns the command's id; 0 if there is no action to send. */
+  readonly send = (action: CommandAction | undefined, label: string): number => {
+    if (!action) return 0;
+    const commandId = this.client.command(action);
+    this.labels.set(commandId, label);
+    return commandId;
+  };
+
+  /** Every command is answered exactly once, so the map stays small. */
+  takeLabel(commandId: number): string {
+    const label = this.labels.get(commandId) ?? `Command ${commandId}`;
+    this.labels.delete(commandId);
+    return label;
+  }
+}

@@ -1,0 +1,100 @@
+// Everything on the canvas: scene, camera, resolution and the loop that draws at display rate.
+import type { WebGLRenderer } from "three";
+
+import type { GreetingInfo } from "../codec/greeting";
+import type { Frame } from "../net/messages";
+import { CameraViews, type Followed } from "../scene/camera_views";
+import { FrameGovernor } from "../scene/frame_governor";
+import type { ChosenQuality } from "../scene/quality";
+import { WaterScene } from "../scene/water_scene";
+import { DisplayLoop } from "./display_loop";
+import { PageLayout } from "./page_layout";
+
+export const nowS = (): number => performance.now() / 1000;
+const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+export interface DisplayHooks {
+  /** The frame was dropped from the ring. */
+  release(frame: Frame): void;
+  /** Called before each picture; returns the boat that the boat's view follows. */
+  update(nowS: number): Followed | undefined;
+  /** Called twice a second. `delayS`: age of the water shown. */
+  measured(framesPerS: number, delayS: number | undefined, remark: string): void;
+}
+
+export class Display {
+  readonly canvas: HTMLCanvasElement;
+  readonly scene: WaterScene;
+  readonly views: CameraViews;
+  private readonly governor: FrameGovernor;
+  private readonly layout: PageLayout;
+  private readonly loop: DisplayLoop;
+  private greeting: GreetingInfo | undefined;
+  /** False until the water's height is known: without a wave only the first frame of particles tells. */
+  private isBoxKnown = true;
+
+  constructor(
+    private readonly renderer: WebGLRenderer,
+    quality: ChosenQuality,
+    private readonly hooks: DisplayHooks,
+  ) {
+    this.canvas = renderer.domElement;
+    document.body.classList.toggle("plain", quality.samplesCount === 1);
+    this.scene = new WaterScene(renderer, quality, (frame) => hooks.release(frame));
+    this.views = new CameraViews(this.scene.camera, this.canvas, reducedMotion);
+    this.governor = new FrameGovernor(Math.min(window.devicePixelRatio || 1, quality.maxPixelRatio), quality.adaptive);
+    this.layout = new PageLayout(() => this.resize());
+    this.loop = new DisplayLoop(renderer, {
+      draw: (frameMs) => this.draw(frameMs),
+      measured: (framesPerS) =>
+        hooks.measured(framesPerS, this.scene.clock.delayS(), [quality.remark, this.governor.remark()].filter(Boolean).join("; ")),
+      contextRestored: () => this.scene.contextRestored(),
+    });
+  }
+
+  get framesPerS(): number {
+    return this.loop.framesPerS;
+  }
+
+  get pixelRatio(): number {
+    return this.governor.pixelRatio;
+  }
+
+  start(): void {
+    this.resize();
+    this.loop.start();
+  }
+
+  /** The camera keeps its view if only the scene's parameters changed. */
+  enter(greeting: GreetingInfo): void {
+    const before = this.greeting;
+    const isSameWater = before?.sideM === greeting.sideM && before.room === greeting.room && before.sceneName === greeting.sceneName;
+    this.greeting = greeting;
+    this.scene.enter(greeting);
+    if (isSameWater) return;
+    const box = this.scene.viewedBox();
+    this.isBoxKnown = box !== undefined;
+    this.views.enter(box ?? { sideM: greeting.sideM, minYM: -0.25 * greeting.sideM, maxYM: 0 });
+  }
+
+  take(frame: Frame): void {
+    this.scene.take(frame, nowS());
+    if (this.isBoxKnown) return;
+    const box = this.scene.viewedBox();
+    this.isBoxKnown = box !== undefined;
+    if (box) this.views.measured(box);
+  }
+
+  resize(): void {
+    this.renderer.setPixelRatio(this.governor.pixelRatio);
+    this.renderer.setSize(window.innerWidth, window.innerHeight, false);
+    this.views.resize(window.innerWidth, window.innerHeight, this.layout.freePart());
+  }
+
+  private draw(frameMs: number): void {
+    if (this.governor.note(frameMs)) this.resize();
+    const now = nowS();
+    this.views.update(now, this.hooks.update(now));
+    this.scene.render(now);
+  }
+}

@@ -1,0 +1,38 @@
+// window.spindrift: measured values of the running page, read-only, for tests and the browser's console.
+import { kLayerNames, type LayerName } from "../codec/layers";
+import { elevationRangeM } from "../scene/height_field";
+import { describeState } from "../ui/hud";
+import type { App } from "./app";
+
+export function installTestHooks(app: App): void {
+  Object.defineProperty(window, "spindrift", { value: Object.freeze({ stats: () => stats(app) }) });
+}
+
+function stats(app: App) {
+  const { link } = app;
+  const { scene, views, framesPerS, pixelRatio } = app.display;
+  const surface = scene.newestSurface();
+  const range = surface && elevationRangeM(surface);
+  return {
+    framesReceived: link?.receivedCount ?? (Object.fromEntries(kLayerNames.map((layer) => [layer, 0])) as Record<LayerName, number>),
+    malformedCount: link?.malformedCount ?? 0,
+    supersededCount: app.supersededCount,
+    latencyMs: link?.latencyMs ?? null,
+    level: link?.level ?? null,
+    levelLimitedBy: link?.levelLimitedBy ?? null,
+    surfaceResolutionCount: surface?.resolutionCount ?? null,
+    delayMs: 1000 * (scene.clock.delayS() ?? NaN),
+    simTime: app.simTimeS,
+    lastAck: app.lastAck,
+    minElevationM: range?.minM ?? null,
+    maxElevationM: range?.maxM ?? null,
+    connectionState: describeState(app.state),
+    displayFps: framesPerS,
+    pixelRatio,
+    paused: app.room.paused,
+    boats: scene.drawnBoats(),
+    role: app.role,
+    myBoat: app.boats.mineId,
+    view: views.view ?? null,
+  };
+}

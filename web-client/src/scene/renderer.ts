@@ -1,0 +1,22 @@
+// Makes the WebGL renderer with the quality that suits what draws underneath.
+import { WebGLRenderer } from "three";
+
+import { chooseQuality, type ChosenQuality } from "./quality";
+
+/** Returns undefined where the browser has no WebGL 2 with floating-point targets. */
+export function makeRenderer(canvas: HTMLCanvasElement, search: string): { renderer: WebGLRenderer; quality: ChosenQuality } | undefined {
+  // Antialiasing is fixed when a context is made and depends on what draws: a scratch context tells.
+  const scratch = document.createElement("canvas").getContext("webgl2");
+  if (!scratch?.getExtension("EXT_color_buffer_float")) return undefined;
+  const unmasked = scratch.getExtension("WEBGL_debug_renderer_info");
+  const name = String(scratch.getParameter(unmasked ? unmasked.UNMASKED_RENDERER_WEBGL : scratch.RENDERER));
+  scratch.getExtension("WEBGL_lose_context")?.loseContext();
+  const quality = chooseQuality(search, name);
+  try {
+    const antialias = quality.samplesCount > 1;
+    return { renderer: new WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" }), quality };
+  } catch {
+    // three has logged the reason.
+    return undefined;
+  }
+}

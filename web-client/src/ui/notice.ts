@@ -1,0 +1,8 @@
+// A message over the whole page, for what stops the picture.
+import { byId, setText } from "./dom";
+
+/** An empty text hides the notice. */
+export function showNotice(text: string): void {
+  setText(byId("notice-text"), text);
+  byId("notice").hidden = text === "";
+}

@@ -1,0 +1,39 @@
+// The camera's buttons: which view is shown, and whether there is a boat to follow.
+import type { CameraViews, ViewName } from "../scene/camera_views";
+import { byId } from "./dom";
+
+const kViewNames: readonly ViewName[] = ["above", "side", "overview", "boat"];
+
+export class ViewButtons {
+  private readonly boat = byId<HTMLButtonElement>("view-boat");
+
+  constructor(
+    private readonly views: CameraViews,
+    private readonly nowS: () => number,
+    /** Id of the boat to follow; 0 for none. */
+    private readonly myBoatId: () => number,
+  ) {
+    for (const name of kViewNames) byId(`view-${name}`).addEventListener("click", () => this.show(name));
+  }
+
+  set hasBoats(hasBoats: boolean) {
+    this.boat.hidden = !hasBoats;
+  }
+
+  /** Leaves the boat's view when there is no boat to follow. */
+  boatChanged(): void {
+    if (this.myBoatId() === 0 && this.views.view === "boat") this.show("overview");
+    this.refresh();
+  }
+
+  refresh(): void {
+    for (const name of kViewNames) byId(`view-${name}`).setAttribute("aria-pressed", String(this.views.view === name));
+    this.boat.disabled = this.myBoatId() === 0;
+    document.body.classList.toggle("boat-view", this.views.view === "boat");
+  }
+
+  private show(name: ViewName): void {
+    this.views.go(name, this.nowS());
+    this.refresh();
+  }
+}

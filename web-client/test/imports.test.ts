@@ -1,0 +1,112 @@
+// The structure of src/: no include cycle, no folder that imports one above it, no export that only tests use.
+import { readdirSync, readFileSync } from "node:fs";
+import { dirname, join, relative } from "node:path";
+import ts from "typescript";
+import { describe, expect, it } from "vitest";
+
+const kSource = join(import.meta.dirname, "..", "src");
+/** Folders from the lowest to the highest; each may import from itself and from those before it. */
+const kFolders = ["gen", "codec", "net", "scene", "ui", "app", "."];
+/** Roots: nothing in src/ imports them. */
+const kRoots = ["main.ts", "net/worker.ts", "codec/bench_decode.ts"];
+
+const files = readdirSync(kSource, { recursive: true, encoding: "utf8" }).filter((file) => file.endsWith(".ts"));
+const texts = new Map(files.map((file) => [file, readFileSync(join(kSource, file), "utf8")]));
+
+/** Files of src/ that `file` imports, types included. */
+function importsOf(file: string): string[] {
+  return ts
+    .preProcessFile(texts.get(file)!)
+    .importedFiles.map(({ fileName }) => fileName)
+    .filter((name) => name.startsWith("."))
+    .map((name) => relative(kSource, join(kSource, dirname(file), name)))
+    .map((name) => (texts.has(`${name}.ts`) ? `${name}.ts` : name))
+    .filter((name) => texts.has(name));
+}
+
+/** Returns a cycle in a graph as a list of nodes that begins and ends with the same one, or an empty list. */
+function findCycle(edges: ReadonlyMap<string, readonly string[]>): string[] {
+  const done = new Set<string>();
+  const visit = (node: string, path: string[]): string[] => {
+    const at = path.indexOf(node);
+    if (at >= 0) return [...path.slice(at), node];
+    if (done.has(node)) return [];
+    for (const next of edges.get(node) ?? []) {
+      const cycle = visit(next, [...path, node]);
+      if (cycle.length > 0) return cycle;
+    }
+    done.add(node);
+    return [];
+  };
+  for (const node of edges.keys()) {
+    const cycle = visit(node, []);
+    if (cycle.length > 0) return cycle;
+  }
+  return [];
+}
+
+function folderOf(file: string): string {
+  return dirname(file).split("/")[0]!;
+}
+
+describe("the search for a cycle", () => {
+  it("finds one, also between types only, and none where there is none", () => {
+    const graph = (edges: Record<string, string[]>) => new Map(Object.entries(edges));
+    expect(findCycle(graph({ a: ["b", "c"], b: ["c"], c: ["d"], d: ["b"] }))).toEqual(["b", "c", "d", "b"]);
+    expect(findCycle(graph({ a: ["b", "c"], b: ["c"], c: [] }))).toEqual([]);
+    expect(ts.preProcessFile('import type { A } from "./a";').importedFiles.map(({ fileName }) => fileName)).toEqual(["./a"]);
+  });
+});
+
+describe("the imports of src/", () => {
+  const edges = new Map(files.map((file) => [file, importsOf(file)]));
+
+  it("are found", () => {
+    expect(edges.get("app/app.ts")).toContain("codec/greeting.ts");
+    const unreached = files.filter((file) => !kRoots.includes(file) && ![...edges.values()].some((imported) => imported.includes(file)));
+    expect(unreached).toEqual([]);
+  });
+
+  it("have no cycle", () => {
+    expect(findCycle(edges)).toEqual([]);
+  });
+
+  it("go down from folder to folder only", () => {
+    const upward = [...edges].flatMap(([file, imported]) =>
+      imported.filter((other) => kFolders.indexOf(folderOf(other)) > kFolders.indexOf(folderOf(file))).map((other) => `${file} -> ${other}`),
+    );
+    expect(files.map(folderOf).filter((folder) => !kFolders.includes(folder))).toEqual([]);
+    expect(upward).toEqual([]);
+  });
+});
+
+describe("the exports of src/", () => {
+  const own = files.filter((file) => !file.startsWith("gen/"));
+  const tests = readdirSync(import.meta.dirname, "utf8").map((file) => readFileSync(join(import.meta.dirname, file), "utf8"));
+  const countOf = (text: string, name: string): number => text.match(new RegExp(`\\b${name}\\b`, "g"))?.length ?? 0;
+  const exportsOf = (kinds: string): [file: string, name: string][] =>
+    own
+      .filter((file) => !kRoots.includes(file))
+      .flatMap((file) => [...texts.get(file)!.matchAll(new RegExp(`^export (?:${kinds}) (\\w+)`, "gm"))].map((match): [string, string] => [file, match[1]!]));
+
+  it("all have a use in src/, not only in tests", () => {
+    const unused = exportsOf("class|const|function|interface|type").filter(
+      ([file, name]) => !own.some((other) => countOf(texts.get(other)!, name) > (other === file ? 1 : 0)),
+    );
+    expect(unused).toEqual([]);
+  });
+
+  it("all have a user in another file, if they are values", () => {
+    const inner = exportsOf("class|const|function").filter(
+      ([file, name]) => !own.some((other) => other !== file && countOf(texts.get(other)!, name) > 0) && !tests.some((text) => countOf(text, name) > 0),
+    );
+    expect(inner).toEqual([]);
+  });
+});
+
+describe("the files of src/", () => {
+  it("have at most 400 lines", () => {
+    const long = files.filter((file) => !file.startsWith("gen/") && texts.get(file)!.split("\n").length > 401);
+    expect(long).toEqual([]);
+  });
+});
