@@ -17,8 +17,7 @@ struct Candidate {
   bool is_software = false;
   int index = -1;        ///< position among the hardware devices, -1 for software
   std::string drm_file;  ///< empty when EGL does not report it
-  std::string uuid;      ///< 16 bytes that identify the hardware, whichever driver is used; empty when EGL does not
-                         ///< report it
+  std::string uuid;      ///< 16 bytes that identify the hardware, with any driver; empty when not reported
 };
 
 /// A context on an initialised display.
