@@ -202,12 +202,12 @@ void ProgramCache::reload(Context& ctx, const std::set<std::string>& files) {
     if (std::ranges::none_of(entry.program->files, is_changed)) continue;
     auto fresh = CompiledProgram::compile(ctx, entry.shader_path, entry.defines);
     if (!fresh) {
-      spdlog::error("{}; the program goes on as it was", fresh.error().message);
+      spdlog::error("{}; the old program stays in use", fresh.error().message);
     } else if ((*fresh)->group_size != entry.program->group_size) {
-      spdlog::error("{}: another group size needs a restart; the program goes on as it was", entry.shader_path);
+      spdlog::error("{}: a change of the group size needs a restart; the old program stays in use", entry.shader_path);
     } else {
       entry.program->become(**fresh);
-      spdlog::info("{}: compiled anew", entry.shader_path);
+      spdlog::info("{}: recompiled", entry.shader_path);
     }
   }
 }

@@ -50,7 +50,7 @@ void GLAD_API_PTR onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum s
   } else if (severity == GL_DEBUG_SEVERITY_HIGH && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
     spdlog::warn("OpenGL message {}: {}", id, oneLine(text));
   } else if (type == GL_DEBUG_TYPE_PERFORMANCE && ctx.isNewMessage(id)) {
-    spdlog::info("the driver on performance, message {} (said once): {}", id, oneLine(text));
+    spdlog::info("performance message {} of the driver (logged once): {}", id, oneLine(text));
   } else {
     spdlog::debug("OpenGL message {}: {}", id, oneLine(text));
   }
@@ -110,7 +110,7 @@ Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, c
 #endif
   glDebugMessageCallback(onDebugMessage, this);
   if (!device_.tells_of_resets) {
-    spdlog::info("{}: its driver does not report resets of the device; after one, restart the program", device_.name);
+    spdlog::info("{}: the driver does not report device resets; after a reset, restart the program", device_.name);
   }
 }
 
@@ -126,7 +126,7 @@ Context::~Context() {
   }
   collectRetired();
   for (const Retired& retired : retired_) {
-    spdlog::error("readback slots of buffer {} are still held while their context goes", retired.buffer_id);
+    spdlog::error("readback slots of buffer {} are still held while their context is destroyed", retired.buffer_id);
     glDeleteBuffers(1, &retired.buffer_id);
   }
   programs_->clear();

@@ -56,7 +56,7 @@ Fence::Status Fence::wait(std::chrono::nanoseconds timeout) {
     if (ctx_->isLost()) {
       finish(Status::kFailed);
     } else if (status == GL_WAIT_FAILED) {
-      spdlog::error("OpenGL refuses to wait for a fence (error {}); what it stands for is lost", glGetError());
+      spdlog::error("OpenGL refuses to wait for a fence (error {}); the work before it is lost", glGetError());
       ctx_->countError();
       finish(Status::kFailed);
     } else if (status != GL_TIMEOUT_EXPIRED) {

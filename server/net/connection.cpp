@@ -136,7 +136,7 @@ asio::awaitable<void> Connection::run() {
       std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
     }
     if (error) {
-      spdlog::debug("{}: no whole request: {}", peer_, error.message());
+      spdlog::debug("{}: incomplete request: {}", peer_, error.message());
       refusal = replyToBadRequest(error, context_.options.request_body_max_bytes);
     }
     if (refusal) {
@@ -310,7 +310,7 @@ asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsig
     fillHead(response, reply, keep_alive);
     std::tie(error, std::ignore) = co_await http::async_write(stream_, response, kToken);
   }
-  if (error) spdlog::debug("{}: the reply did not go through: {}", peer_, error.message());
+  if (error) spdlog::debug("{}: the reply could not be sent: {}", peer_, error.message());
   co_return !error;
 }
 

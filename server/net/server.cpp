@@ -143,7 +143,7 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
       connection->start();
     } else {
       context_.counters.refused(Refused::kConnection);
-      spdlog::debug("a connection was closed unheard: too many are open");
+      spdlog::debug("a connection was closed without a reply: too many are open");
     }
   }
 }

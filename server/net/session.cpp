@@ -250,7 +250,7 @@ asio::awaitable<void> Session::sayGoodbye() {
   const SessionEnd end = outbox_.closeRequest().value_or(SessionEnd{});
   noteEnd(end.code, end.reason);
   const auto [error] = co_await ws_.async_close(closeFrame(end), kToken);
-  if (error) spdlog::debug("session {}: the goodbye did not go through: {}", id_, error.message());
+  if (error) spdlog::debug("session {}: the close frame could not be sent: {}", id_, error.message());
   cut();
 }
 

@@ -82,7 +82,7 @@ bool Room::isLost(TimePoint now) {
   if (!is_lost_) {
     const auto failure = stage_->failure();
     if (!failure) return false;
-    spdlog::error("room {}: {}; scene {} is built anew from its start", name_, *failure, stage_->scene().name());
+    spdlog::error("room {}: {}; scene {} is rebuilt from its start", name_, *failure, stage_->scene().name());
     is_lost_ = true;
     rebuild_pause_ = 1s;
     next_rebuild_ = now;
@@ -99,7 +99,7 @@ bool Room::isLost(TimePoint now) {
 void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   constexpr std::chrono::seconds kLongestPause{30};
   if (!water) {
-    spdlog::error("room {}: its water cannot be built anew ({}); the next try is in {} s", name_, water.error().message,
+    spdlog::error("room {}: its water cannot be rebuilt ({}); the next try is in {} s", name_, water.error().message,
                   rebuild_pause_.count());
     next_rebuild_ = now + rebuild_pause_;
     rebuild_pause_ = std::min(2 * rebuild_pause_, kLongestPause);
@@ -108,7 +108,7 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   replaceWater(*std::move(water));
   news_.rebuilt = true;
   publishVitals(now);
-  spdlog::warn("room {}: runs again, from the start of scene {}", name_, stage_->scene().name());
+  spdlog::warn("room {}: runs again from the start of scene {}", name_, stage_->scene().name());
 }
 
 void Room::restartScene() {

@@ -61,7 +61,7 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
                                        .greeted = nullptr,
                                        .commands = {options_.commands_per_s, options_.command_burst_count, now}});
   }
-  spdlog::info("session {} from {} comes to room {}", session, peer, room->name());
+  spdlog::info("session {} from {} joins room {}", session, peer, room->name());
   greet(session, *room);
   hub().closeAt(session, now + options_.hello_patience, net::CloseCode::kPolicy,
                 "no hello came in time: send ClientMessage.hello first");
@@ -210,7 +210,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const wire
 }
 
 void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
-  spdlog::info("session {} gets level {} now", session, codec::nameOf(level));
+  spdlog::info("session {} now gets level {}", session, codec::nameOf(level));
   hub().sendState(session, rooms::topic::kLevel, wire::levelChanged(level));
 }
 
