@@ -21,7 +21,7 @@ void addFidelity(CLI::App& command, std::string& fidelity) {
 }
 
 void setUpLogging(const std::string& level) {
-  // Standard output belongs to what was asked for (--json -, the address); everything else goes to standard error.
+  // Standard output is for results (--json -, the address); the log goes to standard error.
   auto logger = spdlog::stderr_color_mt("spindrift");
   logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
   logger->set_level(spdlog::level::from_str(level));
@@ -37,7 +37,7 @@ int run(int argc, char** argv) {
   cli.set_version_flag("--version", "spindrift " SPINDRIFT_VERSION);
   cli.require_subcommand(1);
   std::string log_level = "info";
-  cli.add_option("--log-level", log_level, "How much is logged on standard error")
+  cli.add_option("--log-level", log_level, "Level of the log on standard error")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
   cli.fallthrough();
@@ -49,19 +49,18 @@ int run(int argc, char** argv) {
                    "Scene of the room 'main': a .textproto file or the name of a shipped scene")
       ->capture_default_str();
   addFidelity(*serve_command, serve_options.fidelity);
-  serve_command->add_option("--room", serve_options.rooms, "A further room, NAME=SCENE; may be repeated");
+  serve_command->add_option("--room", serve_options.rooms, "An additional room, NAME=SCENE; may be repeated");
   serve_command->add_option("--address", serve_options.address, "Address to listen on")->capture_default_str();
   serve_command->add_option("--port", serve_options.port, "Port to listen on; 0 = any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  serve_command
-      ->add_option("--device", serve_options.device, "auto, software, or the number of a device as `info` lists them")
+  serve_command->add_option("--device", serve_options.device, "auto, software, or a device number from `info`")
       ->capture_default_str();
   serve_command->add_option("--web-root", serve_options.web_root,
-                            "Folder with the built web client (default: the one beside the program)");
+                            "Folder of the built web client (default: next to the program)");
   serve_command
       ->add_option("--shader-dir", serve_options.shader_folder,
-                   "For work on shaders: read them from this folder (shaders/), again whenever a file changes")
+                   "For shader development: read shaders from this folder (shaders/) and reload changed files")
       ->check(CLI::ExistingDirectory);
   serve_command->add_option("--threads", serve_options.thread_count, "I/O threads")
       ->check(CLI::Range(1, 64))
@@ -69,35 +68,37 @@ int run(int argc, char** argv) {
 
   serve_command
       ->add_option("--address-share", serve_options.address_session_share,
-                   "Share of the sessions that one address may hold; 1 behind a proxy")
+                   "Share of the sessions that one address may use; 1 behind a proxy")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  serve_command->add_option("--max-rooms", serve_options.max_room_count, "Rooms at most, those opened later included")
+  serve_command
+      ->add_option("--max-rooms", serve_options.max_room_count, "Maximum number of rooms, including those opened later")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   serve_command->add_option("--tokens", serve_options.token_file,
-                            "File with lines of ROLE TOKEN (default: the environment's SPINDRIFT_TOKENS)");
+                            "File with lines ROLE TOKEN (default: the environment variable SPINDRIFT_TOKENS)");
   serve_command
       ->add_option("--guests", serve_options.guest_role,
-                   "What somebody without a token is (default: operator, or viewer where there are tokens)")
+                   "Role of clients without a token (default: operator without tokens, viewer with tokens)")
       ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
-  serve_command->add_option(
-      "--origin", serve_options.origins,
-      "Origin of pages that may connect and use the REST interface, https://HOST; * = any; may be repeated");
-  serve_command->add_option("--grace", serve_options.grace_s, "Seconds that a lost connection's boat is kept")
+  serve_command->add_option("--origin", serve_options.origins,
+                            "Additional allowed Origin of pages, https://HOST; * = any; may be repeated");
+  serve_command
+      ->add_option("--grace", serve_options.grace_s,
+                   "Seconds for which a boat keeps its owner after the connection was lost")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   serve_command->add_option("--record", serve_options.record_folder, "Write the log of every room into this folder");
   serve_command
       ->add_option("--hash-every", serve_options.hash_interval_ticks,
-                   "Ticks from one state hash of the log to the next")
+                   "Interval of the state hashes in the log, in ticks")
       ->check(CLI::Range(1, 36000))
       ->capture_default_str();
 
   ReplayOptions replay_options;
   CLI::App* replay_command = cli.add_subcommand("replay", "Run a room's log again and compare the states");
   replay_command->add_option("file", replay_options.file, "A log that serve --record wrote")->required();
-  replay_command->add_option("--device", replay_options.device, "auto, software, or a device's number")
+  replay_command->add_option("--device", replay_options.device, "auto, software, or a device number from `info`")
       ->capture_default_str();
   replay_command->add_option("--json", replay_options.json_file, "Write JSON to this file, - = standard output");
 
@@ -117,7 +118,7 @@ int run(int argc, char** argv) {
                          "Print the reference of all scene parameters instead, as Markdown");
 
   CheckOptions check_options;
-  CLI::App* check_command = cli.add_subcommand("check", "Check scenes and print what follows from them");
+  CLI::App* check_command = cli.add_subcommand("check", "Check scenes and print the derived quantities");
   check_command->add_option("scene", check_options.scenes, "Scene files or names of shipped scenes")->required();
 
   addFidelity(*check_command, check_options.fidelity);
@@ -131,7 +132,7 @@ int run(int argc, char** argv) {
   bench_command->add_option("--scene", bench_options.scene, "Scene file or name of a shipped scene")
       ->capture_default_str();
   addFidelity(*bench_command, bench_options.fidelity);
-  bench_command->add_option("--device", bench_options.device, "auto, software, or a device's number")
+  bench_command->add_option("--device", bench_options.device, "auto, software, or a device number from `info`")
       ->capture_default_str();
   bench_command->add_option("--seconds", bench_options.seconds, "Measured time per case")
       ->check(CLI::Range(0.1, 600.0))
@@ -146,11 +147,11 @@ int run(int argc, char** argv) {
   study_command->add_option("--case", study_options.only,
                             "One case of the accuracy suite, the sweeps of the stability suite whose name contains "
                             "this, or one scene of the trade suite");
-  study_command->add_option("--device", study_options.device, "auto, software, or a device's number")
+  study_command->add_option("--device", study_options.device, "auto, software, or a device number from `info`")
       ->capture_default_str();
   study_command->add_flag("--quick", study_options.quick, "Shorter runs, a few minutes in all");
   study_command->add_option("--journal", study_options.journal_file,
-                            "Keep finished cases in this file and go on from it after an interruption");
+                            "Save finished cases in this file; an interrupted study continues from it");
   study_command->add_option("--plot", study_options.plot_folder, "Draw charts into this folder, as SVG");
   study_command->add_option("--json", study_options.json_file, "Write JSON to this file, - = standard output");
 

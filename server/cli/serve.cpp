@@ -77,7 +77,7 @@ core::Result<service::Access> loadAccess(const ServeOptions& options) {
     return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
   }
   if (access && !guest && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput, "--guests none lets nobody in without tokens: give --tokens FILE"};
+    return Error{ErrorCode::kInvalidInput, "--guests none without tokens refuses every client: give --tokens FILE"};
   }
   return access;
 }
@@ -145,8 +145,8 @@ int serve(const ServeOptions& options) {
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   if (is_open_to_all) {
     spdlog::warn(
-        "whoever reaches {} may do everything here, close rooms included: give --tokens, or --guests player, to change "
-        "that",
+        "every client that can reach {} is an operator and may even close rooms: give --tokens or --guests player to "
+        "restrict this",
         options.address);
   }
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());

@@ -11,22 +11,22 @@
 
 namespace spindrift::codec {
 
-/// Far beyond any scene; keeps every decoded value finite as a float.
+/// Larger than any scene; keeps every decoded value finite as a float.
 inline constexpr double kMaxMagnitude = 1e6;
 
 core::Error invalid(std::string message);
 core::ByteView viewOf(const std::string& bytes);
 
-/// min <= value <= kMaxMagnitude; NaN is out of range as well.
+/// Requires min <= value <= kMaxMagnitude; NaN is out of range too.
 std::optional<core::Error> checkRange(const char* name, double value, double min);
 
-/// A side's samples, 1 to kSurfaceMaxResolutionCount.
+/// Requires 1 to kSurfaceMaxResolutionCount samples along each side.
 std::optional<core::Error> checkResolution(std::uint32_t resolution_count);
 
-/// Layer, time and checksum.
+/// Checks layer, time and checksum.
 std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer);
 
-/// Checks a plain frame, also that it is a keyframe and as long as its header says.
+/// Checks a plain frame; it must also be a keyframe and have the length that its header gives.
 std::optional<core::Error> checkPlainFrame(const v1::LayerFrame& frame, v1::Layer layer, std::size_t payload_bytes);
 
 }  // namespace spindrift::codec

@@ -1,4 +1,4 @@
-// A frame's layers as the bytes of ServerMessages.
+// Serializes the layers of a frame as ServerMessages.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace spindrift::codec {
 
-/// `codec` holds the codec's member and nothing else. Without `base_tick` the frame is a keyframe. The payload is
-/// copied exactly once.
+/// `codec` holds only the codec's member. Without `base_tick` the frame is a keyframe. The payload is copied exactly
+/// once.
 core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, std::optional<std::uint64_t> base_tick,
                                  const v1::LayerFrame& codec, core::ByteView payload);
 
-/// The frame's diagnostics; null where the frame has none. Values pass unchanged, non-finite ones as well: a client
-/// must see them.
+/// Serializes the frame's diagnostics; null if there are none. Values pass unchanged, including non-finite ones,
+/// because clients must see them.
 core::SharedBytes serializeDiagnostics(const core::FrameView& frame);
 
 }  // namespace spindrift::codec

@@ -13,7 +13,7 @@ namespace spindrift::codec {
 class LayerCodec {
  public:
   virtual ~LayerCodec() = default;
-  /// Keeps nothing of the frame's memory. Without `wants_keyframe` the keyframe is left out where there is a delta.
+  /// Keeps no reference to the frame's memory. Without `wants_keyframe` the keyframe is omitted if there is a delta.
   virtual EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) = 0;
 };
 

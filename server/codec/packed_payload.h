@@ -1,4 +1,4 @@
-// Memory for the readers of decode/, which have none of their own.
+// Memory for the readers in decode/, which allocate none.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@
 
 namespace spindrift::codec {
 
-/// A payload with the zeros behind it that its readers want. Longer than they take: empty, which they refuse.
+/// A payload followed by the zeros that its readers need. A payload longer than they accept becomes empty, which they
+/// refuse.
 class PackedPayload {
  public:
   explicit PackedPayload(core::ByteView payload)
@@ -27,10 +28,10 @@ class PackedPayload {
   core::Bytes bytes_;
 };
 
-/// A row of planes and what it lies in.
+/// A row of planes with its memory.
 class PlaneMemory {
  public:
-  /// Another size forgets the row. 1 <= resolution_count <= PlaneRow::kMaxResolutionCount.
+  /// A change of size clears the row. 1 <= resolution_count <= PlaneRow::kMaxResolutionCount.
   void resize(std::size_t resolution_count) {
     if (resolution_count == row_.resolution()) return;
     blocks_.resize(PlaneRow::bytesFor(resolution_count) / sizeof(Block));

@@ -34,7 +34,7 @@ core::Result<fs::path> findScene(const std::string& given) {
   std::error_code error;
   const fs::path folder = findSceneFolder();
   const bool is_name = given.find('/') == std::string::npos && !given.empty();
-  // A name means the shipped scene, also where a file without an ending happens to be called so: ./NAME is that file.
+  // A bare name means the shipped scene, even if a file of that name exists; ./NAME means the file.
   if (is_name && !folder.empty()) {
     if (const fs::path shipped = folder / (given + ".textproto"); fs::exists(shipped, error)) return shipped;
   }

@@ -27,7 +27,7 @@ std::size_t utf8SequenceLength(std::string_view text, std::size_t at) {
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(at + i) & 0xC0) != 0x80) return 0;
   }
-  // Overlong forms, surrogates and code points above U+10FFFF show in the second byte.
+  // The second byte tells overlong forms, surrogates and code points above U+10FFFF.
   const std::uint8_t second = byte(at + 1);
   if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F)) return 0;
   if ((lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F)) return 0;
@@ -54,8 +54,8 @@ constexpr Range kUnwanted[] = {{0x00, 0x1F},     {0x7F, 0x9F},     {0x061C, 0x06
 constexpr Range kSpace[] = {{0x20, 0x20},     {0xA0, 0xA0},     {0x115F, 0x1160}, {0x1680, 0x1680},
                             {0x2000, 0x200A}, {0x202F, 0x202F}, {0x205F, 0x205F}, {0x2800, 0x2800},
                             {0x3000, 0x3000}, {0x3164, 0x3164}, {0xFFA0, 0xFFA0}};
-/// Shows nothing by itself, but may belong to the character before: soft hyphen, grapheme joiner, variation selectors,
-/// zero width joiners, tags.
+/// Invisible alone, but may modify the character before: soft hyphen, grapheme joiner, variation selectors, zero width
+/// joiners, tags.
 constexpr Range kAttached[] = {{0xAD, 0xAD},     {0x034F, 0x034F}, {0x180B, 0x180F},
                                {0x200C, 0x200D}, {0xFE00, 0xFE0F}, {0xE0000, 0xE0FFF}};
 
@@ -97,7 +97,7 @@ std::string cleanName(std::string_view text, std::size_t max_bytes) {
   };
   name.erase(0, firstThat(name, [](char32_t c) { return !isIn(kSpace, c) && !isIn(kAttached, c); }));
   name = cleanText(name, max_bytes);
-  std::size_t end = 0;  // behind the last character that is no space
+  std::size_t end = 0;  // end of the last character that is not a space
   (void)firstThat(name, [&, at = std::size_t{0}](char32_t c) mutable {
     at += utf8SequenceLength(name, at);
     if (!isIn(kSpace, c)) end = at;

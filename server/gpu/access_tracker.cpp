@@ -31,7 +31,7 @@ void AccessTracker::remove(BufferAccess& buffer) {
 }
 
 void AccessTracker::bind(Table& table, std::uint32_t binding, BufferAccess& buffer) {
-  constexpr std::uint32_t kMaxBinding = 1024;  // far above what drivers have; they refuse what exceeds theirs
+  constexpr std::uint32_t kMaxBinding = 1024;  // far above the limits of drivers, which refuse larger numbers
   assert(binding < kMaxBinding);
   if (binding >= kMaxBinding) return;
   if (binding >= table.size()) table.resize(binding + 1, nullptr);
@@ -39,8 +39,8 @@ void AccessTracker::bind(Table& table, std::uint32_t binding, BufferAccess& buff
 }
 
 std::uint32_t AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* indirect) {
-  // Uploads and copies are ordered with shader reads by most drivers anyway; a store over what an operation still reads
-  // or writes is not. Uniform blocks and indirect arguments that an operation wrote need nothing.
+  // Most drivers order uploads and copies with shader reads anyway. A store over data that an operation still reads or
+  // writes is not ordered. Uniform blocks and indirect arguments written by an operation need nothing.
   bool is_needed = false;
   for (const ProgramUses::Block& block : program.storage) {
     const BufferAccess* const buffer = at(storage_, block.binding);

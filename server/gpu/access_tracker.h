@@ -1,5 +1,5 @@
-// Who touched which buffer since which barrier: the barriers that API operations need, and the barrier checker.
-// Private to this module.
+// Tracks which accesses to buffers happened since which barrier. Gives the barriers that API operations need, and is
+// the barrier checker. Private to this module.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace spindrift::gpu {
 
-/// What last happened to one buffer, as places in the context's sequence of commands; 0 is never. Owned by the Buffer,
-/// at a fixed address while it lives.
+/// The last accesses to one buffer, as positions in the context's sequence of commands; 0 is never. Owned by the
+/// Buffer; the address stays fixed while the Buffer lives.
 struct BufferAccess {
   std::uint32_t buffer_id = 0;
   std::string name;
   std::size_t size_bytes = 0;
   bool is_scratch = false;
-  /// Passes in a row write different parts: no fault when no barrier lies between two writes.
+  /// Consecutive passes write different parts: two writes without a barrier between them are no fault.
   bool has_disjoint_writes = false;
 
   std::uint64_t shader_write = 0;
@@ -30,7 +30,7 @@ struct BufferAccess {
   std::string_view shader_reader;
 };
 
-/// What a linked program reads and writes. Blocks and samplers that the driver found unused are left out.
+/// Blocks and samplers that a linked program reads and writes. Those that the driver found unused are left out.
 struct ProgramUses {
   struct Block {
     std::string name;
@@ -45,8 +45,8 @@ struct ProgramUses {
   std::vector<Block> texels;  ///< `binding` is the texture unit
 };
 
-/// One per context. The rules are those of OpenGL 4.5 core, section 7.13.2 "Shader Memory Access Synchronization": what
-/// a shader writes is visible to a later access only after a barrier that names the kind of that access, and a shader's
+/// One per context. The rules are those of OpenGL 4.5 core, section 7.13.2 "Shader Memory Access Synchronization":
+/// shader writes are visible to a later access only after a barrier that names the kind of that access, and a shader's
 /// store may overtake earlier accesses to the same memory unless a storage barrier lies between.
 class AccessTracker {
  public:
@@ -63,12 +63,12 @@ class AccessTracker {
   void bindUniform(std::uint32_t binding, BufferAccess& buffer) { bind(uniforms_, binding, buffer); }
   void bindTexel(std::uint32_t unit, BufferAccess& buffer) { bind(texels_, unit, buffer); }
 
-  /// Called before a dispatch. Returns the OpenGL bits of the barrier that uploads, clears and copies before it make
-  /// necessary, or 0; the caller issues it. `indirect`: where the group counts come from, or null.
+  /// Called before a dispatch. Returns the OpenGL bits of the barrier needed after earlier uploads, clears and copies,
+  /// or 0; the caller issues it. `indirect`: the buffer with the group counts, or null.
   [[nodiscard]] std::uint32_t beforeDispatch(const ProgramUses& program, BufferAccess* indirect);
   /// Called before an upload, download, clear or copy; `from` and `to` may be null. Returns bits as above.
   [[nodiscard]] std::uint32_t beforeUpdate(BufferAccess* from, BufferAccess* to);
-  /// A barrier with these OpenGL bits is issued now.
+  /// Called when a barrier with these OpenGL bits is issued.
   void barrier(std::uint32_t bits);
 
   [[nodiscard]] std::vector<std::string> takeFaults();

@@ -63,7 +63,7 @@ core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::si
     return refused(name, std::to_string(size_bytes) + " bytes exceed the device's largest storage block of " +
                              std::to_string(max_bytes) + " bytes; make the scene smaller");
   }
-  clearOldErrors();  // they have been counted by the debug callback; the next one is about this buffer
+  clearOldErrors();  // the debug callback has counted them; the next error concerns this buffer
   Buffer buffer;
   glCreateBuffers(1, &buffer.id_);
   glNamedBufferStorage(buffer.id_, static_cast<GLsizeiptr>(size_bytes), nullptr,
@@ -88,7 +88,7 @@ core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::si
   ++ledger.buffer_count;
   ++ledger.buffers_made_count;
   ledger.buffer_bytes += size_bytes;
-  // Shown by drivers and debuggers; they may bound its length.
+  // Shown by drivers and debuggers, which may limit its length.
   glObjectLabel(GL_BUFFER, buffer.id_, static_cast<GLsizei>(std::min<std::size_t>(name.size(), 200)), name.data());
   buffer.clear(ctx.checks().poison && content == BufferContent::kScratch ? 0xffffffff : 0);
   return buffer;
@@ -113,7 +113,7 @@ Buffer::Buffer(Buffer&& other) noexcept
       access_(std::move(other.access_)) {}
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
-  // What this held goes with the temporary.
+  // The temporary releases the old contents.
   Buffer moved(std::move(other));
   std::swap(ctx_, moved.ctx_);
   std::swap(id_, moved.id_);
@@ -179,7 +179,7 @@ void Buffer::uploadBytes(std::span<const std::byte> bytes, std::size_t offset_by
   if (use_ == BufferUse::kUpdatable) {
     glNamedBufferSubData(id_, static_cast<GLintptr>(offset_bytes), static_cast<GLsizeiptr>(bytes.size()), bytes.data());
   } else {
-    (void)ctx_->staging().upload(id_, offset_bytes, bytes);  // counts its failure
+    (void)ctx_->staging().upload(id_, offset_bytes, bytes);  // a failure is counted there
   }
 }
 
@@ -187,7 +187,7 @@ void Buffer::downloadBytes(std::span<std::byte> bytes, std::size_t offset_bytes)
   assert(id_ != 0 && ctx_->isOwnedHere() && offset_bytes + bytes.size() <= size_bytes_);
   if (bytes.empty()) return;
   ctx_->barrierBits(ctx_->accesses().beforeUpdate(access_.get(), nullptr));
-  (void)ctx_->staging().download(id_, offset_bytes, bytes);  // counts its failure
+  (void)ctx_->staging().download(id_, offset_bytes, bytes);  // a failure is counted there
 }
 
 TexelBuffer::TexelBuffer() = default;

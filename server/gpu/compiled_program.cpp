@@ -38,8 +38,8 @@ std::string programLog(GLuint id) {
   return log;
 }
 
-/// How `text` qualifies the storage block: `restrict readonly buffer Name {`. OpenGL does not tell. A block that is
-/// declared several times, under different conditions, is read and written as any of them says.
+/// Reads the qualifiers of the storage block from the text: `restrict readonly buffer Name {`. OpenGL has no query for
+/// them. A block declared several times, under different conditions, is read or written if any declaration allows it.
 void readQualifiers(std::string_view text, ProgramUses::Block& block) {
   const auto isWord = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
   const std::string wanted = "buffer " + block.name;
@@ -79,7 +79,7 @@ ProgramUses usesOf(GLuint program, const EmbeddedShader& shader) {
   return uses;
 }
 
-/// The program's own limits are what Context::create() checked the device for.
+/// Checks the program against the limits that Context::create() requires of a device.
 void checkNeeds(Context& ctx, const CompiledProgram& program) {
   const auto over = [&](const char* what, std::int64_t used, std::int64_t stated) {
     if (used <= stated) return;
@@ -126,7 +126,7 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   }
   std::string text(kVersionLine);
   for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
-  // The driver counts the lines of the expanded text, and all of it in one string: each string has its own number.
+  // The whole text is one string, because each source string has its own number in driver messages.
   text += "#line 1\n";
   const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;
   text += shuffle_seed == 0 ? std::string(source.text) : shuffledGroups(source.text, shuffle_seed);
@@ -202,12 +202,12 @@ void ProgramCache::reload(Context& ctx, const std::set<std::string>& files) {
     if (std::ranges::none_of(entry.program->files, is_changed)) continue;
     auto fresh = CompiledProgram::compile(ctx, entry.shader_path, entry.defines);
     if (!fresh) {
-      spdlog::error("{}; the program goes on as it was", fresh.error().message);
+      spdlog::error("{}; the old program stays in use", fresh.error().message);
     } else if ((*fresh)->group_size != entry.program->group_size) {
-      spdlog::error("{}: another group size needs a restart; the program goes on as it was", entry.shader_path);
+      spdlog::error("{}: a change of the group size needs a restart; the old program stays in use", entry.shader_path);
     } else {
       entry.program->become(**fresh);
-      spdlog::info("{}: compiled anew", entry.shader_path);
+      spdlog::info("{}: recompiled", entry.shader_path);
     }
   }
 }

@@ -1,5 +1,5 @@
-// What the driver made of one shader with one set of defines, shared by all Program objects of a context that ask for
-// it. Private to this module.
+// The compiled program of one shader with one set of defines, shared by all Program objects of a context that use it.
+// Private to this module.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 namespace spindrift::gpu {
 
 struct CompiledProgram {
-  /// Compiles and links. Errors as Program::create().
+  /// Compiles and links. Errors: see Program::create().
   static core::Result<std::shared_ptr<CompiledProgram>> compile(Context& ctx, std::string_view shader_path,
                                                                 const Defines& defines);
   CompiledProgram() = default;
@@ -29,34 +29,33 @@ struct CompiledProgram {
   CompiledProgram(const CompiledProgram&) = delete;
   CompiledProgram& operator=(const CompiledProgram&) = delete;
 
-  /// Goes on as `fresh`, the same shader compiled from changed files.
+  /// Replaces this program by `fresh`, the same shader compiled from changed files.
   void become(CompiledProgram& fresh);
 
   std::uint32_t id = 0;
-  std::uint32_t generation = 0;  ///< counts become(): locations of uniforms are others then
+  std::uint32_t generation = 0;  ///< incremented by become(), which changes the uniform locations
   std::array<std::uint32_t, 3> group_size = {1, 1, 1};
-  std::set<std::string> files;  ///< that it was compiled from; empty for an embedded shader
+  std::set<std::string> files;  ///< source files; empty for an embedded shader
   std::map<std::string, std::int32_t, std::less<>> locations;
   ProgramUses uses;
 
-  /// Plain uniforms are state of the OpenGL program: whose values it holds now (Program::handle_), and which locations
-  /// anybody ever set.
+  /// Plain uniforms are state of the OpenGL program: the Program (handle_) whose values it holds now, and all locations
+  /// that were ever set.
   std::uint64_t uniforms_of = 0;
   std::vector<UniformValue> touched;
 };
 
-/// Programs by shader and defines. Those that nobody uses are kept for the next room of the same kind, at most
-/// kMaxUnused of them.
+/// Programs by shader and defines. At most kMaxUnused unused programs are kept, for the next room of the same kind.
 class ProgramCache {
  public:
   core::Result<std::shared_ptr<CompiledProgram>> get(Context& ctx, std::string_view shader_path,
                                                      const Defines& defines);
-  /// Programs held now, in use or not.
+  /// Number of programs held, used or unused.
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
   std::uint64_t newHandle() { return ++last_handle_; }
   void clear() { entries_.clear(); }
-  /// Compiles those anew that were compiled from one of these files of the context's shader folder. Errors are logged,
-  /// and the program goes on as it was.
+  /// Recompiles the programs that depend on one of these files of the context's shader folder. Errors are logged, and
+  /// the old program stays in use.
   void reload(Context& ctx, const std::set<std::string>& files);
 
  private:

@@ -23,13 +23,13 @@
 namespace spindrift::gpu {
 namespace {
 
-/// NVIDIA's remarks that say nothing about cost, for every buffer or texture: framebuffer storage, where a buffer lives
-/// (its type is "other", not "performance"), textures without a base level.
+/// NVIDIA messages that are sent for every buffer or texture and say nothing about cost: framebuffer storage, placement
+/// of a buffer (type "other", not "performance"), textures without a base level.
 constexpr std::array<GLuint, 3> kNoisyIds = {131169, 131185, 131204};
-/// More kinds of remarks than any driver has; beyond it they are logged as debug messages.
+/// More message ids than any driver has; further ones are logged as debug messages.
 constexpr std::size_t kMaxKnownMessages = 64;
 
-/// The driver's remark in one line, without the spaces and line ends that some put around it.
+/// Returns the driver's message in one line, without surrounding spaces and line ends.
 std::string oneLine(std::string_view text) {
   std::string out(text.substr(0, 1000));
   std::ranges::replace(out, '\n', ' ');
@@ -42,15 +42,15 @@ void GLAD_API_PTR onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum s
   if (std::find(kNoisyIds.begin(), kNoisyIds.end(), id) != kNoisyIds.end()) return;
   const std::string_view text(message, length < 0 ? std::char_traits<char>::length(message) : std::size_t(length));
   Context& ctx = *static_cast<Context*>(const_cast<void*>(user));
-  // What the compiler says is in Program::create()'s error, with the file and line; once is enough.
+  // Program::create() returns compiler messages in its error, with file and line; do not log them twice.
   if (type == GL_DEBUG_TYPE_ERROR && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
-    if (ctx.wasLost()) return;  // every call fails from then on, and isLost() has said why
+    if (ctx.wasLost()) return;  // after a loss every call fails, and isLost() has logged the reason
     ctx.countError();
     spdlog::error("OpenGL error {}: {}", id, oneLine(text));
   } else if (severity == GL_DEBUG_SEVERITY_HIGH && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
     spdlog::warn("OpenGL message {}: {}", id, oneLine(text));
   } else if (type == GL_DEBUG_TYPE_PERFORMANCE && ctx.isNewMessage(id)) {
-    spdlog::info("the driver on performance, message {} (said once): {}", id, oneLine(text));
+    spdlog::info("performance message {} of the driver (logged once): {}", id, oneLine(text));
   } else {
     spdlog::debug("OpenGL message {}: {}", id, oneLine(text));
   }
@@ -75,7 +75,7 @@ struct Context::Egl {
 };
 
 struct Context::Messages {
-  std::mutex mutex;  // a driver may call back on a thread of its own
+  std::mutex mutex;  // a driver may call back on its own thread
   std::set<std::uint32_t> known;
 };
 
@@ -110,12 +110,12 @@ Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, c
 #endif
   glDebugMessageCallback(onDebugMessage, this);
   if (!device_.tells_of_resets) {
-    spdlog::info("{}: its driver does not report resets of the device; after one, restart the program", device_.name);
+    spdlog::info("{}: the driver does not report device resets; after a reset, restart the program", device_.name);
   }
 }
 
 Context::~Context() {
-  // Another context of this thread stays current afterwards.
+  // Restores the thread's current context afterwards.
   std::optional<egl::CurrentGuard> guard;
   if (!isOwnedHere()) guard.emplace();
   if (!makeCurrent()) {
@@ -126,7 +126,7 @@ Context::~Context() {
   }
   collectRetired();
   for (const Retired& retired : retired_) {
-    spdlog::error("readback slots of buffer {} are still held while their context goes", retired.buffer_id);
+    spdlog::error("readback slots of buffer {} are still held while their context is destroyed", retired.buffer_id);
     glDeleteBuffers(1, &retired.buffer_id);
   }
   programs_->clear();

@@ -1,4 +1,4 @@
-// What a device must allow for the program to run at all. What a scene needs beyond it is checked when its buffers are
+// Minimum limits of a device for the program to run at all. Further needs of a scene are checked when its buffers are
 // made. Private to this module.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace spindrift::gpu {
 
-/// Stated here once: devices are refused below it, and a shader that uses more is an error that tests see.
+/// The only place with these limits: devices below them are refused, and tests fail for a shader that uses more.
 inline constexpr DeviceLimits kNeededLimits = {
     .max_ssbo_bytes = 1 << 24,             // OpenGL 4.5 promises as much
     .max_texel_buffer_elements = 1 << 16,  // likewise
@@ -24,8 +24,8 @@ inline constexpr DeviceLimits kNeededLimits = {
     .max_combined_texture_units = 40,  // the same numbers; OpenGL promises 96
 };
 
-/// Empty when `limits` allow all of `needs`, else one line that names each limit that is too low, with its value and
-/// what is needed.
+/// Returns an empty string when `limits` meet all of `needs`, otherwise one line with each limit that is too low, its
+/// value and the needed value.
 std::string missingLimits(const DeviceLimits& limits, const DeviceLimits& needs = kNeededLimits);
 
 }  // namespace spindrift::gpu

@@ -18,7 +18,7 @@ constexpr std::uint32_t kGroup = 32;
 constexpr std::uint32_t kItems = 64;
 constexpr std::uint32_t kFactor = 3;
 
-/// Objects of the probe; deleted when it is over. Written with OpenGL itself, because there is no Context yet.
+/// GL objects of the probe, deleted at its end. Uses OpenGL directly, because there is no Context yet.
 struct Objects {
   GLuint program = 0;
   GLuint texture = 0;
@@ -31,7 +31,7 @@ struct Objects {
   }
 };
 
-/// Empty, or what the compiler or the linker says.
+/// Returns an empty string, or the compiler's or linker's message.
 std::string compile(GLuint& program) {
   const EmbeddedShader* const shader = findShader("device/probe.comp");
   if (!shader) return "the probe's shader is not embedded";

@@ -1,4 +1,4 @@
-// Whether a device really does what the program asks of it. Private to this module.
+// Tests whether a device really does what the program needs. Private to this module.
 #pragma once
 
 #include <string>
@@ -7,12 +7,13 @@
 
 namespace spindrift::gpu {
 
-/// egl::open(), then the device's limits are compared with what the program needs and a small program is compiled and
-/// run. On failure the context is closed and `info.problem` says why.
+/// Calls egl::open(), compares the device's limits with the program's needs, then compiles and runs a small program. On
+/// failure the context is closed and `info.problem` holds the reason.
 egl::Attempt openUsable(const egl::Candidate& candidate);
 
-/// Runs shaders/device/probe.comp in the current context and looks at its result: storage and texel reads, a uniform
-/// block, shared memory with a barrier, atomics and an indirect dispatch. Empty when it is right, else one line.
+/// Runs shaders/device/probe.comp in the current context and checks its result: storage and texel reads, a uniform
+/// block, shared memory with a barrier, atomics and an indirect dispatch. Returns an empty string on success, otherwise
+/// one line.
 std::string runProbe();
 
 }  // namespace spindrift::gpu

@@ -84,7 +84,7 @@ std::vector<DeviceInfo> describeDevices(const std::vector<egl::Candidate>& candi
   for (const egl::Candidate& candidate : candidates) {
     const auto known = std::ranges::find_if(
         devices, [&](const DeviceInfo& device) { return !candidate.is_software && device.index == candidate.index; });
-    // There are several ways to the same device; the first that works is the one to list.
+    // Several candidates can lead to the same device; the first that works is listed.
     if (candidate.is_software && software && software->problem.empty()) continue;
     if (known != devices.end() && known->problem.empty()) continue;
     egl::Attempt attempt = open(candidate);

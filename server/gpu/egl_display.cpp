@@ -56,7 +56,7 @@ std::string eglErrorText() {
   }
 }
 
-/// The core entry point of EGL 1.5, else the extension's. Both must be asked for before any display exists.
+/// Returns the core entry point of EGL 1.5, otherwise the extension's. Both must be queried before any display exists.
 EGLDisplay platformDisplay(EGLenum platform, void* native) {
   if (const auto get = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYPROC>(eglGetProcAddress("eglGetPlatformDisplay"))) {
     if (EGLDisplay display = get(platform, native, nullptr); display != EGL_NO_DISPLAY) return display;
@@ -68,7 +68,8 @@ EGLDisplay platformDisplay(EGLenum platform, void* native) {
   return EGL_NO_DISPLAY;
 }
 
-/// The functions are the same for every context of the process, so they are loaded once; a context must be current.
+/// Loads the OpenGL functions once, since they are the same for every context of the process. A context must be
+/// current.
 bool loadOpenGl() {
   static std::mutex mutex;
   static bool is_loaded = false;
@@ -115,7 +116,7 @@ void describeCurrent(DeviceInfo& info) {
   limits.max_combined_texture_units = limit(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS);
 }
 
-/// The 16 bytes of EGL_EXT_device_persistent_id, or nothing.
+/// Returns the 16 bytes of EGL_EXT_device_persistent_id, or an empty string.
 std::string deviceUuid(EGLDeviceEXT device, const std::string& extensions) {
   // Values from the extension's specification; older headers do not have them.
   constexpr EGLint kDeviceUuid = 0x335C;  // EGL_DEVICE_UUID_EXT
@@ -128,13 +129,13 @@ std::string deviceUuid(EGLDeviceEXT device, const std::string& extensions) {
   return size_bytes == static_cast<EGLint>(uuid.size()) ? std::string(uuid.data(), uuid.size()) : std::string();
 }
 
-/// An OpenGL 4.5 core context that reports resets, or one that does not where the driver knows no such thing.
+/// Creates an OpenGL 4.5 core context that reports resets, or one that does not if the driver has no such feature.
 EGLContext createContext(EGLDisplay display, bool& tells_of_resets) {
   std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION,       4,
                                     EGL_CONTEXT_MINOR_VERSION,       5,
                                     EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
 #ifndef NDEBUG
-  // Drivers may say nothing otherwise; release builds do without what it costs.
+  // Without it drivers may report nothing; release builds avoid its cost.
   attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
 #endif
   // The attribute of EGL 1.5 and that of the extension have the same meaning, but different numbers.
@@ -222,7 +223,7 @@ Attempt open(const Candidate& candidate) {
     close(handles);
     return fail("it has no driver of its own and would fall back to software");
   }
-  // The surfaceless platform picks hardware where it can.
+  // The surfaceless platform chooses hardware if it can.
   info.is_software = renders_in_software;
   attempt.handles = handles;
   return attempt;

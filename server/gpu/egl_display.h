@@ -1,4 +1,4 @@
-// EGL without a window system: which devices there are, and a context on one of them. Private to this module.
+// EGL without a window system: the list of devices, and a context on one of them. Private to this module.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@
 
 namespace spindrift::gpu::egl {
 
-/// A way to a display that has not been opened yet.
+/// A device or platform through which a display can be opened.
 struct Candidate {
   void* device = nullptr;  ///< EGLDeviceEXT; null: Mesa's surfaceless platform, which picks a driver by itself
   bool is_software = false;
   int index = -1;        ///< position among the hardware devices, -1 for software
-  std::string drm_file;  ///< empty when EGL does not tell
-  std::string uuid;      ///< 16 bytes that name the hardware whichever driver drives it; empty when EGL does not tell
+  std::string drm_file;  ///< empty when EGL does not report it
+  std::string uuid;      ///< 16 bytes that identify the hardware, with any driver; empty when not reported
 };
 
 /// A context on an initialised display.
@@ -26,28 +26,28 @@ struct Handles {
   EGLContext context = EGL_NO_CONTEXT;
 };
 
-/// A candidate that was tried. Without handles `info.problem` says why.
+/// Result of trying a candidate. Without handles, `info.problem` holds the reason.
 struct Attempt {
   DeviceInfo info;
   std::optional<Handles> handles;
 };
 
-/// Hardware devices in EGL's order, then the ways to software rendering, best first. Ways to one piece of hardware have
-/// one index.
+/// Returns hardware devices in EGL's order, then the candidates for software rendering, best first. Candidates for the
+/// same hardware have the same index.
 std::vector<Candidate> candidates();
 
 /// Opens the display, makes an OpenGL 4.5 core context, makes it current on this thread, loads the OpenGL functions and
-/// describes the device. After a failure nothing is current.
+/// describes the device. After a failure no context is current.
 Attempt open(const Candidate& candidate);
 
-/// Destroys the context; unbinds it first when it is current here. The display stays initialised: EGL hands the same
-/// display to everyone who asks for the device, and eglTerminate would end it for all of them.
+/// Destroys the context; unbinds it first when it is current here. The display stays initialised: EGL gives the same
+/// display to every caller that asks for the device, and eglTerminate would end it for all of them.
 void close(const Handles& handles);
 
 /// Makes the context current on this thread, or nothing when `handles.context` is EGL_NO_CONTEXT.
 bool makeCurrent(const Handles& handles);
 
-/// Puts back what was current on this thread.
+/// Restores the previously current context of this thread.
 class CurrentGuard {
  public:
   CurrentGuard();

@@ -6,7 +6,7 @@
 namespace spindrift::gpu {
 namespace {
 
-/// Takes an unsigned number off the front of `text`; false when there is none.
+/// Removes an unsigned number from the start of `text`; returns false when there is none.
 bool takeNumber(std::string_view& text, std::uint32_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc()) return false;
@@ -20,7 +20,7 @@ bool takeChar(std::string_view& text, char wanted) {
   return true;
 }
 
-/// One line of a log; unchanged when it does not start like a position.
+/// Translates one line of a log; unchanged when it does not start with a position.
 std::string translateLine(const EmbeddedShader& shader, std::string_view line) {
   std::string_view rest = line;
   std::uint32_t source = 0;

@@ -16,7 +16,7 @@ Fence Fence::insert(Context& ctx) {
   fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   fence.status_ = fence.sync_ ? Status::kPending : Status::kFailed;
   fence.number_ = ctx.fenceDelay().insert();
-  glFlush();  // without it a fence that is only polled may never be passed
+  glFlush();  // without it a polled fence may never be passed
   return fence;
 }
 
@@ -31,7 +31,7 @@ Fence::Fence(Fence&& other) noexcept
       number_(other.number_) {}
 
 Fence& Fence::operator=(Fence&& other) noexcept {
-  // What this held goes with the temporary.
+  // The temporary releases the old contents.
   Fence moved(std::move(other));
   std::swap(ctx_, moved.ctx_);
   std::swap(sync_, moved.sync_);
@@ -42,21 +42,21 @@ Fence& Fence::operator=(Fence&& other) noexcept {
 
 Fence::Status Fence::wait(std::chrono::nanoseconds timeout) {
   assert(status_ != Status::kPending || ctx_->isOwnedHere());
-  // In slices, because a driver may notice a reset only between two waits.
+  // In slices, because some drivers notice a reset only between two waits.
   constexpr std::chrono::nanoseconds kSlice = std::chrono::milliseconds(100);
   if (status_ == Status::kPending && !ctx_->fenceDelay().passes(number_, timeout.count() > 0) && !ctx_->isLost()) {
-    return status_;  // a test's slow device
+    return status_;  // test mode: a slow device
   }
   std::chrono::nanoseconds left = std::max(timeout, std::chrono::nanoseconds(0));
   while (status_ == Status::kPending) {
     const std::chrono::nanoseconds slice = std::min(left, kSlice);
     const GLenum status =
         glClientWaitSync(static_cast<GLsync>(sync_), GL_SYNC_FLUSH_COMMANDS_BIT, static_cast<GLuint64>(slice.count()));
-    // The loss comes first: on a lost device a fence reports that it was passed, or that the wait failed.
+    // Check the loss first: on a lost device a fence may report that it was passed, or that the wait failed.
     if (ctx_->isLost()) {
       finish(Status::kFailed);
     } else if (status == GL_WAIT_FAILED) {
-      spdlog::error("OpenGL refuses to wait for a fence (error {}); what it stands for is lost", glGetError());
+      spdlog::error("OpenGL refuses to wait for a fence (error {}); the work before it is lost", glGetError());
       ctx_->countError();
       finish(Status::kFailed);
     } else if (status != GL_TIMEOUT_EXPIRED) {

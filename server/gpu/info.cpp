@@ -11,7 +11,7 @@ namespace spindrift::gpu {
 GpuInfo collectInfo(const DeviceChoice& choice) {
   const egl::CurrentGuard guard;
   GpuInfo info;
-  // Without a display EGL may refuse both questions; an old libEGL knows no client version.
+  // Without a display EGL may refuse both queries; an old libEGL has no client version.
   if (const char* version = eglQueryString(EGL_NO_DISPLAY, EGL_VERSION)) info.egl_client_version = version;
   if (const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS)) info.egl_client_extensions = extensions;
   info.devices = listDevices();

@@ -48,7 +48,7 @@ std::vector<PassCost> PassTimers::take() {
 }
 
 std::size_t PassTimers::nameIndex(std::string_view name) {
-  // A handful of names: a search is cheaper than a map.
+  // There are few names: a linear search is cheaper than a map.
   const auto found =
       std::find_if(costs_.begin(), costs_.end(), [&](const PassCost& cost) { return cost.name == name; });
   if (found != costs_.end()) return static_cast<std::size_t>(found - costs_.begin());

@@ -67,7 +67,7 @@ Program::Program(Program&& other) noexcept
       uniforms_(std::move(other.uniforms_)) {}
 
 Program& Program::operator=(Program&& other) noexcept {
-  // What this held goes with the temporary.
+  // The temporary releases the old contents.
   Program moved(std::move(other));
   std::swap(ctx_, moved.ctx_);
   std::swap(path_, moved.path_);
@@ -132,7 +132,7 @@ void Program::followReload() {
 
 void Program::prepare(const Buffer* arguments) {
   followReload();
-  // The values of another Program that shares the compiled one give way to ours; what we never set is zero.
+  // Replace the values of the other Program that shares the compiled one; uniforms never set here become zero.
   if (compiled_->uniforms_of != handle_) {
     for (const UniformValue& value : compiled_->touched) {
       if (!findLocation(uniforms_, value.location)) apply(compiled_->id, {value.name, value.location, value.type, 0});

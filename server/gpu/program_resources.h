@@ -1,4 +1,4 @@
-// What OpenGL tells of a linked program. Private to this module.
+// Queries of a linked OpenGL program. Private to this module.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,11 @@
 
 namespace spindrift::gpu {
 
-/// Uniform and storage blocks by the name after `uniform` or `buffer`; without those that the driver found unused.
+/// Returns uniform and storage blocks by the name after `uniform` or `buffer`, without those that the driver found
+/// unused.
 std::map<std::string, BlockLayout> blocksOf(std::uint32_t program_id);
 
-/// Texture unit of each samplerBuffer, usamplerBuffer and isamplerBuffer that is used, by name.
+/// Returns the texture unit of each used samplerBuffer, usamplerBuffer and isamplerBuffer, by name.
 std::map<std::string, std::uint32_t> texelUnitsOf(std::uint32_t program_id);
 
 }  // namespace spindrift::gpu

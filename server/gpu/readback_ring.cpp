@@ -14,7 +14,7 @@
 
 namespace spindrift::gpu {
 
-/// What views share with the ring, and what outlives it.
+/// State shared by the views and the ring; it outlives the ring.
 struct ReadbackRing::State {
   State(std::size_t bytes, std::size_t count)
       : slot_bytes(bytes),
@@ -27,7 +27,7 @@ struct ReadbackRing::State {
     for (std::size_t i = 0; i < slot_count; ++i) used += is_used[i].load(std::memory_order_acquire);
     return used;
   }
-  /// A reader is done: its reads happen before the device writes here again.
+  /// The reader is done. Release order: its reads happen before the device writes here again.
   void free(std::size_t index) { is_used[index].store(false, std::memory_order_release); }
 
   const std::size_t slot_bytes;
@@ -46,7 +46,7 @@ ReadbackRing::Slot::~Slot() {
 }
 
 std::span<const std::uint32_t> ReadbackRing::Slot::words() const {
-  // Slots start on multiples of 64 bytes, so the words are aligned.
+  // Slots start at multiples of 64 bytes, so the words are aligned.
   return {reinterpret_cast<const std::uint32_t*>(bytes_.data()), bytes_.size() / 4};
 }
 
@@ -93,11 +93,11 @@ core::Result<std::unique_ptr<ReadbackRing>> ReadbackRing::create(Context& ctx, s
   }
   auto state = std::make_shared<State>(slot_bytes, slot_count);
   const std::size_t size_bytes = state->stride_bytes * slot_count;
-  clearOldErrors();  // they have been counted by the debug callback; the next one is about this ring
+  clearOldErrors();  // the debug callback has counted them; the next error concerns this ring
   GLuint id = 0;
   glCreateBuffers(1, &id);
   constexpr GLbitfield kMapping = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  // The processor reads every byte: let the driver keep the storage on its side.
+  // The processor reads every byte: ask the driver to keep the storage in host memory.
   glNamedBufferStorage(id, static_cast<GLsizeiptr>(size_bytes), nullptr, kMapping | GL_CLIENT_STORAGE_BIT);
   state->mapped =
       static_cast<const std::byte*>(glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(size_bytes), kMapping));
@@ -122,7 +122,7 @@ ReadbackRing::ReadbackRing(Context& ctx, std::shared_ptr<State> state, std::uint
 ReadbackRing::~ReadbackRing() {
   assert(ctx_.isOwnedHere());
   for (const InFlight& flight : in_flight_) state_->free(flight.index);
-  // Deleting a mapped buffer unmaps it, so storage that a view still shows must live on until the view is dropped.
+  // Deleting a mapped buffer unmaps it, so storage that a view still uses must live until the view is dropped.
   ctx_.retire(buffer_id_, size_bytes_, [state = state_] { return state->usedCount() > 0; });
   ctx_.collectRetired();
 }
@@ -141,7 +141,7 @@ std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
   assert(ctx_.isOwnedHere());
   ctx_.collectRetired();
-  // Fences are passed in order: behind one that is not, none is.
+  // Fences are passed in order: after the first pending fence all others are pending.
   std::size_t done = 0;
   while (done < in_flight_.size() && in_flight_[done].fence.poll() != Fence::Status::kPending) ++done;
   return take(done);

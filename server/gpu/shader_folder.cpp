@@ -18,7 +18,7 @@ Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
 }
 
-/// What follows `#NAME` in a line, without blanks around it; nullopt where the line is no such directive.
+/// Returns the text after `#NAME` in a line, without blanks around it; nullopt where the line is no such directive.
 std::optional<std::string_view> directive(std::string_view line, std::string_view name) {
   const auto skipBlanks = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
   skipBlanks();
@@ -31,19 +31,19 @@ std::optional<std::string_view> directive(std::string_view line, std::string_vie
   return line;
 }
 
-/// "SPINDRIFT_ONCE_coupling_splat_glsl" for "coupling/splat.glsl".
+/// Returns "SPINDRIFT_ONCE_coupling_splat_glsl" for "coupling/splat.glsl".
 std::string guardOf(const std::string& name) {
   std::string out = "SPINDRIFT_ONCE_" + name;
   std::ranges::replace_if(out, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return out;
 }
 
-/// Lines of one file that follow each other, and where they go.
+/// Consecutive lines of one file, and where they are written to.
 class Lines {
  public:
   Lines(ShaderFolder::Source& out, const std::string& name) : out_(out), name_(out.names.emplace_back(name)) {}
 
-  /// `number`: of the line in the file, from 1.
+  /// `number`: line number in the file, from 1.
   void add(std::string_view line, std::uint32_t number) {
     out_.text.append(line).push_back('\n');
     out_.lines.push_back({++out_.line_count, name_, number});
@@ -91,7 +91,7 @@ core::Result<void> ShaderFolder::expand(const std::string& name, const std::vect
     const std::string other(included->substr(1, end - 1));
     if (other.find("..") != std::string::npos || !fs::is_regular_file(root_ / other))
       return invalid(where + ": no file \"" + other + "\" below " + root_.string());
-    // A file counts once, whichever of the places that include it the preprocessor comes to first.
+    // Includes a file once, at the first place that the preprocessor reaches.
     lines.add("#ifndef " + guardOf(other), number);
     lines.add("#define " + guardOf(other), number);
     if (auto done = expand(other, inside, out); !done) return done;

@@ -1,4 +1,4 @@
-// Shaders read from files while the program runs, in place of the embedded ones: for whoever works on them. Private to
+// For shader development: reads shaders from files while the program runs, in place of the embedded ones. Private to
 // this module.
 #pragma once
 
@@ -20,19 +20,20 @@ class ShaderFolder {
  public:
   explicit ShaderFolder(std::filesystem::path root);
 
-  /// One entry point with its includes, as embed_shaders.py expands it, but for lines that the preprocessor drops.
+  /// One entry point with its includes expanded, as embed_shaders.py does, except for lines that the preprocessor
+  /// drops.
   struct Source {
     std::string text;
     std::uint32_t line_count = 0;  ///< in `text`
     std::vector<LineRange> lines;
-    std::deque<std::string> names;  ///< what `lines` refers to: elements never move
-    std::set<std::string> files;    ///< read for it, relative to the root
+    std::deque<std::string> names;  ///< file names that `lines` points to; a deque, because elements must not move
+    std::set<std::string> files;    ///< all files that were read, relative to the root
   };
-  /// Errors, with file and line: kInvalidInput for a file that is not there, an include that cannot be read as one or a
-  /// cycle.
+  /// Errors name file and line: kInvalidInput for a missing file, an include that cannot be parsed or a cycle.
   [[nodiscard]] core::Result<Source> expand(std::string_view entry) const;
 
-  /// Files below the root that were written, added or removed since the last call; none where that was a moment ago.
+  /// Returns the files below the root that were written, added or removed since the last call; none if that was a
+  /// moment ago.
   [[nodiscard]] std::set<std::string> takeChanged();
 
  private:

@@ -6,8 +6,8 @@
 namespace spindrift::gpu {
 namespace {
 
-/// Primes whose product with the largest group count that any device must allow, 65,535, fits 32 bits. A number of
-/// groups can be a multiple of one of them, never of a prime larger than itself; the shader then takes 1.
+/// Primes whose product with 65,535, the largest group count that every device must allow, fits 32 bits. If the number
+/// of groups is a multiple of the chosen prime, the shader uses 1 instead.
 constexpr std::array<std::uint32_t, 8> kFactors = {7919, 10007, 20011, 30011, 40009, 50021, 60013, 65521};
 
 void replaceWord(std::string& text, std::string_view from, std::string_view to) {
@@ -31,8 +31,8 @@ std::string shuffledGroups(std::string_view text, std::uint32_t seed) {
   replaceWord(shader, "gl_GlobalInvocationID", "shuffledInvocation()");
   const std::string a = std::to_string(kFactors[seed % kFactors.size()]) + "u";
   const std::string b = std::to_string(seed % 65521) + "u";
-  // Afterwards the count of lines starts anew, so that messages of the driver name the right line. A prime has a common
-  // divisor with the group count only if it divides it.
+  // Afterwards the line count restarts, so that driver messages name the right line. A prime has a common divisor with
+  // the group count only if it divides the count.
   std::string head = "uint shuffledAxis(uint g, uint count) { return ((count % " + a + " == 0u ? 1u : " + a +
                      ") % count * g + " + b + " % count) % count; } ";
   head +=

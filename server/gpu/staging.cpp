@@ -52,7 +52,7 @@ bool Staging::upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::spa
     if (up_used_bytes_ == kPartBytes) {
       up_fences_[up_part_] = Fence::insert(ctx_);
       const std::size_t next = (up_part_ + 1) % kPartCount;
-      // On failure the part stays full and the next upload tries again.
+      // On failure the part stays full, and the next upload tries again.
       if (!await(up_fences_[next], "take an upload")) return false;
       up_part_ = next;
       up_used_bytes_ = 0;
@@ -62,7 +62,7 @@ bool Staging::upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::spa
     std::memcpy(up_.mapped + at, bytes.data(), now_bytes);
     glCopyNamedBufferSubData(up_.id, buffer_id, static_cast<GLintptr>(at), static_cast<GLintptr>(offset_bytes),
                              static_cast<GLsizeiptr>(now_bytes));
-    // Copies go word by word on most devices: keep the next one aligned.
+    // Most devices copy word by word: keep the next copy aligned.
     up_used_bytes_ = std::min(kPartBytes, (up_used_bytes_ + now_bytes + 15) / 16 * 16);
     offset_bytes += now_bytes;
     bytes = bytes.subspan(now_bytes);

@@ -1,5 +1,4 @@
-// Uploads to and downloads from buffers that live in device memory, through memory that the processor sees. Private to
-// this module.
+// Uploads to and downloads from device memory through host-visible buffers. Private to this module.
 #pragma once
 
 #include <array>
@@ -12,7 +11,7 @@
 
 namespace spindrift::gpu {
 
-/// Two persistently mapped buffers of 4 MiB, each made at its first use; larger transfers go in parts. One per context,
+/// Two persistently mapped buffers of 4 MiB, each made at its first use; larger transfers are split. One per context,
 /// on its thread.
 class Staging {
  public:
@@ -21,17 +20,17 @@ class Staging {
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
 
-  /// Copies `bytes` into the buffer. Returns before the device has done it; waits only when all of the ring is still on
-  /// its way. False, logged and counted in Context::debugErrorCount(), when the ring cannot be mapped or the device
-  /// does not take the data within kLimit; false without either when the device was lost.
+  /// Copies `bytes` into the buffer. Returns before the device has finished; waits only when the whole ring is in
+  /// flight. Returns false, logged and counted in Context::debugErrorCount(), when the ring cannot be mapped or the
+  /// device does not finish within kLimit. Also returns false, without a log line, when the device was lost.
   bool upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<const std::byte> bytes);
-  /// Copies out of the buffer and waits for it. False as above; `bytes` is then filled with zeros.
+  /// Copies out of the buffer and waits for it. Returns false as upload() does; `bytes` is then filled with zeros.
   bool download(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<std::byte> bytes);
 
  private:
   static constexpr std::size_t kPartBytes = std::size_t{1} << 20;
   static constexpr std::size_t kPartCount = 4;
-  /// Longer than any driver lets a program run before it resets the device.
+  /// Longer than the time after which drivers reset a hanging device.
   static constexpr std::chrono::seconds kLimit{30};
 
   struct Ring {
@@ -39,15 +38,15 @@ class Staging {
     std::byte* mapped = nullptr;
   };
   bool prepare(Ring& ring, bool is_for_upload);
-  /// Waits for a part; false as upload().
+  /// Waits for a part; returns false as upload() does.
   bool await(Fence& fence, const char* what);
 
   Context& ctx_;
   Ring up_;
   Ring down_;
-  std::array<Fence, kPartCount> up_fences_;  ///< of the last use of each part
+  std::array<Fence, kPartCount> up_fences_;  ///< fence of the last use of each part
   std::size_t up_part_ = 0;
-  std::size_t up_used_bytes_ = 0;  ///< of the part `up_part_`
+  std::size_t up_used_bytes_ = 0;  ///< bytes used of the part `up_part_`
 };
 
 }  // namespace spindrift::gpu

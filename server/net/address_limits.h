@@ -1,4 +1,4 @@
-// How much everybody behind one address may ask for, whatever the number of connections.
+// Limits per client address, over all its connections.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,22 @@
 
 namespace spindrift::net {
 
-/// Thread-safe. Remembers at most kMaxAddressCount addresses; the one that was quiet longest is forgotten for a new
-/// one.
+/// Thread-safe. Remembers at most kMaxAddressCount addresses; a new one replaces the one that was idle longest.
 class AddressLimits {
  public:
   static constexpr std::size_t kMaxAddressCount = 4096;
 
   explicit AddressLimits(const ServerOptions& options);
 
-  /// Whether one more request of this address may be heard.
+  /// Takes a token for one request of this address; returns false if there is none.
   bool takeRequest(const std::string& address, Clock::time_point now);
-  /// How long one more message of this address has to wait.
+  /// Takes a token for one message of this address; returns the time that the message has to wait.
   Clock::duration reserveMessage(const std::string& address, Clock::time_point now);
   std::size_t addressCount() const;
 
-  /// Sessions that one address may hold at a time.
+  /// Number of sessions that one address may have open.
   [[nodiscard]] std::size_t sessionMaxCount() const { return session_max_count_; }
-  /// Counts one more session of this address, or says no. Each yes is to be given back with releaseSession().
+  /// Counts one more session of this address; returns false at the limit. After true, call releaseSession() at its end.
   bool takeSession(const std::string& address);
   void releaseSession(const std::string& address);
 

@@ -88,7 +88,7 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
     events_.closed(code_, reason_);
   }
 
-  /// Empty, or why there is no session.
+  /// Opens the session; returns an empty string, or the reason of the failure.
   asio::awaitable<std::string> open() {
     tcp::resolver resolver(strand_);
     const auto [resolve_error, places] = co_await resolver.async_resolve(url_.host, url_.port, kToken);
@@ -145,7 +145,7 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
         (void)co_await ws_.async_close(websocket::close_code::normal, kToken);
         co_return;
       } else {
-        // send() posts its wake to this strand, so it cannot run between the look and the wait.
+        // send() posts its wake-up to this strand, so it cannot run between this check and the wait.
         wake_.expires_at(asio::steady_timer::time_point::max());
         (void)co_await wake_.async_wait(kToken);
       }

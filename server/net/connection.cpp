@@ -27,19 +27,19 @@ namespace http = boost::beast::http;
 
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
-/// What was read and not yet parsed: a header and as much as one read brings. A bound of our own beside the parser's.
+/// Limit of bytes read but not yet parsed: a header and one read. Independent of the parser's own limits.
 constexpr std::size_t kReadBufferMaxBytes = 128 * 1024;
-/// The kernel takes this much from us ahead of the wire; the rest of a backlog stays in the outbox, where it is
-/// dropped.
+/// Limit of unsent bytes in the kernel. The rest of a backlog stays in the outbox, where old frames can be dropped.
 constexpr int kUnsentLowWaterBytes = 128 * 1024;
 constexpr int kSendBufferBytes = 512 * 1024;
-/// A page is given a write_stall_timeout plus the time that this rate takes.
+/// A reply may take write_stall_timeout plus its size divided by this rate.
 constexpr std::size_t kSlowestBytesPerSecond = 16 * 1024;
-/// How long and how much of a refused request is read away, so that closing does not reset the reply.
+/// Limits for reading the rest of a refused request, so that closing does not reset the connection before the reply is
+/// read.
 constexpr std::chrono::seconds kLingerTime{1};
 constexpr std::size_t kLingerBytes = 256 * 1024;
 
-/// Best effort: each of these only tunes.
+/// Sets socket options; failures are ignored, because they only cost speed.
 void tune(asio::ip::tcp::socket& socket) {
   boost::system::error_code ignored;
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);
@@ -48,7 +48,7 @@ void tune(asio::ip::tcp::socket& socket) {
   socket.set_option(UnsentLowWater(kUnsentLowWaterBytes), ignored);
 }
 
-/// What limits go by: the address, of IPv6 the network that a household gets.
+/// Returns the key for address limits: the address, or for IPv6 its /64 network.
 std::string addressOf(const asio::ip::tcp::socket& socket) {
   constexpr unsigned kNetworkBits = 64;
   boost::system::error_code error;
@@ -69,7 +69,7 @@ void fillHead(Fields& response, const Reply& reply, bool keep_alive) {
   response.set(http::field::server, "Spindrift");
   for (const auto& [name, value] : securityHeaders()) response.set(name, value);
   for (const auto& [name, value] : reply.headers) response.set(name, value);
-  // RFC 9110 section 8.6: neither length nor type where there is no content by definition.
+  // RFC 9110 section 8.6: no length and no type for statuses that never have content.
   if (reply.status != 304 && reply.status != 204) {
     response.set(http::field::content_type, reply.content_type);
     response.content_length(reply.body->size());
@@ -128,7 +128,7 @@ asio::awaitable<void> Connection::run() {
   while (!stopping_) {
     RequestParser parser;
     bound(parser, context_.options.request_body_max_bytes);
-    // One deadline for the whole request: a byte now and then does not extend it.
+    // One deadline for the whole request: single bytes do not extend it.
     stream_.expires_after(context_.options.handshake_timeout);
     auto [error, bytes_count] = co_await http::async_read_header(stream_, buffer_, parser, kToken);
     auto refusal = error ? std::nullopt : refuseHead(parser);
@@ -136,7 +136,7 @@ asio::awaitable<void> Connection::run() {
       std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
     }
     if (error) {
-      spdlog::debug("{}: no whole request: {}", peer_, error.message());
+      spdlog::debug("{}: incomplete request: {}", peer_, error.message());
       refusal = replyToBadRequest(error, context_.options.request_body_max_bytes);
     }
     if (refusal) {
@@ -159,7 +159,7 @@ asio::awaitable<void> Connection::run() {
     if (isPreflight(request)) {
       reply = preflightReply();
     } else if (auto* target = std::get_if<Target>(&routed)) {
-      // HEAD is GET without the body, for every path alike; send() leaves the body out.
+      // HEAD is handled as GET for every path; send() leaves out the body.
       HttpRequest question;
       question.method = head.method == "HEAD" ? "GET" : head.method;
       question.path = std::move(target->path);
@@ -209,7 +209,7 @@ std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {
     reply.headers.emplace_back("Retry-After", "1");
     return reply;
   }
-  // A page may look at what is public from anywhere; what acts, or opens a stream, is for the pages on the list.
+  // Any page may read what is public; only allowed Origins may send commands or open a stream.
   const bool acts = request.method() != http::verb::get && request.method() != http::verb::head;
   if (!acts && !beast::websocket::is_upgrade(request)) return std::nullopt;
   const auto origin = request[http::field::origin];
@@ -253,12 +253,12 @@ asio::awaitable<std::optional<Reply>> Connection::ask(const HttpRequest& request
 }
 
 asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
-  // Reserved before the handshake, so that a crowd of handshakes cannot pass the bound together.
+  // Reserved before the handshake, so that many simultaneous handshakes cannot exceed the limit.
   struct Place {
     ServerContext& context;
     const std::string& address;
-    const bool is_free;      ///< the server has a place
-    const bool is_in_share;  ///< the address may have it
+    const bool is_free;      ///< below max_session_count
+    const bool is_in_share;  ///< below the address's limit
     Place(ServerContext& shared, const std::string& of)
         : context(shared),
           address(of),
@@ -310,7 +310,7 @@ asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsig
     fillHead(response, reply, keep_alive);
     std::tie(error, std::ignore) = co_await http::async_write(stream_, response, kToken);
   }
-  if (error) spdlog::debug("{}: the reply did not go through: {}", peer_, error.message());
+  if (error) spdlog::debug("{}: the reply could not be sent: {}", peer_, error.message());
   co_return !error;
 }
 

@@ -1,4 +1,4 @@
-// One TCP connection: HTTP requests one after another, and perhaps an upgrade to a WebSocket session.
+// One TCP connection: HTTP requests one after another, which may end in an upgrade to a WebSocket session.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace spindrift::net {
 
 class Connection final : public Stoppable, public std::enable_shared_from_this<Connection> {
  public:
-  /// The socket's executor is a strand of its own.
+  /// The socket's executor must be a strand of its own.
   Connection(std::uint64_t id, boost::asio::ip::tcp::socket socket, ServerContext& context);
 
   /// Serves in the background until the connection is gone, then leaves context.connections.
@@ -31,25 +31,25 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
 
  private:
   boost::asio::awaitable<void> run();
-  /// Asks the application. Nothing to send where the connection was closed meanwhile.
+  /// Asks the application. Returns nullopt if the connection was closed meanwhile.
   boost::asio::awaitable<std::optional<Reply>> ask(const HttpRequest& request);
   boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
-  /// The reply as this request's target and origin need it: see asProblem() and allowOrigin().
+  /// Adapts the reply to this request's target and origin: see asProblem() and allowOrigin().
   Reply fitted(const UpgradeRequest& request, Reply reply) const;
-  /// Whether a browser asks for a page of a listed origin what it may send to the REST interface.
+  /// Returns whether this is a CORS preflight of an allowed Origin for the REST interface.
   bool isPreflight(const UpgradeRequest& request) const;
-  /// The reply to a request that is not heard, upgrade or not: too many from its address, or from a foreign page.
+  /// Returns a refusal for a request over its address's rate or from a foreign page, upgrade or not; else nullopt.
   std::optional<Reply> refuseAny(const UpgradeRequest& request);
-  /// False if the connection is gone.
+  /// Returns false if the connection is gone.
   boost::asio::awaitable<bool> send(const Reply& reply, bool head_only, unsigned version, bool keep_alive);
-  /// Sends the last reply of this connection and hangs up so that the peer can still read it.
+  /// Sends the last reply of this connection, then closes so that the peer can still read it.
   boost::asio::awaitable<void> sendLast(Reply reply, bool head_only);
 
   const std::uint64_t id_;
   ServerContext& context_;
   const boost::asio::any_io_executor strand_;
   const std::string peer_;     ///< address and port, for the log
-  const std::string address_;  ///< what AddressLimits knows it by
+  const std::string address_;  ///< key of this peer in AddressLimits
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_;
   std::shared_ptr<Session> session_;  ///< owns the stream after the upgrade

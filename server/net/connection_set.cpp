@@ -12,7 +12,7 @@ bool ConnectionSet::add(std::uint64_t id, std::shared_ptr<Stoppable> connection)
 }
 
 void ConnectionSet::remove(std::uint64_t id) {
-  // Released after the mutex: the last owner's destructor is none of this lock's business.
+  // Destroyed after the mutex is released: the destructor must not run under this lock.
   std::shared_ptr<Stoppable> removed;
   const std::lock_guard lock(mutex_);
   const auto found = connections_.find(id);

@@ -1,4 +1,4 @@
-// Every open TCP connection, so that a shutdown can reach them all and wait until they are gone.
+// All open TCP connections, so that a shutdown can reach them and wait for their end.
 #pragma once
 
 #include <chrono>
@@ -11,11 +11,11 @@
 
 namespace spindrift::net {
 
-/// What a shutdown needs of a connection. Thread-safe; both calls return at once.
+/// The interface of a connection for the shutdown. Thread-safe; both calls return at once.
 class Stoppable {
  public:
   virtual ~Stoppable() = default;
-  /// A session says goodbye with 1001; a plain HTTP connection just ends.
+  /// A session closes with 1001; a plain HTTP connection is just closed.
   virtual void shutDown() = 0;
   /// Closes the socket now.
   virtual void cut() = 0;
@@ -26,15 +26,15 @@ class ConnectionSet {
  public:
   explicit ConnectionSet(std::size_t max_count) : max_count_(max_count) {}
 
-  /// False, and nothing kept, when the set is full or closed.
+  /// Adds the connection; returns false when the set is full or closed.
   bool add(std::uint64_t id, std::shared_ptr<Stoppable> connection);
   void remove(std::uint64_t id);
 
-  /// Lets nobody in any more.
+  /// Refuses new connections from now on.
   void close();
-  /// The connections open now.
+  /// Returns the connections open now.
   std::vector<std::shared_ptr<Stoppable>> all() const;
-  /// True when the last one is gone, false if that does not happen by `deadline`.
+  /// Returns true when the last connection is gone, false if that does not happen by `deadline`.
   bool waitEmpty(std::chrono::steady_clock::time_point deadline);
 
  private:

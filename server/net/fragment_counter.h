@@ -1,5 +1,5 @@
-// Counts the fragments in what a client sends, by the frame headers of RFC 6455 section 5.2. Beast reads fragments
-// without telling anybody, and an empty one costs the sender six bytes.
+// Counts the message fragments that a client sends, by the frame headers of RFC 6455 section 5.2. Needed because Beast
+// reads fragments without reporting them, and an empty one costs the sender only six bytes.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace spindrift::net {
 
 class FragmentCounter {
  public:
-  /// Takes the next bytes of the stream, from its first on, however they are cut. Returns how many headers of fragments
-  /// end in them: data frames (opcodes 0 to 7) without the FIN bit, empty or not.
+  /// Takes the next bytes of the stream, split anywhere; the first call has the stream's first byte. Returns how many
+  /// fragment headers end in them: data frames (opcodes 0 to 7) without the FIN bit, empty or not.
   std::uint64_t count(core::ByteView bytes) {
     std::uint64_t fragment_count = 0;
     while (!bytes.empty()) {
@@ -43,7 +43,7 @@ class FragmentCounter {
   [[nodiscard]] std::size_t extendedBytes() const {
     return shortLength() == kSixtyFourBits ? 8 : shortLength() == kSixteenBits ? 2 : 0;
   }
-  /// Length of the header that is being read, as far as its first two bytes tell.
+  /// Length of the current header, as far as its first two bytes tell.
   [[nodiscard]] std::size_t headerBytes() const {
     constexpr std::uint8_t kMasked = 0x80;
     constexpr std::size_t kMaskBytes = 4;
@@ -57,9 +57,9 @@ class FragmentCounter {
     return length;
   }
 
-  std::array<std::uint8_t, 14> header_{};  ///< the longest header there is
-  std::size_t header_bytes_ = 0;           ///< of it that are here
-  std::uint64_t payload_left_bytes_ = 0;   ///< of the frame whose header was read last
+  std::array<std::uint8_t, 14> header_{};  ///< the longest possible header
+  std::size_t header_bytes_ = 0;           ///< bytes of it received so far
+  std::uint64_t payload_left_bytes_ = 0;   ///< left of the frame whose header was read last
 };
 
 }  // namespace spindrift::net

@@ -25,7 +25,7 @@ void bound(RequestParser& parser, std::size_t body_max_bytes) {
 
 namespace {
 
-/// Headers that say one thing: two of them are two requests in one, read differently by whoever stands in between.
+/// Headers that may occur once. If one is repeated, a proxy could read the request differently (request smuggling).
 constexpr std::array kSingleFields{http::field::host,
                                    http::field::origin,
                                    http::field::authorization,
@@ -33,8 +33,7 @@ constexpr std::array kSingleFields{http::field::host,
                                    http::field::sec_websocket_key,
                                    http::field::sec_websocket_version};
 
-/// RFC 9112 section 3.2: a host and perhaps a port, from the characters that RFC 3986 section 3.2.2 gives them. Empty
-/// is allowed.
+/// RFC 9112 section 3.2: a host with an optional port, in the characters of RFC 3986 section 3.2.2. Empty is allowed.
 bool isHost(std::string_view host) {
   constexpr std::string_view kMarks = "-._~%!$&'()*+,;=:[]";
   return std::ranges::all_of(host, [&](unsigned char c) {
@@ -97,7 +96,7 @@ core::ByteView bodyOf(const Request& request) {
 
 namespace {
 
-/// RFC 6455 section 4.2.1: 16 bytes in base64. What they are is the client's business.
+/// RFC 6455 section 4.2.1: 16 bytes in base64. Their value is not checked.
 bool isKey(std::string_view key) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   constexpr std::size_t kDigitCount = 22;
@@ -108,7 +107,7 @@ bool isKey(std::string_view key) {
 }  // namespace
 
 UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_count, Application& application) {
-  // RFC 6455 section 4.1: the client waits for the answer. The bytes would get lost between the two protocols.
+  // RFC 6455 section 4.1: the client waits for the answer. Bytes sent earlier would be lost between the two protocols.
   if (more_bytes_count > 0) {
     return {textReply(400, "Nothing may follow an upgrade request before it is answered.")};
   }
@@ -126,12 +125,12 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
   auto named = roomOfPath(target->path);
   if (!named) return {textReply(404, "There is no WebSocket at " + printable(target->path) + ": use /ws or /ws/ROOM.")};
 
-  // A query ends up in logs and histories; nothing of ours belongs there.
+  // A query ends up in logs and browser histories, so tokens are refused there.
   if (target->query.find("token") != std::string::npos) {
     return {textReply(400, "Tokens do not belong into addresses: send it in Hello.token.")};
   }
 
-  // A page's own address names the room in its query, so people try the same here.
+  // The web client's own URL has the room in its query; accept it here too.
   const auto asked = queryValues(target->query, "room");
   if (!asked) return {textReply(400, "The room in the query has a broken percent escape or a control character.")};
   if (asked->size() > 1 || (asked->size() == 1 && !named->empty() && asked->front() != *named)) {
@@ -141,7 +140,7 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
 
   UpgradeDecision decision;
   decision.room = *std::move(named);
-  // RFC 6455 section 11.3.4: the list may stand in several headers.
+  // RFC 6455 section 11.3.4: the list may be split over several headers.
   bool is_protocol_offered = false;
   const auto [first, end] = request.equal_range(http::field::sec_websocket_protocol);
   for (auto offered = first; offered != end; ++offered) {

@@ -19,7 +19,7 @@ Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
   return reply;
 }
 
-/// Does the If-None-Match list name this tag? Comparison is the weak one, as RFC 9110 section 13.1.2 asks.
+/// Returns whether the If-None-Match list contains this tag, with the weak comparison of RFC 9110 section 13.1.2.
 bool matchesEtag(std::string_view list, std::string_view etag) {
   while (!list.empty()) {
     const std::size_t comma = list.find(',');
@@ -78,7 +78,7 @@ bool isApiTarget(std::string_view target) {
 Reply asProblem(Reply reply) {
   constexpr unsigned kFirstError = 400;
   if (reply.status < kFirstError || !reply.content_type.starts_with("text/plain")) return reply;
-  // Lines of ours are printable ASCII: strangers' text in them went through printable().
+  // The server's own lines are printable ASCII: untrusted text in them has passed printable().
   std::string line;
   for (const char c : *reply.body) {
     if (c == '"' || c == '\\') line.push_back('\\');

@@ -1,4 +1,4 @@
-// What a plain HTTP request gets, decided without a socket: the request's parts in, a reply out.
+// Routes plain HTTP requests, without a socket: takes the parts of a request, returns a reply.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ namespace spindrift::net {
 
 struct RequestHead {
   std::string method;
-  std::string target;  ///< as sent
+  std::string target;  ///< undecoded
   std::string if_none_match;
 };
 
@@ -28,39 +28,40 @@ struct Reply {
   unsigned status = 200;
   std::string content_type = "text/plain; charset=utf-8";
   std::shared_ptr<const std::string> body;  ///< never null; empty for 304
-  /// Beyond Content-Type and the security headers.
+  /// In addition to Content-Type and the security headers.
   std::vector<std::pair<std::string, std::string>> headers;
 };
 
-/// One plain line of text (the newline is added here), not cached.
+/// Returns one plain line of text (the newline is added here), not cached.
 Reply textReply(unsigned status, std::string line);
 
-/// RFC 6455.
+/// Defined by RFC 6455.
 inline constexpr std::string_view kWebSocketVersion = "13";
 
-/// 426: what a request to a WebSocket address gets that is no upgrade, or one to another version. `line` says which.
+/// Returns 426, for a request to a WebSocket address that is no upgrade or one to another version; `line` says which.
 Reply webSocketReply(std::string line);
 
-/// Whether what is at this target, as sent, is the REST interface, which answers in JSON.
+/// Returns whether the undecoded target belongs to the REST interface, which answers in JSON.
 bool isApiTarget(std::string_view target);
 
-/// The reply as a spindrift.v1.Problem in JSON where it is an error in plain text; unchanged otherwise.
+/// Turns a plain-text error into a spindrift.v1.Problem in JSON; other replies stay unchanged.
 Reply asProblem(Reply reply);
 
-/// 204: what a browser is told that asks whether a page of `origin` may send a request to the REST interface.
+/// Returns 204, the answer to a CORS preflight of an allowed Origin.
 Reply preflightReply();
 
 /// Lets a page of `origin` read the reply (Fetch standard, "CORS protocol").
 void allowOrigin(Reply& reply, std::string_view origin);
 
-/// What a whole request gets: a reply at once (the web client's files, or an error with one line), or, for its paths,
-/// what the application says.
+/// Routes a complete request. Returns a reply (a file of the web client, or an error with one line), or the target of a
+/// request that the application has to answer.
 std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files);
 
-/// The application's answer as a reply; nullopt is 404.
+/// Converts the application's answer to a reply; nullopt is 404.
 Reply applicationReply(std::string_view path, std::optional<HttpReply> answer);
 
-/// Sent with every response, the WebSocket handshake included: what the page may load, and that it may not be framed.
+/// Headers of every response, the WebSocket handshake included: they restrict what the page may load and forbid
+/// framing.
 std::span<const std::pair<std::string_view, std::string_view>> securityHeaders();
 
 }  // namespace spindrift::net

@@ -6,11 +6,11 @@
 namespace spindrift::net {
 namespace {
 
-/// Fewer frames in a window say nothing.
+/// A window with fewer frames is not evaluated.
 constexpr std::uint32_t kLeastDueCount = 4;
-/// One of so many lost: the link cannot carry this.
+/// Loss of one frame in this many: the link cannot carry the level.
 constexpr std::uint32_t kTooManyLost = 5;
-/// One of so many lost: no time to try for more.
+/// Loss of one frame in this many: no step up for now.
 constexpr std::uint32_t kSomeLost = 25;
 
 core::Level levelAt(std::size_t index) {

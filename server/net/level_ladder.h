@@ -1,5 +1,5 @@
-// Which level of detail a link can carry: found by trying, since nobody can ask it. Plain arithmetic on a time that the
-// caller passes in.
+// Finds the level of detail that a link can carry by trying, because a link has no query for it. The caller passes the
+// time in; no clock is read.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@
 
 namespace spindrift::net {
 
-/// Steps down when frames go missing, up again when none did for a while; a step up that fails is tried again after
-/// twice the time.
+/// Steps down when frames are lost, and up again after a while without loss. After a failed step up it waits twice as
+/// long before the next try.
 class LevelLadder {
  public:
-  /// A frame was due for the session; `lost`: one before it still waited, or it built on one that was lost.
+  /// Counts a frame that was due for the session. `lost`: an earlier frame still waited, or it built on a lost frame.
   void noteFrame(bool lost) {
     ++due_count_;
     lost_count_ += lost ? 1 : 0;
   }
 
-  /// Judges what was noted, once a kWindow; the new level if it changed. From `reduced_count` on all levels are the
-  /// same; with 0 there is nothing to step down to.
+  /// Evaluates the counts once per kWindow; returns the new level if it changed. `reduced_count`: number of levels that
+  /// downsample the layer; with 0 there is no lower level.
   std::optional<core::Level> review(Clock::time_point now, std::uint32_t reduced_count);
 
-  /// At most this.
+  /// Highest level allowed now.
   core::Level level() const { return level_; }
 
   static constexpr auto kWindow = std::chrono::seconds(1);
   static constexpr auto kFirstPatience = std::chrono::seconds(4);
   static constexpr auto kLongestPatience = std::chrono::seconds(64);
-  /// A step up that has held for so long is not undone by the next one down.
+  /// A step up that lasted this long counts as successful.
   static constexpr auto kProbation = std::chrono::seconds(10);
 
  private:

@@ -1,16 +1,17 @@
-// The TCP stream below a session's WebSocket, with three differences: what is left of the message being written goes to
-// the kernel in one call; fragments are counted as they come in; and the answer to a close frame can be replaced.
+// The TCP stream below a session's WebSocket. It differs from its base class in three points: the rest of a message is
+// written in one kernel call, incoming fragments are counted, and the reply to a close frame can be replaced.
 //
-// Writing. Asio's composed write hands on at most 64 KiB a call, and each call is a turn of the event loop. Beast
-// writes through it with no say in that number. So this stream, which is told where the message lies, takes the rest
-// along when it is offered a part of it. It then reports more bytes than it was offered; the composed write counts them
-// off the whole sequence, which is the same message. That is no promise of Asio's but what Boost 1.81 does, the version
-// that the build asks for. With any other version the stream writes what it is offered: right, and slower.
+// Writing. Asio's composed write passes at most 64 KiB per call, and each call costs a turn of the event loop. Beast
+// uses it and cannot change that number. This stream is told where the message lies. When it is offered a part of the
+// message, it writes all the rest of it too, and reports more bytes than it was offered. The composed write subtracts
+// them from the whole sequence, which is the same message. Asio does not promise this, but Boost 1.81 behaves so, the
+// version that the build requires. With any other version the stream writes only what it is offered: correct, but
+// slower.
 //
-// Reading. Beast joins fragments without a word to its caller, who therefore cannot bound how many come. This stream
-// counts them below Beast and stops reading when its owner says so.
+// Reading. Beast joins fragments without reporting them, so its caller cannot bound their number. This stream counts
+// them below Beast and stops reading when its owner asks for it.
 //
-// Closing. Beast echoes whatever code from 3000 to 65535 a peer closes with, but RFC 6455 section 7.4 ends at 4999.
+// Closing. Beast echoes any close code from 3000 to 65535, but RFC 6455 section 7.4 ends at 4999.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +33,7 @@
 
 namespace spindrift::net {
 
-/// Whether the composed write is known to count bytes beyond those that it offered. Session and outflow tests hold it.
+/// Whether the composed write is known to count bytes beyond those it offered. The session and outflow tests check it.
 inline constexpr bool kWriteTakesRestAlong = BOOST_VERSION == 108100;
 
 /// Used on one strand, as its base class is.
@@ -40,15 +41,15 @@ class MessageStream : public boost::beast::tcp_stream {
  public:
   explicit MessageStream(boost::beast::tcp_stream&& stream) : boost::beast::tcp_stream(std::move(stream)) {}
 
-  /// Where the message lies that is written next, until another one does; it stays there until its write is over.
+  /// Sets the message that is written next, until the next call. Its bytes must stay valid until the write is done.
   /// Empty: none.
   void setMessage(core::ByteView message) { message_ = message; }
 
-  /// Called with how many fragments a read has brought, where there are any; false stops reading: from then on a read
-  /// only ends when the connection does. Before the first read.
+  /// Sets a handler that is called with the number of fragments in a read, if not 0. If it returns false, reading
+  /// stops: later reads end only when the connection does. Call it before the first read.
   void setFragmentHandler(std::function<bool(std::uint64_t)> handler) { on_fragments_ = std::move(handler); }
 
-  /// The next close frame says 1002 (protocol error) and no more, whatever it was going to say.
+  /// Replaces the next close frame by one with code 1002 (protocol error) and no reason.
   void closeAsProtocolError() { close_is_replaced_ = true; }
 
   template <typename Buffers, typename Handler>
@@ -71,7 +72,7 @@ class MessageStream : public boost::beast::tcp_stream {
   template <typename Buffers, typename Handler>
   auto async_write_some(const Buffers& buffers, Handler&& handler) {
     namespace asio = boost::asio;
-    std::array<asio::const_buffer, 2> parts;  // a frame's header and its payload, or the payload alone
+    std::array<asio::const_buffer, 2> parts;  // a frame's header and payload, or the payload alone
     std::size_t count = 0;
     for (auto at = asio::buffer_sequence_begin(buffers); at != asio::buffer_sequence_end(buffers); ++at) {
       const asio::const_buffer part = *at;
@@ -97,7 +98,7 @@ class MessageStream : public boost::beast::tcp_stream {
     return !before(first, message_.data()) && before(first, message_.data() + message_.size());
   }
 
-  /// Fewer bytes than the whole frame are the rest of one that was written in part.
+  /// With fewer bytes than a whole frame, the part is the rest of a partly written one.
   bool isReplacedClose(const boost::asio::const_buffer& part) {
     const auto* bytes = static_cast<const std::uint8_t*>(part.data());
     if (!close_is_replaced_ || part.size() > kProtocolErrorClose.size()) return false;
@@ -118,7 +119,7 @@ class MessageStream : public boost::beast::tcp_stream {
     return fragment_count == 0 || !on_fragments_ || on_fragments_(fragment_count);
   }
 
-  /// FIN and the opcode, two bytes of payload, 1002.
+  /// FIN and the opcode, payload length 2, code 1002.
   static constexpr std::array<std::uint8_t, 4> kProtocolErrorClose{0x88, 0x02, 0x03, 0xea};
 
   core::ByteView message_;
@@ -129,7 +130,7 @@ class MessageStream : public boost::beast::tcp_stream {
   bool replaced_close_began_ = false;
 };
 
-/// What Beast closes a connection with; found by the type of the stream.
+/// Beast closes a connection with this function, found by the type of the stream.
 template <typename Handler>
 void async_teardown(boost::beast::role_type role, MessageStream& stream, Handler&& handler) {
   boost::beast::websocket::async_teardown(role, stream.socket(), std::forward<Handler>(handler));

@@ -10,7 +10,7 @@ bool equalsIgnoringCase(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-/// "http://host:8080" -> "host:8080"; empty for what has no scheme of the web ("null").
+/// "http://host:8080" -> "host:8080"; empty without http:// or https:// ("null").
 std::string_view hostOf(std::string_view origin) {
   for (const std::string_view scheme : {std::string_view("http://"), std::string_view("https://")}) {
     if (origin.size() > scheme.size() && equalsIgnoringCase(origin.substr(0, scheme.size()), scheme))
@@ -25,7 +25,7 @@ bool isLoopbackName(std::string_view host) {
   const std::string_view name =
       is_bracketed && end != std::string_view::npos ? host.substr(0, end + 1) : host.substr(0, end);
   if (equalsIgnoringCase(name, "localhost") || name == "[::1]") return true;
-  // 127.0.0.1 and its neighbours, but no name that only begins so.
+  // 127.0.0.0/8, but not a host name that starts with "127.".
   return name.starts_with("127.") &&
          std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
 }

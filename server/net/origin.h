@@ -1,4 +1,4 @@
-// Which pages may talk to this server. Browsers name the page in Origin; anything else sends none.
+// Checks of the Origin header, which browsers send to name the page; other clients send none.
 #pragma once
 
 #include <span>
@@ -7,12 +7,12 @@
 
 namespace spindrift::net {
 
-/// Whether `allowed` names this page ("*" = every one).
+/// Returns whether `allowed` contains this Origin ("*" = any).
 bool isOriginListed(std::string_view origin, std::span<const std::string> allowed);
 
-/// Whether a request with these headers is to be heard: no Origin at all, one of `allowed` ("*" = every one), or the
-/// server's own, that is, the host that the request was sent to. On a server that listens on the loopback only that
-/// host has to be the loopback as well, so that a foreign name that resolves to it opens nothing.
+/// Returns whether a request with these headers is accepted: no Origin, one of `allowed` ("*" = any), or the server's
+/// own, that is, the host that the request was sent to. If the server listens on the loopback only, that host has to be
+/// the loopback too, so that a foreign name that resolves to it gets no access.
 bool isOriginAllowed(std::string_view origin, std::string_view host, bool listens_on_loopback,
                      std::span<const std::string> allowed);
 

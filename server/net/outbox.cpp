@@ -59,7 +59,7 @@ Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Cl
     return {.dropped = true};
   }
   if (!is_due) {
-    slot.follows = false;  // an unsent frame goes out, this one does not
+    slot.follows = false;  // an unsent frame is still sent, this one is not
     return {};
   }
   slot.gate.pass(now);
@@ -96,7 +96,7 @@ void Outbox::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
   const std::lock_guard lock(mutex_);
   if (layer >= kMaxLayerCount) return;
   Slot& slot = slots_[layer];
-  slot = {};  // whoever asks again, perhaps for want of a frame, begins with a keyframe
+  slot = {};  // a new watch, also one to recover from a loss, starts with a keyframe
   if (!watch) return;
   slot.watch = watch;
   slot.gate = RateGate(watch->max_rate_hz);
@@ -148,7 +148,7 @@ Outbox::Next Outbox::next() {
   writer_sleeps_ = false;
   ++turn_count_;
   if (shut_) return {Kind::kShut, nullptr};
-  // A frame may describe the scene that a waiting greeting is about: it does not overtake it.
+  // A frame may belong to the scene of a waiting greeting, so it must not overtake the greeting.
   if (control_run_count_ >= kControlRunMaxCount && !whole_state_waits_ && !close_) {
     if (auto frame = takeFrame()) return {Kind::kFrame, std::move(frame)};
   }

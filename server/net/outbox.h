@@ -1,6 +1,6 @@
-// What waits to be sent to one session. Producers on any thread put messages in, the session's writer takes them out
-// one at a time. Bounded by construction: `answer_max_count` answers, one message per state topic and one frame per
-// layer, whatever this client or another one does, and without a task queued per frame.
+// The messages that wait to be sent to one session. Producers on any thread put messages in; the session's writer takes
+// them out one at a time. Bounded by construction: `answer_max_count` answers, one message per state topic and one
+// frame per layer, whatever this or any other client does. No task is queued per frame.
 #pragma once
 
 #include <array>
@@ -18,63 +18,64 @@
 
 namespace spindrift::net {
 
-/// Thread-safe. Two planes. Control goes first: answers are ordered and never dropped; state is coalesced by topic, and
-/// the newest message of a topic takes the place of the one that waits, so that a client never reads an answer before a
-/// state that is at least as new. Data: the newest frame per layer, layers in turn; a waiting frame goes out at the
-/// latest after kControlRunMaxCount control messages.
+/// Thread-safe. Two planes; control goes first. Answers are ordered and never dropped. Of a state topic only the newest
+/// message waits, in the place of the older one, so that a client never reads an answer before a state that is at least
+/// as new. Data: the newest frame per layer, layers in turn. A waiting frame is sent after at most kControlRunMaxCount
+/// control messages.
 class Outbox {
  public:
   explicit Outbox(std::size_t answer_max_count) : answer_max_count_(answer_max_count) {}
 
-  /// Control messages in a row while a frame waits.
+  /// Most control messages in a row while a frame waits.
   static constexpr std::size_t kControlRunMaxCount = 8;
 
-  /// What a producer has to do after a call.
+  /// What a producer has to do after a call, and what the call did.
   struct Outcome {
     bool wake = false;      ///< the writer sleeps: wake it
     bool dropped = false;   ///< an unsent older frame was replaced
-    bool overflow = false;  ///< too many answers waited: this call has asked for kTryAgainLater
+    bool overflow = false;  ///< too many answers waited: this call requested a close with kTryAgainLater
   };
 
-  /// Appends an answer. One that finds `answer_max_count` waiting is lost, and the session with it: a close with
-  /// kTryAgainLater follows what is queued. Ignored once a close was asked for.
+  /// Appends an answer. If `answer_max_count` answers already wait, it is dropped and the session is closed with
+  /// kTryAgainLater after the queued messages. Ignored after a close was requested.
   Outcome pushAnswer(core::SharedBytes message);
 
-  /// Puts the state where the oldest waiting message is that it replaces, or at the end. Replaced are messages of the
-  /// same topic, by a topic with Scope::kWhole also all with Scope::kPart. Ignored once a close was asked for.
+  /// Puts the state in the place of the oldest waiting message that it replaces, otherwise at the end. It replaces
+  /// messages of the same topic; Scope::kWhole also replaces all with Scope::kPart. Ignored after a close was
+  /// requested.
   Outcome pushState(const StateTopic& topic, core::SharedBytes message);
 
-  /// Puts the frame into its layer's slot if the session watches the layer and its rate allows: the delta if the
-  /// client has the frame that it builds on, else the keyframe. Without a keyframe an unsent older frame is dropped and
-  /// the session waits. Frames of another level than the session's are not for it. Ignored once a close was asked for.
+  /// Puts the frame into its layer's slot if the session watches the layer at this level and its rate allows: the delta
+  /// if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe an unsent older frame is
+  /// dropped, and the session waits. Ignored after a close was requested.
   Outcome offerFrame(LayerIndex layer, const LayerBytes& frame, Clock::time_point now);
 
-  /// What the session would take next of a layer that it watches.
+  /// The frame that the session would take next of a layer that it watches.
   struct Demand {
     core::Level level = core::Level::kFull;
-    /// Only a keyframe helps. False for a session that has read nothing since it lost one: what it cannot take is not
-    /// made for it.
+    /// Only a keyframe can be taken. False for a session that has read nothing since it lost a frame: no keyframe is
+    /// made for a client that cannot take it.
     bool wants_keyframe = false;
   };
   Demand demand(LayerIndex layer, std::uint32_t reduced_count, Clock::time_point now) const;
 
-  /// Starts a layer anew or stops it (nullopt), and forgets its unsent frame.
+  /// Starts, changes or stops (nullopt) a layer, and drops its unsent frame.
   void setWatch(LayerIndex layer, const std::optional<Watch>& watch);
 
-  /// Judges how the link does with what adapts, from time to time; the new level if it changed. For the writer, after
-  /// each message that went out.
+  /// Evaluates from time to time how many frames of adapting watches were lost; returns the new level if it changed.
+  /// The writer calls it after each sent message.
   std::optional<core::Level> reviewLevel(Clock::time_point now);
-  /// As judged last: what adapts gets at most this.
+  /// Highest level for adapting watches, from the last evaluation.
   core::Level level() const;
 
-  /// Forgets unsent frames (they belong to a room that the session left).
+  /// Drops unsent frames, when the session leaves their room.
   void clearFrames();
 
-  /// Asks for a close after the queued control messages; unsent frames are forgotten. The first request counts.
-  /// True if this was the first.
+  /// Requests a close after the queued control messages; unsent frames are dropped. Returns true for the first request,
+  /// which alone counts.
   bool requestClose(CloseCode code, std::string reason);
 
-  /// The connection is gone: next() answers kShut from now on.
+  /// The connection is gone: next() returns kShut from now on.
   void shut();
 
   enum class Kind { kIdle, kControl, kFrame, kClose, kShut };
@@ -83,7 +84,7 @@ class Outbox {
     core::SharedBytes message;  ///< for kControl and kFrame
   };
 
-  /// The next thing to do. kIdle means the writer goes to sleep: the next producer gets `wake`.
+  /// Returns the next thing to do. After kIdle the writer sleeps, and the next producer gets `wake`.
   Next next();
 
   struct Waiting {
@@ -94,47 +95,48 @@ class Outbox {
   Waiting waiting() const;
 
   bool closing() const;
-  /// Code and line of the first requestClose(); nullopt before.
+  /// Code and line of the first requestClose(); nullopt before it.
   std::optional<SessionEnd> closeRequest() const;
 
  private:
   struct Slot;
-  /// With the mutex held: true once after the writer said it sleeps.
+  /// Call with the mutex held. Returns true once after the writer went to sleep.
   bool takeWake();
-  /// What the slot's watch may have now; it has one.
+  /// Returns the level of the slot's watch as of now; the slot must have a watch.
   core::Level levelOf(const Slot& slot) const;
-  /// Whether the watch's rate, and that of a reduced level which comes as kFull, let the next frame through.
+  /// Returns whether the rate of the watch lets the next frame through, and the rate of a reduced level served as
+  /// kFull.
   static bool isOpen(const Slot& slot, core::Level wanted, core::Level effective, Clock::time_point now);
 
   struct Slot {
     std::optional<Watch> watch;  ///< empty = not watched
     RateGate gate;
-    /// Frames of reduced levels are made at their rate; where a reduced level leaves nothing out, this holds it.
+    /// Reduced levels are encoded at their own rate. Where a reduced level equals kFull, this gate limits the rate.
     std::array<RateGate, core::kReducedLevelCount> level_gates;
     core::SharedBytes frame;
-    core::Level level = core::Level::kFull;  ///< of the newest frame that was taken
-    std::uint32_t reduced_count = 0;         ///< as the newest frame said
-    bool follows = false;                    ///< the client has the last frame, or will have it with `frame`
-    std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost for want of a keyframe
+    core::Level level = core::Level::kFull;  ///< of the newest frame taken
+    std::uint32_t reduced_count = 0;         ///< of the newest frame
+    bool follows = false;                    ///< the client has the last frame, or gets it with `frame`
+    std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost because there was no keyframe
   };
 
   struct Control {
     core::SharedBytes message;
-    std::optional<StateTopic> topic;  ///< empty: an answer
+    std::optional<StateTopic> topic;  ///< nullopt: an answer
   };
-  /// The frame of the layer whose turn it is; null if none waits.
+  /// Returns the frame of the next layer in turn; null if none waits.
   core::SharedBytes takeFrame();
 
   const std::size_t answer_max_count_;
   mutable std::mutex mutex_;
   std::deque<Control> control_;
-  std::size_t answer_count_ = 0;       ///< in control_
-  bool whole_state_waits_ = false;     ///< in control_: a message with Scope::kWhole
+  std::size_t answer_count_ = 0;       ///< answers in control_
+  bool whole_state_waits_ = false;     ///< control_ holds a message with Scope::kWhole
   std::size_t control_run_count_ = 0;  ///< control messages taken since the last frame
   std::array<Slot, kMaxLayerCount> slots_;
   LevelLadder ladder_;
-  std::size_t turn_ = 0;          ///< the layer that is asked first
-  std::uint64_t turn_count_ = 0;  ///< times the writer took something
+  std::size_t turn_ = 0;          ///< the layer that is checked first
+  std::uint64_t turn_count_ = 0;  ///< number of messages that the writer took
   bool writer_sleeps_ = false;
   bool shut_ = false;
   std::optional<SessionEnd> close_;

@@ -23,13 +23,13 @@ PendingAnswer::PendingAnswer(const asio::any_io_executor& strand)
 }
 
 PendingAnswer::~PendingAnswer() {
-  // Responders outlive the server's threads; what they hold must not.
+  // Responders may outlive the server's threads; the objects that they hold must not.
   const std::lock_guard lock(state_->mutex);
   state_->wake = nullptr;
 }
 
 HttpResponder PendingAnswer::responder() {
-  // Shared by every copy of the responder: the last one to go without an answer says so.
+  // Shared by all copies of the responder: the destructor of the last one reports a missing answer.
   struct Promise {
     explicit Promise(std::shared_ptr<State> promised) : state(std::move(promised)) {}
     Promise(const Promise&) = delete;
@@ -47,7 +47,7 @@ HttpResponder PendingAnswer::responder() {
 }
 
 asio::awaitable<PendingAnswer::Outcome> PendingAnswer::wait(std::chrono::milliseconds timeout) {
-  // An answer's wake is posted to this strand, so it cannot run between the look and the wait.
+  // An answer posts its wake-up to this strand, so it cannot run between this check and the wait.
   timer_->expires_after(timeout);
   bool is_settled = false;
   {

@@ -1,4 +1,4 @@
-// The answer that a request waits for: given by the application from any thread, awaited on the connection's strand.
+// The answer to a pending request: set by the application from any thread, awaited on the connection's strand.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@
 
 namespace spindrift::net {
 
-/// One request's. Lives on the strand; its responders may live longer and then do nothing.
+/// One per request. Lives on the strand; its responders may outlive it and then do nothing.
 class PendingAnswer {
  public:
   enum class End { kAnswered, kUnknown, kDropped, kTimeout, kCancelled };
@@ -31,14 +31,14 @@ class PendingAnswer {
 
   HttpResponder responder();
   boost::asio::awaitable<Outcome> wait(std::chrono::milliseconds timeout);
-  /// Ends wait() with kCancelled. On the strand.
+  /// Ends wait() with kCancelled. Call it on the strand.
   void cancel();
 
  private:
   struct State {
     std::mutex mutex;
     std::optional<Outcome> outcome;
-    std::function<void()> wake;  ///< empty once nobody waits any more
+    std::function<void()> wake;  ///< empty once wait() has ended
 
     void settle(Outcome settled);
   };

@@ -1,4 +1,4 @@
-// How often a frame may go out: plain arithmetic on a time that the caller passes in.
+// Limits the rate of frames. The caller passes the time in; no clock is read.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@ namespace spindrift::net {
 using Clock = std::chrono::steady_clock;
 using core::TokenBucket;
 
-/// Lets frames through no faster than `max_rate_hz` on average. The rate is taken 10 % generously and a frame may come
-/// 40 % of an interval early, so that a 30 Hz stream with jitter passes a 30 Hz watch whole, while a 60 Hz stream is
-/// halved evenly (a frame at half the interval is still too early).
+/// Lets frames through at `max_rate_hz` on average. The rate has 10 % tolerance, and a frame may come 40 % of an
+/// interval early: a 30 Hz stream with jitter passes a 30 Hz watch without loss, while a 60 Hz stream is halved evenly
+/// (a frame at half the interval is too early).
 class RateGate {
  public:
   RateGate() = default;
   explicit RateGate(double max_rate_hz) : interval_s_(1.0 / (kRateTolerance * max_rate_hz)) {}
 
-  /// Whether pass() would let a frame through.
+  /// Returns whether pass() would let a frame through.
   bool isOpen(Clock::time_point now) const { return !started_ || now + seconds(kEarlyRatio * interval_s_) >= due_; }
 
   bool pass(Clock::time_point now) {

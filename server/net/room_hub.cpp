@@ -144,7 +144,7 @@ void RoomHub::leaveRoom(SessionId session, Member& member) {
   for (std::vector<Watcher>& watchers : left->second.watchers) {
     std::erase_if(watchers, [session](const Watcher& watcher) { return watcher.session == session; });
   }
-  // Rooms are named by the application, but an empty one costs nothing only if it goes.
+  // Remove empty rooms, so that their number stays bounded by the sessions.
   if (--left->second.session_count == 0) rooms_.erase(left);
   member.room.reset();
   member.link->clearFrames();

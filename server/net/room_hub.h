@@ -1,4 +1,4 @@
-// Who is in which room and watches what. It knows sessions only as links, so it is tested without a network.
+// Which sessions are in which room, and what they watch. Sessions are links only, so tests need no network.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class SessionLink {
   virtual void sendState(const StateTopic& topic, core::SharedBytes message) = 0;
   virtual void offerFrame(LayerIndex layer, const LayerBytes& frame) = 0;
   virtual Outbox::Demand demand(LayerIndex layer, std::uint32_t reduced_count) const = 0;
-  /// nullopt stops the layer.
+  /// Sets the watch of a layer; nullopt stops it.
   virtual void setWatch(LayerIndex layer, const std::optional<Watch>& watch) = 0;
   virtual void clearFrames() = 0;
   virtual Outbox::Waiting waiting() const = 0;
@@ -32,12 +32,12 @@ class SessionLink {
   virtual void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) = 0;
 };
 
-/// The Hub of a Server. One mutex; publish() walks only the watchers of that room and layer. A session's watches follow
-/// it into the next room.
+/// The Hub of a Server. One mutex; publish() visits only the sessions that watch that room and layer. A session keeps
+/// its watches when it changes the room.
 class RoomHub final : public Hub {
  public:
   void add(SessionId session, std::shared_ptr<SessionLink> link);
-  /// After this no call reaches the link.
+  /// Removes the session; no call reaches its link afterwards.
   void remove(SessionId session);
 
   void sendAnswer(SessionId session, core::SharedBytes message) override;
@@ -53,9 +53,9 @@ class RoomHub final : public Hub {
   void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
                std::string reason) override;
 
-  /// Over all sessions.
+  /// Sum over all sessions.
   Outbox::Waiting waiting() const;
-  /// Rooms with at least one session.
+  /// Number of rooms with at least one session.
   std::size_t roomCount() const;
 
  private:
@@ -66,7 +66,7 @@ class RoomHub final : public Hub {
   };
   struct Watcher {
     SessionId session = 0;
-    SessionLink* link = nullptr;  ///< owned by the member, which leaves the room before it goes
+    SessionLink* link = nullptr;  ///< owned by the session, which leaves the room before it is destroyed
   };
   struct Room {
     std::size_t session_count = 0;

@@ -26,9 +26,9 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
-/// Out of file descriptors or memory: accepting again at once would only spin.
+/// Out of file descriptors or memory: retrying at once would only spin.
 constexpr std::chrono::milliseconds kAcceptPause{100};
-/// stop() gives the peers this much beyond close_timeout.
+/// stop() waits this much longer than close_timeout.
 constexpr std::chrono::seconds kStopGrace{1};
 
 class ServerImpl final : public Server {
@@ -80,7 +80,7 @@ core::Result<void> ServerImpl::listen() {
     if (!error) action();
   };
   step([&] { acceptor_.open(endpoint.protocol(), error); });
-  // On Linux this only forgives ports of connections that wait out their end; a second listener is still refused.
+  // On Linux this only allows ports of connections in TIME_WAIT; a second listener is still refused.
   step([&] { acceptor_.set_option(asio::socket_base::reuse_address(true), error); });
   step([&] { acceptor_.bind(endpoint, error); });
   step([&] { acceptor_.listen(asio::socket_base::max_listen_connections, error); });
@@ -97,7 +97,8 @@ core::Result<void> ServerImpl::listen() {
   }
   if (error) return unavailable(where + " cannot be listened on (" + error.message() + "): choose another");
   port_ = acceptor_.local_endpoint().port();
-  // Before there are threads: the first line makes what the logger shares, out of the thread sanitizer's sight.
+  // Logged before any thread exists: the first line initialises shared state of the logger, unseen by the thread
+  // sanitizer.
   spdlog::debug("port {} is open", port_);
   return {};
 }
@@ -142,7 +143,7 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
       connection->start();
     } else {
       context_.counters.refused(Refused::kConnection);
-      spdlog::debug("a connection was closed unheard: too many are open");
+      spdlog::debug("a connection was closed without a reply: too many are open");
     }
   }
 }
@@ -178,7 +179,7 @@ void ServerImpl::stop() {
   for (const auto& connection : context_.connections.all()) connection->shutDown();
   if (!context_.connections.waitEmpty(deadline)) {
     for (const auto& connection : context_.connections.all()) connection->cut();
-    // Sockets are closed, so what is left is an application callback still running: the threads wait for it as well.
+    // All sockets are closed. Only running application callbacks are left; the threads wait for them too.
     context_.connections.waitEmpty(Clock::time_point::max());
   }
   work_.reset();

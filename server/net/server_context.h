@@ -1,4 +1,4 @@
-// What every connection of one server shares. It outlives them all.
+// State shared by all connections of one server; it outlives them.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ struct Counters {
 };
 
 inline void Counters::closed(std::uint16_t code) {
-  // Peers choose their codes: those nobody has registered count together.
+  // Peers choose their codes: unregistered codes are counted together.
   const bool is_known = code == 0 || (code >= 1000 && code < 1016) || (code >= 4400 && code < 4410);
   const std::lock_guard lock(mutex_);
   ++closed_by_code_[is_known ? code : std::uint16_t{4000}];
@@ -49,13 +49,14 @@ inline std::map<std::uint16_t, std::uint64_t> Counters::closedByCode() const {
   return closed_by_code_;
 }
 
-/// TCP connections beyond the sessions: pages being loaded, probes, strangers. More are closed unheard.
+/// TCP connections beyond the sessions, for page loads, probes and unknown peers. Further ones are closed without a
+/// reply.
 inline constexpr std::size_t kSpareConnectionCount = 512;
 
-/// The subprotocol of proto/spindrift/v1.
+/// Name of the subprotocol defined in proto/spindrift/v1.
 inline constexpr const char* kSubprotocol = "spindrift.v1";
 
-/// `address` as in ServerOptions.
+/// `address`: ServerOptions::address.
 inline bool isLoopback(std::string_view address) {
   return address.starts_with("127.") || address == "::1";
 }
@@ -78,7 +79,7 @@ struct ServerContext {
   const bool listens_on_loopback;
   Counters counters;
   std::atomic<std::uint64_t> last_session_id{0};
-  /// Sessions open or in their handshake, against max_session_count.
+  /// Sessions open or in their handshake; at most max_session_count.
   std::atomic<std::size_t> reserved_session_count{0};
 };
 

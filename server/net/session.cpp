@@ -21,14 +21,14 @@ namespace websocket = boost::beast::websocket;
 
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
-/// So many fragments of messages count as one message: a whole message in single bytes takes fewer than a burst, and a
-/// stream of empty ones is as slow as one of messages.
+/// This many fragments count as one message. A message sent in single bytes takes fewer tokens than a burst has, and a
+/// stream of empty fragments is limited like one of messages.
 constexpr std::uint64_t kFragmentsPerMessage = 64;
-/// RFC 6455 section 7.4: 3000 to 4999 are for libraries and programs, more is not defined.
+/// RFC 6455 section 7.4: 3000 to 4999 are for libraries and applications, larger codes are undefined.
 constexpr std::uint16_t kCloseCodeMax = 4999;
 constexpr std::uint16_t kProtocolError = 1002;
 
-/// 1011: our own failure. The peer did nothing wrong.
+/// 1011: a failure of the server, not of the peer.
 constexpr const char* kInternalReason = "the server failed on this session; its log says why";
 
 constexpr const char* kTooManyMessages = "too many messages for too long: keep to Greeting.limits.messages_per_s";
@@ -68,7 +68,7 @@ asio::awaitable<void> Session::run(const UpgradeRequest& request, std::string ro
     spdlog::debug("{}: the WebSocket handshake failed: {}", peer, accept_error.message());
     co_return;
   }
-  // From here Beast's "handshake" timeout is the one for closing.
+  // From here on Beast's "handshake" timeout is the one for closing.
   ws_.set_option(websocket::stream_base::timeout{context_.options.close_timeout, context_.options.idle_timeout, true});
 
   ++context_.counters.accepted_session_count;
@@ -93,7 +93,7 @@ asio::awaitable<void> Session::run(const UpgradeRequest& request, std::string ro
 }
 
 void Session::configure(bool echo_subprotocol) {
-  beast::get_lowest_layer(ws_).expires_never();  // the WebSocket layer has its own clock
+  beast::get_lowest_layer(ws_).expires_never();  // the WebSocket layer has its own timeouts
   const auto& options = context_.options;
   ws_.set_option(websocket::stream_base::timeout{options.handshake_timeout, options.idle_timeout, true});
   ws_.set_option(websocket::stream_base::decorator([echo_subprotocol](websocket::response_type& response) {
@@ -101,13 +101,13 @@ void Session::configure(bool echo_subprotocol) {
     for (const auto& [name, value] : securityHeaders()) response.set(name, value);
     if (echo_subprotocol) response.set(beast::http::field::sec_websocket_protocol, kSubprotocol);
   }));
-  // A server does not mask, so an unfragmented message goes to the socket straight from the shared buffer; the write
-  // buffer only serves the fragmented path.
+  // A server does not mask, so an unfragmented message is written straight from the shared buffer; the write buffer is
+  // only used for fragments.
   ws_.auto_fragment(false);
   ws_.write_buffer_bytes(64 * 1024);
   ws_.binary(true);
   ws_.read_message_max(options.read_message_max_bytes);
-  // Pings cost a pong each, so they count as messages. A peer that says goodbye gets a deadline to hang up as well.
+  // Each ping costs a pong, so pings count as messages. A peer that sends a close frame gets a deadline to disconnect.
   ws_.control_callback([this](websocket::frame_type kind, beast::string_view) {
     if (kind == websocket::frame_type::close) {
       if (ws_.reason().code > kCloseCodeMax) {
@@ -133,17 +133,17 @@ void Session::configure(bool echo_subprotocol) {
 asio::awaitable<void> Session::readLoop() {
   while (true) {
     co_await waitUntilAnswersAreTaken();
-    if (outbox_.closing()) co_return;  // the writer's goodbye reads the rest
+    if (outbox_.closing()) co_return;  // the writer's sayGoodbye() reads the rest
     const auto [error, bytes_count] = co_await ws_.async_read(read_buffer_, kToken);
     if (error) {
       if (error == websocket::error::closed) {
         noteEnd(ws_.reason().code, ws_.reason().reason.c_str());
       } else if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow) {
-        noteEnd(static_cast<std::uint16_t>(CloseCode::kTooBig), "a message over the limit");  // Beast has answered 1009
+        noteEnd(static_cast<std::uint16_t>(CloseCode::kTooBig), "a message over the limit");  // Beast has sent 1009
       } else {
         noteEnd(0, error.message());
       }
-      // The stream has failed or is closed already: nothing that the writer could still send would arrive.
+      // The stream has failed or is closed: nothing more could be sent.
       cut();
       outbox_.shut();
       wakeWriter();
@@ -158,7 +158,7 @@ asio::awaitable<void> Session::readLoop() {
       close(CloseCode::kPolicy, kTooManyMessages);
       co_return;
     }
-    // Everybody behind the address shares its rate; who comes too soon waits, and TCP holds back what follows.
+    // All clients of the address share its rate. A message that comes too early waits, and TCP slows down the sender.
     if (const auto delay = context_.addresses.reserveMessage(address_, Clock::now()); delay > Clock::duration{}) {
       ++context_.counters.delayed_message_count;
       end_of_delay_.expires_after(delay);
@@ -190,7 +190,7 @@ asio::awaitable<void> Session::writeLoop() {
         co_await sayGoodbye();
         co_return;
       case Outbox::Kind::kIdle:
-        // A producer's wake is posted to this strand, so it cannot run between next() and the wait.
+        // A producer's wake-up is posted to this strand, so it cannot run between next() and the wait.
         wake_timer_.expires_at(Clock::time_point::max());
         (void)co_await wake_timer_.async_wait(kToken);
         break;
@@ -250,7 +250,7 @@ asio::awaitable<void> Session::sayGoodbye() {
   const SessionEnd end = outbox_.closeRequest().value_or(SessionEnd{});
   noteEnd(end.code, end.reason);
   const auto [error] = co_await ws_.async_close(closeFrame(end), kToken);
-  if (error) spdlog::debug("session {}: the goodbye did not go through: {}", id_, error.message());
+  if (error) spdlog::debug("session {}: the close frame could not be sent: {}", id_, error.message());
   cut();
 }
 
@@ -293,7 +293,7 @@ void Session::close(CloseCode code, std::string reason) {
 
 void Session::closeAt(Clock::time_point when, CloseCode code, std::string reason) {
   asio::post(strand_, [self = shared_from_this(), when, code, reason = std::move(reason)]() mutable {
-    if (self->end_) return;  // over already; the timer would keep it alive
+    if (self->end_) return;  // already over; the timer would keep the session alive
     self->end_timer_.expires_at(when);
     if (when == Clock::time_point::max()) return;
     self->end_timer_.async_wait(

@@ -1,5 +1,5 @@
-// One WebSocket session, from the upgrade to the last byte. Everything but the SessionLink calls runs on the session's
-// strand; a reader and a writer coroutine share it.
+// One WebSocket session, from the upgrade to the last byte. All functions except those of SessionLink run on the
+// session's strand; a reader and a writer coroutine share it.
 #pragma once
 
 #include <memory>
@@ -25,11 +25,11 @@ using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_bo
 
 class Session final : public SessionLink, public std::enable_shared_from_this<Session> {
  public:
-  /// Takes the stream over; its executor is the session's strand.
+  /// Takes over the stream; its executor is the session's strand.
   Session(boost::beast::tcp_stream stream, ServerContext& context);
 
   /// Answers the upgrade, serves until the connection is gone, then returns. Calls sessionOpened first and
-  /// sessionClosed last (neither, if the handshake fails). On the strand.
+  /// sessionClosed last; neither if the handshake fails. Call it on the strand.
   boost::asio::awaitable<void> run(const UpgradeRequest& request, std::string room, std::string peer,
                                    std::string address, bool echo_subprotocol);
 
@@ -43,31 +43,31 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   void close(CloseCode code, std::string reason) override;
   void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) override;
 
-  /// Closes the socket now; every pending operation ends. On the strand.
+  /// Closes the socket now; every pending operation ends. Call it on the strand.
   void cut();
 
  private:
   void configure(bool echo_subprotocol);
   boost::asio::awaitable<void> readLoop();
   boost::asio::awaitable<void> writeLoop();
-  /// Returns once fewer than answer_pause_count answers wait, or the connection is gone: a client that does not read
-  /// what it asked for is not heard any further, and TCP holds back what follows.
+  /// Returns once fewer than answer_pause_count answers wait, or the connection is gone. Meanwhile the session reads
+  /// nothing: a client that does not read its answers is slowed down by TCP.
   boost::asio::awaitable<void> waitUntilAnswersAreTaken();
-  /// One message; false if the connection is gone.
+  /// Writes one message; returns false if the connection is gone.
   boost::asio::awaitable<bool> write(const core::Bytes& message);
-  /// After a message went out: whether the link carries what it is given.
+  /// Called after each sent message: evaluates whether the link can carry its level.
   void reviewLevel();
-  /// Cuts the connection when a write passes its deadline. One timer runs on from write to write, not moved for each.
+  /// Closes the socket when a write passes its deadline. One timer runs across writes and is not set again for each.
   void watchWrites();
-  /// Sends the close frame and waits for the peer's, within the close deadline.
+  /// Sends the close frame and waits for the peer's until the close deadline.
   boost::asio::awaitable<void> sayGoodbye();
   /// Runs an application callback; an exception in it ends this session and no other.
   template <typename Callback>
   void callApplication(const char* name, Callback&& callback);
-  /// Cuts the connection at the deadline unless it is gone before. On the strand, once.
+  /// Closes the socket at the deadline if it is still open. On the strand, once.
   void armCloseDeadline();
   void wakeWriter();
-  /// Keeps the first account of why the session ended.
+  /// Stores the reason of the session's end; only the first one counts.
   void noteEnd(std::uint16_t code, std::string reason);
 
   ServerContext& context_;
@@ -76,17 +76,17 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   const boost::asio::any_io_executor strand_;
   Outbox outbox_;
   TokenBucket message_tokens_;
-  std::uint64_t untaken_fragment_count_ = 0;  ///< that no token was taken for yet
+  std::uint64_t untaken_fragment_count_ = 0;  ///< fragments for which no token was taken yet
   boost::beast::flat_buffer read_buffer_;
-  boost::asio::steady_timer wake_timer_;     ///< the writer sleeps on it
-  boost::asio::steady_timer answers_timer_;  ///< the reader sleeps on it; see waitUntilAnswersAreTaken()
-  boost::asio::steady_timer stall_timer_;    ///< looks whether a write takes too long; see watchWrites()
+  boost::asio::steady_timer wake_timer_;     ///< the writer waits on it
+  boost::asio::steady_timer answers_timer_;  ///< the reader waits on it; see waitUntilAnswersAreTaken()
+  boost::asio::steady_timer stall_timer_;    ///< checks for a write that takes too long; see watchWrites()
   boost::asio::steady_timer close_timer_;
-  boost::asio::steady_timer end_timer_;                                  ///< of closeAt()
-  boost::asio::steady_timer end_of_delay_;                               ///< a message waits for its address's bucket
-  std::optional<std::chrono::steady_clock::time_point> write_deadline_;  ///< while a write is out
+  boost::asio::steady_timer end_timer_;                                  ///< for closeAt()
+  boost::asio::steady_timer end_of_delay_;                               ///< see AddressLimits::reserveMessage()
+  std::optional<std::chrono::steady_clock::time_point> write_deadline_;  ///< set while a write is in flight
   bool watches_writes_ = false;
-  std::string address_;  ///< what AddressLimits knows the peer by
+  std::string address_;  ///< key of the peer in AddressLimits
   std::optional<SessionEnd> end_;
 };
 

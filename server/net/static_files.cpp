@@ -13,10 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Beyond this much in memory, further files are read again for each request.
+/// Limit of the cache; further files are read again for each request.
 constexpr std::uintmax_t kMaxCacheBytes = 256U << 20U;
 
-/// True if no segment is empty, ".", ".." or hidden.
+/// Returns true if no segment is empty, ".", ".." or hidden.
 bool plainSegments(std::string_view relative) {
   while (true) {
     const std::size_t slash = relative.find('/');
@@ -27,7 +27,7 @@ bool plainSegments(std::string_view relative) {
   }
 }
 
-/// True if `path` (canonical) lies inside `root` (canonical): a link may have led out.
+/// Returns true if `path` lies inside `root` (both canonical): a link may lead outside.
 bool inside(const fs::path& root, const fs::path& path) {
   auto part = path.begin();
   for (const fs::path& root_part : root) {

@@ -1,4 +1,4 @@
-// The built web client, read from disc once and kept while its modification time and size stay.
+// The built web client: each file is read from disc once and cached until its modification time or size changes.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,20 @@ namespace spindrift::net {
 struct StaticFile {
   std::string content;
   std::string content_type;
-  std::string etag;        ///< quoted; changes with size or modification time
-  bool immutable = false;  ///< under /assets/, where the file name carries a hash of the content
+  std::string etag;        ///< quoted; changes with the size or the modification time
+  bool immutable = false;  ///< under /assets/, where file names contain a hash of the content
 };
 
-/// Thread-safe. Serves regular files inside one folder and nothing else: no "..", no hidden files, no links that lead
-/// out.
+/// Thread-safe. Serves only regular files inside one folder: no "..", no hidden files, no links that lead outside.
 class StaticFiles {
  public:
-  /// `web_root` empty or missing = there are no files.
+  /// `web_root` empty or missing: no file is found.
   explicit StaticFiles(const std::string& web_root);
 
-  /// The file for a decoded path ("/" = /index.html), or null if there is none that may be served.
+  /// Returns the file for a decoded path ("/" = /index.html), or null if there is none that may be served.
   std::shared_ptr<const StaticFile> find(std::string_view path);
 
-  /// One file larger than this is not served: it has no place in a web client.
+  /// Larger files are not served: a web client has none.
   static constexpr std::uintmax_t kMaxFileBytes = 64U << 20U;
 
  private:
@@ -44,7 +43,7 @@ class StaticFiles {
   std::uintmax_t cached_bytes_ = 0;
 };
 
-/// The Content-Type for a file name, by its extension; application/octet-stream for unknown ones.
+/// Returns the Content-Type by the file name's extension; application/octet-stream for unknown ones.
 std::string contentType(std::string_view file_name);
 
 }  // namespace spindrift::net

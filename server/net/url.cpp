@@ -6,7 +6,7 @@
 namespace spindrift::net {
 namespace {
 
-/// The byte of the escape "%XX" at `text[at]`; nullopt if it is broken.
+/// Returns the byte of the escape "%XX" at `text[at]`; nullopt if it is broken.
 std::optional<unsigned char> escapedByte(std::string_view text, std::size_t at) {
   if (at + 2 >= text.size()) return std::nullopt;
   unsigned char byte = 0;

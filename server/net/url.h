@@ -1,4 +1,4 @@
-// Request targets, as bytes from strangers.
+// Parses request targets, which are untrusted bytes.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,23 @@ namespace spindrift::net {
 
 struct Target {
   std::string path;   ///< percent-decoded, starts with '/', no control characters, no backslash
-  std::string query;  ///< as sent, without '?'
+  std::string query;  ///< undecoded, without '?'
 };
 
-/// nullopt if the target does not start with '/', an escape is broken, or the decoded path holds a control character
-/// (NUL among them) or a backslash.
+/// Returns nullopt if the target does not start with '/', an escape is broken, or the decoded path contains a control
+/// character (NUL included) or a backslash.
 std::optional<Target> parseTarget(std::string_view target);
 
-/// The values of the parameter `name` in a query ("room=pool&x=1"), percent-decoded, '+' as a space, in their order;
-/// nullopt if an escape in one of them is broken or gives a control character. Other parameters are not looked at.
+/// Returns the values of the parameter `name` in a query ("room=pool&x=1"), in order: percent-decoded, '+' as a space.
+/// Returns nullopt if an escape in one of them is broken or gives a control character. Other parameters are not
+/// checked.
 std::optional<std::vector<std::string>> queryValues(std::string_view query, std::string_view name);
 
-/// The text with everything but printable ASCII percent-encoded, cut to 200 bytes: a stranger's path in a line of ours.
+/// Returns the text with all but printable ASCII percent-encoded, cut to 200 bytes: an untrusted path for use in a log
+/// line.
 std::string printable(std::string_view text);
 
-/// The room of a WebSocket path: "" for /ws and /ws/, NAME for /ws/NAME; nullopt for any other path.
+/// Returns the room of a WebSocket path: "" for /ws and /ws/, NAME for /ws/NAME; nullopt for any other path.
 std::optional<std::string> roomOfPath(std::string_view path);
 
 }  // namespace spindrift::net

@@ -19,7 +19,7 @@ using core::ErrorCode;
 
 constexpr std::string_view kMagic = "spinrec1";
 constexpr std::size_t kPrefixBytes = 8;
-/// Far above any scene.
+/// Larger than any scene.
 constexpr std::uint32_t kRecordMaxBytes = 4u << 20;
 
 std::array<char, kPrefixBytes> prefixOf(std::uint32_t length, std::uint32_t crc) {

@@ -9,7 +9,7 @@
 namespace spindrift::rooms {
 namespace {
 
-/// Whether one execution answers both, whoever sent them.
+/// Returns whether both can be carried out as one, regardless of the senders.
 bool isEqual(const core::Action& a, const core::Action& b) {
   if (std::holds_alternative<core::Reset>(a)) return std::holds_alternative<core::Reset>(b);
   const auto* change = std::get_if<core::ChangeScene>(&a);
@@ -143,7 +143,7 @@ core::Command CommandQueue::pop(Lane& lane) {
 }
 
 void CommandQueue::takeEqual(const core::Action& action, Batch& out) {
-  if (!isEqual(action, action)) return;  // of a kind that nothing else answers
+  if (!isEqual(action, action)) return;  // Kinds that never equal another command.
   for (const LaneKey key : std::deque(turns_)) {
     Lane& lane = lanes_.at(key);
     while (!lane.entries.empty() && isEqual(action, lane.entries.front().command.action)) out.push_back(pop(lane));

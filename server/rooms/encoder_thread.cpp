@@ -18,7 +18,7 @@ void EncoderThread::submit(const std::string& room, core::FrameView frame) {
     auto [it, is_new] = waiting_.try_emplace(room);
     if (!is_new) {
       ++replaced_count_;
-      // Diagnostics are news, not a picture: they survive a newer frame without any.
+      // Keep the diagnostics of the replaced frame if the newer one has none: they are sent once only.
       if (!frame.diagnostics) frame.diagnostics = std::move(it->second.diagnostics);
     }
     it->second = std::move(frame);
@@ -45,7 +45,7 @@ void EncoderThread::stop() {
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
   const std::lock_guard lock(mutex_);
-  waiting_.clear();  // frames are read from their device's memory, which goes next
+  waiting_.clear();  // frames are read from the memory of their device, which is destroyed next
 }
 
 std::uint64_t EncoderThread::replacedCount() const {
@@ -67,10 +67,10 @@ void EncoderThread::loop() {
     auto node = waiting_.extract(waiting_.begin());
     auto& kept = encoders_[node.key()];
     if (!kept) kept = std::make_shared<codec::FrameEncoder>();
-    const auto encoder = kept;  // the room may be forgotten meanwhile
+    const auto encoder = kept;  // the room may be forgotten while this runs
     lock.unlock();
     const Costs spent = encode(node.key(), node.mapped(), *encoder);
-    node.mapped() = {};  // frees the readback slot
+    node.mapped() = {};  // releases the readback slot
     lock.lock();
     for (std::size_t k = 0; k < costs_.size(); ++k) {
       for (std::size_t level = 0; level < core::kLevelCount; ++level) {

@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 constexpr auto kWindow = 1s;
-/// Debt beyond this is forgotten: catching up longer would make the water rush.
+/// A longer lag is dropped: catching up for longer would make the water visibly rush.
 constexpr auto kMaxDebt = 100ms;
 
 }  // namespace

@@ -55,7 +55,7 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
         ++out.command_count;
         break;
       case v1::Record::kScene: {
-        // Written after the change, which takes one tick.
+        // The record was written after the change, which takes one tick.
         while (stage.tick() + 1 < record->tick()) {
           stage.step();
           if (const auto& error = stage.water().deviceError()) return *error;
@@ -65,7 +65,7 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
         auto next = Water::create(device, std::move(scene));
         if (!next) return next.error();
         stage.replaceWater(*std::move(next)).reset();
-        stage.bind();  // the old water's end left no context current
+        stage.bind();  // the old water's destructor left no context current
         break;
       }
       case v1::Record::kStateHash: {

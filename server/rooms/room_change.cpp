@@ -1,5 +1,5 @@
-// How a room gives its parameters other values. Most take effect at once; another number of particles is worked out on
-// another thread while the room's ticks wait, so that other rooms and this one's frames and answers go on.
+// Parameter changes of a room. Most take effect at once. A change of the number of particles is prepared on another
+// thread while the room's ticks wait, so that other rooms and this room's frames and answers continue.
 #include <iterator>
 #include <ranges>
 #include <utility>
@@ -77,7 +77,7 @@ Room::Outcome Room::refuseSlowChange(const core::Command& command, const core::S
 }
 
 void Room::parameterChanged(const core::SetParameter& change) {
-  next_frame_s_ = 0.0;  // of another rate, perhaps: the one before may have been a second away
+  next_frame_s_ = 0.0;  // the frame rate may have changed; by the old rate the next frame could be up to a second away
   news_.parameters[change.path] = change.value;
 }
 

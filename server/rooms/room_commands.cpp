@@ -1,5 +1,5 @@
-// What a room does with each command. Every command gets one answer; everybody in the room is told of what changed,
-// once per round, before the senders are answered.
+// Carries out the commands of a room. Every command gets one answer. All clients in the room are told the changes once
+// per round, before the senders get their answers.
 #include <algorithm>
 #include <iterator>
 #include <ranges>
@@ -19,14 +19,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Ticks of Step that may wait: what one command may ask for.
+/// Limit of waiting ticks of Step: as many as one command may request.
 constexpr std::uint32_t kPendingTickMaxCount = 600;
-/// Pieces of work that one round takes up; the rest waits for the next tick.
+/// Limit of batches per round; the rest waits for the next tick.
 constexpr int kRoundMaxCount = 256;
-/// A crowd that joins is announced in a few lists, not in one a head.
+/// When many clients join at once, they are announced in a few lists instead of one list each.
 constexpr auto kPeopleNewsInterval = 200ms;
 
-/// A boat that somebody else has, or nobody.
+/// The rejection for a boat that belongs to another person or to none.
 wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::uint32_t owner_id) {
   return rejection(v1::REJECT_REASON_NOT_YOURS, std::move(field),
                    owner_id == 0 ? fmt::format("boat {} is nobody's: take it first", boat_id)
@@ -91,7 +91,7 @@ void Room::answer(Batch batch, const Outcome& outcome) {
 }
 
 Room::Outcome Room::apply(const core::Command& command) {
-  // Checked against the scene when it arrived; the scene may be another one since.
+  // Checked against the scene when it arrived, but the scene may have changed since.
   if (auto rejected = wire::checkAgainstScene(command, stage_->scene())) return rejected;
   return std::visit(
       core::Overloaded{[&](const core::Splash&) { return applyToWater(command); },
@@ -109,7 +109,7 @@ Room::Outcome Room::apply(const core::Command& command) {
                        [&](const core::RemoveBoat& remove) { return removeBoat(command, remove.boat_id); },
                        [&](const core::TakeBoat& take) { return takeBoat(command.sender, take.boat_id); },
                        [&](const core::Step& step) { return advance(step); },
-                       // apply(Batch) hands them to beginScene().
+                       // Handled by apply(Batch), which calls beginScene().
                        [&](const core::ChangeScene&) -> Outcome { return {}; }},
       command.action);
 }
@@ -220,7 +220,7 @@ void Room::boatsChanged() {
 void Room::settlePeople(TimePoint now) {
   const Roster::Turn turn = roster_.settle(now);
   for (const std::uint32_t boat_id : turn.boats_to_stop) {
-    (void)applyToWater({.action = core::ControlBoat{.boat_id = boat_id}});  // it may be gone already
+    (void)applyToWater({.action = core::ControlBoat{.boat_id = boat_id}});  // the boat may be gone already
   }
   has_people_news_ = has_people_news_ || turn.is_news;
   if (!has_people_news_ || now < next_people_news_) return;

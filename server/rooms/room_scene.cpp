@@ -1,5 +1,5 @@
-// How a room changes its scene: the new water is built and warmed beside the running one, then takes its place between
-// two ticks. The senders are answered when it has.
+// Scene changes of a room. The new water is built and warmed up while the old one runs, then replaces it between two
+// ticks; the senders are answered afterwards.
 #include <variant>
 
 #include <spdlog/spdlog.h>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Everybody in the room loads the new scene.
+/// Limited because every client in the room has to load the new scene.
 constexpr auto kSceneChangeInterval = 1s;
 constexpr const char* kField = "change_scene.name";
 
@@ -82,7 +82,7 @@ bool Room::isLost(TimePoint now) {
   if (!is_lost_) {
     const auto failure = stage_->failure();
     if (!failure) return false;
-    spdlog::error("room {}: {}; scene {} is built anew from its start", name_, *failure, stage_->scene().name());
+    spdlog::error("room {}: {}; scene {} is rebuilt from its start", name_, *failure, stage_->scene().name());
     is_lost_ = true;
     rebuild_pause_ = 1s;
     next_rebuild_ = now;
@@ -99,7 +99,7 @@ bool Room::isLost(TimePoint now) {
 void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   constexpr std::chrono::seconds kLongestPause{30};
   if (!water) {
-    spdlog::error("room {}: its water cannot be built anew ({}); the next try is in {} s", name_, water.error().message,
+    spdlog::error("room {}: its water cannot be rebuilt ({}); the next try is in {} s", name_, water.error().message,
                   rebuild_pause_.count());
     next_rebuild_ = now + rebuild_pause_;
     rebuild_pause_ = std::min(2 * rebuild_pause_, kLongestPause);
@@ -108,7 +108,7 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   replaceWater(*std::move(water));
   news_.rebuilt = true;
   publishVitals(now);
-  spdlog::warn("room {}: runs again, from the start of scene {}", name_, stage_->scene().name());
+  spdlog::warn("room {}: runs again from the start of scene {}", name_, stage_->scene().name());
 }
 
 void Room::restartScene() {
@@ -137,8 +137,8 @@ void Room::restartScene() {
   recovery_news_.restart(stage_->water().recoveredCount());
   logged_recovery_count_ = stage_->water().recoveredCount();
   boats_ = stage_->boats();
-  news_ = {};            // the greeting says it all
-  roster_.keepOnly({});  // the new scene's boats are nobody's yet, whatever their numbers
+  news_ = {};            // the greeting contains all of it
+  roster_.keepOnly({});  // the boats of the new scene have no owner yet, whatever their ids
   publishSnapshot();
   spdlog::info("room {}: scene {}", name_, stage_->scene().name());
   outlets_.sceneChanged(*this);

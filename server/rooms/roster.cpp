@@ -10,11 +10,11 @@
 namespace spindrift::rooms {
 namespace {
 
-/// Told apart from each other and from water.
+/// Distinguishable from each other and from water.
 constexpr std::array<std::uint32_t, 10> kColors{0xE4572E, 0xF3A712, 0x9BC53D, 0xC3423F, 0xFDE74C,
                                                 0x8E4585, 0xFF6F91, 0x5BC0BE, 0xD4A373, 0xF7F7FF};
 
-/// 128 bits of the system's own randomness.
+/// Returns 128 random bits from the operating system.
 std::string newSecret() {
   std::random_device device;
   std::string out;

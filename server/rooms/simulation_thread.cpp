@@ -11,7 +11,7 @@ namespace {
 using core::Error;
 using core::ErrorCode;
 
-/// Openings and closings that may wait.
+/// Limit of waiting openings and closings.
 constexpr std::size_t kChangeMaxCount = 16;
 
 }  // namespace

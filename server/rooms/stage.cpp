@@ -10,14 +10,14 @@
 namespace spindrift::rooms {
 namespace {
 
-/// Why a running room does not take `wanted`, which `change` makes of its scene.
+/// Makes the rejection for a change that a running room cannot take. `wanted`: its scene after `change`.
 wire::CommandRejection whyNot(const core::SetParameter& change, core::Scene wanted, const core::Error& error) {
-  // The message begins with the field that breaks a rule, which Reject.field says already where it is this one.
+  // The message begins with the field that breaks a rule; leave it out if Reject.field has it already.
   const std::string own = change.path + ": ";
   const std::string message = error.message.starts_with(own) ? error.message.substr(own.size()) : error.message;
   const auto reason = [&] {
     if (error.code == core::ErrorCode::kUnavailable) return v1::REJECT_REASON_BUSY;
-    // What could be started afresh only needs other buffers or programs than the room has.
+    // If the changed scene can be started afresh, the room only lacks its buffers or programs.
     if (sim::derive(wanted)) return v1::REJECT_REASON_NEEDS_RESTART;
     wanted.allow_unstable = true;
     wanted.fixed_substeps_count = 1;

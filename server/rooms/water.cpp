@@ -14,13 +14,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A step's shaders are compiled when they first run, which takes a software device seconds; diagnostics run every
-/// fourth tick, so as many ticks leave their rhythm as it was.
+/// Shaders are compiled when they first run, which takes seconds on a software device. Diagnostics run every fourth
+/// tick, so four ticks keep their phase.
 constexpr int kWarmUpTickCount = 4;
-/// The encoder holds a frame for milliseconds; whoever holds one longer has lost it.
+/// The encoder holds a frame for milliseconds; a frame held longer than this is lost.
 constexpr auto kFramePatience = 5s;
 
-/// What the cheapest of the ticks took [ms].
+/// Returns the duration of the fastest tick [ms].
 double warmUp(gpu::Context& context, sim::WaterSim& sim) {
   double tick_ms = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kWarmUpTickCount; ++i) {
@@ -71,7 +71,7 @@ std::optional<std::string> Water::failure() {
 
 void Water::bind() {
   if (context_->isOwnedHere() || context_->makeCurrent()) return;
-  // Only a bug of ours gets here: two threads with one water.
+  // Only a bug in the program leads here: two threads use one water.
   spdlog::error("room's GL context cannot be bound: another thread has not released it");
 }
 

@@ -5,7 +5,7 @@
 namespace spindrift::rooms {
 namespace {
 
-/// Ticks of running rooms come before a build.
+/// Lower priority than the ticks of running rooms.
 constexpr int kBuildNiceness = 10;
 
 core::Error shutDown() {

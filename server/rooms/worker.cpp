@@ -27,7 +27,7 @@ void Worker::push(Work work) {
 }
 
 void Worker::loop() {
-  // Linux sets the priority of this thread alone. Best effort.
+  // On Linux this sets the priority of this thread alone. A failure is ignored.
   if (niceness_ != 0) (void)setpriority(PRIO_PROCESS, 0, niceness_);
   std::unique_lock lock(mutex_);
   while (true) {

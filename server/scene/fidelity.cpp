@@ -10,12 +10,12 @@
 namespace spindrift::scene {
 namespace {
 
-/// Factors of a level on BALANCED's numbers, and its values for what the scene leaves out.
+/// Factors of a level relative to BALANCED, and its values for fields that the scene leaves out.
 struct Level {
   v1::Fidelity fidelity;
-  double wave_scale;      ///< of the wave's resolution
-  double particle_scale;  ///< of the particles' number across the water: spacings shrink by it
-  double tick_scale;      ///< of the tick rate, and so at least of the number of steps
+  double wave_scale;      ///< factor on the wave's resolution
+  double particle_scale;  ///< factor on particles per length; the spacing is divided by it
+  double tick_scale;      ///< factor on the tick rate, and so on the minimum number of steps
   std::uint32_t lattice_count;
   std::uint32_t iterations_count;
   double surface_quantum_m;
@@ -33,7 +33,7 @@ const Level& levelOf(v1::Fidelity fidelity) {
   return level != kLevels.end() ? *level : kLevels[1];
 }
 
-/// Multiplies a number by `factor`, as far as its range goes, rounded to what it may be.
+/// Multiplies a number by `factor`, limited to its range and rounded to an allowed value.
 void scaleNumber(google::protobuf::Message& message, const char* name, double factor) {
   if (factor == 1.0) return;
   const auto& field = *message.GetDescriptor()->FindFieldByName(name);
@@ -77,11 +77,12 @@ void applyFidelity(v1::Scene& scene) {
   if (scene.has_particles()) {
     v1::ParticleScene& particles = *scene.mutable_particles();
     if (is_two_way) {
-      scaleNumber(particles, "count", std::pow(level.particle_scale, 3));  // the spray's volume
+      scaleNumber(particles, "count", std::pow(level.particle_scale, 3));  // spray fills a volume
     } else if (scene.has_wave()) {
-      scaleNumber(particles, "count", std::pow(level.particle_scale, 2));  // a band of the same layers, thinner
+      scaleNumber(particles, "count", std::pow(level.particle_scale, 2));  // a band of the same number of layers,
+                                                                           // thinner
     } else {
-      // As deep as before: whole layers decide.
+      // Keep the depth; whole layers decide.
       const double layers_count = layersOf(particles);
       scaleNumber(particles, "layers_count", level.particle_scale);
       scaleNumber(particles, "count", std::pow(layersOf(particles) / layers_count, 3));

@@ -14,7 +14,7 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Bytes of an unknown path that are echoed: longer than any real one.
+/// Maximum length of an unknown path in error messages; longer than any real path.
 constexpr std::size_t kPathEchoMaxBytes = 64;
 
 v1::ParameterDescription describe(const v1::ParameterOptions& options, const std::string& path, double value) {
@@ -45,14 +45,14 @@ void describePart(const Message& part, const std::string& prefix, std::vector<v1
   }
 }
 
-/// Where a path leads: the part that holds the field (null where the scene lacks the part), and the field.
+/// Target of a path: the part with the field (null if the scene lacks the part), and the field.
 struct Target {
   const Message* part = nullptr;
   const FieldDescriptor* field = nullptr;
   std::string absent_part;
 };
 
-/// nullopt = no scene has a parameter of this path.
+/// Returns nullopt if no scene has a parameter with this path.
 std::optional<Target> findTarget(const v1::Scene& scene, std::string_view path) {
   Target target{&scene, nullptr, {}};
   const Descriptor* type = scene.GetDescriptor();
@@ -144,7 +144,7 @@ std::optional<ParameterError> setParameter(v1::Scene& scene, std::string_view pa
   v1::Scene changed = scene;
   const std::optional<Target> target = findTarget(changed, path);
   if (auto error = checkTarget(target, path, value)) return error;
-  // The part belongs to `changed`, which is ours.
+  // The part belongs to `changed`, a copy that may be modified.
   setNumber(const_cast<Message&>(*target->part), *target->field, value);
   if (auto error = checkChanged(changed, path)) return error;
   scene = std::move(changed);

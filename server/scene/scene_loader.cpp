@@ -24,14 +24,15 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::TextFormat;
 
-/// After this many errors a person has enough to do, and hostile input cannot make the report grow further.
+/// Maximum number of errors in a report; bounds the report for hostile input.
 constexpr std::size_t kMaxReportedErrorCount = 100;
-/// One more shows that there are more; finding the place of an error reads the text from its start.
+/// One more than reported shows that there are more. Bounded, because finding the place of an error reads the text from
+/// its start.
 constexpr std::size_t kMaxKeptErrorCount = kMaxReportedErrorCount + 1;
-/// Nesting of braces; a scene needs four.
+/// Maximum nesting of braces; a scene needs four.
 constexpr int kMaxNestingDepth = 32;
 
-/// Zero-based, as Protobuf counts.
+/// Zero-based, as in Protobuf.
 struct Location {
   int line = 0;
   int column = 0;
@@ -42,7 +43,7 @@ struct LocatedError {
   std::string message;
 };
 
-/// Columns as Protobuf's tokenizer counts them: bytes, a tab reaching to the next multiple of 8.
+/// Returns the next column as Protobuf's tokenizer counts: bytes, with tab stops at multiples of 8.
 int nextColumn(char c, int column) {
   constexpr int kTabWidth = 8;
   return c == '\t' ? column + kTabWidth - column % kTabWidth : column + 1;
@@ -66,8 +67,8 @@ std::size_t offsetOf(std::string_view text, Location wanted) {
   return offset;
 }
 
-/// Some errors are found only when the parser stands behind the word they complain about, perhaps lines behind. They
-/// quote the word, so the true place is where it last stood before.
+/// Returns the true place of an error. Some errors are found only when the parser is already behind the quoted word,
+/// possibly some lines later. The true place is the last occurrence of the word before that.
 Location placeOf(std::string_view text, Location reported, std::string_view message) {
   for (const std::string_view phrase :
        {std::string_view("Unknown enumeration value of \""), std::string_view("has no field named \""),
@@ -91,7 +92,7 @@ class ErrorCollector : public google::protobuf::io::ErrorCollector {
     add(line, column, message);
     failed_line_ = errors_.back().location.line;
   }
-  /// Unknown fields arrive as warnings because the parser was asked to go on after them.
+  /// Unknown fields are reported as warnings, because the parser was told to continue after them.
   void AddWarning(int line, int column, const std::string& message) override {
     if (errors_.size() < kMaxKeptErrorCount) add(line, column, message);
   }
@@ -107,8 +108,7 @@ class ErrorCollector : public google::protobuf::io::ErrorCollector {
   int failed_line_ = -1;
 };
 
-/// Blanks a line that holds one "field: value" and nothing of the text's structure, so that parsing can go on behind
-/// it.
+/// Blanks a line that contains only one "field: value" and no brackets, so that parsing can continue after it.
 bool blankSimpleLine(std::string& text, int line) {
   std::size_t begin = 0;
   for (int i = 0; i < line; ++i) {
@@ -124,7 +124,7 @@ bool blankSimpleLine(std::string& text, int line) {
   return true;
 }
 
-/// The parser recurses once a brace; braces in strings and comments count as well, which errs on the safe side.
+/// The parser recurses for each brace. Braces in strings and comments are counted too, which is safe.
 bool nestsTooDeep(std::string_view text) {
   int depth = 0;
   for (const char c : text) {
@@ -135,7 +135,7 @@ bool nestsTooDeep(std::string_view text) {
   return false;
 }
 
-/// Parses as far as it goes, adding every syntax error, unknown field and wrong type found on the way.
+/// Parses as far as possible and collects every syntax error, unknown field and wrong type.
 std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene& scene,
                                                      std::vector<LocatedError>& errors) {
   for (;;) {
@@ -147,7 +147,7 @@ std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene
     parser.AllowUnknownField(true);
     parser.WriteLocationsTo(tree.get());
     const bool parsed = parser.ParseFromString(text, &scene);
-    // A later attempt meets the unknown fields of an earlier one again.
+    // A later attempt reports the unknown fields of an earlier one again.
     for (LocatedError& error : found) {
       const bool known = std::any_of(errors.begin(), errors.end(), [&](const LocatedError& other) {
         return other.location.line == error.location.line && other.message == error.message;
@@ -160,8 +160,8 @@ std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene
   }
 }
 
-/// Where a path ("events[1].effect.splash") stands in the text; the innermost part that does where the field was left
-/// out.
+/// Returns the place of a path ("events[1].effect.splash") in the text; if the field was left out, that of its
+/// innermost part.
 Location locate(const TextFormat::ParseInfoTree& root, std::string_view path) {
   Location best;
   const TextFormat::ParseInfoTree* tree = &root;
@@ -256,7 +256,7 @@ core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file, std::op
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(label.c_str(), "rb"), &std::fclose);
   if (!stream)
     return unavailable(label, std::string("cannot be opened: ") + std::strerror(errno) + "; check its permissions");
-  // One byte more than allowed tells a file that is too big from one that just fits, whatever its reported size.
+  // Read one byte more than allowed to detect a file that is too big, whatever its reported size.
   std::string text(kSceneFileMaxBytes + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
   if (std::ferror(stream.get()) != 0) {

@@ -10,9 +10,9 @@
 namespace spindrift::scene {
 namespace {
 
-/// A depression or crest beyond this share of the depth would bare the ground or leave the wave equation's range.
+/// Maximum depression or crest over the depth; beyond it the bed would fall dry or the wave equation become invalid.
 constexpr double kMaxEffectDepthRatio = 0.9;
-/// Absorbs the rounding of "shift + scale * side / 2" where a patch ends exactly at the edge.
+/// Allows for rounding of "shift + scale * side / 2" where a patch ends exactly at the edge.
 constexpr double kEdgeToleranceRatio = 1e-9;
 constexpr std::size_t kNameMaxBytes = 64;
 constexpr std::size_t kTitleMaxBytes = 200;
@@ -139,7 +139,7 @@ void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, cons
   }
 }
 
-/// The side of the water that a wave from there runs along. A wave in a direction may run along either.
+/// Returns the side length of the water along which a wave from there runs. A wave in a direction may run along either.
 double sideAlong(core::Side side, const WaterExtents& water) {
   if (side == core::Side::kPlusX || side == core::Side::kMinusX) return water.side_x_m;
   if (side == core::Side::kPlusZ || side == core::Side::kMinusZ) return water.side_z_m;
@@ -214,7 +214,7 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
 
 std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
   std::vector<FieldIssue> issues;
-  // The range is 3 to 5; the lattice needs a point under the particle, so it cannot be even.
+  // The range is 3 to 5. The lattice needs a point under the particle, so the count must be odd.
   if (scene.coupling().lattice_count() == 4) addRange(issues, "coupling.lattice_count", "4 is even; choose 3 or 5");
   if (scene.has_particles()) {
     const v1::ParticleScene& particles = scene.particles();

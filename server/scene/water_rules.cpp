@@ -1,4 +1,4 @@
-// Rules between the water and what stands and floats in it: sides, sponge, obstacles, beaches, boats.
+// Rules between the water and the objects in it: sides, sponge, obstacles, beaches, boats.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,9 +12,9 @@
 namespace spindrift::scene {
 namespace {
 
-/// A boat longer than this share of the water's side would have no water left to sail.
+/// Maximum length of a boat over the water's side; a longer one would have no room to sail.
 constexpr double kMaxBoatSideRatio = 0.25;
-/// Absorbs the rounding of positions that lie exactly on an edge.
+/// Allows for rounding of positions exactly on an edge.
 constexpr double kEdgeToleranceRatio = 1e-9;
 
 std::string metres(double value) {
@@ -25,7 +25,7 @@ std::string indexed(const char* list, int index) {
   return std::string(list) + "[" + std::to_string(index) + "]";
 }
 
-/// A rectangle seen from above; half_z along its heading's left, heading from +x toward +z.
+/// A rectangle seen from above. half_z is to the left of the heading; the heading turns from +x toward +z.
 struct Footprint {
   double x_m, z_m;
   double half_length_m, half_width_m;
@@ -41,14 +41,14 @@ struct Footprint {
 
   [[nodiscard]] double reachX_m() const { return std::abs(cosine) * half_length_m + std::abs(sine) * half_width_m; }
   [[nodiscard]] double reachZ_m() const { return std::abs(sine) * half_length_m + std::abs(cosine) * half_width_m; }
-  /// Half of its extent along a direction.
+  /// Returns half of its extent along a direction.
   [[nodiscard]] double reach_m(double direction_x, double direction_z) const {
     return std::abs(direction_x * cosine + direction_z * sine) * half_length_m +
            std::abs(direction_z * cosine - direction_x * sine) * half_width_m;
   }
 };
 
-/// Separating axes: two rectangles are apart where their extents along one of their sides are.
+/// Separating axis test: two rectangles are apart if their extents are apart along a side of one of them.
 bool overlap(const Footprint& a, const Footprint& b) {
   const std::array<std::array<double, 2>, 4> axes = {
       {{a.cosine, a.sine}, {-a.sine, a.cosine}, {b.cosine, b.sine}, {-b.sine, b.cosine}}};
@@ -74,7 +74,7 @@ Footprint footprintOf(const v1::Breakwater& wall) {
   return {wall.x_m(), wall.z_m(), wall.length_m(), wall.width_m(), wall.heading_deg()};
 }
 
-/// A thing that reaches `reach_m` to both sides of its centre has to lie in the water along one axis.
+/// Checks that an object with the half extent `reach_m` around its centre lies in the water along one axis.
 void checkInside(double centre_m, double reach_m, double side_m, const std::string& path,
                  std::vector<FieldIssue>& issues) {
   const double max_m = 0.5 * side_m - reach_m;

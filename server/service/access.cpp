@@ -11,7 +11,7 @@ using core::Error;
 using core::ErrorCode;
 using std::chrono::system_clock;
 
-/// As long as the longer one, wherever the two differ first: a wrong token's answer takes as long as any other's.
+/// The duration does not depend on where the two differ, so it tells nothing about a token.
 bool equalsInConstantTime(std::string_view a, std::string_view b) {
   std::uint32_t difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t k = 0; k < a.size(); ++k) {

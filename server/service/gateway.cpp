@@ -61,11 +61,11 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
                                        .greeted = nullptr,
                                        .commands = {options_.commands_per_s, options_.command_burst_count, now}});
   }
-  spdlog::info("session {} from {} comes to room {}", session, peer, room->name());
+  spdlog::info("session {} from {} joins room {}", session, peer, room->name());
   greet(session, *room);
   hub().closeAt(session, now + options_.hello_patience, net::CloseCode::kPolicy,
                 "no hello came in time: send ClientMessage.hello first");
-  // Closed since: dismiss() may have passed by before this session was on its list.
+  // The room may have closed meanwhile, and dismiss() may have run before this session was in its list.
   if (simulation().find(room->name()) != room) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 
@@ -153,7 +153,7 @@ void Gateway::hello(net::SessionId session, const Session& state, const wire::He
   const auto now = std::chrono::system_clock::now();
   const auto grant = options_.access.resolve(hello.token, now);
   if (!grant) return refuse(session, net::CloseCode::kUnauthorized, grant.error().message);
-  auto end = std::chrono::steady_clock::time_point::max();  // in place of the patience for this hello
+  auto end = std::chrono::steady_clock::time_point::max();  // replaces the deadline for Hello
   if (grant->expires) {
     const auto left = std::chrono::duration_cast<std::chrono::steady_clock::duration>(*grant->expires - now);
     end = std::chrono::steady_clock::now() + left;
@@ -185,7 +185,8 @@ void Gateway::hello(net::SessionId session, const Session& state, const wire::He
   welcome.set_grace_s(std::chrono::duration<double>(state.room->roster().grace()).count());
   welcome.set_resumed(admission.resumed);
   hub().sendAnswer(session, wire::welcome(welcome));
-  // From here on the room's news come, and frames once they are subscribed to. What changed since the greeting is told.
+  // From here on the session gets the room's news, and the frames that it subscribes to. Send the changes since the
+  // greeting.
   hub().join(session, state.room->name());
   if (state.room->snapshot() != greeted) greet(session, *state.room);
   hub().sendState(session, topic::kPeople, wire::people(state.room->roster().people()));
@@ -195,7 +196,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const wire
   if (!state.said_hello) {
     return refuse(session, net::CloseCode::kPolicy, "subscribe before hello: send ClientMessage.hello first");
   }
-  // One packing at a time: asking for the other one stops this one.
+  // One packing at a time: a subscription to the other packing stops this one.
   const codec::Stream wanted = codec::streamOf(subscribe.layer, subscribe.packing);
   const bool has_levels = codec::hasLevels(subscribe.layer);
   for (const codec::Stream stream : codec::allStreams()) {
@@ -209,7 +210,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const wire
 }
 
 void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
-  spdlog::info("session {} gets level {} now", session, codec::nameOf(level));
+  spdlog::info("session {} now gets level {}", session, codec::nameOf(level));
   hub().sendState(session, topic::kLevel, wire::levelChanged(level));
 }
 
@@ -238,7 +239,7 @@ bool Gateway::takeCommand(net::SessionId session) {
   return known != sessions_.end() && known->second.commands.take(std::chrono::steady_clock::now());
 }
 
-// What rooms tell
+// Reports of rooms
 
 void Gateway::timeChanged(const rooms::Room& room, bool paused, double speed) {
   hub().broadcastState(room.name(), topic::kRoomState, wire::roomState(paused, speed));

@@ -7,14 +7,14 @@
 namespace spindrift::service {
 namespace {
 
-/// Collects samples under their names: all samples of one name stand together, as the format wants.
+/// Collects samples by name, because the format requires all samples of one name together.
 class Page {
  public:
   void head(const char* name, const char* type, const char* help) {
     text_ += fmt::format("# HELP spindrift_{} {}\n# TYPE spindrift_{} {}\n", name, help, name, type);
     name_ = name;
   }
-  /// `labels` as in `room="main"`; values of labels are names of ours, without quotes or backslashes.
+  /// `labels` as in `room="main"`; label values are the program's own names, without quotes or backslashes.
   template <typename Number>
   void sample(const std::string& labels, Number value) {
     text_ += labels.empty() ? fmt::format("spindrift_{} {}\n", name_, value)
@@ -114,7 +114,7 @@ void writeEncoder(Page& page, const rooms::EncoderThread& encoder) {
     for (const codec::Stream stream : codec::allStreams()) {
       for (const core::Level level : core::kLevels) {
         const rooms::EncoderThread::StreamCost& cost = costs[codec::indexOf(stream)][core::indexOf(level)];
-        if (level != core::Level::kFull && cost.frame_count == 0) continue;  // nobody has asked for it so far
+        if (level != core::Level::kFull && cost.frame_count == 0) continue;  // no client has used this level so far
         page.sample(fmt::format("layer=\"{}\",packing=\"{}\",level=\"{}\"",
                                 shortName(v1::Layer_Name(stream.layer), sizeof("LAYER")),
                                 shortName(v1::Packing_Name(stream.packing), sizeof("PACKING")), codec::nameOf(level)),

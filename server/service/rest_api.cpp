@@ -26,7 +26,7 @@ HttpReply problem(unsigned status, std::string line) {
   return json(status, out);
 }
 
-/// RFC 9110 section 15.5.6: Allow lists what may be asked.
+/// RFC 9110 section 15.5.6: Allow lists the supported methods.
 HttpReply wrongMethod(const std::string& allowed) {
   HttpReply out = problem(405, "the method is not allowed here: use " + allowed);
   out.headers.emplace_back("Allow", allowed);
@@ -64,7 +64,7 @@ std::vector<std::string> split(std::string_view path) {
   return out;
 }
 
-/// RFC 9110 section 8.3.1: names of media types are not case-sensitive, and parameters may follow.
+/// RFC 9110 section 8.3.1: media type names are not case-sensitive, and parameters may follow.
 bool isJson(std::string_view content_type) {
   std::string name(content_type.substr(0, content_type.find(';')));
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -97,7 +97,7 @@ RestApi::RestApi(const Access& access, CommandCounters& counters, const MetricsS
     : access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
 
 void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond) {
-  /// Far above any tick that a room allows while people are connected.
+  /// Far longer than any tick that a room allows while people are connected.
   constexpr double kStuck_s = 5.0;
   const bool is_probe = request.path == "/healthz" || request.path == "/readyz" || request.path == "/metrics";
   if (is_probe && request.method != "GET") return respond(wrongMethod("GET"));
@@ -174,7 +174,7 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
 void RestApi::room(const Call& call, net::HttpResponder respond) {
   const auto room = rooms_->find(call.path[1]);
   if (!room || call.path[1].empty()) {
-    // Only a name that a room may have is echoed: any other can hold whatever bytes a stranger sends.
+    // Repeat only a valid room name: any other could contain arbitrary bytes.
     const std::string named =
         rooms::isRoomName(call.path[1]) ? "there is no room '" + call.path[1] + "'" : "there is no such room";
     return respond(problem(404, named + "; /api/v1/rooms lists what there is"));
@@ -213,7 +213,7 @@ void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
 }
 
 void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond) {
-  // What a form of a foreign page can send is never JSON by its type.
+  // A form on a foreign page cannot send this content type (protection against cross-site requests).
   if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
   const core::ByteView body = call.request.body;
   auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(body.data()), body.size()});

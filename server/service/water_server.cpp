@@ -32,7 +32,7 @@ WaterServer::~WaterServer() {
 
 void WaterServer::stop() {
   if (network_) network_->stop();
-  if (encoder_) encoder_->stop();  // lets go of the frames before their devices end
+  if (encoder_) encoder_->stop();  // releases the frames before their devices are destroyed
   if (simulation_) simulation_->stop();
 }
 

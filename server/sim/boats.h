@@ -1,4 +1,4 @@
-// Boats: who is on the water (host), where they are (device). See shaders/shared/boats.h and shaders/bodies.
+// Boats: the list of boats (host) and their motion (device). See shaders/shared/boats.h and shaders/bodies.
 #pragma once
 
 #include <array>

@@ -17,7 +17,7 @@ struct ParticleBuffers {
   gpu::TexelBuffer pressure_point, motion_point, acceleration;
   gpu::TexelBuffer foam_source;  ///< only where storesFoamSource()
 
-  /// Gives every particle the same density; accelerations are rebuilt before anybody reads them.
+  /// Gives every particle the same density; accelerations are recomputed before they are read.
   void setDensity(double density_kgpm3);
 
   static core::Result<ParticleBuffers> create(gpu::Context& ctx, std::size_t count, bool stores_foam_source);

@@ -14,9 +14,9 @@ bool isOpen(const core::Scene& scene);
 /// Whether particles or boats look at the surface.
 bool isSampled(const core::Scene& scene);
 bool isTwoWay(const core::Scene& scene);
-/// Whether anything presses on the surface: hulls or falling particles.
+/// Returns whether the surface has external pressure: from hulls or falling particles.
 bool hasPressureHead(const core::Scene& scene);
-/// Whether anybody needs to know where the wave breaks.
+/// Returns whether any part needs the breaking map of the wave.
 bool hasBreakers(const core::Scene& scene);
 bool hasSurfaceFoam(const core::Scene& scene);
 bool isPeriodicX(const core::WaveScene& wave);

@@ -25,7 +25,7 @@ class Wave {
 
   /// Level and still, nothing has flowed out.
   void clear();
-  /// Nothing presses on the surface until somebody adds to pressureHead().
+  /// The surface has no external pressure until a caller adds to pressureHead().
   void clearPressure();
   /// Tables for changed parameters (depth, gravity).
   void uploadBasin(const core::Scene& scene, const WaveLayout& layout);

@@ -8,7 +8,7 @@
 
 namespace spindrift::study {
 
-/// A square of linear, undamped water with one wave step a tick at Courant number `courant`.
+/// A square of linear, undamped water with one wave step per tick at Courant number `courant`.
 core::Scene waveScene(std::uint32_t resolution_count, double side_m, double depth_m, double courant,
                       core::Stencil stencil, core::WaveBoundary sides);
 

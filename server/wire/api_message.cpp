@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kReasonMaxBytes = 200;
 
-/// What Protobuf says of a value that does not fit its field: `(splash.depth_m): invalid value "deep" for type
-/// TYPE_DOUBLE`, in our words; other messages as they are.
+/// Rewords Protobuf's message for a value of the wrong type, `(splash.depth_m): invalid value "deep" for type
+/// TYPE_DOUBLE`; other messages stay unchanged.
 std::string inOurWords(const std::string& reason) {
   constexpr std::string_view kBegin = "(", kValue = "): invalid value ", kType = " for type ";
   constexpr std::string_view kScalar = "TYPE_", kNamed = "type.googleapis.com/spindrift.v1.";
@@ -38,7 +38,7 @@ std::string inOurWords(const std::string& reason) {
          " is no " + name;
 }
 
-/// Empty, or why the text is no such message.
+/// Returns an empty string, or the reason why the text is not such a message.
 std::string readJson(std::string_view json, google::protobuf::Message& out) {
   const std::string what = "the body is no JSON of spindrift.v1." + out.GetDescriptor()->name() + ": ";
   if (const auto why = checkJson(json, *out.GetDescriptor())) return what + *why;
@@ -49,7 +49,7 @@ std::string readJson(std::string_view json, google::protobuf::Message& out) {
     if (status.ok()) return "";
     const auto reason = status.message();
     const std::string line(reason.data(), reason.size());
-    // Behind the first line Protobuf points into the text.
+    // After its first line Protobuf's error quotes the text.
     return what + core::cleanText(inOurWords(line.substr(0, line.find('\n'))), kReasonMaxBytes);
   } catch (const std::exception& error) {
     return std::string("the body could not be read: ") + error.what();

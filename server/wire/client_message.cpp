@@ -16,10 +16,10 @@
 namespace spindrift::wire {
 namespace {
 
-/// Far above any client message; the network's own bound is lower. Keeps sizes within what Protobuf's int can hold.
+/// Larger than any client message and than the network's own limit. Keeps sizes within Protobuf's int.
 constexpr std::size_t kParseMaxBytes = 1024 * 1024;
 constexpr std::size_t kPathMaxBytes = 128;
-/// Bytes of a scene's name that are echoed.
+/// Maximum length of a scene name in error messages.
 constexpr std::size_t kNameEchoMaxBytes = 64;
 constexpr const char* kNoBoats = "this scene has no boats; choose a scene that has";
 
@@ -27,7 +27,7 @@ CommandRejection rejection(std::uint64_t command_id, scene::FieldIssue issue) {
   return {command_id, issue.reason, std::move(issue.path), std::move(issue.message)};
 }
 
-/// The action of a command whose fields are fine.
+/// Converts the action of a command whose fields are valid.
 core::Action actionOf(const v1::Command& command) {
   switch (command.action_case()) {
     case v1::Command::kSplash:
@@ -119,7 +119,7 @@ ClientMessage parseChecked(core::ByteView bytes) {
   }
   v1::ClientMessage message;
   {
-    // Protobuf would write a line to standard error for every message with invalid UTF-8: a flood on request.
+    // Protobuf would log every message with invalid UTF-8, so that a client could flood standard error.
     const google::protobuf::LogSilencer silencer;
     if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
       return Malformed{"not a spindrift.v1.ClientMessage; send one serialized message in each binary frame"};

@@ -1,4 +1,4 @@
-// Domain values back to the wire: answers, roles, and commands for the log of a room.
+// Converts domain values back to messages: answers, roles, and commands for the log of a room.
 #include <algorithm>
 #include <array>
 #include <optional>

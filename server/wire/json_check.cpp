@@ -12,7 +12,7 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
-/// Bytes of a name that are echoed.
+/// Maximum length of a name in error messages.
 constexpr std::size_t kEchoMaxBytes = 64;
 
 enum class Kind { kObject, kArray, kString, kNumber, kBoolean, kNull };
@@ -32,8 +32,8 @@ const FieldDescriptor* fieldOf(const Descriptor& type, const std::string& name) 
   return nullptr;
 }
 
-/// What a field takes, in words; empty if it takes a value of this kind. Null is "left out" everywhere. The field is
-/// not repeated, or the value is an element.
+/// Returns what the field accepts, in words; empty if it accepts a value of this kind. Null counts as "left out"
+/// everywhere. The field is not repeated, or the value is an element.
 std::string wantedBy(const FieldDescriptor& field, Kind kind) {
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_MESSAGE:
@@ -49,7 +49,8 @@ std::string wantedBy(const FieldDescriptor& field, Kind kind) {
   }
 }
 
-/// Recursive descent over the grammar of RFC 8259. Each read...() returns false after the first error, which is kept.
+/// Recursive descent parser for the grammar of RFC 8259. Each read...() returns false after the first error, which is
+/// kept.
 class Checker {
  public:
   explicit Checker(std::string_view text) : text_(text) {}
@@ -93,7 +94,7 @@ class Checker {
     return true;
   }
 
-  /// Kind of the value that begins here; nullopt when none does.
+  /// Returns the kind of the value that begins here; nullopt if none does.
   [[nodiscard]] std::optional<Kind> kindHere() const {
     if (at_ == text_.size()) return std::nullopt;
     const char c = text_[at_];
@@ -106,7 +107,7 @@ class Checker {
     return std::nullopt;
   }
 
-  /// `field` null: anything may stand here. `is_element`: of a repeated field.
+  /// `field` null: any value is accepted. `is_element`: element of a repeated field.
   bool readValue(const FieldDescriptor* field, bool is_element, const std::string& path, std::size_t depth) {
     const auto kind = kindHere();
     if (!kind) return fail("a value is expected");
@@ -139,7 +140,7 @@ class Checker {
     ++at_;  // {
     skipSpace();
     if (take('}')) return true;
-    // The field that was set in each oneof (an optional field is a oneof of its own).
+    // The field set in each oneof (an optional field is a oneof of its own).
     std::vector<std::pair<const google::protobuf::OneofDescriptor*, std::string>> chosen;
     while (true) {
       if (at_ == text_.size() || text_[at_] != '"') return fail("a name in double quotes is expected");
@@ -183,7 +184,7 @@ class Checker {
     }
   }
 
-  /// `out`: the characters; those behind escapes with a code are left out, which no field's name needs.
+  /// `out`: the characters, without those from \u escapes, which no field name needs.
   bool readString(std::string& out) {
     ++at_;  // "
     while (at_ < text_.size()) {

@@ -1,5 +1,5 @@
-// Checks a JSON text against a message type before Protobuf reads it. Protobuf's reader accepts single quotes, trailing
-// commas and more that RFC 8259 forbids, and its errors name internals of the library.
+// Checks a JSON text against a message type before Protobuf parses it. Protobuf accepts single quotes, trailing commas
+// and more that RFC 8259 forbids, and its errors name internals of the library.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace spindrift::wire {
 
-/// Values within values, at most; messages of the wire nest 4 deep.
+/// Maximum nesting; messages of the wire nest 4 deep.
 inline constexpr std::size_t kJsonMaxDepth = 32;
 
-/// nullopt if `json` is one JSON object (RFC 8259, UTF-8, at most kJsonMaxDepth deep) whose members are fields of
-/// `type` by either spelling, with values of the right kind (object, array, string, number, boolean; numbers may be
-/// quoted). Otherwise one line: where in the text, or which field, what is wrong, what is expected. Not checked:
-/// whether numbers and names of enum values fit.
+/// Returns nullopt if `json` is one JSON object (RFC 8259, UTF-8, at most kJsonMaxDepth deep) whose members are fields
+/// of `type` in either spelling, with values of the right kind (object, array, string, number, boolean; numbers may be
+/// quoted). Otherwise returns one line: the place or field, what is wrong, what is expected. Does not check ranges of
+/// numbers and names of enum values.
 std::optional<std::string> checkJson(std::string_view json, const google::protobuf::Descriptor& type);
 
 }  // namespace spindrift::wire

@@ -1,4 +1,4 @@
-// The client's side in C++: bytes from a server to samples, every bound checked. For the scripted client and tests.
+// Decoder of server messages in C++, for the scripted client and tests. Checks every bound.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace spindrift::codec {
 
-/// Bounds on what a server may send.
+/// Limits of what a server may send.
 inline constexpr std::uint32_t kSurfaceMaxResolutionCount = 4096;
 inline constexpr std::uint32_t kParticleMaxCount = 4 * 1024 * 1024;
 inline constexpr std::uint32_t kBodyMaxCount = 1024;
@@ -31,20 +31,20 @@ struct SurfaceSamples {
 struct ParticleSamples {
   std::uint32_t count = 0;
   double radius_m = 0.0;
-  std::vector<float> position_m;    ///< x, y, z a particle: 3 * count values
-  std::vector<float> velocity_mps;  ///< x, y, z a particle: 3 * count values
+  std::vector<float> position_m;    ///< x, y, z per particle: 3 * count values
+  std::vector<float> velocity_mps;  ///< x, y, z per particle: 3 * count values
   std::vector<std::uint8_t> tint;   ///< density over rest density from 0.5 (0) to 1.1 (255): count values
   std::vector<std::uint8_t> foam;   ///< none (0) to white (255): count values
 };
 
-/// White water on the surface; samples lie as the surface's do.
+/// White water on the surface, with samples at the same positions as the surface's.
 struct FoamSamples {
   std::uint32_t resolution_count = 0;
   double side_m = 0.0;
   std::vector<std::uint8_t> foam;  ///< none (0) to white (255): n * n values
 };
 
-/// One boat as it floats. Heading turns from +x toward +z, pitch lifts the bow, roll lowers starboard.
+/// Position and motion of a boat. Heading turns from +x toward +z, pitch lifts the bow, roll lowers starboard.
 struct BodySample {
   std::uint32_t boat_id = 0;
   double position_m[3] = {0, 0, 0};  ///< of the hull's centre
@@ -56,14 +56,14 @@ struct BodySample {
   double rudder_ratio = 0.0;
 };
 
-/// Parses one server message. Error kInvalidInput: over kServerMessageMaxBytes, unparseable, or a kind unknown here.
+/// Parses one server message. Error kInvalidInput: over kServerMessageMaxBytes, unparseable, or of an unknown kind.
 core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes);
 
 /// Decodes a frame of the surface layer. Error kInvalidInput names what is wrong: another layer or codec, a resolution
 /// of 0 or over kSurfaceMaxResolutionCount, payload length, checksum, numbers not finite or out of bounds.
 core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame);
 
-/// Keeps what the next packed frame of a plane builds on: the last two. One instance a subscription.
+/// Keeps the last two frames of a plane, on which a packed delta builds. One instance per subscription.
 class PackedPlaneDecoder {
  public:
   PackedPlaneDecoder(const PackedPlaneDecoder&) = delete;
@@ -77,29 +77,30 @@ class PackedPlaneDecoder {
   std::unique_ptr<History> history_;
 };
 
-/// Reads the packed surface. Errors as decodeSurface()'s; kUnavailable: the frame builds on one that is not here. After
-/// an error only a keyframe helps: subscribe again.
+/// Decodes the packed surface. Errors as decodeSurface(); kUnavailable: the frame builds on a missing one. After an
+/// error only a keyframe can be decoded: subscribe again.
 class PackedSurfaceDecoder : public PackedPlaneDecoder {
  public:
   core::Result<SurfaceSamples> decode(const v1::LayerFrame& frame);
 };
 
-/// Reads the packed foam; errors likewise.
+/// Decodes the packed foam; errors likewise.
 class PackedFoamDecoder : public PackedPlaneDecoder {
  public:
   core::Result<FoamSamples> decode(const v1::LayerFrame& frame);
 };
 
-/// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is fine).
+/// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is valid).
 core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame);
 
-/// Decodes a packed frame of the particle layer; errors likewise. Tint and foam come in fewer steps than plain ones.
+/// Decodes a packed frame of the particle layer; errors likewise. Tint and foam are quantized more coarsely than in
+/// plain frames.
 core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame);
 
 /// Decodes a frame of the foam layer; errors as for the surface.
 core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame);
 
-/// Decodes a frame of the bodies layer; errors likewise, count at most kBodyMaxCount (0 is fine), ids above 0,
+/// Decodes a frame of the bodies layer; errors likewise, count at most kBodyMaxCount (0 is valid), ids above 0,
 /// positions within 10^6 m.
 core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame);
 

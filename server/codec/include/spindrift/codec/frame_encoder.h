@@ -15,27 +15,27 @@ namespace spindrift::codec {
 
 class LayerCodec;
 
-/// Serialized ServerMessages of one frame of a layer. Both null where the frame lacks the layer.
+/// Serialized ServerMessages of one frame of a layer. Both null if the frame lacks the layer.
 struct EncodedFrame {
-  core::SharedBytes keyframe;  ///< stands by itself
-  core::SharedBytes delta;     ///< for clients that have the frame encoded before it; null: none
+  core::SharedBytes keyframe;  ///< can be decoded alone
+  core::SharedBytes delta;     ///< for clients that have the previously encoded frame; null if there is none
 };
 
-/// The codecs of one room: one for each stream and level, made when it is first asked for. Methods from one thread (the
-/// encoder's), except encodeCount(): any thread.
+/// The codecs of one room: one per stream and level, made at the first use. Call the methods on one thread (the encoder
+/// thread), except encodeCount(): any thread.
 class FrameEncoder {
  public:
   FrameEncoder();
   ~FrameEncoder();
 
-  /// Encodes a frame of one level (core::frameAt). Nothing where it lacks the layer.
+  /// Encodes a frame of one level (core::frameAt). Returns null messages if it lacks the layer.
   EncodedFrame encode(Stream stream, const core::FrameView& frame, bool wants_keyframe);
-  /// The plain form.
+  /// Encodes the plain form.
   core::SharedBytes encode(v1::Layer layer, const core::FrameView& frame) {
     return encode({layer}, frame, true).keyframe;
   }
 
-  /// Frames of the stream encoded so far: one a level and frame, however many clients watch.
+  /// Number of encoded frames of the stream so far: one per level and frame, for any number of clients.
   std::uint64_t encodeCount(Stream stream) const;
 
  private:

@@ -1,4 +1,4 @@
-// Domain commands: what people ask of a room, already parsed and in range. Metres, seconds.
+// Domain commands: the requests of sessions and REST clients, parsed and range-checked. Metres, seconds.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace spindrift::core {
 
-/// The surface is pushed down in a disc and let go.
+/// Presses the surface down in a disc, then releases it.
 struct Splash {
   double x_m = 0.0;
   double z_m = 0.0;
@@ -18,7 +18,7 @@ struct Splash {
   double duration_s = 0.2;  ///< length of the smooth pulse
 };
 
-/// Where a wave comes from; kDirection: as `direction_deg` says.
+/// The side that a wave starts from; kDirection: given by `direction_deg`.
 enum class Side { kPlusX, kMinusX, kPlusZ, kMinusZ, kDirection };
 
 /// kBreaking has a front steep enough to break, kSwell is symmetric.
@@ -31,10 +31,10 @@ struct BreakingWave {
   double length_m = 3.0;    ///< full width of the crest at half height
   double duration_s = 0.5;  ///< length of the smooth pulse
   WaveShape shape = WaveShape::kBreaking;
-  double direction_deg = 0.0;  ///< with Side::kDirection: where it travels to; 0 is +x, 90 is +z
+  double direction_deg = 0.0;  ///< with Side::kDirection: direction of travel; 0 is +x, 90 is +z
 };
 
-/// A boat as it comes to the water. Heading 0 points along +x and turns from +x toward +z.
+/// A boat with its starting position and properties. Heading 0 points along +x and turns from +x toward +z.
 struct Boat {
   double x_m = 0.0;
   double z_m = 0.0;
@@ -42,7 +42,7 @@ struct Boat {
   double length_m = 2.4;
   double beam_m = 0.9;
   double height_m = 0.6;       ///< keel to deck
-  double density_ratio = 0.4;  ///< over the water's
+  double density_ratio = 0.4;  ///< boat density over water density
   double max_speed_mps = 5.0;  ///< at full throttle in calm water
   double throttle_ratio = 0.0;
   double rudder_ratio = 0.0;
@@ -53,7 +53,7 @@ inline constexpr std::uint32_t kMaxBoats = 16;
 struct SpawnBoat {
   Boat boat;
 };
-/// -1..1 each; stays until the next one.
+/// Throttle and rudder, each -1..1; in force until the next ControlBoat for the boat.
 struct ControlBoat {
   std::uint32_t boat_id = 0;
   double throttle_ratio = 0.0;
@@ -68,8 +68,8 @@ struct TakeBoat {
 
 using Effect = std::variant<Splash, BreakingWave>;
 
-/// One field of the scene, by its proto path ("particles.viscosity_pas"), within its range; step rules are checked when
-/// it is applied.
+/// One field of the scene, by its proto path ("particles.viscosity_pas"), within its range. Step-size rules are checked
+/// when the change is applied.
 struct SetParameter {
   std::string path;
   double value = 0.0;
@@ -79,16 +79,16 @@ struct Reset {};
 struct SetPaused {
   bool paused = false;
 };
-/// Simulated seconds per wall second wanted, 0.1..4.
+/// Sets the wanted simulated seconds per wall second, 0.1..4.
 struct SetSpeed {
   double speed = 1.0;
 };
 
-/// Ticks that a paused room advances.
+/// Advances a paused room by this many ticks.
 struct Step {
   std::uint32_t tick_count = 1;
 };
-/// By the name that the greeting lists.
+/// Changes to a scene by a name that the greeting lists.
 struct ChangeScene {
   std::string name;
 };
@@ -101,20 +101,21 @@ enum class Role { kViewer, kPlayer, kOperator };
 
 /// "viewer", "player", "operator".
 std::string_view roleName(Role role);
-/// nullopt for a name that is not a role.
+/// Returns nullopt for a name that is not a role.
 std::optional<Role> parseRole(std::string_view name);
 
-/// The lowest role that may carry out the action.
+/// Returns the lowest role that may carry out the action.
 Role roleFor(const Action& action);
 
 /// Identifies one connection for the life of the process; never 0, never reused.
 using SessionId = std::uint64_t;
 
-/// Who asks: a session, or a request by HTTP. Exactly one id is not 0, unless the room itself asks.
+/// The sender of a command: a session or an HTTP request. Exactly one id is not 0, unless the room itself is the
+/// sender.
 struct Sender {
   SessionId session_id = 0;
   std::uint64_t request_id = 0;
-  std::uint32_t person_id = 0;  ///< of the session, in its room; 0: nobody in particular
+  std::uint32_t person_id = 0;  ///< the session's person in its room; 0: none
   Role role = Role::kOperator;
 };
 

@@ -1,4 +1,4 @@
-// A frame from the simulation to the encoder: quantized integers as the GPU packed them, in memory that the view keeps
+// A frame from the simulation to the encoder: quantized integers as the GPU packed them. The view keeps their memory
 // alive.
 #pragma once
 
@@ -23,7 +23,7 @@ struct SurfaceView {
   std::span<const std::uint32_t> words;  ///< n*n/2 words
 };
 
-/// Particles in the simulation's cell order (of a reduced level: in any), three words each (little endian bytes):
+/// Particles in the simulation's cell order (in a reduced level: in any order), three little-endian words each:
 ///   word 0: x u16 | z u16 << 16                   position = min + (u16/65535) * (max - min), per axis
 ///   word 1: y u16 | velocity x i8 << 16 | velocity y i8 << 24
 ///   word 2: velocity z i8 | tint u8 << 8 | foam u8 << 16 | 0 << 24
@@ -37,8 +37,8 @@ struct ParticleView {
   std::span<const std::uint32_t> words;  ///< 3 * count words
 };
 
-/// Foam on the surface, one byte a sample, four samples in each word, low byte first: 0 none .. 255 white. Samples lie
-/// as the surface's do.
+/// Foam on the surface, one byte per sample, four samples in each word, low byte first: 0 none .. 255 white. The
+/// samples lie at the positions of the surface samples.
 struct FoamView {
   std::uint32_t resolution_count = 0;
   double side_m = 0.0;
@@ -51,10 +51,10 @@ struct BodiesView {
   std::span<const std::uint32_t> words;  ///< 7 * count words
 };
 
-/// Health and cost of a room, once a frame.
+/// Health and cost of a room, measured once per frame.
 struct DiagnosticsView {
-  double step_ms = 0.0;           ///< wall time of one tick's step(), mean since the last frame
-  double real_time_factor = 0.0;  ///< simulated seconds per wall second, mean over the last second, 1 when asked for 1
+  double step_ms = 0.0;           ///< wall time of step() per tick, mean since the last frame
+  double real_time_factor = 0.0;  ///< simulated seconds per wall second, mean over the last second
   std::uint32_t substeps_count = 0;
   std::uint32_t particle_count = 0;
   double max_particle_speed_mps = 0.0;
@@ -66,34 +66,34 @@ struct DiagnosticsView {
   double max_density_ratio = 0.0;
   std::uint64_t nonfinite_count = 0;  ///< values found non-finite since the start (0 in a healthy room)
   std::uint64_t escaped_count = 0;    ///< particles found outside the domain since the start (0 in a healthy room)
-  std::uint64_t recovered_count = 0;  ///< times the watchdog stepped in since the start
+  std::uint64_t recovered_count = 0;  ///< watchdog interventions since the start
   std::uint32_t boat_count = 0;
-  std::int64_t volume_error_units = 0;  ///< of the ledger of surface and particles; 0 in a healthy room
+  std::int64_t volume_error_units = 0;  ///< error of the water volume ledger; 0 in a healthy room
   double emitted_m3 = 0.0;              ///< water turned into particles since the start
-  double absorbed_m3 = 0.0;             ///< particles turned back into water
-  double breaking_ratio = 0.0;          ///< share of the surface that breaks
+  double absorbed_m3 = 0.0;             ///< particle volume returned to the surface
+  double breaking_ratio = 0.0;          ///< share of the surface that is breaking
   struct PassTime {
-    std::string name;  ///< equals the shader folder: "grid", "sph", ...
+    std::string name;  ///< shader folder: "grid", "sph", ...
     double ms = 0.0;   ///< mean per tick
   };
   std::vector<PassTime> passes;
 };
 
-/// What a reduced level of a frame holds of the layers that come in levels: planes of fewer samples, each the mean of
-/// what it covers, and a part of the particles, drawn larger. Who is in a part depends on the particle alone, and each
-/// part is within the next.
+/// One reduced level of a frame: surface and foam with fewer samples, each the mean of the samples it covers, and a
+/// subset of the particles, drawn larger. Whether a particle is in a subset depends on the particle alone. Each subset
+/// contains that of the next coarser level.
 struct ReducedView {
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;
   std::optional<FoamView> foam;
 };
 
-/// One frame of one room. The spans live as long as `lease` does; dropping the last copy frees the readback slot.
+/// One frame of one room. The spans are valid while a copy of `lease` exists; the last copy releases the readback slot.
 struct FrameView {
   std::uint64_t tick = 0;
   double time_s = 0.0;         ///< simulation time
-  double asked_s = 0.0;        ///< when the frame was asked for, on the server's monotonic clock
-  std::uint64_t state_id = 0;  ///< number of the room's state that the frame shows; 0: not counted
+  double asked_s = 0.0;        ///< time when the frame was requested, on the server's monotonic clock
+  std::uint64_t state_id = 0;  ///< number of the room's state that the frame shows; 0: unknown
   Level level = Level::kFull;
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;
@@ -101,12 +101,12 @@ struct FrameView {
   std::optional<BodiesView> bodies;
   std::optional<DiagnosticsView> diagnostics;
   std::array<ReducedView, kReducedLevelCount> reduced;  ///< by Level
-  ReducedCounts reduced_counts;                         ///< of the scene, whatever this frame holds
+  ReducedCounts reduced_counts;                         ///< of the scene, even if this frame has no levels
   std::shared_ptr<const void> lease;
 };
 
-/// A frame of one level: a reduced one takes the place of the full layers; bodies and diagnostics have no levels and
-/// stay with kFull.
+/// Returns the frame at one level. A reduced level replaces the full surface, foam and particles; it has no bodies and
+/// no diagnostics, which are sent with kFull only.
 FrameView frameAt(const FrameView& frame, Level level);
 
 }  // namespace spindrift::core

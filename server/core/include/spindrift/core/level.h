@@ -1,4 +1,4 @@
-// Levels of detail: what a client gets that cannot take everything. A level is chosen by a client, or for it.
+// Levels of detail, for clients that cannot receive the full data. The client chooses a level, or the server adapts it.
 #pragma once
 
 #include <array>
@@ -7,20 +7,20 @@
 
 namespace spindrift::core {
 
-/// Coarsest first. The lower ones bound what a frame holds, kFull does not.
+/// Coarsest first. The reduced levels bound the size of a frame; kFull does not.
 enum class Level : std::uint8_t { kCoarse, kMedium, kFine, kFull };
 inline constexpr std::size_t kLevelCount = 4;
 inline constexpr std::array kLevels = {Level::kCoarse, Level::kMedium, Level::kFine, Level::kFull};
-/// Those below kFull: 0 .. kReducedLevelCount - 1.
+/// Levels below kFull: 0 .. kReducedLevelCount - 1.
 inline constexpr std::size_t kReducedLevelCount = 3;
 
 constexpr std::size_t indexOf(Level level) {
   return static_cast<std::size_t>(level);
 }
 
-/// The most that a frame of a reduced level holds, and the rate at which its frames are made.
+/// Limits of one reduced level: size of a frame and frame rate.
 struct LevelBudget {
-  std::uint32_t surface_resolution_count = 0;  ///< samples along each side; of the foam half as many
+  std::uint32_t surface_resolution_count = 0;  ///< samples along each side; the foam has half as many
   std::uint32_t particle_count = 0;
   double rate_hz = 0.0;
 };
@@ -43,12 +43,12 @@ constexpr ReducedCounts reducedCounts(std::uint32_t surface_resolution_count, st
   return out;
 }
 
-/// The level that a layer has in its place: kFull where nothing has to be left out.
+/// Returns the level that a layer is sent at when `wanted` is asked for: kFull where `wanted` would leave nothing out.
 constexpr Level effectiveLevel(Level wanted, std::uint32_t reduced_count) {
   return indexOf(wanted) < reduced_count ? wanted : Level::kFull;
 }
 
-/// Every so many frames of a room holds the level; 1 for kFull.
+/// Returns n where the level takes every n-th frame of the room; 1 for kFull.
 constexpr std::uint32_t frameStride(Level level, double frame_rate_hz) {
   if (level == Level::kFull) return 1;
   const double ratio = frame_rate_hz / kLevelBudgets[indexOf(level)].rate_hz;

@@ -1,4 +1,4 @@
-// What the sessions that watch a layer need of its next frame, level by level.
+// Demand for the next frame of a layer, per level, by the sessions that watch it.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace spindrift::core {
 
 struct LevelDemand {
   std::size_t watcher_count = 0;
-  /// One of them could take the next frame, but only a keyframe: it just came, lost a frame, or takes only some.
+  /// At least one session can take the next frame only as a keyframe: it is new, lost a frame, or skips frames.
   bool wants_keyframe = false;
 };
 using LayerDemand = std::array<LevelDemand, kLevelCount>;

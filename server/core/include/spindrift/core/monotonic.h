@@ -1,4 +1,4 @@
-// The server's clock as clients know it: seconds that only grow, from an origin that means nothing.
+// The server's monotonic clock, also sent to clients: seconds from an arbitrary origin.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// Where the program finds what it ships with: beside itself in a bundle, or in the source tree above a build tree.
+// Paths of the files that the program ships with: next to the program in a bundle, or in the source tree above a build
+// tree.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +9,14 @@
 
 namespace spindrift::core {
 
-/// The shipped scene of that name ("harbor", "splash"), else the file. kUnavailable names both places.
+/// Returns the shipped scene of that name ("harbor", "splash"), otherwise the file. kUnavailable names both places.
 core::Result<std::filesystem::path> findScene(const std::string& given);
 
-/// The built web client: share/spindrift/web above the program, or web-client/dist of the source tree. Empty when
-/// neither is there.
+/// Returns the folder of the built web client: share/spindrift/web above the program, or web-client/dist of the source
+/// tree. Empty when neither exists.
 std::filesystem::path findWebRoot();
 
-/// The folder with the shipped scenes; empty when it is not found.
+/// Returns the folder of the shipped scenes; empty when it does not exist.
 std::filesystem::path findSceneFolder();
 
 }  // namespace spindrift::core

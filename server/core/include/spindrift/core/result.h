@@ -1,5 +1,5 @@
-// Result and Error: how one room of the program tells another that the world (a file, a device, a client) did not
-// play along. Our own bugs are assertions, not errors.
+// Result and Error: how a module reports that something outside the program (a file, a device, a client) failed. Bugs
+// in the program itself are assertions, not errors.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace spindrift::core {
 
-/// Why something failed; cli maps each to the program's exit code.
+/// Category of a failure; cli maps each to an exit code.
 enum class ErrorCode {
   kInvalidInput,  ///< bad flag, scene, file, message: exit code 2
   kUnavailable,   ///< port in use, file missing, web client not built: exit code 2
@@ -18,13 +18,13 @@ enum class ErrorCode {
   kInternal,      ///< a driver or library refused what should work: exit code 1
 };
 
-/// One clear line for a person: the thing, the value, the bound, what to do. No trailing newline.
+/// One line for the user: what failed, the value, the bound, what to do. No trailing newline.
 struct Error {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;
 };
 
-/// The program's exit code for an error of this kind (0 is never returned).
+/// Returns the program's exit code for this category; never 0.
 int exitCode(ErrorCode code);
 
 /// Either a T or an Error. Test with `if (!result)`, then read `*result` or `result.error()`.

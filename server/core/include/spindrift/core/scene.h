@@ -1,5 +1,5 @@
-// The scene as the simulation sees it: plain values in SI units, already validated against the ranges in proto.
-// stream fills it from scene.proto (field for field, same names); sim::derive() turns it into step sizes and layouts.
+// The scene as the simulation reads it: plain values in SI units, already validated against the ranges in proto.
+// The scene module fills it from scene.proto (same fields, same names); sim::derive() computes step sizes and layouts.
 // Axes: right-handed, y up, rest water level y = 0, domain centred on the origin, x and z horizontal.
 #pragma once
 
@@ -22,11 +22,11 @@ enum class WaveBoundary { kPeriodic, kReflect, kAbsorb };
 /// 5-point or isotropic 9-point Laplacian of the wave equation.
 enum class Stencil { kFivePoint, kNinePoint };
 
-/// Kernels for density and pressure. kMuller (poly6 and spiky) is the thesis's; its pressure is not the gradient
-/// of its density. The others use one kernel for both, so that pressure neither makes nor takes energy.
+/// Kernels for density and pressure. kMuller (poly6 and spiky) is that of the thesis: its pressure is not the gradient
+/// of its density. The others use one kernel for both, so that pressure neither adds nor removes energy.
 enum class KernelSet { kMuller, kCubicSpline, kWendlandC2 };
 
-/// kWeaklyCompressible: pressure from density through an equation of state, steps bound by the speed of sound.
+/// kWeaklyCompressible: pressure from density through an equation of state; the speed of sound limits the step size.
 /// kPositionBased: positions are moved until the density is right (Macklin & Mueller 2013); large steps.
 enum class PressureSolver { kWeaklyCompressible, kPositionBased };
 
@@ -47,13 +47,13 @@ struct WaveScene {
   WaveBoundary boundary_plus_x = WaveBoundary::kPeriodic;
   WaveBoundary boundary_minus_z = WaveBoundary::kPeriodic;
   WaveBoundary boundary_plus_z = WaveBoundary::kPeriodic;
-  /// All four sides.
+  /// Sets all four sides.
   void setBoundaries(WaveBoundary all) {
     boundary_minus_x = boundary_plus_x = boundary_minus_z = boundary_plus_z = all;
   }
-  double sponge_width_m = 4.0;    ///< of the layer along an absorbing side
-  double steepening_ratio = 0.0;  ///< 0: linear; 1: waves travel at the speed of shallow water of their own height
-  std::uint32_t fixed_substeps_count = 0;  ///< 0 = derive() chooses; otherwise this many wave steps a tick, checked
+  double sponge_width_m = 4.0;             ///< width of the absorbing layer along a side
+  double steepening_ratio = 0.0;           ///< 0: linear waves; 1: speed follows the local water depth (shallow water)
+  std::uint32_t fixed_substeps_count = 0;  ///< 0 = derive() chooses; otherwise this many wave steps per tick, checked
 
   bool operator==(const WaveScene&) const = default;
 };
@@ -68,7 +68,7 @@ struct Rock {
   bool operator==(const Rock&) const = default;
 };
 
-/// A straight wall from the bed to above the water; heading 0 runs along x and turns from +x toward +z.
+/// A straight wall from the bed to above the water. Heading 0 runs along x and turns from +x toward +z.
 struct Breakwater {
   double x_m = 0.0;
   double z_m = 0.0;
@@ -82,7 +82,7 @@ struct Breakwater {
 
 using Obstacle = std::variant<Rock, Breakwater>;
 
-/// The bed rises over width_m toward a side, linearly from the scene's depth to shore_depth_m at the side itself.
+/// The bed rises linearly over width_m toward a side, from the scene's depth to shore_depth_m at the side.
 struct Beach {
   Side side = Side::kPlusX;
   double width_m = 6.0;
@@ -99,11 +99,11 @@ struct ParticleScene {
   double patch_shift_z_m = 0.0;
   double patch_scale = 1.0;    ///< patch side over wave side (over `box_side_m` without a wave), 0..1
   double box_side_m = 24.0;    ///< side of the horizontal box when the scene has no wave
-  double headroom_m = 5.0;     ///< the particles' domain reaches this far above y = 0
+  double headroom_m = 5.0;     ///< height of the particles' domain above y = 0
   double support_ratio = 2.0;  ///< H / s
   double rest_density_kgpm3 = 1000.0;
   double sound_speed_mps = 14.0;  ///< c0; stiffness k = c0^2 in p = k (rho - rho0)
-  double max_speed_mps = 8.0;     ///< U_max for the step-size rules; also the watchdog's and the clamp's bound
+  double max_speed_mps = 8.0;     ///< U_max of the step-size rules; also the limit of the watchdog and the clamp
   double viscosity_pas = 60.0;    ///< dynamic viscosity mu
   double jitter_ratio = 0.02;     ///< initial jitter over s, 0..0.05
   KernelSet kernel_set = KernelSet::kWendlandC2;
@@ -112,19 +112,20 @@ struct ParticleScene {
   PressureSolver solver = PressureSolver::kWeaklyCompressible;
   EquationOfState equation_of_state = EquationOfState::kLinear;
   PressureForce pressure_force = PressureForce::kConserving;
-  std::uint32_t iterations_count = 4;  ///< of the position-based solver, a substep
+  std::uint32_t iterations_count = 4;  ///< iterations of the position-based solver per substep
   bool cohesion = false;               ///< pressure may be negative
   double fill_x_ratio = 1.0;           ///< share of the domain along x that the lattice fills, from the -x side
   double fill_z_ratio = 1.0;
-  double settle_s = 0.0;     ///< simulated time in which the starting lattice comes to rest before the first tick
+  double settle_s = 0.0;     ///< simulated time in which the initial lattice settles before the first tick
   double box_width_m = 0.0;  ///< side along z of the box when the scene has no wave; 0 = box_side_m
-  /// A box without floor, surface and gravity: what leaves it above enters it below. `layers_count` layers thick.
+  /// A box without floor, surface and gravity: particles that leave through the top enter at the bottom. `layers_count`
+  /// layers thick.
   bool periodic_y = false;
   double fill_density_ratio =
-      1.0;  ///< density of the starting lattice over rest_density_kgpm3; not 1 only with periodic_y
+      1.0;  ///< density of the initial lattice over rest_density_kgpm3; other than 1 only with periodic_y
 };
 
-/// kOneWay: the wave carries a band of particles. kTwoWay: there are particles only where water broke; they return.
+/// kOneWay: the wave carries a band of particles. kTwoWay: breaking water becomes particles, which later return to it.
 enum class CouplingMode { kOneWay, kTwoWay };
 
 /// What the particle patch follows.
@@ -133,18 +134,18 @@ enum class PatchFollow { kNothing, kEvent, kBoat };
 struct CouplingScene {
   CouplingMode mode = CouplingMode::kOneWay;
   PatchFollow patch_follow = PatchFollow::kNothing;
-  double emission_ratio = 1.0;      ///< two-way: factor on what breaking water emits
-  double droplet_spacing_m = 0.1;   ///< two-way: a particle holds its cube of water
+  double emission_ratio = 1.0;      ///< two-way: factor on the amount of water that breaking emits
+  double droplet_spacing_m = 0.1;   ///< two-way: edge of the cube of water that one particle holds
   std::uint32_t lattice_count = 3;  ///< virtual particles along a side of the lattice: 3 or 5
   double downforce_per_m_s2 = 1.5;  ///< downward acceleration = downforce * (height above the water)^2
 };
 
-/// White water from low pressure.
+/// White water, generated where the particle density is low.
 struct FoamScene {
-  double density_deficit_ratio = 0.25;  ///< 1 - rho/rho0 at which a particle is fully foam
-  double lifetime_s = 1.5;              ///< e-folding time of a particle's foam once its source is gone
-  std::uint32_t neighbours_count = 6;   ///< fewer neighbours than this and a particle is foam; 0 = off
-  bool surface = false;                 ///< a foam field on the surface; e-folding times of its sources:
+  double density_deficit_ratio = 0.25;  ///< 1 - rho/rho0 at which a particle is pure foam
+  double lifetime_s = 1.5;              ///< e-folding time of a particle's foam after its source has ended
+  std::uint32_t neighbours_count = 6;   ///< particles with fewer neighbours than this are foam; 0 = off
+  bool surface = false;                 ///< a foam field on the surface, with an e-folding time per source:
   double breaking_lifetime_s = 6.0;
   double wake_lifetime_s = 8.0;
   double landing_lifetime_s = 3.0;
@@ -153,7 +154,7 @@ struct FoamScene {
 /// Boats on the wave.
 struct BoatsScene {
   std::uint32_t capacity_count = 8;  ///< at most kMaxBoats
-  std::vector<Boat> boats;           ///< there from the start; ids 1, 2, ...
+  std::vector<Boat> boats;           ///< present from the start; ids 1, 2, ...
 };
 
 /// Rain drops and wind waves.
@@ -165,13 +166,13 @@ struct StormScene {
   double wind_direction_deg = 180.0;
 };
 
-/// What a client is sent.
+/// Settings of the frames sent to clients.
 struct StreamScene {
-  double frame_rate_hz = 30.0;       ///< frames per wall second, whatever the speed
+  double frame_rate_hz = 30.0;       ///< frames per wall second, at any simulation speed
   double surface_quantum_m = 0.001;  ///< elevation quantum
 };
 
-/// An effect that a scene starts by itself, at a simulation time.
+/// An effect that the scene starts at a simulation time.
 struct TimedEvent {
   double at_s = 0.0;
   double every_s = 0.0;  ///< repeats with this period; 0 = once
@@ -185,15 +186,15 @@ struct Scene {
   std::uint64_t seed = 1;
   double gravity_mps2 = 9.81;
   double tick_rate_hz = 60.0;              ///< commands are applied at ticks; substeps follow from derive()
-  std::uint32_t fixed_substeps_count = 0;  ///< 0 = derive() chooses; otherwise this many substeps a tick, checked
+  std::uint32_t fixed_substeps_count = 0;  ///< 0 = derive() chooses; otherwise this many substeps per tick, checked
   bool allow_unstable = false;             ///< skip the step-size rules (for stability studies)
   std::optional<WaveScene> wave;           ///< absent parts cost nothing
   std::optional<ParticleScene> particles;
   std::optional<CouplingScene> coupling;  ///< needs wave and particles
-  std::optional<FoamScene> foam;          ///< needs particles, or a wave when it has a surface field
+  std::optional<FoamScene> foam;          ///< needs particles, or a wave if it has a surface field
   std::vector<Obstacle> obstacles;        ///< need a wave
   std::vector<Beach> beaches;             ///< need a wave
-  std::optional<BoatsScene> boats;        ///< on the wave, or among particles alone
+  std::optional<BoatsScene> boats;        ///< on the wave, or among particles without a wave
   std::optional<StormScene> storm;        ///< needs a wave
   StreamScene stream;
   std::vector<TimedEvent> events;

@@ -1,4 +1,4 @@
-// Text that goes to people: numbers as they would write them, and foreign text made harmless.
+// Text for people: formatted numbers, and untrusted text made safe to show.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,19 @@ namespace spindrift::core {
 /// At most 10 significant digits, no trailing zeros: "0.05", "1e-12", "nan".
 std::string formatNumber(double value);
 
-/// formatNumber with the unit behind it, if there is one: "0.05 m".
+/// formatNumber() followed by the unit, if there is one: "0.05 m".
 std::string formatQuantity(double value, std::string_view unit);
 
-/// Bytes of the UTF-8 sequence that starts at `text[at]`; 0 where there is no valid one.
+/// Returns the length in bytes of the UTF-8 sequence that starts at `text[at]`; 0 where none is valid.
 std::size_t utf8SequenceLength(std::string_view text, std::size_t at);
 
-/// `text` without invalid UTF-8 and without characters that change how the text around them looks: control characters,
-/// line separators, and those that set the direction of writing (Unicode TR 36, section 2.2). Cut at a character's
-/// boundary to at most `max_bytes`.
+/// Returns `text` without invalid UTF-8 and without characters that change how surrounding text looks: control
+/// characters, line separators, and direction controls (Unicode TR 36, section 2.2). Cut at a character boundary to at
+/// most `max_bytes`.
 std::string cleanText(std::string_view text, std::size_t max_bytes);
 
-/// cleanText() that begins with a character that shows and does not end with a space (of any width): empty for a name
-/// that shows nothing.
+/// cleanText() without invisible characters at the start and spaces (of any width) at the end. Empty for a name without
+/// visible characters.
 std::string cleanName(std::string_view text, std::size_t max_bytes);
 
 }  // namespace spindrift::core

@@ -1,4 +1,4 @@
-// A rate limit: plain arithmetic on a time that the caller passes in.
+// Rate limit; the caller passes the time in, no clock is read.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace spindrift::core {
 
-/// `rate_per_s` tokens flow in, at most `burst_count` wait; every message takes one.
+/// `rate_per_s` tokens are added per second up to `burst_count`; each message takes one.
 class TokenBucket {
  public:
   TokenBucket(double rate_per_s, double burst_count, std::chrono::steady_clock::time_point now)
@@ -21,7 +21,7 @@ class TokenBucket {
     return true;
   }
 
-  /// Takes a token that may have yet to come; how long until it is there.
+  /// Takes a token, in advance if none is left. Returns the time until that token is due.
   std::chrono::steady_clock::duration reserve(std::chrono::steady_clock::time_point now) {
     const double elapsed_s = std::chrono::duration<double>(now - updated_).count();
     updated_ = now;

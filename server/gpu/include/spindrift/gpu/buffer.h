@@ -1,4 +1,4 @@
-// Memory on the device: a buffer of fixed size, and a buffer that shaders gather from with texelFetch.
+// Device memory: a buffer of fixed size, and a buffer that shaders read through texelFetch.
 #pragma once
 
 #include <cstddef>
@@ -30,29 +30,29 @@ enum class BufferUse {
 /// What a buffer holds before anything is written to it.
 enum class BufferContent {
   kZero,
-  /// Zero as well, but nobody relies on it: every word is written before it is read, in each tick anew. Filled with set
-  /// bits where Checks::poison asks for it.
+  /// Zero too, but no code may rely on it: each tick writes every word before it reads it. Filled with set bits when
+  /// Checks::poison is on.
   kScratch,
 };
 
 /// A buffer with immutable storage. Move-only; must not outlive its context. All sizes and offsets in bytes. upload(),
-/// download(), clear() and copyFrom() see what shaders wrote before and are seen by shaders that run after: they issue
-/// the barriers that they need. Offsets out of range are bugs of the caller: asserted in debug builds, otherwise
-/// refused by OpenGL and counted in Context::debugErrorCount().
+/// download(), clear() and copyFrom() see the writes of earlier shaders, and later shaders see theirs: they issue the
+/// barriers that are needed. Offsets out of range are bugs of the caller: asserted in debug builds, otherwise refused
+/// by OpenGL and counted in Context::debugErrorCount().
 class Buffer {
  public:
   /// Error kInternal when the device has no memory for it or the size is 0.
   static core::Result<Buffer> create(Context& ctx, std::string_view name, std::size_t size_bytes,
                                      BufferUse use = BufferUse::kDeviceOnly,
                                      BufferContent content = BufferContent::kZero);
-  Buffer();  ///< holds nothing; only to be assigned to
+  Buffer();  ///< empty; only to be assigned to
   ~Buffer();
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer&& other) noexcept;
 
   [[nodiscard]] std::size_t sizeBytes() const { return size_bytes_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] std::uint32_t id() const { return id_; }  ///< the OpenGL name; 0 when it holds nothing
+  [[nodiscard]] std::uint32_t id() const { return id_; }  ///< the OpenGL name; 0 when empty
   explicit operator bool() const { return id_ != 0; }
 
   /// Copies any contiguous range of plain values (vector, array, span) to `offset_bytes`.
@@ -67,7 +67,8 @@ class Buffer {
     static_assert(std::is_trivially_copyable_v<T>);
     uploadBytes(std::as_bytes(std::span(&value, 1)), offset_bytes);
   }
-  /// Reads back into `out`. Waits for the device: tests, commands of people and hashes only. When the device was lost
+  /// Reads back into `out`. Blocks until the device is done: for tests, client commands and hashes only. When the
+  /// device was lost
   /// (Context::isLost()) or does not answer within 30 s, which is logged and counted, `out` is filled with zeros.
   template <typename T>
   void download(std::span<T> out, std::size_t offset_bytes = 0) const {
@@ -95,10 +96,10 @@ class Buffer {
   /// Binds the whole buffer as `layout(binding = …) uniform Block`.
   void bindUniform(std::uint32_t binding) const;
 
-  /// Tells the barrier checker that dispatches in a row write different parts of this buffer and none reads what
-  /// another one of them wrote, so that no barrier is needed between them.
+  /// Tells the barrier checker that consecutive dispatches write different parts of this buffer and none reads the
+  /// writes of another, so that no barrier is needed between them.
   void declareDisjointWrites();
-  /// For the other classes of this module: who touched it. Null when it holds nothing.
+  /// For the other classes of this module: the accesses to this buffer so far. Null when empty.
   [[nodiscard]] BufferAccess* access() const { return access_.get(); }
 
  protected:
@@ -110,23 +111,23 @@ class Buffer {
   std::size_t size_bytes_ = 0;
   std::string name_;
   BufferUse use_ = BufferUse::kDeviceOnly;
-  std::unique_ptr<BufferAccess> access_;  ///< its address is known to the context
+  std::unique_ptr<BufferAccess> access_;  ///< the context keeps its address
 };
 
-/// How texelFetch sees the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
+/// Type in which texelFetch reads the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
 enum class TexelFormat { kR32F, kRG32F, kRGBA32F, kR32UI, kRG32UI, kRGBA32UI, kR32I, kRG32I, kRGBA32I };
-/// 4, 8 or 16.
+/// Returns 4, 8 or 16.
 std::size_t texelBytes(TexelFormat format);
 
-/// A buffer that is written as shader storage and read with texelFetch: measured on llvmpipe 22.3, storage loads inside
-/// a loop are scalarised and a gather through texelFetch is three to four times faster, so every hot read goes this
-/// way.
+/// A buffer that is written as shader storage and read with texelFetch. Hot reads go this way because, measured on
+/// llvmpipe 22.3, storage loads inside a loop are scalarised, and a gather through texelFetch is three to four times
+/// faster.
 class TexelBuffer : public Buffer {
  public:
   /// As Buffer::create(), for `texel_count` texels; also refused beyond `max_texel_buffer_elements`.
   static core::Result<TexelBuffer> create(Context& ctx, std::string_view name, std::size_t texel_count,
                                           TexelFormat format, BufferContent content = BufferContent::kZero);
-  TexelBuffer();  ///< holds nothing; only to be assigned to
+  TexelBuffer();  ///< empty; only to be assigned to
   ~TexelBuffer();
   TexelBuffer(TexelBuffer&& other) noexcept;
   TexelBuffer& operator=(TexelBuffer&& other) noexcept;

@@ -1,4 +1,4 @@
-// Test modes of a context: what tests turn on and the server leaves off.
+// Test modes of a context: on in tests, off in the server.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,20 @@ struct Checks {
   /// Every access to a buffer is compared with the barriers issued so far; a missing barrier, an unbound block and a
   /// buffer that is smaller than its uniform block are faults. See Context::takeFaults().
   bool barriers = false;
-  /// Scratch buffers (BufferContent::kScratch) begin with all bits set, which is NaN as a float and -1 as an integer,
-  /// instead of zero. See Context::poisonScratch().
+  /// Scratch buffers (BufferContent::kScratch) start with all bits set (NaN as a float, -1 as an integer) instead of
+  /// zero. See Context::poisonScratch().
   bool poison = false;
-  /// Not 0: work groups of every program are numbered in another order, which this number chooses. What a program
-  /// computes must not depend on it.
+  /// Not 0: seed of a permutation of the work groups of every program. The results of a program must not depend on it.
   std::uint32_t shuffle_seed = 0;
-  /// The device seems to lag so many fences behind what was inserted; see FenceDelay.
+  /// The device appears to be this many fences behind; see FenceDelay.
   std::uint32_t lag_fences_count = 0;
 };
 
-/// Parses "barriers", "poison", "shuffle=SEED" (1 to 1,000,000) and "lag=FENCES" (0 to 10,000), separated by
-/// commas; an empty text turns nothing on. Error kInvalidInput names the word that is not understood.
+/// Parses "barriers", "poison", "shuffle=SEED" (1 to 1,000,000) and "lag=FENCES" (0 to 10,000), separated by commas; an
+/// empty text turns all modes off. Error kInvalidInput names the word that is not understood.
 core::Result<Checks> parseChecks(std::string_view text);
 
-/// What the environment variable SPINDRIFT_GPU_CHECKS asks for; nothing when it is not set.
+/// Parses the environment variable SPINDRIFT_GPU_CHECKS; all modes are off when it is not set.
 core::Result<Checks> checksFromEnvironment();
 
 }  // namespace spindrift::gpu

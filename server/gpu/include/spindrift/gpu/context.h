@@ -1,4 +1,4 @@
-// One OpenGL 4.5 core context without a window, owned by one thread at a time and passed to whoever needs it.
+// An OpenGL 4.5 core context without a window. One thread at a time owns it; code that needs it gets it as an argument.
 #pragma once
 
 #include <algorithm>
@@ -21,11 +21,11 @@ class ProgramCache;
 class ShaderFolder;
 class Staging;
 
-/// What the next reader of shader writes is going to be; combine with |.
+/// Kinds of access that have to see earlier shader writes; combine with |.
 enum class Barrier : std::uint32_t {
   kStorage = 1,          ///< shader storage reads and writes
   kTexel = 2,            ///< texelFetch from a buffer texture
-  kStorageAndTexel = 3,  ///< both: the usual one between two passes
+  kStorageAndTexel = 3,  ///< both; the usual barrier between two passes
   kUniform = 4,          ///< uniform blocks
   kIndirect = 8,         ///< arguments of an indirect dispatch
   kBufferUpdate = 16,    ///< upload, download, clear, copy; Buffer and ReadbackRing issue it themselves
@@ -34,8 +34,8 @@ constexpr Barrier operator|(Barrier a, Barrier b) {
   return static_cast<Barrier>(static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b));
 }
 
-/// What lives on the device now, and what happened since the context was made. Tests count it per scene. The context's
-/// own memory (at most 8 MiB for uploads and downloads) is not in it.
+/// Objects on the device now, and counters since the context was made. Tests check them per scene. The context's own
+/// memory (at most 8 MiB for uploads and downloads) is not included.
 struct Ledger {
   std::uint64_t buffer_count = 0;         ///< live buffers
   std::uint64_t buffer_bytes = 0;         ///< bytes of the live buffers
@@ -48,22 +48,22 @@ struct Ledger {
   std::uint64_t uploaded_bytes = 0;       ///< bytes that they copied
 };
 
-/// A slow device for tests, on top of the real one: a fence is held back until enough later ones were inserted.
+/// Makes a device appear slow in tests: a fence is held back until enough later fences were inserted.
 class FenceDelay {
  public:
-  /// Waits for a fence time out at once: a device that hangs.
+  /// Every wait for a fence times out at once, as on a device that hangs.
   static constexpr std::uint64_t kForever = ~std::uint64_t{0};
 
-  /// From now on the device lags this many fences behind; a wait for a fence lets it catch up to that one. 0: no lag.
+  /// Sets how many fences the device lags behind; 0: no lag. A wait for a fence lets the device catch up to that fence.
   void set(std::uint64_t fence_count) { fence_count_ = fence_count; }
 
-  /// Called by Fence: the number of a new fence, counted from 1.
+  /// Called by Fence. Returns the number of the new fence, counted from 1.
   std::uint64_t insert() {
     ++inserted_;
     if (fence_count_ <= inserted_) reached_ = std::max(reached_, inserted_ - fence_count_);
     return inserted_;
   }
-  /// Called by Fence: whether the fence may pass. `waits`: the caller gave it time.
+  /// Called by Fence. Returns whether the fence may pass. `waits`: the caller waits for it with a timeout.
   bool passes(std::uint64_t number, bool waits) {
     if (fence_count_ == 0 || (waits && fence_count_ != kForever)) reached_ = std::max(reached_, number);
     return number <= reached_;
@@ -78,22 +78,23 @@ class FenceDelay {
 /// Buffers, programs, timers, fences and rings refer to their context and must be destroyed before it, on its thread.
 class Context {
  public:
-  /// Makes a context on the chosen device and makes it current on the calling thread. Error kNoDevice, with what was
-  /// tried and what to install, when nothing works; kInvalidInput when SPINDRIFT_GPU_CHECKS cannot be read.
+  /// Makes a context on the chosen device and makes it current on the calling thread. Errors: kNoDevice, listing the
+  /// devices tried and what to install, when none works; kInvalidInput when SPINDRIFT_GPU_CHECKS cannot be parsed.
   static core::Result<std::unique_ptr<Context>> create(const DeviceChoice& choice);
-  /// The same with the given test modes instead of those of the environment.
+  /// The same with the given test modes in place of those of the environment.
   static core::Result<std::unique_ptr<Context>> create(const DeviceChoice& choice, const Checks& checks);
-  /// Ends the process when faults of the barrier checker were not taken, so that no test can overlook them.
+  /// Ends the process if takeFaults() was not called after the barrier checker found faults, so that no test overlooks
+  /// them.
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  /// Binds the context to the calling thread, which owns it from then on; false when the driver refuses (for example
-  /// because another thread has not released it). A thread has one current context: the one before is unbound.
+  /// Binds the context to the calling thread, which owns it from then on. Returns false when the driver refuses, for
+  /// example because another thread has not released it. The thread's previous context is unbound.
   [[nodiscard]] bool makeCurrent();
   /// Unbinds it, so that another thread can take it with makeCurrent().
   void release();
-  /// Whether the calling thread owns the context and no other context has taken its place there.
+  /// Returns whether the calling thread owns the context and it is the thread's current one.
   [[nodiscard]] bool isOwnedHere() const;
 
   [[nodiscard]] const DeviceInfo& device() const { return device_; }
@@ -101,29 +102,27 @@ class Context {
   /// One line: which device was chosen and why.
   [[nodiscard]] const std::string& why() const { return why_; }
 
-  /// Makes shader writes so far visible to the readers named. Barriers between passes are the caller's; those around
-  /// upload, download, clear and copy are issued by Buffer and ReadbackRing where a shader's access makes them
-  /// necessary.
+  /// Makes earlier shader writes visible to the kinds of access named in `readers`. The caller issues the barriers
+  /// between passes. Buffer and ReadbackRing issue those around upload, download, clear and copy where they are needed.
   void barrier(Barrier readers);
   /// Hands queued work to the device; does not wait.
   void flush();
   /// Waits until the device is done. For tests and benchmarks: the simulation never waits.
   void finish();
 
-  /// Asks the driver whether the device was reset (GPU hang, driver update, device unplugged). Once true it stays true,
-  /// and the first time is logged. Afterwards nothing that the context holds is valid: fences answer
-  /// Fence::Status::kFailed, downloads give zeros, and everything made in the context has to be destroyed and made anew
-  /// in a new one. Stays false where the driver does not report resets (DeviceInfo::tells_of_resets). Costs a driver
-  /// call; ask once per tick.
+  /// Asks the driver whether the device was reset (GPU hang, driver update, device unplugged). Once true it stays true;
+  /// the first time is logged. From then on nothing in the context is valid: fences return Fence::Status::kFailed,
+  /// downloads return zeros, and all objects have to be destroyed and made again in a new context. Always false if the
+  /// driver does not report resets (DeviceInfo::tells_of_resets). Costs a driver call; call it once per tick.
   [[nodiscard]] bool isLost();
   /// For tests: isLost() is true from now on, as after a reset by the driver.
   void simulateLoss() { is_lost_.store(true); }
-  /// What isLost() last answered, without asking the driver. Any thread.
+  /// Returns the last result of isLost() without asking the driver. Any thread.
   [[nodiscard]] bool wasLost() const { return is_lost_.load(); }
 
-  /// Compiles the programs anew whose files in DeviceChoice::shader_folder changed since the last look, at most one look
-  /// in 0.3 s; does nothing without such a folder. What does not compile is logged with file and line, and the program
-  /// goes on as it was. Headers in shared/ are C++ as well: what changes there needs a build.
+  /// Recompiles the programs whose files in DeviceChoice::shader_folder have changed; checks at most once in 0.3 s, and
+  /// does nothing without such a folder. A compile error is logged with file and line, and the old program stays in
+  /// use. Headers in shared/ are also C++: changes there need a build.
   void reloadChangedShaders();
 
   /// OpenGL errors seen by the debug callback, and refused dispatches. 0 in a healthy program.
@@ -133,35 +132,35 @@ class Context {
   // Test modes -----------------------------------------------------------------------------------------------------
 
   [[nodiscard]] const Checks& checks() const { return checks_; }
-  /// What the barrier checker found since the last call, one line per fault, each different one once and at most 64.
+  /// Returns the faults that the barrier checker found since the last call: one line per distinct fault, at most 64.
   [[nodiscard]] std::vector<std::string> takeFaults();
-  /// Fills every scratch buffer (BufferContent::kScratch) with set bits, as Checks::poison does when they are made. For
-  /// tests: what a tick computes must not depend on what scratch buffers held before it.
+  /// Fills every scratch buffer (BufferContent::kScratch) with set bits, as Checks::poison does at creation. For tests:
+  /// the result of a tick must not depend on the earlier contents of scratch buffers.
   void poisonScratch();
-  /// Makes the device look slow or hanging to everybody who asks fences. Checks::lag_fences_count is where it begins.
+  /// Makes the device appear slow or hanging to all users of fences. Starts with Checks::lag_fences_count.
   FenceDelay& fenceDelay() { return fence_delay_; }
 
   // For the other classes of this module ---------------------------------------------------------------------------
 
-  /// Written by Buffer and Program.
+  /// For Buffer and Program, which update it.
   Ledger& ledgerEntry() { return ledger_; }
   void countError() { debug_error_count_.fetch_add(1); }
   AccessTracker& accesses() { return *accesses_; }
   Staging& staging() { return *staging_; }
   ProgramCache& programs() { return *programs_; }
-  /// Null: shaders are the embedded ones.
+  /// Null: the embedded shaders are used.
   [[nodiscard]] const ShaderFolder* shaderFolder() const { return shader_folder_.get(); }
   /// Issues the barrier with these OpenGL bits; nothing for 0.
   void barrierBits(std::uint32_t bits);
-  /// Takes over the storage of a readback ring that was destroyed while views of it were still held; it is deleted once
-  /// `in_use` says false, at the latest with the context.
+  /// Takes over the storage of a readback ring that was destroyed while views of it were still held. The storage is
+  /// deleted once `in_use` returns false, at the latest with the context.
   void retire(std::uint32_t buffer_id, std::size_t size_bytes, std::function<bool()> in_use);
-  /// Deletes retired storage that nobody reads any more.
+  /// Deletes retired storage that is no longer in use.
   void collectRetired();
-  /// Whether some is left.
+  /// Returns whether retired storage is left.
   [[nodiscard]] bool hasRetired() const { return !retired_.empty(); }
-  /// True the first time that the driver says the message with this id (at most 64 ids are remembered, further ones are
-  /// never new). Any thread.
+  /// Returns true the first time that the driver reports the message with this id. At most 64 ids are remembered;
+  /// further ids always return false. Any thread.
   bool isNewMessage(std::uint32_t id);
 
  private:

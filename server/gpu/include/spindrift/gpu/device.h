@@ -1,4 +1,4 @@
-// Which device draws the water: EGL devices that can make an OpenGL 4.5 core context, hardware first, software last.
+// Device selection: EGL devices that can make an OpenGL 4.5 core context, hardware first, software last.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace spindrift::gpu {
 
-/// What the user asked for with `--device auto|software|N`.
+/// The user's choice with `--device auto|software|N`.
 struct DeviceChoice {
   enum class Kind {
-    kAuto,      ///< the first hardware device that has what the program needs and runs a probe, else software
+    kAuto,      ///< the first hardware device that meets the program's needs and passes a probe, otherwise software
     kSoftware,  ///< Mesa's software rasteriser
     kIndex,     ///< the hardware device with this index in listDevices()
   };
   Kind kind = Kind::kAuto;
   int index = 0;  ///< for kIndex only
-  /// For work on shaders: their folder, read in place of the embedded ones; empty: those. See
+  /// For shader development: the folder from which shaders are read; empty: the embedded shaders. See
   /// Context::reloadChangedShaders().
   std::string shader_folder{};
 };
@@ -27,7 +27,7 @@ struct DeviceChoice {
 /// "auto", "software" or a device index (0…1023). Error kInvalidInput otherwise.
 core::Result<DeviceChoice> parseDeviceChoice(std::string_view text);
 
-/// What the context of a device allows; all zero for a device that does not work.
+/// Limits of a device's context; all zero for a device that does not work.
 struct DeviceLimits {
   std::int64_t max_ssbo_bytes = 0;             ///< one shader storage block
   std::int64_t max_texel_buffer_elements = 0;  ///< texels of one buffer texture
@@ -45,22 +45,22 @@ struct DeviceLimits {
 
 struct DeviceInfo {
   int index = -1;            ///< what `--device` takes; -1 for the software rasteriser
-  std::string name;          ///< GL_RENDERER, or what EGL says of a device that does not work
+  std::string name;          ///< GL_RENDERER, or EGL's name of a device that does not work
   std::string vendor;        ///< GL_VENDOR
   std::string gl_version;    ///< GL_VERSION
   std::string glsl_version;  ///< GL_SHADING_LANGUAGE_VERSION
   std::string egl_driver;    ///< EGL_VENDOR and EGL_VERSION of the display, e.g. "Mesa Project 1.5"
   std::string drm_file;      ///< device file, empty when the device has none
   bool is_software = false;
-  bool tells_of_resets = false;  ///< the driver reports when the device was reset; see Context::isLost()
-  std::string problem;           ///< empty: it works; otherwise one line why it does not
+  bool tells_of_resets = false;  ///< the driver reports device resets; see Context::isLost()
+  std::string problem;           ///< empty: the device works; otherwise the reason in one line
   DeviceLimits limits;
 };
 
-/// Every EGL device, tried and described: hardware in EGL's order, each once even if several vendor libraries list it,
-/// then one software rasteriser. Devices that cannot make an OpenGL 4.5 core context, allow less than the program needs
-/// or fail a small probe program are listed with `problem` set. Leaves the calling thread's current context as it
-/// was.
+/// Tries and describes every EGL device: hardware in EGL's order, each device once even if several vendor libraries
+/// list it, then one software rasteriser. Devices that cannot make an OpenGL 4.5 core context, are below the program's
+/// needs or fail a small probe program are listed with `problem` set. Leaves the calling thread's current context
+/// unchanged.
 std::vector<DeviceInfo> listDevices();
 
 }  // namespace spindrift::gpu

@@ -1,4 +1,4 @@
-// Shaders as the build expanded, validated and embedded them.
+// Shaders embedded in the program; the build expands and validates them.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace spindrift::gpu {
 
-/// From line `first_line` of the expanded text on, lines come from `file`, starting at `file_line`. All count from 1.
+/// Maps the lines of the expanded text from `first_line` on to `file`, starting at `file_line`. All count from 1.
 struct LineRange {
   std::uint32_t first_line;
   std::string_view file;  ///< relative to shaders/
@@ -22,16 +22,16 @@ struct EmbeddedShader {
   std::span<const LineRange> lines;  ///< ascending in first_line, the first is 1
 };
 
-/// All of them, ordered by path; generated at build time.
+/// Returns all shaders, ordered by path; generated at build time.
 std::span<const EmbeddedShader> embeddedShaders();
 
-/// Null when no such shader was embedded.
+/// Returns null when no such shader was embedded.
 const EmbeddedShader* findShader(std::string_view path);
 
-/// "sph/density.comp:12" for a line of the expanded text.
+/// Returns "sph/density.comp:12" for a line of the expanded text.
 std::string sourcePosition(const EmbeddedShader& shader, std::uint32_t line);
 
-/// A driver's log with "0:12(5): …" (Mesa) and "0(12) : …" (NVIDIA) turned into file and line.
+/// Returns a driver's log with "0:12(5): …" (Mesa) and "0(12) : …" (NVIDIA) replaced by file and line.
 std::string translateLog(const EmbeddedShader& shader, std::string_view log);
 
 }  // namespace spindrift::gpu

@@ -1,4 +1,4 @@
-// A mark in the stream of commands that tells when the device has done everything before it.
+// A fence in the command stream: reports when the device has finished all commands before it.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@
 
 namespace spindrift::gpu {
 
-/// Tells when everything that was submitted before it is done. Fences of one context are passed in the order in which
-/// they were inserted. Move-only; used and destroyed on the context's thread, before the context.
+/// Fences of one context are passed in the order of their insertion. Move-only; used and destroyed on the context's
+/// thread, before the context.
 class Fence {
  public:
   enum class Status {
@@ -18,14 +18,14 @@ class Fence {
     kFailed,   ///< it will never be passed: the device was lost (Context::isLost()), or the driver refuses to wait
   };
 
-  /// Puts a fence behind all work submitted so far and hands that work to the device. Does not wait.
+  /// Inserts a fence after all commands submitted so far and flushes them to the device. Does not wait.
   static Fence insert(Context& ctx);
-  Fence() = default;  ///< holds nothing: kPassed
+  Fence() = default;  ///< empty: kPassed
   ~Fence();
   Fence(Fence&& other) noexcept;
   Fence& operator=(Fence&& other) noexcept;
 
-  /// Waits until the fence is passed or the device lost, at most `timeout`. Zero asks without waiting. An answer other
+  /// Waits until the fence is passed or the device is lost, at most `timeout`; zero returns at once. A result other
   /// than kPending is final.
   [[nodiscard]] Status wait(std::chrono::nanoseconds timeout);
   [[nodiscard]] Status poll() { return wait(std::chrono::nanoseconds(0)); }
@@ -34,7 +34,7 @@ class Fence {
   void finish(Status status);
 
   Context* ctx_ = nullptr;
-  void* sync_ = nullptr;  ///< GLsync; null once the answer is final
+  void* sync_ = nullptr;  ///< GLsync; null once the result is final
   Status status_ = Status::kPassed;
   std::uint64_t number_ = 0;  ///< in the order of insertion
 };

@@ -1,4 +1,4 @@
-// Time of named passes on the device, without ever waiting for it.
+// Device times of named passes, read without waiting.
 #pragma once
 
 #include <cstddef>
@@ -11,27 +11,27 @@
 
 namespace spindrift::gpu {
 
-/// What one name cost since the last take().
+/// Cost of one name since the last take().
 struct PassCost {
   std::string name;
-  double mean_ms = 0.0;           ///< per scope; times the scopes of a tick gives the time of a tick
+  double mean_ms = 0.0;           ///< per scope; multiply by the scopes per tick to get the time per tick
   double total_ms = 0.0;          ///< of the scopes whose result has arrived
   std::uint64_t scope_count = 0;  ///< scopes whose result has arrived
 };
 
-/// Pairs of timestamp queries in a bounded ring, read when they are ready; hardware and software alike. Measured on
-/// llvmpipe 22.3: a dispatch returns when it is done, timestamps around one of 126.68 ms wall time differ by 126.66 ms,
-/// while an elapsed-time query says 0 there, which is why this uses timestamps.
-/// Belongs to the context's thread; must not outlive its context.
+/// Pairs of timestamp queries in a bounded ring, read when they are ready, on hardware and software alike. Timestamps
+/// and not elapsed-time queries, because measured on llvmpipe 22.3 a dispatch returns when it is done: timestamps
+/// around one of 126.68 ms wall time differ by 126.66 ms, while an elapsed-time query returns 0. Belongs to the
+/// context's thread; must not outlive its context.
 class PassTimers {
  public:
-  /// `capacity_count`: scopes whose result may be outstanding; beyond it scopes are not measured, and counted.
+  /// `capacity_count`: scopes whose result may be outstanding; further scopes are counted but not measured.
   explicit PassTimers(Context& ctx, std::size_t capacity_count = 512);
   ~PassTimers();
   PassTimers(const PassTimers&) = delete;
   PassTimers& operator=(const PassTimers&) = delete;
 
-  /// Open until destroyed. Scopes may nest; the outer then includes the inner.
+  /// Measures until it is destroyed. Scopes may nest; the outer one includes the inner one.
   class [[nodiscard]] Scope {
    public:
     ~Scope();
@@ -45,12 +45,13 @@ class PassTimers {
     std::size_t query_index_;
   };
 
-  /// Measures what is submitted until the scope ends, under `name`.
+  /// Measures the commands submitted until the scope ends, under `name`.
   Scope scope(std::string_view name) { return Scope(*this, nameIndex(name)); }
 
-  /// Means since the last take(), in the order in which names first appeared; names without a new result are left out.
+  /// Returns means since the last take(), in the order in which names first appeared; names without a new result are
+  /// left out.
   [[nodiscard]] std::vector<PassCost> take();
-  /// Scopes not measured because the ring was full.
+  /// Number of scopes that were not measured because the ring was full.
   [[nodiscard]] std::uint64_t droppedCount() const { return dropped_count_; }
 
  private:

@@ -19,15 +19,15 @@ namespace spindrift::gpu {
 /// Preprocessor names and values put before the shader's first line.
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-/// A uniform block or a storage block as the linked program lays it out.
+/// Layout of a uniform block or storage block in the linked program.
 struct BlockLayout {
   bool is_storage = false;
   std::uint32_t binding = 0;
-  std::uint32_t size_bytes = 0;                  ///< for a storage block with an unsized array: at least this
+  std::uint32_t size_bytes = 0;                  ///< for a storage block with an unsized array: the minimum
   std::map<std::string, std::uint32_t> offsets;  ///< member -> offset in bytes; arrays as "name[0]"
 };
 
-/// A plain uniform as OpenGL takes it.
+/// A plain uniform in OpenGL's types.
 struct UniformValue {
   enum class Type { kUint, kInt, kFloat };
   std::string name;
@@ -39,56 +39,56 @@ struct UniformValue {
 struct CompiledProgram;
 
 /// Move-only; must not outlive its context. Programs with the same path and defines are compiled once per context and
-/// share what the driver made of them; the values of their uniforms are each one's own.
+/// share the compiled program; each Program has its own uniform values.
 class Program {
  public:
-  /// Compiles "sph/density.comp" with `defines`. Error kInternal names the shader and, for each complaint of the
-  /// driver, the file and line it was written in; a path that was not embedded is an error too.
+  /// Compiles "sph/density.comp" with `defines`. Error kInternal names the shader and, for each driver message, the
+  /// original file and line; a path that was not embedded is an error too.
   static core::Result<Program> create(Context& ctx, std::string_view shader_path, const Defines& defines = {});
-  Program();  ///< holds nothing; only to be assigned to
+  Program();  ///< empty; only to be assigned to
   ~Program();
   Program(Program&& other) noexcept;
   Program& operator=(Program&& other) noexcept;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::uint32_t id() const;  ///< the OpenGL name; 0 when it holds nothing
+  [[nodiscard]] std::uint32_t id() const;  ///< the OpenGL name; 0 when empty
   explicit operator bool() const { return compiled_ != nullptr; }
 
-  /// The local size as the driver linked it: the only place host code takes it from.
+  /// The local size from the linked program; host code takes it from nowhere else.
   [[nodiscard]] std::array<std::uint32_t, 3> groupSize() const;
 
-  /// Runs at least this many invocations: items over the local size, rounded up. Shaders guard the excess. Zero items
-  /// run nothing. False, logged and counted in Context::debugErrorCount(), when more groups would be needed than the
-  /// device allows; then nothing runs.
+  /// Runs at least this many invocations: the item count divided by the local size, rounded up. Shaders guard the
+  /// excess. Zero items run nothing. Returns false and runs nothing when more groups would be needed than the device
+  /// allows; this is logged and counted in Context::debugErrorCount().
   bool dispatch(std::uint32_t x_count, std::uint32_t y_count = 1, std::uint32_t z_count = 1);
-  /// Runs exactly this many groups; bounded likewise.
+  /// Runs exactly this many groups, with the same limit.
   bool dispatchGroups(std::uint32_t x_count, std::uint32_t y_count = 1, std::uint32_t z_count = 1);
   /// Runs the three group counts that a shader wrote at `offset_bytes` (a multiple of 4).
   void dispatchIndirect(const Buffer& arguments, std::size_t offset_bytes = 0);
 
-  /// Sets a plain uniform. A uniform that the compiler dropped is ignored; a name that the shader's text does not
+  /// Sets a plain uniform. A uniform that the compiler removed is ignored. A name that the shader's text does not
   /// contain is a bug of the caller: asserted in debug builds, otherwise logged once and counted.
   void setUniform(std::string_view name, std::uint32_t value);
   void setUniform(std::string_view name, std::int32_t value);
   void setUniform(std::string_view name, float value);
 
-  /// Blocks by the name after `uniform` or `buffer`; a block that the shader does not use may be missing. For tests
-  /// that compare shaders/shared with what the driver made of it.
+  /// Returns the blocks by the name after `uniform` or `buffer`; blocks that the shader does not use may be missing.
+  /// For tests that compare shaders/shared with the driver's layout.
   [[nodiscard]] std::map<std::string, BlockLayout> blocks() const;
 
  private:
   [[nodiscard]] std::int32_t location(std::string_view name);
   void setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits);
-  /// Finds the uniforms' locations again when the shader was compiled anew.
+  /// Looks up the uniform locations again after the shader was recompiled.
   void followReload();
-  /// Makes the program, its uniforms and the memory that it reads ready for a dispatch.
+  /// Prepares the program, its uniforms and the memory that it reads for a dispatch.
   void prepare(const Buffer* arguments);
 
   Context* ctx_ = nullptr;
   std::string path_;
   std::shared_ptr<CompiledProgram> compiled_;
-  std::uint64_t handle_ = 0;      ///< unlike that of any other Program of the context
-  std::uint32_t generation_ = 0;  ///< of `compiled_`, which `uniforms_` were located in
+  std::uint64_t handle_ = 0;      ///< unique among the Programs of the context
+  std::uint32_t generation_ = 0;  ///< generation of `compiled_` for which `uniforms_` were located
   std::vector<UniformValue> uniforms_;
 };
 

@@ -1,4 +1,4 @@
-// From the device to other threads without waiting: a persistently mapped ring of slots, each guarded by a fence.
+// Copies data from the device to other threads without waiting: a persistently mapped ring of slots, each with a fence.
 #pragma once
 
 #include <chrono>
@@ -18,12 +18,13 @@
 namespace spindrift::gpu {
 
 /// begin() and poll() belong to the context's thread; finished slots may be read and dropped on any thread. A slot is
-/// free again once its last reference is gone. Destroying the ring while views are held is safe until the context goes.
+/// free again once its last reference is dropped. The ring may be destroyed while views are held; they stay valid until
+/// the context is destroyed.
 class ReadbackRing {
   struct State;
 
  public:
-  /// A finished slot: what was copied, readable as long as a reference lives. Dropping it makes no OpenGL call.
+  /// A finished slot with the copied data, readable while a reference exists. Dropping it makes no OpenGL call.
   class Slot {
    public:
     ~Slot();
@@ -31,7 +32,7 @@ class ReadbackRing {
     Slot& operator=(const Slot&) = delete;
 
     [[nodiscard]] std::uint64_t tag() const { return tag_; }
-    /// The slot up to the end of the furthest copy.
+    /// Bytes of the slot up to the end of the last copied range.
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
     /// The same as 32-bit words; a tail of 1 to 3 bytes is left out.
     [[nodiscard]] std::span<const std::uint32_t> words() const;
@@ -45,18 +46,18 @@ class ReadbackRing {
     std::span<const std::byte> bytes_;
   };
 
-  /// A slot being filled. Dropped without submit(), the slot is free again. Must not outlive the ring.
+  /// A slot being filled. If it is dropped without submit(), the slot is free again. Must not outlive the ring.
   class Recording {
    public:
     ~Recording();
     Recording(Recording&& other) noexcept;
     Recording& operator=(Recording&&) = delete;
 
-    /// Copies on the device; makes shader writes so far visible to the copy itself. False, and nothing is copied, when
-    /// it would not fit the slot or the source.
+    /// Copies on the device; earlier shader writes are visible to the copy. Returns false and copies nothing when the
+    /// data would not fit the slot or the source.
     [[nodiscard]] bool copyFrom(const Buffer& source, std::size_t source_offset_bytes, std::size_t size_bytes,
                                 std::size_t offset_bytes);
-    /// Puts the fence and hands the work to the device; poll() returns the slot, with this tag, once it is done.
+    /// Inserts the fence and flushes the commands to the device; poll() returns the slot with this tag once it is done.
     void submit(std::uint64_t tag);
 
    private:
@@ -74,21 +75,22 @@ class ReadbackRing {
   ReadbackRing(const ReadbackRing&) = delete;
   ReadbackRing& operator=(const ReadbackRing&) = delete;
 
-  /// A free slot, or nothing when every slot is being filled, in flight or read: the caller drops the frame.
+  /// Returns a free slot, or nullopt when every slot is being filled, in flight or read; the caller then drops the
+  /// frame.
   [[nodiscard]] std::optional<Recording> begin();
-  /// Slots whose fence has been passed, in the order of submit(). Never waits. Slots that were in flight when the
-  /// device was lost are free again and counted in lostCount(); they are not returned.
+  /// Returns slots whose fence has been passed, in the order of submit(). Never waits. Slots that were in flight when
+  /// the device was lost become free, are counted in lostCount() and are not returned.
   [[nodiscard]] std::vector<std::shared_ptr<const Slot>> poll();
-  /// As poll(), after waiting at most `limit` for all that are in flight.
+  /// As poll(), but first waits at most `limit` for all slots in flight.
   [[nodiscard]] std::vector<std::shared_ptr<const Slot>> wait(std::chrono::nanoseconds limit);
 
   [[nodiscard]] std::size_t slotBytes() const;
   [[nodiscard]] std::size_t slotCount() const;
-  /// Slots not free now.
+  /// Number of slots that are not free.
   [[nodiscard]] std::size_t usedCount() const;
-  /// How often begin() returned nothing.
+  /// Number of times that begin() returned nullopt.
   [[nodiscard]] std::uint64_t refusedCount() const { return refused_count_; }
-  /// Slots submitted whose data never came because the device was lost.
+  /// Number of submitted slots whose data was lost with the device.
   [[nodiscard]] std::uint64_t lostCount() const { return lost_count_; }
 
  private:

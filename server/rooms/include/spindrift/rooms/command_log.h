@@ -1,4 +1,4 @@
-// The log of a room (record.proto): written while it runs, read by `replay`.
+// The log of a room (record.proto): written while the room runs, read by `replay`.
 #pragma once
 
 #include <cstdint>
@@ -14,25 +14,25 @@
 
 namespace spindrift::rooms {
 
-/// A log that has grown to this size ends there.
+/// A log ends when it has reached this size.
 inline constexpr std::uint64_t kLogMaxBytes = 1ull << 30;
 
-/// Notes the device and its driver, on which the states of a run depend.
+/// Writes the device and its driver into the header, because the states of a run depend on them.
 void describeDevice(v1::RecordHeader& header, const gpu::DeviceInfo& device);
-/// Why states may differ although everything else is the same: one line that names the recorded device or driver and
-/// the one here. Nothing when they are the same.
+/// Returns one line with the recorded device or driver and the present one if they differ: then states may differ with
+/// everything else equal. Returns nullopt when they are the same.
 std::optional<std::string> deviceDifference(const v1::RecordHeader& header, const gpu::DeviceInfo& device);
 
-/// Appends records; each is with the system when the call returns. What cannot be written ends the log with a line in
-/// the program's own log, not the room.
+/// Appends records; each has been passed to the operating system when the call returns. A write error ends the log, not
+/// the room, with a line in the program's own log.
 class CommandLogWriter {
  public:
-  /// A new file ROOM-UTC.spinrec in the folder, which is made if need be. Error: kUnavailable.
+  /// Creates the file ROOM-UTC.spinrec in the folder, which is made if necessary. Error: kUnavailable.
   static core::Result<std::unique_ptr<CommandLogWriter>> create(const std::filesystem::path& folder,
                                                                 const v1::RecordHeader& header);
 
   void write(const v1::Record& record);
-  /// Nothing more is written.
+  /// Returns true when nothing more is written.
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] std::uint32_t hashInterval_ticks() const { return hash_interval_ticks_; }
@@ -49,13 +49,14 @@ class CommandLogWriter {
 
 class CommandLogReader {
  public:
-  /// kUnavailable for a file that cannot be read, kInvalidInput for one that is no log or has no whole header.
+  /// Errors: kUnavailable for a file that cannot be read, kInvalidInput for one that is no log or has no complete
+  /// header.
   static core::Result<std::unique_ptr<CommandLogReader>> open(const std::filesystem::path& file);
 
   [[nodiscard]] const v1::RecordHeader& header() const { return header_; }
-  /// The next whole record; nullopt at the end, whole or not: truncation() tells.
+  /// Returns the next complete record; nullopt at the end or where the log is damaged, see truncation().
   std::optional<v1::Record> next();
-  /// Why reading ended before the end of the file, where it did: "... at byte 1234".
+  /// The reason why reading stopped before the end of the file, if it did: "... at byte 1234".
   [[nodiscard]] const std::optional<std::string>& truncation() const { return truncation_; }
 
  private:

@@ -1,5 +1,5 @@
-// Commands on their way to one room. Each sender has a lane, lanes take turns, so that nobody waits behind what another
-// one sent; within a lane commands keep their order.
+// Commands waiting for one room. Each sender has a lane, and lanes take turns, so that no sender waits behind the
+// backlog of another; within a lane commands keep their order.
 #pragma once
 
 #include <chrono>
@@ -16,8 +16,8 @@
 
 namespace spindrift::rooms {
 
-/// Commands that rebuild or upload water (reset, scene, parameters, boats that come and go): they have a budget of
-/// time.
+/// Returns whether the command rebuilds or uploads water (reset, scene, parameters, adding and removing boats). Such
+/// commands have a time budget.
 [[nodiscard]] bool isHeavy(const core::Action& action);
 
 /// Many producers on any thread, one consumer on the simulation thread.
@@ -27,44 +27,45 @@ class CommandQueue {
 
   struct Bounds {
     std::size_t max_count = 4096;                    ///< commands waiting in all lanes
-    std::size_t lane_max_count = 512;                ///< commands of one sender: above its burst
+    std::size_t lane_max_count = 512;                ///< commands of one sender; more than its burst
     std::size_t lane_heavy_max_count = 64;           ///< heavy commands of one sender
-    std::chrono::milliseconds heavy_wait_max{1000};  ///< heavy commands that wait longer are given up
+    std::chrono::milliseconds heavy_wait_max{1000};  ///< heavy commands that wait longer are rejected
   };
 
   CommandQueue() = default;
   explicit CommandQueue(const Bounds& bounds) : bounds_(bounds) {}
 
-  /// Queues the command, or returns one line that says which bound it met.
+  /// Queues the command; otherwise returns one line that names the bound that was reached.
   [[nodiscard]] std::optional<std::string> tryPush(core::Command command, TimePoint now);
 
-  /// Commands that one piece of work answers: in order of arrival, at least one. All are alike in kind: one command; or
-  /// values for the same parameter that one sender sent in a row; or the same reset or scene change by any senders.
+  /// Commands that are carried out together, in order of arrival, at least one: one command; or consecutive values of
+  /// one sender for the same parameter; or the same reset or scene change from any senders.
   using Batch = std::vector<core::Command>;
 
-  /// What may be taken now besides the light commands.
+  /// Kinds of commands that may be taken now in addition to light ones.
   struct Allowed {
     bool heavy = true;
-    bool scene_change = true;  ///< needs `heavy` as well
+    bool scene_change = true;  ///< requires `heavy` too
   };
-  /// The next batch, from the lane whose turn it is; nullopt when no lane has a command that may go.
+  /// Returns the next batch, from the lane whose turn it is; nullopt when no lane has an allowed command.
   [[nodiscard]] std::optional<Batch> next(const Allowed& allowed);
 
-  /// No command of the batch's senders is taken until release(): they sent it after this one, which takes a while.
+  /// Blocks the lanes of the batch's senders until release(), because this batch takes a while and later commands must
+  /// wait.
   void hold(const Batch& batch);
   void release(const Batch& batch);
 
-  /// Takes the first commands of lanes that equal `action`, held or not: they are answered with it.
+  /// Takes the first commands of lanes, held or not, that equal `action`: they get the same answer.
   [[nodiscard]] Batch takeEqual(const core::Action& action);
   /// Takes heavy commands that have waited for longer than `heavy_wait_max` and do not belong to a held lane.
   [[nodiscard]] Batch takeExpired(TimePoint now);
-  /// Takes everything.
+  /// Takes all commands.
   [[nodiscard]] Batch drain();
 
   [[nodiscard]] std::size_t size() const;
 
  private:
-  /// A session's lane is its number; requests have a lane each, beyond those.
+  /// The lane of a session is its number; each HTTP request has a lane of its own with a larger number.
   using LaneKey = std::uint64_t;
   struct Entry {
     core::Command command;
@@ -77,16 +78,16 @@ class CommandQueue {
   };
 
   static LaneKey keyOf(const core::Sender& sender);
-  // With the mutex held:
+  // Call with the mutex held:
   core::Command pop(Lane& lane);
   void takeEqual(const core::Action& action, Batch& out);
-  /// Forgets a lane without commands, unless it is held.
+  /// Removes a lane without commands, unless it is held.
   void tidy(LaneKey key);
 
   const Bounds bounds_{};
   mutable std::mutex mutex_;
   std::map<LaneKey, Lane> lanes_;
-  std::deque<LaneKey> turns_;  ///< lanes with commands, the next one first
+  std::deque<LaneKey> turns_;  ///< lanes with commands, in the order of their turns
   std::size_t count_ = 0;
 };
 

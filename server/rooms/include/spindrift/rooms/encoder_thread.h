@@ -1,4 +1,5 @@
-// The encoder's thread: finished frames in, one shared message a layer out, to whoever watches.
+// The encoder thread: takes finished frames and publishes one shared message per (layer, packing, level) that is
+// watched.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace spindrift::rooms {
 
-/// Holds at most one waiting frame a room: a newer one replaces it, and the loss is counted.
+/// Holds at most one waiting frame per room; a newer one replaces it, and the loss is counted.
 class EncoderThread {
  public:
   explicit EncoderThread(FrameOutlet& outlet);
@@ -24,15 +25,15 @@ class EncoderThread {
   EncoderThread(const EncoderThread&) = delete;
   EncoderThread& operator=(const EncoderThread&) = delete;
 
-  /// Any thread; never blocks on encoding.
+  /// Any thread; never waits for encoding.
   void submit(const std::string& room, core::FrameView frame);
-  /// The room is no more.
+  /// Call it when the room was closed.
   void forget(const std::string& room);
-  /// Ends the thread; frames still waiting, and those submitted afterwards, are dropped. Idempotent.
+  /// Ends the thread. Waiting frames and those submitted later are dropped. Idempotent.
   void stop();
 
   [[nodiscard]] std::uint64_t replacedCount() const;
-  /// Messages encoded for a stream of a room so far: one a frame and level, however many clients watch.
+  /// Number of messages encoded so far for a stream of a room: one per frame and level, for any number of clients.
   [[nodiscard]] std::uint64_t encodeCount(const std::string& room, codec::Stream stream) const;
 
   /// Cost of one level of a stream, summed over all rooms since the start.
@@ -47,7 +48,7 @@ class EncoderThread {
 
  private:
   void loop();
-  /// Encodes what somebody watches of a frame, and publishes it.
+  /// Encodes the watched streams and levels of a frame and publishes them.
   Costs encode(const std::string& room, const core::FrameView& frame, codec::FrameEncoder& encoder);
 
   FrameOutlet& outlet_;
@@ -56,7 +57,7 @@ class EncoderThread {
   std::map<std::string, core::FrameView> waiting_;
   std::uint64_t replaced_count_ = 0;
   bool stopping_ = false;
-  /// Grows and shrinks under mutex_; used by the thread.
+  /// Changed under mutex_; the encoders are used by the thread.
   std::map<std::string, std::shared_ptr<codec::FrameEncoder>> encoders_;
   Costs costs_{};
   std::thread thread_;

@@ -1,4 +1,4 @@
-// Where encoded frames go, and which of them are needed.
+// The receiver of encoded frames, which also says which of them are needed.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace spindrift::rooms {
 
-/// Called on the encoder's thread; must not block.
+/// Called on the encoder thread; must not block.
 class FrameOutlet {
  public:
   virtual ~FrameOutlet() = default;
 
-  /// What the sessions that watch a stream of a room need of its next frame. `reduced_count`: levels of the layer from
-  /// this one on are all kFull.
+  /// Returns the demand for the next frame of a stream by the sessions that watch it. `reduced_count`: number of levels
+  /// that downsample the layer; the others equal kFull.
   [[nodiscard]] virtual core::LayerDemand demand(const std::string& room, codec::Stream stream,
                                                  std::uint32_t reduced_count) const = 0;
-  /// One level of a frame, to every session that watches it.
+  /// Sends one level of a frame to every session that watches it.
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                        core::Level level, std::uint32_t reduced_count) = 0;
 };

@@ -1,4 +1,4 @@
-// When a counter that grows is worth telling people about.
+// Rate limit for reports of a growing counter.
 #pragma once
 
 #include <chrono>
@@ -6,21 +6,21 @@
 
 namespace spindrift::rooms {
 
-/// News of growth, at most one an interval; growth in between is told with the next.
+/// Reports growth at most once per interval; the next report includes all growth in between.
 class GrowthNews {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
   explicit GrowthNews(std::chrono::steady_clock::duration interval) : interval_(interval) {}
 
-  /// Whether to tell `count` now; then it counts as told.
+  /// Returns whether to report `count` now; if so, it counts as reported.
   [[nodiscard]] bool tell(std::uint64_t count, TimePoint now) {
     if (count == told_count_ || now < next_) return false;
     told_count_ = count;
     next_ = now + interval_;
     return true;
   }
-  /// The counter begins again.
+  /// Sets a new starting value of the counter.
   void restart(std::uint64_t count) { told_count_ = count; }
 
  private:

@@ -1,4 +1,4 @@
-// When a room's next tick is due, and how fast its time really runs.
+// Schedules a room's ticks and measures its real-time factor.
 #pragma once
 
 #include <chrono>
@@ -6,25 +6,25 @@
 
 namespace spindrift::rooms {
 
-/// Simulated time against wall time. When the machine cannot keep up the debt is dropped: time slows, and
-/// realTimeFactor() says so.
+/// Compares simulated time with wall time. When the machine cannot keep up, the lag is dropped: simulated time runs
+/// slower, and realTimeFactor() reports it.
 class RealTimeClock {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
   explicit RealTimeClock(double tick_s) : tick_s_(tick_s) {}
 
-  /// Wanted simulated seconds per wall second; takes effect at the next tick.
+  /// Sets the wanted simulated seconds per wall second; takes effect at the next tick.
   void setSpeed(double speed) { speed_ = speed; }
   [[nodiscard]] double speed() const { return speed_; }
-  /// Starts (again) at `now`, without debt.
+  /// Starts (again) at `now`, without lag.
   void restart(TimePoint now);
 
   [[nodiscard]] TimePoint due() const { return due_; }
-  /// A tick was done, ending at `now`.
+  /// Notes that a tick ended at `now`.
   void ticked(TimePoint now);
 
-  /// Simulated seconds per wall second over the last second (less right after a start).
+  /// Returns simulated seconds per wall second over the last second (too low right after a start).
   [[nodiscard]] double realTimeFactor() const;
 
  private:
@@ -32,7 +32,7 @@ class RealTimeClock {
   double speed_ = 1.0;
   TimePoint due_{};
   TimePoint start_{};
-  std::deque<TimePoint> ticks_;  ///< ends of the ticks of the last second: bounded by the tick rate times the speed
+  std::deque<TimePoint> ticks_;  ///< end times of the ticks of the last second; bounded by tick rate times speed
 };
 
 }  // namespace spindrift::rooms

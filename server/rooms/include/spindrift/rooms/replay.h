@@ -1,4 +1,4 @@
-// Runs the log of a room again and compares the state hashes in it.
+// Runs the log of a room again and compares the state hashes that it contains.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,25 @@
 namespace spindrift::rooms {
 
 struct ReplayOutcome {
-  std::uint64_t tick_count = 0;     ///< the last record's tick
-  std::uint64_t command_count = 0;  ///< carried out again
-  std::uint64_t hash_count = 0;     ///< compared
-  /// The first hash that differs; nothing is compared after it.
+  std::uint64_t tick_count = 0;     ///< tick of the last record
+  std::uint64_t command_count = 0;  ///< commands carried out again
+  std::uint64_t hash_count = 0;     ///< hashes compared
+  /// The first hash that differs; no later one is compared.
   struct Difference {
     std::uint64_t tick = 0;
-    std::uint64_t last_equal_tick = 0;  ///< the state was still the same here
+    std::uint64_t last_equal_tick = 0;  ///< last tick at which the states were equal
     std::uint64_t recorded = 0;
     std::uint64_t found = 0;
   };
   std::optional<Difference> difference;
-  std::optional<std::uint64_t> recovered_tick;  ///< the watchdog had stepped in: what follows need not repeat
-  /// Another device or driver than the log's: states may differ for that alone.
+  std::optional<std::uint64_t> recovered_tick;  ///< tick of a watchdog intervention; later states need not repeat
+  /// Device or driver that differs from the log's, which alone may change states.
   std::optional<std::string> device_difference;
-  std::optional<std::string> truncation;  ///< the log has no end: where and why
+  std::optional<std::string> truncation;  ///< reason and place if the log is not complete
 };
 
-/// Errors: the scene's and the device's; kCheckFailed for a command that is not carried out as it was recorded.
-/// `progress` is called now and then with the tick.
+/// Errors: those of the scene and the device; kCheckFailed for a command whose outcome differs from the record.
+/// `progress` is called from time to time with the tick.
 core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLogReader& log,
                                       const std::function<void(std::uint64_t)>& progress = {});
 

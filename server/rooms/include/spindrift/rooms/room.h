@@ -1,5 +1,5 @@
-// One room: a scene, its water, its clock, and the commands on their way to it. Lives on the simulation thread; the few
-// functions that other threads may call say so.
+// One room: a scene, its water, its clock and its waiting commands. Lives on the simulation thread, except for the
+// functions marked "any thread".
 #pragma once
 
 #include <chrono>
@@ -32,37 +32,37 @@
 
 namespace spindrift::rooms {
 
-/// 1 to 32 letters, digits, '_' or '-'.
+/// Returns whether the name has 1 to 32 letters, digits, '_' or '-'.
 bool isRoomName(const std::string& name);
 
-/// Name in the URL (letters, digits, '_', '-') and the checked scene with its defaults filled in.
+/// Name in the URL (see isRoomName()), and the checked scene with its defaults filled in.
 struct RoomSetup {
   std::string name;
   v1::Scene scene;
 };
 
-/// What every room of a server has in common. Outlives the rooms.
+/// Settings shared by all rooms of a server. Outlives the rooms.
 struct RoomRules {
-  SceneCatalog scenes;                      ///< what rooms can be changed to
-  std::chrono::milliseconds grace{20'000};  ///< a lost connection's person and boats are kept so long
-  std::filesystem::path record_folder;      ///< logs go here; empty: none are written
-  std::uint32_t hash_interval_ticks = 60;   ///< of the logs
+  SceneCatalog scenes;                      ///< scenes that a room can change to
+  std::chrono::milliseconds grace{20'000};  ///< how long a lost connection's person and boats are kept
+  std::filesystem::path record_folder;      ///< folder for logs; empty: no logs
+  std::uint32_t hash_interval_ticks = 60;   ///< interval of the state hashes in logs
 };
 
-/// What other threads may know of a room: immutable, replaced when it changes.
+/// State of a room for other threads: immutable, replaced when it changes.
 struct RoomSnapshot {
-  v1::Scene scene;  ///< with parameters as they are now
+  v1::Scene scene;  ///< with current parameter values
   bool paused = false;
   double speed = 1.0;
-  v1::BoatList boats;  ///< on the water now
+  v1::BoatList boats;  ///< boats on the water now
 };
 
-/// How a room does, for /metrics and lists; renewed a few times a second.
+/// Condition of a room, for /metrics and lists; updated a few times per second.
 struct RoomVitals {
   std::uint64_t tick = 0;
   double time_s = 0.0;
   bool asleep = false;
-  bool lost = false;  ///< the device failed; the water is being built anew
+  bool lost = false;  ///< the device failed; new water is being built
   std::uint32_t waiting_command_count = 0;
   std::uint64_t dropped_frame_count = 0;
   core::DiagnosticsView diagnostics;
@@ -72,8 +72,8 @@ class Room {
  public:
   using TimePoint = RealTimeClock::TimePoint;
 
-  /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes what
-  /// the room changes to; it and `outlets` outlive the room. Errors: those of the log.
+  /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes the
+  /// water of scene changes. `builder` and `outlets` outlive the room. Errors: those of the log.
   static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
                                                     const RoomRules& rules, WaterBuilder& builder,
                                                     RoomOutlets& outlets);
@@ -82,26 +82,26 @@ class Room {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::shared_ptr<const RoomSnapshot> snapshot() const;
   [[nodiscard]] std::shared_ptr<const RoomVitals> vitals() const;
-  /// Who is here.
+  /// The people in the room.
   [[nodiscard]] Roster& roster() { return roster_; }
   [[nodiscard]] const Roster& roster() const { return roster_; }
-  /// The one way in, for sessions and requests alike: checks the sender's role and the scene, and queues the command.
-  /// Or why not, with the command's number; a full queue is BUSY.
+  /// The only entry for commands, from sessions and requests: checks the sender's role and the scene, then queues the
+  /// command. Otherwise returns the rejection with the command's number; a full queue is BUSY.
   [[nodiscard]] std::optional<wire::CommandRejection> admit(core::Command command);
 
   // Simulation thread.
   void start(TimePoint now);
-  /// When the room wants to run again.
+  /// Returns the time of the next needed run().
   [[nodiscard]] TimePoint due(TimePoint now) const;
-  /// Drains commands, steps if neither paused nor asleep, asks for a frame when one is due and watched, hands over
-  /// finished ones. At most one tick a call, so that rooms share the thread.
+  /// Takes commands, steps unless paused or asleep, requests a frame when one is due and watched, and passes on
+  /// finished frames. At most one tick per call, so that rooms share the thread.
   void run(TimePoint now);
 
   /// For the summary at the end.
   [[nodiscard]] const sim::WaterSim& water() const { return stage_->water(); }
-  /// Ticks since the room began, whatever its scenes: never goes back.
+  /// Ticks since the room started, across scene changes: never decreases.
   [[nodiscard]] std::uint64_t tick() const { return stage_->tick(); }
-  /// Tells whoever still waits for an answer that there will be none.
+  /// Rejects the commands that still wait.
   void abandonCommands();
   /// Ends the simulation; only the any-thread functions may be called afterwards.
   void releaseDevice() { stage_.reset(); }
@@ -111,32 +111,32 @@ class Room {
  private:
   using Outcome = Stage::Outcome;
   using Batch = CommandQueue::Batch;
-  /// What became of a command; sent when everybody knows the state that it made.
+  /// Outcome of a command; sent after all clients have been told the new state.
   struct Answer {
     core::Command command;
     Outcome rejected;
     std::uint32_t boat_id = 0;
   };
-  /// What people have yet to be told about.
+  /// Changes that the clients have not been told about yet.
   struct News {
     bool state = false;
     bool boats = false;
     bool reset = false;
     bool rebuilt = false;
-    std::map<std::string, double> parameters;  ///< by path, as they are now
+    std::map<std::string, double> parameters;  ///< current values by path
   };
-  /// Other water under way, built beside the running one.
+  /// New water that is being built while the old one runs.
   struct WaterBuild {
-    Batch commands;  ///< that asked for it: the same ChangeScene; empty where the device failed
+    Batch commands;  ///< the equal ChangeScene commands that started it; empty after a device failure
     std::future<WaterBuilder::Built> water;
   };
 
-  /// Values that one sender gave one parameter, the newest first tried: the first that the water takes is the last one.
+  /// Values of one sender for one parameter. Tried from the newest on, until the water accepts one.
   struct Values {
     Batch untried;              ///< oldest first
     std::vector<Answer> tried;  ///< newest first
   };
-  /// A value on its way that lays the particles out anew; the room's ticks wait for it.
+  /// A parameter change that lays out the particles anew; the room's ticks wait for it.
   struct Change {
     core::Command command;
     Values others;
@@ -155,10 +155,10 @@ class Room {
 
   // room_commands.cpp
   void applyCommands(TimePoint now);
-  /// One or more commands by one piece of work.
+  /// Carries out a batch of commands together.
   void apply(Batch batch);
   Outcome apply(const core::Command& command);
-  /// The stage's part of a command, and its line in the log.
+  /// Applies the command to the stage and writes it to the log.
   Outcome applyToWater(const core::Command& command);
   void recordCommand(const core::Command& command);
   Outcome setParameter(const core::Command& command, const core::SetParameter& change);
@@ -169,56 +169,56 @@ class Room {
   Outcome takeBoat(const core::Sender& sender, std::uint32_t boat_id);
   Outcome setPaused(bool paused);
   Outcome advance(const core::Step& step);
-  /// Notes what became of each command.
+  /// Stores the outcome of each command.
   void answer(Batch batch, const Outcome& outcome);
-  /// Tells everybody what is new, then the senders what became of their commands.
+  /// Tells all clients the changes, then the senders the outcomes of their commands.
   void announce();
-  /// Tells the senders what became of their commands.
+  /// Tells the senders the outcomes of their commands.
   void deliverAnswers();
-  /// Boats whose people went away stop; news of people go out.
+  /// Stops boats whose people have left, and announces changes of the people.
   void settlePeople(TimePoint now);
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const;
-  /// Boats came or went: owners of those that are gone have them no more, and people are told.
+  /// Called after boats were added or removed: ends the ownership of removed boats and announces the boats.
   void boatsChanged();
-  /// The boats on the water, if they are others than those announced last.
+  /// Announces the boats on the water if they differ from the last announcement.
   void announceBoats();
   void announceRecovery(TimePoint now);
 
   // room_change.cpp
   void applyNewest(Values values);
-  /// The newest of them is taken, or none: answers them all.
+  /// Answers all commands of `values`: untried ones are acknowledged as superseded, tried ones get their outcomes.
   void conclude(Values values);
-  /// Whether the value lays the particles out anew, which has begun then.
+  /// Starts the change and returns true if the value lays out the particles anew.
   bool beginChange(const core::Command& command, Values& others);
-  /// Goes on with the particles that were laid out, if they are there.
+  /// Adopts the new particles if their layout is finished.
   void finishChange();
-  /// Answers what the change would have answered.
+  /// Rejects the commands of the change.
   void abandonChange(const wire::CommandRejection& rejection);
   [[nodiscard]] Outcome refuseSlowChange(const core::Command& command, const core::SetParameter& change) const;
   void parameterChanged(const core::SetParameter& change);
 
   // room_scene.cpp
   void beginScene(Batch batch);
-  /// Goes on with the water that was built, if it is there.
+  /// Adopts the new water if it is built.
   void adoptWater(TimePoint now);
-  /// Forgets what belonged to the water before.
+  /// Clears the state that belonged to the previous water.
   void restartScene();
-  /// Refuses ticks that take longer than `max_ms`, and longer than now, while others than the sender are connected.
+  /// Rejects if ticks would take longer than `max_ms` and longer than now while others than the sender are connected.
   [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                    double max_ms) const;
-  /// Goes on with other water from its start.
+  /// Continues with new water at its start.
   void replaceWater(std::unique_ptr<Water> water);
-  /// Asks the device whether it still works; if not, has the same scene built anew, on a device that does, and answers
-  /// whoever asks for something meanwhile. True while it does not.
+  /// Asks the device whether it still works. If not, starts building the same scene on a working device and rejects
+  /// commands meanwhile. Returns true until that is done.
   bool isLost(TimePoint now);
   void finishRebuild(TimePoint now, WaterBuilder::Built water);
-  /// Says in the vitals that the device failed, without asking it for anything.
+  /// Marks the device as failed in the vitals, without calling it.
   void publishLoss();
 
   /// While the room runs.
   [[nodiscard]] bool isFrameDue(TimePoint now) const;
   void requestFrame(TimePoint now);
-  /// Whether the next frame holds the level: all do while the room is paused, then every so many.
+  /// Returns whether the next frame contains the level: all levels while paused, otherwise every n-th frame.
   [[nodiscard]] bool isDue(core::Level level) const;
   void handOverFrames();
   core::DiagnosticsView diagnostics();
@@ -239,18 +239,18 @@ class Room {
   News news_;
   std::optional<WaterBuild> build_;
   std::optional<Change> change_;
-  bool is_lost_ = false;      ///< the device failed: nothing runs until other water is there
-  TimePoint next_rebuild_{};  ///< a build that failed is tried again
+  bool is_lost_ = false;      ///< the device failed: the room does not run until new water is there
+  TimePoint next_rebuild_{};  ///< time of the next try after a failed build
   std::chrono::seconds rebuild_pause_{1};
-  std::size_t session_count_ = 0;  ///< of all rooms, as of this round
+  std::size_t session_count_ = 0;  ///< in all rooms, as of this round
   TickCost tick_cost_;
   Roster roster_;
   RealTimeClock clock_;
   bool paused_ = false;
   bool asleep_ = false;
   TimePoint last_watched_{};
-  std::uint32_t pending_tick_count_ = 0;  ///< of Step: ticks that the paused room still advances
-  v1::BoatList boats_;                    ///< as announced last
+  std::uint32_t pending_tick_count_ = 0;  ///< ticks of Step commands that the paused room has still to advance
+  v1::BoatList boats_;                    ///< as last announced
   GrowthNews recovery_news_{std::chrono::seconds(1)};
   std::uint64_t logged_recovery_count_ = 0;
   bool has_people_news_ = false;
@@ -258,7 +258,7 @@ class Room {
   TimePoint next_vitals_{};
   TimePoint next_scene_change_{};
   double next_frame_s_ = 0.0;      ///< simulation time
-  std::uint64_t frame_count_ = 0;  ///< that were due
+  std::uint64_t frame_count_ = 0;  ///< frames that were due
   TimePoint next_idle_frame_{};    ///< wall time, while paused
   TimePoint last_frame_{};         ///< wall time of the last request
   bool wants_diagnostics_ = false;
@@ -268,7 +268,7 @@ class Room {
   std::uint32_t step_count_ = 0;
   double last_step_ms_ = 0.0;
   std::vector<core::DiagnosticsView::PassTime> last_passes_;
-  double run_s_ = 0.0;  ///< simulated seconds since the start, resets not counted back
+  double run_s_ = 0.0;  ///< simulated seconds since the start; a reset does not subtract
   double unpaused_wall_s_ = 0.0;
   TimePoint last_run_{};
   TimePoint slow_since_{};

@@ -1,5 +1,5 @@
-// What a room tells the outside and asks it for: the one way out of a room. The service's gateway implements it and
-// alone knows sessions and the wire.
+// The only output interface of a room. The service's gateway implements it; rooms know nothing of sessions and
+// messages.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace spindrift::rooms {
 
 class Room;
 
-/// The levels of each layer that some session watches, in any packing.
+/// The watched levels of each layer, in any packing.
 struct WatchedLayers {
   using Levels = std::array<bool, core::kLevelCount>;  ///< by core::indexOf()
   Levels surface{};
@@ -26,33 +26,33 @@ struct WatchedLayers {
   bool diagnostics = false;
 };
 
-/// Called on the simulation thread; must not block. What changed is told once per round, before the answers to the
-/// commands that changed it.
+/// Called on the simulation thread; must not block. Changes are reported once per round, before the answers to the
+/// commands that caused them.
 class RoomOutlets {
  public:
   virtual ~RoomOutlets() = default;
 
-  /// The room's scene was replaced; its snapshot is the new one already.
+  /// The room's scene was replaced; the snapshot shows the new scene.
   virtual void sceneChanged(const Room& room) = 0;
   virtual void timeChanged(const Room& room, bool paused, double speed) = 0;
   virtual void parameterChanged(const Room& room, const std::string& path, double value) = 0;
   virtual void boatsChanged(const Room& room, const v1::BoatList& boats) = 0;
   virtual void peopleChanged(const Room& room, const v1::People& people) = 0;
-  /// Somebody put the scene back to its start.
+  /// A client reset the scene to its start.
   virtual void wasReset(const Room& room) = 0;
-  /// The watchdog or a new device brought the water back; `how` is one line for people.
+  /// The watchdog or a new device restored the water; `how` is one line for people.
   virtual void hasRecovered(const Room& room, const std::string& how) = 0;
   /// The room is about to be destroyed.
   virtual void closed(const Room& room) = 0;
 
-  /// `boat_id`: of SpawnBoat, the new boat; 0 otherwise.
+  /// `boat_id`: the new boat for SpawnBoat, otherwise 0.
   virtual void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
-  /// The rejection has the command's number.
+  /// The rejection contains the command's number.
   virtual void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) = 0;
 
-  /// A frame with what watched() asked for. It holds a slot of the device's memory until it is dropped.
+  /// A frame with the levels that watched() returned. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;
-  /// `counts`: of the room's frames now.
+  /// `counts`: those of the room's present scene.
   [[nodiscard]] virtual WatchedLayers watched(const Room& room, const core::ReducedCounts& counts) const = 0;
   /// Sessions in the room; in all rooms.
   [[nodiscard]] virtual std::size_t sessionCount(const Room& room) const = 0;

@@ -1,5 +1,5 @@
-// The people of one room: who they are, and whose boat is whose. Thread-safe: sessions come and go on I/O threads,
-// boats change hands on the simulation thread.
+// The people of one room and the owners of its boats. Thread-safe: sessions come and go on I/O threads, ownership of
+// boats changes on the simulation thread.
 #pragma once
 
 #include <chrono>
@@ -16,24 +16,24 @@
 
 namespace spindrift::rooms {
 
-/// Somebody who said hello.
+/// A client that has sent Hello.
 struct Arrival {
   core::SessionId session = 0;
   core::Role role = core::Role::kViewer;
   std::string name{};           ///< empty: "guest" and the person's number
-  std::uint32_t color_rgb = 0;  ///< 0: one of the roster's own
-  std::string resume_key{};     ///< of an earlier Admission, or empty
+  std::uint32_t color_rgb = 0;  ///< 0: the roster chooses one
+  std::string resume_key{};     ///< from an earlier Admission, or empty
 };
 
 struct Admission {
   std::uint32_t person_id = 0;
   std::string resume_key;
   bool resumed = false;
-  std::optional<core::SessionId> displaced;  ///< the session that was this person until now
+  std::optional<core::SessionId> displaced;  ///< the session that belonged to this person before
 };
 
-/// A lost connection keeps its person, and the person's boats, for the grace time; then the boats are nobody's.
-/// Somebody without a boat has nothing to keep and is forgotten at once.
+/// After a lost connection the person and the person's boats are kept for the grace time; then the boats have no owner.
+/// A person without a boat is removed at once.
 class Roster {
  public:
   using Clock = std::chrono::steady_clock;
@@ -41,21 +41,21 @@ class Roster {
   explicit Roster(std::chrono::milliseconds grace) : grace_(grace) {}
 
   Admission arrive(const Arrival& arrival);
-  /// The connection is gone. Only the session that is the person's now counts.
+  /// The connection ended. Ignored unless the session is the person's present one.
   void leave(core::SessionId session, Clock::time_point now);
 
-  /// Boats.
-  [[nodiscard]] std::uint32_t ownerOf(std::uint32_t boat_id) const;  ///< 0: nobody
+  /// Ownership of boats.
+  [[nodiscard]] std::uint32_t ownerOf(std::uint32_t boat_id) const;  ///< 0: no owner
   [[nodiscard]] bool hasBoat(std::uint32_t person_id) const;
-  /// Whoever had it has it no more. Nothing for a person who is not here.
+  /// Makes the person the owner; a previous owner loses the boat. Ignored for a person who is not in the room.
   void give(std::uint32_t boat_id, std::uint32_t person_id);
-  /// Forgets the boats that are not on the water any more.
+  /// Removes the ownership of boats that are no longer on the water.
   void keepOnly(const std::set<std::uint32_t>& boat_ids);
 
-  /// What time has done since the last call.
+  /// Changes over time since the last settle().
   struct Turn {
-    std::vector<std::uint32_t> boats_to_stop;  ///< their people have just gone away: nobody steers now
-    bool is_news = false;                      ///< people() says something new
+    std::vector<std::uint32_t> boats_to_stop;  ///< their owners have just disconnected
+    bool is_news = false;                      ///< people() has changed
   };
   Turn settle(Clock::time_point now);
 
@@ -68,9 +68,9 @@ class Roster {
     std::uint32_t color_rgb = 0;
     core::Role role = core::Role::kViewer;
     std::string resume_key;
-    core::SessionId session = 0;  ///< 0: away
+    core::SessionId session = 0;  ///< 0: disconnected
     Clock::time_point away_since{};
-    bool boats_stopped = false;  ///< since they went away
+    bool boats_stopped = false;  ///< since the connection was lost
     std::set<std::uint32_t> boats;
   };
 

@@ -1,4 +1,4 @@
-// The scenes that a room can be changed to: a folder's scene files, listed once at the start.
+// The scenes that a room can change to: a folder's scene files, listed once at the start.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@ inline constexpr std::size_t kCatalogMaxCount = 64;
 class SceneCatalog {
  public:
   SceneCatalog() = default;
-  /// Regular files NAME.textproto in the folder with names of letters, digits, '_' and '-'; empty where there are none.
-  /// `fidelity` takes the place of every scene's own.
+  /// Lists the regular files NAME.textproto in the folder, where NAME has letters, digits, '_' and '-'; empty if there
+  /// are none. `fidelity` replaces the fidelity of every scene.
   explicit SceneCatalog(std::filesystem::path folder, std::optional<v1::Fidelity> fidelity = std::nullopt);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] bool has(const std::string& name) const;
-  /// Reads the file anew, so that an edited scene comes as it is now. The scene is called as it is listed. `fidelity`
-  /// takes the place of the catalog's. kUnavailable for a name that is not listed, otherwise the loader's errors.
+  /// Reads the file again, so that edits take effect; the scene gets the listed name. `fidelity` replaces the
+  /// catalog's. Errors: kUnavailable for a name that is not listed, otherwise those of the loader.
   [[nodiscard]] core::Result<v1::Scene> load(const std::string& name,
                                              std::optional<v1::Fidelity> fidelity = std::nullopt) const;
 

@@ -1,5 +1,5 @@
-// The thread that runs every room. Rooms open and close meanwhile, their water is built by another thread; others reach
-// them through shared pointers and use only their any-thread functions.
+// The thread that runs all rooms. Rooms can be opened and closed while it runs; another thread builds their water.
+// Other threads hold rooms by shared pointers and call only their any-thread functions.
 #pragma once
 
 #include <condition_variable>
@@ -21,8 +21,8 @@ namespace spindrift::rooms {
 
 class SimulationThread {
  public:
-  /// Makes the rooms, which speak to `outlets` once run() was called, and waits for that; errors are the device's and
-  /// the rooms'.
+  /// Makes the rooms and waits for them. They call `outlets` only after run(). Errors: those of the device and the
+  /// rooms.
   static core::Result<std::unique_ptr<SimulationThread>> start(const gpu::DeviceChoice& device,
                                                                std::vector<RoomSetup> setups, RoomRules rules,
                                                                std::size_t max_room_count, RoomOutlets& outlets);
@@ -30,37 +30,37 @@ class SimulationThread {
   SimulationThread(const SimulationThread&) = delete;
   SimulationThread& operator=(const SimulationThread&) = delete;
 
-  /// Time begins to run; the outlets must live until stop().
+  /// Starts simulated time; `outlets` must live until stop().
   void run();
-  /// Ends the thread; the rooms' water and the context are gone afterwards, changes that wait are told so. Idempotent.
+  /// Ends the thread and destroys the rooms' water and the context; waiting changes are reported as failed. Idempotent.
   void stop();
 
-  /// In the order they were opened; the first is the default room.
+  /// Returns the rooms in the order of opening; the first is the default room.
   [[nodiscard]] std::vector<std::shared_ptr<Room>> rooms() const;
-  /// Null if there is none of this name; the empty name is the default room.
+  /// Returns the room, or null if there is none; the empty name is the default room.
   [[nodiscard]] std::shared_ptr<Room> find(const std::string& name) const;
 
-  /// Called on this thread when a room was opened or closed, or could not be.
+  /// Called on this thread when a room was opened or closed, or with the error.
   using Done = std::function<void(core::Result<void>)>;
-  /// Opens a room, whose water is built beside the running ones. Errors: kInvalidInput for a name
-  /// that is taken, kUnavailable when there are as many as may be or too many changes wait, else the scene's.
+  /// Opens a room after its water was built, while the other rooms run. Errors: kInvalidInput for a name that is taken,
+  /// kUnavailable when the number of rooms or of waiting changes is at its limit, otherwise those of the scene.
   void openRoom(RoomSetup setup, Done done);
-  /// Closes a room: `before` is called first, on this thread, with the room still there. Errors: kInvalidInput for a
-  /// name that is not there or the default room.
+  /// Closes a room; `before` is called first, on this thread, while the room still exists. Error: kInvalidInput for an
+  /// unknown name or the default room.
   void closeRoom(std::string name, std::function<void(const Room&)> before, Done done);
 
-  /// What rooms have in common.
+  /// Settings shared by all rooms.
   [[nodiscard]] const RoomRules& rules() const { return rules_; }
   [[nodiscard]] std::size_t maxRoomCount() const { return max_room_count_; }
-  /// Seconds since every room was last looked after; large while the thread is stuck or compiles.
+  /// Returns seconds since the last round over all rooms; large while the thread is stuck or compiles.
   [[nodiscard]] double sinceLastRound_s() const;
-  /// What the simulation runs on and why, one line.
+  /// One line: the device and why it was chosen.
   [[nodiscard]] const std::string& deviceLine() const { return device_line_; }
-  /// One line a room for the summary; filled by stop().
+  /// One line per room; filled by stop().
   [[nodiscard]] const std::vector<std::string>& summary() const { return summary_; }
 
  private:
-  /// Carried out by the thread between two rounds; called with false when it never will be.
+  /// Runs on the thread between two rounds; called with false when it will not be carried out.
   using Change = std::function<void(bool runs)>;
 
   /// A room whose water is being built.
@@ -74,9 +74,9 @@ class SimulationThread {
   core::Result<void> build(std::vector<RoomSetup> setups);
   void loop();
   void carryOut(Change change, const Done& done);
-  /// Begins to open a room; `done` may be called at once, with an error.
+  /// Starts opening a room; `done` may be called at once, with an error.
   void open(RoomSetup setup, Done done);
-  /// Finishes the openings whose water is there.
+  /// Finishes the openings whose water is built.
   void finishOpenings();
   core::Result<void> add(std::string name, WaterBuilder::Built water);
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
@@ -86,7 +86,7 @@ class SimulationThread {
   RoomRules rules_;
   std::size_t max_room_count_ = 0;
   std::unique_ptr<WaterBuilder> builder_;
-  std::vector<Opening> openings_;  ///< of the thread
+  std::vector<Opening> openings_;  ///< used by the thread only
   mutable std::mutex rooms_mutex_;
   std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;
@@ -95,7 +95,7 @@ class SimulationThread {
   std::condition_variable wake_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};
-  bool was_built_ = false;  ///< the builder has finished something since the last round
+  bool was_built_ = false;  ///< the builder has finished a piece of work since the last round
   bool running_ = false;
   bool stopping_ = false;
   std::thread thread_;

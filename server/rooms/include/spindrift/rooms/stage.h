@@ -1,5 +1,5 @@
-// The water of one room and what commands do to it: no clock, no people, no network. What a room runs live, `replay`
-// runs again.
+// The water of one room and the effect of commands on it, without clock, people and network. Used by live rooms and by
+// `replay`.
 #pragma once
 
 #include <cstdint>
@@ -17,47 +17,47 @@
 
 namespace spindrift::rooms {
 
-/// A rejection that the caller gives its command's number.
+/// Makes a rejection; the caller sets its command number.
 wire::CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message);
-/// Errors of several lines (one a field) in one.
+/// Returns the first line of an error with one line per field.
 std::string firstLine(const std::string& text);
 
 /// Lives on the thread that has bound its water.
 class Stage {
  public:
-  /// Empty: applied.
+  /// nullopt: applied.
   using Outcome = std::optional<wire::CommandRejection>;
 
   /// `water` is bound to the calling thread; its scene is checked and has its defaults.
   explicit Stage(std::unique_ptr<Water> water);
 
-  /// Whether apply() takes the action: it touches the water. Time, scenes and who owns what are the room's business.
+  /// Returns whether the action changes the water and belongs to apply(). The room handles time, scenes and ownership.
   static bool takes(const core::Action& action);
-  /// Carries an action out now, between two ticks; a rejected one changes nothing.
+  /// Applies an action between two ticks; a rejected one changes nothing.
   Outcome apply(const core::Action& action);
 
-  /// A change of a parameter that lays the particles out anew, which takes long enough for a thread of its own.
+  /// A parameter change that lays out the particles anew, which is slow enough to need another thread.
   struct Relayout {
     core::SetParameter change;
     v1::Scene changed;
-    core::Scene wanted;  ///< `changed` for sim::prepareScene()
+    core::Scene wanted;  ///< input of sim::prepareScene(), from `changed`
     sim::SceneBasis basis;
   };
-  /// Set where the action is such a change, with copies of what it starts from; else apply() carries it out or says why
-  /// not. What apply() does in one call: sim::prepareScene() of `wanted` and `basis` on any thread, then adopt(), with
-  /// no tick in between.
+  /// Returns such a change with copies of its inputs; nullopt if apply() handles the action. Then run
+  /// sim::prepareScene() with `wanted` and `basis` on any thread and call adopt(), with no tick in between. apply()
+  /// does the same in one call.
   [[nodiscard]] std::optional<Relayout> relayout(const core::Action& action);
   Outcome adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared);
-  /// The work of a tick, now or with another value of a parameter; nullopt where that is not allowed: apply() tells
-  /// why.
+  /// Returns the work per tick, now or with another value of a parameter; nullopt if the value is not allowed, for
+  /// which apply() gives the reason.
   [[nodiscard]] TickWork work() const;
   [[nodiscard]] std::optional<TickWork> workWith(const core::SetParameter& change) const;
-  /// What a tick took while the water was built [ms].
+  /// Duration of a tick measured when the water was built [ms].
   [[nodiscard]] double warmTick_ms() const { return water_->warmTick_ms(); }
-  /// Goes on with other water, which is bound from now on; returns the old one, still to be destroyed. The room's ticks
-  /// go on: the new water begins at a tick that no frame of the old one has, and its boats get ids that none had.
+  /// Replaces the water by another one, which is bound from now on; returns the old one for destruction. The room's
+  /// tick continues: the new water starts at a tick later than any frame of the old one, and its boats get unused ids.
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);
-  /// Makes this stage's GL context current; call it before anything else when another one may be.
+  /// Makes this stage's GL context current. Call it first whenever another context may be current.
   void bind() { water_->bind(); }
   /// gpu::Context::reloadChangedShaders().
   void reloadChangedShaders() { water_->context().reloadChangedShaders(); }
@@ -68,18 +68,17 @@ class Stage {
   /// Water::failure().
   [[nodiscard]] std::optional<std::string> failure() { return water_->failure(); }
 
-  [[nodiscard]] const v1::Scene& scene() const { return water_->scene(); }  ///< parameters as they are now
+  [[nodiscard]] const v1::Scene& scene() const { return water_->scene(); }  ///< with current parameter values
   [[nodiscard]] sim::WaterSim& water() { return water_->sim(); }
   [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
   [[nodiscard]] const gpu::DeviceInfo& device() const { return water_->context().device(); }
-  /// Ticks since the room began, whatever its scenes: never goes back.
+  /// Ticks since the room started, across scene changes: never decreases.
   [[nodiscard]] std::uint64_t tick() const { return tickOf(water().tick()); }
-  /// The room's tick for one of the simulation's.
+  /// Converts a tick of the simulation to one of the room.
   [[nodiscard]] std::uint64_t tickOf(std::uint64_t sim_tick) const { return sim_tick + tick_shift_; }
-  /// Number of the state now: another one after every tick and every change by apply() and replaceWater(). Never 0, and
-  /// it never goes back.
+  /// Number of the present state; it grows with every tick and every change by apply() and replaceWater(). Never 0.
   [[nodiscard]] std::uint64_t stateId() const { return state_id_; }
-  /// Boat id of the last SpawnBoat that was applied.
+  /// Boat id of the last applied SpawnBoat.
   [[nodiscard]] std::uint32_t spawnedBoatId() const { return spawned_boat_id_; }
   /// The boats on the water now.
   [[nodiscard]] v1::BoatList boats() const;
@@ -92,7 +91,7 @@ class Stage {
   Outcome removeBoat(const core::RemoveBoat& remove);
 
   std::unique_ptr<Water> water_;
-  std::uint64_t tick_shift_ = 0;  ///< from the simulation's ticks to the room's, modulo 2^64
+  std::uint64_t tick_shift_ = 0;  ///< room tick minus simulation tick, modulo 2^64
   std::uint64_t state_id_ = 1;
   std::uint32_t spawned_boat_id_ = 0;
 };

@@ -1,4 +1,4 @@
-// How long a tick takes on this device, and would take after a change.
+// Measures the duration of a tick on this device and predicts it for a change.
 #pragma once
 
 #include <spindrift/core/scene.h>
@@ -6,28 +6,28 @@
 
 namespace spindrift::rooms {
 
-/// The most that one change may make a tick take while others are connected [ms]: rooms share a thread, and everybody
-/// in them waits.
+/// Limit of a tick's duration after a parameter change while others are connected [ms]. Rooms share a thread, so a slow
+/// tick delays all of them.
 inline constexpr double kTickMax_ms = 60.0;
 
-/// The same for a scene, judged by ticks that ran beside everything else while it was built.
+/// The limit for a new scene. Higher, because its ticks are measured while other rooms run.
 inline constexpr double kSceneTickMax_ms = 250.0;
 
-/// Work of a tick, as far as its cost grows with it.
+/// Work per tick, in quantities that its duration grows with.
 struct TickWork {
   double particle_step_count = 0.0;  ///< particles times substeps times passes of the pressure solver
   double wave_step_count = 0.0;      ///< cells times wave steps
 };
 [[nodiscard]] TickWork workOf(const core::Scene& scene, const sim::Derived& derived);
 
-/// A running mean of what ticks took.
+/// A running mean of tick durations.
 class TickCost {
  public:
-  /// A tick took so long.
+  /// Adds the duration of a tick.
   void note(double tick_ms);
-  /// The water is other water, of which ticks took so long while it was built.
+  /// Starts again for new water, whose ticks took this long when it was built.
   void restart(double tick_ms) { tick_ms_ = tick_ms; }
-  /// An upper estimate for a tick of the work `wanted`, of ticks that have the work `now` [ms].
+  /// Returns an upper estimate for a tick with the work `wanted`, from measured ticks with the work `now` [ms].
   [[nodiscard]] double predict_ms(const TickWork& now, const TickWork& wanted) const;
 
  private:

@@ -1,4 +1,4 @@
-// A scene's water with a GL context of its own, so that it can be built on one thread and run on another.
+// A scene's water with its own GL context, so that one thread can build it and another run it.
 #pragma once
 
 #include <memory>
@@ -13,33 +13,33 @@
 
 namespace spindrift::rooms {
 
-/// Owned by one thread at a time: release() on one, then bind() on the other. The destructor waits until no frame of
-/// this water is in anybody's hands (they are read from the device's memory), then frees the device's objects.
+/// Owned by one thread at a time: release() on the old thread, then bind() on the new one. The destructor waits until
+/// all frames of this water are dropped, because they are read from device memory, then frees the device's objects.
 class Water {
  public:
-  /// Builds the scene and runs it for some ticks, so that every shader is compiled, then puts it back to its start; its
-  /// ticks have begun to count. The calling thread owns it. Errors: the device's, and those of WaterSim::create().
+  /// Builds the scene and runs some ticks, so that every shader is compiled, then resets it to its start; the tick
+  /// count does not start at 0. The calling thread owns it. Errors: those of the device and of WaterSim::create().
   static core::Result<std::unique_ptr<Water>> create(const gpu::DeviceChoice& device, v1::Scene scene);
   ~Water();
   Water(const Water&) = delete;
   Water& operator=(const Water&) = delete;
 
-  /// Makes the context current on the calling thread; nothing to do where it is.
+  /// Makes the context current on the calling thread; does nothing if it is already.
   void bind();
-  /// Lets another thread bind it.
+  /// Unbinds the context so that another thread can bind it.
   void release();
 
-  /// Why this water cannot go on: the device was lost, or does not answer. Asks the driver: on the owning thread, once
-  /// per tick is enough.
+  /// Returns the reason why this water cannot continue: the device was lost or does not answer. Asks the driver; call
+  /// it on the owning thread, once per tick is enough.
   [[nodiscard]] std::optional<std::string> failure();
-  /// What a tick took while it was built, beside whatever else ran [ms].
+  /// Duration of a tick while it was built, with other work running [ms].
   [[nodiscard]] double warmTick_ms() const { return warm_tick_ms_; }
 
   [[nodiscard]] gpu::Context& context() { return *context_; }
   [[nodiscard]] const gpu::Context& context() const { return *context_; }
   [[nodiscard]] sim::WaterSim& sim() { return *sim_; }
   [[nodiscard]] const sim::WaterSim& sim() const { return *sim_; }
-  [[nodiscard]] v1::Scene& scene() { return scene_; }  ///< parameters as they are now
+  [[nodiscard]] v1::Scene& scene() { return scene_; }  ///< with current parameter values
   [[nodiscard]] const v1::Scene& scene() const { return scene_; }
 
  private:

@@ -1,4 +1,4 @@
-// Builds water, and works out changes of it, beside the running rooms; takes down what they let go of.
+// Builds water and prepares changes of it on threads beside the running rooms; destroys water no longer used.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace spindrift::rooms {
 
-/// What waits is bounded by its callers: a room has one build and one change under way.
+/// The callers bound the queue: a room has at most one build and one change under way.
 class WaterBuilder {
  public:
   using Built = core::Result<std::unique_ptr<Water>>;
@@ -23,18 +23,18 @@ class WaterBuilder {
 
   /// `done` is called after each piece of work, on a thread of the builder.
   explicit WaterBuilder(gpu::DeviceChoice device, std::function<void()> done = {});
-  /// Ends after the work at hand; builds and changes that wait end with kUnavailable.
+  /// Ends after the current work; waiting builds and changes end with kUnavailable.
   ~WaterBuilder() = default;
   WaterBuilder(const WaterBuilder&) = delete;
   WaterBuilder& operator=(const WaterBuilder&) = delete;
 
-  /// Any thread. At a lower priority than the simulation. The water comes released: the caller binds it. Errors:
-  /// Water::create()'s; kUnavailable at the end.
+  /// Any thread. Builds at a lower priority than the simulation. The water is returned released: the caller binds it.
+  /// Errors: those of Water::create(); kUnavailable when the builder ends.
   std::future<Built> build(v1::Scene scene);
-  /// Any thread. sim::prepareScene() on a thread of its own, behind no build: a room waits for it without a tick.
-  /// Errors: its own; kUnavailable at the end.
+  /// Any thread. Runs sim::prepareScene() on a separate thread and not behind builds, because a room's ticks wait for
+  /// it. Errors: those of prepareScene(); kUnavailable when the builder ends.
   std::future<Prepared> prepare(core::Scene scene, sim::SceneBasis basis);
-  /// Destroys the water, which the calling thread has bound.
+  /// Destroys the water, which must be bound to the calling thread.
   void dispose(std::unique_ptr<Water> water);
 
  private:

@@ -1,4 +1,4 @@
-// How much of a room's wall time a kind of work may take: plain arithmetic on a time that the caller passes in.
+// Limits the share of a room's wall time for a kind of work. The caller passes the time in; no clock is read.
 #pragma once
 
 #include <algorithm>
@@ -6,8 +6,9 @@
 
 namespace spindrift::rooms {
 
-/// A bucket of time. `share` seconds flow in per second, at most `burst` stays. Work begins while something is left and
-/// may overdraw: its cost is known only afterwards, and the next work waits until the debt is paid.
+/// A token bucket of time. `share` seconds are added per second, up to `burst`. Work may start while the balance is
+/// positive and may overdraw it, since its cost is known only afterwards; the next work then waits until the debt is
+/// paid.
 class WorkBudget {
  public:
   using Clock = std::chrono::steady_clock;

@@ -1,4 +1,4 @@
-// A thread that carries out pieces of work beside the simulation, one at a time.
+// A thread that runs pieces of work beside the simulation, one at a time.
 #pragma once
 
 #include <condition_variable>
@@ -9,13 +9,13 @@
 
 namespace spindrift::rooms {
 
-/// In order of arrival. What waits is bounded by the callers.
+/// Runs work in order of arrival. The callers bound the queue.
 class Worker {
  public:
-  /// `niceness`: 0 as everybody else, up to 19 for work that gives way. `done` is called on the worker's thread after
-  /// each piece of work.
+  /// `niceness`: 0 for normal priority, up to 19 for the lowest. `done` is called on the worker's thread after each
+  /// piece of work.
   explicit Worker(int niceness, std::function<void()> done = {});
-  /// Ends the thread after the work at hand; each piece that waits is called with runs = false.
+  /// Ends the thread after the current work; waiting pieces are called with runs = false.
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;

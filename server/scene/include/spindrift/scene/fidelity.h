@@ -9,14 +9,14 @@
 
 namespace spindrift::scene {
 
-/// The level of a name in any case, "draft"; nullopt where there is none.
+/// Returns the level for a name in any case, "draft"; nullopt for an unknown name.
 std::optional<v1::Fidelity> parseFidelity(std::string_view name);
-/// "draft"
+/// Returns "draft", ...
 std::string fidelityName(v1::Fidelity fidelity);
 
-/// Turns the numbers of a parsed scene, which are those of BALANCED, into those of its `fidelity`. Defaults need not be
-/// filled in; what the scene leaves out and the level chooses is set. Once a scene: numbers scale again when called
-/// again.
+/// Converts the numbers of a parsed scene, which are those of BALANCED, to its `fidelity`. Defaults need not be filled
+/// in: fields that the scene leaves out and the level chooses are set. Call it once per scene, because a second call
+/// scales again.
 void applyFidelity(v1::Scene& scene);
 
 }  // namespace spindrift::scene

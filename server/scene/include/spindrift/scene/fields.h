@@ -1,4 +1,5 @@
-// Numbers of a message by reflection: their options, ranges and defaults. The only reader of the proto options.
+// Number fields of a message, by reflection: their options, ranges and defaults. The only code that reads the proto
+// options.
 #pragma once
 
 #include <optional>
@@ -13,10 +14,10 @@
 
 namespace spindrift::scene {
 
-/// One thing wrong with one field.
+/// An error in one field.
 struct FieldIssue {
   v1::RejectReason reason = v1::REJECT_REASON_UNSPECIFIED;
-  std::string path;     ///< from the message checked: "events[0].effect.splash.depth_m"
+  std::string path;     ///< relative to the message checked: "events[0].effect.splash.depth_m"
   std::string message;  ///< value, bound, what to do; without the path
 };
 
@@ -28,24 +29,24 @@ inline void addAbsent(std::vector<FieldIssue>& issues, std::string path, std::st
   issues.push_back({v1::REJECT_REASON_ABSENT_PART, std::move(path), std::move(message)});
 }
 
-/// The field's options; null where the field is no number with a range.
+/// Returns the field's options; null if the field is not a number with a range.
 const v1::ParameterOptions* parameterOptions(const google::protobuf::FieldDescriptor& field);
 
-/// The value of a number field, its default where a field that can tell was left out.
+/// Returns the value of a number field; its default if the field was left out and has presence.
 double numberOf(const google::protobuf::Message& message, const google::protobuf::FieldDescriptor& field);
 
-/// Sets a number field to a value that checkNumber found fine.
+/// Sets a number field to a value that checkNumber() accepted.
 void setNumber(google::protobuf::Message& message, const google::protobuf::FieldDescriptor& field, double value);
 
-/// Why `value` does not fit the field (not finite, not whole, out of range, not a multiple); nullopt = fits. No path
-/// set.
+/// Returns the reason why `value` does not fit the field (not finite, not whole, out of range, not a multiple); nullopt
+/// if it fits. The path is not set.
 std::optional<FieldIssue> checkNumber(const google::protobuf::FieldDescriptor& field, double value);
 
-/// Checks every number and enum that is set, in the parts that are present. `prefix` goes in front of each path.
+/// Checks every number and enum that is set, in the parts that are present. `prefix` is put in front of each path.
 void checkFields(const google::protobuf::Message& message, const std::string& prefix, std::vector<FieldIssue>& issues);
 
-/// Defaults for every number left out and every enum UNSPECIFIED (its value 1, as the proto files say), in the parts
-/// that are present.
+/// Sets defaults for every number left out and every enum UNSPECIFIED (its value 1, as the proto files say), in the
+/// parts that are present.
 void fillMessageDefaults(google::protobuf::Message& message);
 
 }  // namespace spindrift::scene

@@ -12,29 +12,30 @@
 
 namespace spindrift::service {
 
-/// Shorter tokens could be guessed.
+/// Minimum length of a token; shorter ones could be guessed.
 inline constexpr std::size_t kTokenMinBytes = 16;
 
 struct Grant {
   core::Role role = core::Role::kViewer;
-  std::optional<std::chrono::system_clock::time_point> expires;  ///< never, where it is not set
+  std::optional<std::chrono::system_clock::time_point> expires;  ///< never if not set
 };
 
-/// Immutable once made; any thread.
+/// Immutable after construction; any thread.
 class Access {
  public:
-  /// Without tokens guests are operators: a server for oneself.
+  /// Without tokens, clients are operators: a server for one user.
   Access() = default;
 
-  /// Reads the tokens' text: one a line, `ROLE TOKEN [until=2030-01-31T12:00:00Z]`, '#' begins a comment. `guest` is
-  /// the role of clients without a token; nullopt: they are refused. Error: kInvalidInput with `label`, line and what
-  /// is wrong, never with a token.
+  /// Parses the text of the token file: one token per line, `ROLE TOKEN [until=2030-01-31T12:00:00Z]`, '#' begins a
+  /// comment. `guest` is the role of clients without a token; nullopt: they are refused. Error kInvalidInput contains
+  /// `label`, the line and the reason, never a token.
   static core::Result<Access> parse(std::string_view text, const std::string& label, std::optional<core::Role> guest);
 
-  /// Returns what a token grants; the empty token stands for a guest. The error says why access is refused and never
-  /// contains the token.
+  /// Returns the grant of a token; the empty token is that of a client without one. The error gives the reason of a
+  /// refusal and never contains the token.
   [[nodiscard]] core::Result<Grant> resolve(std::string_view token, std::chrono::system_clock::time_point now) const;
-  /// The token of an `Authorization: Bearer TOKEN` header; empty for an empty header. kInvalidInput for other schemes.
+  /// Returns the token of an `Authorization: Bearer TOKEN` header; empty for an empty header. kInvalidInput for other
+  /// schemes.
   static core::Result<std::string> bearerToken(std::string_view authorization);
 
   [[nodiscard]] std::optional<core::Role> guest() const { return guest_; }

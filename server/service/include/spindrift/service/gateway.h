@@ -1,5 +1,5 @@
-// Between the network and the rooms: what the bytes of a session mean. Implements net::Application; runs on I/O
-// threads.
+// Connects the network to the rooms: handles the messages of sessions and requests. Implements net::Application; runs
+// on I/O threads.
 #pragma once
 
 #include <chrono>
@@ -22,20 +22,20 @@ namespace spindrift::service {
 
 struct GatewayOptions {
   Access access;
-  std::size_t message_max_bytes = 16 * 1024;  ///< as the network has it; told in greetings
-  double messages_per_s = 500.0;              ///< likewise
-  double message_burst_count = 1000.0;        ///< likewise
+  std::size_t message_max_bytes = 16 * 1024;  ///< same value as in the network; sent in greetings
+  double messages_per_s = 500.0;              ///< same
+  double message_burst_count = 1000.0;        ///< same
   double commands_per_s = 200.0;              ///< token bucket per session; commands beyond it are rejected as BUSY
   double command_burst_count = 400.0;
-  std::chrono::milliseconds hello_patience{10'000};  ///< sessions without Hello are closed after it
+  std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
 };
 
 class Gateway final : public net::Application, public rooms::RoomOutlets, public rooms::FrameOutlet {
  public:
   /// `sources` outlives the gateway.
   Gateway(GatewayOptions options, const MetricsSources& sources);
-  /// Before the network starts: whose rooms these are, and who encodes their frames. Both outlive the gateway's use by
-  /// the network, though their threads may have ended.
+  /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
+  /// network calls the gateway, though their threads may have ended.
   void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
 
   void serverStarts(net::Hub& hub) override;
@@ -46,8 +46,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
-  // RoomOutlets
-  /// Sends a new greeting to all sessions of the room; their subscriptions stay.
+  // RoomOutlets interface
+  /// Sends a new greeting to all sessions of the room; their subscriptions stay valid.
   void sceneChanged(const rooms::Room& room) override;
   void timeChanged(const rooms::Room& room, bool paused, double speed) override;
   void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
@@ -63,7 +63,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
   void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) override;
 
-  // FrameOutlet
+  // FrameOutlet interface
   [[nodiscard]] core::LayerDemand demand(const std::string& room, codec::Stream stream,
                                          std::uint32_t reduced_count) const override;
   void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
@@ -72,7 +72,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
  private:
   struct Session {
     std::shared_ptr<rooms::Room> room;
-    std::shared_ptr<const rooms::RoomSnapshot> greeted;  ///< what the last greeting described
+    std::shared_ptr<const rooms::RoomSnapshot> greeted;  ///< the state sent in the last greeting
     core::TokenBucket commands;
     bool said_hello = false;
     core::Role role = core::Role::kViewer;
@@ -81,20 +81,20 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
 
   [[nodiscard]] net::Hub& hub() const { return *hub_; }
   [[nodiscard]] rooms::SimulationThread& simulation() const { return *rooms_; }
-  /// Sends a greeting with the room's state now, and notes that state.
+  /// Sends a greeting with the room's present state and stores that state.
   void greet(net::SessionId session, const rooms::Room& room);
   void hello(net::SessionId session, const Session& state, const wire::Hello& hello);
   void subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe);
   void command(net::SessionId session, const Session& state, core::Command command);
-  /// Takes a token of the session's command rate; false if there is none.
+  /// Takes a token of the session's command rate; returns false if there is none.
   bool takeCommand(net::SessionId session);
   void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
-  /// Closes all sessions of a room that is being closed.
+  /// Closes all sessions of a room that is about to close.
   void dismiss(const rooms::Room& room);
 
   const GatewayOptions options_;
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any session exists
-  rooms::EncoderThread* encoder_ = nullptr;   ///< likewise
+  rooms::EncoderThread* encoder_ = nullptr;   ///< set before any session exists
   CommandCounters counters_;
   RestApi rest_;
   net::Hub* hub_ = nullptr;  ///< set before any session exists

@@ -1,4 +1,4 @@
-// The network knows layers by number: here a stream gets its own, and frames of streams meet the hub.
+// Maps streams to the layer numbers of the network, and calls the hub for them.
 #pragma once
 
 #include <string>
@@ -15,13 +15,13 @@ inline net::LayerIndex layerIndex(codec::Stream stream) {
   return static_cast<net::LayerIndex>(codec::indexOf(stream));
 }
 
-/// FrameOutlet::demand() of a hub.
+/// FrameOutlet::demand(), forwarded to a hub.
 inline core::LayerDemand demandOf(const net::Hub& hub, const std::string& room, codec::Stream stream,
                                   std::uint32_t reduced_count) {
   return hub.demand(room, layerIndex(stream), reduced_count);
 }
 
-/// FrameOutlet::publish() to a hub.
+/// FrameOutlet::publish(), forwarded to a hub.
 inline void publishTo(net::Hub& hub, const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                       core::Level level, std::uint32_t reduced_count) {
   hub.publish(room, layerIndex(stream),

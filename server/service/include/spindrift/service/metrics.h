@@ -1,4 +1,4 @@
-// The program's counters, and /metrics in Prometheus' text format.
+// The program's counters and the /metrics page in Prometheus' text format.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace spindrift::service {
 
-/// Answers to commands since the start, from sessions and requests alike. Thread-safe.
+/// Counts the answers to commands since the start, of sessions and requests. Thread-safe.
 class CommandCounters {
  public:
   void applied() { ++applied_count_; }
@@ -28,13 +28,13 @@ class CommandCounters {
   std::array<std::atomic<std::uint64_t>, v1::RejectReason_ARRAYSIZE> rejected_count_{};
 };
 
-/// Parts of the server that start after the gateway; null until then.
+/// Parts of the server that start after the gateway; null before.
 struct MetricsSources {
   std::atomic<const net::Server*> network{nullptr};
   std::atomic<const rooms::EncoderThread*> encoder{nullptr};
 };
 
-/// The whole page. Times are seconds, sizes bytes; counters end in _total.
+/// Returns the whole page. Times in seconds, sizes in bytes; names of counters end in _total.
 std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
                         const MetricsSources& sources);
 

@@ -1,5 +1,5 @@
-// The REST interface: rooms, their scenes and parameters, commands from afar, health. Runs on I/O threads; what became
-// of a command comes from the simulation thread.
+// The REST interface: rooms, their scenes and parameters, commands, health. Runs on I/O threads; the outcomes of
+// commands come from the simulation thread.
 #pragma once
 
 #include <atomic>
@@ -19,22 +19,22 @@
 
 namespace spindrift::service {
 
-/// The HTTP status that a rejected command gets.
+/// Returns the HTTP status for a rejected command.
 unsigned httpStatusOf(v1::RejectReason reason);
 
 class RestApi {
  public:
-  /// Everything given outlives it. `dismiss` sends a room's sessions away before it closes.
+  /// All references must outlive it. `dismiss` closes a room's sessions before the room closes.
   RestApi(const Access& access, CommandCounters& counters, const MetricsSources& sources,
           std::function<void(const rooms::Room&)> dismiss);
 
-  /// Before the network starts.
+  /// Sets the rooms; call it before the network starts.
   void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
   void serverStarts(net::Hub& hub) { hub_ = &hub; }
-  /// Any request that net leaves to the application.
+  /// Answers any request that net passes to the application.
   void answer(const net::HttpRequest& request, net::HttpResponder respond);
 
-  /// The commands of requests, by their request_id.
+  /// Reports the outcome of a request's command, by its request_id.
   void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id);
   void commandRejected(const core::Command& command, const wire::CommandRejection& rejection);
 
@@ -57,11 +57,11 @@ class RestApi {
   CommandCounters& counters_;
   const MetricsSources& sources_;
   const std::function<void(const rooms::Room&)> dismiss_;
-  rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request comes
-  net::Hub* hub_ = nullptr;                   ///< likewise
+  rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
+  net::Hub* hub_ = nullptr;                   ///< set before any request arrives
   std::atomic<std::uint64_t> last_request_id_{0};
   std::mutex mutex_;
-  std::map<std::uint64_t, net::HttpResponder> pending_;  ///< bounded by the connections: one request each
+  std::map<std::uint64_t, net::HttpResponder> pending_;  ///< at most one per connection
 };
 
 }  // namespace spindrift::service

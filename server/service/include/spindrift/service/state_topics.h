@@ -1,4 +1,4 @@
-// What a room's state messages are about: of each topic only the newest waits for a client.
+// Topics of a room's state messages: only the newest message of each topic waits for a client.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace spindrift::service::topic {
 
-// A greeting says again what these say.
+// A greeting includes the content of the topics with Scope::kPart.
 inline const net::StateTopic kGreeting{.name = "greeting", .scope = net::StateTopic::Scope::kWhole};
 inline const net::StateTopic kRoomState{.name = "room_state", .scope = net::StateTopic::Scope::kPart};
 inline const net::StateTopic kBoats{.name = "boats", .scope = net::StateTopic::Scope::kPart};
-/// As many as the scene has live parameters.
+/// One per live parameter of the scene.
 inline net::StateTopic ofParameter(const std::string& path) {
   return {.name = "parameter:" + path, .scope = net::StateTopic::Scope::kPart};
 }

@@ -1,4 +1,4 @@
-// A whole server in one object: simulation, encoder, network, in the order they start and the reverse they stop.
+// A whole server in one object: starts simulation, encoder and network in this order, and stops them in reverse order.
 #pragma once
 
 #include <chrono>
@@ -19,21 +19,21 @@ struct WaterServerOptions {
   gpu::DeviceChoice device;
   net::ServerOptions network;
   std::vector<rooms::RoomSetup> rooms;  ///< at least one; the first is the default room
-  rooms::RoomRules rules;               ///< what they have in common
+  rooms::RoomRules rules;               ///< settings that the rooms share
   std::size_t max_room_count = 8;
   Access access;
-  std::chrono::milliseconds hello_patience{10'000};  ///< sessions that do not say Hello are closed after it
+  std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
 };
 
 class WaterServer {
  public:
-  /// Errors: the device's, the rooms', the port's.
+  /// Errors: those of the device, the rooms and the port.
   static core::Result<std::unique_ptr<WaterServer>> start(WaterServerOptions options);
   ~WaterServer();
   WaterServer(const WaterServer&) = delete;
   WaterServer& operator=(const WaterServer&) = delete;
 
-  /// Sessions are closed with 1001, then the simulation ends. Idempotent.
+  /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
@@ -42,7 +42,7 @@ class WaterServer {
   [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
   [[nodiscard]] const rooms::EncoderThread& encoder() const { return *encoder_; }
-  /// One line a room; filled by stop().
+  /// One line per room; filled by stop().
   [[nodiscard]] const std::vector<std::string>& summary() const { return simulation_->summary(); }
 
  private:

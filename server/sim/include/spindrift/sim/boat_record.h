@@ -1,4 +1,4 @@
-// A boat as people are told of it once; where it is comes with the frames.
+// Fixed data of a boat, sent to clients once; its position is in the frames.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// derive(): from what users set (core::Scene, SI units) to what the passes run with. The only bridge between the two; a
-// pure function.
+// derive(): computes the values that the passes use from the user's settings (core::Scene, SI units). The only
+// conversion between the two; a pure function.
 #pragma once
 
 #include <array>
@@ -15,34 +15,33 @@
 
 namespace spindrift::sim {
 
-/// One step-size rule: the largest step it allows, and where it comes from.
+/// One step-size rule: the largest step it allows, and its source.
 struct StepRule {
   std::string name;   ///< "particle CFL: 0.4 H / (c0 + U_max)"
-  std::string field;  ///< the scene field that decides most
+  std::string field;  ///< the scene field with the largest influence
   double max_dt_s = 0.0;
 };
 
-/// The starting lattice and the grid around it.
+/// The initial particle lattice and the grid around it.
 struct ParticleLayout {
   std::uint32_t count = 0;  ///< columns_x * columns_z * layers
   std::uint32_t columns_x_count = 0;
   std::uint32_t columns_z_count = 0;
   std::uint32_t layers_count = 0;
   double spacing_m = 0.0;  ///< s: s^3 is a particle's share of the filled volume
-  double pitch_x_m = 0.0;  ///< of the lattice along x, s but for rounding to whole columns
+  double pitch_x_m = 0.0;  ///< lattice spacing along x: s, rounded to whole columns
   double pitch_z_m = 0.0;
-  double volume_m3 = 0.0;         ///< of the water: a running room keeps it when its count changes
+  double volume_m3 = 0.0;         ///< volume of the water; a running room keeps it when its particle count changes
   double support_radius_m = 0.0;  ///< H; on periodic axes a whole number of cells spans the patch
   double mass_kg = 0.0;           ///< calibrated: the inside of the lattice has rest density
-  double virtual_mass_kg = 0.0;   ///< of the virtual particles of a coupled floor, calibrated likewise
+  double virtual_mass_kg = 0.0;   ///< mass of the virtual particles of a coupled floor, calibrated the same way
   double floor_drag_pm2 = 0.0;    ///< of a flat floor, see lattice.h
   double wall_share = 0.0;        ///< calibrated support of walls, see lattice.h
   double wall_reach_m = 0.0;
   double constraint_softness_pm2 = 0.0;  ///< of the position-based solver
   std::vector<double> layer_heights_m;   ///< of the resting layers above the floor, from below
   double band_m = 0.0;                   ///< thickness of the resting band: highest layer + s/2
-  std::uint32_t splat_reach_count =
-      1;  ///< two-way: what a droplet gives and takes is spread over 4 of these + 1 cells an axis
+  std::uint32_t splat_reach_count = 1;   ///< two-way: droplet exchange is spread over 4 of these + 1 cells per axis
   double neighbours_count = 0.0;  ///< inside the lattice, within H, the particle itself not counted
   std::array<double, 3> min_m{};  ///< domain x, y, z
   std::array<double, 3> max_m{};
@@ -63,26 +62,26 @@ struct WaveLayout {
 /// Everything that follows from a scene.
 struct Derived {
   double tick_s = 0.0;
-  std::uint32_t substeps_count = 1;  ///< per tick
+  std::uint32_t substeps_count = 1;  ///< number per tick
   double dt_s = 0.0;                 ///< tick_s / substeps_count
   std::optional<ParticleLayout> particles;
   std::optional<WaveLayout> wave;
-  std::vector<StepRule> rules;     ///< all that apply, tightest first
+  std::vector<StepRule> rules;     ///< all rules that apply, tightest first
   std::uint64_t device_bytes = 0;  ///< buffers of the simulation, as sim allocates them
   shared::SimUniforms uniforms{};
 };
 
-/// Errors (kInvalidInput) name the field, the value, the bound and what to do; `allow_unstable` waives the step-size
-/// rules only. Ranges are checked where scenes are loaded; derive() checks what needs several fields.
-/// `kept`: the layout of a room that is running. Parameters may change what a new start would look like (a softer water
-/// rests lower); the running room keeps its domain, grid and floor.
+/// Errors (kInvalidInput) name the field, the value, the bound and what to do; `allow_unstable` disables the step-size
+/// rules only. The loader checks ranges; derive() checks rules that need several fields.
+/// `kept`: the layout of a running room. A parameter change may change the layout of a new start (softer water rests
+/// lower), but the running room keeps its domain, grid and floor.
 core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kept = nullptr);
 
-/// The layout of a running room whose scene asks for another number of particles: the same water in the same place, so
-/// the spacing is (volume / count)^(1/3) and the layers follow from it. Errors as derive()'s.
+/// Returns the layout for another number of particles in a running room: the same water in the same place, so the
+/// spacing is (volume / count)^(1/3), and the layers follow from it. Errors as derive().
 core::Result<ParticleLayout> layOutAgain(const core::Scene& scene, const ParticleLayout& before);
 
-/// Whether going from one scene to another needs new buffers or programs (a restart) instead of new uniforms.
+/// Returns whether the change needs new buffers or programs (a restart) and not only new uniforms.
 bool needsRestart(const Derived& before, const Derived& after);
 
 }  // namespace spindrift::sim

@@ -1,4 +1,4 @@
-// What the diagnostics of one tick found.
+// Results of the diagnostics of one tick.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ struct Health {
   std::uint64_t nonfinite_count = 0;
   std::uint64_t escaped_count = 0;   ///< particles outside their domain
   std::uint32_t particle_count = 0;  ///< alive
-  /// Particles, summed over the substeps since the health before, that had more neighbour candidates than the bound of
-  /// the search (SimUniforms::candidates_max_count) and did not look at all of them. 0 in any water worth the name.
+  /// Particles, summed over the substeps since the previous health, with more neighbour candidates than the search
+  /// limit (SimUniforms::candidates_max_count), so that some were not visited. 0 in physically plausible water.
   std::uint32_t crowded_count = 0;
   double max_speed_mps = 0.0;
   double max_density_ratio = 0.0;  ///< rho / rho0
@@ -22,18 +22,18 @@ struct Health {
   double max_elevation_m = 0.0;
   double wave_volume_m3 = 0.0;  ///< integral of eta
   double wave_energy_j = 0.0;   ///< rho/2 integral (g eta^2 + q^2/d): conserved by the undamped linear leapfrog
-  double breaking_ratio = 0.0;  ///< share of the cells that break
+  double breaking_ratio = 0.0;  ///< share of the cells that are breaking
 
   // The volume ledger, in units of shaders/shared/fixed_point.h times a cell's area.
   std::int64_t surface_units = 0;       ///< sum of the elevations
-  std::int64_t outflow_units = 0;       ///< gone through absorbing sides since the start
-  std::int64_t volume_error_units = 0;  ///< surface + outflow + particles of a two-way scene - at the start: always 0
+  std::int64_t outflow_units = 0;       ///< volume lost through absorbing sides since the start
+  std::int64_t volume_error_units = 0;  ///< surface + outflow + particles of a two-way scene - initial volume: always 0
 
   // Two-way scenes, since the start.
-  std::uint32_t emitted_count = 0;       ///< particles that breaking water became
-  std::uint32_t absorbed_count = 0;      ///< particles that fell back
-  std::uint32_t pool_refused_count = 0;  ///< substeps in which the pool had no room
-  double emitted_m3 = 0.0;               ///< the same as volumes
+  std::uint32_t emitted_count = 0;       ///< particles made by breaking water
+  std::uint32_t absorbed_count = 0;      ///< particles returned to the surface
+  std::uint32_t pool_refused_count = 0;  ///< substeps in which the pool was full
+  double emitted_m3 = 0.0;               ///< the emitted particles as volume
   double absorbed_m3 = 0.0;
 
   [[nodiscard]] bool isGood() const { return nonfinite_count == 0 && escaped_count == 0; }

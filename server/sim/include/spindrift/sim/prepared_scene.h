@@ -1,4 +1,4 @@
-// A change of a running room's scene, worked out apart from its simulation: on any thread, without a device.
+// A scene change of a running room, prepared apart from its simulation: on any thread, without a device.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +12,31 @@
 
 namespace spindrift::sim {
 
-/// What prepareScene() needs to know of a simulation; WaterSim::sceneBasis() makes it. Plain values, about 36 bytes per
-/// particle and 8 per wave cell where particles are to be laid out anew.
+/// Input of prepareScene() from a simulation, made by WaterSim::sceneBasis(). Plain values. If the particles have to be
+/// laid out anew: about 36 bytes per particle and 8 per wave cell.
 struct SceneBasis {
   core::Scene scene;
   Derived derived;
   StateCopy state;             ///< position, velocity and elevation; empty when the change keeps the particles
-  std::uint64_t revision = 0;  ///< WaterSim::adopt() refuses what was prepared for another one
+  std::uint64_t revision = 0;  ///< WaterSim::adopt() refuses a change prepared for another revision
 };
 
-/// Positions and velocities, 4 floats per particle (x, y, z, id; x, y, z, foam), as the device holds them.
+/// Positions and velocities, 4 floats per particle (x, y, z, id; x, y, z, foam), as in device memory.
 struct RelaidParticles {
   std::vector<float> position, velocity;
 };
 
-/// For WaterSim::adopt(). Plain values.
+/// Input of WaterSim::adopt(). Plain values.
 struct PreparedScene {
   core::Scene scene;
   Derived derived;
-  std::optional<RelaidParticles> particles;  ///< set: buffers of another size
-  double flow_ratio = 1.0;                   ///< what the wave's flow is multiplied by
+  std::optional<RelaidParticles> particles;  ///< set if the buffers change their size
+  double flow_ratio = 1.0;                   ///< factor on the wave's flow
   std::uint64_t revision = 0;
 };
 
-/// Checks and works out the change from `basis` to `scene`: everything of WaterSim::setScene() that needs no device. A
-/// pure function. Linear in the number of particles: 0.1 s for 200,000. Errors as setScene()'s.
+/// Checks and computes the change from `basis` to `scene`: everything in WaterSim::setScene() that needs no device. A
+/// pure function, linear in the number of particles: 0.1 s for 200,000. Errors as setScene().
 core::Result<PreparedScene> prepareScene(const core::Scene& scene, const SceneBasis& basis);
 
 }  // namespace spindrift::sim

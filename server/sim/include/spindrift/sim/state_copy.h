@@ -11,9 +11,9 @@ struct StateCopy {
   std::vector<float> position, velocity;
   std::vector<float> density_kgpm3;
   std::vector<double> elevation_m;  ///< whole units of shaders/shared/fixed_point.h, which a double holds exactly
-  std::vector<float> boats;         ///< shaders/shared/boats.h, every place
+  std::vector<float> boats;         ///< layout: shaders/shared/boats.h; every slot
   std::vector<std::uint32_t> pool;  ///< shaders/shared/pool.h; two-way scenes
-  std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) per cell, the faces that it owns
+  std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) per cell: the faces owned by the cell
 };
 
 }  // namespace spindrift::sim

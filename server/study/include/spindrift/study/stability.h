@@ -23,13 +23,13 @@ struct StabilityPoint {
   std::uint64_t recovered_count = 0;  ///< how often the watchdog stepped in
   bool is_well_after = true;          ///< two seconds with the rules' own steps: finite, the watchdog silent
   double max_density_ratio = 0.0;     ///< largest rho / rho0; 0 without particles
-  double energy_growth = 0.0;         ///< largest energy over what there was to begin with
+  double energy_growth = 0.0;         ///< largest energy over the initial energy
   double max_elevation_m = 0.0;       ///< largest |elevation|; 0 without a wave
   double slowest_step_s = 0.0;        ///< wall time of a substep, mean of the slowest tick
 
   /// No breach, and no more energy and density than the sweep's bounds.
   bool is_stable = false;
-  /// Whatever happened, nobody saw nonsense, nothing hung, and the room lives.
+  /// No client saw invalid values, nothing hung, and the room still runs.
   [[nodiscard]] bool isSafe() const { return are_frames_finite && is_well_after && slowest_step_s < 10.0; }
 };
 

@@ -1,4 +1,4 @@
-// The messages of the REST interface (api.proto) as Protobuf JSON. No text makes any of these functions throw.
+// Messages of the REST interface (api.proto) as Protobuf JSON. No input makes these functions throw.
 #pragma once
 
 #include <string>
@@ -14,15 +14,15 @@
 
 namespace spindrift::wire {
 
-/// Names as in the proto files, every field written, one line without its end. 64-bit integers are strings, as Protobuf
-/// JSON wants them.
+/// Returns one line without line end, with the proto files' names and every field. 64-bit integers are strings, as
+/// Protobuf JSON requires.
 std::string toJson(const google::protobuf::Message& message);
 
-/// One Command, names as in the proto files or in lowerCamelCase, checked like one that came over the wire; Malformed
-/// for text that is no such object, fields that do not exist included.
+/// Parses one Command, with names as in the proto files or in lowerCamelCase, and checks it like one from a session.
+/// Returns Malformed for text that is no such object or has unknown fields.
 std::variant<core::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json);
 
-/// kInvalidInput with one line; names and scene are not checked against what there is.
+/// Error: kInvalidInput with one line. Does not check whether the name is free or the scene exists.
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json);
 
 }  // namespace spindrift::wire

@@ -1,4 +1,4 @@
-// Server messages of the control plane, each serialized once into a buffer that all outboxes can share.
+// Server messages of the control plane, each serialized once into a buffer that all outboxes share.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 
 namespace spindrift::wire {
 
-/// Values of the first message to a session. The scene has its defaults filled in; parameter descriptions and the
-/// version of the wire follow from it and from kWireMajor/kWireMinor.
+/// Values of the greeting. The scene has its defaults filled in; parameter descriptions are derived from it, and the
+/// protocol version is that of kWireMajor and kWireMinor.
 struct GreetingFacts {
   std::string server;  ///< program name and version
-  std::string device;  ///< what the simulation runs on
+  std::string device;  ///< the device of the simulation
   std::string room;
   std::uint64_t session_id = 0;
-  std::vector<v1::Layer> layers;  ///< what the room can send
+  std::vector<v1::Layer> layers;  ///< layers that the room can send
   std::uint32_t message_max_bytes = 0;
   double commands_per_s = 0.0;
   double command_burst_count = 0.0;
@@ -33,11 +33,11 @@ struct GreetingFacts {
   bool paused = false;
   double speed = 1.0;
   v1::BoatList boats;               ///< on the water now
-  std::vector<std::string> scenes;  ///< what ChangeScene takes
+  std::vector<std::string> scenes;  ///< names that ChangeScene accepts
 };
 
 core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene);
-/// `boat_id` is the new boat's, for SpawnBoat.
+/// `boat_id`: the new boat, for SpawnBoat.
 core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0);
 core::SharedBytes reject(const CommandRejection& rejection);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
