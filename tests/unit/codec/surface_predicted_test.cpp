@@ -193,8 +193,7 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
   core::FrameView view;
   const std::vector<std::uint32_t> words(32 * 32 / 4, 0u);
   view.foam = core::FoamView{32, 16.0, words};
-  const auto missing =
-      late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).delta));
+  const auto missing = late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).delta));
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, core::ErrorCode::kUnavailable);
 }
