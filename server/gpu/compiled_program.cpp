@@ -154,8 +154,8 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   glDeleteShader(shader);
   glGetProgramiv(program->id, GL_LINK_STATUS, &is_fine);
   if (!is_fine) {
-    return core::Error{core::ErrorCode::kInternal, std::string(shader_path) + " does not link: " +
-                                                       translateLog(source, programLog(program->id))};
+    return core::Error{core::ErrorCode::kInternal,
+                       std::string(shader_path) + " does not link: " + translateLog(source, programLog(program->id))};
   }
   GLint size[3] = {0, 0, 0};
   glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);

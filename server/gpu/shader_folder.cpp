@@ -34,7 +34,8 @@ std::optional<std::string_view> directive(std::string_view line, std::string_vie
 /// Returns "SPINDRIFT_ONCE_coupling_splat_glsl" for "coupling/splat.glsl".
 std::string guardOf(const std::string& name) {
   std::string out = "SPINDRIFT_ONCE_" + name;
-  std::ranges::replace_if(out, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  std::ranges::replace_if(
+      out, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return out;
 }
 

@@ -1,4 +1,4 @@
-// A boat's state in registers, and its hull as a shape.
+// State of a boat in registers, and the shape of its hull.
 #ifndef SPINDRIFT_BOAT
 #define SPINDRIFT_BOAT
 
@@ -17,7 +17,7 @@ struct BoatState {
   vec2 control;     // throttle, rudder
   vec4 hull_m;      // length, beam, height, draught
   float full_speed_mps;
-  float aloft;      // 0: the water carries it; 1: it flies and neither feels the water nor presses on it
+  float aloft;      // 0: the water carries it; 1: it is in the air, without forces from and on the water
 };
 
 BoatState unpackBoat(vec4 t[BOAT_TEXELS]) {

@@ -1,11 +1,12 @@
-// One tick of every boat: one invocation a boat, all in one group.
+// One tick of every boat: one invocation per boat, all in one group.
 // Reads SURFACE, SURFACE_FLOW, TERRAIN, BoatControls. Updates BOATS.
 // Equations: buoyancy from HULL_COLUMNS columns of water under the hull, each submerged to where the surface would be without the
 // hull's own dent (elevation + own head): draught at rest = density ratio * height. Heave, pitch and roll are damped oscillators
-// about it, omega^2 = g/draught. Thrust balances quadratic drag, relative to the moving water, at full speed; the rudder turns a
-// moving boat on a circle of about two lengths; the surface's slope pulls. A boat that waves throw up falls freely: of all this it
-// has its share that the water carries, twice that share while it is below a half. Contacts: three circles along each hull against other
-// boats, obstacles, shallow ground and sides; overlap is shared half and half, the approaching speed is lost.
+// about it, omega^2 = g/draught. Thrust balances quadratic drag, relative to the moving water, at full speed; the rudder
+// turns a moving boat on a circle of about two lengths; the slope of the surface accelerates it. A boat thrown up by waves
+// falls freely: these forces act with the share that the water carries, and twice that share below one half. Contacts:
+// three circles along each hull against other boats, obstacles, shallow ground and sides. Each boat moves by half of the
+// overlap and loses its approaching speed.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
 // variants: WAVE=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "bodies/boat.glsl"
@@ -13,7 +14,7 @@
 #if WAVE
 #include "bodies/surface_sample.glsl"
 #else
-// Without a wave boats swim at the resting level, in water that stands still.
+// Without a wave, boats float at the resting level in still water.
 vec4 surfaceUnder(vec2 xz, out vec2 flow_mps) {
   flow_mps = vec2(0.0);
   return vec4(0.0);
@@ -34,11 +35,11 @@ const float kTiltDamping = 0.25;      // of critical
 const float kDragPerLength = 0.35;    // quadratic drag over the length: full speed within a few lengths
 const float kReverseShare = 0.4;      // thrust astern over thrust ahead
 const float kTurnLengths = 1.6;       // radius of the tightest circle over the length
-const float kYawRate_per_s = 3.0;     // how fast the boat takes to its rudder
+const float kYawRate_per_s = 3.0;     // rate at which the boat follows its rudder
 const float kWashYaw_per_s = 0.25;    // turning by the propeller's wash at standstill
 const float kSwayDrag_per_s = 2.5;
 const float kBounce = 0.3;
-const float kGroundingDepth = 1.1;    // water shallower than so many draughts stops a boat
+const float kGroundingDepth = 1.1;    // depth over draught at which a boat runs aground
 
 BoatState boatAt(uint place) {
   vec4 t[BOAT_TEXELS];
@@ -46,7 +47,7 @@ BoatState boatAt(uint place) {
   return unpackBoat(t);
 }
 
-/// Middle of the k-th of three circles along the hull, k = -1, 0, 1; their radius is half the beam.
+/// Centre of the k-th of three circles along the hull, k = -1, 0, 1; their radius is half the beam.
 vec2 circleOf(BoatState b, int k) {
   return b.centre_m.xz + forwardOf(b.heading) * (float(k) * 0.5 * max(b.hull_m.x - b.hull_m.y, 0.0));
 }
@@ -55,13 +56,13 @@ vec2 velocityOf(BoatState b) {
   return forwardOf(b.heading) * b.speed_mps.x + starboardOf(b.heading) * b.speed_mps.y;
 }
 
-/// Something at `normal` from the boat pushes it out by depth_m; the speed against it turns round, weakly.
+/// Pushes the boat out of a contact at `normal` by depth_m; the speed against it is weakly reversed.
 void pushBack(inout vec2 shift_m, inout vec2 velocity_mps, vec2 normal, float depth_m, float approach_mps) {
   shift_m += normal * depth_m;
   velocity_mps += normal * max(approach_mps, 0.0) * (1.0 + kBounce);
 }
 
-/// Heave, pitch and roll; returns the slope of the water along the hull, without the hull's own dent.
+/// Heave, pitch and roll. Returns the slope of the water along the hull, without the hull's own dent.
 float floatOnWater(inout BoatState b) {
   const float g = sim.gravity_mps2;
   const float draught_m = b.hull_m.w;
@@ -119,7 +120,7 @@ void drive(inout BoatState b, float slope) {
   b.speed_mps.xy = relative_mps + water_mps;
   const float yaw = b.control.y * (relative_mps.x / (kTurnLengths * b.hull_m.x) + kWashYaw_per_s * abs(throttle));
   b.yaw_rate = mix(yaw, b.yaw_rate, exp(-kYawRate_per_s * hold * dt_s));
-  // The heading turns under a velocity that stays; sway drag then takes the boat along.
+  // The heading turns, the velocity does not; sway drag then aligns the velocity.
   const vec2 velocity_mps = velocityOf(b);
   b.heading += dt_s * b.yaw_rate;
   if (abs(b.heading) > 3.14159265) b.heading -= 6.2831853 * sign(b.heading);
@@ -127,7 +128,7 @@ void drive(inout BoatState b, float slope) {
   b.centre_m.xz += dt_s * velocity_mps;
 }
 
-/// Boats as they were before this tick: every invocation sees the same.
+/// Boats before this tick: every invocation sees the same.
 void meetBoats(BoatState b, uint own, inout vec2 shift_m, inout vec2 velocity_mps) {
   for (uint other = 0u; other < boat_place_count; ++other) {
     const BoatState o = boatAt(other);
@@ -141,7 +142,7 @@ void meetBoats(BoatState b, uint own, inout vec2 shift_m, inout vec2 velocity_mp
         const float overlap_m = 0.5 * (b.hull_m.y + o.hull_m.y) - distance_m;
         if (overlap_m > deepest_m) {
           deepest_m = overlap_m;
-          // Two in one place part by their order.
+          // Two boats at the same place separate by their order.
           normal = distance_m > 1e-4 ? d / distance_m : vec2(own < other ? 1.0 : -1.0, 0.0);
         }
       }
@@ -159,7 +160,7 @@ void meetGround(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
     const vec4 t = terrainAt(p);
     const float overlap_m = 0.5 * b.hull_m.y - t.x;
     if (overlap_m > 0.0) pushBack(shift_m, velocity_mps, t.yz, overlap_m, -dot(velocity_mps, t.yz));
-    // Aground: toward deeper water, slowly, and no further up.
+    // Aground: moves slowly toward deeper water, and not further onto the ground.
     const float missing_m = kGroundingDepth * b.hull_m.w - t.w;
     if (missing_m > 0.0 && t.x > 0.0) {
       const float step_m = 2.0 * sim.wave_cell_m;
@@ -209,7 +210,7 @@ void main() {
     b.centre_m.xz = acrossSides(b.centre_m.xz + shift_m);
     b.speed_mps.xy = vec2(dot(velocity_mps, forwardOf(b.heading)), dot(velocity_mps, starboardOf(b.heading)));
   }
-  // Everybody has read the boats as they were before anybody writes.
+  // Barrier: all invocations have read the boats before any writes them.
   memoryBarrierBuffer();
   barrier();
   if (!is_here) return;

@@ -1,7 +1,7 @@
-// Hulls press on the water: invocations (x, y) cover the square around a boat, z is its place.
+// Pressure of hulls on the water: invocations (x, y) cover the square around a boat, z is its slot.
 // Reads BOATS. Adds to PRESSURE_HEAD [n x n, units] (cleared before).
-// A moving pressure disc of the hull's size (PHYSICS: boat wake; thesis 3.6.4 uses a point). The wave equation has no dispersion:
-// a boat slower than the waves carries a dent, one faster than them drags a Mach wedge of half angle asin(c/U).
+// A moving pressure disc of the hull's size (PHYSICS: boat wake; thesis 3.6.4 uses a point). The wave equation has no
+// dispersion: a boat slower than the waves carries a dent, a faster one drags a Mach wedge of half angle asin(c/U).
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
@@ -32,7 +32,7 @@ void main() {
 #endif
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return;
   const float head_m = hullHead(b, vec2(dot(d, forwardOf(b.heading)), dot(d, starboardOf(b.heading))));
-  // Nothing for a boat whose state is not finite; diagnostics count it.
+  // Skip a boat with a non-finite state; diagnostics count it.
   const int units = head_m * ELEVATION_UNITS_PER_M < TRANSFER_MAX_UNITS ? int(round(head_m * ELEVATION_UNITS_PER_M)) : 0;
   if (units != 0) atomicAdd(pressure_head[cell.x + n * cell.y], units);
 }

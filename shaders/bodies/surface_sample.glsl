@@ -1,4 +1,4 @@
-// The surface under a place, bilinear between cell centres.
+// The surface at a position, bilinear between cell centres.
 #ifndef SPINDRIFT_SURFACE_SAMPLE
 #define SPINDRIFT_SURFACE_SAMPLE
 
@@ -11,7 +11,7 @@ layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 vec4 surfaceUnder(vec2 xz, out vec2 flow_mps) {
   const int n = int(sim.wave_n);
   const vec2 u = (xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m - 0.5;
-  // Bounded for places that are not finite or far away: an index is made of it.
+  // Clamped, because positions may be non-finite or far away and become an index.
   const vec2 c = clamp(floor(u), vec2(-n), vec2(2 * n - 2));
   const vec2 t = u - c;
   const int x0 = waveNeighbourX(int(c.x), n);

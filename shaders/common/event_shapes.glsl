@@ -1,5 +1,5 @@
-// What effects do to the surface, as displacements of water: a vector field V in m^2 whose divergence is the change of
-// elevation. Moving water through faces instead of adding it to cells keeps the volume to the last unit, walls included.
+// Effects as displacements of water: a vector field V in m^2 whose divergence is the change of elevation. Moving water
+// through faces, instead of adding it to cells, conserves the volume to the last unit, walls included.
 #ifndef SPINDRIFT_EVENT_SHAPES
 #define SPINDRIFT_EVENT_SHAPES
 
@@ -30,8 +30,8 @@ float crestIntegral(float s_m, float front_m, float back_m) {
   return width_m * tanh(clamp(s_m / width_m, -12.0, 12.0));
 }
 
-/// Displacement of a crest at a place, along its direction. A crest that spans the domain takes its water evenly from all of
-/// it, and moves none across the sides; a group of finite width takes it from a trough behind.
+/// Displacement of a crest at a position, along its direction. A crest across the whole domain takes its water evenly
+/// from all of it and moves none across the sides; a crest of finite width takes it from a trough behind.
 float crestDisplacement(EventUniform e, vec2 place_m) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
@@ -47,7 +47,7 @@ float crestDisplacement(EventUniform e, vec2 place_m) {
   return exp(-l * l * l * l) * (own - 0.5 * crestIntegral(behind, trough_m, trough_m) - 0.5 * (e.front_m - e.back_m));
 }
 
-/// The change of elevation that belongs to it, for the flow that makes the crest travel.
+/// The change of elevation, from which the flow of the travelling crest follows.
 float crestElevation(EventUniform e, vec2 place_m) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);

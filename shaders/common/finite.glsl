@@ -1,4 +1,4 @@
-// Whether numbers are finite, by their bits: compilers may assume that no NaN occurs, and drop isnan().
+// Tests for finite numbers by their bits, because compilers may assume that no NaN occurs and drop isnan().
 #ifndef SPINDRIFT_FINITE
 #define SPINDRIFT_FINITE
 

@@ -1,4 +1,4 @@
-// Rocks and breakwaters for particles: out of them along the gradient of their signed distance.
+// Collision of particles with rocks and breakwaters, along the gradient of their signed distance.
 #ifndef SPINDRIFT_TERRAIN
 #define SPINDRIFT_TERRAIN
 
@@ -16,7 +16,8 @@ vec4 terrainAt(vec2 xz) {
   return t;
 }
 
-/// A particle inside an obstacle, below its top, moves to its side and loses the speed that points into it.
+/// Moves a particle inside an obstacle, below its top, to the side of the obstacle and removes its speed into the
+/// obstacle.
 void pushOutOfRocks(inout vec3 x, inout vec3 v) {
   const vec4 t = terrainAt(x.xz);
   const bool inside = t.x < 0.0 && t.w < 0.0 && x.y < -t.w;

@@ -1,4 +1,5 @@
-// Particles that fall back become water: volume to the elevation, momentum to the pressure head.
+// Particles that fall back onto the surface: their volume is added to the elevation, their momentum to the pressure
+// head.
 #ifndef SPINDRIFT_ABSORPTION
 #define SPINDRIFT_ABSORPTION
 

@@ -1,4 +1,4 @@
-// Which breaking cells turn water into a particle in a tick.
+// Decides which breaking cells turn water into a particle in a tick.
 #ifndef SPINDRIFT_EMISSION
 #define SPINDRIFT_EMISSION
 
@@ -9,11 +9,11 @@
 #if POOL_PARTICLES
 #include "shared/pool.h"
 
-/// Share of the rising water that a fully breaking cell throws out as spray.
+/// Share of the rising water that a fully breaking cell emits as spray.
 #define SPRAY_SHARE 0.15
 
-/// Expected particles in the tick: the volume thrown out over a particle's; drawn by the hash of cell and tick. Where only one cell
-/// of a block may emit, the tick's is drawn first and emits for all.
+/// Expected particles per tick: the emitted volume over a particle's volume; drawn by the hash of cell and tick. If
+/// only one cell of a block may emit, that cell is drawn first and emits for the whole block.
 bool emits(ivec2 at, int n, uint tick, float intensity, float rate_mps) {
   if (intensity <= 0.0) return false;
   const uint cell = uint(at.x + n * at.y);

@@ -1,9 +1,9 @@
 // Breaking cells turn water into particles.
-// Reads EMITTER, SURFACE, SURFACE_FLOW, BREAKING, BED. Writes POSITION, VELOCITY at free places of the pool; takes droplet_units for each from
-// ELEVATION. A particle starts on the surface with the crest's speed: the water's own, the wave's along it, and the rise of the
-// surface, each a little at random; or with the crown that a splash throws.
-// Invariant: ELEVATION loses exactly droplet_units a particle, and no cell more than it holds. Which place a particle gets depends on the order of invocations;
-// the sort orders particles by where they are.
+// Reads EMITTER, SURFACE, SURFACE_FLOW, BREAKING, BED. Writes POSITION, VELOCITY in free slots of the pool; takes
+// droplet_units per particle from ELEVATION. A particle starts on the surface with the speed of the crest (the water's
+// velocity, the wave's along it, and the rise of the surface, each slightly randomised) or of a splash's crown.
+// Invariant: ELEVATION loses exactly droplet_units per particle, and no cell more than it holds. The slot of a particle
+// depends on the order of invocations; the sort then orders particles by position.
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "common/hash.glsl"
@@ -61,7 +61,7 @@ void main() {
   if (is_crown) v = vec3(0.0, crown_mps * (0.6 + 0.5 * r.z), 0.0) + vec3(broken.z, 0.0, broken.w) * (0.35 + 0.4 * t.z) + 0.3 * vec3(across_mps.x, 0.0, across_mps.y);
   v *= min(1.0, 0.9 * sim.max_speed_mps / max(length(v), 1e-3));
   const uint slot = atomicAdd(pool[POOL_NEXT], 1u);
-  // Any number that tells particles apart; a float holds 24 bits of it.
+  // Any number that distinguishes particles; a float holds 24 bits of it.
   const uint id = hashed(uvec3(uint(i), tick, sim.seed)).x >> 8;
   position[slot] = vec4(place_m.x, surface.x + 0.25 * sim.spacing_m, place_m.y, float(id));
   velocity[slot] = vec4(v, 1.0);

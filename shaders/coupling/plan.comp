@@ -1,6 +1,6 @@
-// One invocation that decides what the substep's indirect dispatches do: emission first, then the particles.
-// Reads and writes POOL. Where the pool has no room for all particles that want out, none comes (and it is counted): who came
-// first must not depend on the order of invocations.
+// Sets the sizes of the substep's indirect dispatches, emission first, then particles. One invocation.
+// Reads and writes POOL. If the pool has no room for all new particles, none is emitted, and this is counted: which ones
+// come first must not depend on the order of invocations.
 // Invariant: POOL_EMITTED - POOL_ABSORBED is the number of particles alive.
 #include "shared/groups.h"
 #include "shared/pool.h"
@@ -31,7 +31,7 @@ void main() {
   pool[POOL_EMITTING] = wanted;
   pool[POOL_NEXT] = live;
   pool[POOL_COUNT] = count;
-  pool[POOL_LIVE] = 0u;  // the sort finds out
+  pool[POOL_LIVE] = 0u;  // counted by the sort
   pool[POOL_EMITTED] += wanted;
   arguments(POOL_EMIT_ARGS, groupsOf(wanted, PARTICLE_GROUP), any_wanted ? 1u : 0u);
   const bool any_particle = count > 0u;

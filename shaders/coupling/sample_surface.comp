@@ -1,4 +1,5 @@
-// Prepares the surface for particles and boats: one texel with all that a lookup needs, and the wave's horizontal velocity.
+// Prepares the surface for particles and boats: one texel with all values of a lookup, and the wave's horizontal
+// velocity.
 // Reads ELEVATION [n x n, units], FLOW, BASIN. Writes SURFACE (eta, d eta/dt, d eta/dx, d eta/dz) and SURFACE_FLOW [m/s].
 // Equations: differences in metres (thesis, algorithm 9); d eta/dt = -div q; velocity = q / d, from the faces around a cell.
 // variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
@@ -35,7 +36,7 @@ void main() {
   const Flow left_flow = asFlow(texelFetch(flow, left.x + row));
   const Flow before_flow = asFlow(texelFetch(flow, cell.x + n * before.y));
 #if VARIED
-  // Behind a closed face stands a wall: the elevation goes on level.
+  // A closed face is a wall: the elevation continues level behind it.
   const Flow open = conductanceOf(cell, n);
   const Flow open_left = conductanceOf(left, n);
   const Flow open_before = conductanceOf(before, n);

@@ -1,7 +1,7 @@
-// Spreads an integer amount over the (4m+1) x (4m+1) wave cells around one, m = splat_reach_count, with the weights of four boxes of m+1
-// cells folded into each other (m = 1: 1 4 6 4 1 over 16), which are as wide as the droplet: narrower ones would shake single cells
-// until they break. What rounding and dry cells leave goes to the middle, so that the whole amount arrives. Integer additions: the
-// order does not matter.
+// Spreads an integer amount over the (4m+1) x (4m+1) wave cells around one, m = splat_reach_count. The weights are four
+// boxes of m+1 cells convolved (m = 1: 1 4 6 4 1 over 16), about as wide as the droplet; narrower weights would excite
+// single cells until they break. The remainder from rounding and dry cells goes to the middle, so that the whole amount
+// arrives. Integer additions, so the order does not matter.
 #ifndef SPINDRIFT_SPLAT
 #define SPINDRIFT_SPLAT
 
@@ -12,7 +12,7 @@
 layout(binding = LANDING) uniform isamplerBuffer landing;
 #endif
 
-/// The cell under a place; where that is dry, the wet cell that its water runs to.
+/// The cell at a position; if it is dry, the wet cell that its water runs to.
 ivec2 wetCellAt(vec2 xz, int n) {
   const vec2 u = floor((xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m);
   const ivec2 cell = ivec2(waveNeighbourX(int(u.x), n), waveNeighbourZ(int(u.y), n));
@@ -24,7 +24,7 @@ ivec2 wetCellAt(vec2 xz, int n) {
 #endif
 }
 
-/// Index of the cell at an offset from a wet one that takes its share; -1 where the middle takes it.
+/// Index of the cell at an offset from a wet one that receives its share; -1 if the middle receives it.
 int splatTarget(ivec2 middle, ivec2 offset, int n) {
   ivec2 cell = middle + offset;
 #if WAVE_PERIODIC_X
@@ -41,7 +41,7 @@ int splatTarget(ivec2 middle, ivec2 offset, int n) {
   return i;
 }
 
-/// How many ways three of `x` can be chosen.
+/// Binomial coefficient: number of ways to choose three of `x`.
 int chooseThree(int x) {
   return x < 3 ? 0 : x * (x - 1) * (x - 2) / 6;
 }
@@ -53,7 +53,7 @@ float splatWeight(int offset, int reach) {
   return float(chooseThree(k + 3) - 4 * chooseThree(k + 2 - reach)) / (boxes * boxes * boxes * boxes);
 }
 
-/// amount times the share of the cell at `offset`, toward zero.
+/// amount times the share of the cell at `offset`, rounded toward zero.
 int splatShare(int amount, ivec2 offset, int reach) {
   return int(float(amount) * splatWeight(offset.x, reach) * splatWeight(offset.y, reach));
 }

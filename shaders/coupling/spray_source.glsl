@@ -1,6 +1,6 @@
-// Which cells hold enough water to give some to particles: no cell may give more than it holds, however many cells emit at once.
-// A tick's particles together take at most sim.spray_taken_m from a cell (sim/spray.h); what a particle's other cells cannot give
-// comes from the emitting cell on top of that.
+// Which cells hold enough water to emit particles: no cell may give more than it holds, however many cells emit at once.
+// All particles of a tick together take at most sim.spray_taken_m from a cell (sim/spray.h). The emitting cell gives, in
+// addition, what the other cells of its particle lack.
 #ifndef SPINDRIFT_SPRAY_SOURCE
 #define SPINDRIFT_SPRAY_SOURCE
 
@@ -23,7 +23,7 @@ int sprayFrom(ivec2 middle, ivec2 offset, int n, out int at) {
   return at >= 0 && givesSpray(at) ? splatShare(int(sim.droplet_units), offset, int(sim.splat_reach_count)) : 0;
 }
 
-/// Whether a cell can emit a particle: it holds its own part and what the others leave to it.
+/// Returns whether a cell can emit a particle: it holds its own part and the part that the others lack.
 bool canEmit(ivec2 cell, int n) {
   int rest = int(sim.droplet_units);
   const int reach = int(sim.splat_reach_count);

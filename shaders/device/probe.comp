@@ -1,4 +1,4 @@
-// Tried on a device before it is used: does each thing that the program's shaders rely on, once.
+// Test of a device before its first use: uses each feature that the program's shaders rely on once.
 // Reads PROBE_TEXELS [64] and the uniform block Probe. Writes result[64], invocation i: the sum of its group's texels times
 // `factor`, plus what was stored in `stored[i]`. Adds the number of invocations to `count`.
 layout(local_size_x = 32) in;

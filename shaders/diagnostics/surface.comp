@@ -1,4 +1,4 @@
-// Health of the wave: one partial result an invocation, summed on the host in double and 64-bit integer precision.
+// Health of the wave: one partial result per invocation, summed on the host in double and 64-bit integer precision.
 // Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
 // breaches (flows not finite or beyond range, elevations beyond range, non-finite boats), 0, max |eta|, cells that break; sum of
 // eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
@@ -54,7 +54,7 @@ void main() {
     volume.z += left_units.y;
     volume.w += left_units.x;
 #endif
-    // Water beyond the range of its units has nowhere to go: transferUnits() drops it, sums turn over.
+    // Elevations beyond the range of their units overflow: transferUnits() drops the transfer, and sums wrap around.
     const bool is_beyond = units > ELEVATION_MAX_UNITS || units < -ELEVATION_MAX_UNITS ||
                            !all(lessThan(abs(own) * sim.wave_transfer, Flow(TRANSFER_MAX_UNITS)));
     if (is_beyond) {

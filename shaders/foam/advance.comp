@@ -1,4 +1,5 @@
-// White water on the surface, once a tick: carried by the water, fading by source, fed by breakers, wakes and landings.
+// White water on the surface, once per tick: carried by the water, fading by source, fed by breakers, wakes and
+// landings.
 // Reads FOAM_BEFORE [(n/2)^2: breaking, wake, landing, 0], SURFACE_FLOW, BREAKING, BOATS, LANDED. Writes FOAM_FIELD; clears LANDED.
 // Equation: semi-Lagrangian transport, f(x, t + dt) = f(x - u dt, t) exp(-dt/lifetime) + source; each share of white is at most 1.
 // variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 HULLS=0 LANDINGS=0 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 HULLS=1 LANDINGS=1
@@ -19,7 +20,7 @@ layout(std430, binding = FOAM_FIELD) restrict writeonly buffer FoamField { vec4 
 layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
 #endif
 
-/// White that a second of full breaking makes, and one particle that falls back.
+/// Foam from one second of full breaking, and from one particle that falls back.
 const float kBreakingGain_per_s = 3.0;
 const float kLandingGain = 0.06;
 const float kWakeGain_per_s = 5.0;
@@ -29,7 +30,7 @@ vec4 before(ivec2 cell, int n) {
 }
 
 #if HULLS
-/// Stern and sides of the boats, by their speed.
+/// Foam at the stern and the sides of boats, by their speed.
 float wakeAt(vec2 p) {
   float wake = 0.0;
   for (int place = 0; place < int(boat_place_count); ++place) {

@@ -1,6 +1,6 @@
-// The neighbour search of density and force passes: ranges of sorted particles around a cell. A range has a bound, so that
-// a pile-up of all particles in one cell costs a multiple of their number and not its square. What lies beyond it is cut;
-// passes that define COUNT_CROWDED count the particles that this happened to in CROWDED.
+// Neighbour search of the density and force passes: ranges of sorted particles around a cell. The length of a range is
+// limited, so that all particles in one cell cost a multiple of their number and not its square. Candidates beyond the
+// limit are skipped; passes that define COUNT_CROWDED count the affected particles in CROWDED.
 #ifndef SPINDRIFT_CANDIDATES
 #define SPINDRIFT_CANDIDATES
 
@@ -9,7 +9,7 @@
 layout(binding = CELL_START) uniform usamplerBuffer cell_start;
 
 #if defined(COUNT_CROWDED) || defined(COUNT_CANDIDATES)
-/// [0]: particles whose candidates were cut, since the buffer was made. [1]: candidates looked at, with COUNT_CANDIDATES
+/// [0]: particles with skipped candidates since the buffer was made. [1]: candidates visited, with COUNT_CANDIDATES
 /// only (tests).
 layout(std430, binding = CROWDED) restrict buffer Crowded { uint crowded[]; };
 #endif
@@ -34,7 +34,7 @@ void countCrowded() {
 }
 #endif
 
-/// From a candidate at x_j to the particle at x, its range's shift added; the shorter way round where y is periodic.
+/// Vector from a candidate at x_j to the particle at x, with its range's shift; the shorter way where y is periodic.
 vec3 fromCandidate(Grid g, vec3 x, vec3 x_j) {
   vec3 r = x - x_j;
 #if PERIODIC_Y

@@ -1,5 +1,5 @@
-// Forgets the counts of the last build. Pools only: a size that the device decides; elsewhere the host clears.
-// Writes CELL_COUNT [cell_count + 1]; an invocation takes every so many cells (MAX_GROUPS).
+// Clears the counts of the last build. For pools only, whose size is known on the device; otherwise the host clears.
+// Writes CELL_COUNT [cell_count + 1]; an invocation clears several cells with a stride (MAX_GROUPS).
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 

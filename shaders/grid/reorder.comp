@@ -1,5 +1,5 @@
-// Moves particles into cell order, inside a cell by their previous index: neighbours become contiguous, and a run repeats
-// bit for bit because the order no longer depends on which invocation came first.
+// Sorts particles by cell and, inside a cell, by their previous index. Neighbours become contiguous, and a run repeats
+// bit for bit, because the order does not depend on the order of invocations.
 // Reads POSITION, VELOCITY, CELL_ARRIVAL, CELL_START, CELL_MEMBER. Writes SORTED_POSITION, SORTED_VELOCITY.
 // variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 // Cost: a particle counts the smaller indices in its cell, so n particles in one cell cost n^2, up to ORDERED_MAX of them.
@@ -18,7 +18,7 @@ layout(std430, binding = SORTED_POSITION) restrict writeonly buffer SortedPositi
 layout(std430, binding = SORTED_VELOCITY) restrict writeonly buffer SortedVelocity { vec4 sorted_velocity[]; };
 
 #if POOL_PARTICLES
-/// In a pool a particle's index depends on the order of invocations, where it is does not.
+/// In a pool the index of a particle depends on the order of invocations; its position does not.
 bool isBefore(vec3 a, uint i, vec3 b, uint j) {
   return a.x < b.x || (a.x == b.x && (a.z < b.z || (a.z == b.z && (a.y < b.y || (a.y == b.y && i < j)))));
 }
@@ -33,7 +33,7 @@ void main() {
 #endif
   const int cell = int(a.x);
   const int first = int(texelFetch(cell_start, cell).x);
-  // Behind the last cell are positions that are not finite: nothing to order.
+  // Positions behind the last cell are not finite and need no order.
   int last = a.x < sim.cell_count ? int(texelFetch(cell_start, cell + 1).x) : first;
   uint slot = uint(first);
   if (a.x == sim.cell_count || last - first > ORDERED_MAX) {

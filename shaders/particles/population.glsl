@@ -1,4 +1,4 @@
-// How many particles there are: a number of the scene, or, in two-way scenes (POOL), of the device.
+// Number of particles: from the scene, or in two-way scenes (POOL) from the device.
 #ifndef SPINDRIFT_POPULATION
 #define SPINDRIFT_POPULATION
 
@@ -7,7 +7,7 @@
 #if POOL_PARTICLES
 #include "shared/pool.h"
 layout(binding = POOL) uniform usamplerBuffer pool;
-/// Before the sort: dead ones included.
+/// Before the sort: includes dead particles.
 uint unsortedCount() { return texelFetch(pool, POOL_COUNT).x; }
 /// After the sort.
 uint particleCount() { return texelFetch(pool, POOL_LIVE).x; }

@@ -1,24 +1,24 @@
-// What happens to a particle at the sides of its domain.
+// Particles at the sides of their domain.
 #ifndef SPINDRIFT_SIDES
 #define SPINDRIFT_SIDES
 
 #include "particles/floor.glsl"
 #include "shared/sim_uniforms.h"
 
-/// One axis with walls: stops at the wall.
+/// One axis with walls: the particle stops at the wall.
 void keepBetweenWalls(inout float x, inout float v, float low, float high) {
   if (x < low) { x = low; v = max(v, 0.0); }
   if (x > high) { x = high; v = min(v, 0.0); }
 }
 
-/// One periodic axis: leaves on one side, enters slightly inside the other.
+/// One periodic axis: the particle leaves on one side and enters slightly inside the other.
 void wrapAround(inout float x, float low, float high) {
   if (x < low) x = high - sim.reentry_m;
   else if (x >= high) x = low + sim.reentry_m;
 }
 
 #if FOLLOW
-/// The patch moves: particles that it leaves behind enter it at its front, as high above the water as they were, moving with it.
+/// The patch moves: particles left behind enter at its front, at the same height above the water and moving with it.
 void carryAlong(inout vec3 x, inout vec3 v) {
   const vec2 low = vec2(sim.min_x_m, sim.min_z_m);
   const vec2 side = vec2(sim.max_x_m, sim.max_z_m) - low;

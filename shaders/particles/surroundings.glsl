@@ -1,5 +1,5 @@
-// What a particle meets at the end of its way: the sides of its domain, hulls, rocks, the floor; in two-way scenes the surface,
-// which takes it in.
+// Collisions of a particle at the end of its step: the sides of its domain, hulls, rocks, the floor; in two-way scenes
+// the surface, which absorbs it.
 #ifndef SPINDRIFT_SURROUNDINGS
 #define SPINDRIFT_SURROUNDINGS
 
@@ -15,7 +15,7 @@
 #include "bodies/hull.glsl"
 #endif
 
-/// Moves x and v to where they may be. False: the particle has become water.
+/// Moves x and v to allowed values. Returns false if the particle has become water.
 bool meetSurroundings(inout vec3 x, inout vec3 v) {
   keepInside(x, v);
 #if HULLS
@@ -25,7 +25,7 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
   pushOutOfRocks(x, v);
 #endif
 #if HULLS || (COUPLED && VARIED)
-  keepInside(x, v);  // a hull at a side may have pushed across it
+  keepInside(x, v);  // a hull near a side may have pushed it across
 #endif
 
 #if !PERIODIC_Y
@@ -41,7 +41,7 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
       absorb(x.xz, max(-v.y, 0.0));
       return false;
     }
-    x.y -= gap_m;  // thrown out by the water below it
+    x.y -= gap_m;  // thrown out by the water below
   }
 #else
   if (gap_m < sim.floor_gap_m) {

@@ -1,4 +1,4 @@
-// Moves each particle by what the constraints around it ask for, then out of walls and floor.
+// Moves each particle by the corrections of the constraints around it, then out of walls and floor.
 // Reads PRESSURE_POINT (position, lambda), CELL_START, floor and walls. Writes MOTION_POINT (position of the next iteration).
 // Equation: dx_i = sum_j (lambda_i + lambda_j) m/rho_0 grad W (Macklin & Mueller 2013, eq. 12) + lambda_i/rho_0 grad rho_boundary.
 // Invariant: one iteration moves a particle by at most a quarter of the spacing, but for the lift to the floor.

@@ -27,7 +27,7 @@ void main() {
   const Support support = makeSupport(g.cell_m);
   const vec4 predicted = texelFetch(sorted_position, int(i));
   if (!isFinite(predicted.xyz)) {
-    // Kept as it is for diagnostics to count: min() and max() at a wall would turn the NaN into a place there.
+    // Left unchanged for diagnostics to count: min() and max() at a wall would turn the NaN into a valid position.
     position[i] = predicted;
     velocity[i] = texelFetch(sorted_velocity, int(i));
     return;
@@ -39,7 +39,7 @@ void main() {
   vec3 drag = vec3(0.0);
 #if NEIGHBOUR_FOAM
   const float H2 = support.H * support.H;
-  float near = -1.0;  // the particle itself is none of its neighbours
+  float near = -1.0;  // the particle itself is not counted
 #endif
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dx = -1; dx <= 1; ++dx) {

@@ -1,7 +1,7 @@
-// Position-based fluids (Macklin & Mueller 2013, algorithm 1), first step: speeds from gravity and the downward force, and where
-// they would take the particles.
-// Reads and writes POSITION (then the predicted place, wrapped on periodic sides but not yet kept out of walls and floor) and
-// VELOCITY (then the predicted speed, which is what the way from the old to the predicted place stands for).
+// Position-based fluids (Macklin & Mueller 2013, algorithm 1), first step: velocities from gravity and the downward force,
+// and the positions that follow from them.
+// Reads and writes POSITION (then the predicted position, wrapped on periodic sides but not yet kept out of walls and
+// floor) and VELOCITY (then the predicted velocity, consistent with the step from the old to the predicted position).
 // Invariant: not faster than max_speed_mps.
 // variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1
 #include "shared/groups.h"
@@ -19,7 +19,7 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= unsortedCount()) return;
   vec4 x = position[i];
-  if (!isFinite(x.xyz)) return;  // stays for diagnostics to count
+  if (!isFinite(x.xyz)) return;  // left for diagnostics to count
   vec4 v = velocity[i];
   v.y -= sim.dt_s * sim.gravity_mps2;
 #if COUPLED

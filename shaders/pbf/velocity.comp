@@ -1,4 +1,4 @@
-// Speeds from the way that the particles really went: the predicted speed plus correction over step.
+// Velocities from the actual displacements: predicted velocity plus correction over step.
 // Reads SORTED_POSITION, SORTED_VELOCITY (predicted), MOTION_POINT (corrected). Writes PRESSURE_POINT (position, m/rho) and
 // ACCELERATION (velocity, rho) for pbf/finish.comp.
 // Equation: v = (x - x_old) / dt (Macklin & Mueller 2013, algorithm 1), not faster than max_speed_mps.

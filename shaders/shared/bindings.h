@@ -1,4 +1,4 @@
-// Where each resource is bound. A resource has one number: its storage-buffer binding when a pass writes it, and its
+// Binding of each resource. A resource has one number: its storage-buffer binding when a pass writes it, and its
 // texture unit when a pass reads it through its texel view.
 #ifndef SPINDRIFT_SHARED_BINDINGS_H
 #define SPINDRIFT_SHARED_BINDINGS_H
@@ -13,7 +13,7 @@
 // The same, ordered by cell, and by the previous order inside a cell.
 #define SORTED_POSITION 2
 #define SORTED_VELOCITY 3
-// What a neighbour needs to know: position.xyz + pressure / density^2; velocity.xyz + mass / density.
+// Values read by neighbours: position.xyz + pressure / density^2; velocity.xyz + mass / density.
 #define PRESSURE_POINT 4
 #define MOTION_POINT 5
 // Acceleration.xyz [m/s^2] + density [kg/m^3].
@@ -40,7 +40,7 @@
 #define TRANSFER 7
 #define GIVEN_SHARE 8
 #define LIMIT_ARGS 9
-// What presses on the surface (hulls, falling particles), as a height of water [units].
+// Pressure on the surface (hulls, falling particles), as a height of water [units].
 #define PRESSURE_HEAD 21
 // Breaking: seconds since a cell began to break, intensity 0..1; and the same one substep ago.
 #define BREAKING 22
@@ -69,11 +69,14 @@
 #define FOAM_FIELD 28
 #define FOAM_BEFORE 29
 #define LANDED 30
-// The simulation's uniforms as storage (at PARTIAL_SUM's place; no pass has both), for the one pass that moves the particle patch.
+// The simulation's uniforms as storage, for the pass that moves the particle patch (binding shared with PARTIAL_SUM; no
+// pass has both).
 #define SIM_UNIFORMS_STORAGE 18
-// Particles that had too many neighbour candidates, two words; grid/candidates.glsl (at EMITTER's place: no pass has both).
+// Particles with too many neighbour candidates, two words; grid/candidates.glsl (binding shared with EMITTER; no pass
+// has both).
 #define CROWDED 31
-// Foam from few neighbours, one float a particle [0..1], in scenes that count neighbours (at PACKED_WORDS' place; likewise).
+// Foam from few neighbours, one float per particle [0..1], in scenes that count neighbours (binding shared with
+// PACKED_WORDS; no pass has both).
 #define FOAM_SOURCE 17
 
 #endif

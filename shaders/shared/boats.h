@@ -1,7 +1,8 @@
-// Boats: BOAT_TEXELS texels each in BOATS, a place a boat. Axes: forward is (cos heading, sin heading) in (x, z), starboard
+// Boats: BOAT_TEXELS texels each in BOATS, one slot per boat. Axes: forward is (cos heading, sin heading) in (x, z),
+// starboard
 // (-sin, cos); pitch lifts the bow, roll lowers starboard.
 //   0  x, y, z of the hull's centre (half way from keel to deck) [m], heading [rad]
-//   1  pitch, roll [rad], age [s] (negative: nobody is here), id
+//   1  pitch, roll [rad], age [s] (negative: the slot is free), id
 //   2  speed forward, to starboard, up [m/s], yaw rate [rad/s]
 //   3  pitch rate, roll rate [rad/s], throttle, rudder [-1..1]
 //   4  length, beam, height, draught at rest [m]
@@ -14,9 +15,9 @@
 
 #define MAX_BOATS 16
 #define BOAT_TEXELS 6
-// A boat that comes to the water presses on it fully only after this time, so that it makes no splash.
+// A new boat reaches its full pressure on the water only after this time, so that it makes no splash.
 #define BOAT_SETTLING_S 1.0f
-// The pressure of a hull, exp(-a^4 - b^4) in half lengths and half beams, ends at this many of them.
+// The pressure of a hull, exp(-a^4 - b^4) in half lengths and half beams, is cut off at this many of them.
 #define HULL_REACH 1.6f
 
 #ifdef __cplusplus
@@ -29,7 +30,7 @@ struct BoatControl {
 };
 struct BoatControls {
   BoatControl control[MAX_BOATS];
-  uint place_count;  // places to look at: all boats are below
+  uint place_count;  // number of slots to check: all boats are below
   uint padding[3];
 };
 static_assert(sizeof(BoatControls) == 16 * MAX_BOATS + 16);

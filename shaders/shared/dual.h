@@ -1,4 +1,4 @@
-// Lets the headers in this folder compile as C++ and as GLSL. Only scalars of four bytes stand in shared blocks, so that
+// Lets the headers in this folder compile as C++ and as GLSL. Shared blocks contain only scalars of four bytes, so that
 // std140 and C++ agree on every offset.
 #ifndef SPINDRIFT_SHARED_DUAL_H
 #define SPINDRIFT_SHARED_DUAL_H

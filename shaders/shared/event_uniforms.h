@@ -6,10 +6,10 @@
 #include "shared/bindings.h"
 #include "shared/dual.h"
 
-// Splashes (rain drops too) and crests that can act together.
+// Maximum number of splashes (rain drops included) and of crests at the same time.
 #define MAX_SPLASHES 96
 #define MAX_CRESTS 16
-// A splash reaches this many radii: exp(-3.5^2) is 5e-6.
+// A splash is cut off at this many radii: exp(-3.5^2) is 5e-6.
 #define SPLASH_REACH 3.5f
 
 #ifdef __cplusplus
@@ -17,18 +17,18 @@ namespace spindrift::shared {
 #endif
 struct EventUniform {
   float gain_m;        // this step's share of the amplitude; negative pushes down
-  float x_m;           // splash: centre. crest: what direction and offset count from
+  float x_m;           // splash: centre. crest: origin of direction and offset
   float z_m;
   float radius_m;      // splash
   float direction_x;   // crest: direction of travel, a unit vector
   float direction_z;
-  float offset_m;      // crest: where it is along its direction now
+  float offset_m;      // crest: present position along its direction
   float front_m;       // crest: width of its front and back
   float back_m;
   float lateral_m;     // crest: half its extent along the crest; 0 = across the whole domain
-  float half_step_m;   // crest: how far it travels in half a step
+  float half_step_m;   // crest: distance travelled in half a step
   float speed_mps;     // crest: of the wave. splash: of the crown that it throws now; 0 for rain drops
-  float depth_m;       // splash: its whole depth
+  float depth_m;       // splash: full depth
   float half_side_m;   // crest across the whole domain: half of the domain's side along its direction
   float unused_x;
   float unused_y;

@@ -1,15 +1,16 @@
-// The particle pool of a two-way scene: how many particles there are is known on the device alone, so counts and the sizes of
-// indirect dispatches stand in one small buffer of words.
+// The particle pool of a two-way scene. Only the device knows the number of particles, so counts and the sizes of
+// indirect dispatches are in one small buffer of words.
 #ifndef SPINDRIFT_SHARED_POOL_H
 #define SPINDRIFT_SHARED_POOL_H
 
-// Particles in POSITION before the grid is built: those of the last substep, dead ones among them, and new ones.
+// Particles in POSITION before the grid is built: those of the last substep, including dead ones, and new ones.
 #define POOL_COUNT 0
-// Particles in the sorted arrays, all alive; after integration in POSITION, some of them dead.
+// Particles in the sorted arrays, all alive; after integration, in POSITION, some may be dead.
 #define POOL_LIVE 1
-// Particles that breaking cells want to emit in this substep; 0 after coupling/plan.comp where there is no room for all.
+// Particles that breaking cells want to emit in this substep; 0 after coupling/plan.comp where there is no room for
+// all.
 #define POOL_WANTED 2
-// Next free place while coupling/emit.comp runs.
+// Next free slot while coupling/emit.comp runs.
 #define POOL_NEXT 3
 // Since the start: particles emitted, particles absorbed, substeps in which the pool had no room.
 #define POOL_EMITTED 4

@@ -1,4 +1,4 @@
-// Everything that the passes of a step read as numbers, filled by sim from derive()'s result, once per change.
+// All numbers that the passes of a step read, filled by sim from derive()'s result, once per change.
 // Loops copy what they need into locals first: llvmpipe reloads a uniform in every iteration otherwise.
 #ifndef SPINDRIFT_SHARED_SIM_UNIFORMS_H
 #define SPINDRIFT_SHARED_SIM_UNIFORMS_H
@@ -54,22 +54,22 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // Two-way coupling.
   uint pool_capacity_count;
   uint droplet_units;           // elevation units that a particle's volume is in one wave cell
-  uint splat_reach_count;       // what a particle gives and takes is spread over 4 of these + 1 cells on an axis
+  uint splat_reach_count;       // droplet exchange is spread over 4 of these + 1 cells per axis
   float splat_width_m;          // standard deviation of that spread
   float emission_ratio;         // factor on the scene's emission
-  uint spray_block_count;       // at most one cell in each square of so many cells an axis emits in a tick
-  float spray_taken_m;          // so much water at most a tick's particles together take from a cell
+  uint spray_block_count;       // at most one cell in each square of this many cells per axis emits in a tick
+  float spray_taken_m;          // maximum height of water that all particles of a tick take from a cell
   uint seed;
 
   // Foam.
-  float foam_deficit_ratio;     // 1 - rho/rho0 at which a particle is fully white
+  float foam_deficit_ratio;     // 1 - rho/rho0 at which a particle is pure foam
   float foam_keep_ratio;        // exp(-dt / lifetime), of particles
   float tick_s;
-  float breaking_foam_keep_ratio;  // of the surface's foam, a tick
+  float breaking_foam_keep_ratio;  // of the surface's foam, per tick
   float wake_foam_keep_ratio;
   float landing_foam_keep_ratio;
 
-  float foam_neighbours;        // fewer neighbours than this and a particle turns white
+  float foam_neighbours;  // particles with fewer neighbours than this turn white
 
   // Walls: f(d) = wall_share max(1 - d / wall_reach_m, 0)^2 of the rest density is what lies beyond one.
   float wall_share;

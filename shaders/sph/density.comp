@@ -37,7 +37,7 @@ void main() {
   float sum = 0.0;
 #if NEIGHBOUR_FOAM
   const float H2 = support.H * support.H;
-  float near = -1.0;  // the particle itself is none of its neighbours
+  float near = -1.0;  // the particle itself is not counted
 #endif
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dx = -1; dx <= 1; ++dx) {

@@ -1,4 +1,4 @@
-// Moves the particles: kick, drift (symplectic Euler), foam, what they meet.
+// Moves the particles: kick, drift (symplectic Euler), foam, collisions.
 // Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, FOAM_SOURCE (with NEIGHBOUR_FOAM), the floor. Writes POSITION, VELOCITY (in sorted order).
 // Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than max_speed_mps plus
 // the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
@@ -27,7 +27,7 @@ void main() {
   const vec4 old_velocity = texelFetch(sorted_velocity, int(i));
   const vec4 a = texelFetch(acceleration, int(i));
   if (!isFinite(old_position.xyz)) {
-    // Kept as it is for diagnostics to count: min() and max() at a wall would turn the NaN into a place there.
+    // Left unchanged for diagnostics to count: min() and max() at a wall would turn the NaN into a valid position.
     position[i] = old_position;
     velocity[i] = old_velocity;
     return;

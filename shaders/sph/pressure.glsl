@@ -1,7 +1,7 @@
 // Pressure from density: the equation of state, chosen when a shader is specialised.
 //   TAIT = 0   p = k (rho - rho_0)                                             thesis 3.9
 //   TAIT = 1   p = k rho_0 / 7 ((rho / rho_0)^7 - 1), k = c0^2                  Monaghan 1994
-//   COHESION = 0 keeps p >= 0: water does not pull. COHESION = 1 lets it.
+//   COHESION = 0 keeps p >= 0: water does not pull. COHESION = 1 allows p < 0.
 #ifndef SPINDRIFT_PRESSURE
 #define SPINDRIFT_PRESSURE
 

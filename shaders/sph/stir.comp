@@ -1,4 +1,4 @@
-// Effects in a scene without a wave: they move the particles themselves, once a tick.
+// Effects in a scene without a wave: they move the particles directly, once per tick.
 // Reads EventUniforms. Changes POSITION [m] and VELOCITY [m/s]. (Scenes with a wave move the surface: shaders/wave.)
 // Equation: a change of the surface by eta = div V moves the water under it by -V/d along, and by eta (y + d)/d upward: no divergence, so
 // that the pressure solver has nothing to undo. A splash leaves its cavity to fall in, and brings its rim to the crown's speed, outward and up;
@@ -15,7 +15,7 @@ layout(local_size_x = PARTICLE_GROUP) in;
 layout(std430, binding = POSITION) restrict buffer Position { vec4 position[]; };
 layout(std430, binding = VELOCITY) restrict buffer Velocity { vec4 velocity[]; };
 
-/// Where a crown leaves, in radii: a ring just outside of the splash.
+/// Radius from which a crown starts, in splash radii: a ring just outside of the splash.
 const float CROWN_RADII = 1.1;
 const float CROWN_WIDTH_RADII = 0.35;
 
@@ -24,7 +24,7 @@ void main() {
   if (i >= unsortedCount()) return;
   const vec4 own = position[i];
   vec3 x = own.xyz;
-  if (!isFinite(x)) return;  // stays for diagnostics to count
+  if (!isFinite(x)) return;  // left for diagnostics to count
   const float depth_m = sim.band_m;
   const float height_ratio = clamp((x.y + depth_m) / depth_m, 0.0, 1.0);  // 0 at the floor, 1 at the resting surface
   vec3 move_m = vec3(0.0);

@@ -1,4 +1,5 @@
-// Quantizes boats for the stream, seven words each without gaps: BodiesFixed28 in wire.proto. One invocation: there are few.
+// Quantizes boats for the stream, seven words each without gaps: BodiesFixed28 in wire.proto. One invocation, because
+// boats are few.
 // Reads BOATS, BoatControls. Writes PACKED_WORDS from first_word on.
 #include "bodies/boat.glsl"
 

@@ -1,5 +1,5 @@
-// Quantizes the surface's foam for the stream: a byte a sample, all sources together, four samples a word. Where fewer samples are
-// wanted than there are, one is the mean over the square that it covers.
+// Quantizes the surface's foam for the stream: one byte per sample, the sum of all sources, four samples per word. With
+// fewer samples than cells, a sample is the mean over the square that it covers.
 // Reads FOAM_FIELD [(n/2)^2]. Writes PACKED_WORDS [target_count^2 / 4 from first_word on].
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"

@@ -27,11 +27,11 @@ uint quantizedSigned(float unit) {
   return isnan(unit) ? 0u : uint(int(round(clamp(unit, -1.0, 1.0) * 127.0))) & 0xffu;
 }
 
-/// Four standard deviations below the budget on average, so that it holds what the hash happens to choose.
+/// Four standard deviations below the budget on average, so that the random choice by hash fits into it.
 bool isChosen(float id, uint count) {
   const float budget = float(budget_count);
   const float share = (budget - 4.0 * sqrt(budget)) / float(count);
-  // By way of int: uint() of the -1 that an absorbed particle has is undefined.
+  // Converted through int: uint() of -1, the mark of an absorbed particle, is undefined.
   return float(hashed(uvec3(uint(int(id)), 0u, 0u)).x >> 8) < share * 16777216.0;
 }
 

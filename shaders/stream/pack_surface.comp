@@ -1,5 +1,5 @@
-// Quantizes the elevation for the stream: two int16 a word, value = round(eta / quantum), saturating. Where fewer samples are
-// wanted than there are cells, a sample is the mean over the square that it covers.
+// Quantizes the elevation for the stream: two int16 per word, value = round(eta / quantum), saturating. With fewer
+// samples than cells, a sample is the mean over the square that it covers.
 // Reads ELEVATION [n x n, units]. Writes PACKED_WORDS [target_count^2 / 2 from first_word on].
 #include "shared/fixed_point.h"
 #include "shared/groups.h"

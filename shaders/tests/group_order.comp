@@ -1,4 +1,5 @@
-// For tests: in which order a device runs work groups, by the numbers that the shader sees (server/gpu/shuffled_groups.h).
+// For tests: the order in which a device runs work groups, by the numbers that the shader sees
+// (server/gpu/shuffled_groups.h).
 // Writes Order: how many groups have run, and the number of each in the order of running.
 layout(local_size_x = 1) in;
 

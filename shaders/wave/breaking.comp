@@ -1,7 +1,6 @@
-// Where the wave breaks, and how much.
-// Reads SURFACE (eta, d eta/dt), BASIN, BED, EventUniforms, BREAKING_BEFORE (age [s], intensity, velocity of a splash's crown [m/s]). Writes
-// BREAKING; in two-way scenes lists the cells that emit a particle
-// in EMITTER, POOL_WANTED of them.
+// Computes where and how strongly the wave breaks.
+// Reads SURFACE (eta, d eta/dt), BASIN, BED, EventUniforms, BREAKING_BEFORE (age [s], intensity, velocity of a splash's
+// crown [m/s]). Writes BREAKING; in two-way scenes lists the POOL_WANTED cells that emit a particle in EMITTER.
 // Equation: Kennedy et al. 2000, eqs. 5-7: breaking starts where d eta/dt > 0.65 sqrt(g d); the threshold relaxes to
 // 0.15 sqrt(g d) within 5 sqrt(d/g) of the event; the intensity rises from 0 to 1 between one and two thresholds. The event travels
 // with the crest: a cell inherits the age of the oldest cell that broke where the crest may have come from.
@@ -27,7 +26,7 @@ uniform uint tick;
 
 #define LONGEST_EVENT 2.0
 
-/// Horizontal velocity of the crown that splashes throw from here: outward, from a ring about the radius.
+/// Horizontal velocity of the crown of splashes: outward, from a ring around the radius.
 vec2 crownAt(vec2 p) {
   vec2 crown_mps = vec2(0.0);
   for (uint k = 0u; k < splash_count; ++k) {
@@ -57,14 +56,14 @@ void main() {
 #endif
   const float speed_mps = sqrt(sim.gravity_mps2 * depth_m);
   vec4 state = vec4(0.0);
-  // Nothing breaks below the lowest threshold, and where no water is.
+  // Nothing breaks below the lowest threshold or on dry ground.
   if (rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
-    // As far as a crest travels in a tick.
+    // Distance that a crest travels in a tick.
     const int hop = max(int(ceil(speed_mps * sim.tick_s / sim.wave_cell_m - 0.2)), 1);
     const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - hop, n), row), ageAt(waveNeighbourX(cell.x + hop, n), row))),
                             max(ageAt(cell.x, n * waveNeighbourZ(cell.y - hop, n)), ageAt(cell.x, n * waveNeighbourZ(cell.y + hop, n))));
     const float relaxed = age_s * sqrt(sim.gravity_mps2 / depth_m) / 5.0;
-    // An event ends after LONGEST_EVENT relaxation times: by then its front is gone, what is left is chop.
+    // An event ends after LONGEST_EVENT relaxation times: by then its front has passed, and only small waves are left.
     const float share = age_s > 0.0 && relaxed < LONGEST_EVENT ? min(relaxed, 1.0) : 0.0;
     const float threshold_mps = mix(0.65, 0.15, share) * speed_mps;
     if (rate_mps > threshold_mps) state.xy = vec2(age_s + sim.tick_s, clamp(rate_mps / threshold_mps - 1.0, 0.0, 1.0));

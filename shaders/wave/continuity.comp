@@ -43,11 +43,12 @@ void main() {
   const vec4 ground = texelFetch(bed, i);
   const float b = 0.5 * ground.y * sim.wave_dt_s;
   const float wanted = clamp(round((2.0 * float(elevation[i]) + float(gain)) * (b / (1.0 + b))), -float(ELEVATION_MAX_UNITS), float(ELEVATION_MAX_UNITS));
-  // With more than half of it lost in a step, water above the still level would be taken below the bed. A float's last bit may be
-  // 128 units: compare there, take here.
+  // If more than half of it is lost in a step, water above the still level would be taken below the bed. The float's
+  // last bit may be 128 units, so compare as floats and take integers.
   const uint held = heldUnits(elevation[i] + gain, ground.z);
   const int lost = wanted >= float(held) ? int(held) : int(wanted);
-  // 24 bits, and what goes beyond them: 32 would turn over after 128 m of water through one cell, hours of a storm.
+  // 24 bits and the rest in a second word: 32 bits would overflow after 128 m of water through one cell, hours of a
+  // storm.
   const int low = int(outflow[i].x) + lost;
   outflow[i] = uvec2(uint(low & 0xffffff), outflow[i].y + uint(low >> 24));
   gain -= lost;

@@ -1,4 +1,4 @@
-// What effects displace joins what the flow moves: TRANSFER holds both when the limit of wave/given_share.comp looks at it.
+// Adds the displacement of effects to the flow's transfer: TRANSFER holds both when wave/given_share.comp limits it.
 #ifndef SPINDRIFT_DISPLACEMENT
 #define SPINDRIFT_DISPLACEMENT
 

@@ -1,5 +1,5 @@
-// Before water moves: which share of its outflow a cell can give. Runs only in steps in which some transfer is large beside what its
-// giver holds (LIMIT_ARGS).
+// Before water moves: the share of its outflow that a cell can give. Runs only in steps in which some transfer is large
+// compared with the water of its giver (LIMIT_ARGS).
 // Reads ELEVATION, TRANSFER [n x n, units], BED. Writes GIVEN_SHARE [n x n, 0..1].
 // Equation: share = held / outflow where the outflow through all faces of a cell is more than the cell holds, else 1: a donor cell's
 // limit as in flux-corrected transport (Zalesak 1979). What flows in during the same step does not count.
@@ -17,7 +17,8 @@ layout(std430, binding = GIVEN_SHARE) restrict writeonly buffer GivenShare { flo
 
 #define MARGIN 9.5367431640625e-7
 
-/// What leaves through a face, of a transfer that is positive outward. As a float, which has no largest negative number to trip over.
+/// Outflow through a face, for a transfer that is positive outward. As a float, because the lowest integer has no
+/// negative.
 float leaving(int outward_units) { return max(float(outward_units), 0.0); }
 float leavingBackward(int inward_units) { return max(-float(inward_units), 0.0); }
 

@@ -38,7 +38,7 @@ int headAt(int i) {
 #endif
 }
 
-/// Rate at which flow is lost at a cell besides kappa. [1/s]
+/// Loss rate of flow at a cell, in addition to kappa. [1/s]
 float lossAt(int i) {
   float loss_per_s = 0.0;
 #if VARIED
@@ -125,5 +125,5 @@ void main() {
 #if STENCIL == 9
   may_empty = may_empty || mayEmpty(moved.z, held, heldUnits(eta_d, stillDepth(i_d))) || mayEmpty(moved.w, held_x, held_z);
 #endif
-  if (may_empty) limit_args[0] = limitGroups();  // whoever writes, writes the same number
+  if (may_empty) limit_args[0] = limitGroups();  // all invocations write the same number
 }

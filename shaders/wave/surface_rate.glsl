@@ -1,4 +1,4 @@
-// How fast the surface rises, as breaking judges it.
+// Rate of rise of the surface, for the breaking criterion.
 #ifndef SPINDRIFT_SURFACE_RATE
 #define SPINDRIFT_SURFACE_RATE
 

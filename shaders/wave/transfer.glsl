@@ -6,7 +6,7 @@
 
 #include "shared/fixed_point.h"
 
-/// Flow times `units` (dt/dx in units) rounded; nothing for a flow that is not finite or absurd (diagnostics count it).
+/// Flow times `units` (dt/dx in units), rounded; 0 for a non-finite or excessive flow (diagnostics count it).
 int transferUnits(float flow, float units) {
   const float t = flow * units;
   return abs(t) < TRANSFER_MAX_UNITS ? int(round(t)) : 0;

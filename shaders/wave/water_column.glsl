@@ -34,7 +34,7 @@ uint heldUnits(int elevation_units, float depth_m) {
   return elevation_units > bed_units ? uint(elevation_units) - uint(bed_units) : 0u;
 }
 
-/// Whether a transfer could be more than its giver holds if all faces of the giver carried as much.
+/// Returns whether a transfer could exceed the water of its giver if all faces of the giver carried as much.
 bool mayEmpty(int transfer_units, uint held_here, uint held_there) {
   return uint(abs(transfer_units)) > (transfer_units > 0 ? held_here : held_there) / FACES_PER_CELL;
 }

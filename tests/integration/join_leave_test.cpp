@@ -91,7 +91,7 @@ std::string visit(const FakeWater& water, std::uint16_t port, int person, int tu
   return readFrames(client, v1::PACKING_PLAIN);  // and hangs up without a word
 }
 
-TEST(JoinLeave, EveryFrameCanBeReadWhoeverComesAndGoes) {
+TEST(JoinLeave, EveryFrameDecodesWhileClientsJoinAndLeave) {
   constexpr int kPersonCount = 6;
   constexpr int kTurnCount = 6;
   FakeWater water({.thread_count = 3, .messages_per_s = 1e6, .message_burst_count = 1e6});

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 /// Spindrift's own bound: patience for goodbyes plus a second, with room for a loaded machine.
 constexpr std::chrono::milliseconds kStopBound{5'000};
 
-/// A port of the loopback interface that somebody else listens on.
+/// A port of the loopback interface that is already in use.
 class TakenPort {
  public:
   TakenPort() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -104,7 +104,7 @@ TEST_F(Serve, PortInUseIsNamedWithTheFlag) {
   expectOneErrorLine(outcome, 2, {"port " + taken.text(), "in use", "--port"});
 }
 
-TEST_F(Serve, AddressThatIsNoneIsNamedWithTheFlag) {
+TEST_F(Serve, AnInvalidAddressIsNamedWithTheFlag) {
   const Outcome outcome = runProgram(arguments({"--address", "300.1.2.3"}));
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   expectOneErrorLine(outcome, 2, {"300.1.2.3", "--address"});
@@ -114,7 +114,7 @@ TEST_F(Serve, DeviceThatDoesNotExistIsNamed) {
   expectOneErrorLine(runProgram(arguments({"--device", "99"})), 3, {"device 99 does not exist", "software"});
 }
 
-TEST_F(Serve, DeviceThatIsNoneIsNamed) {
+TEST_F(Serve, AnInvalidDeviceIsNamed) {
   expectOneErrorLine(runProgram(arguments({"--device", "fast"})), 2, {"\"fast\"", "auto, software"});
 }
 
@@ -143,7 +143,7 @@ TEST_F(Serve, RoomWithoutANameIsRefusedWithTheForm) {
   expectOneErrorLine(runProgram(arguments({"--room", "=default"})), 2, {"--room '=default'", "NAME=SCENE"});
 }
 
-TEST_F(Serve, RoomNameThatIsNoneIsNamed) {
+TEST_F(Serve, AnInvalidRoomNameIsNamed) {
   expectOneErrorLine(runProgram(arguments({"--room", "the pond=" + smallScene()})), 2, {"'the pond'", "letters"});
 }
 

@@ -7,7 +7,7 @@ namespace {
 using RoomFrames = RoomTest;
 
 TEST_F(RoomFrames, ComeAtLeastEveryFewTenthsOfASecondHoweverSlowTheTicksAre) {
-  // A round takes as long as a tick on a machine that is far too slow: the clock forgets its debt and ticks once each
+  // A round takes as long as a tick on a machine that is far too slow: the clock drops its lag and ticks once per
   // round, so that a frame's worth of simulated time is two rounds or more.
   constexpr int kRoundCount = 10;
   ASSERT_TRUE(runUntil([&] { return outlets_.frame_count > 0; }));

@@ -6,7 +6,7 @@ namespace {
 
 using RoomLoss = RoomTest;
 
-TEST_F(RoomLoss, RunsAgainFromItsSceneOnANewContextAndTellsEverybody) {
+TEST_F(RoomLoss, RunsAgainFromItsSceneOnANewContextAndTellsAllClients) {
   send(1);
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 5 && outlets_.applied.size() == 1; }));
   const std::uint64_t tick_before = room_->tick();
@@ -16,7 +16,7 @@ TEST_F(RoomLoss, RunsAgainFromItsSceneOnANewContextAndTellsEverybody) {
   EXPECT_EQ(room_->tick(), tick_before) << "nothing runs on a device that failed";
   send(2);
   ASSERT_TRUE(runUntil([&] { return !room_->vitals()->lost; }));
-  EXPECT_EQ(outlets_.scene_count, 1) << "everybody is greeted again";
+  EXPECT_EQ(outlets_.scene_count, 1) << "all clients get a new greeting";
   EXPECT_EQ(outlets_.recovered_count, 1);
   EXPECT_GT(room_->tick(), tick_before) << "ticks never go back";
   ASSERT_TRUE(runUntil([&] { return outlets_.rejected.size() + outlets_.applied.size() == 2; })) << "2 is answered";

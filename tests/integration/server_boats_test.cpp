@@ -1,4 +1,4 @@
-// Boats from end to end: who learns of them, and what is refused.
+// Boats from end to end: which clients are told of them, and which commands are refused.
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -42,7 +42,7 @@ TEST_F(Boats, OfTheSceneStandInTheGreeting) {
   EXPECT_NEAR(boat.draught_m(), 0.25, 0.1);
 }
 
-TEST_F(Boats, ComeAndGoForEverybody) {
+TEST_F(Boats, SpawnAndRemoveAreSentToAllClients) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   const v1::ServerMessage spawned = one.ask(spawnBoat(0, 4));
@@ -87,7 +87,7 @@ TEST_F(Boats, WhereTheyCannotBeAreRefused) {
   EXPECT_EQ(one.rejected(setParameter("wave.depth_m", 0.2)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
 }
 
-TEST_F(Boats, AreThoseOfTheStartAgainAfterAResetAndEverybodyIsTold) {
+TEST_F(Boats, AreThoseOfTheStartAfterAResetAndAllClientsAreTold) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ASSERT_TRUE(one.apply(spawnBoat(0, 4)));

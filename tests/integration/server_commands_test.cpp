@@ -1,4 +1,4 @@
-// Commands from end to end: applied at a tick, answered once, seen in the water.
+// Commands from end to end: applied at a tick, answered once, visible in the water.
 #include <map>
 
 #include "server_fixture.h"
@@ -34,7 +34,7 @@ TEST_F(Commands, SplashMovesAStillSurfaceAfterItsTick) {
   EXPECT_TRUE(surfaceRises(one, 0.05));
 }
 
-TEST_F(WaveCommands, BreakingWaveMovesTheSurfaceForEverybody) {
+TEST_F(WaveCommands, BreakingWaveMovesTheSurfaceForAllClients) {
   ScriptedClient asks = client();
   ScriptedClient watches = client();
   watches.subscribe(v1::LAYER_SURFACE);
@@ -124,7 +124,7 @@ TEST_F(WaveCommands, WithoutAnActionAreRejectedAndTheSessionGoesOn) {
   EXPECT_TRUE(one.apply(splash()));
 }
 
-TEST_F(WaveCommands, PauseAndResumeAreAnnouncedToEverybody) {
+TEST_F(WaveCommands, PauseAndResumeAreSentToAllClients) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ASSERT_TRUE(one.apply(setPaused(true)));
@@ -179,7 +179,7 @@ TEST_F(WaveCommands, ResumeBringsFramesAtOnceHoweverLongThePause) {
   EXPECT_LT(frame->frame().tick(), *paused + kIdleFrameCount * kTicksPerFrame);
 }
 
-TEST_F(WaveCommands, SpeedIsAnnouncedToEverybody) {
+TEST_F(WaveCommands, SpeedIsSentToAllClients) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ASSERT_TRUE(one.apply(setSpeed(2.5)));
@@ -192,7 +192,7 @@ TEST_F(WaveCommands, SpeedIsAnnouncedToEverybody) {
   EXPECT_EQ(client().greeting().room_state().speed(), 2.5) << "newcomers learn it from the greeting";
 }
 
-TEST_F(WaveCommands, ResetBringsBackTheStartForEverybodyAndKeepsParameters) {
+TEST_F(WaveCommands, ResetRestoresTheStartForAllClientsAndKeepsParameters) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   two.subscribe(v1::LAYER_SURFACE);

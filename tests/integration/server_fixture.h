@@ -17,7 +17,7 @@
 
 namespace spindrift::test {
 
-/// Every part, no event: the surface is exactly flat until somebody does something.
+/// Every part, no event: the surface is exactly flat until the first command.
 inline constexpr const char* kStillPool = R"(
   wave { resolution_count: 32 side_m: 8 depth_m: 1 }
   particles { count: 512 layers_count: 2 headroom_m: 2 }
@@ -25,7 +25,7 @@ inline constexpr const char* kStillPool = R"(
   foam {}
 )";
 
-/// The cheapest scene there is: sixty frames a second, a frame a tick.
+/// The cheapest scene there is: sixty frames per second, one frame per tick.
 inline constexpr const char* kStillWave = R"(
   wave { resolution_count: 32 side_m: 8 depth_m: 1 }
   stream { frame_rate_hz: 60 }
@@ -68,7 +68,7 @@ class ServerTest : public testing::Test {
   /// A client that has said hello.
   ScriptedClient client(const std::string& room = "") { return person({}, room); }
 
-  /// A client that has said hello as somebody, and was welcomed (or not: welcome() is empty then).
+  /// A client that has sent Hello as a person; welcome() is empty if it was refused.
   ScriptedClient person(const Person& who, const std::string& room = "") {
     ScriptedClient made(server_->port(), room);
     EXPECT_TRUE(made.isOpen());

@@ -1,4 +1,4 @@
-// The data plane from end to end: what a subscriber sees, and what costs nothing because nobody looks.
+// The data plane from end to end: frames of subscribed layers, and no encoding without subscriptions.
 #include <cmath>
 #include <set>
 
@@ -112,7 +112,7 @@ TEST_F(WaveFrames, AreEncodedOnceForThreeClients) {
   const std::uint64_t encoded_count = server().encoder().encodeCount("main", {v1::LAYER_SURFACE});
   EXPECT_EQ(received_count, 60u);
   EXPECT_GE(encoded_count, ticks.size());
-  EXPECT_LE(encoded_count, *end - *begin + 1) << "more than one message a tick: somebody encodes for each client";
+  EXPECT_LE(encoded_count, *end - *begin + 1) << "more than one message per tick: frames are encoded per client";
 }
 
 TEST_F(WaveFrames, OfOneTickAreTheSameBytesForEveryClient) {
@@ -138,7 +138,7 @@ TEST_F(WaveFrames, OfOneTickAreTheSameBytesForEveryClient) {
   EXPECT_EQ(compared_count, 5);
 }
 
-TEST_F(Frames, AreNotEncodedWhileNobodySubscribes) {
+TEST_F(Frames, AreNotEncodedWithoutSubscriptions) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.runFor(30));
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS}) {
@@ -147,7 +147,7 @@ TEST_F(Frames, AreNotEncodedWhileNobodySubscribes) {
   EXPECT_EQ(server().networkStats().sent_frame_count, 0u);
 }
 
-TEST_F(Frames, OfALayerNobodySubscribedAreNotSent) {
+TEST_F(Frames, OfALayerWithoutSubscriptionAreNotSent) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   for (int i = 0; i < 10; ++i) {

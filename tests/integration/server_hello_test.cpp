@@ -1,4 +1,4 @@
-// What a session may know and take before it has said who it is, and how much it may ask for afterwards.
+// What a session receives and may do before Hello, and its rate limits afterwards.
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -42,7 +42,7 @@ class BeforeHello : public WaveServerTest {
   }
 };
 
-TEST_F(BeforeHello, NobodysNameAndNoNewsIsTold) {
+TEST_F(BeforeHello, NamesAndNewsAreNotSent) {
   ScriptedClient known = person({.name = "Ada", .token = "token-of-some-operator"});
   ASSERT_NE(known.welcome().person_id(), 0u);
   ScriptedClient stranger(server().port());
@@ -109,7 +109,7 @@ TEST_F(CommandRate, CommandsBeyondTheRateAreBusyAndOnlyAFloodCloses) {
     if (reject->reject().message().find("commands a second") != std::string::npos) ++busy_count;
   }
   EXPECT_GT(busy_count, 0u);
-  EXPECT_TRUE(one.barrier()) << "nobody is closed for that";
+  EXPECT_TRUE(one.barrier()) << "the session is not closed for that";
   // Twice the burst of messages at once is more than the rate makes good while they are read.
   v1::ClientMessage ping;
   ping.mutable_ping()->set_client_time_s(1);

@@ -1,4 +1,4 @@
-// What a broken or hostile client can send: it is told why, and nobody else notices.
+// Broken and hostile clients: they get the reason of the refusal, and other clients are not affected.
 #include <random>
 
 #include "server_fixture.h"
@@ -87,7 +87,7 @@ TEST_F(Hostile, LayerThatTheWireDoesNotDeclareIsRefused) {
   expectRefusal(one, "subscribe.layer: 77");
 }
 
-TEST_F(Hostile, RateThatIsNoNumberIsRefused) {
+TEST_F(Hostile, ANanRateIsRefused) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE, std::nan(""));
   expectRefusal(one, "subscribe.max_rate_hz");
@@ -130,7 +130,7 @@ TEST_F(Hostile, RandomBytesNeverDisturbAnotherClient) {
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     ScriptedClient one = client();
     one.ws().sendBinary(bytes);
-    // Either it means something and is answered, or the session ends with 1008; there is no third way.
+    // Either the message is valid and answered, or the session ends with 1008.
     if (!one.barrier()) {
       EXPECT_TRUE(one.ws().closed());
       EXPECT_EQ(one.ws().closeCode(), 1008);

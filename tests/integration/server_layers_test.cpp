@@ -63,7 +63,7 @@ TEST_F(Harbour, SendsFoamOfWhatBroke) {
   }));
 }
 
-TEST_F(Harbour, MovesTheBoatThatSomebodySteersForEverybody) {
+TEST_F(Harbour, MovesASteeredBoatForAllClients) {
   ScriptedClient helm = client();
   ScriptedClient shore = client();
   shore.subscribe(v1::LAYER_BODIES);

@@ -94,7 +94,7 @@ TEST_F(LevelsOfAPool, PackedLevelsCanAllBeReadWhileOneMovesBetweenThem) {
   }
 }
 
-TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
+TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWatchersAndNotWithoutOne) {
   const auto frames = [this](core::Level level) {
     const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
     return encoder().costs()[codec::indexOf(packed)][core::indexOf(level)].frame_count;
@@ -105,7 +105,7 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
     full.back().subscribe(subscription(v1::LAYER_SURFACE, v1::LEVEL_FULL, v1::PACKING_PACKED));
   }
   for (int k = 0; k < 20; ++k) ASSERT_TRUE(full[0].nextFrame(v1::LAYER_SURFACE));
-  EXPECT_EQ(frames(core::Level::kCoarse), 0u) << "nobody watches it";
+  EXPECT_EQ(frames(core::Level::kCoarse), 0u) << "the level is not watched";
   const std::uint64_t encoded_count = frames(core::Level::kFull);
   EXPECT_GE(encoded_count, 19u) << "the newest may not be counted yet";
   // Each went to all three, but for the newest; made for each of them, as many would be made as sent.
@@ -119,7 +119,7 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWhoWatchItAndOnlyThen) {
   const std::uint64_t coarse_count = frames(core::Level::kCoarse);
   const std::uint64_t full_count = frames(core::Level::kFull) - full_before;
   EXPECT_GE(coarse_count, 9u);
-  // 15 of 30 frames a second, whoever watches besides.
+  // 15 of 30 frames per second, independent of other watchers.
   EXPECT_LE(coarse_count, full_count / 2 + 2);
 }
 
@@ -165,7 +165,7 @@ class LevelsOfAWave : public ServerTest {
   std::vector<RoomText> rooms() const override { return {{"main", kWideWave}}; }
 };
 
-TEST_F(LevelsOfAWave, ASlowClientComesDownByItselfClimbsBackAndHarmsNobody) {
+TEST_F(LevelsOfAWave, ASlowClientIsLoweredAndRaisedAgainWithoutHarmToOthers) {
   constexpr int kReceiveBufferBytes = 32 * 1024;
   ScriptedClient slow(server().port(), "", kReceiveBufferBytes);
   ASSERT_TRUE(slow.isOpen());
@@ -206,7 +206,7 @@ TEST_F(LevelsOfAWave, ASlowClientComesDownByItselfClimbsBackAndHarmsNobody) {
   }
 }
 
-TEST_F(LevelsOfAWave, OneThatIsNoLevelIsRefused) {
+TEST_F(LevelsOfAWave, AnUnknownLevelIsRefused) {
   ScriptedClient one = client();
   one.subscribe(subscription(v1::LAYER_SURFACE, static_cast<v1::Level>(9)));
   const auto refusal = one.waitFor(v1::ServerMessage::kRefusal);

@@ -1,4 +1,4 @@
-// The packed streams over a real connection: every frame can be read, whoever comes when.
+// The packed streams over a real connection: every frame can be decoded, whenever clients join.
 #include <cmath>
 #include <map>
 
@@ -61,7 +61,7 @@ TEST_F(PackedFrames, HoldTheSamplesOfThePlainOnes) {
     const auto frame = plain.nextFrame(v1::LAYER_SURFACE);
     ASSERT_TRUE(frame);
     const auto surface = codec::decodeSurface(*frame);
-    ASSERT_TRUE(surface) << "the other packing does not reach whoever asked for plain";
+    ASSERT_TRUE(surface) << "a client that subscribed to plain frames gets no packed ones";
     const auto same = by_tick.find(frame->tick());
     if (same == by_tick.end()) continue;
     EXPECT_EQ(same->second, surface->elevation_m) << "tick " << frame->tick();
@@ -70,7 +70,7 @@ TEST_F(PackedFrames, HoldTheSamplesOfThePlainOnes) {
   EXPECT_GT(compared_count, 0);
 }
 
-TEST_F(PackedFrames, ALatecomerBeginsWithAKeyframeAndDisturbsNobody) {
+TEST_F(PackedFrames, ALateClientStartsWithAKeyframeAndOthersKeepTheirDeltas) {
   ScriptedClient early = client();
   watch(early);
   codec::PackedSurfaceDecoder early_decoder, late_decoder;
@@ -95,7 +95,7 @@ TEST_F(PackedFrames, ALatecomerBeginsWithAKeyframeAndDisturbsNobody) {
   }
 }
 
-TEST_F(PackedFrames, AtALowerRateAreWholeEachTime) {
+TEST_F(PackedFrames, AtALowerRateAreKeyframesOnly) {
   ScriptedClient slow = client();
   watch(slow, 5.0);
   ScriptedClient fast = client();
@@ -126,7 +126,7 @@ TEST_F(PackedFrames, AskingForTheOtherPackingStopsThisOne) {
   }
 }
 
-TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotForNobody) {
+TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotWithoutOne) {
   std::vector<ScriptedClient> clients;
   for (int i = 0; i < 6; ++i) clients.push_back(client());
   const auto begin = clients[0].apply(setSpeed(1.0));
@@ -140,7 +140,7 @@ TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotForNobody) {
   const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
   EXPECT_GE(server().encoder().encodeCount("main", packed), 15u);
   EXPECT_LE(server().encoder().encodeCount("main", packed), *end - *begin + 1);
-  EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), 0u) << "nobody asked for plain frames";
+  EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), 0u) << "plain frames were not subscribed to";
 }
 
 class PackedParticles : public ServerTest {};

@@ -1,4 +1,4 @@
-// SetParameter from end to end: who learns of a change, and what is refused with which words.
+// SetParameter from end to end: which clients are told of a change, and which errors a refusal names.
 #include <limits>
 
 #include "server_fixture.h"
@@ -46,7 +46,7 @@ TEST_F(Parameters, ChangeStandsInTheNextGreeting) {
   FAIL() << "the greeting lacks the parameter";
 }
 
-TEST_F(Parameters, RejectionChangesNothingAndTellsNobodyElse) {
+TEST_F(Parameters, RejectionChangesNothingAndReachesOnlyItsSender) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   EXPECT_EQ(one.rejected(setParameter("particles.viscosity_pas", -1)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
@@ -109,7 +109,7 @@ TEST_F(Parameters, WhatLeavesNoLatticeIsRejectedAsOutOfRange) {
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_OUT_OF_RANGE) << reject.message();
   EXPECT_EQ(reject.field(), "particles.count");
   EXPECT_THAT(reject.message(), HasSubstr("at least 3 are needed"));
-  EXPECT_TRUE(one.runFor(5)) << "the room goes on as it was";
+  EXPECT_TRUE(one.runFor(5)) << "the room continues unchanged";
 }
 
 TEST_F(Parameters, AStiffenedRoomTakesMoreSubsteps) {

@@ -146,7 +146,7 @@ TEST_F(People, SayHelloOnce) {
   EXPECT_EQ(ada.ws().closeCode(), 1008);
 }
 
-TEST_F(People, DriveTheirOwnBoatAndNobodyElses) {
+TEST_F(People, DriveOnlyTheirOwnBoat) {
   ScriptedClient ada = player("Ada");
   ScriptedClient bob = player("Bob");
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
@@ -164,13 +164,13 @@ TEST_F(People, DriveTheirOwnBoatAndNobodyElses) {
   EXPECT_EQ(ada.rejected(takeBoat(1)).reason(), v1::REJECT_REASON_HAS_BOAT);
   ScriptedClient chief = person({.token = kOperator});
   EXPECT_EQ(chief.rejected(controlBoat(boat_id, -1, 0)).reason(), v1::REJECT_REASON_NOT_YOURS)
-      << "not even an operator takes the helm out of somebody's hands without saying so";
+      << "an operator too must take the boat before steering it";
   EXPECT_TRUE(chief.apply(takeBoat(boat_id)));
   EXPECT_TRUE(chief.apply(controlBoat(boat_id, -1, 0)));
   EXPECT_EQ(ada.rejected(controlBoat(boat_id, 1, 0)).reason(), v1::REJECT_REASON_NOT_YOURS);
 }
 
-TEST_F(People, TakeABoatThatIsNobodys) {
+TEST_F(People, TakeABoatWithoutOwner) {
   ScriptedClient ada = player();
   ScriptedClient bob = player();
   EXPECT_EQ(ada.rejected(controlBoat(1, 1, 0)).reason(), v1::REJECT_REASON_NOT_YOURS);
@@ -180,7 +180,7 @@ TEST_F(People, TakeABoatThatIsNobodys) {
   EXPECT_EQ(bob.rejected(takeBoat(1)).reason(), v1::REJECT_REASON_NOT_YOURS);
   EXPECT_TRUE(ada.apply(controlBoat(1, 1, 0)));
   EXPECT_TRUE(ada.apply(removeBoat(1)));
-  EXPECT_TRUE(ada.apply(spawnBoat(0, 4))) << "who has none may launch one";
+  EXPECT_TRUE(ada.apply(spawnBoat(0, 4))) << "a person without a boat may launch one";
 }
 
 TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
@@ -207,7 +207,7 @@ TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
   };
   double now = throttle();
   for (int k = 0; k < 600 && now != 0.0; ++k) now = throttle();
-  EXPECT_EQ(now, 0.0) << "nobody is at the helm";
+  EXPECT_EQ(now, 0.0) << "the boat is not steered any more";
   EXPECT_EQ(bob.rejected(takeBoat(boat_id)).reason(), v1::REJECT_REASON_NOT_YOURS);
 
   ScriptedClient again = player("", first.resume_key());
@@ -231,7 +231,7 @@ TEST_F(ShortGrace, HandsTheBoatOverWhenItsPersonStaysAway) {
   ScriptedClient ada = player("Ada");
   const v1::Welcome first = ada.welcome();
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
-  // She stays until he was told of her: who comes and goes between two lists is in neither.
+  // She stays until he was told of her: a person who joins and leaves between two lists is in neither.
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 2; });
   ada.ws().vanish();
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 1; });

@@ -1,4 +1,4 @@
-// The REST interface: rooms that come and go, commands from afar, what there is to read, and who may.
+// The REST interface: opening and closing rooms, commands, reading state, and permissions.
 #include <thread>
 
 #include <boost/json.hpp>
@@ -91,7 +91,7 @@ TEST_F(Rest, ASplashIsAppliedAndAnsweredWithItsTick) {
     ASSERT_TRUE(frame);
     highest_m = maxElevation_m(*frame);
   }
-  EXPECT_GE(highest_m, 0.05) << "everybody in the room sees it";
+  EXPECT_GE(highest_m, 0.05) << "all clients in the room see it";
 }
 
 TEST_F(Rest, CommandsAreReadInBothSpellings) {
@@ -226,7 +226,7 @@ TEST_F(RestByRole, WhatActsAsksForAToken) {
   EXPECT_THAT(wrong.body, Not(HasSubstr("wrong-wrong")));
 }
 
-TEST_F(Rest, ARoomThatNobodyWatchesSleepsIfItsSceneSaysSo) {
+TEST_F(Rest, ARoomWithoutWatchersSleepsIfItsSceneSaysSo) {
   ASSERT_EQ(ask("POST", "/api/v1/rooms", R"({"name": "bay", "scene": "bay"})").status, 201U);
   const auto isAsleep = [&] { return ask("GET", "/api/v1/rooms/bay").json.at("asleep").as_bool(); };
   const auto tickOf = [&](const char* room) {

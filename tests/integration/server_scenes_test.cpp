@@ -1,4 +1,4 @@
-// ChangeScene from end to end: everybody is greeted again, layers and ticks go on.
+// ChangeScene from end to end: all clients get a new greeting; layers and ticks continue.
 #include <thread>
 
 #include "server_fixture.h"
@@ -44,7 +44,7 @@ TEST_F(Scenes, AreListedInTheGreeting) {
   EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "impossible", "pond", "quay"));
 }
 
-TEST_F(Scenes, ChangeForEverybodyInTheRoomWithAGreetingAndGrowingTicks) {
+TEST_F(Scenes, ChangeForAllClientsOfTheRoomWithAGreetingAndGrowingTicks) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ScriptedClient elsewhere = client("other");

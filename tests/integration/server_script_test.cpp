@@ -40,7 +40,7 @@ class Script : public ServerTest {
   }
 };
 
-TEST_F(Script, ASplashIsSeenAtItsPlaceBySomebodyElse) {
+TEST_F(Script, ASplashIsSeenAtItsPlaceByAnotherClient) {
   const auto report = run(R"(
     clients { name: "ada" }
     clients { name: "bob" subscribe { layer: LAYER_SURFACE max_rate_hz: 60 } }

@@ -1,4 +1,4 @@
-// Hostile visitors of every role against bystanders: nobody else loses the connection, frames or answers.
+// Hostile clients of every role beside bystanders, which keep their connections, frames and answers.
 // SPINDRIFT_STORM_SECONDS makes it long, with another seed each time (SPINDRIFT_STORM_SEED: with that one), and checks
 // the times that a quiet machine of two cores keeps.
 #include <cstdlib>
@@ -60,12 +60,12 @@ class Storm : public ServerTest {
   }
 };
 
-TEST_F(Storm, BurstsOfStateThrowNobodyOut) {
+TEST_F(Storm, BurstsOfStateCloseNoSession) {
   const auto storm = runStorm(options({{Attack::kSpeedBursts}, {Attack::kSpeedBursts}, {Attack::kBoats}}, 4.0));
   expectNobodyElseNoticed("bursts", storm);
 }
 
-TEST_F(Storm, ResetsStopNobodysWater) {
+TEST_F(Storm, ResetsDoNotDisturbBystanders) {
   const auto storm = runStorm(options({{Attack::kResets}, {Attack::kResets}}, 3.0));
   expectNobodyElseNoticed("resets", storm);
 }
@@ -94,7 +94,7 @@ class StormOfEveryRole : public Storm {
   }
 };
 
-TEST_F(StormOfEveryRole, EverybodyElseKeepsFramesAnswersAndConnection) {
+TEST_F(StormOfEveryRole, OtherClientsKeepFramesAnswersAndConnection) {
   std::vector<Attacker> attackers;
   for (const char* token : {"", kViewer, kPlayer, kOperator, kOperator})
     attackers.push_back({Attack::kEverything, token});

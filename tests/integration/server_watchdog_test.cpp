@@ -65,7 +65,7 @@ TEST_F(Watchdog, SaysThatItPutARoomBackAndTheRoomGoesOn) {
   EXPECT_FALSE(elsewhere.hasReceived(v1::ServerMessage::kRoomEvent));
 }
 
-TEST_F(Watchdog, SpeaksUpAgainWhenItStepsInAgain) {
+TEST_F(Watchdog, ReportsEachFurtherIntervention) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.apply(setSpeed(4)));
   const auto recovered = [](const char* times) {
@@ -79,7 +79,7 @@ TEST_F(Watchdog, SpeaksUpAgainWhenItStepsInAgain) {
   EXPECT_TRUE(one.waitFor(recovered("2 times"))) << "the careful seconds are over, the step is too long again";
 }
 
-TEST_F(Watchdog, SpeaksUpAtMostOnceASecondHoweverOftenItStepsIn) {
+TEST_F(Watchdog, ReportsAtMostOncePerSecond) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   ScriptedClient one = client("hopeless");

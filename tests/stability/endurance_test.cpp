@@ -114,7 +114,7 @@ TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarborAsFastAsAFreshOne)
 
 TEST_F(Endurance, RandomParticleCountsLeaveASplashOfParticlesAsFastAsAFreshOne) {
   const int changes = wanted("SPINDRIFT_COUNT_CHANGES", 40);
-  // The parameter goes to 1,048,576; a software device takes seconds a tick there, so that a short run stops below.
+  // The parameter goes to 1,048,576; a software device takes seconds per tick there, so a short run stops below.
   const double most = wanted("SPINDRIFT_COUNT_MAX", 32768);
   const core::Scene scene = scene::toCore(shipped("splash_particles"));
   sim::WaterSim& water = make(scene);

@@ -1,4 +1,4 @@
-// People who do whatever a scene allows, at random.
+// Clients that send random commands allowed in the scene.
 #pragma once
 
 #include <algorithm>

@@ -184,7 +184,7 @@ TEST(FrameEncoding, OfALayerThatTheFrameLacksIsNothingAndNotCounted) {
   EXPECT_EQ(encoder.encode(v1::LAYER_UNSPECIFIED, TestFrame().view), nullptr) << "no codec for it";
 }
 
-TEST(FrameEncoding, CountsOneEncodeAFrameWhoeverSharesTheBytes) {
+TEST(FrameEncoding, CountsOneEncodePerFrameForAnyNumberOfReaders) {
   FrameEncoder encoder;
   const TestFrame test;
   for (std::uint64_t frame = 1; frame <= 3; ++frame) {

@@ -38,7 +38,7 @@ struct Surface {
   }
 };
 
-/// Two standing waves in quanta, as they are at a tick.
+/// Two standing waves at a tick, in quanta.
 Surface waves(std::uint32_t n, std::uint64_t tick) {
   const double t = static_cast<double>(tick) / 60.0;
   return {n, [&](std::uint32_t x, std::uint32_t z) {
@@ -123,7 +123,7 @@ TEST(SurfacePredicted, TakesAFractionOfThePlainBytes) {
   EXPECT_LT(encoder.encode(kPacked, still.view(104), false).delta->size(), 150u) << "nothing moves";
 }
 
-TEST(SurfacePredicted, AWholeFrameLetsALatecomerReadWhatFollows) {
+TEST(SurfacePredicted, AKeyframeLetsALateReaderDecodeTheDeltasAfterIt) {
   FrameEncoder encoder;
   PackedSurfaceDecoder early, late;
   for (std::uint64_t tick = 10; tick < 40; tick += 2) {
@@ -146,7 +146,7 @@ TEST(SurfacePredicted, BeginsAgainWhenTheGridChanges) {
   EXPECT_FALSE(other.delta);
 }
 
-TEST(SurfacePredicted, SaysThatTheFrameBeforeIsMissingUntilAWholeOneComes) {
+TEST(SurfacePredicted, ReportsAMissingBaseUntilAKeyframeComes) {
   FrameEncoder encoder;
   PackedSurfaceDecoder decoder;
   std::vector<EncodedFrame> encoded;
@@ -193,8 +193,7 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
   core::FrameView view;
   const std::vector<std::uint32_t> words(32 * 32 / 4, 0u);
   view.foam = core::FoamView{32, 16.0, words};
-  const auto missing =
-      late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).delta));
+  const auto missing = late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).delta));
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, core::ErrorCode::kUnavailable);
 }

@@ -31,8 +31,7 @@ std::vector<core::Bytes> encoded(const Frames& frames, v1::Layer layer) {
   std::vector<core::Bytes> out;
   for (const core::FrameView& view : frames.views) {
     const EncodedFrame frame = encoder.encode({layer, v1::PACKING_PACKED}, view, view.tick % 3 == 0);
-    for (const core::SharedBytes& bytes : {frame.keyframe, frame.delta})
-      out.push_back(bytes ? *bytes : core::Bytes());
+    for (const core::SharedBytes& bytes : {frame.keyframe, frame.delta}) out.push_back(bytes ? *bytes : core::Bytes());
   }
   return out;
 }

@@ -136,7 +136,7 @@ TEST_F(BufferTest, LedgerCountsWhatLives) {
     Buffer moved = std::move(*a);
     EXPECT_FALSE(*a);
     EXPECT_EQ(ledger.buffer_bytes, 212u);
-    *b = TexelBuffer();  // lets go of what it held
+    *b = TexelBuffer();  // releases its old storage
     EXPECT_EQ(ledger.buffer_count, 1u);
     EXPECT_EQ(ledger.buffer_bytes, 100u);
   }

@@ -32,7 +32,7 @@ TEST_F(FenceTest, IsPassedOnceTheWorkBeforeItIsDone) {
   EXPECT_EQ(Fence().poll(), Fence::Status::kPassed) << "there is nothing to wait for";
 }
 
-TEST_F(FenceTest, ASlowDeviceLagsBehindAndCatchesUpWithWhoWaits) {
+TEST_F(FenceTest, ASlowDeviceLagsAndAWaitLetsItCatchUp) {
   ctx->fenceDelay().set(3);
   std::vector<Fence> fences;
   for (int i = 0; i < 5; ++i) fences.push_back(Fence::insert(*ctx));
@@ -167,7 +167,7 @@ TEST_F(DeviceLossTest, AWaitForAFenceThatIsNeverPassedEndsWithItsLimit) {
   EXPECT_EQ(slices, 30) << "of 100 ms each, that a reset is noticed";
 }
 
-TEST_F(DeviceLossTest, AnErrorThatNeverEndsHangsNobody) {
+TEST_F(DeviceLossTest, AnErrorThatNeverEndsDoesNotHang) {
   constexpr GLenum kContextLost = 0x0507;
   const Replaced endless(
       glad_glGetError, +[]() -> GLenum { return kContextLost; });

@@ -1,4 +1,6 @@
 // Shaders read from a folder, and again when they change.
+#include "shader_folder.h"
+
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -8,7 +10,6 @@
 #include <spindrift/gpu/program.h>
 
 #include "gpu_fixture.h"
-#include "shader_folder.h"
 #include "temporary_folder.h"
 
 namespace spindrift::gpu {

@@ -26,18 +26,18 @@ std::uint64_t refusedCount(const TestServer& served, Refused why) {
   return served.server->stats().refused_count[static_cast<std::size_t>(why)];
 }
 
-TEST(Origin, ProgramsSendNoneAndAreHeard) {
+TEST(Origin, RequestsWithoutOriginAreAccepted) {
   EXPECT_TRUE(isOriginAllowed("", "water.example", true, {}));
 }
 
-TEST(Origin, TheServersOwnPageIsHeard) {
+TEST(Origin, TheServersOwnPageIsAccepted) {
   EXPECT_TRUE(isOriginAllowed("http://localhost:8080", "localhost:8080", true, {}));
   EXPECT_TRUE(isOriginAllowed("http://127.0.0.1:8080", "127.0.0.1:8080", true, {}));
   EXPECT_TRUE(isOriginAllowed("http://[::1]:8080", "[::1]:8080", true, {}));
   EXPECT_TRUE(isOriginAllowed("https://Water.example", "water.EXAMPLE", false, {}));
 }
 
-TEST(Origin, ForeignPagesAreNot) {
+TEST(Origin, ForeignPagesAreRefused) {
   EXPECT_FALSE(isOriginAllowed("http://evil.example", "localhost:8080", true, {}));
   EXPECT_FALSE(isOriginAllowed("http://localhost:3000", "localhost:8080", true, {}));
   EXPECT_FALSE(isOriginAllowed("null", "localhost:8080", false, {}));
@@ -50,7 +50,7 @@ TEST(Origin, AForeignNameForTheLoopbackOpensNothing) {
   EXPECT_FALSE(isOriginAllowed("http://localhost.evil.example", "localhost.evil.example", true, {}));
 }
 
-TEST(Origin, TheListIsHeard) {
+TEST(Origin, ListedOriginsAreAccepted) {
   const std::vector<std::string> allowed{"https://water.example"};
   EXPECT_TRUE(isOriginAllowed("https://water.example", "localhost:8080", true, allowed));
   EXPECT_FALSE(isOriginAllowed("https://water.example.evil", "localhost:8080", true, allowed));
@@ -170,7 +170,7 @@ TEST(LateAnswer, ForgottenRequestsGet500) {
 TEST(LateAnswer, RequestsThatWaitTooLongGet504) {
   TestServer served({.answer_timeout = 20ms});
   EXPECT_EQ(httpRequest(served.server->port(), "GET", "/api/keep").status, 504U);
-  served.application.kept.front()(HttpReply{});  // nobody waits any more
+  served.application.kept.front()(HttpReply{});  // the request has already ended
 }
 
 TEST(LateAnswer, ServerStopsWhileARequestWaits) {

@@ -140,7 +140,7 @@ TEST_F(Conformance, AnswersPingsOfEverySizeWithTheirOwnBytes) {
   }
 }
 
-TEST_F(Conformance, IgnoresPongsThatNobodyAskedFor) {
+TEST_F(Conformance, IgnoresUnsolicitedPongs) {
   FrameClient client = peer();
   ASSERT_TRUE(client.send({.opcode = Opcode::kPong}));
   ASSERT_TRUE(client.send({.opcode = Opcode::kPong, .payload = std::string(125, 'p')}));
@@ -170,7 +170,7 @@ TEST_F(Conformance, AnswersACloseWithoutACode) {
   ASSERT_TRUE(eventually([&] { return served_.application.closed().size() == 1; }));
 }
 
-TEST_F(Conformance, RefusesCloseCodesThatNobodyMaySend) {
+TEST_F(Conformance, RefusesForbiddenCloseCodes) {
   for (const int sent : {0, 999, 1004, 1005, 1006, 1014, 1015, 1016, 1100, 2000, 2999, 5000, 9999, 65535}) {
     expectClosed({closeFrame(static_cast<std::uint16_t>(sent))}, kProtocolError, "code " + std::to_string(sent));
   }

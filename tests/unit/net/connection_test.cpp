@@ -223,7 +223,7 @@ TEST_F(ConnectionTest, ReadsABodyThatComesInPieces) {
   EXPECT_EQ(parseAnswer(tcp.receiveAll()).body, "POST p body");
 }
 
-TEST_F(ConnectionTest, RandomBytesHurtNobody) {
+TEST_F(ConnectionTest, RandomBytesDoNoHarm) {
   const TestServer served(options());
   std::mt19937 random(42);
   for (int k = 0; k < 200; ++k) {

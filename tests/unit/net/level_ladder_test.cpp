@@ -49,24 +49,24 @@ TEST(LevelLadder, ComesDownAStepASecondToWhatTheLinkCarries) {
             (std::vector<Link::Change>{{1, Level::kFine}, {2, Level::kMedium}, {3, Level::kCoarse}}));
 }
 
-TEST(LevelLadder, SkipsLevelsThatLeaveNothingOut) {
+TEST(LevelLadder, SkipsLevelsThatEqualFull) {
   Link link(1);
   EXPECT_EQ(link.run(3, Level::kCoarse), (std::vector<Link::Change>{{1, Level::kCoarse}}));
   EXPECT_EQ(link.run(6, Level::kFull), (std::vector<Link::Change>{{5, Level::kFull}}));
 }
 
-TEST(LevelLadder, HasNowhereToGoWhereNothingIsLeftOut) {
+TEST(LevelLadder, StaysAtFullWhenAllLevelsEqualFull) {
   Link link(0);
   EXPECT_TRUE(link.run(30, Level::kCoarse).empty());
   EXPECT_EQ(link.ladder.level(), Level::kFull);
 }
 
-TEST(LevelLadder, ALostFrameNowAndThenIsNoReason) {
+TEST(LevelLadder, AnOccasionalLossDoesNotLowerTheLevel) {
   Link link(3);
   EXPECT_TRUE(link.run(30, Level::kCoarse, 15).empty());
 }
 
-TEST(LevelLadder, TriesLessAndLessOftenWhatDoesNotHold) {
+TEST(LevelLadder, RetriesAFailedStepUpLessAndLessOften) {
   Link link(3);
   std::vector<int> tries;
   for (const Link::Change& change : link.run(400, Level::kMedium)) {

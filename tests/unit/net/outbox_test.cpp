@@ -52,13 +52,13 @@ TEST(Outbox, TheNewestStateTakesThePlaceOfTheOlderOne) {
   outbox.pushAnswer(shared("answer"));
   outbox.pushState({.name = "boats"}, shared("boats"));
   outbox.pushState({.name = "people"}, shared("people 2"));
-  EXPECT_EQ(sentText(outbox), "people 2") << "whoever reads the answer knows a state that is at least as new";
+  EXPECT_EQ(sentText(outbox), "people 2") << "the client has read a state at least as new as the answer";
   EXPECT_EQ(sentText(outbox), "answer");
   EXPECT_EQ(sentText(outbox), "boats");
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
 
-TEST(Outbox, HoldsOneMessageATopicHoweverManyComeAndNeverCloses) {
+TEST(Outbox, HoldsOneMessagePerTopicAndNeverCloses) {
   Outbox outbox(8);
   for (int k = 0; k < 10'000; ++k) {
     EXPECT_FALSE(outbox.pushState({.name = "topic " + std::to_string(k % 3)}, shared("state")).overflow);
@@ -117,7 +117,7 @@ TEST(Outbox, DropsTheOlderFrameOfALayer) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
 
-TEST(Outbox, HoldsOneFrameALayerHoweverManyAreOffered) {
+TEST(Outbox, HoldsOneFramePerLayer) {
   Outbox outbox(8);
   std::vector<std::weak_ptr<const core::Bytes>> frames;
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
@@ -146,12 +146,12 @@ TEST(Outbox, ContinuesWhereTheClientHasTheFrameBefore) {
   EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe);
 }
 
-TEST(Outbox, BeginsAgainWithAWholeFrameAfterALoss) {
+TEST(Outbox, ContinuesWithAKeyframeAfterALoss) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
   EXPECT_TRUE(outbox.offerFrame(1, {{}, shared("2 on 1")}, later()).dropped) << "1 was not sent: 2 has no ground";
-  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe) << "nobody reads";
+  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe) << "the client does not read";
   outbox.offerFrame(1, {{}, shared("3 on 2")}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
   EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe) << "the writer is free again";
@@ -160,7 +160,7 @@ TEST(Outbox, BeginsAgainWithAWholeFrameAfterALoss) {
   EXPECT_EQ(outbox.next().message, whole);
 }
 
-TEST(Outbox, ReplacesAnUnsentFrameByAWholeOneNeverByOneThatBuildsOnIt) {
+TEST(Outbox, ReplacesAnUnsentFrameByAKeyframeNeverByADelta) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
@@ -169,7 +169,7 @@ TEST(Outbox, ReplacesAnUnsentFrameByAWholeOneNeverByOneThatBuildsOnIt) {
   EXPECT_EQ(outbox.next().message, whole);
 }
 
-TEST(Outbox, ASlowerWatchTakesWholeFramesOnly) {
+TEST(Outbox, ASlowerWatchTakesKeyframesOnly) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = 10.0});
   Clock::time_point now = later();
@@ -284,7 +284,7 @@ TEST(Outbox, OneThatDoesNotAdaptKeepsItsLevel) {
   EXPECT_EQ(outbox.demand(1, 3, later()).level, core::Level::kFine);
 }
 
-TEST(Outbox, AskingForALayerAgainBeginsWithAWholeFrame) {
+TEST(Outbox, ANewSubscriptionStartsWithAKeyframe) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
@@ -307,7 +307,7 @@ TEST(Outbox, TakesLayersInTurn) {
   EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3, 0, 1, 2, 3}));
 }
 
-TEST(Outbox, IgnoresFramesOfLayersThatNobodyWatches) {
+TEST(Outbox, IgnoresFramesOfUnwatchedLayers) {
   Outbox outbox(8);
   outbox.offerFrame(3, {shared("frame"), {}}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);

@@ -47,7 +47,7 @@ struct RoomHubTest : testing::Test {
   }
 };
 
-TEST_F(RoomHubTest, KnowsWhatEachLevelsWatchersNeed) {
+TEST_F(RoomHubTest, ReportsTheDemandPerLevel) {
   using core::Level;
   hub.join(1, "pool");
   hub.join(2, "pool");
@@ -99,7 +99,7 @@ TEST_F(RoomHubTest, CountsWatchers) {
   EXPECT_EQ(test::watcherCount(hub, "nowhere", 3), 0U);
 }
 
-TEST_F(RoomHubTest, TreatsARateThatIsNoRateAsStop) {
+TEST_F(RoomHubTest, TreatsAnInvalidRateAsStop) {
   hub.join(1, "pool");
   for (const double rate_hz :
        {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
@@ -142,7 +142,7 @@ TEST_F(RoomHubTest, IgnoresSessionsThatAreGone) {
   hub.publish("pool", 3, {shared("frame"), {}});
   EXPECT_EQ(ada->control_count + ada->frame_count, 0);
   EXPECT_EQ(ada->closed, std::nullopt);
-  EXPECT_EQ(ada.use_count(), 1) << "the hub let go of the session";
+  EXPECT_EQ(ada.use_count(), 1) << "the hub released the session";
 }
 
 TEST_F(RoomHubTest, ReachesOneSession) {

@@ -124,10 +124,10 @@ TEST(Session, IsNotReadFromWhileItsAnswersWait) {
   EXPECT_LT(served.application.message_count.load(), kCount) << "TCP holds back what follows";
   EXPECT_LE(served.server->stats().waiting_control_count, 5U);
   for (int k = 0; k < kCount; ++k) ASSERT_EQ(client.receive().value_or(core::Bytes{}).size(), kAnswerBytes) << k;
-  EXPECT_FALSE(client.closed()) << "nothing is lost, nobody is closed";
+  EXPECT_FALSE(client.closed()) << "no message is lost and the session stays open";
 }
 
-TEST(Session, ClosesAfterTheLastWords) {
+TEST(Session, SendsQueuedControlMessagesBeforeTheClose) {
   TestServer served;
   WsClient client = served.client();
   ASSERT_TRUE(client.sendBinary(bytes("bye")));
@@ -211,7 +211,7 @@ TEST(Session, ClosesWhenThePeerStaysSilent) {
   EXPECT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
 }
 
-TEST(Session, CutsAPeerThatSaysGoodbyeAndHoldsOn) {
+TEST(Session, ClosesAPeerThatSendsACloseFrameButStaysConnected) {
   TestServer served({.close_timeout = std::chrono::milliseconds(200)});
   RawTcp raw = upgraded(served);
   ASSERT_TRUE(raw.send(std::string("\x88\x82\0\0\0\0\x03\xe8", 8)));  // masked close frame, code 1000
@@ -271,7 +271,7 @@ TEST(Session, SurvivesUpgradesThatBreakOff) {
   EXPECT_TRUE(served.serves());
 }
 
-TEST(Session, RandomFramesHurtNobodyElse) {
+TEST(Session, RandomFramesDoNotHarmOtherSessions) {
   TestServer served({.message_burst_count = 1e6});
   WsClient other = served.client();
   std::mt19937 random(7);

@@ -29,7 +29,7 @@ TEST(Stop, SaysGoingAwayToClientsThatListen) {
   }
   const auto begin = Clock::now();
   served.server->stop();
-  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(60)) << "nobody had to be waited for";
+  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(60)) << "the stop waited for a client";
   for (auto& code : codes) EXPECT_EQ(code.get(), 1001);
   ASSERT_EQ(served.application.closed().size(), 4U);
   for (const auto& closed : served.application.closed()) {
@@ -38,7 +38,7 @@ TEST(Stop, SaysGoingAwayToClientsThatListen) {
   }
 }
 
-TEST(Stop, IsHeldUpByNobody) {
+TEST(Stop, DoesNotWaitForUnresponsiveClients) {
   constexpr std::chrono::milliseconds kCloseTimeout{300};
   TestServer served({.close_timeout = kCloseTimeout});
   WsClient idle = served.client();  // never receives, so it does not answer the goodbye either
@@ -92,7 +92,7 @@ TEST(Stop, WorksUnderLoad) {
   EXPECT_EQ(served.application.closed().size(), opened_count) << "every session has ended when stop() returns";
   done = true;
   for (std::thread& one : crowd) one.join();
-  EXPECT_EQ(served.application.opened().size(), opened_count) << "nobody came in afterwards";
+  EXPECT_EQ(served.application.opened().size(), opened_count) << "no session was opened afterwards";
   EXPECT_EQ(served.application.overlap_count, 0);
   EXPECT_EQ(served.application.after_closed_count, 0);
 }

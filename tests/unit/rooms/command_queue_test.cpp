@@ -45,7 +45,7 @@ TEST_F(CommandQueueTest, LanesTakeTurnsAndKeepTheirOrder) {
   for (std::uint64_t k = 1; k <= 3; ++k) push(queue_, from(1, k, core::Splash{}));
   push(queue_, from(2, 21, core::Splash{}));
   EXPECT_THAT(next(queue_), ElementsAre(1));
-  EXPECT_THAT(next(queue_), ElementsAre(21)) << "nobody waits behind what another one sent";
+  EXPECT_THAT(next(queue_), ElementsAre(21)) << "a sender does not wait behind commands of another";
   EXPECT_THAT(next(queue_), ElementsAre(2));
   EXPECT_THAT(next(queue_), ElementsAre(3));
   EXPECT_THAT(next(queue_), ElementsAre());
@@ -62,7 +62,7 @@ TEST_F(CommandQueueTest, WithoutBudgetLightCommandsOfOthersGoOn) {
   EXPECT_THAT(next(queue_), ElementsAre(2));
 }
 
-TEST_F(CommandQueueTest, EqualResetsAreOnePieceOfWorkWhoeverSentThem) {
+TEST_F(CommandQueueTest, EqualResetsOfAnySendersAreCarriedOutOnce) {
   for (std::uint64_t k = 1; k <= 50; ++k) push(queue_, from(1, k, core::Reset{}));
   push(queue_, from(2, 100, core::Splash{}));
   push(queue_, from(2, 101, core::Reset{}));

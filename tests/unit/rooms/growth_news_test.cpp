@@ -21,7 +21,7 @@ TEST(GrowthNews, TellsGrowthOnce) {
   EXPECT_TRUE(news.tell(2, kStart + 6s));
 }
 
-TEST(GrowthNews, TellsAFloodOnceAnIntervalAndItsLastCountInTheEnd) {
+TEST(GrowthNews, ReportsAFloodOncePerIntervalAndItsLastCountAtTheEnd) {
   GrowthNews news(1s);
   int told_count = 0;
   std::uint64_t last = 0;

@@ -8,7 +8,7 @@ namespace {
 using namespace std::chrono_literals;
 const RealTimeClock::TimePoint kStart{1000s};
 
-TEST(RealTimeClock, IsDueOnceATickAndMeasuresFullSpeedAsOne) {
+TEST(RealTimeClock, IsDueOncePerTickAndMeasuresFullSpeedAsOne) {
   RealTimeClock clock(0.01);
   clock.restart(kStart);
   EXPECT_EQ(clock.due(), kStart);

@@ -31,7 +31,7 @@ TEST_F(RosterTest, PeopleHaveNumbersNamesAndColors) {
   EXPECT_FALSE(roster.settle(now).is_news) << "told once";
 }
 
-TEST_F(RosterTest, SomebodyWithoutABoatIsForgottenAtOnce) {
+TEST_F(RosterTest, APersonWithoutABoatIsForgottenAtOnce) {
   const Admission ada = arrive(7);
   roster.leave(7, now);
   EXPECT_EQ(roster.people().people_size(), 0);
@@ -59,7 +59,7 @@ TEST_F(RosterTest, ALostConnectionKeepsItsBoatForTheGraceTime) {
   EXPECT_EQ(roster.ownerOf(3), ada.person_id) << "the grace ended with the return";
 }
 
-TEST_F(RosterTest, AfterTheGraceTimeTheBoatIsNobodys) {
+TEST_F(RosterTest, AfterTheGraceTimeTheBoatHasNoOwner) {
   const Admission ada = arrive(7);
   roster.give(3, ada.person_id);
   roster.leave(7, now);
@@ -89,10 +89,10 @@ TEST_F(RosterTest, ABoatHasOneOwner) {
   EXPECT_EQ(roster.ownerOf(3), bob);
   EXPECT_FALSE(roster.hasBoat(ada));
   roster.give(3, 99);
-  EXPECT_EQ(roster.ownerOf(3), bob) << "nobody of that number is here";
+  EXPECT_EQ(roster.ownerOf(3), bob) << "no person with that number is in the room";
 }
 
-TEST_F(RosterTest, BoatsThatAreGoneAreNobodys) {
+TEST_F(RosterTest, RemovedBoatsHaveNoOwner) {
   const auto ada = arrive(7).person_id;
   roster.give(3, ada);
   roster.settle(now);

@@ -291,7 +291,7 @@ TEST_F(SceneFile, ThatIsADeviceIsUnavailable) {
 }
 
 TEST_F(SceneFile, ThatCannotBeReadIsUnavailable) {
-  // Reading one's own memory at address 0 fails for everybody, root included.
+  // Reading the process's own memory at address 0 fails for every user, root included.
   const auto scene = loadSceneFile("/proc/self/mem");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().code, core::ErrorCode::kUnavailable);
@@ -310,7 +310,7 @@ TEST_F(SceneFile, OverOneMebibyteIsRefusedAndOneOfExactlyThatSizeIsNot) {
   EXPECT_THAT(big.error().message, AllOf(HasSubstr("big.textproto"), HasSubstr("1048576 bytes")));
 }
 
-TEST_F(SceneFile, WhoseNameIsNoRoomNameHasToNameItsScene) {
+TEST_F(SceneFile, WithAFileNameThatIsNoSceneNameMustNameItsScene) {
   const auto scene = loadSceneFile(write("my pool.textproto", "wave {}\n"));
   ASSERT_FALSE(scene);
   EXPECT_THAT(scene.error().message, HasSubstr(": name: \"my pool\" is no name"));

@@ -22,7 +22,7 @@ std::string refusal(const std::string& text) {
   return access ? "(accepted)" : access.error().message;
 }
 
-TEST(Access, WithoutTokensEverybodyIsAnOperator) {
+TEST(Access, WithoutTokensEveryClientIsAnOperator) {
   const auto grant = Access().resolve("", kNow);
   ASSERT_TRUE(grant);
   EXPECT_EQ(grant->role, Role::kOperator);

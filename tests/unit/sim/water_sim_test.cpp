@@ -72,11 +72,11 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   // step per tick of four dispatches, of which calm water runs two with no group, and one for its health.
   EXPECT_EQ(wave.programs, 8u);
   EXPECT_EQ(wave.dispatches, 5u);
-  // Particles alone: 6 grid, 3 sph, effects on particles, their diagnostics and packing; 2 x 9 dispatches a tick
+  // Particles alone: 6 grid, 3 sph, effects on particles, their diagnostics and packing; 2 x 9 dispatches per tick
   // and one for their health.
   EXPECT_EQ(particles.programs, 12u);
   EXPECT_EQ(particles.dispatches, 19u);
-  // Together: the sum, and the surface sampling once a tick; effects are the wave's.
+  // Together: the sum, and the surface sampling once per tick; effects are the wave's.
   EXPECT_EQ(all.programs, wave.programs + particles.programs - 1 + 1);
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 1);
   EXPECT_LT(wave.bytes, all.bytes);

@@ -129,7 +129,8 @@ std::vector<GoldenCase> goldenPackedParticles() {
   view.tick = 1234;
   view.time_s = 20.5;
   view.particles = particles;
-  const core::Bytes bytes = *codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).keyframe;
+  const core::Bytes bytes =
+      *codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).keyframe;
   const auto samples = *codec::decodePackedParticles(codec::parseServerMessage(bytes)->frame());
   const std::string json =
       "\"kind\": \"frame\", \"layer\": \"LAYER_PARTICLES\", \"packing\": \"PACKING_PACKED\", "

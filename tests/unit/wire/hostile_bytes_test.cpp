@@ -1,4 +1,4 @@
-// Bytes from anybody: random ones, and valid messages with damage. Nothing crashes, nothing non-finite comes through.
+// Untrusted bytes: random ones, and damaged valid messages. Nothing crashes, and no result is non-finite.
 // Run under the sanitizer presets, these find what plain runs would forgive.
 #include <cmath>
 #include <random>

@@ -42,8 +42,8 @@ struct ParticleLayout {
   std::vector<double> layer_heights_m;   ///< of the resting layers above the floor, from below
   double band_m = 0.0;                   ///< thickness of the resting band: highest layer + s/2
   std::uint32_t splat_reach_count = 1;   ///< two-way: droplet exchange is spread over 4 of these + 1 cells per axis
-  double neighbours_count = 0.0;  ///< inside the lattice, within H, the particle itself not counted
-  std::array<double, 3> min_m{};  ///< domain x, y, z
+  double neighbours_count = 0.0;         ///< inside the lattice, within H, the particle itself not counted
+  std::array<double, 3> min_m{};         ///< domain x, y, z
   std::array<double, 3> max_m{};
   std::array<std::uint32_t, 3> cells{};
   std::uint32_t cell_count = 0;
