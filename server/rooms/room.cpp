@@ -26,7 +26,7 @@ constexpr auto kSlowFrameInterval = 200ms;
 constexpr auto kDroppedFrameRetry = 10ms;
 /// While the device works on a frame, look for it this often.
 constexpr auto kReadbackPollInterval = 1ms;
-/// A room whose scene sleeps unwatched still shows the last of a splash to somebody who comes right back.
+/// Time from the last client's leaving until a room whose scene sleeps without clients stops.
 constexpr auto kSleepPatience = 2s;
 constexpr auto kVitalsInterval = 250ms;
 constexpr double kSlowFactor = 0.9;
