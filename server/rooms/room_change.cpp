@@ -11,13 +11,27 @@ namespace spindrift::rooms {
 
 using namespace std::chrono_literals;
 
+namespace {
+
+/// Values that one piece of work tries: a value that the water refuses costs 3 to 5 ms, and a sender may have 64
+/// waiting.
+constexpr int kTriedMaxCount = 8;
+
+}  // namespace
+
 void Room::applyNewest(Values values) {
   bool is_taken = false;
-  while (!values.untried.empty() && !is_taken) {
+  for (int k = 0; !values.untried.empty() && !is_taken; ++k) {
+    if (k == kTriedMaxCount) return putOff(std::move(values));
     core::Command command = std::move(values.untried.back());
     values.untried.pop_back();
-    if (beginChange(command, values)) return;
-    Outcome outcome = apply(command);
+    const auto* change = std::get_if<core::SetParameter>(&command.action);
+    Outcome outcome = change ? refuseChange(command, *change) : apply(command);
+    if (change && !outcome) {
+      if (beginChange(command, values)) return;
+      outcome = applyToWater(command);
+      if (!outcome) parameterChanged(*change);
+    }
     is_taken = !outcome;
     const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
     values.tried.push_back(
@@ -26,14 +40,26 @@ void Room::applyNewest(Values values) {
   conclude(std::move(values));
 }
 
+void Room::putOff(Values values) {
+  commands_.hold(values.untried);
+  put_off_.emplace(std::move(values));
+}
+
+bool Room::resumeValues() {
+  if (!put_off_) return false;
+  Values values = *std::move(put_off_);
+  put_off_.reset();
+  commands_.release(values.untried);
+  applyNewest(std::move(values));
+  return true;
+}
+
 void Room::conclude(Values values) {
   answer(std::move(values.untried), {});
   std::ranges::move(values.tried | std::views::reverse, std::back_inserter(answers_));
 }
 
 bool Room::beginChange(const core::Command& command, Values& others) {
-  const auto* value = std::get_if<core::SetParameter>(&command.action);
-  if (!value || wire::checkAgainstScene(command, stage_->scene()) || refuseSlowChange(command, *value)) return false;
   auto relayout = stage_->relayout(command.action);
   if (!relayout) return false;
   auto prepared = builder_.prepare(relayout->wanted, std::exchange(relayout->basis, {}));
@@ -60,17 +86,25 @@ void Room::finishChange() {
   applyNewest(std::move(change.others));
 }
 
-void Room::abandonChange(const wire::CommandRejection& rejection) {
-  if (!change_) return;
-  Change change = *std::move(change_);
-  change_.reset();
-  commands_.release({change.command});
-  answer(std::move(change.others.untried), rejection);
-  change.others.tried.push_back({std::move(change.command), rejection});
-  conclude({.untried = {}, .tried = std::move(change.others.tried)});
+void Room::abandonChanges(const wire::CommandRejection& rejection) {
+  const auto abandon = [&](Values values) {
+    commands_.release(values.untried);
+    answer(std::exchange(values.untried, {}), rejection);
+    conclude(std::move(values));
+  };
+  if (change_) {
+    Change change = *std::move(change_);
+    change_.reset();
+    commands_.release({change.command});
+    change.others.tried.push_back({std::move(change.command), rejection});
+    abandon(std::move(change.others));
+  }
+  if (put_off_) abandon(*std::exchange(put_off_, std::nullopt));
 }
 
-Room::Outcome Room::refuseSlowChange(const core::Command& command, const core::SetParameter& change) const {
+Room::Outcome Room::refuseChange(const core::Command& command, const core::SetParameter& change) const {
+  // Checked when it arrived, but the scene may have changed since.
+  if (auto rejected = wire::checkAgainstScene(command, stage_->scene())) return rejected;
   const auto wanted = stage_->workWith(change);
   if (!wanted) return {};
   return refuseSlow(command.sender, change.path, tick_cost_.predict_ms(stage_->work(), *wanted), kTickMax_ms);

@@ -56,8 +56,13 @@ std::optional<wire::CommandRejection> Room::admit(core::Command command) {
 
 void Room::applyCommands(TimePoint now) {
   using Clock = std::chrono::steady_clock;
+  if (!change_ && heavy_budget_.isOpen(now)) {
+    const auto begin = Clock::now();
+    if (resumeValues()) heavy_budget_.spend(Clock::now() - begin);
+  }
   for (int k = 0; k < kRoundMaxCount; ++k) {
-    auto batch = commands_.next({.heavy = !change_ && heavy_budget_.isOpen(now), .scene_change = !build_});
+    const bool may_be_heavy = !change_ && !put_off_ && heavy_budget_.isOpen(now);
+    auto batch = commands_.next({.heavy = may_be_heavy, .scene_change = !build_});
     if (!batch) break;
     const bool is_heavy = isHeavy(batch->front().action);
     const auto begin = Clock::now();
@@ -72,7 +77,7 @@ void Room::applyCommands(TimePoint now) {
 void Room::abandonCommands() {
   const auto closed = rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
   if (build_) answer(std::move(build_->commands), closed);
-  abandonChange(closed);
+  abandonChanges(closed);
   answer(commands_.drain(), closed);
   deliverAnswers();
 }
@@ -96,7 +101,8 @@ Room::Outcome Room::apply(const core::Command& command) {
   return std::visit(
       core::Overloaded{[&](const core::Splash&) { return applyToWater(command); },
                        [&](const core::BreakingWave&) { return applyToWater(command); },
-                       [&](const core::SetParameter& change) { return setParameter(command, change); },
+                       // applyNewest() handles them.
+                       [&](const core::SetParameter&) -> Outcome { return {}; },
                        [&](const core::Reset&) { return reset(command); },
                        [&](const core::SetPaused& pause) { return setPaused(pause.paused); },
                        [&](const core::SetSpeed& speed) -> Outcome {
@@ -125,13 +131,6 @@ void Room::recordCommand(const core::Command& command) {
   v1::Record line;
   *line.mutable_command() = wire::toWire(command);
   record(std::move(line));
-}
-
-Room::Outcome Room::setParameter(const core::Command& command, const core::SetParameter& change) {
-  if (auto refused = refuseSlowChange(command, change)) return refused;
-  if (auto rejected = applyToWater(command)) return rejected;
-  parameterChanged(change);
-  return {};
 }
 
 Room::Outcome Room::reset(const core::Command& command) {

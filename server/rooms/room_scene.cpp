@@ -91,7 +91,7 @@ bool Room::isLost(TimePoint now) {
   if (!build_ && now >= next_rebuild_) build_.emplace(WaterBuild{{}, builder_.build(stage_->scene())});
   const auto failed =
       rejection(v1::REJECT_REASON_BUSY, "", "the device failed and the room's water is being built anew: try again");
-  abandonChange(failed);
+  abandonChanges(failed);
   answer(commands_.drain(), failed);
   return true;
 }

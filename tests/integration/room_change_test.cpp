@@ -68,5 +68,42 @@ TEST_F(RoomChange, EndsWithTheRoom) {
   EXPECT_THAT(outlets_.rejected[0], HasSubstr("closed"));
 }
 
+/// Refuses every fast sound, by its step rule: derive() has to be asked each time.
+class RoomValues : public RoomChange {
+ protected:
+  std::string sceneText() const override { return std::string("fixed_substeps_count: 1\n") + kStillPool; }
+  static constexpr std::uint64_t kValueCount = 40;
+  void sendRefusedValues() {
+    for (std::uint64_t id = 1; id <= kValueCount; ++id)
+      send(id, core::SetParameter{.path = "particles.sound_speed_mps", .value = 400.0 + static_cast<double>(id)});
+  }
+};
+
+TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
+  ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
+  sendRefusedValues();
+  send(kValueCount + 1);
+  const std::uint64_t tick = room_->tick();
+  send(100, core::SetSpeed{.speed = 1.0}, 2);
+  ASSERT_TRUE(runUntil([&] { return !outlets_.applied.empty(); }));
+  EXPECT_THAT(outlets_.applied, ElementsAre(100)) << "others do not wait for them";
+  EXPECT_THAT(outlets_.rejected_ids, testing::IsEmpty()) << "one round does not try all of them";
+  ASSERT_TRUE(runUntil([&] { return outlets_.applied.size() == 2; }));
+  EXPECT_THAT(outlets_.applied, ElementsAre(100, kValueCount + 1)) << "what the sender sent later comes after them";
+  ASSERT_EQ(outlets_.rejected_ids.size(), kValueCount);
+  for (std::uint64_t id = 1; id <= kValueCount; ++id) EXPECT_EQ(outlets_.rejected_ids[id - 1], id);
+  EXPECT_GT(room_->tick(), tick + 1) << "ticks go on in between";
+}
+
+TEST_F(RoomValues, ThatArePutOffAreAnsweredWhenTheRoomCloses) {
+  ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
+  sendRefusedValues();
+  send(100, core::SetSpeed{.speed = 1.0}, 2);
+  ASSERT_TRUE(runUntil([&] { return !outlets_.applied.empty(); }));
+  room_->abandonCommands();
+  EXPECT_EQ(outlets_.rejected_ids.size(), kValueCount);
+  EXPECT_THAT(outlets_.rejected, testing::Contains(HasSubstr("closed")));
+}
+
 }  // namespace
 }  // namespace spindrift::test

@@ -50,7 +50,7 @@ class RoomTest : public testing::Test {
  protected:
   void SetUp() override {
     device_.kind = gpu::DeviceChoice::Kind::kSoftware;
-    auto scene = scene::parseSceneText(kStillPool, "main");
+    auto scene = scene::parseSceneText(sceneText(), "main");
     ASSERT_TRUE(scene);
     auto water = rooms::Water::create(device_, *std::move(scene));
     if (!water && water.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << water.error().message;
@@ -65,6 +65,8 @@ class RoomTest : public testing::Test {
   void TearDown() override {
     if (room_) room_->releaseDevice();
   }
+
+  virtual std::string sceneText() const { return kStillPool; }
 
   /// Runs the room until it is so; false after kPatience.
   bool runUntil(const std::function<bool()>& holds) {

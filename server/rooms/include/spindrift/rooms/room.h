@@ -161,7 +161,6 @@ class Room {
   /// Applies the command to the stage and writes it to the log.
   Outcome applyToWater(const core::Command& command);
   void recordCommand(const core::Command& command);
-  Outcome setParameter(const core::Command& command, const core::SetParameter& change);
   Outcome reset(const core::Command& command);
   Outcome spawnBoat(const core::Command& command);
   Outcome controlBoat(const core::Command& command, std::uint32_t boat_id);
@@ -192,9 +191,14 @@ class Room {
   bool beginChange(const core::Command& command, Values& others);
   /// Adopts the new particles if their layout is finished.
   void finishChange();
-  /// Rejects the commands of the change.
-  void abandonChange(const wire::CommandRejection& rejection);
-  [[nodiscard]] Outcome refuseSlowChange(const core::Command& command, const core::SetParameter& change) const;
+  /// Gives every command of the change, and of values that were put off, this rejection where it has no outcome yet.
+  void abandonChanges(const wire::CommandRejection& rejection);
+  /// Leaves the untried values to a later round; their sender's later commands wait for them.
+  void putOff(Values values);
+  /// Continues with values that were put off; returns false if there are none.
+  bool resumeValues();
+  /// Returns why the scene, or the time of a tick, does not allow the value.
+  [[nodiscard]] Outcome refuseChange(const core::Command& command, const core::SetParameter& change) const;
   void parameterChanged(const core::SetParameter& change);
 
   // room_scene.cpp
@@ -239,8 +243,9 @@ class Room {
   News news_;
   std::optional<WaterBuild> build_;
   std::optional<Change> change_;
-  bool is_lost_ = false;      ///< the device failed: the room does not run until new water is there
-  TimePoint next_rebuild_{};  ///< time of the next try after a failed build
+  std::optional<Values> put_off_;  ///< no heavy command is taken while it is set
+  bool is_lost_ = false;           ///< the device failed: the room does not run until new water is there
+  TimePoint next_rebuild_{};       ///< time of the next try after a failed build
   std::chrono::seconds rebuild_pause_{1};
   std::size_t session_count_ = 0;  ///< in all rooms, as of this round
   TickCost tick_cost_;
