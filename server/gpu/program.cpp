@@ -161,15 +161,14 @@ std::int32_t Program::location(std::string_view name) {
 
 void Program::setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits) {
   followReload();
-  const UniformValue value{std::string(name), location(name), type, bits};
-  if (value.location < 0) return;
-  if (UniformValue* const known = findLocation(uniforms_, value.location)) {
-    *known = value;
-  } else {
-    uniforms_.push_back(value);
-  }
-  if (!findLocation(compiled_->touched, value.location)) compiled_->touched.push_back(value);
-  if (compiled_->uniforms_of == handle_) apply(compiled_->id, value);
+  const std::int32_t at = location(name);
+  if (at < 0) return;
+  UniformValue* value = findLocation(uniforms_, at);
+  if (!value) value = &uniforms_.emplace_back(UniformValue{std::string(name), at, type, bits});
+  value->type = type;
+  value->bits = bits;
+  if (!findLocation(compiled_->touched, at)) compiled_->touched.push_back(*value);
+  if (compiled_->uniforms_of == handle_) apply(compiled_->id, *value);
 }
 
 void Program::setUniform(std::string_view name, std::uint32_t value) {

@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <array>
 
 #include <spdlog/spdlog.h>
 
-#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/monotonic.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
