@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdint>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -10,6 +12,8 @@
 
 #include <spindrift/study/water_reference.h>
 #include <spindrift/study/wave_reference.h>
+
+#include <shared/fixed_point.h>
 
 #include "basin.h"
 #include "sim_fixture.h"
@@ -106,6 +110,38 @@ TEST_F(WaveOnDevice, ASplashPushesDownByItsDepthThenRingsOutAndKeepsTheVolume) {
   EXPECT_GT(*std::ranges::max_element(eta), 0.02) << "rings";
   const double volume = std::accumulate(eta.begin(), eta.end(), 0.0) * std::pow(sim.derived().wave->cell_m, 2);
   EXPECT_EQ(volume, 0.0) << "to the last unit";
+}
+
+TEST_F(WaveOnDevice, ManySplashesDisplaceTheSumOfWhatEachDisplacesAlone) {
+  for (const auto boundary : {core::WaveBoundary::kPeriodic, core::WaveBoundary::kReflect}) {
+    core::Scene scene = waveScene();
+    scene.wave->setBoundaries(boundary);
+    // Surface at rest, plus these splashes in one step; in units, which the device adds without rounding.
+    const auto displaced = [&](const std::vector<core::Splash>& splashes) {
+      WaterSim& sim = make(scene);
+      EXPECT_EQ(sim.derived().wave->substeps_count, 1u);
+      for (core::Splash splash : splashes) {
+        splash.duration_s = sim.derived().tick_s;  // everything in the first step
+        EXPECT_TRUE(sim.start(splash));
+      }
+      sim.step();
+      std::vector<std::int64_t> out;
+      for (const double elevation_m : sim.copyState().elevation_m)
+        out.push_back(std::llround(elevation_m * ELEVATION_UNITS_PER_M));
+      return out;
+    };
+    // Alone, the first two are computed on the square that they reach, the others on every cell; together all are
+    // computed on every cell.
+    const std::vector<core::Splash> splashes = {
+        {1.0, -2.0, 0.5, 0.04}, {-5.8, 5.9, 0.4, 0.03}, {2.0, 2.5, 3.0, 0.02}, {-4.0, 1.0, 6.0, 0.05}};
+    std::vector<std::int64_t> sum(std::size_t{48} * 48);
+    for (const core::Splash& splash : splashes) {
+      const auto alone = displaced({splash});
+      EXPECT_TRUE(std::ranges::any_of(alone, [](std::int64_t units) { return units < 0; }));
+      std::ranges::transform(sum, alone, sum.begin(), std::plus<>());
+    }
+    EXPECT_EQ(displaced(splashes), sum);
+  }
 }
 
 TEST_F(WaveOnDevice, WaterTakenAwayTakesItsMotionAndWaterAddedIsAtRest) {
