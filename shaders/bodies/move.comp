@@ -8,7 +8,6 @@
 // three circles along each hull against other boats, obstacles, shallow ground and sides. Each boat moves by half of the
 // overlap and loses its approaching speed.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
-// variants: WAVE=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "bodies/boat.glsl"
 #include "wave/wave_cell.glsl"
 #if WAVE

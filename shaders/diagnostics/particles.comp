@@ -3,7 +3,6 @@
 // non-finite values, escaped particles, max speed, max density; sum of density, sum of v^2, sum of y, 0; four words 0, but for the
 // first one of the first invocation: CROWDED[0].
 // Particles that were absorbed in the last substep are left out.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "common/finite.glsl"
 #include "particles/population.glsl"

@@ -3,7 +3,6 @@
 // breaches (flows not finite or beyond range, elevations beyond range, non-finite boats), 0, max |eta|, cells that break; sum of
 // eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
 // sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers: the volume to the last unit).
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 HULLS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1 HULLS=1
 #include "shared/groups.h"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"

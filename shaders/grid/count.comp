@@ -2,7 +2,6 @@
 // Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last: positions without a cell). Writes CELL_ARRIVAL
 // = (cell, arrival); particles that were absorbed have NO_CELL and leave here, those whose position is not finite count behind the
 // last cell. The arrival order is not repeatable; grid/reorder.comp makes the final order so.
-// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "grid/grid_hash.glsl"
 #include "particles/population.glsl"

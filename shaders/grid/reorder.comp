@@ -1,7 +1,6 @@
 // Sorts particles by cell and, inside a cell, by their previous index. Neighbours become contiguous, and a run repeats
 // bit for bit, because the order does not depend on the order of invocations.
 // Reads POSITION, VELOCITY, CELL_ARRIVAL, CELL_START, CELL_MEMBER. Writes SORTED_POSITION, SORTED_VELOCITY.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 // Cost: a particle counts the smaller indices in its cell, so n particles in one cell cost n^2, up to ORDERED_MAX of them.
 #include "shared/groups.h"
 #include "shared/grid.h"

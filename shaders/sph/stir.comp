@@ -4,7 +4,6 @@
 // that the pressure solver has nothing to undo. A splash leaves its cavity to fall in, and brings its rim to the crown's speed, outward and up;
 // a crest sets its water in motion with u = c eta/d (long waves). The gains of a pulse sum to the whole.
 // Invariant: nothing moves by more than a quarter of the spacing in a tick, or out of the walls.
-// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0
 #include "shared/groups.h"
 #include "common/event_shapes.glsl"
 #include "common/finite.glsl"

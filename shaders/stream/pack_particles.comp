@@ -3,7 +3,6 @@
 // Reads POSITION, VELOCITY, ACCELERATION.w (density) in cell order. Writes PACKED_WORDS, 2 + 3 a particle, from first_word on; the
 // first word has to be 0 before. Where there are more than budget_count, a part goes out that a hash of their ids chooses: the same
 // particles in every frame while their number stays, and those of a smaller budget among them.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "common/hash.glsl"
 #include "particles/population.glsl"

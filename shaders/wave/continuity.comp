@@ -8,7 +8,6 @@
 // and elevation over half a step and m the mean of the flow before and after, |eta|^2 - |G eta|^2/4 + |m|^2 + |A m|^2 never grows,
 // and |G| < 2 is the Courant bound. (Taken after the step, exp(-sigma dt) lowered the bound to sqrt((1 + exp(-sigma dt))/2) of it.)
 // Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit; no cell loses more than it holds.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
 

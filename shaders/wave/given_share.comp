@@ -5,7 +5,6 @@
 // limit as in flux-corrected transport (Zalesak 1979). What flows in during the same step does not count.
 // Invariant: shares times transfers, each cut toward zero, add up to no more than the cell holds. The margin of 2^-20 is
 // sixteen times what a float's rounding of the four operations can add.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
 

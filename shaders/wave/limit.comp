@@ -3,7 +3,6 @@
 // Reads GIVEN_SHARE. Updates TRANSFER [n x n, units], and FLOW [m^2/s], which loses the same share: water that is not there has no
 // momentum.
 // Invariant: a face is limited only by its giver; if no giver lacks water, no bit changes.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
 

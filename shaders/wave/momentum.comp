@@ -9,7 +9,6 @@
 // 13.10), so that crests overtake troughs. The growth has bounds; between two cells its mean over the elevations in between counts, so
 // that the push is the difference of a potential and energy is kept when water stands beyond them. Breaking water loses its flow at intensity * 2 sqrt(g/d).
 // Invariant: a level surface without flow stays so to the last bit; closed faces carry nothing.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=0 BREAKERS=0 STEEPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 HEAD=1 BREAKERS=1 STEEPEN=1 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=1 BREAKERS=0 STEEPEN=1
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "wave/transfer.glsl"

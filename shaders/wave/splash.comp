@@ -2,7 +2,6 @@
 // that its cell owns.
 // Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp does.
 // Invariant: a face's transfer is computed by one invocation a splash; nothing passes a closed face.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
 #include "wave/displacement.glsl"
 #include "common/event_shapes.glsl"
