@@ -70,7 +70,7 @@ class Crowd {
         {.opened =
              [this, &spectator] {
                spectator.opened = true;
-               // Commands of a crowd do not fall together.
+               // Spread the commands of a crowd over time.
                spectator.next_command = Clock::now() + std::chrono::milliseconds(7 * crowd_.size() % 1000);
                for (const auto& message : options_.on_open) (void)spectator.client->send(message);
              },
@@ -146,7 +146,7 @@ class Crowd {
     return out;
   }
 
-  /// Small, so that a backlog shows at once.
+  /// Small, so that a backlog shows quickly.
   static constexpr int kDeafBufferBytes = 64 * 1024;
 
   struct Receipts {
@@ -156,7 +156,7 @@ class Crowd {
 
   const net::ClientUrl url_;
   const CrowdOptions& options_;
-  std::unique_ptr<net::ClientPool> pool_;  // outlives the clients
+  std::unique_ptr<net::ClientPool> pool_;  // declared first: must outlive the clients
   std::vector<std::unique_ptr<Spectator>> crowd_;
   bool measures_ = false;
   std::uint64_t received_bytes_ = 0;

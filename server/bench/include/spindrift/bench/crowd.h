@@ -1,4 +1,4 @@
-// A crowd of clients on one server: how many frames each gets, how late, and how soon commands are answered.
+// A crowd of clients on one server: how many frames each receives, the delay of frames, and the delay of answers.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace spindrift::bench {
 
-/// What one received message is.
+/// Kind of a received message.
 struct Sighting {
   enum class Kind { kOther, kFrame, kAnswer };
   Kind kind = Kind::kOther;
@@ -41,17 +41,17 @@ struct CrowdReport {
   std::uint64_t most_frames = 0;
   std::uint64_t received_bytes = 0;
   std::vector<double> delays_ms;  ///< of frames, from publication to receipt, sorted
-  /// Likewise until the last one that reads had it; of frames that all of them got. Sorted.
+  /// Delay until the last client that reads had the frame; only frames that all of them received. Sorted.
   std::vector<double> last_delays_ms;
   std::vector<double> answers_ms;  ///< of commands, from sending to the answer, sorted
   std::uint64_t unanswered_count =
       0;  ///< commands without an answer at the end, those of the last half second left out
 };
 
-/// Quantile of sorted values; 0 for none.
+/// Returns a quantile of sorted values; 0 if there are none.
 double quantileOf(const std::vector<double>& sorted, double ratio);
 
-/// Connects, watches, and goes. `begin` is called when the measured time begins, `end` when it is over.
+/// Connects the crowd, measures, disconnects. `begin` is called when the measured time begins, `end` when it ends.
 CrowdReport runCrowd(const net::ClientUrl& url, const CrowdOptions& options, const std::function<void()>& begin = {},
                      const std::function<void()>& end = {});
 
