@@ -1,11 +1,11 @@
-// One line of a study's table: a measured number beside the number that it should be.
+// One line of a study's table: a measured number beside the expected one.
 #pragma once
 
 #include <string>
 
 namespace spindrift::study {
 
-/// How far from `expected` the measured value may be.
+/// Meaning of the tolerance between `expected` and the measured value.
 enum class Tolerance {
   kRelative,  ///< |measured - expected| <= tolerance * |expected|
   kAbsolute,  ///< |measured - expected| <= tolerance
@@ -23,7 +23,7 @@ struct Row {
   double tolerance = 0.0;
   std::string source;  ///< where `expected` comes from
 
-  /// In the measure of the tolerance: relative, absolute, or the measured value itself.
+  /// Returns the error in the unit of the tolerance: relative, absolute, or the measured value itself.
   [[nodiscard]] double error() const;
   [[nodiscard]] bool passes() const;
 };
