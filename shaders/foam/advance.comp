@@ -1,5 +1,5 @@
-// White water on the surface, once per tick: carried by the water, fading by source, fed by breakers, wakes and
-// landings.
+// White water on the surface, once per tick: carried by the water, fading at a rate per source, produced by breakers,
+// wakes and landings.
 // Reads FOAM_BEFORE [(n/2)^2: breaking, wake, landing, 0], SURFACE_FLOW, BREAKING, BOATS, LANDED. Writes FOAM_FIELD; clears LANDED.
 // Equation: semi-Lagrangian transport, f(x, t + dt) = f(x - u dt, t) exp(-dt/lifetime) + source; each share of white is at most 1.
 #include "shared/groups.h"

@@ -1,7 +1,8 @@
 // Counts the particles of each cell and notes each particle's cell and arrival number.
-// Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last: positions without a cell). Writes CELL_ARRIVAL
-// = (cell, arrival); particles that were absorbed have NO_CELL and leave here, those whose position is not finite count behind the
-// last cell. The arrival order is not repeatable; grid/reorder.comp makes the final order so.
+// Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last entry counts
+// positions without a cell). Writes CELL_ARRIVAL = (cell, arrival). Absorbed particles have NO_CELL and are dropped
+// here; particles whose position is not finite are counted after the last cell. The order of arrival is not
+// reproducible; grid/reorder.comp makes the final order reproducible.
 #include "shared/groups.h"
 #include "grid/grid_hash.glsl"
 #include "particles/population.glsl"

@@ -1,7 +1,7 @@
 // Moves each particle by the corrections of the constraints around it, then out of walls and floor.
 // Reads PRESSURE_POINT (position, lambda), CELL_START, floor and walls. Writes MOTION_POINT (position of the next iteration).
 // Equation: dx_i = sum_j (lambda_i + lambda_j) m/rho_0 grad W (Macklin & Mueller 2013, eq. 12) + lambda_i/rho_0 grad rho_boundary.
-// Invariant: one iteration moves a particle by at most a quarter of the spacing, but for the lift to the floor.
+// Invariant: one iteration moves a particle by at most a quarter of the spacing, except for the lift to the floor.
 #include "shared/groups.h"
 #include "particles/population.glsl"
 #include "grid/candidates.glsl"

@@ -1,7 +1,8 @@
 // Moves the particles: kick, drift (symplectic Euler), foam, collisions.
 // Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, FOAM_SOURCE (with NEIGHBOUR_FOAM), the floor. Writes POSITION, VELOCITY (in sorted order).
-// Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than max_speed_mps plus
-// the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
+// Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than
+// max_speed_mps plus the floor's own speed. A particle that crosses a periodic side enters reentry_m inside the other
+// one, so that it does not oscillate across the side (thesis 3.6.2).
 #include "shared/groups.h"
 #include "common/finite.glsl"
 #include "particles/foam.glsl"

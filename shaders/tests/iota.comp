@@ -1,4 +1,4 @@
-// Writes each invocation's index plus an offset, and counts the invocations inside and outside the guard.
+// For tests: writes each invocation's index plus an offset, and counts the invocations inside and outside the guard.
 // Reads uniforms item_count, offset. Writes VALUES [item_count], COUNTS [2] = (inside, outside).
 layout(local_size_x = GROUP) in;
 

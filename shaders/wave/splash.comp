@@ -1,7 +1,8 @@
-// Splashes displace water: invocations (x, y) cover the square that a splash can reach, z is the splash. Each adds to the two faces
-// that its cell owns.
-// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp does.
-// Invariant: a face's transfer is computed by one invocation a splash; nothing passes a closed face.
+// Splashes displace water: invocations (x, y) cover the square that a splash can reach, z is the index of the splash.
+// Each adds to the two faces that its cell owns.
+// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp
+// does.
+// Invariant: a face's transfer is computed by one invocation per splash; nothing passes a closed face.
 #include "shared/groups.h"
 #include "wave/displacement.glsl"
 #include "common/event_shapes.glsl"
@@ -12,7 +13,7 @@ void main() {
   const EventUniform e = splashes[gl_GlobalInvocationID.z];
   const int n = int(sim.wave_n);
   const float cell_m = sim.wave_cell_m;
-  // The square's cells: as many as the splash needs; along a periodic axis at most the whole domain once.
+  // Number of cells of the square: as many as the splash needs; along a periodic axis at most the whole domain once.
   ivec2 across = ivec2(min(2 * int(ceil(SPLASH_REACH * e.radius_m / cell_m)) + 4, 2 * n));
 #if WAVE_PERIODIC_X
   across.x = min(across.x, n);
