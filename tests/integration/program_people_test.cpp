@@ -93,7 +93,7 @@ TEST_F(People, TokensComeFromAFileOrTheEnvironmentAndAreNeverPrinted) {
   stop();
 }
 
-TEST_F(People, TokensThatCannotBeReadAreNamed) {
+TEST_F(People, TokensThatCannotBeReadAreReported) {
   const auto refused = [&](std::vector<std::string> more, const std::vector<std::string>& words) {
     std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
     arguments.insert(arguments.end(), more.begin(), more.end());

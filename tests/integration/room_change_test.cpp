@@ -23,7 +23,7 @@ class RoomChange : public RoomTest {
   }
 };
 
-TEST_F(RoomChange, IsLaidOutBesideTheRoomWhoseTicksWait) {
+TEST_F(RoomChange, IsPreparedOnAThreadOfItsOwnWhileTheTicksOfTheRoomWait) {
   begin(1, 60000);
   const std::uint64_t tick = room_->tick();
   send(2, core::Reset{});
@@ -95,7 +95,7 @@ TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
   EXPECT_GT(room_->tick(), tick + 1) << "ticks go on in between";
 }
 
-TEST_F(RoomValues, ThatArePutOffAreAnsweredWhenTheRoomCloses) {
+TEST_F(RoomValues, ThatWaitAreAnsweredWhenTheRoomCloses) {
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
   sendRefusedValues();
   send(100, core::SetSpeed{.speed = 1.0}, 2);

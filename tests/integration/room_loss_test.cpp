@@ -35,7 +35,7 @@ TEST_F(RoomLoss, AnswersCommandsThatCameBeforeTheLoss) {
   EXPECT_THAT(outlets_.rejected[0], testing::HasSubstr("the device failed"));
 }
 
-TEST_F(RoomLoss, ARoomThatClosesAnswersWhatWaits) {
+TEST_F(RoomLoss, AClosingRoomAnswersWaitingCommands) {
   send(7);
   send(8);
   room_->abandonCommands();

@@ -118,7 +118,7 @@ TEST_F(WaveCommands, OutsideOfTheSceneAreRejectedWithFieldValueAndBound) {
   EXPECT_THAT(fast.message(), HasSubstr("4"));
 }
 
-TEST_F(WaveCommands, WithoutAnActionAreRejectedAndTheSessionGoesOn) {
+TEST_F(WaveCommands, WithoutAnActionAreRejectedAndTheSessionContinues) {
   ScriptedClient one = client();
   EXPECT_EQ(one.rejected(v1::Command{}).reason(), v1::REJECT_REASON_MALFORMED);
   EXPECT_TRUE(one.apply(splash()));

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 class Frames : public ServerTest {};
 class WaveFrames : public WaveServerTest {};
 
-TEST_F(Frames, GreetingTellsSceneLayersAndParameters) {
+TEST_F(Frames, GreetingHasSceneLayersAndParameters) {
   ScriptedClient one(server().port());
   ASSERT_TRUE(one.isOpen());
   const v1::Greeting& greeting = one.greeting();
@@ -65,7 +65,7 @@ TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValuesWithGrowingTicks) {
   EXPECT_GT(particle_tick, 0u);
 }
 
-TEST_F(Frames, DiagnosticsTellAHealthyRoom) {
+TEST_F(Frames, DiagnosticsReportAHealthyRoom) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_DIAGNOSTICS);
   std::uint64_t tick = 0;
@@ -174,7 +174,7 @@ TEST_F(WaveFrames, StopWhenUnsubscribed) {
   EXPECT_LE(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), encoded_count + 1);
 }
 
-TEST_F(WaveFrames, GoOnForOthersWhenAClientVanishes) {
+TEST_F(WaveFrames, ContinueForOthersWhenAClientVanishes) {
   ScriptedClient stays = client();
   stays.subscribe(v1::LAYER_SURFACE);
   {

@@ -11,7 +11,7 @@ class HelloDeadline : public WaveServerTest {
   void adjust(service::WaterServerOptions& options) const override { options.hello_patience = std::chrono::seconds(1); }
 };
 
-TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedHoweverManyPingsItSends) {
+TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedDespiteItsPings) {
   ScriptedClient silent(server().port());
   ScriptedClient pinging(server().port());
   ASSERT_TRUE(silent.isOpen());
@@ -42,7 +42,7 @@ class BeforeHello : public WaveServerTest {
   }
 };
 
-TEST_F(BeforeHello, NamesAndNewsAreNotSent) {
+TEST_F(BeforeHello, NamesAndStateMessagesAreNotSent) {
   ScriptedClient known = person({.name = "Ada", .token = "token-of-some-operator"});
   ASSERT_NE(known.welcome().person_id(), 0u);
   ScriptedClient stranger(server().port());
@@ -58,7 +58,7 @@ TEST_F(BeforeHello, NamesAndNewsAreNotSent) {
   EXPECT_FALSE(stranger.hasReceived(v1::ServerMessage::kParameterChanged));
 }
 
-TEST_F(BeforeHello, WhatChangedBetweenGreetingAndHelloIsToldThen) {
+TEST_F(BeforeHello, ChangesBetweenGreetingAndHelloAreSentAfterHello) {
   ScriptedClient known = person({.token = "token-of-some-operator"});
   ScriptedClient late(server().port());
   ASSERT_TRUE(late.isOpen());
@@ -71,7 +71,7 @@ TEST_F(BeforeHello, WhatChangedBetweenGreetingAndHelloIsToldThen) {
 
 class CommandRate : public WaveServerTest {};
 
-TEST_F(CommandRate, ABurstWithinTheLimitsIsCarriedOutWhole) {
+TEST_F(CommandRate, ABurstWithinTheLimitsIsAppliedCompletely) {
   ScriptedClient one = client();
   const auto count = static_cast<std::uint64_t>(one.greeting().limits().command_burst_count());
   ASSERT_EQ(count, 400u);

@@ -81,7 +81,7 @@ TEST_F(Hostile, MessageOfAnUnknownKindIsRefused) {
   expectRefusal("\x9a\x06" + std::string(1, '\0'), "message of a kind that this server does not know");
 }
 
-TEST_F(Hostile, LayerThatTheWireDoesNotDeclareIsRefused) {
+TEST_F(Hostile, UndeclaredLayerIsRefused) {
   ScriptedClient one = client();
   one.subscribe(static_cast<v1::Layer>(77));
   expectRefusal(one, "subscribe.layer: 77");

@@ -50,7 +50,7 @@ TEST_F(Harbour, SendsParticlesOnlyWhereWaterBroke) {
   EXPECT_EQ(diagnostics->diagnostics().boat_count(), 1u);
 }
 
-TEST_F(Harbour, SendsFoamOfWhatBroke) {
+TEST_F(Harbour, SendsFoamOfBreakingWater) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_FOAM);
   const auto calm = one.nextFrame(v1::LAYER_FOAM);

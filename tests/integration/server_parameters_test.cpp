@@ -33,7 +33,7 @@ TEST_F(Parameters, ChangeReachesEveryClientOfTheRoom) {
   }
 }
 
-TEST_F(Parameters, ChangeStandsInTheNextGreeting) {
+TEST_F(Parameters, ChangeIsInTheNextGreeting) {
   ASSERT_TRUE(client().apply(setParameter("particles.viscosity_pas", 12.5)));
   const ScriptedClient newcomer = client();
   EXPECT_EQ(newcomer.greeting().scene().particles().viscosity_pas(), 12.5);
@@ -84,14 +84,14 @@ TEST_F(Parameters, UnknownPathIsRejectedByName) {
   EXPECT_EQ(reject.field(), "particles.stickiness");
 }
 
-TEST_F(Parameters, WhatNeedsARestartIsRejectedByName) {
+TEST_F(Parameters, OneThatNeedsARestartIsRejectedByName) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("wave.resolution_count", 64));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_NEEDS_RESTART);
   EXPECT_EQ(reject.field(), "wave.resolution_count");
 }
 
-TEST_F(FixedStepParameters, WhatBreaksAStepRuleIsRejectedWithTheRule) {
+TEST_F(FixedStepParameters, AValueThatBreaksAStepRuleIsRejectedWithTheRule) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("particles.sound_speed_mps", 500));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_BREAKS_STEP_RULE);
@@ -103,7 +103,7 @@ TEST_F(FixedStepParameters, WhatBreaksAStepRuleIsRejectedWithTheRule) {
   EXPECT_TRUE(one.apply(setParameter("particles.sound_speed_mps", 10)));
 }
 
-TEST_F(Parameters, WhatLeavesNoLatticeIsRejectedAsOutOfRange) {
+TEST_F(Parameters, AValueWithoutAPossibleLatticeIsOutOfRange) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("particles.count", 1));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_OUT_OF_RANGE) << reject.message();

@@ -71,7 +71,7 @@ std::vector<std::uint32_t> boatsOf(const v1::People& people, std::uint32_t perso
   return {};
 }
 
-TEST_F(People, AreWelcomedWithTheirRoleAndToldToOthers) {
+TEST_F(People, GetAWelcomeWithTheirRoleAndAreListedForOthers) {
   ScriptedClient ada = player("Ada");
   EXPECT_EQ(ada.welcome().role(), v1::ROLE_PLAYER);
   EXPECT_EQ(ada.welcome().person_id(), 1U);
@@ -85,7 +85,7 @@ TEST_F(People, AreWelcomedWithTheirRoleAndToldToOthers) {
   peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 1; });
 }
 
-TEST_F(People, WhoseNameShowsNothingAreNamedAsGuests) {
+TEST_F(People, WithoutAVisibleNameAreNamedAsGuests) {
   ScriptedClient ada = player("\u202EAda\u202C  ");
   ScriptedClient blank = player(" \u3000\u2066 \u200D");
   const v1::People people = peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 2; });
@@ -113,7 +113,7 @@ TEST_F(People, MayDoWhatTheirRoleAllows) {
   EXPECT_TRUE(chief.apply(reset()));
 }
 
-TEST_F(People, WithAWrongOrExpiredTokenAreTurnedAway) {
+TEST_F(People, WithAWrongOrExpiredTokenAreRefused) {
   for (const char* token : {"wrong-wrong-wrong-1", "expired-expired-1"}) {
     ScriptedClient stranger = person({.token = token});
     const auto refusal = stranger.waitFor(v1::ServerMessage::kRefusal);
@@ -124,7 +124,7 @@ TEST_F(People, WithAWrongOrExpiredTokenAreTurnedAway) {
   }
 }
 
-TEST_F(NoGuests, TurnsGuestsAwayAndLetsTokensIn) {
+TEST_F(NoGuests, RefusesGuestsAndAcceptsTokens) {
   ScriptedClient guest = client();
   ASSERT_TRUE(guest.ws().waitClosed());
   EXPECT_EQ(guest.ws().closeCode(), 4401);
@@ -183,7 +183,7 @@ TEST_F(People, TakeABoatWithoutOwner) {
   EXPECT_TRUE(ada.apply(spawnBoat(0, 4))) << "a person without a boat may launch one";
 }
 
-TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
+TEST_F(People, ResumeWithTheirBoatWhichHasStopped) {
   ScriptedClient bob = player("Bob");
   bob.subscribe(v1::LAYER_BODIES);
   ScriptedClient ada = player("Ada");
@@ -216,7 +216,7 @@ TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
   EXPECT_TRUE(again.apply(controlBoat(boat_id, 1, 0)));
 }
 
-TEST_F(People, ThatComeBackWhileTheOldConnectionHangsTakeItsPlace) {
+TEST_F(People, ResumeWhileTheOldConnectionHangsAndReplaceIt) {
   ScriptedClient ada = player();
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
   ScriptedClient again = player("", ada.welcome().resume_key());
@@ -240,7 +240,7 @@ TEST_F(ShortGrace, HandsTheBoatOverWhenItsPersonStaysAway) {
   EXPECT_FALSE(player("", first.resume_key()).welcome().resumed()) << "the grace time is over";
 }
 
-TEST_F(People, LoseTheirBoatsWithTheResetThatTakesThem) {
+TEST_F(People, LoseTheirBoatsWhenAResetRemovesThem) {
   ScriptedClient ada = player();
   ASSERT_TRUE(ada.apply(spawnBoat(0, 4)));
   ScriptedClient chief = person({.token = kOperator});

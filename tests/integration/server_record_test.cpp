@@ -103,7 +103,7 @@ TEST_F(RecordedPool, RunsAgainBitForBitWhenItsParticlesAreLaidOutAnew) {
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
 }
 
-TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndSaysSo) {
+TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndReported) {
   live();
   fs::resize_file(logFile(), fs::file_size(logFile()) - 3);
   const auto outcome = replayed(logFile());
@@ -138,7 +138,7 @@ TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
   EXPECT_LE(outcome->difference->last_equal_tick, splash_tick);
 }
 
-TEST_F(Recorded, AnotherDriverThanTheLogsIsTold) {
+TEST_F(Recorded, AnotherDriverThanTheLogsIsReported) {
   live();
   const auto log = rooms::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);

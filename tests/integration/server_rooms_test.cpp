@@ -20,7 +20,7 @@ class Rooms : public ServerTest {
 
 class PausedRoom : public ServerTest {};
 
-TEST_F(Rooms, DoNotMix) {
+TEST_F(Rooms, HaveTheirOwnSceneFramesAndCommands) {
   ScriptedClient lake = client("lake");
   ScriptedClient pond = client("pond");
   EXPECT_EQ(lake.greeting().room(), "lake");
@@ -46,7 +46,7 @@ TEST_F(Rooms, DoNotMix) {
   }
 }
 
-TEST_F(Rooms, AreToldOnlyOfTheirOwnChanges) {
+TEST_F(Rooms, SendChangesToTheirOwnClientsOnly) {
   ScriptedClient lake = client("lake");
   ScriptedClient pond = client("pond");
   ASSERT_TRUE(lake.apply(setParameter("wave.damping_per_s", 1)));

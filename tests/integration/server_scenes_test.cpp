@@ -100,7 +100,7 @@ TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
       one.waitFor([&](const v1::ServerMessage& m) { return m.has_diagnostics() && m.diagnostics().tick() > *pond; }));
 }
 
-TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldGoesOn) {
+TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldOneContinues) {
   ScriptedClient one = client();
   for (const char* name : {"sea", "../main", ""}) {
     const v1::Reject reject = one.rejected(changeScene(name));
@@ -110,7 +110,7 @@ TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldGoesOn) {
   EXPECT_TRUE(one.runFor(5));
 }
 
-TEST_F(Scenes, ThatDoNotLoadAreRejectedWithTheReasonAndTheOldGoesOn) {
+TEST_F(Scenes, ThatDoNotLoadAreRejectedWithTheReasonAndTheOldOneContinues) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   const v1::Reject broken = one.rejected(changeScene("broken"));

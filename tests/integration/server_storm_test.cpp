@@ -75,7 +75,7 @@ TEST_F(Storm, ScenesAreBuiltBesideTheWater) {
   expectNobodyElseNoticed("scenes", storm);
 }
 
-TEST_F(Storm, ParametersLeaveTheOthersTheirWater) {
+TEST_F(Storm, ParametersDoNotDisturbOtherClients) {
   const auto storm = runStorm(options({{Attack::kParameters}, {Attack::kParticleCount}}, 4.0));
   expectNobodyElseNoticed("parameters", storm);
 }

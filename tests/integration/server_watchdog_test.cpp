@@ -31,7 +31,7 @@ class Watchdog : public ServerTest {
   }
 };
 
-TEST_F(Watchdog, SaysThatItPutARoomBackAndTheRoomGoesOn) {
+TEST_F(Watchdog, ReportsARecoveryAndTheRoomContinues) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ScriptedClient elsewhere = client("calm");

@@ -164,7 +164,7 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
 
 class WaveParameters : public Parameters {};
 
-TEST_P(Parameters, OverTheirWholeRangesKeepTheWaterWell) {
+TEST_P(Parameters, KeepTheWaterHealthyOverTheirWholeRanges) {
   const v1::Scene scene = shipped(GetParam());
   sweep(scene, wanted("SPINDRIFT_SWEEP_VALUES", 0), wanted("SPINDRIFT_SWEEP_TICKS", 8), 24);
   std::printf("%d runs, elevations of up to %.2f m, %.3f m root mean square\n", run_count_, highest_seen_m_,
@@ -187,7 +187,7 @@ v1::Scene withSides(v1::Scene scene, v1::WaveBoundary side) {
   return scene;
 }
 
-TEST_P(WaveParameters, KeepItWellWithEveryKindOfSide) {
+TEST_P(WaveParameters, KeepTheWaveHealthyWithEveryKindOfSide) {
   v1::Scene scene = shipped(GetParam());
   scene.clear_particles();
   scene.clear_coupling();

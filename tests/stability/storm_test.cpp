@@ -93,7 +93,7 @@ TEST_F(Storm, WeatherAndBoatsAloneStayLow) {
   EXPECT_LE(extremes.highest_m, kHighestOfWeather_m);
 }
 
-TEST_F(Storm, ParametersThatChangeMeanwhileNeverBareTheBedEither) {
+TEST_F(Storm, ParameterChangesNeverEmptyTheHarborBelowItsBed) {
   const int ticks = wanted("SPINDRIFT_STORM_TICKS", 400);
   const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEverything, ticks);
   EXPECT_GE(extremes.thinnest_units, 0);

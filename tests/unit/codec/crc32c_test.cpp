@@ -26,7 +26,7 @@ TEST(Crc32c, EqualsThePublishedCheckValueByTables) {
   EXPECT_EQ(crc32cTable(viewOf("123456789")), 0xE3069283u);
 }
 
-TEST(Crc32c, EqualsThePublishedCheckValueByWhateverThisMachineUses) {
+TEST(Crc32c, EqualsThePublishedCheckValueOnThisMachine) {
   EXPECT_EQ(crc32c(viewOf("123456789")), 0xE3069283u);
 }
 
@@ -35,7 +35,7 @@ TEST(Crc32c, EqualsThePublishedCheckValueByInstruction) {
   EXPECT_EQ(crc32cInstruction(viewOf("123456789")), 0xE3069283u);
 }
 
-TEST(Crc32c, OfNothingIsZero) {
+TEST(Crc32c, OfNoBytesIsZero) {
   EXPECT_EQ(crc32c({}), 0u);
   EXPECT_EQ(crc32cTable({}), 0u);
 }

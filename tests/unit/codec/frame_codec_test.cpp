@@ -155,7 +155,7 @@ TEST(FrameEncoding, HandlesAFrameOfTheLargestScene) {
   EXPECT_EQ(samples->elevation_m.back(), static_cast<float>(0x1234 * 0.001));
 }
 
-TEST(FrameEncoding, KeepsNothingOfTheFramesMemory) {
+TEST(FrameEncoding, KeepsNoReferenceToTheFramesMemory) {
   TestFrame test;
   const core::SharedBytes bytes = FrameEncoder().encode(v1::LAYER_PARTICLES, test.view);
   const std::string before = textOf(bytes);
@@ -173,7 +173,7 @@ TEST(FrameEncoding, CarriesDiagnostics) {
   EXPECT_EQ(message->diagnostics().passes(1).name(), "sph");
 }
 
-TEST(FrameEncoding, OfALayerThatTheFrameLacksIsNothingAndNotCounted) {
+TEST(FrameEncoding, OfAMissingLayerIsNullAndNotCounted) {
   FrameEncoder encoder;
   const core::FrameView empty;
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS, v1::LAYER_BODIES}) {
@@ -196,7 +196,7 @@ TEST(FrameEncoding, CountsOneEncodePerFrameForAnyNumberOfReaders) {
   EXPECT_EQ(encoder.encodeCount({v1::LAYER_PARTICLES}), 0u);
 }
 
-TEST(FrameEncoding, EachLevelIsEncodedForItselfAndSaysSo) {
+TEST(FrameEncoding, EachLevelIsEncodedSeparatelyWithItsLevel) {
   const TestFrame test;
   constexpr Stream kPacked{v1::LAYER_SURFACE, v1::PACKING_PACKED};
   const std::vector<std::uint32_t> small(32, 0x00010002U);

@@ -137,7 +137,7 @@ TEST(OutsideReader, ReadsParticlesInCellsOfEverySize) {
   EXPECT_GE(std::ranges::count(seen_offset_bits, true), 4) << "cells of several sizes were made";
 }
 
-TEST(OutsideReader, SaysSoWhereValuesDiffer) {
+TEST(OutsideReader, ReportsDifferentValues) {
   Cases cases;
   const std::vector<std::uint32_t> words(2 * 2 / 2);
   core::FrameView view;

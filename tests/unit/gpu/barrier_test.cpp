@@ -110,7 +110,7 @@ TEST_F(BarrierTest, PassesWithTheirBarriersAreNoFault) {
   EXPECT_THAT(ctx->takeFaults(), IsEmpty());
 }
 
-TEST_F(BarrierTest, AStoreOverWhatIsStillReadIsAFault) {
+TEST_F(BarrierTest, AStoreToABufferThatIsStillReadIsAFault) {
   runCompare();
   runWrite();
   EXPECT_THAT(ctx->takeFaults(),
@@ -160,7 +160,7 @@ TEST_F(BarrierTest, ABindingWithoutABufferAndABlockLargerThanItsBufferAreFaults)
                                                    HasSubstr("\"small block\" bound to it only 56"))));
 }
 
-TEST_F(BarrierTest, UploadsDownloadsClearsAndCopiesBringTheirOwnBarriers) {
+TEST_F(BarrierTest, UploadsDownloadsClearsAndCopiesIssueTheirOwnBarriers) {
   auto other = Buffer::create(*ctx, "other", values.sizeBytes());
   auto ring = ReadbackRing::create(*ctx, "ring", values.sizeBytes(), 1);
   ASSERT_TRUE(other && ring);
@@ -207,13 +207,13 @@ TEST_F(BarrierTest, UpdatesOfAUniformBlockNeedNoBarrier) {
       << "only the test's own";
 }
 
-TEST_F(BarrierTest, FaultsAreToldOnceAndBounded) {
+TEST_F(BarrierTest, FaultsAreReportedOnceAndBounded) {
   for (int round = 0; round < 200; ++round) runWrite();
   EXPECT_THAT(ctx->takeFaults(), SizeIs(testing::Le(4u)));
   EXPECT_THAT(ctx->takeFaults(), IsEmpty());
 }
 
-TEST(BarrierDeathTest, FaultsThatNoTestTakesEndTheProcess) {
+TEST(BarrierDeathTest, UntakenFaultsEndTheProcess) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto forget = [] {
     auto ctx = Context::create(*testDevice(), Checks{.barriers = true});

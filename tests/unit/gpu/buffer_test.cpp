@@ -22,7 +22,7 @@ std::vector<std::uint8_t> ramp(std::size_t count) {
   return out;
 }
 
-TEST_F(BufferTest, ReturnsWhatWasUploadedAtSizesThatDivideByNothing) {
+TEST_F(BufferTest, ReturnsUploadedDataAtOddSizes) {
   for (const std::size_t size : {1u, 3u, 4u, 17u, 4099u, 65537u}) {
     auto buffer = Buffer::create(*ctx, "odd", size);
     ASSERT_TRUE(buffer) << buffer.error().message;
@@ -110,7 +110,7 @@ TEST_F(BufferTest, CopiesOnTheDevice) {
   EXPECT_THAT(std::vector(read.begin(), read.begin() + 7), Each(0));
 }
 
-TEST_F(BufferTest, RefusesSizesThatCannotBe) {
+TEST_F(BufferTest, RefusesImpossibleSizes) {
   const auto empty = Buffer::create(*ctx, "nothing", 0);
   ASSERT_FALSE(empty);
   EXPECT_THAT(empty.error().message, HasSubstr("\"nothing\""));
@@ -125,7 +125,7 @@ TEST_F(BufferTest, RefusesSizesThatCannotBe) {
   EXPECT_EQ(ctx->ledger().buffer_count, 0u);
 }
 
-TEST_F(BufferTest, LedgerCountsWhatLives) {
+TEST_F(BufferTest, LedgerCountsLiveBuffers) {
   const Ledger& ledger = ctx->ledger();
   {
     auto a = Buffer::create(*ctx, "a", 100);

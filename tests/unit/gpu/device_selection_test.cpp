@@ -83,7 +83,7 @@ TEST_F(Selecting, AutoEndsAtSoftwareAndSaysWhyNoHardware) {
   EXPECT_THAT(selected->why, HasSubstr("software, because no hardware device works; not used: device 0"));
 }
 
-TEST_F(Selecting, NothingThatWorksNamesAllThatWasTried) {
+TEST_F(Selecting, WithoutAWorkingDeviceTheErrorListsEveryAttempt) {
   candidates = {hardware(0, "card0"), software()};
   const auto selected = select();
   ASSERT_FALSE(selected);

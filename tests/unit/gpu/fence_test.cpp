@@ -93,7 +93,7 @@ TEST_F(DeviceLossTest, StaysReportedAndEndsFences) {
   EXPECT_TRUE(ctx->isLost());
 }
 
-TEST_F(DeviceLossTest, FreesTheSlotsInFlightInsteadOfHandingOutWhatTheyHold) {
+TEST_F(DeviceLossTest, FreesTheSlotsInFlightWithoutReturningThem) {
   auto ring = ReadbackRing::create(*ctx, "frames", 64, 2);
   auto source = Buffer::create(*ctx, "source", 64);
   ASSERT_TRUE(ring && source);

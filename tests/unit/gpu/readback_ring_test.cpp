@@ -34,7 +34,7 @@ std::vector<std::uint32_t> numbers(std::size_t count, std::uint32_t first) {
   return out;
 }
 
-TEST_F(ReadbackRingTest, ReturnsWhatWasCopiedInOrderOfSubmission) {
+TEST_F(ReadbackRingTest, ReturnsCopiesInOrderOfSubmission) {
   auto ring = ReadbackRing::create(*ctx, "frames", 4 * 37 + 3, 3);
   auto source = Buffer::create(*ctx, "source", 4 * 37);
   ASSERT_TRUE(ring && source);
@@ -185,7 +185,7 @@ TEST_F(ReadbackRingTest, AViewOutlivesItsRing) {
   EXPECT_EQ(ctx->ledger().buffer_bytes, 64u);
 }
 
-TEST_F(ReadbackRingTest, RefusesARingOfNothing) {
+TEST_F(ReadbackRingTest, RefusesAnEmptyRing) {
   for (const auto& [bytes, count] : {std::pair<std::size_t, std::size_t>{0, 3}, {64, 0}}) {
     const auto ring = ReadbackRing::create(*ctx, "empty", bytes, count);
     ASSERT_FALSE(ring);

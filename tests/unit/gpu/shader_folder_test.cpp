@@ -116,7 +116,7 @@ class LiveShader : public ShaderFolderTest {
   std::unique_ptr<Context> ctx_;
 };
 
-TEST_F(LiveShader, RunsAsItsFileSaysNowAndKeepsItsUniforms) {
+TEST_F(LiveShader, RunsTheChangedFileAndKeepsItsUniforms) {
   auto program = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "32"}});
   ASSERT_TRUE(program) << program.error().message;
   EXPECT_EQ(fourth(*program), 8);
@@ -126,7 +126,7 @@ TEST_F(LiveShader, RunsAsItsFileSaysNowAndKeepsItsUniforms) {
   EXPECT_EQ(ctx_->debugErrorCount(), 0u);
 }
 
-TEST_F(LiveShader, GoesOnAsItWasWhenItsFileDoesNotCompile) {
+TEST_F(LiveShader, KeepsTheOldProgramWhenItsFileDoesNotCompile) {
   auto program = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "32"}});
   ASSERT_TRUE(program) << program.error().message;
   replace("tests/iota.comp", "+ offset", "+ no_such_name");

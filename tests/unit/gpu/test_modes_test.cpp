@@ -147,7 +147,7 @@ TEST_F(ProgramCacheTest, AnErrorIsNotKept) {
   }
 }
 
-TEST_F(ProgramCacheTest, UniformsAreEachOnesOwnThoughTheProgramIsShared) {
+TEST_F(ProgramCacheTest, ProgramsThatShareACompiledOneHaveTheirOwnUniforms) {
   auto values = Buffer::create(*ctx, "values", 16);
   auto counts = Buffer::create(*ctx, "counts", 8);
   auto ten = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});

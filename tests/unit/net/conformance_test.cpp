@@ -96,7 +96,7 @@ TEST_F(Conformance, RefusesEveryReservedBitAndOpcode) {
   }
 }
 
-TEST_F(Conformance, RefusesFramesWithoutAMaskWhateverTheyAre) {
+TEST_F(Conformance, RefusesEveryFrameWithoutAMask) {
   for (const Opcode opcode : {Opcode::kText, Opcode::kBinary, Opcode::kPing, Opcode::kPong, Opcode::kClose}) {
     expectClosed({{.opcode = opcode, .masked = false}}, kProtocolError, "not masked");
   }
@@ -147,7 +147,7 @@ TEST_F(Conformance, IgnoresUnsolicitedPongs) {
   EXPECT_TRUE(isServed(client));
 }
 
-TEST_F(Conformance, RefusesControlFramesThatAreLongOrInPieces) {
+TEST_F(Conformance, RefusesLongAndFragmentedControlFrames) {
   for (const Opcode opcode : {Opcode::kPing, Opcode::kPong, Opcode::kClose}) {
     const std::string what = "opcode " + std::to_string(static_cast<int>(opcode));
     const std::string long_payload = "\x03\xe8" + std::string(124, 'x');
@@ -190,7 +190,7 @@ TEST_F(Conformance, RefusesACloseReasonThatIsNotUtf8) {
   expectClosed({closeFrame(1000, "cut \xe2\x82")}, kProtocolError, "a character that is cut");
 }
 
-TEST_F(Conformance, IgnoresWhatComesBehindAClose) {
+TEST_F(Conformance, IgnoresBytesAfterAClose) {
   FrameClient client = peer();
   ASSERT_TRUE(client.tcp().send(bytesOf(closeFrame(1000)) + bytesOf({.payload = "echo late"}) +
                                 bytesOf({.opcode = Opcode::kReservedData})));

@@ -101,7 +101,7 @@ TEST_F(ConnectionTest, FindsNothingOutsideTheWebRoot) {
   EXPECT_EQ(httpRequest(served.server->port(), "GET", std::string("/index\0.html", 12)).status, 400U);
 }
 
-TEST_F(ConnectionTest, SaysWhatIsWrongWithARequest) {
+TEST_F(ConnectionTest, AnswersABadRequestWithTheReason) {
   ServerOptions small = options();
   small.request_body_max_bytes = 100;
   const TestServer served(small);
@@ -117,7 +117,7 @@ TEST_F(ConnectionTest, SaysWhatIsWrongWithARequest) {
   EXPECT_EQ(httpRequest(port, "GET", "/ws").status, 426U);
 }
 
-TEST_F(ConnectionTest, RefusesChunkedBodiesHoweverTheyCome) {
+TEST_F(ConnectionTest, RefusesEveryFormOfChunkedBody) {
   const TestServer served(options());
   const std::string head = "POST /api/echo HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n";
   EXPECT_EQ(httpExchange(served.server->port(), head + "4\r\nbody\r\n0\r\n\r\n").status, 411U);
@@ -134,7 +134,7 @@ TEST_F(ConnectionTest, RefusesChunkedBodiesHoweverTheyCome) {
   EXPECT_TRUE(served.serves());
 }
 
-TEST_F(ConnectionTest, WantsExactlyOneHostOfEveryHttp11Request) {
+TEST_F(ConnectionTest, RequiresExactlyOneHostPerHttp11Request) {
   const TestServer served(options());
   const auto ask = [&](const std::string& version, const std::string& headers) {
     return httpExchange(served.server->port(),
@@ -237,7 +237,7 @@ TEST_F(ConnectionTest, RandomBytesDoNoHarm) {
   EXPECT_EQ(httpRequest(served.server->port(), "GET", "/").status, 200U);
 }
 
-TEST_F(ConnectionTest, CutsRequestsThatNeverEnd) {
+TEST_F(ConnectionTest, ClosesRequestsThatNeverEnd) {
   ServerOptions hurried = options();
   hurried.handshake_timeout = std::chrono::milliseconds(300);
   const TestServer served(hurried);

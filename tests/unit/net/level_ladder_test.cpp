@@ -43,7 +43,7 @@ class Link {
   std::uint32_t reduced_count_;
 };
 
-TEST(LevelLadder, ComesDownAStepASecondToWhatTheLinkCarries) {
+TEST(LevelLadder, StepsDownOncePerSecondToWhatTheLinkCarries) {
   Link link(3);
   EXPECT_EQ(link.run(4, Level::kCoarse),
             (std::vector<Link::Change>{{1, Level::kFine}, {2, Level::kMedium}, {3, Level::kCoarse}}));
@@ -81,7 +81,7 @@ TEST(LevelLadder, RetriesAFailedStepUpLessAndLessOften) {
   EXPECT_EQ(link.ladder.level(), Level::kMedium);
 }
 
-TEST(LevelLadder, ClimbsAllTheWayWhenTheLinkRecovers) {
+TEST(LevelLadder, ReturnsToFullWhenTheLinkRecovers) {
   Link link(3);
   link.run(60, Level::kCoarse);
   const auto changes = link.run(300, Level::kFull);

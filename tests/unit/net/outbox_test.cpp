@@ -46,7 +46,7 @@ std::string sentText(Outbox& outbox) {
   return message ? std::string(message->begin(), message->end()) : std::string("(nothing)");
 }
 
-TEST(Outbox, TheNewestStateTakesThePlaceOfTheOlderOne) {
+TEST(Outbox, TheNewestStateReplacesTheOlderOne) {
   Outbox outbox(8);
   outbox.pushState({.name = "people"}, shared("people 1"));
   outbox.pushAnswer(shared("answer"));
@@ -130,7 +130,7 @@ TEST(Outbox, HoldsOneFramePerLayer) {
   EXPECT_EQ(std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }), 2);
 }
 
-TEST(Outbox, ContinuesWhereTheClientHasTheFrameBefore) {
+TEST(Outbox, SendsADeltaIfTheClientHasTheFrameBefore) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe) << "it has nothing yet";
@@ -214,7 +214,7 @@ TEST(Outbox, TakesFramesOfItsOwnLevelOnly) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
 }
 
-TEST(Outbox, NeverContinuesAFrameOfAnotherLevel) {
+TEST(Outbox, NeverSendsADeltaAcrossLevels) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kMedium});
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
@@ -229,7 +229,7 @@ TEST(Outbox, NeverContinuesAFrameOfAnotherLevel) {
   EXPECT_EQ(textOf(outbox.next().message), "continuing");
 }
 
-TEST(Outbox, AReducedLevelThatIsTheFullOneKeepsItsRate) {
+TEST(Outbox, AReducedLevelThatEqualsFullKeepsItsRate) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = 60.0, .level = core::Level::kCoarse});
   Clock::time_point now = later();
@@ -265,7 +265,7 @@ class LinkOf30Hz {
   Clock::time_point now_ = later();
 };
 
-TEST(Outbox, AnAdaptingSessionWhoseFramesWaitComesDownAndClimbsBack) {
+TEST(Outbox, LowersAnAdaptingSessionWhoseFramesWaitAndRaisesItAgain) {
   using core::Level;
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .adapts = true});
@@ -276,7 +276,7 @@ TEST(Outbox, AnAdaptingSessionWhoseFramesWaitComesDownAndClimbsBack) {
   EXPECT_EQ(link.run(10, 1), (std::vector{Level::kMedium, Level::kFull}));
 }
 
-TEST(Outbox, OneThatDoesNotAdaptKeepsItsLevel) {
+TEST(Outbox, ASessionThatDoesNotAdaptKeepsItsLevel) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kFine});
   LinkOf30Hz link(outbox, 3);
@@ -374,7 +374,7 @@ TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
   EXPECT_EQ(outbox.closeRequest()->reason, "first");
 }
 
-TEST(Outbox, KeepsNothingOnceShut) {
+TEST(Outbox, KeepsNothingOnceClosed) {
   Outbox outbox(8);
   const auto message = shared("message");
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});

@@ -72,7 +72,7 @@ TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
   EXPECT_EQ(stuck.receive(), core::Bytes(1000, kFrameCount - 1));
 }
 
-TEST(Outflow, PutsNothingIntoAFrameThatGoesOutInPieces) {
+TEST(Outflow, SendsNothingInsideAPartlyWrittenFrame) {
   TestServer served;
   WsClient slow = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
   core::Bytes frame(kHugeFrameBytes);
@@ -100,7 +100,7 @@ TEST(Outflow, EvictsAClientWhoseWriteStalls) {
   EXPECT_TRUE(served.serves());
 }
 
-TEST(Outflow, CutsAStuckClientThatIsToClose) {
+TEST(Outflow, DropsAStuckClientThatIsBeingClosed) {
   TestServer served({.close_timeout = std::chrono::milliseconds(200)});
   const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
   served.server->hub().publish("pool", 1, {core::share(core::Bytes(kHugeFrameBytes)), {}});

@@ -108,7 +108,7 @@ TEST_F(RoomHubTest, TreatsAnInvalidRateAsStop) {
   }
 }
 
-TEST_F(RoomHubTest, TakesWatchesAlongIntoTheNextRoomButNoFrames) {
+TEST_F(RoomHubTest, MovesWatchesToAnotherRoomAndClearsFrames) {
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.join(1, "pool");
   EXPECT_EQ(test::watcherCount(hub, "pool", 3), 1U);

@@ -181,7 +181,7 @@ TEST(Session, ClosesOnAFloodOfPings) {
   EXPECT_EQ(client.closeCode(), 1008);
 }
 
-TEST(Session, EndsAloneWhenTheApplicationThrows) {
+TEST(Session, AnExceptionOfTheApplicationEndsOnlyItsSession) {
   TestServer served;
   WsClient client = served.client();
   WsClient other = served.client();
@@ -192,7 +192,7 @@ TEST(Session, EndsAloneWhenTheApplicationThrows) {
   EXPECT_EQ(text(other.receive()), "echo unharmed");
 }
 
-TEST(Session, TellsTheApplicationHowThePeerLeft) {
+TEST(Session, ReportsToTheApplicationHowThePeerLeft) {
   TestServer served;
   WsClient polite = served.client();
   EXPECT_TRUE(polite.close(1000));
@@ -251,7 +251,7 @@ TEST(Session, RefusesAFrameThatClaimsToBeImmense) {
   EXPECT_EQ(served.application.closed()[0].end.code, 1009);
 }
 
-TEST(Session, RefusesBytesBehindAnUpgradeThatWasNotAnswered) {
+TEST(Session, RefusesBytesAfterAnUnansweredUpgrade) {
   const TestServer served;
   EXPECT_EQ(test::httpExchange(served.server->port(), kUpgrade + "\x82").status, 400U);
   EXPECT_TRUE(served.application.opened().empty());

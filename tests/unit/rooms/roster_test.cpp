@@ -70,7 +70,7 @@ TEST_F(RosterTest, AfterTheGraceTimeTheBoatHasNoOwner) {
   EXPECT_FALSE(arrive(8, "", ada.resume_key).resumed);
 }
 
-TEST_F(RosterTest, ReturningBeforeTheOldConnectionIsGoneTakesItsPlace) {
+TEST_F(RosterTest, ResumingReplacesTheOldConnection) {
   const Admission ada = arrive(7);
   roster.give(3, ada.person_id);
   const Admission again = arrive(8, "", ada.resume_key);

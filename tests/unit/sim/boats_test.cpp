@@ -121,7 +121,7 @@ TEST_F(BoatsOnDevice, StaysOutOfRocksOtherBoatsAndWalls) {
   EXPECT_LE(deepest_m, 0.25) << "centres of hulls never come closer than a beam, or into the rock";
 }
 
-TEST_F(BoatsOnDevice, ComeAndGo) {
+TEST_F(BoatsOnDevice, AreAddedAndRemoved) {
   core::Scene scene = boatScene();
   scene.boats->capacity_count = 2;
   scene.boats->boats = {core::Boat{}};
@@ -197,7 +197,7 @@ TEST_F(BoatsOnDevice, HullsPushParticles) {
   EXPECT_EQ(sim.escapedCount(), 0u);
 }
 
-TEST_F(BoatsOnDevice, ABoatThatIsNotANumberIsMendedAndHarmsNobody) {
+TEST_F(BoatsOnDevice, ANonFiniteBoatStartsAgainAndChangesNoOther) {
   core::Scene scene = boatScene();
   scene.boats->boats = {core::Boat{.x_m = -3.0}, core::Boat{.x_m = 3.0}};
   WaterSim& sim = make(scene);

@@ -199,7 +199,7 @@ TEST(Derive, TaitWaterTakesSmallerStepsForItsFasterSound) {
               1e-12);
 }
 
-TEST(Derive, WallsGiveWhatTheMissingLayersWouldHave) {
+TEST(Derive, WallsReplaceTheDensityOfTheMissingLayers) {
   const double s = 0.1;
   for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
     for (const double H : {0.17, 0.2, 0.24, 0.3}) {
@@ -315,7 +315,7 @@ TEST(Derive, ABoxPeriodicInHeightIsAsHighAsItsLayers) {
   EXPECT_NEAR(fuller->particles->mass_kg, 1.1 * l.mass_kg, 1e-9 * l.mass_kg);
 }
 
-TEST(Derive, ABoxPeriodicInHeightRefusesWhatNeedsUpAndDown) {
+TEST(Derive, ABoxPeriodicInHeightRefusesPartsThatNeedAFloor) {
   const auto refuses = [](const core::Scene& scene, const char* field) {
     const auto derived = derive(scene);
     ASSERT_FALSE(derived) << field;

@@ -83,7 +83,7 @@ TEST_F(DeviceLag, ACheckpointIsConfirmedAlthoughTheNextOneIsDueBefore) {
   EXPECT_THAT(sim.copyState().elevation_m, ::testing::Contains(::testing::Ne(0.0)));
 }
 
-TEST_F(DeviceLag, FramesThatAreLostOnTheWayAreNotInFlight) {
+TEST_F(DeviceLag, LostFramesAreNotInFlight) {
   core::Scene scene = smallScene();
   WaterSim& sim = make(scene);
   ctx_->fenceDelay().set(kFarBehind);

@@ -92,7 +92,7 @@ TEST_F(KernelsOnDevice, EqualTheDoublePrecisionOnes) {
   }
 }
 
-TEST_F(KernelsOnDevice, UniformsLieWhereTheDriverPutsThem) {
+TEST_F(KernelsOnDevice, UniformOffsetsAreThoseOfTheDriver) {
   auto program = gpu::Program::create(*ctx_, "sph/integrate.comp",
                                       {{"PERIODIC_X", "1"},
                                        {"PERIODIC_Y", "0"},

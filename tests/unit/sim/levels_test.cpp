@@ -81,7 +81,7 @@ void ripple(WaterSim& sim, std::size_t n) {
   sim.setState(state);
 }
 
-TEST_F(Levels, AReducedSurfaceIsTheMeanOfWhatEachSampleCovers) {
+TEST_F(Levels, AReducedSurfaceSampleIsTheMeanOfItsArea) {
   // 192 cells into 128 samples: a sample covers one cell and a half.
   constexpr std::size_t kN = 192;
   core::Scene scene = smallScene();
@@ -114,7 +114,7 @@ TEST_F(Levels, AReducedSurfaceIsTheMeanOfWhatEachSampleCovers) {
   EXPECT_GT(*std::ranges::max_element(reduced) - *std::ranges::min_element(reduced), 100) << "the surface is not flat";
 }
 
-TEST_F(Levels, AReducedFoamIsTheMeanAsWell) {
+TEST_F(Levels, AReducedFoamSampleIsTheMeanOfItsArea) {
   core::Scene scene = smallScene();
   scene.particles.reset();
   scene.coupling.reset();
@@ -144,7 +144,7 @@ TEST_F(Levels, AReducedFoamIsTheMeanAsWell) {
   for (std::size_t i = 0; i < got.size(); ++i) ASSERT_NEAR(got[i], expected[i], 1.01) << i;
 }
 
-TEST_F(Levels, AFullSurfaceIsWhatItWasWithReducedOnesBesideIt) {
+TEST_F(Levels, AFullSurfaceIsTheSameBesideReducedOnes) {
   core::Scene scene = smallScene();
   scene.wave->resolution_count = 192;
   WaterSim& sim = make(scene);
@@ -154,7 +154,7 @@ TEST_F(Levels, AFullSurfaceIsWhatItWasWithReducedOnesBesideIt) {
   EXPECT_EQ(beside, alone);
 }
 
-TEST_F(Levels, NobodysLevelsAreNotPacked) {
+TEST_F(Levels, UnwatchedLevelsAreNotPacked) {
   core::Scene scene = smallScene();
   scene.wave->resolution_count = 192;
   WaterSim& sim = make(scene);
@@ -170,7 +170,7 @@ TEST_F(Levels, NobodysLevelsAreNotPacked) {
   EXPECT_FALSE(sim.requestFrame({})) << "nothing was asked for";
 }
 
-TEST_F(Levels, PartsOfTheParticlesAreWithinEachOtherAndStayTheSame) {
+TEST_F(Levels, ALowerLevelHasASubsetOfTheParticlesTheSameInEveryFrame) {
   core::Scene scene = smallScene(40'000);
   scene.wave->side_m = 40.0;
   WaterSim& sim = make(scene);

@@ -73,7 +73,7 @@ class Grid : public OnDevice {
   std::vector<std::uint32_t> start_;
 };
 
-TEST_F(Grid, SortsByCellAndThenByIndexAtSizesThatDivideByNothing) {
+TEST_F(Grid, SortsByCellAndThenByIndexAtOddSizes) {
   for (const std::size_t count : {1u, 7u, 63u, 65u, 257u, 1021u, 5003u}) {
     const auto d = derive(smallScene(3000));
     const auto positions = randomPositions(*d, count);

@@ -71,7 +71,7 @@ class PileUp : public OnDevice {
   }
 };
 
-TEST_F(PileUp, APassLooksAtABoundedNumberOfCandidatesPerParticle) {
+TEST_F(PileUp, APassVisitsABoundedNumberOfCandidatesPerParticle) {
   constexpr std::uint32_t kUnbounded = 1u << 30;
   for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
     const std::uint32_t passes = solver == core::PressureSolver::kPositionBased ? 3 : 2;
@@ -84,14 +84,14 @@ TEST_F(PileUp, APassLooksAtABoundedNumberOfCandidatesPerParticle) {
   }
 }
 
-TEST_F(PileUp, DerivesABoundThatNoWaterAtRestComesNear) {
+TEST_F(PileUp, TheBoundIsFarAboveTheCandidatesOfWaterAtRest) {
   core::Scene scene = boxScene(core::PressureSolver::kWeaklyCompressible, 700);
   EXPECT_EQ(derive(scene)->uniforms.candidates_max_count, 1024u);
   scene.particles->support_ratio = 3.0;
   EXPECT_GE(derive(scene)->uniforms.candidates_max_count, 32 * 3 * 27u);
 }
 
-TEST_F(PileUp, IsReportedInHealthAndTheRoomGoesOn) {
+TEST_F(PileUp, IsReportedInHealthAndTheRoomContinues) {
   for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
     WaterSim& sim = make(boxScene(solver, 3000));
     for (int i = 0; i < 5; ++i) sim.step();
@@ -123,7 +123,7 @@ TEST_F(PileUp, APositionThatIsNotFiniteIsInNoCellAndCounted) {
   }
 }
 
-TEST_F(PileUp, EveryPositionMayBeLostWithoutAnUnboundedStep) {
+TEST_F(PileUp, AStepStaysBoundedWhenNoPositionIsFinite) {
   for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
     WaterSim& sim = make(boxScene(solver, 3000));
     StateCopy state = sim.copyState();

@@ -75,7 +75,7 @@ TEST_F(SceneChange, AnotherDepthUploadsTheTablesOnceAndAnotherDampingDoesNot) {
   EXPECT_LT(uploadsOf([&] { sim.reset(); }).bytes, cells);
 }
 
-TEST_F(SceneChange, ARoomAfterChangesAndAResetIsTheRoomThatStartsWithThem) {
+TEST_F(SceneChange, ChangesAndAResetGiveTheStateOfAFreshStart) {
   core::Scene scene = harbor();
   WaterSim& sim = make(scene);
   for (int i = 0; i < 5; ++i) sim.step();
@@ -90,7 +90,7 @@ TEST_F(SceneChange, ARoomAfterChangesAndAResetIsTheRoomThatStartsWithThem) {
   EXPECT_EQ(changed, fresh.stateHash());
 }
 
-TEST_F(SceneChange, PreparedOnAnotherThreadItIsWhatOneCallGives) {
+TEST_F(SceneChange, PreparationOnAnotherThreadGivesTheSameAsOneCall) {
   core::Scene scene = smallScene(1500);
   const auto run = [&](bool apart) {
     core::Scene changed = scene;

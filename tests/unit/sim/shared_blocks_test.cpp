@@ -56,7 +56,7 @@ class SharedBlocks : public OnDevice {
   }
 };
 
-TEST_F(SharedBlocks, SimUniformsAreAsLargeAsTheirBlockAndEveryMemberLiesWhereTheDriverReadsIt) {
+TEST_F(SharedBlocks, SimUniformsHaveTheLayoutOfTheDriver) {
   const gpu::BlockLayout sim = block("sph/integrate.comp", "SimUniforms", smallScene());
   EXPECT_EQ(sim.binding, static_cast<std::uint32_t>(SIM_UNIFORMS));
   EXPECT_EQ(sim.size_bytes, sizeof(shared::SimUniforms));
@@ -65,7 +65,7 @@ TEST_F(SharedBlocks, SimUniformsAreAsLargeAsTheirBlockAndEveryMemberLiesWhereThe
   for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(offsetOf(sim, names[k]), 4 * k) << names[k];
 }
 
-TEST_F(SharedBlocks, EventUniformsLikewise) {
+TEST_F(SharedBlocks, EventUniformsHaveTheLayoutOfTheDriver) {
   const gpu::BlockLayout events = block("wave/splash.comp", "EventUniforms", smallScene());
   EXPECT_EQ(events.binding, static_cast<std::uint32_t>(EVENT_UNIFORMS));
   EXPECT_EQ(events.size_bytes, sizeof(shared::EventUniforms));
@@ -79,7 +79,7 @@ TEST_F(SharedBlocks, EventUniformsLikewise) {
   }
 }
 
-TEST_F(SharedBlocks, BoatControlsLikewise) {
+TEST_F(SharedBlocks, BoatControlsHaveTheLayoutOfTheDriver) {
   core::Scene scene = smallScene();
   scene.boats.emplace();
   const gpu::BlockLayout boats = block("bodies/move.comp", "BoatControls", scene);

@@ -5,13 +5,13 @@
 namespace spindrift::sim {
 namespace {
 
-TEST(SprayBlocks, EveryCellMayEmitWhereParticlesAreSmallBesideTheWater) {
+TEST(SprayBlocks, EveryCellMayEmitParticlesThatAreSmallAgainstTheDepth) {
   const SprayBlocks blocks = sprayBlocks(1, 0.12, 1.2);
   EXPECT_EQ(blocks.block_count, 1u);
   EXPECT_NEAR(blocks.taken_ratio, 1.0, 1e-12) << "all cells at once: the weights add up to one particle";
 }
 
-TEST(SprayBlocks, FewerCellsMayWhereAParticleIsMostOfAColumn) {
+TEST(SprayBlocks, FewerCellsMayEmitParticlesAlmostAsLargeAsAColumn) {
   const SprayBlocks blocks = sprayBlocks(3, 0.786, 1.0);
   EXPECT_EQ(blocks.block_count, 2u);
   EXPECT_LE(blocks.taken_ratio * 0.786, 0.5);

@@ -120,7 +120,7 @@ TEST_F(Variants, ASettledColumnHasThePressureOfItsDepthFromTheFloorUp) {
   }
 }
 
-TEST_F(Variants, ADamBreakRunsDownTheBoxWithBothSolvers) {
+TEST_F(Variants, ADamBreakReachesTheEndOfTheBoxWithBothSolvers) {
   for (const auto solver : {PressureSolver::kWeaklyCompressible, PressureSolver::kPositionBased}) {
     core::Scene scene = boxScene(2000, 14, Boundary::kWall);
     scene.particles->solver = solver;

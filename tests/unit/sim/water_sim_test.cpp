@@ -157,7 +157,7 @@ TEST_F(Water, DropsFramesWhileAllSlotsAreRead) {
   EXPECT_TRUE(sim.requestFrame({.surface = true}));
 }
 
-TEST_F(Water, ASplashThrowsParticlesAndMakesFoam) {
+TEST_F(Water, ASplashEmitsParticlesAndMakesFoam) {
   core::Scene scene = smallScene(2000);
   scene.wave->resolution_count = 64;
   WaterSim& sim = make(scene);

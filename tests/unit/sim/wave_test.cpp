@@ -108,7 +108,7 @@ TEST_F(WaveOnDevice, ASplashPushesDownByItsDepthThenRingsOutAndKeepsTheVolume) {
   EXPECT_EQ(volume, 0.0) << "to the last unit";
 }
 
-TEST_F(WaveOnDevice, WaterTakenAwayTakesItsMotionAndWaterAddedIsAtRest) {
+TEST_F(WaveOnDevice, RemovedWaterTakesItsMotionAndAddedWaterIsAtRest) {
   core::Scene scene = waveScene(64);
   scene.wave->depth_m = 2.0;
   WaterSim& sim = make(scene);

@@ -70,7 +70,7 @@ TEST_F(Golden, FolderHoldsNoOtherBytes) {
   }
 }
 
-TEST_F(Golden, FilesGetTheVerdictTheyAreNamedFor) {
+TEST_F(Golden, FilesGetTheVerdictInTheirNames) {
   codec::PackedSurfaceDecoder packed;
   codec::PackedFoamDecoder packed_foam;
   for (const GoldenCase& golden : goldenCases()) {

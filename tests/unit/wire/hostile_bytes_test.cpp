@@ -115,7 +115,7 @@ TEST(HostileBytes, RandomClientMessagesDoNoHarm) {
   for (int i = 0; i < kCaseCount; ++i) ASSERT_TRUE(isHarmless(parseClientMessage(random.bytes(200)))) << "case " << i;
 }
 
-TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndMeetEveryAnswer) {
+TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndGetEveryKindOfResult) {
   Random random(2);
   const std::vector<core::Bytes> valid = validClientMessages();
   const v1::Scene scene = fullScene();
