@@ -1,4 +1,4 @@
-// `spindrift serve` as a process: how it starts, what it refuses, how it ends.
+// `spindrift serve` as a process: start, refusals, end.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Spindrift's own bound: patience for goodbyes plus a second, with room for a loaded machine.
+/// Spindrift's bound for its shutdown plus a second, and extra time for a loaded machine.
 constexpr std::chrono::milliseconds kStopBound{5'000};
 
 /// A port of the loopback interface that is already in use.
@@ -60,7 +60,7 @@ class Serve : public ProgramTest {
   }
 };
 
-/// A server that is ready; the test is skipped where no device is usable.
+/// A server that is ready; without a usable device the test is skipped.
 class RunningServe : public Serve {
  protected:
   void SetUp() override {

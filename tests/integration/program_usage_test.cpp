@@ -1,4 +1,4 @@
-// What the program says and how it ends when it is not serving: usage, `check`, `info`.
+// Output and exit codes of the program when it does not serve: usage, `check`, `info`.
 #include <filesystem>
 
 #include <boost/json/parse.hpp>
@@ -249,7 +249,7 @@ TEST_F(Info, ParameterReferenceIsATable) {
 }
 
 TEST_F(Bundle, FindsItsScenesBesideItself) {
-  // As ./dev bundle lays it out: the program two folders deep, its data in share/.
+  // The layout of ./dev bundle: the program two folders deep, its data in share/.
   const auto program = folder().path() / "bin" / "spindrift";
   std::filesystem::create_directories(program.parent_path());
   std::filesystem::copy_file(SPINDRIFT_PROGRAM, program);

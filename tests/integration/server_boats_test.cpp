@@ -1,4 +1,4 @@
-// Boats from end to end: which clients are told of them, and which commands are refused.
+// Boats over a real connection: which clients get the boat list, and which commands are refused.
 #include "server_fixture.h"
 
 namespace spindrift::test {

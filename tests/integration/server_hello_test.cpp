@@ -19,7 +19,7 @@ TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedDespiteItsPings) {
   const auto begin = std::chrono::steady_clock::now();
   while (pinging.barrier()) {
     ASSERT_LT(std::chrono::steady_clock::now() - begin, kPatience);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // far below the rate of messages
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // far below the message rate
   }
   EXPECT_EQ(pinging.ws().closeCode(), 1008);
   EXPECT_THAT(pinging.ws().closeReason(), HasSubstr("no hello"));
@@ -110,7 +110,7 @@ TEST_F(CommandRate, CommandsBeyondTheRateAreBusyAndOnlyAFloodCloses) {
   }
   EXPECT_GT(busy_count, 0u);
   EXPECT_TRUE(one.barrier()) << "the session is not closed for that";
-  // Twice the burst of messages at once is more than the rate makes good while they are read.
+  // Twice the burst of messages at once exceeds what the rate adds while they are read.
   v1::ClientMessage ping;
   ping.mutable_ping()->set_client_time_s(1);
   for (int k = 0; k < 100'000 && !one.ws().closed(); ++k) one.send(ping);

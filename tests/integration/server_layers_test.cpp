@@ -1,4 +1,4 @@
-// What two-way coupling, boats and live counts look like to clients.
+// Two-way coupling, boats and changing counts, from a client's view.
 #include <algorithm>
 #include <cstring>
 

@@ -1,4 +1,4 @@
-// The packed streams over a real connection: every frame can be decoded, whenever clients join.
+// Packed streams over a real connection: every frame can be decoded, whenever clients join.
 #include <cmath>
 #include <map>
 

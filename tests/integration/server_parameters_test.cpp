@@ -1,4 +1,4 @@
-// SetParameter from end to end: which clients are told of a change, and which errors a refusal names.
+// SetParameter over a real connection: which clients are told of a change, and which errors a refusal names.
 #include <limits>
 
 #include "server_fixture.h"
@@ -15,7 +15,7 @@ class FixedStepParameters : public ServerTest {
   std::vector<RoomText> rooms() const override { return {{"main", scene_}}; }
 
  private:
-  // GCC 12 takes the move of a text of known length for one beyond its bounds.
+  // GCC 12 wrongly warns that the move of a text of known length exceeds its bounds.
   const std::string scene_ = std::string("fixed_substeps_count: 1\n") + kStillPool;
 };
 

@@ -1,4 +1,4 @@
-// People in a room: roles, presence, whose boat is whose, and coming back.
+// People in a room: roles, presence, owners of boats, and resuming.
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -22,7 +22,7 @@ class People : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kLagoon}}; }
   void adjust(service::WaterServerOptions& options) const override {
-    // Tokens live for a while; the brief one ends while its client is connected.
+    // Most tokens are valid for long; one expires while its client is connected.
     const auto soon =
         std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()) + std::chrono::seconds(3);
     const std::time_t at = std::chrono::system_clock::to_time_t(soon);
@@ -55,7 +55,7 @@ std::vector<std::string> namesOf(const v1::People& people) {
   return names;
 }
 
-/// The first list that `wanted` accepts, older ones forgotten; empty if none comes.
+/// Returns the first list that `wanted` accepts and drops older ones; empty if none comes.
 v1::People peopleWhen(ScriptedClient& client, const std::function<bool(const v1::People&)>& wanted) {
   while (const auto message = client.waitFor(v1::ServerMessage::kPeople)) {
     if (wanted(message->people())) return message->people();
@@ -231,7 +231,7 @@ TEST_F(ShortGrace, HandsTheBoatOverWhenItsPersonStaysAway) {
   ScriptedClient ada = player("Ada");
   const v1::Welcome first = ada.welcome();
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
-  // She stays until he was told of her: a person who joins and leaves between two lists is in neither.
+  // She stays until he has her in a list: a person who joins and leaves between two lists is in neither.
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 2; });
   ada.ws().vanish();
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 1; });

@@ -49,7 +49,7 @@ class Rest : public ServerTest {
     return out;
   }
 
-  /// Asks now and then, within the rate of an address, until it holds; false only after kPatience.
+  /// Asks repeatedly, within the rate of an address, until the condition holds; false only after kPatience.
   static bool becomes(const std::function<bool()>& holds) {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (!holds()) {
@@ -235,7 +235,7 @@ TEST_F(Rest, ARoomWithoutWatchersSleepsIfItsSceneSaysSo) {
   ASSERT_TRUE(becomes(isAsleep));
   const auto asleep_tick = tickOf("bay");
   const auto main_tick = tickOf("main");
-  // Commands are carried out all the same, and do not wake it.
+  // Commands are still applied, and do not wake the room.
   EXPECT_EQ(ask("POST", "/api/v1/rooms/bay/commands", R"({"splash": {"depth_m": 0.2}})").status, 200U);
   EXPECT_TRUE(becomes([&] { return tickOf("main") > main_tick; })) << "the others go on";
   EXPECT_EQ(tickOf("bay"), asleep_tick);

@@ -1,4 +1,4 @@
-// Scripted clients against a live server: what a script expects holds, and what does not hold is told.
+// Scripted clients against a live server: expectations that hold, and reports of those that do not.
 #include <spindrift/script/script_file.h>
 #include <spindrift/script/script_runner.h>
 

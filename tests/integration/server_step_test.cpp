@@ -1,4 +1,4 @@
-// Step from end to end: a paused room advances exactly as many ticks as it is told.
+// Step over a real connection: a paused room advances exactly the requested number of ticks.
 #include "server_fixture.h"
 
 namespace spindrift::test {

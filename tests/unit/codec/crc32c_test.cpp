@@ -12,7 +12,7 @@ core::ByteView viewOf(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// The definition, bit by bit: the oracle for the fast ones.
+/// The definition, bit by bit, as the reference for the fast implementations.
 std::uint32_t bitwiseCrc32c(core::ByteView bytes) {
   std::uint32_t crc = ~0u;
   for (const std::uint8_t byte : bytes) {

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A frame with an 8 x 8 surface, two particles and diagnostics; owns its words.
+/// A frame with an 8 x 8 surface, two particles and diagnostics, together with its words.
 struct TestFrame {
   std::vector<std::uint32_t> surface_words;
   std::vector<std::uint32_t> particle_words;
@@ -67,7 +67,7 @@ std::string textOf(const core::SharedBytes& bytes) {
   return {bytes->begin(), bytes->end()};
 }
 
-/// Recomputes the checksum, so that a test reaches the check that it means.
+/// Recomputes the checksum, so that the check under test is reached.
 void seal(v1::LayerFrame& frame) {
   frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
@@ -214,7 +214,7 @@ TEST(FrameEncoding, EachLevelIsEncodedSeparatelyWithItsLevel) {
     const auto samples = full_reader.decode(sent);
     ASSERT_TRUE(samples) << samples.error().message;
     EXPECT_EQ(samples->resolution_count, test.view.surface->resolution_count);
-    if (tick % 3 == 2) continue;  // a coarse frame now and then
+    if (tick % 3 == 2) continue;  // sometimes the frame has a coarse level
     const EncodedFrame coarse = encoder.encode(kPacked, core::frameAt(frame, core::Level::kCoarse), tick == 1);
     const v1::LayerFrame sent_coarse = frameOf(tick == 1 ? coarse.keyframe : coarse.delta);
     EXPECT_EQ(sent_coarse.level(), v1::LEVEL_COARSE);

@@ -1,4 +1,4 @@
-// The parts of the packed codecs by themselves: codes, groups, order, prediction.
+// The parts of the packed codecs: codes, groups, order, prediction.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -20,7 +20,7 @@
 namespace spindrift::codec {
 namespace {
 
-/// 32 bits at a time.
+/// Reads 32 bits at a time.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
@@ -131,7 +131,7 @@ SurfacePlane planeOf(std::size_t n, auto sample_at) {
   return plane;
 }
 
-/// What the frames before say about one sample, rounding included, times 4096.
+/// Prediction of one sample from the previous frames, rounding included, times 4096.
 std::int32_t fromHistoryAt(const SurfaceHistory& history, const SurfaceWeights& weights, std::size_t x, std::size_t z) {
   using W = SurfaceWeights;
   std::uint32_t sum = 1u << (kWeightBits - 1);

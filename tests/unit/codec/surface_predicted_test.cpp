@@ -1,4 +1,4 @@
-// The packed surface: the same samples as the plain one to the bit, in fewer bytes, however damaged or late the frames.
+// The packed surface: the same samples as the plain one to the bit, in fewer bytes, also after lost or damaged frames.
 #include <cmath>
 #include <limits>
 #include <random>

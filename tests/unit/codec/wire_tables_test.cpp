@@ -1,4 +1,4 @@
-// The tables that proto/README.md and proto/packed_codes.json repeat are those of the code.
+// Compares the tables in proto/README.md and proto/packed_codes.json with those of the code.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -1,4 +1,4 @@
-// The barriers that Buffer issues, and the checker that finds those which callers forget.
+// The barriers that Buffer issues, and the checker that reports those that callers forget.
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -89,12 +89,12 @@ class BarrierTest : public GpuTest {
 
 TEST_F(BarrierTest, AForgottenBarrierIsReportedWithBothProgramsAndTheBuffer) {
   runWrite();
-  ctx->barrier(Barrier::kStorage);  // the texels are forgotten
+  ctx->barrier(Barrier::kStorage);  // no barrier for the texels
   runCompare();
   EXPECT_THAT(ctx->takeFaults(), ElementsAre(AllOf(HasSubstr("tests/texel_equals_storage.comp reads buffer \"values\""),
                                                    HasSubstr("tests/iota.comp"), HasSubstr("Barrier::kTexel"))));
   runWrite();
-  ctx->barrier(Barrier::kTexel);  // the storage is forgotten, for what is read and for what is written
+  ctx->barrier(Barrier::kTexel);  // no barrier for the storage, neither for reads nor for writes
   runCompare();
   EXPECT_THAT(ctx->takeFaults(), testing::Contains(AllOf(HasSubstr("texel_equals_storage.comp reads buffer \"values\""),
                                                          HasSubstr("Barrier::kStorage"))));

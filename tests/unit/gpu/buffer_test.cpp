@@ -74,7 +74,7 @@ TEST_F(BufferTest, TransfersMoreThanItsStagingMemoryHolds) {
 TEST_F(BufferTest, ManySmallUploadsInARowKeepTheirOrder) {
   auto buffer = Buffer::create(*ctx, "small", 4 * 1000);
   ASSERT_TRUE(buffer);
-  // More than the staging memory holds, so that parts of it are used again while the device may still read them.
+  // More than the staging memory, so that its parts are reused while the device may still read them.
   for (std::uint32_t round = 0; round < 4; ++round) {
     for (std::uint32_t i = 0; i < 1000; ++i) buffer->uploadValue(std::array<std::uint32_t, 1>{1000 * round + i}, 4 * i);
     std::vector<std::uint32_t> filler(300'000, round);
@@ -189,7 +189,7 @@ TEST_F(BufferTest, TexelViewEqualsStorageBitForBit) {
   ASSERT_TRUE(program->dispatch(64, (kCount + 63) / 64));
   EXPECT_EQ(differences->downloadVector<std::uint32_t>(1)[0], 0u);
 
-  // The comparison is real: another buffer behind the storage binding differs everywhere.
+  // Check of the test itself: with another buffer at the storage binding, everything differs.
   auto others = Buffer::create(*ctx, "others", values->sizeBytes());
   ASSERT_TRUE(others);
   others->clear(0x7e000000);

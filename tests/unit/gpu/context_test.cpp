@@ -63,14 +63,14 @@ TEST_F(ContextTest, ASecondContextReplacesTheCurrentOneAndDoesNotDamageIt) {
     second->reset();
     EXPECT_TRUE(ctx->isOwnedHere()) << "destroying the second unbound the first";
   }
-  glEnable(GL_TEXTURE_BUFFER);  // not a capability: the first context's callback must still hear of it
+  glEnable(GL_TEXTURE_BUFFER);  // not a valid capability: the first context's callback must still report it
   ctx->finish();
   expected_error_count = 1;
 }
 
 TEST_F(ContextTest, DebugCallbackCountsErrors) {
   EXPECT_EQ(ctx->debugErrorCount(), 0u);
-  glEnable(GL_TEXTURE_BUFFER);  // not a capability
+  glEnable(GL_TEXTURE_BUFFER);  // not a valid capability
   ctx->finish();
   EXPECT_EQ(ctx->debugErrorCount(), 1u);
   expected_error_count = 1;

@@ -1,4 +1,4 @@
-// Which device is taken, with devices that are not there.
+// Selection among imaginary devices.
 #include "device_selection.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ egl::Candidate software() {
   return c;
 }
 
-/// Devices of which only those in `working` (by drm_file, "" for software) run the program.
+/// Opens only the devices in `working` (by drm_file, "" for software).
 class Selecting : public testing::Test {
  protected:
   egl::Attempt open(const egl::Candidate& c) {

@@ -63,7 +63,7 @@ TEST_F(FenceTest, ASlowDeviceDelaysFramesWithoutReorderingThem) {
     ctx->finish();
     for (const auto& lease : (*ring)->poll()) tags.push_back(lease->tag());
     most_in_flight = std::max(most_in_flight, (*ring)->usedCount());
-    if ((*ring)->usedCount() == (*ring)->slotCount()) {  // an asynchronous driver may not know yet what is done
+    if ((*ring)->usedCount() == (*ring)->slotCount()) {  // an asynchronous driver may report completion later
       for (const auto& lease : (*ring)->wait(kLimit)) tags.push_back(lease->tag());
     }
   }
@@ -121,7 +121,7 @@ TEST_F(DeviceLossTest, DownloadsGiveZerosAndObjectsCanStillBeMadeAndDropped) {
   (void)ReadbackRing::create(*ctx, "after", 64, 1);
 }
 
-/// Replaces a function of OpenGL, as a driver that behaves so; puts it back.
+/// Replaces an OpenGL function to imitate a driver; restores it at the end.
 template <typename Function>
 class Replaced {
  public:

@@ -12,7 +12,7 @@
 namespace spindrift::gpu {
 namespace {
 
-/// Far above what a copy of some bytes takes: a device that needs longer hangs.
+/// Far longer than a copy of some bytes takes.
 constexpr std::chrono::seconds kLimit{60};
 
 using Lease = std::shared_ptr<const ReadbackRing::Slot>;
@@ -175,7 +175,7 @@ TEST_F(ReadbackRingTest, AViewOutlivesItsRing) {
     send(**ring, *source, 64, 1);
     leases = (*ring)->wait(kLimit);
     ASSERT_EQ(leases.size(), 1u);
-    send(**ring, *source, 64, 2);  // still in flight when the ring goes
+    send(**ring, *source, 64, 2);  // still in flight when the ring is destroyed
   }
   EXPECT_EQ(std::vector(leases[0]->words().begin(), leases[0]->words().end()), numbers(16, 3));
   EXPECT_EQ(ctx->ledger().buffer_count, 2u);

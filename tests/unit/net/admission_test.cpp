@@ -1,5 +1,5 @@
-// Who is heard at all: pages by their origin, addresses by their rate, tokens only where they belong; and requests that
-// the application answers late, never, or after the server has gone.
+// Admission of clients: pages by their origin, addresses by their rate, tokens only where they are allowed; and
+// requests that the application answers late, never, or after the server has ended.
 #include <gtest/gtest.h>
 
 #include "address_limits.h"
@@ -187,7 +187,7 @@ TEST(LateAnswer, ServerStopsWhileARequestWaits) {
   (*server)->stop();
   EXPECT_LT(Clock::now() - begin, options.answer_timeout);
   *server = nullptr;
-  application.kept.front()(HttpReply{});  // the connection is gone, and the server
+  application.kept.front()(HttpReply{});  // neither the connection nor the server exists any more
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct HttpRoutesTest : testing::Test {
     auto routed = routeRequest({method, target, if_none_match}, files);
     return std::holds_alternative<Reply>(routed) ? std::get<Reply>(std::move(routed)) : Reply{};
   }
-  /// What the application would be asked.
+  /// The request that would go to the application.
   std::optional<Target> target(const std::string& method, const std::string& text) {
     StaticFiles files(folder.path().string());
     auto routed = routeRequest({method, text, ""}, files);

@@ -10,14 +10,14 @@ namespace {
 using core::Level;
 using std::chrono::seconds;
 
-/// A link that carries the levels up to `carries`, one second a call.
+/// A link that carries the levels up to `carries`, one second per call.
 class Link {
  public:
   explicit Link(std::uint32_t reduced_count) : reduced_count_(reduced_count) {
     (void)ladder.review(now_, reduced_count_);
   }
 
-  /// Seconds at which the level changed, with the level.
+  /// The seconds at which the level changed, with the new level.
   struct Change {
     int second;
     Level level;

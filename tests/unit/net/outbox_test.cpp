@@ -11,7 +11,7 @@ using test::shared;
 
 constexpr double kAnyRate_hz = 1e9;
 
-/// Each call a second later, so that no rate gets in the way.
+/// Returns a time one second after the last call, so that no rate limit applies.
 Clock::time_point later() {
   static Clock::time_point now{};
   return now += std::chrono::seconds(1);
@@ -175,7 +175,7 @@ TEST(Outbox, ASlowerWatchTakesKeyframesOnly) {
   Clock::time_point now = later();
   std::vector<std::string> taken;
   int asked_count = 0;
-  for (int k = 0; k < 30; ++k) {  // 30 frames a second, of which every third is taken
+  for (int k = 0; k < 30; ++k) {  // 30 frames per second, every third is taken
     now += std::chrono::microseconds(33'333);
     const bool wants_keyframe = outbox.demand(1, 0, now).wants_keyframe;
     asked_count += wants_keyframe ? 1 : 0;
@@ -208,7 +208,7 @@ TEST(Outbox, TakesFramesOfItsOwnLevelOnly) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
-  // A scene that has less than the level allows gives everything.
+  // In a scene that is smaller than the level, the level equals full.
   EXPECT_EQ(outbox.demand(1, 1, later()).level, core::Level::kFull);
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
@@ -221,7 +221,7 @@ TEST(Outbox, NeverSendsADeltaAcrossLevels) {
   EXPECT_EQ(textOf(outbox.next().message), "whole");
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
   EXPECT_EQ(textOf(outbox.next().message), "continuing");
-  // Another scene, in which the level is the full one.
+  // In another scene the level equals full.
   EXPECT_TRUE(outbox.demand(1, 1, later()).wants_keyframe);
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
   EXPECT_EQ(textOf(outbox.next().message), "whole");
@@ -242,7 +242,7 @@ TEST(Outbox, AReducedLevelThatEqualsFullKeepsItsRate) {
   EXPECT_NEAR(taken_count, 2 * core::kLevelBudgets[0].rate_hz, 5);
 }
 
-/// Offers 30 frames a second of whatever level the outbox is at; the writer takes one of `taken_of` of them.
+/// Offers 30 frames per second of the outbox's present level; the writer takes one of `taken_of`.
 class LinkOf30Hz {
  public:
   LinkOf30Hz(Outbox& outbox, std::uint32_t reduced_count) : outbox_(outbox), reduced_count_(reduced_count) {}
@@ -298,7 +298,7 @@ TEST(Outbox, TakesLayersInTurn) {
   std::vector<core::SharedBytes> last(4);
   for (LayerIndex layer = 0; layer < 4; ++layer) outbox.setWatch(layer, Watch{.max_rate_hz = kAnyRate_hz});
   std::vector<std::size_t> order;
-  // Every layer is refilled after every send: without turns the first layer would be sent alone.
+  // Every layer is refilled after every send: without taking turns, only the first layer would be sent.
   for (int k = 0; k < 8; ++k) {
     for (LayerIndex layer = 0; layer < 4; ++layer) outbox.offerFrame(layer, {last[layer] = shared("f"), {}}, later());
     const auto sent = outbox.next().message;

@@ -1,4 +1,4 @@
-// The opening handshake as RFC 6455 section 4 wants it: what a server refuses, with which answer, and how long it
+// The opening handshake of RFC 6455, section 4: which requests a server refuses, with which answer, and how long it
 // waits.
 #include <gtest/gtest.h>
 
@@ -143,7 +143,7 @@ TEST(Upgrade, IsClosedWhenItsHeaderNeverEnds) {
   RawTcp tcp;
   ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
   ASSERT_TRUE(tcp.send("GET /ws HTTP/1.1\r\nX-Long: "));
-  // Each byte comes well within the limit; the limit is on the whole.
+  // Each byte arrives within the limit, but the limit applies to the whole header.
   EXPECT_TRUE(eventually([&] {
     (void)tcp.receive(1, std::chrono::milliseconds(20));
     return tcp.closed() || !tcp.send("x");

@@ -1,4 +1,4 @@
-// What ticks and heavy commands may cost.
+// Budgets of ticks and heavy commands.
 #include <gtest/gtest.h>
 
 #include <spindrift/rooms/tick_cost.h>
@@ -13,7 +13,7 @@ TEST(WorkBudget, UsesItsShareOfTheTimeAndRepaysOverrunsFirst) {
   WorkBudget budget(0.25, 30ms);
   auto now = WorkBudget::Clock::time_point{} + 1h;
   EXPECT_TRUE(budget.isOpen(now));
-  budget.spend(130ms);  // known afterwards only
+  budget.spend(130ms);  // the cost is known only afterwards
   EXPECT_FALSE(budget.isOpen(now += 390ms)) << "97.5 of 100 ms are paid";
   EXPECT_TRUE(budget.isOpen(now += 20ms));
   EXPECT_TRUE(budget.isOpen(now += 1h));

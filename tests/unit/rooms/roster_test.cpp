@@ -76,7 +76,7 @@ TEST_F(RosterTest, ResumingReplacesTheOldConnection) {
   const Admission again = arrive(8, "", ada.resume_key);
   EXPECT_TRUE(again.resumed);
   EXPECT_EQ(again.displaced, 7U);
-  roster.leave(7, now);  // the old one ends at last
+  roster.leave(7, now);  // the old connection ends
   EXPECT_FALSE(roster.people().people(0).away());
   EXPECT_EQ(roster.ownerOf(3), ada.person_id);
 }

@@ -228,7 +228,7 @@ TEST(Parameters, TheReferenceListsEveryNumberWithItsUnitAndRange) {
     ++number_count;
     EXPECT_THAT(table, HasSubstr(field.name() + "` |"));
   });
-  // Two lines of heading.
+  // The table has two lines of heading.
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), number_count + 2);
 }
 

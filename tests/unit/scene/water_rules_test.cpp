@@ -1,4 +1,4 @@
-// Rules between the water and what stands and floats in it, each broken once.
+// Rules between the water and the obstacles and boats in it, each broken once.
 #include <string>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// Boats: floating, driving, meeting things, wakes.
+// Boats: floating, driving, collisions, wakes.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// 20 m of water, nothing but the wave and what a test puts there.
+/// 20 m of water with the wave only; tests add what they need.
 core::Scene boatScene() {
   core::Scene scene;
   scene.name = "boats";
@@ -49,7 +49,7 @@ TEST_F(BoatsOnDevice, FloatsAtTheDraughtOfItsDensity) {
     for (int i = 0; i < 1200; ++i) sim.step();
     const BoatPose b = pose(sim);
     const double keel_m = b.y_m - 0.4;
-    // Walls keep the water that the hull displaced: the level away from it stands a little higher.
+    // The walls keep the displaced water, so the level away from the hull is a little higher.
     const double level_m = sim.copyState().elevation_m[5 + 128 * 5];
     EXPECT_NEAR(level_m - keel_m, density * 0.8, 0.03 * density * 0.8) << "density " << density;
     EXPECT_NEAR(b.pitch, 0.0, 1e-3);

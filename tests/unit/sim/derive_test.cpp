@@ -239,7 +239,7 @@ TEST(Derive, APoolOfAMillionParticlesHasRoomAtTheDefaultHeadroom) {
 
 TEST(Derive, RefusesMoreCellsThanTheBoundAndNamesIt) {
   core::Scene scene = boxScene(262'144);
-  scene.particles->layers_count = 64;  // 64^3: 33^2 cells or so over the floor
+  scene.particles->layers_count = 64;  // 64^3: about 33^2 cells over the floor
   const auto low = derive(scene);
   ASSERT_TRUE(low) << low.error().message;
   const double cell_m = low->particles->support_radius_m;

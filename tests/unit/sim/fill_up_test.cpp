@@ -34,7 +34,7 @@ TEST(FillUp, RaisesCellsToTheirBedWithWaterOfTheOthersToTheLastUnit) {
 
 TEST(FillUp, TakesMissingWaterFromOutsideOrLeavesCellsBelowTheirBed) {
   const std::vector<std::int64_t> bed = {100, 100};
-  std::vector<std::int32_t> eta = {-350, -20};  // 250 lacking, 80 held
+  std::vector<std::int32_t> eta = {-350, -20};  // 250 missing, 80 available
   std::vector<std::int32_t> closed = eta;
   const FillUp filled = fillUp(bed, eta, Lack::kComesFromOutside);
   EXPECT_EQ(filled.from_outside_units, 170);

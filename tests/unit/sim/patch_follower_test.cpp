@@ -1,4 +1,4 @@
-// The particle patch goes where the action is.
+// The particle patch follows splashes and boats.
 #include <cmath>
 
 #include <gmock/gmock.h>

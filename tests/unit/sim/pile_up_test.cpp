@@ -1,4 +1,4 @@
-// Particles that are all in one place, or nowhere: a step stays bounded and the watchdog learns of it.
+// Particles in one place or without a finite position: a step stays bounded, and the watchdog is informed.
 #include <cmath>
 #include <limits>
 
@@ -15,7 +15,7 @@
 namespace spindrift::sim {
 namespace {
 
-/// After so many ticks the health of the first is there, on an asynchronous device too.
+/// After this many ticks the health of the first one has arrived, also on an asynchronous device.
 constexpr int kHealthArrives_ticks = WaterSim::kMaxTicksInFlight + 2;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -38,7 +38,7 @@ class PileUp : public OnDevice {
     std::uint32_t count = 0;       ///< particles
   };
 
-  /// One substep with every particle in the same cell; shaders count what they look at.
+  /// One substep with every particle in the same cell; shaders count the candidates that they visit.
   Looked lookAround(core::PressureSolver solver, std::uint32_t count, std::uint32_t candidates_max_count) {
     const core::Scene scene = boxScene(solver, count);
     auto derived = derive(scene);

@@ -1,5 +1,5 @@
-// Changes of a running room: a reset uploads next to nothing, and another number of particles is worked out apart from
-// the device.
+// Changes of a running room: a reset uploads almost nothing, and another number of particles is prepared without the
+// device.
 #include <cmath>
 #include <future>
 
@@ -26,7 +26,7 @@ class SceneChange : public OnDevice {
     return {after.upload_count - before.upload_count, after.uploaded_bytes - before.uploaded_bytes};
   }
 
-  /// A harbor: two-way, ground that differs from place to place, boats.
+  /// A harbor: two-way, with ground of different depth, and boats.
   static core::Scene harbor() {
     core::Scene scene = smallScene(600);
     scene.wave->resolution_count = 96;

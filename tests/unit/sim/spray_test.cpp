@@ -19,8 +19,8 @@ TEST(SprayBlocks, FewerCellsMayEmitParticlesAlmostAsLargeAsAColumn) {
 }
 
 TEST(SprayBlocks, WeightsOfOnePerBlockAreThoseOfTheWorstPlaces) {
-  // Reach 1 spreads 1 4 6 4 1 over 16. In blocks of two the worst places are 6 + 4 + 1 of 16 an axis, in blocks of 16
-  // a 6 and, over the edge of the block, a 4.
+  // Reach 1 spreads 1 4 6 4 1 over 16. With blocks of two, the worst places sum to 6 + 4 + 1 of 16 per axis; with
+  // blocks of 16, to 6 + 4 across the edge of a block.
   EXPECT_NEAR(sprayBlocks(1, 0.9, 1.0).taken_ratio, 11.0 * 11.0 / 256.0, 1e-12);
   const SprayBlocks largest = sprayBlocks(1, 100.0, 1.0);
   EXPECT_EQ(largest.block_count, 16u);

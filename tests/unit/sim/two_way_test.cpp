@@ -1,4 +1,4 @@
-// Breaking water becomes particles and comes back: the ledger of its volume, calm water, repeatability.
+// Breaking water becomes particles and returns: the volume ledger, calm water, reproducibility.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -62,8 +62,8 @@ TEST_F(TwoWay, ASplashEmitsWaterThatAllReturns) {
 }
 
 TEST_F(TwoWay, LandingDropsWiderThanTheCellsAddNoWaveEnergy) {
-  // With drops spread over 5 cells whatever their size, those on 256 cells broke the water that they fell into, for
-  // ever.
+  // When drops of every size were spread over 5 cells, those on 256 cells broke the water that they fell into, without
+  // end.
   const auto run = [&](std::uint32_t resolution_count) {
     core::Scene scene = twoWayScene();
     scene.wave->resolution_count = resolution_count;

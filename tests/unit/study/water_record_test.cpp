@@ -1,4 +1,4 @@
-// How runs are compared, and which of them are worth their cost.
+// Comparison of runs, and the front of cost against error.
 #include <cmath>
 #include <numbers>
 

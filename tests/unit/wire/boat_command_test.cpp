@@ -1,4 +1,4 @@
-// Commands about boats, steps and scenes: what arrives, what is rejected before it reaches the room.
+// Commands on boats, steps and scenes: their values, and rejections before they reach the room.
 #include <functional>
 #include <limits>
 #include <string>

@@ -1,4 +1,4 @@
-// Commands on their way back to the wire, and as Protobuf JSON.
+// Conversion of commands to the wire and to Protobuf JSON.
 #include <gmock/gmock.h>
 
 #include <spindrift/wire/api_message.h>
@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// One of each kind, no field at its default.
+/// One command of each kind, with no field at its default.
 std::vector<core::Action> everyAction() {
   return {core::Splash{0.5, -0.5, 1.25, 0.25, 0.125},
           core::BreakingWave{core::Side::kDirection, 0.5, 2.0, 0.25, core::WaveShape::kSwell, 45.0},
@@ -72,7 +72,7 @@ TEST(CommandMessage, EachCommandNeedsItsRole) {
   EXPECT_EQ(core::roleFor(core::ChangeScene{}), Role::kOperator);
 }
 
-/// The line that a body is refused with, without what it has in common; empty where it is taken.
+/// The refusal of a body, without the common part; empty if it is accepted.
 std::string whyNot(const std::string& json) {
   const auto parsed = parseCommandJson(json);
   const auto* malformed = std::get_if<Malformed>(&parsed);
