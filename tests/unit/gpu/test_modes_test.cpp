@@ -55,8 +55,8 @@ TEST_F(TestModes, ShuffledGroupsCoverEveryInvocationOnce) {
     if (!ctx) return;
     auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
     ASSERT_TRUE(program) << program.error().message;
-    for (const std::uint32_t count :
-         {1u, 24u, 25u, 1009u, 24u * 7919u}) {  // the last: a multiple of the factor, so that another one is used
+    // The last count is a multiple of the factor, so that 1 replaces the factor.
+    for (const std::uint32_t count : {1u, 24u, 25u, 1009u, 24u * 7919u}) {
       auto values = Buffer::create(*ctx, "values", 4 * count);
       auto counts = Buffer::create(*ctx, "counts", 8);
       ASSERT_TRUE(values && counts);
