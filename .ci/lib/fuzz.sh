@@ -1,15 +1,16 @@
 # shellcheck shell=bash
-# The fuzz targets of tests/fuzz: built apart with clang and sanitizers. Sourced by ./dev.
+# The fuzz targets of tests/fuzz: built separately with clang and sanitizers. Sourced by ./dev.
 
 readonly fuzz_targets=(client_message frame http scene)
 
-# build_fuzz: the targets; afterwards build/fuzz/tests/fuzz_TARGET.
+# build_fuzz: builds the targets as build/fuzz/tests/fuzz_TARGET.
 build_fuzz() {
   need_packages server fuzz
   build_server fuzz
 }
 
-# fuzz_one TARGET SECONDS: seeds first, then what earlier runs found, then news; fails at the first input that breaks.
+# fuzz_one TARGET SECONDS: runs the seeds, then the findings of earlier runs, then new inputs; fails at the first input
+# that crashes.
 fuzz_one() {
   local target="$1" limit_s="$2" folder=build/fuzz
   mkdir -p "$folder/found/$target" "$folder/crashes"

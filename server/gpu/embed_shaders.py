@@ -21,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 
-VERSION_LINE = "#version 450 core"  # the same as in program.cpp
+VERSION_LINE = "#version 450 core"  # the same as in compiled_program.cpp
 INCLUDE = re.compile(r'\s*#\s*include\b\s*(.*)')
 QUOTED = re.compile(r'"([^"]+)"\s*(//.*)?$')
 GUARD = re.compile(r"(\s*//[^\n]*\n|\s)*#ifndef (\w+)\n#define \2\n")
