@@ -14,8 +14,8 @@ struct BaselineResult {
   std::size_t bytes = 0;
   double encode_ms = 0.0;
   double decode_ms = 0.0;
-  bool is_exact = false;               ///< what came back is what went in
-  std::vector<float> position_m = {};  ///< of a codec that is not: what came back, any order, x y z
+  bool is_exact = false;               ///< the decoded data equals the input
+  std::vector<float> position_m = {};  ///< only if not exact: decoded positions in any order, x y z
 };
 
 BaselineResult deflate(std::span<const std::uint32_t> words);

@@ -29,11 +29,11 @@ struct CodecRow {
   std::string name;
   std::size_t frame_count = 0;
   double bytes = 0.0;
-  double most_bytes = 0.0;  ///< of a frame
+  double most_bytes = 0.0;  ///< of the largest frame
   double item_count = 0.0;  ///< samples, particles
   double encode_ms = 0.0;
   double decode_ms = 0.0;
-  double max_error = 0.0;  ///< over the quantum; of particles: distance along an axis
+  double max_error = 0.0;  ///< in quanta; for particles: distance along an axis
   /// Lower bounds for unordered places, in bits for the items of all frames: as dense as resting water, and with the
   /// same number anywhere in the box.
   std::optional<double> bound_bits = {};

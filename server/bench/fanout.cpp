@@ -112,7 +112,7 @@ struct Row {
   CrowdReport crowd{};
   net::ServerStats before{};
   net::ServerStats after{};
-  double io_cpu_s = 0.0;  ///< of the I/O thread; 0 where it is not known
+  double io_cpu_s = 0.0;  ///< of the I/O thread; 0 if unknown
   double resident_grown_mb = 0.0;
   double real_time_factor = 0.0;
 };

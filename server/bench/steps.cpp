@@ -32,7 +32,7 @@ struct StepResult {
   std::uint32_t substeps_count = 0;
   double tick_ms = 0.0;
   double substep_ms = 0.0;
-  double particle_us = 0.0;       ///< grid + sph passes, a particle and substep
+  double particle_us = 0.0;       ///< grid + sph passes, per particle and substep
   double real_time_factor = 0.0;  ///< of the simulation alone
   std::vector<gpu::PassCost> passes;
 };

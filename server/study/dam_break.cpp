@@ -98,8 +98,8 @@ core::Scene damScene(core::PressureSolver solver, core::KernelSet set, std::uint
 
 /// Measured values of a collapsing column, one point per tick, over the column's length a.
 struct Collapse {
-  std::vector<Point> front;   ///< behind it lies all but kAheadShare of the water
-  std::vector<Point> tongue;  ///< leading edge of the water that hangs together with the column's foot
+  std::vector<Point> front;   ///< all but kAheadShare of the water is behind it
+  std::vector<Point> tongue;  ///< leading edge of the water connected with the column's foot
   std::vector<Point> column;  ///< height of that water at the wall
 };
 

@@ -94,7 +94,7 @@ double nearestNeighbour(const sim::WaterSim& water, const sim::StateCopy& state)
 
 struct Decay {
   double late_rate_ratio = 0.0;  ///< rate of decay over 2 nu k^2, between kFirst_s and kLast_s
-  double first_speed = 0.0;      ///< speed at kFirst_s over what it should be
+  double first_speed = 0.0;      ///< speed at kFirst_s over the theoretical one
   double neighbour_gap = 0.0;    ///< nearest neighbour over the spacing at the end
 };
 

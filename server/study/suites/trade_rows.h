@@ -20,7 +20,7 @@ using study::WaterRecord;
 /// Results of one run.
 struct TradeRow {
   std::string knob, setting;
-  std::string refused;  ///< why the scene could not be run; empty: it was
+  std::string refused;  ///< why the scene could not run; empty: it ran
   double wall_ms_per_s = 0.0;
   double device_mb = 0.0;
   double stream_mbit_per_s = 0.0;

@@ -25,7 +25,7 @@ namespace {
 struct TradeScene {
   const char* name;
   double seconds;
-  double quick_seconds;  ///< of the quick form, whose yardstick is REFERENCE itself; 0: no part of it
+  double quick_seconds;  ///< of the quick form, which compares with REFERENCE itself; 0: not part of it
 };
 constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.1},
                                        {"breaking_wave", 4.5, 0.0},

@@ -18,7 +18,7 @@ struct CaseResult {
 };
 
 struct Case {
-  std::string name;     ///< one word with dashes, what --case names
+  std::string name;     ///< one word with dashes, as for --case
   std::string purpose;  ///< one line
   /// `quick`: shorter runs and coarser water, for a table within minutes; the tolerances are the same.
   std::function<core::Result<CaseResult>(gpu::Context& ctx, bool quick)> run;

@@ -15,13 +15,13 @@ enum class Tolerance {
 };
 
 struct Row {
-  std::string name;  ///< what was measured, with the choices that make it this one
+  std::string name;  ///< the measured quantity and the choices of this row
   std::string unit;  ///< of measured and expected; empty for ratios
   double measured = 0.0;
   double expected = 0.0;
   Tolerance kind = Tolerance::kRelative;
   double tolerance = 0.0;
-  std::string source;  ///< where `expected` comes from
+  std::string source;  ///< source of `expected`
 
   /// Returns the error in the unit of the tolerance: relative, absolute, or the measured value itself.
   [[nodiscard]] double error() const;

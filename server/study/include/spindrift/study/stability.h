@@ -17,10 +17,10 @@ namespace spindrift::study {
 /// Result for one value of a sweep.
 struct StabilityPoint {
   double value = 0.0;
-  std::string refused;                ///< why no room was made of it; empty: one was
-  bool are_frames_finite = true;      ///< bounds of every frame; what is in them are integers
-  std::uint64_t recovered_count = 0;  ///< how often the watchdog stepped in
-  bool is_well_after = true;          ///< two seconds with the rules' own steps: finite, the watchdog silent
+  std::string refused;                ///< why no room could be made; empty: one was made
+  bool are_frames_finite = true;      ///< bounds of every frame; its contents are integers
+  std::uint64_t recovered_count = 0;  ///< number of times that the watchdog acted
+  bool is_well_after = true;          ///< two seconds with the rules' own steps: finite, without the watchdog
   double max_density_ratio = 0.0;     ///< largest rho / rho0; 0 without particles
   double energy_growth = 0.0;         ///< largest energy over the initial energy
   double max_elevation_m = 0.0;       ///< largest |elevation|; 0 without a wave
@@ -33,18 +33,18 @@ struct StabilityPoint {
 };
 
 struct Sweep {
-  std::string name;  ///< what is swept
+  std::string name;  ///< the swept value
   std::string unit;
-  std::vector<double> values;                         ///< rising
+  std::vector<double> values;                         ///< in ascending order
   std::optional<double> predicted_bound;              ///< largest stable value by the step rules
-  std::function<core::Scene(double)> scene;           ///< `allow_unstable` where the rules would refuse
-  std::function<void(sim::WaterSim&, double)> start;  ///< what happens at the start; may be empty
-  double seconds = 3.0;                               ///< simulated, a point
+  std::function<core::Scene(double)> scene;           ///< with `allow_unstable` if the rules would refuse it
+  std::function<void(sim::WaterSim&, double)> start;  ///< called at the start; may be empty
+  double seconds = 3.0;                               ///< simulated, per point
   double stable_growth = 0.0;                         ///< largest energy_growth of a stable point
-  double stable_density_ratio = 1e9;                  ///< largest max_density_ratio of one
+  double stable_density_ratio = 1e9;                  ///< largest max_density_ratio of a stable point
   /// Called before each tick of the sweep; may be empty.
   std::function<void(sim::WaterSim&, double value, int tick)> disturb = {};
-  double seconds_after = 2.0;  ///< simulated, with the rules' own steps, that must go well
+  double seconds_after = 2.0;  ///< simulated, with the rules' own steps; must stay healthy
   /// Largest max_elevation_m of a stable point. The energy of an unstable wave is bounded, because no cell gives more
   /// water than it holds; so its height is what shows it.
   double stable_elevation_m = 1e9;

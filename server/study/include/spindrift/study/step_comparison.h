@@ -12,7 +12,7 @@ struct StepErrors {
   /// Largest error of the particles' motion over its mean: of the acceleration, or of the correction with the
   /// position-based solver.
   double motion_ratio = 0.0;
-  std::size_t compared_count = 0;  ///< particles that met neither floor nor side in the step
+  std::size_t compared_count = 0;  ///< particles without contact with floor and sides in the step
 };
 
 /// Returns the scene as compareStep() needs it: one short substep per tick, one iteration, no viscosity after a

@@ -23,7 +23,7 @@ using FrameBytes = std::function<std::size_t(const core::FrameView& frame)>;
 struct RecordOptions {
   double seconds = 4.0;            ///< simulated
   double sample_interval_s = 0.1;  ///< simulated
-  bool has_samples = true;         ///< else costs alone
+  bool has_samples = true;         ///< false: costs only
   FrameBytes frame_bytes;          ///< may be empty
   /// A run with less wall time than this is run three times, and the fastest time of each interval counts: the speed of
   /// a virtual machine changes by a factor of two from minute to minute.
@@ -38,7 +38,7 @@ struct WaterRecord {
   std::uint64_t device_bytes = 0;
   double frame_bytes = 0.0;  ///< mean of the sampled frames
   std::uint32_t substeps_per_s_count = 0;
-  std::uint32_t particle_count = 0;  ///< a pool's: its capacity
+  std::uint32_t particle_count = 0;  ///< of a pool: its capacity
   std::uint32_t wave_cells_count = 0;
   std::uint64_t recovered_count = 0;
 
@@ -47,7 +47,7 @@ struct WaterRecord {
   struct Sample {
     std::vector<double> surface_m;
     std::vector<double> column_m;
-    std::optional<double> front_m;   ///< of a dam: where 99 % of its water lies behind
+    std::optional<double> front_m;   ///< of a dam: 99 % of its water is behind it
     double density_rms_ratio = 0.0;  ///< of max(rho / rho0 - 1, 0)
     double energy_j = 0.0;           ///< of waves and particles
   };
@@ -67,7 +67,7 @@ struct RecordErrors {
   std::optional<double> spectrum_ratio;  ///< of the surface: sum |P - P_ref| / sum P_ref over rings of wave numbers
   std::optional<double> column_rms_ratio;
   std::optional<double> front_rms_ratio;
-  std::optional<double> density_rms_ratio;  ///< the run's own, not a difference
+  std::optional<double> density_rms_ratio;  ///< of this run, not a difference
   double energy_rms_ratio = 0.0;
 
   /// The number by which a choice is judged: the height of the water, from the surface, from the columns if there are

@@ -12,7 +12,7 @@ namespace spindrift::study {
 /// Ground of n x n wave cells, x fastest.
 struct ReferenceBed {
   std::vector<double> depth_m;               ///< still depth; 0 = dry ground
-  std::vector<double> flow_loss_per_s;       ///< besides the scene's damping
+  std::vector<double> flow_loss_per_s;       ///< in addition to the scene's damping
   std::vector<double> elevation_loss_per_s;  ///< in sponges
 };
 
@@ -21,7 +21,7 @@ struct ReferenceBed {
 struct ReferenceWater {
   std::vector<double> elevation_m;
   std::vector<double> flow_m2ps;  ///< n x n x 2 (9-point: 4)
-  double lost_m = 0.0;            ///< sum over all cells of what sponges took in all steps so far
+  double lost_m = 0.0;            ///< sum over all cells of the loss in sponges, in all steps so far
   std::size_t limited_count = 0;  ///< cells that lacked water in the last step
 };
 

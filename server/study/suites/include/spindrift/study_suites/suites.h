@@ -14,8 +14,8 @@
 namespace spindrift::study_suites {
 
 struct SuiteOptions {
-  std::string only;         ///< one case; empty: all
-  std::string plot_folder;  ///< charts are written into it; empty: none
+  std::string only;         ///< run only this case; empty: all
+  std::string plot_folder;  ///< folder for the charts; empty: none
   bool quick = false;
 };
 
