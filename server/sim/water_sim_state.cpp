@@ -42,8 +42,7 @@ void WaterSim::watchHealth() {
     if (health.crowded_count > 0 && crowded_count_ == 0) {
       spdlog::warn(
           "scene {}: tick {}: {} particles lie so close together that their neighbour search was cut at {} candidates "
-          "a "
-          "column; later ticks are only counted",
+          "per column; later ticks are only counted",
           scene_.name, health.tick, health.crowded_count, derived_.uniforms.candidates_max_count);
     }
     crowded_count_ += health.crowded_count;

@@ -157,7 +157,7 @@ TEST(ParticlesByCell, PlacesTakeHardlyMoreThanTheBound) {
   still.view.words = still.words;
   const double bits = 8.0 * static_cast<double>(packed(still).payload().size()) / still.view.count;
   const double bound = 3 * std::log2(16.0) + 1.44;
-  EXPECT_LE(bits, bound + 1) << "particles a sixteenth of their spacing apart can be told, in no order";
+  EXPECT_LE(bits, bound + 1) << "the bound for unordered particles with a quantum of a sixteenth of their spacing";
   EXPECT_GE(bits, bound - 2) << "or something was lost";
 }
 

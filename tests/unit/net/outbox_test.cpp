@@ -352,7 +352,7 @@ TEST(Outbox, ClosesWhenTooManyAnswersWait) {
   EXPECT_FALSE(outbox.pushAnswer(shared("1")).overflow);
   EXPECT_FALSE(outbox.pushAnswer(shared("2")).overflow);
   EXPECT_TRUE(outbox.pushAnswer(shared("3")).overflow);
-  EXPECT_FALSE(outbox.pushAnswer(shared("4")).overflow) << "the overflow is told once";
+  EXPECT_FALSE(outbox.pushAnswer(shared("4")).overflow) << "the overflow is reported once";
   ASSERT_TRUE(outbox.closeRequest());
   EXPECT_EQ(outbox.closeRequest()->code, 1013);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);

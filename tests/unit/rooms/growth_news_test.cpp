@@ -32,7 +32,7 @@ TEST(GrowthNews, ReportsAFloodOncePerIntervalAndItsLastCountAtTheEnd) {
   }
   EXPECT_EQ(told_count, 3);
   EXPECT_LT(last, 300u);
-  EXPECT_TRUE(news.tell(300, kStart + 10s)) << "growth within the interval is told later";
+  EXPECT_TRUE(news.tell(300, kStart + 10s)) << "growth within the interval is reported later";
 }
 
 TEST(GrowthNews, FollowsACounterThatBeginsAgain) {

@@ -28,7 +28,7 @@ TEST_F(RosterTest, PeopleHaveNumbersNamesAndColors) {
   EXPECT_EQ(people.people(0).role(), v1::ROLE_PLAYER);
   EXPECT_NE(people.people(0).color_rgb(), people.people(1).color_rgb());
   EXPECT_TRUE(roster.settle(now).is_news);
-  EXPECT_FALSE(roster.settle(now).is_news) << "told once";
+  EXPECT_FALSE(roster.settle(now).is_news) << "reported once";
 }
 
 TEST_F(RosterTest, APersonWithoutABoatIsForgottenAtOnce) {
