@@ -26,9 +26,9 @@ command_fuzz() {
     cat <<'TEXT'
 usage: ./dev fuzz [client_message|frame|http|scene] [SECONDS]
 
-Builds the fuzz targets with clang and sanitizers and runs one, or each in turn, for so long (60 s each when nothing
-is said). Inputs that reach new code stay in build/fuzz/found and are where the next run begins; one that breaks
-something is kept in build/fuzz/crashes and named. `./dev test fuzz` is the short run with a fixed seed.
+Builds the fuzz targets with clang and sanitizers and runs one, or each in turn, for SECONDS (60 s each by default).
+Inputs that reach new code stay in build/fuzz/found, where the next run begins; a failing input is kept in
+build/fuzz/crashes and printed by name. `./dev test fuzz` is the short run with a fixed seed.
 TEXT
     return
   fi

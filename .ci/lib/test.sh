@@ -101,7 +101,7 @@ native (all of those), zink (gpu, sim and stability tests on Mesa's second, asyn
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents), fuzz (parsers and decoders under hostile input, some
 seconds each), threads (network and encoder under the thread sanitizer). The last two have presets of their own.
--R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only what holds them.
+-R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only their programs.
 The last line is `N passed, N failed, N skipped`; exit code 1 when anything failed. Reports: build/reports/*.xml, logs:
 build/logs.
 TEXT
