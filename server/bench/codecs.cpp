@@ -46,7 +46,8 @@ struct CodecRow {
     most_bytes = std::max(most_bytes, static_cast<double>(frame_bytes));
     item_count += static_cast<double>(items);
   }
-  /// Adds the result of a codec that may not be installed. `error`: largest error in quanta; 0 for a lossless codec.
+  /// Adds the result of a codec that may not be installed. `error`: that of the quantized input, in quanta; infinite if
+  /// the decoded data differs from the input.
   void add(const std::optional<BaselineResult>& result, std::size_t items, double error) {
     is_installed = result.has_value();
     add(result ? result->bytes : 0, items);

@@ -1,4 +1,4 @@
-// Whatever clients and weather do, no cell holds less than no water: the surface stays above the bed.
+// Whatever clients and weather do, no cell holds a negative amount of water: the surface stays above the bed.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
