@@ -89,7 +89,7 @@ class DiagnosticsCodec final : public LayerCodec {
   EncodedFrame encode(const core::FrameView& frame, bool) override { return {serializeDiagnostics(frame), nullptr}; }
 };
 
-/// Null for a stream that there is not.
+/// Returns null for a stream that does not exist.
 std::unique_ptr<LayerCodec> makeCodec(Stream stream) {
   const bool is_packed = stream.packing == v1::PACKING_PACKED;
   switch (stream.layer) {

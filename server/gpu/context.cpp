@@ -135,7 +135,8 @@ Context::~Context() {
   glDebugMessageCallback(nullptr, nullptr);
   egl::close(egl_->handles);
   if (accesses_->hasFaults()) {
-    spdlog::critical("the barrier checker found faults (see above) that no test took: ending the process");
+    spdlog::critical(
+        "the barrier checker found faults (see above) that takeFaults() did not return: ending the process");
     std::abort();
   }
 }

@@ -27,7 +27,8 @@ struct ReadbackRing::State {
     for (std::size_t i = 0; i < slot_count; ++i) used += is_used[i].load(std::memory_order_acquire);
     return used;
   }
-  /// The reader is done. Release order: its reads happen before the device writes here again.
+  /// Frees a slot after its last reader. Release order: the reader's accesses happen before the device writes here
+  /// again.
   void free(std::size_t index) { is_used[index].store(false, std::memory_order_release); }
 
   const std::size_t slot_bytes;

@@ -1,8 +1,8 @@
-// Crests displace water and set it in motion, so that they travel one way (d'Alembert; PHYSICS: breaking wave, thesis 3.6.4).
-// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units], for this step, and to FLOW [m^2/s], for the next, half a
-// step earlier as the leapfrog has it; raises LIMIT_ARGS as wave/momentum.comp does.
+// Crests displace water and set it in motion, so that they travel in one direction (d'Alembert; breaking wave: thesis
+// 3.6.4).
+// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units] for this step, and to FLOW [m^2/s] for
+// the next step, half a step earlier as the leapfrog needs it; raises LIMIT_ARGS as wave/momentum.comp does.
 // Invariant: a face's transfer is computed by one invocation; nothing passes a closed face.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
 #include "wave/displacement.glsl"
 #include "common/event_shapes.glsl"

@@ -1,9 +1,10 @@
-// Splashes displace water. Each invocation adds to the two faces that its cell owns. Few or small splashes: (x, y) is the cell in the
-// square that a splash can reach, z the splash. Many or large ones (every_cell): (x, y) is the cell of the domain, and the invocation
-// sums all splashes before it adds, because reading the water column and the atomic addition cost more than a splash does.
-// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp does.
+// Splashes displace water. Each invocation adds to the two faces that its cell owns. Few or small splashes: (x, y) is the
+// cell in the square that a splash can reach, z the index of the splash. Many or large ones (every_cell): (x, y) is the
+// cell of the domain, and the invocation sums all splashes before it adds, because reading the water column and the
+// atomic addition cost more than the splash itself.
+// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp
+// does.
 // Invariant: both ways add the same integers; nothing passes a closed face.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "shared/groups.h"
 #include "wave/displacement.glsl"
 #include "common/event_shapes.glsl"
@@ -15,7 +16,7 @@ uniform uint every_cell;
 /// Turns a place in the square of a splash into its cell. Returns false outside the square and outside the domain.
 bool findCell(EventUniform e, int n, inout ivec2 cell) {
   const float cell_m = sim.wave_cell_m;
-  // The square's cells: as many as the splash needs; along a periodic axis at most the whole domain once.
+  // Number of cells of the square: as many as the splash needs; along a periodic axis at most the whole domain once.
   ivec2 across = ivec2(2 * int(ceil(SPLASH_REACH * e.radius_m / cell_m)) + 4);
 #if WAVE_PERIODIC_X
   across.x = min(across.x, n);

@@ -12,7 +12,7 @@ const STOP_LIMIT_MS = 30_000;
  * Starts `spindrift serve` with the built page and the scene of this folder.
  * @param {number} port 0 = any free port
  * @returns {Promise<{url: string, port: number, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
- *   rejects with the server's own words when it ends before it is ready, or after 120 s
+ *   rejects with the server's output if it ends before it is ready, or after 120 s
  */
 export function startServer(port = 0) {
   const child = spawn(

@@ -1,4 +1,4 @@
-// Two hundred clients on one server: every client gets its frames, every command is answered, nothing is encoded twice.
+// Two hundred clients on one server: every client gets frames, every command is answered, and nothing is encoded twice.
 #include <spindrift/bench/scene_crowd.h>
 
 #include "server_fixture.h"
@@ -20,7 +20,7 @@ class Crowd : public ServerTest {
   }
   void adjust(service::WaterServerOptions& options) const override { options.network.max_session_count = 512; }
 
-  /// Frames of a layer encoded so far, packed.
+  /// Number of packed frames of a layer encoded so far.
   std::uint64_t encodedCount(v1::Layer layer) const {
     std::uint64_t count = 0;
     const rooms::EncoderThread::Costs costs = encoder().costs();
@@ -45,7 +45,7 @@ TEST_F(Crowd, AllTwoHundredGetFramesAndEveryCommandIsAnswered) {
   EXPECT_GE(crowd.answers_ms.size(), 100u);
   EXPECT_GE(crowd.median_frames, 3u);
   EXPECT_GE(2 * crowd.fewest_frames, crowd.median_frames) << "a client gets too few frames";
-  // A frame that was already on its way when the measurement began may come in it.
+  // A frame that was in flight when the measurement began may arrive within it.
   EXPECT_LE(crowd.most_frames, encoded_after - encoded_before + 2) << "encoded once, whatever the number of clients";
   EXPECT_EQ(server().networkStats().evicted_session_count, 0u);
 }

@@ -40,9 +40,9 @@ class ServerTest : public testing::Test {
  protected:
   virtual std::vector<RoomText> rooms() const { return {{"main", kStillPool}}; }
 
-  /// What rooms can be changed to.
+  /// The scenes for ChangeScene.
   virtual rooms::SceneCatalog scenes() const { return {}; }
-  /// Everything else that a test wants otherwise.
+  /// Further changes to the options by a test.
   virtual void adjust(service::WaterServerOptions& /*options*/) const {}
 
   void SetUp() override {
@@ -73,7 +73,7 @@ class ServerTest : public testing::Test {
     ScriptedClient made(server_->port(), room);
     EXPECT_TRUE(made.isOpen());
     made.hello(who);
-    (void)made.welcome();  // from here on it hears the room's news
+    (void)made.welcome();  // from here on it receives state messages
     return made;
   }
 
@@ -86,7 +86,7 @@ class WaveServerTest : public ServerTest {
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
 };
 
-/// Largest elevation of a frame; -1 where it does not decode.
+/// Largest elevation of a frame; -1 if it cannot be decoded.
 inline double maxElevation_m(const v1::LayerFrame& frame) {
   const auto surface = codec::decodeSurface(frame);
   if (!surface) return -1.0;

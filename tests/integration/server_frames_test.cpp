@@ -1,4 +1,4 @@
-// The data plane from end to end: frames of subscribed layers, and no encoding without subscriptions.
+// The data plane over a real connection: frames of subscribed layers, and no encoding without subscriptions.
 #include <cmath>
 #include <set>
 
@@ -12,7 +12,7 @@ using testing::ElementsAre;
 class Frames : public ServerTest {};
 class WaveFrames : public WaveServerTest {};
 
-TEST_F(Frames, GreetingTellsSceneLayersAndParameters) {
+TEST_F(Frames, GreetingHasSceneLayersAndParameters) {
   ScriptedClient one(server().port());
   ASSERT_TRUE(one.isOpen());
   const v1::Greeting& greeting = one.greeting();
@@ -65,7 +65,7 @@ TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValuesWithGrowingTicks) {
   EXPECT_GT(particle_tick, 0u);
 }
 
-TEST_F(Frames, DiagnosticsTellAHealthyRoom) {
+TEST_F(Frames, DiagnosticsReportAHealthyRoom) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_DIAGNOSTICS);
   std::uint64_t tick = 0;
@@ -106,7 +106,7 @@ TEST_F(WaveFrames, AreEncodedOnceForThreeClients) {
     one.unsubscribe(v1::LAYER_SURFACE);
     ASSERT_TRUE(one.barrier());
   }
-  // A frame requested before the last goodbye may still be encoded after this; the bounds below do not mind.
+  // A frame requested before the last client left may still be encoded after this; the bounds below allow for it.
   const auto end = clients[0].apply(setSpeed(1.0));
   ASSERT_TRUE(end);
   const std::uint64_t encoded_count = server().encoder().encodeCount("main", {v1::LAYER_SURFACE});
@@ -169,12 +169,12 @@ TEST_F(WaveFrames, StopWhenUnsubscribed) {
   const std::uint64_t sent_count = server().networkStats().sent_frame_count;
   const std::uint64_t encoded_count = server().encoder().encodeCount("main", {v1::LAYER_SURFACE});
   ASSERT_TRUE(one.runFor(30));
-  // One may have been on its way; a room that went on would have sent thirty.
+  // One frame may have been in flight; a room that continued would have sent thirty.
   EXPECT_LE(server().networkStats().sent_frame_count, sent_count + 1);
   EXPECT_LE(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), encoded_count + 1);
 }
 
-TEST_F(WaveFrames, GoOnForOthersWhenAClientVanishes) {
+TEST_F(WaveFrames, ContinueForOthersWhenAClientVanishes) {
   ScriptedClient stays = client();
   stays.subscribe(v1::LAYER_SURFACE);
   {

@@ -12,7 +12,7 @@
 namespace spindrift::test {
 namespace {
 
-/// A surface of 256 x 256 samples has one level below the full one, 9,000 particles likewise.
+/// A surface of 256 x 256 samples has one level below full; so do 9,000 particles.
 constexpr const char* kWidePool = R"(
   wave { resolution_count: 256 side_m: 24 depth_m: 1 }
   particles { count: 10000 layers_count: 2 headroom_m: 2 }
@@ -44,7 +44,7 @@ TEST_F(LevelsOfAPool, EachClientGetsTheLevelThatItAskedFor) {
     ScriptedClient one = client();
     one.subscribe(subscription(v1::LAYER_SURFACE, level));
     one.subscribe(subscription(v1::LAYER_PARTICLES, level));
-    // What a level leaves out nothing of is the full one, and says so.
+    // A level that leaves nothing out is sent as FULL.
     const v1::Level expected = level == v1::LEVEL_COARSE ? v1::LEVEL_COARSE : v1::LEVEL_FULL;
     const auto surface = one.nextFrame(v1::LAYER_SURFACE);
     ASSERT_TRUE(surface);
@@ -80,7 +80,7 @@ TEST_F(LevelsOfAPool, PackedLevelsCanAllBeReadWhileOneMovesBetweenThem) {
       ASSERT_TRUE(frame);
       const auto samples = decoder.decode(*frame);
       ASSERT_TRUE(samples) << samples.error().message;
-      if (frame->level() != level) continue;  // it was on its way
+      if (frame->level() != level) continue;  // was in flight
       if (is_first) {
         EXPECT_TRUE(frame->keyframe()) << "nothing to build on at another level";
       }
@@ -108,7 +108,8 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWatchersAndNotWithoutOne) {
   EXPECT_EQ(frames(core::Level::kCoarse), 0u) << "the level is not watched";
   const std::uint64_t encoded_count = frames(core::Level::kFull);
   EXPECT_GE(encoded_count, 19u) << "the newest may not be counted yet";
-  // Each went to all three, but for the newest; made for each of them, as many would be made as sent.
+  // Each frame except the newest went to all three clients. If each client had its own, as many would be encoded as
+  // sent.
   EXPECT_GE(server().networkStats().sent_frame_count + 10, 2 * encoded_count);
   for (int k = 0; k < 3; ++k) {
     coarse.push_back(client());
@@ -124,7 +125,7 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWatchersAndNotWithoutOne) {
 }
 
 TEST(LevelBudgets, AreKeptByAPoolOfTheLargestOne) {
-  // Half a second after a splash, when the surface is at its busiest.
+  // Half a second after a splash, when the surface moves most.
   const auto parsed = scene::parseSceneText(R"(
     tick_rate_hz: 60
     wave { resolution_count: 512 side_m: 24 depth_m: 1.5 damping_per_s: 0.15 }
@@ -189,10 +190,10 @@ TEST_F(LevelsOfAWave, ASlowClientIsLoweredAndRaisedAgainWithoutHarmToOthers) {
     return std::nullopt;
   };
   using namespace std::chrono_literals;
-  // Three frames a second of sixty.
+  // Reads three of sixty frames per second.
   EXPECT_EQ(levelTold(300ms), v1::LEVEL_COARSE);
   EXPECT_EQ(server().networkStats().lowered_level_count, 1u);
-  // As fast as they come.
+  // Reads all frames.
   EXPECT_EQ(levelTold(0ms), v1::LEVEL_FULL);
   EXPECT_EQ(server().networkStats().raised_level_count, 1u);
   const auto frame = slow.waitFor([](const v1::ServerMessage& message) {

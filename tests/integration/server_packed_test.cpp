@@ -1,4 +1,4 @@
-// The packed streams over a real connection: every frame can be decoded, whenever clients join.
+// Packed streams over a real connection: every frame can be decoded, whenever clients join.
 #include <cmath>
 #include <map>
 
@@ -14,7 +14,7 @@ class PackedFrames : public WaveServerTest {
   }
 };
 
-TEST_F(PackedFrames, CanAllBeReadAndMostBuildOnTheOneBefore) {
+TEST_F(PackedFrames, CanAllBeReadAndMostAreDeltas) {
   ScriptedClient one = client();
   watch(one);
   one.send([] {
@@ -41,7 +41,7 @@ TEST_F(PackedFrames, CanAllBeReadAndMostBuildOnTheOneBefore) {
   EXPECT_GT(highest_m, 0.01) << "the splash is to be seen";
 }
 
-TEST_F(PackedFrames, HoldTheSamplesOfThePlainOnes) {
+TEST_F(PackedFrames, HaveTheSamplesOfPlainOnes) {
   ScriptedClient packed = client();
   ScriptedClient plain = client();
   ASSERT_TRUE(packed.apply(splash()));
@@ -113,7 +113,7 @@ TEST_F(PackedFrames, AtALowerRateAreKeyframesOnly) {
   }
 }
 
-TEST_F(PackedFrames, AskingForTheOtherPackingStopsThisOne) {
+TEST_F(PackedFrames, SubscribingToTheOtherPackingStopsTheFirst) {
   ScriptedClient one = client();
   watch(one);
   ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));
@@ -145,7 +145,7 @@ TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotWithoutOne) {
 
 class PackedParticles : public ServerTest {};
 
-TEST_F(PackedParticles, AreAsManyAndAsFiniteAsThePlainOnes) {
+TEST_F(PackedParticles, AreFiniteAndAsManyAsThePlainOnes) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_PARTICLES, 60.0, v1::PACKING_PACKED);
   for (int i = 0; i < 10; ++i) {
@@ -161,7 +161,7 @@ TEST_F(PackedParticles, AreAsManyAndAsFiniteAsThePlainOnes) {
   }
 }
 
-TEST_F(PackedFrames, ForALayerWithoutPackedFormAreThePlainOnes) {
+TEST_F(PackedFrames, ArePlainForALayerWithoutAPackedForm) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_DIAGNOSTICS, 60.0, v1::PACKING_PACKED);
   EXPECT_TRUE(one.waitFor(v1::ServerMessage::kDiagnostics));

@@ -17,7 +17,7 @@ constexpr double kLeft = 70.0;
 constexpr double kRight = 20.0;
 constexpr double kTop = 44.0;
 constexpr double kBottom = 56.0;
-/// Dark enough for print and distinguishable for red-green colour-blind readers (Okabe & Ito 2008).
+/// Dark enough for print, and distinguishable for readers with red-green colour blindness (Okabe & Ito 2008).
 constexpr std::array<const char*, 6> kColors = {"#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7a5c00"};
 
 std::string escaped(const std::string& text) {

@@ -75,14 +75,15 @@ core::Result<std::vector<StabilityPoint>> measure(gpu::Context& ctx, const Sweep
   return points;
 }
 
-/// A file's name from a sweep's: letters and digits, the rest underscores.
+/// Makes a file name from a sweep's name: letters and digits stay, everything else becomes an underscore.
 std::string fileName(const std::string& sweep) {
   std::string name = "stability_";
   for (const char c : sweep) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return name + ".svg";
 }
 
-/// How much energy grew at each value; where the watchdog stepped in and how often; the bound that the rules predict.
+/// Growth of the energy at each value, the number of times that the watchdog acted, and the bound predicted by the
+/// rules.
 Chart chartOf(const Sweep& sweep, const std::vector<StabilityPoint>& points) {
   Chart chart;
   chart.title = "Stability: " + sweep.name;

@@ -63,7 +63,7 @@ TEST_F(FenceTest, ASlowDeviceDelaysFramesWithoutReorderingThem) {
     ctx->finish();
     for (const auto& lease : (*ring)->poll()) tags.push_back(lease->tag());
     most_in_flight = std::max(most_in_flight, (*ring)->usedCount());
-    if ((*ring)->usedCount() == (*ring)->slotCount()) {  // an asynchronous driver may not know yet what is done
+    if ((*ring)->usedCount() == (*ring)->slotCount()) {  // an asynchronous driver may report completion later
       for (const auto& lease : (*ring)->wait(kLimit)) tags.push_back(lease->tag());
     }
   }
@@ -93,7 +93,7 @@ TEST_F(DeviceLossTest, StaysReportedAndEndsFences) {
   EXPECT_TRUE(ctx->isLost());
 }
 
-TEST_F(DeviceLossTest, FreesTheSlotsInFlightInsteadOfHandingOutWhatTheyHold) {
+TEST_F(DeviceLossTest, FreesTheSlotsInFlightWithoutReturningThem) {
   auto ring = ReadbackRing::create(*ctx, "frames", 64, 2);
   auto source = Buffer::create(*ctx, "source", 64);
   ASSERT_TRUE(ring && source);
@@ -121,7 +121,7 @@ TEST_F(DeviceLossTest, DownloadsGiveZerosAndObjectsCanStillBeMadeAndDropped) {
   (void)ReadbackRing::create(*ctx, "after", 64, 1);
 }
 
-/// Replaces a function of OpenGL, as a driver that behaves so; puts it back.
+/// Replaces an OpenGL function to imitate a driver; restores it at the end.
 template <typename Function>
 class Replaced {
  public:

@@ -1,5 +1,5 @@
-// A context for each test: on the software rasteriser, or on the device that SPINDRIFT_TEST_DEVICE names as `--device`
-// would. A machine without it skips, visibly.
+// A context for each test: on the software rasteriser, or on the device in SPINDRIFT_TEST_DEVICE, which has the form of
+// `--device`. Without the device the tests are skipped.
 #pragma once
 
 #include <cstdlib>

@@ -63,7 +63,7 @@ TEST_F(PassTimersTest, CountsScopesByNameAndStaysWithinTheWallClock) {
   EXPECT_GT(costs[0].total_ms, 0.0);
   EXPECT_GT(costs[1].total_ms, 0.0);
   EXPECT_DOUBLE_EQ(costs[0].mean_ms, costs[0].total_ms / 3);
-  // The device's clock need not tick like ours: a tenth of slack.
+  // The device's clock may differ from the host's by a tenth.
   EXPECT_LE(costs[0].total_ms + costs[1].total_ms, 1.1 * wall.count());
   EXPECT_EQ(timers.droppedCount(), 0u);
 }

@@ -12,7 +12,7 @@
 namespace spindrift::gpu {
 namespace {
 
-/// Far above what a copy of some bytes takes: a device that needs longer hangs.
+/// Far longer than a copy of some bytes takes.
 constexpr std::chrono::seconds kLimit{60};
 
 using Lease = std::shared_ptr<const ReadbackRing::Slot>;
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> numbers(std::size_t count, std::uint32_t first) {
   return out;
 }
 
-TEST_F(ReadbackRingTest, ReturnsWhatWasCopiedInOrderOfSubmission) {
+TEST_F(ReadbackRingTest, ReturnsCopiesInOrderOfSubmission) {
   auto ring = ReadbackRing::create(*ctx, "frames", 4 * 37 + 3, 3);
   auto source = Buffer::create(*ctx, "source", 4 * 37);
   ASSERT_TRUE(ring && source);
@@ -175,7 +175,7 @@ TEST_F(ReadbackRingTest, AViewOutlivesItsRing) {
     send(**ring, *source, 64, 1);
     leases = (*ring)->wait(kLimit);
     ASSERT_EQ(leases.size(), 1u);
-    send(**ring, *source, 64, 2);  // still in flight when the ring goes
+    send(**ring, *source, 64, 2);  // still in flight when the ring is destroyed
   }
   EXPECT_EQ(std::vector(leases[0]->words().begin(), leases[0]->words().end()), numbers(16, 3));
   EXPECT_EQ(ctx->ledger().buffer_count, 2u);
@@ -185,7 +185,7 @@ TEST_F(ReadbackRingTest, AViewOutlivesItsRing) {
   EXPECT_EQ(ctx->ledger().buffer_bytes, 64u);
 }
 
-TEST_F(ReadbackRingTest, RefusesARingOfNothing) {
+TEST_F(ReadbackRingTest, RefusesAnEmptyRing) {
   for (const auto& [bytes, count] : {std::pair<std::size_t, std::size_t>{0, 3}, {64, 0}}) {
     const auto ring = ReadbackRing::create(*ctx, "empty", bytes, count);
     ASSERT_FALSE(ring);

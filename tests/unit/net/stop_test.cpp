@@ -1,4 +1,4 @@
-// The end of a server, with every kind of client still there.
+// Stopping a server with every kind of client still connected.
 #include <future>
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using test::TestServer;
 using test::WsClient;
 using Clock = std::chrono::steady_clock;
 
-/// What a loaded machine may add to the bound before the claim counts as broken.
+/// Additional time that a loaded machine may take before the bound counts as broken.
 constexpr std::chrono::seconds kMachineSlack{5};
 
 TEST(Stop, SaysGoingAwayToClientsThatListen) {
@@ -41,7 +41,7 @@ TEST(Stop, SaysGoingAwayToClientsThatListen) {
 TEST(Stop, DoesNotWaitForUnresponsiveClients) {
   constexpr std::chrono::milliseconds kCloseTimeout{300};
   TestServer served({.close_timeout = kCloseTimeout});
-  WsClient idle = served.client();  // never receives, so it does not answer the goodbye either
+  WsClient idle = served.client();  // never receives, so it does not answer the close frame either
   const WsClient stuck = served.watcher(1, 1e6, 4096);
   served.server->hub().publish("pool", 1, {core::share(core::Bytes(16U << 20U)), {}});
   RawTcp keep_alive;

@@ -1,4 +1,4 @@
-// The wave equation on the device: against the reference step, and against what is known in closed form.
+// The wave equation on the device: against the reference step and against closed forms.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -35,8 +35,8 @@ core::Scene waveScene(std::uint32_t n = 48) {
 
 class WaveOnDevice : public OnDevice {
  protected:
-  /// The surface eta(x, z) with x, z from the corner, still to second order: it was the same one step before and after
-  /// the middle of the last step.
+  /// Sets the surface eta(x, z), x and z from the corner, at rest to second order: the flow is that of half a step
+  /// before a moment of rest.
   void set(WaterSim& sim, auto&& eta) {
     StateCopy state = sim.copyState();
     const WaveLayout w = *sim.derived().wave;
@@ -71,7 +71,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepForEachStencilAndBoundary) {
       WaterSim& sim = make(scene);
       ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
       set(sim, [](double x, double z) { return 0.3 * std::sin(1.3 * x) * std::cos(0.7 * z) + 0.1 * x; });
-      // Flow and elevation, step for step, are the leapfrog on three levels.
+      // Step for step, flow and elevation are the leapfrog on three levels.
       const std::vector<double> before = sim.copyState().elevation_m;
       sim.step();
       const std::vector<double> now = sim.copyState().elevation_m;
@@ -144,7 +144,7 @@ TEST_F(WaveOnDevice, ManySplashesDisplaceTheSumOfWhatEachDisplacesAlone) {
   }
 }
 
-TEST_F(WaveOnDevice, WaterTakenAwayTakesItsMotionAndWaterAddedIsAtRest) {
+TEST_F(WaveOnDevice, RemovedWaterTakesItsMotionAndAddedWaterIsAtRest) {
   core::Scene scene = waveScene(64);
   scene.wave->depth_m = 2.0;
   WaterSim& sim = make(scene);
@@ -224,9 +224,9 @@ core::Scene openScene(std::uint32_t n, double side_m, double sponge_width_m, cor
 }
 
 TEST_F(WaveOnDevice, AbsorbingSidesKeepTheStepRuleAtEveryDepth) {
-  // Depths at which the rule's step is nearly its bound: with the loss taken after the step instead of around its
-  // middle these grew into a checkerboard within two seconds (scenes splash, open_water and boat_wake, with a splash of
-  // 0.5 m).
+  // Depths for which the step of the rule is close to its bound. With the loss applied after the step instead of around
+  // its middle, they grew into a checkerboard within two seconds (scenes splash, open_water and boat_wake, with a
+  // splash of 0.5 m).
   struct Case {
     std::uint32_t n;
     double side_m, sponge_width_m;
@@ -275,7 +275,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsR
       bed.flow_loss_per_s.push_back(basin.bed[i][0]);
       bed.elevation_loss_per_s.push_back(basin.bed[i][1]);
     }
-    // Columns from empty to twice the depth, and flows that some of them cannot feed.
+    // Columns from empty to twice the depth, and flows that some of them cannot supply.
     std::mt19937 random(3);
     const auto unit = [&] { return std::generate_canonical<double, 53>(random); };
     StateCopy state = sim.copyState();

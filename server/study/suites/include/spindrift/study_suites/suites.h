@@ -1,5 +1,5 @@
 // The suites of `spindrift study`. Each prints its table row by row, keeps finished cases in a journal, so that a long
-// run can be continued, and counts the results outside of their bounds.
+// run can be continued, and counts the results outside their bounds.
 #pragma once
 
 #include <cstdio>
@@ -14,8 +14,8 @@
 namespace spindrift::study_suites {
 
 struct SuiteOptions {
-  std::string only;         ///< one case; empty: all
-  std::string plot_folder;  ///< charts are written into it; empty: none
+  std::string only;         ///< run only this case; empty: all
+  std::string plot_folder;  ///< folder for the charts; empty: none
   bool quick = false;
 };
 
