@@ -65,6 +65,13 @@ class ServerTest : public testing::Test {
   service::WaterServer& server() { return *server_; }
   const rooms::EncoderThread& encoder() const { return server_->encoder(); }
 
+  /// Frames of a stream encoded so far, of all levels and rooms.
+  std::uint64_t encodedFrameCount(codec::Stream stream) const {
+    std::uint64_t count = 0;
+    for (const auto& level : encoder().costs()[codec::indexOf(stream)]) count += level.frame_count;
+    return count;
+  }
+
   /// Layer frames that sessions were given so far: sent, or replaced by a newer one before they were sent. Frames that
   /// still wait are not counted: at most two per session and layer, one in its slot and one on its way to the socket.
   std::uint64_t offeredFrameCount() const {

@@ -95,7 +95,7 @@ TEST_F(WaveFrames, AreEncodedOnceForThreeClients) {
   const std::uint64_t offered_before = offeredFrameCount();
   const auto begin = clients[0].apply(setSpeed(1.0));
   ASSERT_TRUE(begin);
-  const std::uint64_t encoded_before = server().encoder().encodeCount("main", {v1::LAYER_SURFACE});
+  const std::uint64_t encoded_before = encodedFrameCount({v1::LAYER_SURFACE});
   std::set<std::uint64_t> ticks;
   for (int i = 0; i < 20; ++i) {
     for (ScriptedClient& one : clients) {
@@ -104,7 +104,7 @@ TEST_F(WaveFrames, AreEncodedOnceForThreeClients) {
       ticks.insert(frame->tick());
     }
   }
-  const std::uint64_t encoded_count = server().encoder().encodeCount("main", {v1::LAYER_SURFACE}) - encoded_before;
+  const std::uint64_t encoded_count = encodedFrameCount({v1::LAYER_SURFACE}) - encoded_before;
   const std::uint64_t offered_count = offeredFrameCount() - offered_before;
   const auto end = clients[0].apply(setSpeed(1.0));
   ASSERT_TRUE(end);
@@ -142,7 +142,7 @@ TEST_F(Frames, AreNotEncodedWithoutSubscriptions) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.runFor(30));
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS}) {
-    EXPECT_EQ(server().encoder().encodeCount("main", {layer}), 0u) << v1::Layer_Name(layer);
+    EXPECT_EQ(encodedFrameCount({layer}), 0u) << v1::Layer_Name(layer);
   }
   EXPECT_EQ(server().networkStats().sent_frame_count, 0u);
 }
@@ -156,8 +156,8 @@ TEST_F(Frames, OfALayerWithoutSubscriptionAreNotSent) {
     ASSERT_TRUE(message->has_frame());
     EXPECT_EQ(message->frame().layer(), v1::LAYER_SURFACE);
   }
-  EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_PARTICLES}), 0u);
-  EXPECT_EQ(server().encoder().encodeCount("main", {v1::LAYER_DIAGNOSTICS}), 0u);
+  EXPECT_EQ(encodedFrameCount({v1::LAYER_PARTICLES}), 0u);
+  EXPECT_EQ(encodedFrameCount({v1::LAYER_DIAGNOSTICS}), 0u);
 }
 
 TEST_F(WaveFrames, StopWhenUnsubscribed) {
@@ -167,11 +167,11 @@ TEST_F(WaveFrames, StopWhenUnsubscribed) {
   one.unsubscribe(v1::LAYER_SURFACE);
   ASSERT_TRUE(one.barrier());
   const std::uint64_t sent_count = server().networkStats().sent_frame_count;
-  const std::uint64_t encoded_count = server().encoder().encodeCount("main", {v1::LAYER_SURFACE});
+  const std::uint64_t encoded_count = encodedFrameCount({v1::LAYER_SURFACE});
   ASSERT_TRUE(one.runFor(30));
   // One may have been on its way; a room that went on would have sent thirty.
   EXPECT_LE(server().networkStats().sent_frame_count, sent_count + 1);
-  EXPECT_LE(server().encoder().encodeCount("main", {v1::LAYER_SURFACE}), encoded_count + 1);
+  EXPECT_LE(encodedFrameCount({v1::LAYER_SURFACE}), encoded_count + 1);
 }
 
 TEST_F(WaveFrames, GoOnForOthersWhenAClientVanishes) {

@@ -7,7 +7,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/sim/derive.h>
 
-namespace spindrift::study {
+namespace spindrift::sim {
 
 /// Ground of n x n wave cells, x fastest.
 struct ReferenceBed {
@@ -27,7 +27,7 @@ struct ReferenceWater {
 
 /// One wave step of linear water (steepening_ratio 0) on which nothing presses and no effect acts. `water` holds what
 /// the shaders hold: elevations at the beginning of the step, flows of half a step before.
-void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed,
+void referenceFlowStep(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed,
                        ReferenceWater& water);
 
-}  // namespace spindrift::study
+}  // namespace spindrift::sim
