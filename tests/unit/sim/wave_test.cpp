@@ -11,12 +11,12 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/study/water_reference.h>
-#include <spindrift/study/wave_reference.h>
 
 #include <shared/fixed_point.h>
 
 #include "basin.h"
 #include "sim_fixture.h"
+#include "wave_reference.h"
 
 namespace spindrift::sim {
 namespace {
@@ -269,7 +269,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsR
     WaterSim& sim = make(scene);
     ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
     const Basin basin = layOutBasin(scene, *sim.derived().wave);
-    study::ReferenceBed bed;
+    ReferenceBed bed;
     for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {
       bed.depth_m.push_back(basin.depth_m[i]);
       bed.flow_loss_per_s.push_back(basin.bed[i][0]);
@@ -288,11 +288,11 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsR
             basin.conductance_m[i][k] > 0 ? static_cast<float>((unit() - 0.5) * 10.0 * basin.depth_m[i]) : 0.0f;
     }
     sim.setState(state);
-    study::ReferenceWater water{state.elevation_m, {state.flow_m2ps.begin(), state.flow_m2ps.end()}};
+    ReferenceWater water{state.elevation_m, {state.flow_m2ps.begin(), state.flow_m2ps.end()}};
     for (int step = 0; step < 3; ++step) {
       SCOPED_TRACE(step);
       sim.step();
-      study::referenceFlowStep(scene, sim.derived(), bed, water);
+      referenceFlowStep(scene, sim.derived(), bed, water);
       EXPECT_GT(water.limited_count, 20u) << "no cell lacked water";
       const StateCopy after = sim.copyState();
       double elevation_error_m = 0.0;
