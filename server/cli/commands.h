@@ -58,6 +58,7 @@ struct StudyOptions : study_suites::SuiteOptions {
   std::string suite = "accuracy";
   std::string device = "auto";
   std::string json_file;
+  std::string plot_folder;   ///< the results are also written here as SUITE.json, for the charts; empty: no
   std::string journal_file;  ///< finished cases are kept here and not run again; empty: no
 };
 int study(const StudyOptions& options);

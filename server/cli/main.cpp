@@ -154,7 +154,8 @@ int run(int argc, char** argv) {
   study_command->add_flag("--quick", study_options.quick, "Shorter runs, a few minutes in all");
   study_command->add_option("--journal", study_options.journal_file,
                             "Save finished cases in this file; an interrupted study continues from it");
-  study_command->add_option("--plot", study_options.plot_folder, "Draw charts into this folder, as SVG");
+  study_command->add_option("--plot", study_options.plot_folder,
+                            "Write the results into this folder as SUITE.json, from which ./dev charts draws charts");
   study_command->add_option("--json", study_options.json_file, "Write JSON to this file, - = standard output");
 
   try {

@@ -1,4 +1,4 @@
-// Curves of a case, for a chart beside its table.
+// Curves of a case, beside its table; server/study/draw_charts.py draws them.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ struct Figure {
   struct Curve {
     std::string name;
     std::vector<std::pair<double, double>> points;
-    bool is_measured = false;  ///< points of an experiment; else a line of ours
+    bool is_measured = false;  ///< points of an experiment; otherwise a line of the simulation
   };
 
   std::string name;  ///< one word with dashes

@@ -14,8 +14,7 @@
 namespace spindrift::study_suites {
 
 struct SuiteOptions {
-  std::string only;         ///< one case; empty: all
-  std::string plot_folder;  ///< charts are written into it; empty: none
+  std::string only;  ///< one case; empty: all
   bool quick = false;
 };
 
