@@ -192,14 +192,15 @@ def load_matplotlib():
 def write_chart(chart, folder):
     from matplotlib import pyplot, ticker
 
-    figure, axes = pyplot.subplots(figsize=(8, 5), layout="constrained")
+    figure, axes = pyplot.subplots(figsize=(8, 5), dpi=72, layout="constrained")  # one unit of SVG is one point
     axes.set_title(chart.title)
     axes.set_xlabel(chart.x_label)
     axes.set_ylabel(chart.y_label)
     number = ticker.FuncFormatter(lambda value, _: f"{value:,.12g}")
-    for axis, is_logarithmic in ((axes.xaxis, chart.is_x_logarithmic), (axes.yaxis, chart.is_y_logarithmic)):
-        if is_logarithmic:
-            axis._set_axes_scale("log")
+    axes.set_xscale("log" if chart.is_x_logarithmic else "linear")
+    axes.set_yscale("log" if chart.is_y_logarithmic else "linear")
+    for axis in (axes.xaxis, axes.yaxis):
+        if axis.get_scale() == "log":
             axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
             axis.set_minor_formatter(ticker.NullFormatter())
             axis.set_major_formatter(number)
@@ -262,30 +263,24 @@ def write_labels(chart, axes, legend):
     labels.sort(key=lambda label: not label[0])  # bold ones have the first choice
     for is_bold, point in labels:
         label = axes.annotate(point.label, (point.x, point.y), (0, 0), textcoords="offset points", fontsize=8.5,
-                              fontweight="bold" if is_bold else "normal", in_layout=False,
-                              arrowprops={"arrowstyle": "-", "color": "#999999", "linewidth": 0.6, "shrinkB": 3})
+                              fontweight="bold" if is_bold else "normal", in_layout=False)
         covered = []
         for place in NEAR_PLACES + FAR_PLACES:
             put_label(label, place)
-            box = text_box(label)
+            box = label.get_window_extent()
             is_inside = axes.bbox.x0 <= box.x0 and box.x1 <= axes.figure.bbox.x1 and axes.bbox.y0 <= box.y0
             covered.append(box.count_overlaps(taken) + (0 if is_inside else 1000))
-        put_label(label, (NEAR_PLACES + FAR_PLACES)[covered.index(min(covered))])
-        taken.append(text_box(label))
+        chosen = (NEAR_PLACES + FAR_PLACES)[covered.index(min(covered))]
+        put_label(label, chosen)
+        taken.append(label.get_window_extent())
+        if chosen in FAR_PLACES:
+            leader = {"arrowstyle": "-", "color": "#999999", "linewidth": 0.6, "shrinkA": 1, "shrinkB": 3}
+            axes.annotate("", (point.x, point.y), chosen[0], textcoords="offset points", arrowprops=leader, in_layout=False)
 
 
 def put_label(label, place):
     offset, horizontal, vertical = place
     label.set(position=offset, horizontalalignment=horizontal, verticalalignment=vertical)
-    label.arrow_patch.set_visible(place in FAR_PLACES)
-
-
-def text_box(label):
-    """The place of a label without its leader line."""
-    from matplotlib.text import Text
-
-    label.update_positions(label.figure._get_renderer())
-    return Text.get_window_extent(label)
 
 
 def box_around(place, half):
