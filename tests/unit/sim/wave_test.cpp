@@ -9,12 +9,11 @@
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include <spindrift/study/water_reference.h>
-
 #include <shared/fixed_point.h>
 
-#include "basin.h"
+#include <spindrift/sim_setup/basin.h>
+#include <spindrift/study/water_reference.h>
+
 #include "sim_fixture.h"
 #include "wave_reference.h"
 
