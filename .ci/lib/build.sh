@@ -1,8 +1,8 @@
 # shellcheck shell=bash
-# Building the server (CMake, Ninja) and the web client (npm, Vite); a tree that is up to date costs a fraction of a
-# second. Sourced by ./dev.
+# Builds the server (CMake, Ninja) and the web client (npm, Vite). If everything is up to date, this takes a fraction of
+# a second. Sourced by ./dev.
 
-# The built page; the server finds it by itself, from its own place in the build tree.
+# The built page; the server looks for it relative to its own place in the build tree.
 readonly web_dist="web-client/dist"
 
 # build_server PRESET [TARGET…]: configures once, then builds the targets (everything when none is named).
@@ -22,7 +22,7 @@ files_digest() {
     LC_ALL=C sort -z | xargs -0 --no-run-if-empty sha256sum | sha256sum | cut -d ' ' -f 1
 }
 
-# stamp_is NAME VALUE / write_stamp NAME VALUE: what a step last worked on.
+# stamp_is NAME VALUE / write_stamp NAME VALUE: compares and stores the input for which a step last ran.
 stamp_is() { [[ -f "build/stamps/$1" && "$(<"build/stamps/$1")" == "$2" ]]; }
 write_stamp() {
   mkdir -p build/stamps
@@ -38,13 +38,13 @@ npm_install() {
   write_stamp "npm-$name" "$digest"
 }
 
-# need_web: what the web client is built, checked and tested with.
+# need_web: installs what the web client needs for building, checks and tests.
 need_web() {
   need_node
   need_packages wasm
 }
 
-# build_web: web-client/dist, only when something it is made of changed.
+# build_web: builds web-client/dist if one of its inputs has changed.
 build_web() {
   local digest
   npm_install web-client web
@@ -56,7 +56,7 @@ build_web() {
 
 binary_of() { printf '%s/build/%s/bin/spindrift' "$root" "$1"; }
 
-# prepare_server PRESET: everything a command of the binary needs; the lock is released for what follows.
+# prepare_server PRESET: installs and builds everything that a command of the program needs, then releases the lock.
 prepare_server() {
   need_packages server driver
   lock_build
@@ -112,7 +112,7 @@ TEXT
   build_server "$preset" spindrift
   build_web
   unlock_build
-  # Paths among the options mean what they meant where the command was typed.
+  # Relative paths in options refer to the folder in which the command was typed.
   cd -- "$called_from" || fail 2 "the folder $called_from is gone"
   exec "$(binary_of "$preset")" serve "${rest[@]}"
 }

@@ -1,16 +1,17 @@
 # shellcheck shell=bash
-# A folder that runs on another x86-64 Linux: program, page, scenes, the libraries it needs, and Mesa's software
+# Packs a folder that runs on another x86-64 Linux: program, page, scenes, the libraries they need, and Mesa's software
 # rasteriser for machines without a driver. Sourced by ./dev; the launcher is .ci/bundle/spindrift.
 #
-# bin/spindrift finds lib/ by its RUNPATH. Libraries that a driver of the machine shares with us lie in lib/fallback/NAME/
-# and are used only where the machine has none, because a newer driver must not meet an older library. Mesa's libraries
-# find each other by RUNPATH and are invisible to everything else.
+# bin/spindrift finds lib/ by its RUNPATH. Libraries that drivers of the machine use, too, are in lib/fallback/NAME/ and
+# are used only if the machine has none, because a newer driver must not load an older library. Mesa's libraries find
+# each other by RUNPATH, and no other program sees them.
 
-# The C library belongs to the machine.
+# The C library is not bundled; it is the machine's.
 readonly glibc_libraries='^(ld-linux-.*|lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|nsl)\.so\..*|libnss_.*|linux-vdso\.so.*)$'
 readonly shared_with_drivers='^(libstdc\+\+\.so\.6|libgcc_s\.so\.1|libz\.so\.1|libEGL\.so\.1|libGLdispatch\.so\.0)$'
 
-# library_closure FILE…: "NAME PATH" of every shared library the files need, directly or not, the C library aside.
+# library_closure FILE…: prints "NAME PATH" of every shared library that the files need, directly or indirectly, except
+# the C library.
 library_closure() {
   local lines
   lines="$(ldd "$@")"
@@ -21,7 +22,8 @@ library_closure() {
     while read -r name path; do [[ "$name" =~ $glibc_libraries ]] || printf '%s %s\n' "$name" "$path"; done
 }
 
-# copy_library PATH TARGET: the file behind the links, under the name programs ask for; noted for the licences.
+# copy_library PATH TARGET: copies the file behind the links, under the name that programs use, and records it for the
+# licences.
 copy_library() {
   local path="$1" target="$2"
   install -D --mode=755 "$(readlink -f -- "$path")" "$target"
@@ -71,7 +73,8 @@ bundle_mesa() {
     >"$folder/share/glvnd/egl_vendor.d/60_spindrift_mesa.json"
 }
 
-# bundle_licences FOLDER: the copyright file of every Debian package a bundled file comes from, and of the page's parts.
+# bundle_licences FOLDER: collects the copyright file of every Debian package with a bundled file, and of the page's
+# libraries.
 bundle_licences() {
   local folder="$1/share/licenses" path package
   mkdir -p "$folder"
@@ -83,7 +86,7 @@ bundle_licences() {
     cp "/usr/share/doc/$package/copyright" "$folder/$package.txt"
   done
   cp web-client/node_modules/three/LICENSE "$folder/three.txt"
-  # @bufbuild/protobuf carries its licence as a word in package.json only; the text is the Apache licence.
+  # @bufbuild/protobuf only names its licence in package.json; the text is the Apache licence.
   cp /usr/share/common-licenses/Apache-2.0 "$folder/bufbuild-protobuf.txt"
 }
 

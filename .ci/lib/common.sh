@@ -1,10 +1,10 @@
 # shellcheck shell=bash
 # Messages, quiet steps with a log, and the options that several commands share. Sourced by ./dev.
 
-# Progress goes to standard error: standard output belongs to what was asked for (the address, the totals).
+# Progress goes to standard error; standard output is for results (the address, the totals).
 say() { printf '%s\n' "$*" >&2; }
 
-# fail CODE MESSAGE: one line, then the end.
+# fail CODE MESSAGE: prints one line and exits.
 fail() {
   local code="$1"
   shift
@@ -12,14 +12,14 @@ fail() {
   exit "$code"
 }
 
-# True when somebody watches; a build machine gets neither colour nor a moving line.
+# True on a terminal; a build machine gets neither colours nor progress lines.
 is_interactive() { [[ -t 2 && "${CI:-}" != true && "${TERM:-dumb}" != dumb ]]; }
 
-# Tools that colour by themselves follow.
+# Settings for tools that print colours by themselves.
 is_interactive || export NO_COLOR=1 CMAKE_COLOR_DIAGNOSTICS=OFF
 
-# step NAME TEXT COMMAND…: runs a command quietly. Somebody watching sees its own progress; otherwise it goes to a log
-# whose end is shown on failure.
+# step NAME TEXT COMMAND…: runs a command. On a terminal its output is shown; otherwise it goes to a log, whose end is
+# shown on failure.
 step() {
   local name="$1" text="$2" log="build/logs/$1.log" started="$SECONDS" code=0
   shift 2
@@ -35,7 +35,7 @@ step() {
   ((SECONDS - started < 2)) || say "  done in $((SECONDS - started)) s"
 }
 
-# bounded SECONDS COMMAND…: ends the command and its children when it takes longer (exit code 124) or when ./dev is
+# bounded SECONDS COMMAND…: ends the command and its children if it takes longer (exit code 124) or if ./dev is
 # interrupted.
 bounded() {
   local limit_s="$1" child code=0
@@ -49,7 +49,7 @@ bounded() {
   return "$code"
 }
 
-# Two people (or a person and a build machine) in one checkout take turns; held until this shell ends or unlocks.
+# Only one ./dev per checkout runs at a time; the lock is held until this shell ends or unlocks.
 lock_build() {
   mkdir -p build
   exec 9>build/.dev-lock
@@ -60,7 +60,7 @@ lock_build() {
 
 unlock_build() { exec 9>&-; }
 
-# take_preset "$@": sets `preset` and leaves everything else, in order, in `rest`.
+# take_preset "$@": sets `preset` and leaves all other arguments, in order, in `rest`.
 take_preset() {
   preset=release
   rest=()

@@ -1,15 +1,16 @@
 # shellcheck shell=bash
-# The fuzz targets of tests/fuzz: built apart with clang and sanitizers. Sourced by ./dev.
+# The fuzz targets of tests/fuzz: built separately with clang and sanitizers. Sourced by ./dev.
 
 readonly fuzz_targets=(client_message frame http scene)
 
-# build_fuzz: the targets; afterwards build/fuzz/tests/fuzz_TARGET.
+# build_fuzz: builds the targets as build/fuzz/tests/fuzz_TARGET.
 build_fuzz() {
   need_packages server fuzz
   build_server fuzz
 }
 
-# fuzz_one TARGET SECONDS: seeds first, then what earlier runs found, then news; fails at the first input that breaks.
+# fuzz_one TARGET SECONDS: runs the seeds, then the findings of earlier runs, then new inputs; fails at the first input
+# that crashes.
 fuzz_one() {
   local target="$1" limit_s="$2" folder=build/fuzz
   mkdir -p "$folder/found/$target" "$folder/crashes"
@@ -25,9 +26,9 @@ command_fuzz() {
     cat <<'TEXT'
 usage: ./dev fuzz [client_message|frame|http|scene] [SECONDS]
 
-Builds the fuzz targets with clang and sanitizers and runs one, or each in turn, for so long (60 s each when nothing
-is said). Inputs that reach new code stay in build/fuzz/found and are where the next run begins; one that breaks
-something is kept in build/fuzz/crashes and named. `./dev test fuzz` is the short run with a fixed seed.
+Builds the fuzz targets with clang and sanitizers and runs one, or each in turn, for SECONDS (60 s each by default).
+Inputs that reach new code stay in build/fuzz/found, where the next run begins; a failing input is kept in
+build/fuzz/crashes and printed by name. `./dev test fuzz` is the short run with a fixed seed.
 TEXT
     return
   fi

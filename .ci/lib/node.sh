@@ -1,11 +1,11 @@
 # shellcheck shell=bash
-# Node for the web client and the browser test. Vite needs 20.19 or newer and Debian 12 has 18: then Debian's npm fetches
-# a newer node and npm into build/tools/node (pinned by .ci/node/package-lock.json), and nothing outside sees them.
-# Sourced by ./dev.
+# Node for the web client and the browser test. Vite needs 20.19 or newer, and Debian 12 has 18: there, Debian's npm
+# installs a newer node and npm into build/tools/node (pinned by .ci/node/package-lock.json), for ./dev only. Sourced by
+# ./dev.
 
 readonly private_node="build/tools/node"
 
-# node_is_new_enough VERSION ("v20.19.0"): what Vite 8 and Vitest 4 both take.
+# node_is_new_enough VERSION ("v20.19.0"): the versions that Vite 8 and Vitest 4 both support.
 node_is_new_enough() {
   [[ "$1" =~ ^v([0-9]+)\.([0-9]+)\. ]] || return 1
   local major="${BASH_REMATCH[1]}" minor="${BASH_REMATCH[2]}"
@@ -16,7 +16,7 @@ node_is_new_enough() {
   esac
 }
 
-# need_node: afterwards `node` and `npm` on the PATH are new enough.
+# need_node: puts a new enough `node` and `npm` on the PATH.
 need_node() {
   if command -v npm >/dev/null && node_is_new_enough "$(node --version 2>/dev/null)"; then return; fi
   if ! private_node_is_ready; then

@@ -1,7 +1,7 @@
 # shellcheck shell=bash
-# Debian packages: which, why, and how they come in. Sourced by ./dev.
+# Debian packages: names, reasons, installation. Sourced by ./dev.
 
-# group:package …; the text of a group says why.
+# group:package …; the text of a group gives the reason.
 declare -rA package_groups=(
   [server]="git ca-certificates g++ cmake ninja-build ccache pkg-config python3 python3-glad libboost1.81-dev
     libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev glslang-tools spirv-tools libegl-dev googletest libbenchmark-dev"
@@ -34,10 +34,10 @@ declare -rA package_reasons=(
   [wasm]="compiling the page's reader of frames to WebAssembly"
 )
 
-# Once a start is enough.
+# Runs once per start of ./dev.
 lists_are_read=false
 
-# Prints the packages among the arguments that are not installed.
+# Prints those arguments that are packages which are not installed.
 missing_packages() {
   dpkg-query --show --showformat='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
     awk -v wanted="$*" '$2 == "installed" { have[$1] = 1 }
@@ -54,7 +54,8 @@ run_as_root() {
   fi
 }
 
-# need_packages GROUP…: installs what is missing of the groups, and says what and why. Nothing missing: no apt at all.
+# need_packages GROUP…: installs the missing packages of the groups and prints which and why. Without a missing package
+# apt is not run.
 need_packages() {
   local group missing=() found=()
   if ! command -v dpkg-query >/dev/null; then

@@ -1,12 +1,12 @@
 # shellcheck shell=bash
-# Every test there is, and the total. Each part writes a JUnit report; tests/tools/summarise.py adds them up.
-# Sourced by ./dev.
+# Runs all tests and prints the total. Each part writes a JUnit report; tests/tools/summarise.py adds them up. Sourced
+# by ./dev.
 
-# No part may hang: far above what each takes on two cores without a GPU.
+# Limits against hanging parts: far above their times on two cores without a GPU.
 readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=1200 tools_limit_s=1800
 
-# run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, remembers its exit code. The command writes
-# build/reports/NAME.xml.
+# run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, and records its exit code. The command
+# writes build/reports/NAME.xml.
 run_part() {
   local name="$1" limit_s="$2" code=0 shown
   shift 2
@@ -16,8 +16,8 @@ run_part() {
   shown=$!
   bounded "$limit_s" "$@" >&8 2>&1 8>&- || code=$?
   exec 8>&-
-  # The total must be the last line, so the part's own last words come first; a stray process that keeps the pipe open
-  # does not hold us up.
+  # The total must be the last line, so wait for the part's output to end, but not for a stray process that keeps the
+  # pipe open.
   timeout 10 tail --pid="$shown" --follow /dev/null || true
   ((code != 124)) || say "$name took longer than $limit_s s and was ended"
   reports+=("$name:$code:$root/build/reports/$name.xml")
@@ -32,13 +32,13 @@ test_native() {
     --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
 }
 
-# A second OpenGL without a GPU: Mesa's zink over its Vulkan rasteriser lavapipe. Unlike llvmpipe it works asynchronously:
-# fences are passed later, readbacks arrive ticks after they were asked for, and it has a compiler of its own.
+# A second OpenGL without a GPU: Mesa's zink over its Vulkan rasteriser lavapipe. Unlike llvmpipe it is asynchronous:
+# fences signal later, readbacks arrive some ticks after the request, and it has a different shader compiler.
 readonly zink_environment=(LIBGL_ALWAYS_SOFTWARE=1 MESA_LOADER_DRIVER_OVERRIDE=zink)
-# Every gpu and sim test, and of the stability tests those that compare no times, some of them shorter than in `native`.
+# Runs all gpu and sim tests, and the stability tests that compare no times, some of them shorter than in `native`.
 readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinuteWithPositionsSolvedFor)$)'
 
-# Prints nothing when the program gets zink, otherwise why not, in one line.
+# Prints nothing if the program can use zink, otherwise the reason in one line.
 zink_problem() {
   local info
   info="$(env "${zink_environment[@]}" "$(binary_of "$preset")" info 2>&1)" || true
@@ -58,7 +58,7 @@ test_zink() {
     --output-junit "$root/build/reports/zink.xml"
 }
 
-# write_skipped FILE NAME REASON: a report of one test that was skipped, and the reason for whoever watches.
+# write_skipped FILE NAME REASON: writes a report of one skipped test and prints the reason.
 write_skipped() {
   say "skipped: $3"
   python3 - "$@" <<'PYTHON'
@@ -76,7 +76,7 @@ test_web() {
     --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/web.xml"
 }
 
-# The npm package ws and the messages of the web client, whose Vitest runs them.
+# Tests the npm package ws with the messages of the web client, in the web client's Vitest.
 test_wire() {
   run_part wire "$wire_limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" node web-client/node_modules/vitest/vitest.mjs run \
     --root tests/wire --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/wire.xml"
@@ -101,7 +101,7 @@ native (all of those), zink (gpu, sim and stability tests on Mesa's second, asyn
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents), fuzz (parsers and decoders under hostile input, some
 seconds each), threads (network and encoder under the thread sanitizer). The last two have presets of their own.
--R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only what holds them.
+-R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only their programs.
 The last line is `N passed, N failed, N skipped`; exit code 1 when anything failed. Reports: build/reports/*.xml, logs:
 build/logs.
 TEXT
@@ -127,7 +127,7 @@ TEXT
     esac
   done
 
-  # Whatever stops us from here on, the last line is a total, and it says that something failed.
+  # If anything stops the script from here on, the last line is a total with a failure.
   trap 'echo "0 passed, 1 failed, 0 skipped"' EXIT
   prepare_tests "${parts[@]}"
   for part in "${parts[@]}"; do
@@ -147,7 +147,7 @@ TEXT
   python3 tests/tools/summarise.py "${reports[@]}"
 }
 
-# Installs and builds what the parts need.
+# Installs and builds everything that the parts need.
 prepare_tests() {
   local groups=(server driver) wanted=" $* " with_native=false with_node=false
   [[ "$wanted" != *" zink "* ]] || groups+=(zink)

@@ -79,7 +79,7 @@ TEXT
   say "the picture: $picture ($(du --human-readable --apparent-size "$picture" | cut -f 1))"
 }
 
-# The C++ sources of ours, committed or about to be. Not shaders/shared: its blocks are GLSL to one of their two compilers.
+# Our C++ sources, committed or new. Without shaders/shared: one of its two compilers reads its blocks as GLSL.
 list_sources() {
   git ls-files --cached --others --exclude-standard -z -- 'server/*.cpp' 'server/*.h' 'tests/*.cpp' 'tests/*.h' |
     while IFS= read -r -d '' file; do [[ ! -f "$file" ]] || printf '%s\0' "$file"; done
@@ -153,7 +153,7 @@ lint_tidy() {
   need_packages server driver tidy
   build_server release
   say "clang-tidy"
-  # server/codec/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
+  # Left out: server/codec/wasm, which web-client/scripts/wasm.mjs compiles for another target.
   git ls-files -z -- 'server/*.cpp' ':!server/codec/wasm' | xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" \
     clang-tidy --quiet -p build/release
 }

@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Milliseconds that `work` takes.
+/// Returns the milliseconds that `work` takes.
 template <typename Work>
 double timeOf(Work work) {
   const auto begin = Clock::now();

@@ -1,5 +1,5 @@
-// Other people's codecs, for comparison: what `bench --suite codec` prints beside the stream's own. zstd, meshoptimizer
-// and Draco are there where they were installed when this was built.
+// Existing codecs for comparison: `bench --suite codec` prints them beside the stream's own. zstd, meshoptimizer and
+// Draco are used if they were installed at build time.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@ struct BaselineResult {
   std::size_t bytes = 0;
   double encode_ms = 0.0;
   double decode_ms = 0.0;
-  bool is_exact = false;               ///< what came back is what went in
-  std::vector<float> position_m = {};  ///< of a codec that is not: what came back, any order, x y z
+  bool is_exact = false;               ///< the decoded data equals the input
+  std::vector<float> position_m = {};  ///< only if not exact: decoded positions in any order, x y z
 };
 
 BaselineResult deflate(std::span<const std::uint32_t> words);
-/// Level 3. Nothing: not installed, as below.
+/// Level 3. nullopt here and below: not installed.
 std::optional<BaselineResult> zstd(std::span<const std::uint32_t> words);
-/// Vertices of four numbers: x, y, z in quanta and 0.
+/// Codes vertices of four numbers: x, y, z in quanta and 0.
 std::optional<BaselineResult> meshoptimizer(std::span<const std::uint16_t> places);
-/// The kd-tree of a point cloud, quantized to `quantum_m` or finer, speed 5.
+/// Codes a point cloud with Draco's kd-tree, quantized to `quantum_m` or finer, speed 5.
 std::optional<BaselineResult> draco(std::span<const float> position_m, double quantum_m);
 
 }  // namespace spindrift::bench

@@ -24,17 +24,18 @@ double sinceMs(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-/// Sums of one way to send one layer, over all frames.
+/// Sums over all frames for one layer and one codec.
 struct CodecRow {
   std::string name;
   std::size_t frame_count = 0;
   double bytes = 0.0;
-  double most_bytes = 0.0;  ///< of a frame
+  double most_bytes = 0.0;  ///< of the largest frame
   double item_count = 0.0;  ///< samples, particles
   double encode_ms = 0.0;
   double decode_ms = 0.0;
-  double max_error = 0.0;  ///< over the quantum; of particles: distance along an axis
-  /// Of unordered places: as dense as resting water, and of so few anywhere in their box (bits of all frames' items).
+  double max_error = 0.0;  ///< in quanta; for particles: distance along an axis
+  /// Lower bounds for unordered places, in bits for the items of all frames: as dense as resting water, and with the
+  /// same number anywhere in the box.
   std::optional<double> bound_bits = {};
   double sparse_bits = 0.0;
   bool is_installed = true;
@@ -45,7 +46,8 @@ struct CodecRow {
     most_bytes = std::max(most_bytes, static_cast<double>(frame_bytes));
     item_count += static_cast<double>(items);
   }
-  /// Of a codec that may not be installed. `error`: over the quantum, where what came back is what went in.
+  /// Adds the result of a codec that may not be installed. `error`: that of the quantized input, in quanta; infinite if
+  /// the decoded data differs from the input.
   void add(const std::optional<BaselineResult>& result, std::size_t items, double error) {
     is_installed = result.has_value();
     add(result ? result->bytes : 0, items);
@@ -61,7 +63,7 @@ v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
   return codec::parseServerMessage(*bytes)->frame();
 }
 
-/// The surface's and the particles' rows of a scene, filled frame by frame.
+/// The rows of a scene's surface and particles, filled frame by frame.
 class CodecMeter {
  public:
   core::Result<void> add(const core::FrameView& frame) {
@@ -97,7 +99,7 @@ class CodecMeter {
     surface_deflated_.add(deflate(view.words), samples, 0.0);
     surface_zstd_.add(zstd(view.words), samples, 0.0);
 
-    // The delta as a room makes it; the keyframe from an encoder of its own, so that times do not mix.
+    // The delta is encoded as in a room; the keyframe by a separate encoder, so that the times stay apart.
     const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
     begin = Clock::now();
     const codec::EncodedFrame encoded = encoder_.encode(packed, frame, false);
@@ -154,7 +156,7 @@ class CodecMeter {
     return {};
   }
 
-  /// N log2(places in the box) - log2(N!): nothing that does not know where water is takes less.
+  /// N log2(places in the box) - log2(N!): the least for any codec that does not know where the water is.
   static double sparseBits(const core::ParticleView& view, double quantum_m) {
     const double count = view.count;
     double place_bits = 0.0;
@@ -163,7 +165,7 @@ class CodecMeter {
     return count * place_bits - std::lgamma(count + 1.0) / std::log(2.0);
   }
 
-  /// Positions alone: what other codecs for points are made for.
+  /// Positions only, because other codecs for points code nothing else.
   void addPlaces(const core::FrameView& frame, const v1::ParticlesByCell& header,
                  const std::vector<float>& position_m) {
     const std::size_t count = frame.particles->count;
@@ -206,7 +208,8 @@ class CodecMeter {
     places_draco_.add(cloud, count, error);
   }
 
-  /// Orders differ: along each axis the sorted coordinates of both lie as far apart as some pairing of particles does.
+  /// The codecs change the order of particles. Along each axis, the largest difference between the sorted coordinates
+  /// is at most that of any pairing of particles.
   static double largestShift(const std::vector<float>& a, const std::vector<float>& b) {
     double largest = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

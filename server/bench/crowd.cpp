@@ -18,8 +18,8 @@ struct Spectator {
   bool is_deaf = false;
   bool opened = false;
   bool closed = false;
-  bool leaves = false;           ///< a visitor, or the end of the crowd
-  Clock::time_point leave_at{};  ///< of a visitor
+  bool leaves = false;           ///< a visitor before it leaves, or any client at the end of the crowd
+  Clock::time_point leave_at{};  ///< time at which a visitor leaves
   std::uint64_t frame_count = 0;
   std::uint64_t last_command = 0;
   Clock::time_point next_command{};
@@ -70,7 +70,7 @@ class Crowd {
         {.opened =
              [this, &spectator] {
                spectator.opened = true;
-               // Commands of a crowd do not fall together.
+               // Spread the commands of a crowd over time.
                spectator.next_command = Clock::now() + std::chrono::milliseconds(7 * crowd_.size() % 1000);
                for (const auto& message : options_.on_open) (void)spectator.client->send(message);
              },
@@ -146,22 +146,22 @@ class Crowd {
     return out;
   }
 
-  /// Small, so that a backlog shows at once.
+  /// Small, so that a backlog shows quickly.
   static constexpr int kDeafBufferBytes = 64 * 1024;
 
   struct Receipts {
-    std::size_t count = 0;  ///< clients that have the frame, visitors left out
+    std::size_t count = 0;  ///< number of clients that have the frame, without visitors
     Clock::time_point last{};
   };
 
   const net::ClientUrl url_;
   const CrowdOptions& options_;
-  std::unique_ptr<net::ClientPool> pool_;  // outlives the clients
+  std::unique_ptr<net::ClientPool> pool_;  // declared first: must outlive the clients
   std::vector<std::unique_ptr<Spectator>> crowd_;
   bool measures_ = false;
   std::uint64_t received_bytes_ = 0;
   std::vector<double> delays_ms_;
-  std::map<Clock::time_point, Receipts> receipts_;  ///< by publication
+  std::map<Clock::time_point, Receipts> receipts_;  ///< by time of publication
   std::vector<double> answers_ms_;
 };
 

@@ -44,7 +44,7 @@ core::SharedBytes message(char verb, std::uint64_t number) {
   return core::share(std::move(out));
 }
 
-/// Everybody watches layer 0; "c" + number is answered with "a" + number.
+/// All sessions watch layer 0; the application answers "c" + number with "a" + number.
 class EchoApplication final : public net::Application {
  public:
   void serverStarts(net::Hub& hub) override { hub_ = &hub; }
@@ -52,7 +52,7 @@ class EchoApplication final : public net::Application {
   void sessionOpened(net::SessionId session, const std::string&, const std::string&) override {
     std::call_once(clock_once_, [&] {
       clockid_t clock{};
-      pthread_getcpuclockid(pthread_self(), &clock);  // there is one I/O thread
+      pthread_getcpuclockid(pthread_self(), &clock);  // the only I/O thread
       io_clock_ = clock;
     });
     hub_->join(session, kRoom);
@@ -112,7 +112,7 @@ struct Row {
   CrowdReport crowd{};
   net::ServerStats before{};
   net::ServerStats after{};
-  double io_cpu_s = 0.0;  ///< of the I/O thread; 0 where it is not known
+  double io_cpu_s = 0.0;  ///< of the I/O thread; 0 if unknown
   double resident_grown_mb = 0.0;
   double real_time_factor = 0.0;
 };
@@ -182,7 +182,7 @@ core::Result<Row> measureServer(const v1::Scene& scene, const gpu::DeviceChoice&
 void print(std::FILE* out, const Row& row) {
   const CrowdReport& c = row.crowd;
   const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
-  // The layers of a real scene do not say when they were published.
+  // Frames of a real scene do not contain the time of their publication.
   const auto delay = [&](double ratio) {
     return c.delays_ms.empty() ? std::string("-") : fmt::format("{:.1f}", quantileOf(c.delays_ms, ratio));
   };
@@ -225,7 +225,7 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
                                                 std::FILE* out) {
   const auto choice = gpu::parseDeviceChoice(device);
   if (!choice) return choice.error();
-  /// Long enough to see the deaf ones go.
+  /// Long enough for the server to evict the clients that never read.
   const std::chrono::duration<double> slow_case(std::max(seconds, 13.0));
   const auto crowd = [&](std::size_t clients, std::size_t deaf, std::chrono::duration<double> duration) {
     CrowdOptions options;

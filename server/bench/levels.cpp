@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Words = std::array<std::uint32_t, 3>;
 
-/// What a reduced level takes at most, as proto/README.md promises [Mbit/s].
+/// Budget of each reduced level, from proto/README.md [Mbit/s].
 constexpr std::array<double, core::kReducedLevelCount> kBudgets_mbitps{4.0, 24.0, 95.0};
 
 std::vector<Words> particlesOf(const core::ParticleView& particles) {
@@ -44,7 +44,7 @@ sim::FrameRequest LevelMeter::request(const core::Scene& scene) {
 void LevelMeter::add(const core::FrameView& frame) {
   counts_ = frame.reduced_counts;
   const std::uint32_t level_count = std::max(counts_.planes, counts_.particles);
-  std::map<std::pair<v1::Layer, core::Level>, double> encoded_bytes;  // a level that leaves nothing out is the full one
+  std::map<std::pair<v1::Layer, core::Level>, double> encoded_bytes;  // a level that downsamples nothing is not encoded
   for (const core::Level level : core::kLevels) {
     const bool is_full = level == core::Level::kFull;
     if (!is_full && (indexOf(level) >= level_count || frame_count_ % core::frameStride(level, frame_rate_hz_) != 0))
@@ -75,7 +75,8 @@ void LevelMeter::add(const core::FrameView& frame) {
   ++frame_count_;
 }
 
-/// The other way: each level sends what those below it lack, at the full level's quantum, so that all together make it.
+/// The alternative: each level sends only what the levels below it lack, at the full level's quantum, so that all
+/// together are the full level.
 void LevelMeter::addParts(const core::FrameView& frame) {
   std::vector<Words> before;
   double bits = 0.0;
@@ -118,7 +119,7 @@ boost::json::array LevelMeter::print(std::FILE* out) const {
     const double particle_count = row.particle_sum / frames;
     const double bits = row.particle_sum > 0 ? 8 * row.particle_bytes / row.particle_sum : 0.0;
     const double part_bits = part_counts_[k] > 0 ? part_bits_[k] / part_counts_[k] : 0.0;
-    // What is full here may be within a reduced level's budget.
+    // The scene's full level may fit the budget of a reduced level.
     double budget_mbitps = 0.0;
     for (std::size_t b = core::kReducedLevelCount; b-- > 0;) {
       const core::LevelBudget& budget = core::kLevelBudgets[b];

@@ -15,7 +15,7 @@ core::SharedBytes bytesOf(const v1::ClientMessage& message) {
 }  // namespace
 
 CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double seconds) {
-  constexpr double kRate_hz = 20.0;  // level 0 of the budgets
+  constexpr double kRate_hz = 20.0;  // rate of the levels' budgets
   CrowdOptions out;
   out.client_count = client_count;
   out.duration = std::chrono::duration<double>(seconds);
@@ -31,7 +31,7 @@ CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double
     message.mutable_subscribe()->set_packing(v1::PACKING_PACKED);
     out.on_open.push_back(bytesOf(message));
   }
-  // The layer whose frames are counted per client: one that the scene has.
+  // Count the frames of a layer that the scene has.
   const v1::Layer counted = scene.has_wave() ? v1::LAYER_SURFACE : v1::LAYER_PARTICLES;
   out.look = [counted](core::ByteView bytes) {
     Sighting sighting;

@@ -32,12 +32,12 @@ struct StepResult {
   std::uint32_t substeps_count = 0;
   double tick_ms = 0.0;
   double substep_ms = 0.0;
-  double particle_us = 0.0;       ///< grid + sph passes, a particle and substep
+  double particle_us = 0.0;       ///< grid + sph passes, per particle and substep
   double real_time_factor = 0.0;  ///< of the simulation alone
   std::vector<gpu::PassCost> passes;
 };
 
-/// The scene, its parts alone, and, where the number of particles is the scene's, the thesis's counts.
+/// The scene, its parts alone, and, if the number of particles is fixed, the thesis's numbers.
 std::vector<StepCase> stepCases(const core::Scene& base) {
   std::vector<StepCase> cases = {{"scene as it is", base}};
   core::Scene wave_only = base;
@@ -82,7 +82,7 @@ core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double
       water.step();
       ++ticks;
       if (!ctx.device().is_software && ticks % 8 == 0)
-        ctx.finish();  // bound the queue, so that the clock sees the work
+        ctx.finish();  // bound the queue, so that the measured time includes the work
     } while (since_s(begin) < limit_s);
     ctx.finish();
     return std::pair{since_s(begin), ticks};
@@ -102,7 +102,7 @@ core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double
   r.real_time_factor = d.tick_s / (elapsed_s / ticks);
   r.passes = water.takePassCosts();
   for (const gpu::PassCost& pass : r.passes) {
-    // A pool's count changes from tick to tick; a cost per particle would say nothing.
+    // A pool's count changes from tick to tick, so a cost per particle would be meaningless.
     if (r.particle_count > 0 && d.uniforms.pool_capacity_count == 0 && (pass.name == "grid" || pass.name == "sph"))
       r.particle_us += pass.total_ms * 1e3 / ticks / d.substeps_count / r.particle_count;
   }

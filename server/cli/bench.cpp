@@ -20,7 +20,7 @@
 namespace spindrift::cli {
 namespace {
 
-/// Not run together with the other suites: the server that it measures has its own GL context.
+/// Runs apart from the other suites, because the server that it measures has its own GL context.
 int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
   auto result =
       bench::measureFanout(scene, options.device, options.seconds, options.json_file == "-" ? stderr : stdout);

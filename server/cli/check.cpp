@@ -82,7 +82,7 @@ void print(const std::string& file, const v1::Scene& scene, const core::Scene& i
   }
   if (d.particles) {
     const auto& p = *d.particles;
-    // A pool has no lattice: its particles come and go.
+    // A pool has no lattice: its number of particles changes.
     const std::string count = p.layers_count == 0 ? fmt::format("up to {}", p.count)
                                                   : fmt::format("{} ({} x {} x {})", p.count, p.columns_x_count,
                                                                 p.layers_count, p.columns_z_count);

@@ -1,5 +1,5 @@
-// The program's commands and their options; main() parses the flags. Each returns the exit code: 0 fine, 1 a check
-// failed, 2 bad usage or input, 3 no usable device.
+// The program's commands and their options; main() parses the flags. Each command returns the exit code: 0 success, 1 a
+// check failed, 2 bad usage or input, 3 no usable device.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@ struct ServeOptions {
   std::vector<std::string> rooms;  ///< NAME=SCENE
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;
-  std::string fidelity;  ///< takes the place of the scenes' own; empty: theirs
+  std::string fidelity;  ///< replaces the fidelity of the scenes; empty: theirs
   std::string device = "auto";
-  std::string web_root;       ///< empty: found beside the program
-  std::string shader_folder;  ///< empty: the shaders of the program
+  std::string web_root;       ///< empty: searched beside the program
+  std::string shader_folder;  ///< empty: the embedded shaders
   std::size_t thread_count = 1;
   double address_session_share = 0.5;  ///< share of the sessions that one address may hold
   std::size_t max_room_count = 8;
-  std::string token_file;            ///< empty: the environment's SPINDRIFT_TOKENS, if it is set
-  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with
-  std::vector<std::string> origins;  ///< pages of other servers that may connect; "*" = any
-  double grace_s = 20.0;             ///< a lost connection's boat is kept so long
-  std::string record_folder;         ///< logs of the rooms go here; empty: none
+  std::string token_file;            ///< empty: SPINDRIFT_TOKENS in the environment, if set
+  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with tokens
+  std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
+  double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
+  std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs
   std::uint32_t hash_interval_ticks = 60;
 };
 int serve(const ServeOptions& options);
@@ -58,8 +58,8 @@ struct StudyOptions : study_suites::SuiteOptions {
   std::string suite = "accuracy";
   std::string device = "auto";
   std::string json_file;
-  std::string plot_folder;   ///< the results are also written here as SUITE.json, for the charts; empty: no
-  std::string journal_file;  ///< finished cases are kept here and not run again; empty: no
+  std::string plot_folder;   ///< folder for the results as SUITE.json, for the charts; empty: none
+  std::string journal_file;  ///< file that keeps finished cases, which are not run again; empty: none
 };
 int study(const StudyOptions& options);
 

@@ -1,4 +1,4 @@
-// spindrift: the program. Parses flags and hands over to the commands.
+// spindrift: the program. Parses the flags and calls the commands.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kUsageError = 2;
 
-/// Every command that runs scenes takes it.
+/// For every command that runs scenes.
 void addFidelity(CLI::App& command, std::string& fidelity) {
   command.add_option("--fidelity", fidelity, "How finely scenes are simulated, whatever they say themselves")
       ->check(CLI::IsMember({"draft", "balanced", "fine", "reference"}));
@@ -162,7 +162,7 @@ int run(int argc, char** argv) {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return cli.exit(error);  // --help, --version
-    // CLI11 misses the subcommand before it minds what stands in its place.
+    // CLI11 reports a missing subcommand before it reports unknown words in its place.
     const std::vector<std::string> unknown =
         cli.get_subcommands().empty() ? cli.remaining() : std::vector<std::string>{};
     const std::string what = unknown.empty() ? error.what() : "there is no command or flag '" + unknown.front() + "'";

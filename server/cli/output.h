@@ -1,4 +1,4 @@
-// Writing a command's JSON: to a file, or to standard output for "-".
+// Writes a command's JSON to a file, or to standard output for "-".
 #pragma once
 
 #include <string>

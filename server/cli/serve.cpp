@@ -54,7 +54,7 @@ core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& option
   return rooms;
 }
 
-/// The tokens of the file, or of the environment, and what guests are.
+/// Reads the tokens from the file or from the environment, and the role of clients without a token.
 core::Result<service::Access> loadAccess(const ServeOptions& options) {
   std::string text;
   std::string label = "SPINDRIFT_TOKENS";
@@ -67,11 +67,11 @@ core::Result<service::Access> loadAccess(const ServeOptions& options) {
     has_tokens = true;
   } else if (const char* const set = std::getenv("SPINDRIFT_TOKENS"); set && *set) {
     text = set;
-    std::ranges::replace(text, ';', '\n');  // one line is what an environment can hold well
+    std::ranges::replace(text, ';', '\n');  // environment variables are awkward with several lines
     has_tokens = true;
   }
   std::optional<core::Role> guest = has_tokens ? core::Role::kViewer : core::Role::kOperator;
-  if (!options.guest_role.empty()) guest = core::parseRole(options.guest_role);  // "none" is no role
+  if (!options.guest_role.empty()) guest = core::parseRole(options.guest_role);  // "none" is not a role
   auto access = service::Access::parse(text, label, guest);
   if (access && has_tokens && access->tokenCount() == 0) {
     return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
@@ -82,7 +82,7 @@ core::Result<service::Access> loadAccess(const ServeOptions& options) {
   return access;
 }
 
-/// Blocks SIGINT and SIGTERM in this thread and those it starts, so that wait() gets them.
+/// Blocks SIGINT and SIGTERM in this thread and in those that it starts, so that wait() receives them.
 class StopSignals {
  public:
   StopSignals() {

@@ -33,7 +33,7 @@ std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
   const v1::SurfaceFixed16& header = frame.surface_fixed16();
   const std::size_t n = header.resolution_count();
   if (auto error = checkResolution(header.resolution_count())) return error;
-  // Bounds of 0 would make every sample lie in one place, or be flat whatever the payload says.
+  // With bounds of 0 all samples would be in one place, or flat whatever the payload.
   if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
   if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return error;
   return checkPlainFrame(frame, v1::LAYER_SURFACE, n * n * kSampleBytes);

@@ -33,8 +33,8 @@ std::uint8_t* appendMessage(const google::protobuf::MessageLite& message, std::u
 
 }  // namespace
 
-// The payload is written by hand so that it is copied exactly once; serialized pieces of a message may be concatenated,
-// and here all but server_time_s and state_id stand in the order of their field numbers.
+// The payload is written by hand so that it is copied exactly once. Serialized parts of a message may be concatenated;
+// here all fields except server_time_s and state_id are in the order of their numbers.
 core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, std::optional<std::uint64_t> base_tick,
                                  const v1::LayerFrame& codec, core::ByteView payload) {
   v1::LayerFrame head;
@@ -57,7 +57,8 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   core::Bytes bytes;
   bytes.reserve(prefix_size + payload_size);
   bytes.resize(prefix_size);
-  // The checksum reads the copy: the payload may lie in memory mapped from the device, slow to read twice.
+  // The checksum is computed from the copy: the payload may be in memory mapped from the device, which is slow to read
+  // twice.
   bytes.insert(bytes.end(), payload.begin(), payload.end());
   const std::uint32_t crc = crc32c(core::ByteView(bytes).subspan(prefix_size));
 

@@ -11,8 +11,8 @@
 
 namespace spindrift::codec {
 
-/// A payload followed by the zeros that its readers need. A payload longer than they accept becomes empty, which they
-/// refuse.
+/// A payload followed by the zeros that its readers need. A payload longer than they accept becomes empty, and they
+/// refuse it.
 class PackedPayload {
  public:
   explicit PackedPayload(core::ByteView payload)
@@ -28,10 +28,10 @@ class PackedPayload {
   core::Bytes bytes_;
 };
 
-/// A row of planes with its memory.
+/// A PlaneRow with its memory.
 class PlaneMemory {
  public:
-  /// A change of size clears the row. 1 <= resolution_count <= PlaneRow::kMaxResolutionCount.
+  /// A change of size forgets the planes. 1 <= resolution_count <= PlaneRow::kMaxResolutionCount.
   void resize(std::size_t resolution_count) {
     if (resolution_count == row_.resolution()) return;
     blocks_.resize(PlaneRow::bytesFor(resolution_count) / sizeof(Block));

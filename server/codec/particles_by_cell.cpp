@@ -1,4 +1,4 @@
-// The particles' packed form, both ways: ParticlesByCell in wire.proto.
+// Encoder and decoder of packed particles: ParticlesByCell in wire.proto.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,12 +17,11 @@
 namespace spindrift::codec {
 namespace {
 
-/// Side of a cell in spacings of the particles: a cell holds about eight of them. A quantum is a sixteenth of a
-/// spacing.
+/// Side of a cell in particle spacings: a cell holds about eight particles. A quantum is a sixteenth of a spacing.
 constexpr double kCellSpacings = 2.0;
 constexpr std::uint32_t kOffsetBits = 5;
-/// A page moves particles on by their velocity for some frames; over this time the velocity's quantum is two of the
-/// place's.
+/// The page extrapolates particles by their velocity for some frames. Over this time, one quantum of velocity moves a
+/// particle by two quanta of its place.
 constexpr double kAdvance_s = 1.0 / 30.0;
 
 struct Grid {
@@ -31,7 +30,7 @@ struct Grid {
   [[nodiscard]] double quantum_m() const { return cell_m / (1u << cells.offset_bits); }
 };
 
-/// A grid over the particles' domain, coarser where theirs would have too many cells or places.
+/// Returns a grid over the particles' domain, coarser than usual if it would have too many cells or places.
 Grid gridOf(const core::ParticleView& particles) {
   Grid grid{.cells = {.cells_count = {}, .offset_bits = kOffsetBits}, .cell_m = kCellSpacings * 2 * particles.radius_m};
   const auto fits = [&] {

@@ -1,4 +1,4 @@
-// The packed forms of the layers that are planes, both ways: SurfacePredicted and FoamPredicted in wire.proto.
+// Encoder and decoder of packed planes: SurfacePredicted and FoamPredicted in wire.proto.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -15,7 +15,8 @@
 namespace spindrift::codec {
 namespace {
 
-/// Writes the forms of a plane as messages; `headerOf` gives a LayerFrame with the codec's member and no weights.
+/// Writes the forms of a plane as messages; `headerOf` returns a LayerFrame with the codec's member but without
+/// weights.
 class PlaneMessages {
  public:
   template <typename Header>
@@ -36,12 +37,12 @@ class PlaneMessages {
     return out;
   }
   void restart() { chain_.restart(); }
-  /// The plane that encode() is about.
+  /// The plane that encode() encodes next.
   SurfacePlane& plane() { return chain_.next(); }
 
  private:
   PlaneChainEncoder chain_;
-  std::uint64_t tick_ = 0;  ///< of the plane encoded last
+  std::uint64_t tick_ = 0;  ///< of the newest encoded plane
 };
 
 class SurfacePredictedCodec final : public LayerCodec {
@@ -94,7 +95,7 @@ class FoamPredictedCodec final : public LayerCodec {
   double side_m_ = 0.0;
 };
 
-/// False: not as many as there have to be.
+/// False: the number of weights is wrong.
 template <typename Field>
 bool takeWeights(const Field& field, SurfaceWeights& weights) {
   if (field.size() != static_cast<int>(weights.of.size())) return false;
@@ -111,14 +112,14 @@ std::unique_ptr<LayerCodec> makeFoamPredictedCodec() {
   return std::make_unique<FoamPredictedCodec>();
 }
 
-/// The row of planes that a client has read, and of what it is.
+/// The planes that a client has decoded, and their header values.
 struct PackedPlaneDecoder::History {
   PlaneMemory memory;
   double side_m = 0.0;
   double quantum_m = 0.0;
   std::uint64_t tick = 0;
 
-  /// Reads a frame's plane; `memory` holds it afterwards, and nothing after an error.
+  /// Decodes a frame's plane into `memory`; after an error it holds nothing.
   template <typename Header>
   std::optional<core::Error> read(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
                                   double header_quantum_m) {

@@ -6,14 +6,14 @@
 namespace spindrift::codec {
 namespace {
 
-/// By core::Level.
+/// Indexed by core::Level.
 constexpr std::array<v1::Level, core::kLevelCount> kWireLevels{v1::LEVEL_COARSE, v1::LEVEL_MEDIUM, v1::LEVEL_FINE,
                                                                v1::LEVEL_FULL};
 
 }  // namespace
 
 Stream streamOf(v1::Layer layer, v1::Packing packing) {
-  return {layer, hasLevels(layer) ? packing : v1::PACKING_PLAIN};  // the same layers have a packed form
+  return {layer, hasLevels(layer) ? packing : v1::PACKING_PLAIN};  // exactly the layers with levels have a packed form
 }
 
 std::span<const Stream> allStreams() {

@@ -59,7 +59,7 @@ class ProgramCache {
   void reload(Context& ctx, const std::set<std::string>& files);
 
  private:
-  static constexpr std::size_t kMaxUnused = 256;  // a room has about 30; all variants that scenes ask for are about 90
+  static constexpr std::size_t kMaxUnused = 256;  // a room has about 30; the scenes use about 90 variants together
   struct Entry {
     std::string key;
     std::string shader_path;

@@ -135,7 +135,8 @@ Context::~Context() {
   glDebugMessageCallback(nullptr, nullptr);
   egl::close(egl_->handles);
   if (accesses_->hasFaults()) {
-    spdlog::critical("the barrier checker found faults (see above) that no test took: ending the process");
+    spdlog::critical(
+        "the barrier checker found faults (see above) that takeFaults() did not return: ending the process");
     std::abort();
   }
 }
@@ -164,11 +165,6 @@ void Context::barrierBits(std::uint32_t bits) {
   if (bits == 0) return;
   glMemoryBarrier(bits);
   ++ledger_.barrier_count;
-}
-
-void Context::flush() {
-  assert(isOwnedHere());
-  glFlush();
 }
 
 void Context::finish() {

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """Expands, validates and embeds the compute shaders.
 
-Every *.comp below the root is an entry point. `#include "a/b.h"` is relative to the root, each file counts once per
-entry point, also where one of several places that include it lies inside of an `#if`; a cycle is refused. Shaders carry no `#version`: it and the defines are put before the text, here for
-validation and in the program before compiling. A comment `// variants: A=1 B=2 | A=3` among an entry point's leading
-comments lists the sets of defines to validate, as GLSL and as the SPIR-V that glslang
-makes of it; without it one empty set is.
-Files in shared/ are C++ headers as well: `#pragma once` and whatever is included under `#ifdef __cplusplus` is left out.
-The result is one C++ source with the expanded texts and, for each, where its lines come from.
+Every *.comp below the root is an entry point. `#include "a/b.h"` is relative to the root. Each file is included once per
+entry point, even where several `#if` blocks include it; a cycle is refused. Shaders have no `#version` line: this script
+puts it and the defines before the text for validation, and the program does so before compiling.
+
+variants.txt in the root lists every entry point, and below it one indented line for each set of defines, `A=1 B=2`. Each
+set is validated as GLSL and as the SPIR-V that glslang generates from it. An entry point without such lines is validated
+once, without defines. Refused: an entry point that is not listed, and a define that its shader does not use.
+
+Files in shared/ are C++ headers as well: `#pragma once` and includes under `#ifdef __cplusplus` are left out.
+The result is one C++ source with the expanded texts and, for each text, the files and lines that it comes from.
 """
 
 import argparse
@@ -18,15 +21,17 @@ import subprocess
 import sys
 import tempfile
 
-VERSION_LINE = "#version 450 core"  # the same as in program.cpp
+VERSION_LINE = "#version 450 core"  # the same as in compiled_program.cpp
 INCLUDE = re.compile(r'\s*#\s*include\b\s*(.*)')
 QUOTED = re.compile(r'"([^"]+)"\s*(//.*)?$')
 GUARD = re.compile(r"(\s*//[^\n]*\n|\s)*#ifndef (\w+)\n#define \2\n")
 DELIMITER = "SPINDRIFT_GLSL"
+TABLE = "variants.txt"
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
 class ShaderError(Exception):
-    """One line for a person: file, line, what is wrong."""
+    """A message of one line: file, line, what is wrong."""
 
 
 class Expansion:
@@ -38,11 +43,11 @@ class Expansion:
         self.lines = []
         self.origins = []
         self.files = []
-        self._certain = set()  # files that are there whatever the defines
+        self._certain = set()  # files that are included with every set of defines
         self._expand(entry, [], is_certain=True)
 
     def _expand(self, name, stack, is_certain):
-        """`is_certain`: no condition lies around this place."""
+        """`is_certain`: the place is not inside an #if."""
         if name in stack:
             raise ShaderError("include cycle: " + " -> ".join(stack[stack.index(name):] + [name]))
         self.files.append(name)
@@ -54,8 +59,8 @@ class Expansion:
             raise ShaderError(f"{name}: not UTF-8: {error}") from error
         if DELIMITER in text:
             raise ShaderError(f"{name}: contains the reserved word {DELIMITER}")
-        conditions = []  # for each open #if: whether its lines are for C++ only
-        guard_depth = 1 if GUARD.match(text) else 0  # the file's own guard is no condition
+        conditions = []  # one per open #if: True if its lines are for C++ only
+        guard_depth = 1 if GUARD.match(text) else 0  # the file's own include guard does not count as a condition
         for number, line in enumerate(text.splitlines(), start=1):
             where = f"{name}:{number}"
             directive = re.sub(r"\s+", "", line)
@@ -64,7 +69,7 @@ class Expansion:
             if directive.startswith("#if"):
                 conditions.append(directive in ("#ifdef__cplusplus", "#ifdefined(__cplusplus)"))
             elif directive.startswith("#else") and conditions:
-                # Of a C++-only block the other branch is not; `#ifndef __cplusplus … #else` is not needed anywhere.
+                # The #else of a C++-only block is for GLSL. `#ifndef __cplusplus … #else` is not supported: no file needs it.
                 conditions[-1] = False
             elif directive.startswith("#endif") and conditions:
                 conditions.pop()
@@ -93,7 +98,7 @@ class Expansion:
         if is_certain and included not in self.files:
             self._expand(included, stack, is_certain)
             return
-        # Of several places that include a file under conditions the first whose condition holds counts.
+        # Several places may include the file under conditions: the first one that the preprocessor reaches includes it.
         once = "SPINDRIFT_ONCE_" + re.sub(r"\W", "_", included)
         self._add(f"#ifndef {once}", name, number)
         self._add(f"#define {once}", name, number)
@@ -120,33 +125,67 @@ class Expansion:
             return "{}:{}".format(*self.origins[line - 1])
         return f"{self.entry}:{line} of the expanded text"
 
-    def variants(self):
-        """Sets of defines to validate, each a list of (name, value)."""
-        for line in (self.root / self.entry).read_text(encoding="utf-8").splitlines():
-            if line.strip() and not line.lstrip().startswith("//"):
-                break
-            match = re.match(r"\s*//\s*variants:(.*)", line)
-            if match:
-                return [self._defines(part) for part in match.group(1).split("|")]
-        return [[]]
+    def unused(self, defines):
+        """Names in the set of defines that the shader's text does not contain outside comments."""
+        words = set(re.findall(r"\w+", COMMENT.sub(" ", self.text())))
+        return [name for name, _ in defines if name not in words]
 
-    def _defines(self, part):
-        defines = []
-        for word in part.split():
-            match = re.fullmatch(r"([A-Za-z_]\w*)=(\S+)", word)
-            if not match:
-                raise ShaderError(f"{self.entry}: variants: write NAME=VALUE instead of {word}")
-            defines.append(match.groups())
-        return defines
+
+def read_variants(root, entries):
+    """Reads the table of variants: for each entry point a list of (line number, set of defines), a set being a list of
+    (name, value)."""
+    path = root / TABLE
+    if not path.is_file():
+        raise ShaderError(f"{TABLE}: missing; it lists every shader with its sets of defines")
+    table = {}
+    entry = None
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+        text = line.split("#")[0].rstrip()
+        where = f"{TABLE}:{number}"
+        if not text:
+            continue
+        if text[0].isspace():
+            if entry is None:
+                raise ShaderError(f"{where}: defines before the first shader")
+            table[entry].append((number, parse_defines(text, where, entry)))
+            continue
+        entry = text
+        if entry in table:
+            raise ShaderError(f"{where}: {entry} is listed a second time")
+        if entry not in entries:
+            raise ShaderError(f"{where}: no shader {entry}")
+        table[entry] = []
+    return table
+
+
+def parse_defines(text, where, entry):
+    defines = []
+    for word in text.split():
+        match = re.fullmatch(r"([A-Za-z_]\w*)=(\S+)", word)
+        if not match:
+            raise ShaderError(f"{where}: {entry}: write NAME=VALUE instead of {word}")
+        defines.append(match.groups())
+    return defines
+
+
+def variants_of(expansion, table):
+    """Returns the sets of defines with which to validate the shader."""
+    if expansion.entry not in table:
+        raise ShaderError(f"{expansion.entry}: not listed in {TABLE}")
+    sets = table[expansion.entry]
+    for number, defines in sets:
+        if unused := expansion.unused(defines):
+            raise ShaderError(f"{TABLE}:{number}: {expansion.entry} does not use {', '.join(unused)}")
+    return [defines for _, defines in sets] or [[]]
 
 
 def validate(tools, expansion, defines):
-    """Complaints of the compiler about the GLSL, or of the validator about the SPIR-V that it makes of it, one a line, with
-    file and line as written where there are any; empty when the shader is valid."""
+    """Returns what the compiler reports about the GLSL, or the validator about the SPIR-V that the compiler generates: one
+    string per message, with the file and line of the source where known. The list is empty when the shader is valid."""
     head = [VERSION_LINE] + [f"#define {name} {value}" for name, value in defines] + ["#line 1"]
     with tempfile.TemporaryDirectory() as folder:
         module = pathlib.Path(folder) / "shader.spv"
-        # -G: SPIR-V as OpenGL takes it. Plain uniforms need no location in our GLSL, but in SPIR-V: they get one here.
+        # -G: SPIR-V for OpenGL. Plain uniforms have no location in our GLSL, but need one in SPIR-V.
         run = subprocess.run([tools.glslang, "--stdin", "-S", "comp", "-G", "--auto-map-locations", "-o", module],
                              input="\n".join(head) + "\n" + expansion.text(), capture_output=True, text=True, check=False)
         spirv = None
@@ -171,7 +210,7 @@ def validate(tools, expansion, defines):
 
 
 def depfile_path(path):
-    """A path as a make-style rule takes it."""
+    """Escapes a path for a make-style rule."""
     return re.sub(r"([ #])", r"\\\1", str(path)).replace("$", "$$")
 
 
@@ -205,10 +244,15 @@ def main():
     root = arguments.root.resolve()
     entries = sorted(path.relative_to(root).as_posix() for path in root.rglob("*.comp"))
     expansions, jobs, problems = [], [], []
+    try:
+        table = read_variants(root, entries)
+    except ShaderError as error:
+        print(error, file=sys.stderr)
+        return 1
     for entry in entries:
         try:
             expansion = Expansion(root, entry)
-            jobs += [(expansion, defines) for defines in expansion.variants()]
+            jobs += [(expansion, defines) for defines in variants_of(expansion, table)]
             expansions.append(expansion)
         except ShaderError as error:
             problems.append(str(error))
@@ -224,7 +268,7 @@ def main():
 
     arguments.output.write_text(cpp_source(expansions), encoding="utf-8")
     if arguments.depfile:
-        files = sorted({name for expansion in expansions for name in expansion.files})
+        files = sorted({TABLE} | {name for expansion in expansions for name in expansion.files})
         rule = depfile_path(arguments.output) + ": " + " ".join(depfile_path(root / name) for name in files)
         arguments.depfile.write_text(rule + "\n", encoding="utf-8")
     return 0

@@ -27,7 +27,8 @@ struct ReadbackRing::State {
     for (std::size_t i = 0; i < slot_count; ++i) used += is_used[i].load(std::memory_order_acquire);
     return used;
   }
-  /// The reader is done. Release order: its reads happen before the device writes here again.
+  /// Frees a slot after its last reader. Release order: the reader's accesses happen before the device writes here
+  /// again.
   void free(std::size_t index) { is_used[index].store(false, std::memory_order_release); }
 
   const std::size_t slot_bytes;
@@ -147,18 +148,6 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
   return take(done);
 }
 
-std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::wait(std::chrono::nanoseconds limit) {
-  assert(ctx_.isOwnedHere());
-  ctx_.collectRetired();
-  const auto end = std::chrono::steady_clock::now() + limit;
-  std::size_t done = 0;
-  while (done < in_flight_.size() &&
-         in_flight_[done].fence.wait(end - std::chrono::steady_clock::now()) != Fence::Status::kPending) {
-    ++done;
-  }
-  return take(done);
-}
-
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::take(std::size_t count) {
   std::vector<std::shared_ptr<const Slot>> out;
   for (std::size_t i = 0; i < count; ++i) {
@@ -176,12 +165,6 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::take(std::s
   return out;
 }
 
-std::size_t ReadbackRing::slotBytes() const {
-  return state_->slot_bytes;
-}
-std::size_t ReadbackRing::slotCount() const {
-  return state_->slot_count;
-}
 std::size_t ReadbackRing::usedCount() const {
   return state_->usedCount();
 }

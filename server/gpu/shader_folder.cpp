@@ -18,7 +18,7 @@ Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
 }
 
-/// Returns the text after `#NAME` in a line, without blanks around it; nullopt where the line is no such directive.
+/// Returns the text after `#NAME` in a line, without surrounding blanks; nullopt if the line is not this directive.
 std::optional<std::string_view> directive(std::string_view line, std::string_view name) {
   const auto skipBlanks = [&line] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
   skipBlanks();
@@ -39,7 +39,7 @@ std::string guardOf(const std::string& name) {
   return out;
 }
 
-/// Consecutive lines of one file, and where they are written to.
+/// Adds consecutive lines of one file to a source.
 class Lines {
  public:
   Lines(ShaderFolder::Source& out, const std::string& name) : out_(out), name_(out.names.emplace_back(name)) {}

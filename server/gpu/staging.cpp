@@ -52,7 +52,7 @@ bool Staging::upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::spa
     if (up_used_bytes_ == kPartBytes) {
       up_fences_[up_part_] = Fence::insert(ctx_);
       const std::size_t next = (up_part_ + 1) % kPartCount;
-      // On failure the part stays full, and the next upload tries again.
+      // After a failure the part stays full, and the next upload tries again.
       if (!await(up_fences_[next], "take an upload")) return false;
       up_part_ = next;
       up_used_bytes_ = 0;

@@ -79,8 +79,8 @@ void applyFidelity(v1::Scene& scene) {
     if (is_two_way) {
       scaleNumber(particles, "count", std::pow(level.particle_scale, 3));  // spray fills a volume
     } else if (scene.has_wave()) {
-      scaleNumber(particles, "count", std::pow(level.particle_scale, 2));  // a band of the same number of layers,
-                                                                           // thinner
+      // A band keeps the number of layers and becomes thinner.
+      scaleNumber(particles, "count", std::pow(level.particle_scale, 2));
     } else {
       // Keep the depth; whole layers decide.
       const double layers_count = layersOf(particles);

@@ -145,7 +145,7 @@ void ScriptClient::take(core::ByteView bytes) {
 void ScriptClient::frame(v1::Layer layer, std::uint64_t state_id) {
   LayerTally& tally = tallies_[static_cast<std::size_t>(layer)];
   ++tally.frame_count;
-  // A server that does not number its states gives 0: each frame counts then.
+  // A server that does not number its states sends 0: then each frame counts.
   if (state_id == 0 || state_id != tally.state_id) ++tally.state_count;
   tally.state_id = state_id;
   if (tally.last) {

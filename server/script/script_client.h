@@ -1,5 +1,4 @@
-// One client of a script: its connection, and what it has seen so far. Everything runs on the thread that drives the
-// pool.
+// One client of a script: its connection and what it has received. Runs only on the thread that drives the pool.
 #pragma once
 
 #include <array>
@@ -21,38 +20,38 @@ class ScriptClient {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// What came of a command.
+  /// Result of a command.
   struct Answer {
     std::optional<v1::Ack> ack;
     std::optional<v1::Reject> reject;
   };
-  /// What came of one layer, diagnostics included.
+  /// Statistics of one layer, or of the diagnostics.
   struct LayerTally {
     std::uint64_t frame_count = 0;
-    std::uint64_t state_count = 0;  ///< different states of the water that the frames showed: a paused room repeats its
+    std::uint64_t state_count = 0;  ///< different states of the water in the frames; a paused room repeats its state
     std::uint64_t state_id = 0;     ///< of the last frame
-    std::optional<Clock::time_point> last;  ///< or the subscription
+    std::optional<Clock::time_point> last;  ///< time of the last frame, or of the subscription
     double longest_gap_s = 0.0;             ///< since the subscription or the last resetGap()
     double longest_gap_ever_s = 0.0;
   };
 
-  /// `setup` outlives it; so does the pool.
+  /// `setup` and the pool must outlive the client.
   ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, net::ClientUrl url);
 
-  /// Hello and the subscriptions follow by themselves. Again after the end: as the same person.
+  /// Connects, then sends Hello and the subscriptions. After the end of a connection: as the same person.
   void connect();
   void disconnect(bool vanish);
   void send(const v1::ClientMessage& message);
   void subscribe(const v1::Subscribe& subscribe);
-  /// Subscribes, plain, unless it is subscribed already.
+  /// Subscribes with plain packing, unless already subscribed.
   void needLayer(v1::Layer layer);
-  /// Sends under a fresh number, which it returns.
+  /// Sends the command with a new number and returns the number.
   std::uint64_t command(v1::Command command);
 
   [[nodiscard]] const std::string& name() const { return setup_.name(); }
   [[nodiscard]] bool wasConnected() const { return connection_ != nullptr; }
   [[nodiscard]] bool isWelcome() const { return welcome_.has_value() && !end_; }
-  /// Why the connection ended, or never was.
+  /// Reason why the connection ended or was never made.
   struct End {
     std::uint16_t code = 0;
     std::string reason;
@@ -63,7 +62,7 @@ class ScriptClient {
   [[nodiscard]] const LayerTally& tally(v1::Layer layer) const { return tallies_[static_cast<std::size_t>(layer)]; }
   [[nodiscard]] const v1::People& people() const { return people_; }
   [[nodiscard]] std::uint64_t eventCount(v1::RoomEventKind kind) const;
-  /// The longest gap so far, the open one at the end included; a new measurement begins.
+  /// Returns the longest gap since the last call, including the current one, and starts a new measurement.
   double takeLongestGap_s(v1::Layer layer);
 
   // For the report.
@@ -79,7 +78,7 @@ class ScriptClient {
   net::ClientPool& pool_;
   const net::ClientUrl url_;
   std::shared_ptr<net::Client> connection_;
-  std::uint64_t connection_number_ = 0;  ///< callbacks of an earlier connection say nothing any more
+  std::uint64_t connection_number_ = 0;  ///< callbacks of an earlier connection are ignored
   std::optional<v1::Welcome> welcome_;
   std::optional<End> end_;
   std::string refusal_;
@@ -87,7 +86,7 @@ class ScriptClient {
   std::map<v1::Layer, v1::Subscribe> subscriptions_;
   std::uint64_t last_command_id_ = 0;
   std::map<std::uint64_t, Clock::time_point> sent_at_;
-  std::map<std::uint64_t, Answer> answers_;  ///< one a command of the script
+  std::map<std::uint64_t, Answer> answers_;  ///< one per command of the script
   std::array<std::optional<v1::LayerFrame>, v1::Layer_ARRAYSIZE> newest_;
   std::array<LayerTally, v1::Layer_ARRAYSIZE> tallies_;
   v1::People people_;

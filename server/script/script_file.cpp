@@ -27,7 +27,7 @@ class FirstError final : public google::protobuf::io::ErrorCollector {
   const std::string& label_;
 };
 
-/// Empty, or what is wrong with the step.
+/// Returns an empty string, or what is wrong with the step.
 std::string checkStep(const v1::ScriptStep& step, const std::set<std::string>& names) {
   if (!names.contains(step.client())) return "there is no client \"" + step.client() + "\"";
   if (!std::isfinite(step.at_s()) || step.at_s() < 0) return "at_s has to be 0 or more";

@@ -20,7 +20,7 @@ using Clock = ScriptClient::Clock;
 
 constexpr double kPatience_s = 5.0;
 
-/// What became of a step: empty = as wanted.
+/// Result of a step; empty: success.
 struct Outcome {
   bool passed = false;
   std::string detail;
@@ -75,7 +75,7 @@ class Runner {
     return out;
   }
 
-  /// Lets the clients work until `holds` or the time is over; whether it held.
+  /// Lets the clients run until `holds` is true or the time is over; returns whether it became true.
   bool wait(double duration_s, const std::function<bool()>& holds) {
     if (holds()) return true;
     if (duration_s <= 0) return false;
@@ -84,7 +84,7 @@ class Runner {
     return holds();
   }
 
-  /// The same for something that needs the connection, which may end meanwhile.
+  /// The same for conditions that need the connection, which may end meanwhile.
   Outcome await(ScriptClient& client, double duration_s, const std::function<bool()>& holds,
                 const std::function<std::string()>& seen) {
     const bool held = wait(duration_s, [&] { return holds() || client.end(); });
@@ -276,7 +276,7 @@ class Runner {
   }
 
   Outcome expectEvent(const v1::ExpectEvent& step, ScriptClient& client) {
-    // Events that came since the last such step of this client count: they may well come before it is reached.
+    // Counts events since the previous step of this kind for this client: they may arrive before this step begins.
     std::uint64_t& used_count = used_events_[{client.name(), step.kind()}];
     const Outcome out = await(
         client, patience_s(step), [&] { return client.eventCount(step.kind()) > used_count; },
@@ -320,7 +320,7 @@ class Runner {
   static constexpr double kGoodbyePatience_s = 2.0;
 
   const v1::Script& script_;
-  std::unique_ptr<net::ClientPool> pool_;  // outlives the clients
+  std::unique_ptr<net::ClientPool> pool_;  // declared first: must outlive the clients
   std::map<std::string, std::unique_ptr<ScriptClient>> clients_;
   std::map<std::string, std::uint32_t> boats_;
   std::map<std::pair<std::string, v1::RoomEventKind>, std::uint64_t> used_events_;

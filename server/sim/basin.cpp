@@ -10,17 +10,18 @@ namespace {
 
 using core::WaveBoundary;
 
-/// Water shallower than this share of the scene's depth is dry ground to the wave.
+/// The wave treats water shallower than this share of the scene's depth as dry ground.
 constexpr double kDryShare = 0.03;
-/// On a beach the wave loses its flow from this share of the depth on; its own breaking is not modelled there.
+/// On a beach the wave's flow is damped where the depth is below this share of the scene's depth. Breaking is not
+/// modelled there.
 constexpr double kFadeShare = 0.4;
-/// A cubic sponge that lets exp(-2 integral(sigma)/c) = 0.2 % of a normal wave come back. A thicker one takes more of a
-/// normal wave and sends more of an oblique one back from its slope: 0.01 % gave 6.2 % at 45 degrees (waves of 3 m,
-/// sponge of 4 m; `spindrift study --suite accuracy --case reflection`).
+/// Strength of the sponge: cubic, with exp(-2 integral(sigma)/c) = 0.2 % for a wave of normal incidence. A stronger
+/// sponge returns less of such a wave, but its slope reflects more of an oblique one: 0.01 % gave 6.2 % at 45 degrees
+/// (waves of 3 m, sponge of 4 m; `spindrift study --suite accuracy --case reflection`).
 constexpr double kSpongeReturn = 2e-3;
 constexpr double kSpongePower = 3.0;
 
-/// How far a place lies from a side. [m]
+/// Distance from a place to a side. [m]
 double distanceTo(core::Side side, double half_m, double x_m, double z_m) {
   switch (side) {
     case core::Side::kMinusX:
@@ -47,7 +48,7 @@ double distance(const core::Breakwater& wall, double x_m, double z_m) {
   return std::hypot(std::max(along, 0.0), std::max(across, 0.0)) + std::min(std::max(along, across), 0.0);
 }
 
-/// Series of two half cells: what flows through both. 0 when either is dry.
+/// Depth of the face between two cells: the harmonic mean, as for two half cells in series. 0 when either is dry.
 double faceDepth(double a_m, double b_m) {
   return a_m > 0 && b_m > 0 ? 2 * a_m * b_m / (a_m + b_m) : 0.0;
 }
@@ -106,7 +107,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
         const double inside = 1 - distanceTo(side, half_m, place(x), place(z)) / sponge_m;
         if (inside > 0) sigma = std::max(sigma, sigma_max * std::pow(inside, kSpongePower));
       }
-      // Shoaling water on a beach that runs dry: rubs within the time that a long wave takes over the shallow part.
+      // Beach that runs dry: damp the flow within the time that a long wave needs to cross the shallow part.
       double fade = 0.0;
       for (const core::Beach& beach : scene.beaches) {
         if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
@@ -122,12 +123,12 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const auto isInside = [&](int x, int z) {
     return (isPeriodicX(w) || (x >= 0 && x < n)) && (isPeriodicZ(w) || (z >= 0 && z < n)) && depthAt(x, z) > 0;
   };
-  // The square that (x, z) spans with its neighbours carries diagonals only where none of its four cells is dry.
+  // The square of (x, z) and its neighbours has diagonal faces only if none of its four cells is dry.
   const auto isSquareOpen = [&](int x, int z) {
     return isInside(x, z) && isInside(x + 1, z) && isInside(x, z + 1) && isInside(x + 1, z + 1);
   };
-  // Where a square is closed its diagonals fold back, as in the mirror image beyond a wall: the face beside it gets
-  // their weight.
+  // Where a square has no diagonal faces, the axis face beside it gets their weight, as if the water were mirrored at
+  // the wall.
   const auto axisWeight = [&](bool one_open, bool other_open) {
     return nine ? 2.0 / 3.0 + (one_open ? 0.0 : 1.0 / 6.0) + (other_open ? 0.0 : 1.0 / 6.0) : 1.0;
   };
@@ -163,7 +164,8 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
   const auto n = static_cast<int>(layout.resolution_count);
   const double half_m = layout.side_m / 2;
   const double step_m = 0.25 * layout.cell_m;
-  /// Farther than anything looks; stands for "no obstacle", which infinity would turn into NaN in interpolation.
+  /// Replaces "no obstacle": beyond the range of every lookup, and finite, because infinity would become NaN in
+  /// interpolation.
   const double far_m = 4 * layout.side_m;
   const auto place = [&](int i) { return (i + 0.5) * layout.cell_m - half_m; };
   const auto distanceAt = [&](double x, double z) { return std::min(obstacleDistance(scene, x, z), far_m); };
@@ -187,7 +189,7 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
     }
   }
 
-  // Nearest wet cell by growing from all wet cells at once, a ring at a time.
+  // Finds the nearest wet cell of each cell: starts from all wet cells and adds one ring of cells at a time.
   out.landing.assign(basin.depth_m.size(), -1);
   std::vector<std::int32_t> front;
   for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {

@@ -1,4 +1,4 @@
-// The water's bed and sides as the wave sees them: depths, faces between cells, sponges. Pure functions of the scene.
+// The bed and the sides of the water for the wave: depths, faces between cells, sponges. Pure functions of the scene.
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@ namespace spindrift::sim {
 /// n x n cells, x fastest.
 struct Basin {
   std::vector<float> depth_m;  ///< still depth at cell centres; 0 inside obstacles and on dry beaches
-  /// Conductance [m] of the faces that a cell owns, in the order of shaders/wave/wave_faces.glsl: toward +x, toward
-  /// +z, and the two diagonals of the 9-point stencil. Depth at the face (harmonic mean, so that a dry cell closes it)
+  /// Conductance [m] of the faces that a cell owns, in the order of shaders/wave/wave_faces.glsl: toward +x, toward +z,
+  /// and the two diagonals of the 9-point stencil. It is the depth at the face (harmonic mean, so 0 beside a dry cell)
   /// times the stencil's weight; 0 across reflecting and absorbing sides.
   std::vector<std::array<float, 4>> conductance_m;
-  /// What a wave step reads of each cell: rates at which flow and elevation are lost [1/s] (equal in a sponge; flow
+  /// Input of a wave step for each cell: rates at which flow and elevation are lost [1/s] (equal in a sponge; flow
   /// alone where a beach runs dry), still depth [m] as in depth_m, 0.
   std::vector<std::array<float, 4>> bed;
 };
 
-/// Still depth at a place, obstacles not considered. [m]
+/// Still depth at a place, without obstacles. [m]
 double bedDepth(const core::Scene& scene, double x_m, double z_m);
 
 /// Signed distance in the plane to the nearest obstacle: negative inside; +infinity without obstacles. [m]
@@ -32,12 +32,12 @@ double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
 
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);
 
-/// The ground as particles and boats see it, n x n, for shaders/common/terrain_texels.glsl.
+/// The ground for particles and boats, n x n, for shaders/common/terrain_texels.glsl.
 struct Terrain {
   /// Signed distance to the nearest obstacle, its gradient (x, z), still depth (0 on dry ground, minus the obstacle's
   /// height inside one).
   std::vector<std::array<float, 4>> ground;
-  /// Index of the wet cell that takes water falling on a cell: itself, or the nearest.
+  /// Index of the wet cell that receives water falling on this cell: the cell itself, or the nearest wet one.
   std::vector<std::int32_t> landing;
 };
 

@@ -17,7 +17,7 @@ using core::Error;
 using core::ErrorCode;
 
 constexpr float kNobody = -1.0f;
-/// The device keeps ids as 32-bit floats, which hold every whole number up to this one.
+/// The device stores ids as 32-bit floats, which are exact for whole numbers up to this one.
 constexpr std::uint32_t kBoatIdMax = 1u << 24;
 
 using State = std::array<float, std::size_t{BOAT_TEXELS} * 4>;
@@ -76,7 +76,7 @@ void Boats::reset(const core::Scene& scene) {
   for (State& state : states) state[6] = kNobody;
   std::ranges::fill(places_, Place{});
   std::uint32_t boat_id = first_id_;
-  // create() saw that there are places.
+  // create() has checked that there are enough places.
   for (std::size_t at = 0; at < scene.boats->boats.size(); ++at) {
     places_[at] = {boat_id++, scene.boats->boats[at]};
     states[at] = startingState(places_[at].boat, places_[at].boat_id);

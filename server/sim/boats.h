@@ -26,28 +26,28 @@ class Boats {
   static core::Result<std::unique_ptr<Boats>> create(gpu::Context& ctx, const core::Scene& scene, double cell_m,
                                                      const gpu::Defines& defines);
 
-  /// Only the scene's own boats, where they start, with the ids that they had: the first ones. Ids of other boats are
-  /// not given again.
+  /// Keeps only the scene's own boats, at their starting positions and with their first ids. Ids of other boats are not
+  /// reused.
   void reset(const core::Scene& scene);
-  /// Ids from here on, the scene's own boats first; takes effect with the next reset().
+  /// Sets the first id; the scene's own boats come first. Takes effect with the next reset().
   void numberFrom(std::uint32_t first_id);
-  /// Above every id that was given.
+  /// Returns a number above every id in use or used before.
   [[nodiscard]] std::uint32_t nextId() const { return next_id_; }
-  /// The new boat's id. kUnavailable when every place or every id is taken.
+  /// Returns the new boat's id. kUnavailable when all places or all ids are taken.
   core::Result<std::uint32_t> spawn(const core::Boat& boat);
-  /// kInvalidInput for an id that is not on the water.
+  /// kInvalidInput for an unknown boat.
   core::Result<void> control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
   core::Result<void> remove(std::uint32_t boat_id);
 
-  /// After a breach: boats whose state is not finite start again where they first came to the water. Waits for the
-  /// device.
+  /// For recovery: puts boats whose state is not finite back to their starting positions. Waits for the device.
   void mend();
 
-  /// One tick, after Wave::sampleSurface(). Without a wave boats swim at the resting level, and only push particles.
+  /// Advances the boats by one tick; call it after Wave::sampleSurface(). Without a wave boats float at the resting
+  /// level and act on particles only.
   void move(const Wave* wave);
-  /// Adds what the hulls press to the pressure head.
+  /// Adds the pressure of the hulls to the pressure head.
   void press(const gpu::TexelBuffer& pressure_head);
-  /// Binds BOATS and their controls for passes that look at hulls.
+  /// Binds BOATS and their controls for passes that read hulls.
   void bind() const;
 
   [[nodiscard]] std::vector<BoatRecord> records() const;
@@ -69,7 +69,7 @@ class Boats {
   double cell_m_;
   std::vector<Place> places_;
   std::uint32_t first_id_ = 1;
-  std::uint32_t next_id_ = 1;  ///< never goes back
+  std::uint32_t next_id_ = 1;  ///< never decreases
   shared::BoatControls controls_{};
   gpu::TexelBuffer state_;
   gpu::Buffer control_uniforms_;

@@ -25,7 +25,7 @@ void Breakers::clear() {
 }
 
 void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick) {
-  // The state's buffer keeps its place, so that checkpoints and readers need not know which of the two is newer.
+  // The current state always stays in the same buffer, so that checkpoints and readers use a fixed one.
   before_.copyFrom(now_, 0, now_.sizeBytes());
   wave.bindSurface();
   wave.bindBasin();

@@ -1,4 +1,5 @@
-// Where the wave breaks (Kennedy et al. 2000), once a tick: the wave loses flow there, spray and foam come from it.
+// Where the wave breaks (Kennedy et al. 2000), computed once per tick: the wave loses flow there and produces spray and
+// foam.
 #pragma once
 
 #include <memory>
@@ -20,10 +21,10 @@ class Breakers {
                                                         const gpu::Defines& defines);
 
   void clear();
-  /// After Wave::sampleSurface(). `pool`: where cells that emit are listed; null outside two-way scenes.
+  /// Call it after Wave::sampleSurface(). `pool` receives the list of emitting cells; null except in two-way scenes.
   void update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick);
 
-  /// n x n: seconds since the event began, intensity 0..1, velocity of a splash's crown (x, z) [m/s].
+  /// n x n: seconds since the breaking event began, intensity 0..1, velocity of a splash's crown (x, z) [m/s].
   [[nodiscard]] gpu::TexelBuffer& state() { return now_; }
 
  private:

@@ -1,4 +1,5 @@
-// The state to go back to when a room goes wrong: copies on the device, trusted once the health of their tick was good.
+// Copies of the state on the device, for recovery. A copy counts as good once the health of its tick is known to be
+// good.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +11,18 @@
 
 namespace spindrift::sim {
 
-/// Two copies of each state buffer: the last one confirmed good, and one waiting for its health.
+/// Two copies of each state buffer: the last one confirmed good, and one that waits for its health.
 class Checkpoints {
  public:
   /// `state` are the live buffers; the pointers must stay valid.
   static core::Result<std::unique_ptr<Checkpoints>> create(gpu::Context& ctx, std::vector<gpu::Buffer*> state);
 
-  /// Copies the state of this tick, without waiting. Nothing while an earlier copy still waits for its health:
-  /// replacing it each time would leave a device that is far behind without any good copy.
+  /// Copies the state of this tick, without waiting. Does nothing while an earlier copy still waits for its health: if
+  /// each copy replaced the one before, a device that is far behind would never get a good one.
   void save(std::uint64_t tick);
-  /// The state at `tick` was good: copies made up to it are.
+  /// Reports that the state at `tick` was good: confirms the copies made up to it.
   void confirm(std::uint64_t tick);
-  /// Puts the last good copy back; false when there is none.
+  /// Restores the last good copy; returns false when there is none.
   bool restore();
   void forget();
 
@@ -36,7 +37,7 @@ class Checkpoints {
 
   std::vector<gpu::Buffer*> state_;
   Copy copies_[2];
-  int good_ = 0;  ///< the other one waits
+  int good_ = 0;  ///< the other copy waits for its health
   bool has_good_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Creating several device objects in a row: the first error ends it.
+// Creates several device objects in a row and stops at the first error.
 #pragma once
 
 #include <optional>

@@ -20,11 +20,11 @@ using core::Error;
 using core::ErrorCode;
 using std::numbers::pi;
 
-/// Share of a support radius that sound and water may cross in a step. The usual 0.4 of half of it (Monaghan 1992) is
-/// safe many times over: a splashed box stays stable to 1.0 with every kernel set (`spindrift study --suite stability
-/// --case "step,"`).
+/// Share of a support radius that sound plus water may cross in a step. The usual value is 0.4 of half of it (Monaghan
+/// 1992), with a large margin: a splashed box stays stable to 1.0 with every kernel set (`spindrift study --suite
+/// stability --case "step,"`).
 constexpr double kSoundCourant = 0.7;
-/// The same for position-based water, which has no sound; beyond it is squeezed by more than a quarter.
+/// The same for position-based water, which has no sound. Larger steps compress water by more than a quarter.
 constexpr double kParticleCourant = 0.4;
 /// Usual values (Monaghan 1992).
 constexpr double kForceFactor = 0.25;
@@ -32,13 +32,13 @@ constexpr double kViscousFactor = 0.125;
 /// Stability limits of the leapfrog on a square grid: 1/sqrt(2), and sqrt(3)/2 for the isotropic 9-point stencil.
 constexpr double kFivePointCourant = 0.70710678;
 constexpr double kNinePointCourant = 0.8660254;
-/// Share of the wave's limit that is used: room for rounding, not for physics.
+/// Share of the wave's stability limit that is used: a margin for rounding only.
 constexpr double kWaveSafety = 0.98;
-/// Share of its flow that fully breaking water loses in the time sqrt(d/g): a bore is gone within a few depths' travel.
+/// Share of its flow that fully breaking water loses in the time sqrt(d/g): a bore ends within a few depths of travel.
 constexpr double kBreakingLoss = 0.6;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
-/// The neighbour search looks at this many times the candidates of water at rest, and at least at so many. A lower
-/// bound could cut sprays that leave the water close together, a higher one only makes a blow-up slower.
+/// Bound of the neighbour search: this many times the candidates of water at rest, and never less than the minimum
+/// below. A lower bound could cut dense spray that leaves the water; a higher one only makes a blow-up slower.
 constexpr double kCrowdedRatio = 32.0;
 constexpr double kMinCandidates = 1024.0;
 
@@ -46,8 +46,8 @@ Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
 }
 
-/// Largest c of Tait's equation: c = c0 (rho/rho0)^3 at the pressure with which water of U_max comes to rest at the
-/// bottom of the band, p = rho0 (U_max^2/2 + g band). Linear water has c0 everywhere.
+/// Largest sound speed c = c0 (rho/rho0)^3 of Tait's equation, at the pressure of water with speed U_max that is
+/// stopped at the bottom of the band: p = rho0 (U_max^2/2 + g band). With the linear equation c = c0.
 double fastestSound(const core::Scene& scene, const ParticleLayout& layout) {
   const core::ParticleScene& p = *scene.particles;
   if (p.equation_of_state == core::EquationOfState::kLinear) return p.sound_speed_mps;
@@ -62,7 +62,7 @@ void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, st
   if (nu > 0)
     rules.push_back({"viscous diffusion, 0.125 H^2 / nu", "particles.viscosity_pas", kViscousFactor * H * H / nu});
   if (p.solver == core::PressureSolver::kPositionBased) {
-    // No sound, and a constraint answers to any force: only particles must not jump past each other.
+    // There is no sound, and the constraint resists any force: only particles must not jump past each other.
     rules.push_back({"particle CFL, 0.4 H / U_max", "particles.max_speed_mps", kParticleCourant * H / p.max_speed_mps});
     return;
   }
@@ -88,8 +88,7 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   return out;
 }
 
-/// The bound of the inside holds in sponges too, and with any damping: losses are centred in the step
-/// (shaders/wave/continuity.comp).
+/// Holds in sponges and with any damping, too, because losses are centred in the step (shaders/wave/continuity.comp).
 double waveMaxStep(const core::WaveScene& wave, const WaveLayout& layout) {
   const double limit = wave.stencil == core::Stencil::kNinePoint ? kNinePointCourant : kFivePointCourant;
   // Crests of a steepening wave are faster: shaders/wave/momentum.comp bounds d (1 + 3 s eta/d) by d (1 + s).
@@ -101,9 +100,9 @@ std::uint32_t stepsFor(double interval_s, double max_dt_s) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(interval_s / max_dt_s - 1e-9), 1.0, 1e6));
 }
 
-/// Bytes a wave cell: elevation, flow, transfers, tables of a varied basin, what particles and boats read.
+/// Bytes per wave cell: elevation, flow, transfers, tables of a varied basin, buffers read by particles and boats.
 std::uint64_t waveCellBytes(const core::Scene& scene) {
-  // Elevation; flow and transfer; what limits transfers.
+  // Elevation; flow and transfer; the share that limits transfers.
   std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
   if (isVaried(scene)) bytes += 16 + 16;
   if (isOpen(scene)) bytes += 8;
@@ -124,8 +123,8 @@ std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   return bytes;
 }
 
-/// Candidates of a column of three cells (of all its cells in a box that is periodic in height) that a particle looks
-/// at.
+/// Bound of the neighbour candidates in a column of three cells (all cells of the column in a box that is periodic in
+/// height).
 std::uint32_t maxCandidates(const core::ParticleScene& particles, const ParticleLayout& layout) {
   const double column_cells = particles.periodic_y ? layout.cells[1] : 3.0;
   const double at_rest = column_cells * std::pow(layout.support_radius_m / layout.spacing_m, 3);
@@ -161,7 +160,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.viscosity_pas = f(p.viscosity_pas);
     u.max_speed_mps = f(p.max_speed_mps);
     if (!scene.wave) {
-      // Boats and effects measure by these.
+      // The lengths by which boats and effects are measured.
       u.wave_side_m = f(std::min(l.max_m[0] - l.min_m[0], l.max_m[2] - l.min_m[2]));
       u.wave_cell_m = f(l.spacing_m);
     }
@@ -261,7 +260,7 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     d.wave = *layout;
   }
 
-  // Particles set the substep; without them one substep a tick, and the wave divides it further.
+  // Particles decide the number of substeps, 1 without particles. The wave may divide the tick further.
   const std::uint32_t needed = d.rules.empty() ? 1 : stepsFor(d.tick_s, d.rules.front().max_dt_s);
   d.substeps_count = scene.fixed_substeps_count ? scene.fixed_substeps_count : needed;
   d.dt_s = d.tick_s / d.substeps_count;

@@ -17,8 +17,7 @@
 namespace spindrift::sim {
 namespace {
 
-/// An invocation's partial result, as shaders/diagnostics writes it. The integers are sums of upper and
-/// lower parts.
+/// Partial result of one invocation, as shaders/diagnostics writes it. The integers are sums of upper and lower parts.
 struct Partial {
   float nonfinite, escaped, max_a, max_b;
   float sum[4];
@@ -28,7 +27,7 @@ struct Partial {
   std::uint32_t outflow_low;
 };
 static_assert(sizeof(Partial) == 48);
-/// A result for each tick in flight, for the tick that is measured now, and for those that no poll has asked for yet.
+/// Slots for the ticks in flight, for the tick that is measured now, and for results that poll() has not yet returned.
 constexpr std::size_t kSlotCount = 8;
 static_assert(kSlotCount > TicksInFlight::kMaxCount + 1);
 
@@ -56,7 +55,7 @@ Total total(std::span<const std::byte> bytes) {
   return out;
 }
 
-/// Invocations for this many items, a whole number of groups: as many partial results.
+/// Number of invocations, and of partial results, for this many items: a whole number of groups.
 std::uint32_t sharesFor(std::uint32_t items, const gpu::Program& program) {
   const std::uint32_t group = program.groupSize()[0];
   return (items / REDUCE_ITEMS + group) / group * group;
@@ -134,7 +133,7 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
     copied = copied && slot->copyFrom(population->pool()->words(), 0, POOL_WORDS * 4,
                                       (particle_shares_ + surface_shares_) * sizeof(Partial));
   }
-  // The next tick's passes write what was read here.
+  // The next tick's passes write the buffers that were read here.
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   if (copied) slot->submit(tick);
 }

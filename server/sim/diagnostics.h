@@ -1,5 +1,5 @@
-// One small reduction per tick: is the room healthy, and what are its energies? Results arrive some ticks later;
-// nothing waits for them.
+// Health and energies of the room, from one small reduction per tick. Results arrive some ticks later; nothing waits
+// for them.
 #pragma once
 
 #include <memory>
@@ -28,15 +28,15 @@ class Diagnostics {
   static core::Result<std::unique_ptr<Diagnostics>> create(gpu::Context& ctx, const Derived& derived,
                                                            const gpu::Defines& defines);
 
-  /// Buffers for another number of particles, the same programs; results on their way are lost. An error changes
-  /// nothing.
+  /// Replaces the buffers for another number of particles and keeps the programs. Results in flight are lost. An error
+  /// changes nothing.
   core::Result<void> resize(const Derived& derived);
 
-  /// Measures the state after `tick`; parts may be null. There is a slot for every tick that may be in flight
-  /// (TicksInFlight), so that each tick is measured if poll() is called before it.
+  /// Measures the state after `tick`; absent parts are null. There is one slot per tick that may be in flight
+  /// (TicksInFlight), so every tick is measured if poll() is called before each call.
   void measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population,
                const NeighborGrid* grid, Wave* wave, Breakers* breakers, const Boats* boats);
-  /// Results that have arrived, oldest first.
+  /// Returns the results that have arrived, oldest first.
   std::vector<Health> poll(const core::Scene& scene, const Derived& derived);
 
  private:

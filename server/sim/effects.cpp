@@ -12,12 +12,12 @@ namespace {
 constexpr double kStandardGravity_mps2 = 9.80665;
 /// Full width at half height of sech^2(s/w): 2 arcosh(sqrt 2) w.
 constexpr double kWidthOfHalfHeight = 1.7627472;
-/// A crest starts this many widths inside its side, so that its tail does not reach across a periodic one.
+/// A crest starts this many widths inside its side, so that its tail does not cross a periodic side.
 constexpr double kCrestInset = 3.0;
-/// A breaking crest leans forward: its front takes this share of the width, its back the rest. sech^2 of width w is
-/// steepest at 0.77 A/w; at Kennedy's onset of 0.65 (eta_t = 0.65 sqrt(g d), so slope 0.65) w = 1.18 A.
+/// A breaking crest leans forward: the front has this share of the width, the back the rest. sech^2 of width w has the
+/// slope 0.77 A/w at its steepest; at Kennedy's onset (eta_t = 0.65 sqrt(g d), so slope 0.65) w = 1.18 A.
 constexpr double kBreakingFrontShare = 0.5;
-/// Half the extent along the crest of a group sent in a direction, over the side of the water.
+/// Half length along the crest of a wave group that travels in a given direction, over the side of the water.
 constexpr double kGroupLateralShare = 0.3;
 
 double duration(const core::Effect& effect) {
@@ -28,10 +28,10 @@ bool isSplash(const core::Effect& effect) {
   return std::holds_alternative<core::Splash>(effect);
 }
 
-/// A crown leaves with the speed of a fall through so many times the splash's depth, where the pulse is at its
+/// The crown starts with the speed of a fall through this many times the splash's depth, when the pulse is at its
 /// strongest.
 constexpr double kCrownFall = 1.1;
-/// A splash smaller than this many wave cells is a drop; it throws no crown.
+/// A splash smaller than this many wave cells is a drop; it has no crown.
 constexpr double kCrownRadius_cells = 4.0;
 
 shared::EventUniform uniformOf(const core::Splash& splash, double gain, double strength, const EffectStage& stage) {
@@ -46,7 +46,7 @@ shared::EventUniform uniformOf(const core::Splash& splash, double gain, double s
   return u;
 }
 
-/// Where a wave travels to.
+/// Direction of travel, as a unit vector (x, z).
 std::pair<double, double> directionOf(const core::BreakingWave& wave) {
   switch (wave.side) {
     case core::Side::kPlusX:
@@ -78,9 +78,9 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
   u.back_m = static_cast<float>(back_m);
   const bool group = wave.side == core::Side::kDirection;
   u.lateral_m = group ? static_cast<float>(kGroupLateralShare * std::min(stage.side_x_m, stage.side_z_m)) : 0.0f;
-  // A group needs room for the trough behind it, too.
+  // A group also needs room for the trough behind it.
   const double inset_m = kCrestInset * (group ? 1.5 * (front_m + back_m) : back_m);
-  // A group may go any way: it starts as far from the centre as the shorter side allows.
+  // A group may travel in any direction: it starts at a distance from the centre that fits into the shorter side.
   const double side_m = group ? std::min(stage.side_x_m, stage.side_z_m) : dx != 0.0 ? stage.side_x_m : stage.side_z_m;
   u.half_side_m = static_cast<float>(0.5 * side_m);
   u.offset_m = static_cast<float>(-side_m / 2 + std::min(inset_m, 0.4 * side_m) + stage.speed_mps * age_s);
@@ -119,9 +119,9 @@ shared::EventUniforms Effects::advance(double time_s, const EffectStage& stage) 
   shared::EventUniforms out{};
   for (const Active& a : active_) {
     const double age_s = time_s - a.start_s;
-    // What is displaced at once stands for an interval; half a step off would cost the leapfrog its second order. A
-    // crest brings the flow of half a step before with it, so its interval is centred here; a splash brings none, and
-    // the coming step pulls at it for a whole step, so its interval ends here.
+    // The displacement of this step belongs to an interval of time; an error of half a step would cost the leapfrog its
+    // second order. A crest also sets the flow of half a step before, so its interval is centred on this time. A splash
+    // sets no flow, and the coming step acts on it for a whole step, so its interval ends at this time.
     const double ahead_s = isSplash(a.effect) ? 0.0 : stage.dt_s / 2;
     const double gain =
         pulse((age_s + ahead_s) / duration(a.effect)) - pulse((age_s + ahead_s - stage.dt_s) / duration(a.effect));

@@ -12,28 +12,28 @@
 
 namespace spindrift::sim {
 
-/// 0 before the pulse, 1 after it, smooth between (smoothstep; its derivative is a smooth bump). `phase` = time since
-/// the start over the duration.
+/// Returns 0 before the pulse, 1 after it, and a smooth ramp between (smoothstep). `phase`: time since the start over
+/// the duration.
 double pulse(double phase);
 
-/// The water that effects act on: a rectangle round the origin.
+/// The water that effects act on: a rectangle centred on the origin.
 struct EffectStage {
   double side_x_m = 0.0;
   double side_z_m = 0.0;
-  double cell_m = 0.0;     ///< what it resolves
-  double speed_mps = 0.0;  ///< of its long waves, sqrt(g d)
+  double cell_m = 0.0;     ///< smallest length that it resolves
+  double speed_mps = 0.0;  ///< of long waves, sqrt(g d)
   double dt_s = 0.0;       ///< between two calls of advance()
 };
 EffectStage stageOf(const WaveLayout& wave);
 
-/// At most MAX_SPLASHES splashes and MAX_CRESTS crests at a time.
+/// The active effects: at most MAX_SPLASHES splashes and MAX_CRESTS crests.
 class Effects {
  public:
-  /// Starts an effect at time_s. kUnavailable when as many of its kind are active as can be: try again when one has
-  /// ended. `spare`: places that must stay free, so that weather does not crowd out people.
+  /// Starts an effect at time_s. kUnavailable when the most effects of its kind are active: try again when one has
+  /// ended. `spare`: places that must stay free, so that rain and wind leave some for clients.
   core::Result<void> start(const core::Effect& effect, double time_s, std::size_t spare = 0);
 
-  /// What the active effects add at time_s, after a step of dt_s; those that have ended are forgotten.
+  /// Returns what the active effects add at time_s, after a step of dt_s, and removes those that have ended.
   shared::EventUniforms advance(double time_s, const EffectStage& stage);
 
   [[nodiscard]] bool idle() const { return active_.empty(); }

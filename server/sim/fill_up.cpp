@@ -32,7 +32,7 @@ FillUp fillUp(std::span<const std::int64_t> bed_units, std::span<std::int32_t> e
     elevation_units[i] -= static_cast<std::int32_t>(taken);
     if (held > 0) to_take_units -= taken;
   }
-  // What rounding down has left: less than a unit a cell.
+  // Distribute the remainder of the rounding: less than one unit per cell.
   for (std::size_t i = 0; to_take_units > 0; i = (i + 1) % bed_units.size()) {
     if (heldAt(i) <= 0) continue;
     --elevation_units[i];

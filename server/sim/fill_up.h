@@ -1,4 +1,4 @@
-// Water over a bed that has risen, in whole units. Pure functions.
+// Refills cells after the bed has risen, in whole units. Pure functions.
 #pragma once
 
 #include <cstdint>
@@ -6,21 +6,23 @@
 
 namespace spindrift::sim {
 
-/// Still depth [units] as the shaders see it (shaders/wave/water_column.glsl): of the float, cut to whole units.
+/// Still depth [units] as the shaders compute it (shaders/wave/water_column.glsl): the depth as float, cut to whole
+/// units.
 std::int64_t bedUnits(double depth_m);
 
 enum class Lack {
-  kComesFromOutside,  ///< what all cells together lack enters through the open sides
-  kStays,  ///< a closed basin whose water is in its spray: the lowest cells stay below the bed until it falls back
+  kComesFromOutside,  ///< the missing water enters through the open sides
+  kStays,  ///< closed basin with much of its water in spray: the lowest cells stay below the bed until it falls back
 };
 
 struct FillUp {
   bool is_changed = false;
-  std::int64_t from_outside_units = 0;  ///< what the sum of the elevations has grown by
+  std::int64_t from_outside_units = 0;  ///< increase of the sum of the elevations
 };
 
-/// Raises every cell whose elevation lies below its bed up to it (`elevation_units` = -`bed_units`), with water of the
-/// other wet cells in proportion to what they hold. Both are n x n; a cell with a bed of 0 is dry and not looked at.
+/// Raises each cell whose elevation is below its bed to the bed (`elevation_units` = -`bed_units`). The water is taken
+/// from the other wet cells, in proportion to their water. Both spans are n x n; a cell with a bed of 0 is dry and
+/// ignored.
 FillUp fillUp(std::span<const std::int64_t> bed_units, std::span<std::int32_t> elevation_units, Lack lack);
 
 }  // namespace spindrift::sim

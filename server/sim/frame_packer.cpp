@@ -14,7 +14,7 @@ namespace spindrift::sim {
 namespace {
 
 constexpr std::size_t kSlotCount = 4;  ///< one being filled, one in flight, one at the encoder, one spare
-/// How many were packed, how many there are.
+/// Number of packed particles, number of live particles.
 constexpr std::size_t kParticleHeaderWords = 2;
 constexpr std::size_t kWordsPerParticle = 3;
 constexpr std::size_t kWordsPerBoat = 7;
@@ -54,7 +54,7 @@ core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx
 core::Result<void> FramePacker::resize(const Derived& derived) {
   const std::uint32_t particles = derived.particles ? derived.particles->count : 0;
   const core::ReducedCounts reduced_counts = core::reducedCounts(resolution_, particles);
-  // Room for every level at once.
+  // The slot has room for all levels at once.
   std::size_t words = pack_bodies_ ? kBodyWords : 0;
   for (const core::Level level : core::kLevels) {
     const bool is_full = level == core::Level::kFull;
@@ -71,7 +71,7 @@ core::Result<void> FramePacker::resize(const Derived& derived) {
                                      gpu::BufferContent::kScratch));
   create(ring, gpu::ReadbackRing::create(ctx_, "frames", words * 4, kSlotCount));
   if (create.error()) return *create.error();
-  packed.declareDisjointWrites();  // each layer and level has its own part
+  packed.declareDisjointWrites();  // each layer and level writes its own part
   packed_ = std::move(packed);
   ring_ = std::move(ring);
   pending_.clear();
@@ -116,7 +116,7 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, co
     at += kBodyWords;
   }
   if (at == 0) return false;
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);  // the next tick's passes write what was read here
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);  // the next tick's passes write the buffers that were read here
   if (!slot->copyFrom(packed_, 0, at * 4, 0)) return false;
   pending.number = packed_count_++;
   slot->submit(pending.number);
@@ -128,7 +128,7 @@ FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest
                                            std::size_t& at) {
   Places places;
   const auto take = [&at](std::size_t words) { return std::exchange(at, at + words); };
-  // A level that leaves nothing out is the full one.
+  // A level that would not reduce anything is not packed: clients get the full one.
   const bool has_planes = level == core::Level::kFull || indexOf(level) < reduced_counts_.planes;
   const bool has_particles = level == core::Level::kFull || indexOf(level) < reduced_counts_.particles;
   if (parts.wave && wanted.surface && has_planes) {
@@ -167,7 +167,7 @@ void FramePacker::packPlane(gpu::Program& program, std::size_t at, std::uint32_t
 std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const Derived& derived) {
   std::vector<core::FrameView> out;
   for (const auto& slot : ring_->poll()) {
-    // A slot whose fence failed never comes.
+    // A slot whose fence failed is never returned: skip it.
     while (pending_.front().number != slot->tag()) pending_.pop_front();
     const Pending pending = pending_.front();
     pending_.pop_front();
@@ -228,7 +228,7 @@ core::ParticleView FramePacker::particleView(std::span<const std::uint32_t> word
   std::ranges::copy(low, view.min_m);
   std::ranges::copy(high, view.max_m);
   view.max_speed_mps = scene.particles->max_speed_mps;
-  // A part is drawn larger, so that it fills what all of them fill.
+  // The particles of a sample are drawn larger, so that together they fill the same volume.
   const double thinning = view.count > 0 ? std::max(1.0, static_cast<double>(live_count) / view.count) : 1.0;
   view.radius_m = derived.particles->spacing_m / 2 * std::cbrt(thinning);
   view.words = words.subspan(kParticleHeaderWords, std::size_t{view.count} * kWordsPerParticle);

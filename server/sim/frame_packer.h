@@ -1,5 +1,5 @@
-// Frames for the stream: quantized and packed on the device, copied into a readback ring, handed over when the fence
-// says so.
+// Frames for the stream: quantized and packed on the device, copied into a readback ring, returned when the copy's
+// fence has signalled.
 #pragma once
 
 #include <array>
@@ -31,11 +31,11 @@ class FramePacker {
   static core::Result<std::unique_ptr<FramePacker>> create(gpu::Context& ctx, const core::Scene& scene,
                                                            const Derived& derived, const gpu::Defines& defines);
 
-  /// Buffers for another number of particles, the same programs; frames on their way are lost. An error changes
-  /// nothing.
+  /// Replaces the buffers for another number of particles and keeps the programs. Frames in flight are lost. An error
+  /// changes nothing.
   core::Result<void> resize(const Derived& derived);
 
-  /// What there is to pack; parts that are null no frame holds. `population` goes with `particles`.
+  /// The parts to pack from. Frames have no layers of parts that are null. `population` belongs to `particles`.
   struct Parts {
     Wave* wave = nullptr;
     const ParticleBuffers* particles = nullptr;
@@ -43,23 +43,23 @@ class FramePacker {
     SurfaceFoam* foam = nullptr;
     Boats* boats = nullptr;
   };
-  /// False when no frame will come: nothing of what was asked for is there, or every slot is still in use.
+  /// Returns false when there will be no frame: no requested layer exists, or all slots are in use.
   bool pack(std::uint64_t tick, double time_s, const Parts& parts, const FrameRequest& request);
-  /// Frames whose copy has finished, oldest first.
+  /// Returns the frames whose copy has finished, oldest first.
   std::vector<core::FrameView> poll(const core::Scene& scene, const Derived& derived);
-  /// Frames that were packed and that poll() is still to return.
+  /// Number of packed frames that poll() has not yet returned.
   [[nodiscard]] std::size_t inFlightCount() const { return pending_.size(); }
 
  private:
   explicit FramePacker(gpu::Context& ctx) : ctx_(ctx) {}
 
-  /// Where a slot has what, in words; absent parts are nowhere.
+  /// Offsets of the parts in a slot, in words; absent parts have none.
   struct Places {
     std::optional<std::size_t> surface, particles, foam;
   };
-  /// What a submitted slot holds.
+  /// Contents of a submitted slot.
   struct Pending {
-    std::uint64_t number = 0;  ///< the slot's tag: frames in the order of pack()
+    std::uint64_t number = 0;  ///< the slot's tag; increases with each pack()
     std::uint64_t tick = 0;
     double time_s = 0.0;
     double asked_s = 0.0;
@@ -86,7 +86,7 @@ class FramePacker {
   bool has_foam_ = false;
   std::uint32_t particles_ = 0;
   core::ReducedCounts reduced_counts_;
-  gpu::Buffer packed_;  ///< one frame, all its parts one behind the other
+  gpu::Buffer packed_;  ///< one frame, its parts in a row
   gpu::Program pack_surface_, pack_particles_, pack_foam_, pack_bodies_;
   std::unique_ptr<gpu::ReadbackRing> ring_;
   std::deque<Pending> pending_;

@@ -21,7 +21,7 @@ int layersWithin(double s, double H) {
   return static_cast<int>(std::ceil(H / s));
 }
 
-/// Sum of f(r) over the layers low..high (in spacings above the particle's own) of an infinite lattice.
+/// Sum of f(r) over the layers low..high of an infinite lattice, counted in spacings above the particle.
 template <typename F>
 double sumLayers(double s, double H, int low, int high, F f) {
   const int reach = layersWithin(s, H);
@@ -34,7 +34,7 @@ double sumLayers(double s, double H, int low, int high, F f) {
   return sum;
 }
 
-/// Squared horizontal distances from the centre to the points of a square lattice of 2 reach + 1 points along a side.
+/// Squared horizontal distances from the centre to the points of a square lattice with 2 reach + 1 points per side.
 std::vector<double> lateralSquares(double s, int reach) {
   std::vector<double> out;
   for (int z = -reach; z <= reach; ++z) {
@@ -43,8 +43,8 @@ std::vector<double> lateralSquares(double s, int reach) {
   return out;
 }
 
-/// Sum of f(distance, height) over the points of a layer, by height 0 .. H, zero from there on. Linear between 4096
-/// heights: good to 1e-7 of the largest value.
+/// Sum of f(distance, height) over the points of a layer, as a table over heights from 0 to H; zero above H. Linear
+/// between 4096 heights: the error is 1e-7 of the largest value.
 class HeightTable {
  public:
   template <typename F>
@@ -197,7 +197,7 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
   constexpr double kVelocityKeep = 0.98;  // damps the fall within a few dozen steps
   constexpr double kToleranceOfGravity = 1e-3;
   const double dt_s = 0.1 * H / std::sqrt(std::max(water.stiffness_m2ps2, water.gravity_mps2 * H));
-  // What a whole layer at height difference dy gives: summed over its particles once, then looked up.
+  // Contribution of a whole layer at the height difference dy: summed over its particles once, then read from a table.
   const std::vector<double> lateral = lateralSquares(s, layersWithin(s, H));
   const std::vector<double> floor_lateral = lateralSquares(s, water.floor_points / 2);
   const HeightTable density_of(H, lateral, [&](double r, double) { return densityKernel(set, r, H); });
@@ -208,7 +208,7 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
   const HeightTable lattice_push_of(H, floor_lateral, [&](double r, double dy) {
     return r > 0 ? cubicNorm(H) / H * cubicSlope(r / H) * dy / r : 0.0;
   });
-  // The floor's density at a height, and its slope turned round.
+  // The floor's density at a height, and minus its slope.
   const bool is_flat = water.floor_points == 0;
   const auto floor_density_of = [&](double height_m) {
     if (!is_flat) return water.virtual_mass_kg * lattice_density_of(height_m + kVirtualDepthRatio * s);

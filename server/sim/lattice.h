@@ -8,10 +8,10 @@
 
 namespace spindrift::sim {
 
-/// The virtual lattice lies this share of the spacing below the floor: where the next layer would be.
+/// The virtual lattice lies this share of the spacing below the floor, at the place of the next layer.
 inline constexpr double kVirtualDepthRatio = 0.5;
-/// Pressure keeps particles about s/2 above the floor; this share of the spacing is the hard limit for what it did not
-/// stop. Larger values lift still water, smaller ones let particles come close to the virtual ones.
+/// Pressure keeps particles about s/2 above the floor. This share of the spacing is the hard limit for particles that
+/// pressure did not stop. Larger values lift still water; smaller ones let particles come close to the virtual ones.
 inline constexpr double kFloorGapRatio = 0.1;
 
 /// Factors of the shapes in shaders/particles/kernels.glsl, from the support radius H [m].
@@ -24,46 +24,46 @@ double cubicNorm(double H);      ///< 8 / (pi H^3)
 double densityKernel(core::KernelSet set, double r, double H);
 double pressureSlope(core::KernelSet set, double r, double H);
 
-/// Pressure [Pa] from density; k = c0^2. Not clamped. The same as shaders/sph/pressure.glsl.
+/// Pressure [Pa] from density; k = c0^2. Not clamped. Same equation as shaders/sph/pressure.glsl.
 double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double rho_0, double rho);
 
-/// Neighbours of a particle inside a cubic lattice of spacing s, within H, itself not counted.
+/// Number of neighbours within H of a particle inside a cubic lattice of spacing s, without the particle itself.
 double latticeNeighbours(double s, double H);
 
-/// Mass with which the inside of a cubic lattice of spacing s has density rho_0. [kg]
+/// Mass for which the inside of a cubic lattice of spacing s has density rho_0. [kg]
 double calibratedMass(core::KernelSet set, double s, double H, double rho_0);
 
-/// Mass of the virtual particles of a `points` x `points` floor lattice, one spacing under the lowest layer, that
-/// replaces what the layers missing below would have given to its density. [kg]
+/// Mass of the virtual particles of a `points` x `points` floor lattice, one spacing under the lowest layer. Their
+/// density replaces that of the layers missing below the floor. [kg]
 double calibratedVirtualMass(core::KernelSet set, double s, double H, double rho_0, double mass_kg, int points);
 
-/// f(d) = share max(1 - d / reach_m, 0)^2 of the rest density lies beyond a wall at distance d.
+/// Support of a wall: at distance d it adds f(d) = share max(1 - d / reach_m, 0)^2 of the rest density.
 struct WallSupport {
   double share = 0.0;
   double reach_m = 0.0;
 };
 
-/// What makes up for the layers missing beyond a wall half a spacing away: their density, and twice their pressure
+/// Support that replaces the layers missing beyond a wall half a spacing away: their density, and twice their pressure
 /// slope, because a wall has no pressure of its own to add to the particle's.
 WallSupport calibratedWall(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
-/// What a flat floor's viscosity makes up for: Laplacian of the layers missing below the lowest, so that drag(d) = this
-/// times max(1 - d / reach_m, 0)^2. [1/m^2]
+/// Viscosity of a flat floor, drag(d) = result times max(1 - d / reach_m, 0)^2: replaces the Laplacian of the layers
+/// missing below the lowest one. [1/m^2]
 double calibratedFloorDrag(double s, double H, double rho_0, double mass_kg, const WallSupport& wall);
 
-/// Squared gradient of the density constraint rho/rho_0 - 1, summed over the neighbours inside the lattice. [1/m^2]
+/// Squared gradient of the density constraint rho/rho_0 - 1, summed over the neighbours, inside the lattice. [1/m^2]
 double latticeConstraintSlope2(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
-/// Stress of a slightly compressed lattice over the pressure that its density has, from the virial sum m/(3 rho) r
-/// |dW/dr|. Few neighbours sum to less than the integral, 0.95 for Wendland C2 at H = 2 s: dividing the stiffness by it
-/// makes c0^2 (rho - rho_0) the pressure that carries water, and c0 its speed of sound.
+/// Stress of a slightly compressed lattice over the pressure of its density, from the virial sum m/(3 rho) r |dW/dr|.
+/// With few neighbours the sum is less than the integral, 0.95 for Wendland C2 at H = 2 s. The stiffness is divided by
+/// this ratio, so that c0^2 (rho - rho_0) is the pressure that carries water and c0 its speed of sound.
 double latticeStressRatio(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
-/// What is left of that ratio when the lattice has settled into the loose order of resting water, measured in a column
-/// of 20 layers at H = 2 s (`spindrift study --suite accuracy`, hydrostatic column).
+/// The same ratio after the lattice has settled into the loose order of resting water, measured in a column of 20
+/// layers at H = 2 s (`spindrift study --suite accuracy`, hydrostatic column).
 double settledStressRatio(core::KernelSet set);
 
-/// What restingLayers() needs to know of the water.
+/// Input of restingLayers().
 struct RestingWater {
   core::KernelSet kernel_set = core::KernelSet::kWendlandC2;
   double spacing_m = 0.0;
@@ -80,9 +80,10 @@ struct RestingWater {
   bool cohesion = false;
 };
 
-/// Heights above the floor at which the layers of a square lattice rest: pressure, floor and gravity in balance under
-/// the solver's own equations. A lattice that starts elsewhere falls into place and stirs the water for many seconds,
-/// because near the free surface SPH's density is too low to carry anything until the layers have moved closer.
+/// Heights above the floor at which the layers of a square lattice rest: pressure, floor and gravity are in balance
+/// under the solver's own equations. A lattice with other heights falls into place and stirs the water for many
+/// seconds, because SPH underestimates the density near the free surface, so those layers carry nothing until they are
+/// closer.
 std::vector<double> restingLayers(const RestingWater& water, int layers_count);
 
 }  // namespace spindrift::sim

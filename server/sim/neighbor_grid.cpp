@@ -50,7 +50,7 @@ core::Result<void> NeighborGrid::resize(const ParticleLayout& layout) {
 }
 
 void NeighborGrid::build(const ParticleBuffers& particles, const Population& population) {
-  // The pool's words hold the group counts of the next pass beside what this one writes.
+  // One buffer of the pool holds both the group counts of the next pass and the words that this pass writes.
   const auto readers =
       population.pool() ? gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect : gpu::Barrier::kStorageAndTexel;
   const auto next = [&] { ctx_.barrier(readers); };
@@ -64,14 +64,14 @@ void NeighborGrid::build(const ParticleBuffers& particles, const Population& pop
     cell_count_of_.clear();
   }
 
-  // How many particles are in each cell.
+  // Count the particles of each cell.
   particles.position.bindTexel(POSITION);
   cell_count_of_.bindStorage(CELL_COUNT);
   cell_arrival_.bindStorage(CELL_ARRIVAL);
   population.forParticles(count_program_);
   next();
 
-  // Where each cell starts: exclusive prefix sum of the counts.
+  // Compute the start of each cell: exclusive prefix sum of the counts.
   cell_count_of_.bindTexel(CELL_COUNT);
   cell_start_.bindStorage(CELL_START);
   block_total_.bindStorage(BLOCK_TOTAL);
@@ -83,7 +83,7 @@ void NeighborGrid::build(const ParticleBuffers& particles, const Population& pop
   population.forCells(scan_add_);
   next();
 
-  // Particles move to their cells.
+  // Move the particles to their cells.
   cell_arrival_.bindTexel(CELL_ARRIVAL);
   cell_start_.bindTexel(CELL_START);
   cell_member_.bindStorage(CELL_MEMBER);

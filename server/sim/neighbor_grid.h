@@ -1,5 +1,5 @@
-// The uniform grid (thesis 3.6.1): counts, an exclusive prefix sum in three dispatches, and a reordering that makes
-// neighbours contiguous and the order repeatable.
+// The uniform grid (thesis 3.6.1): counts, an exclusive prefix sum in three dispatches, and a reordering after which
+// neighbours are contiguous and the order is reproducible.
 #pragma once
 
 #include <memory>
@@ -19,18 +19,18 @@ class NeighborGrid {
   static core::Result<std::unique_ptr<NeighborGrid>> create(gpu::Context& ctx, const ParticleLayout& layout,
                                                             const gpu::Defines& defines, bool pooled);
 
-  /// Buffers for another layout, the same programs; an error changes nothing.
+  /// Replaces the buffers for another layout and keeps the programs; an error changes nothing.
   core::Result<void> resize(const ParticleLayout& layout);
 
-  /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their order before (in a
-  /// pool by where they are); particles that were absorbed leave. Particles whose position is not finite come last and
-  /// are in no cell. In a cell of more than ORDERED_MAX particles (grid_hash.glsl) the order does not repeat.
+  /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their previous order (in
+  /// a pool by position). Absorbed particles are dropped. Particles whose position is not finite come last and are in
+  /// no cell. In a cell of more than ORDERED_MAX particles (grid_hash.glsl) the order is not reproducible.
   void build(const ParticleBuffers& particles, const Population& population);
 
-  /// First particle of each cell, cell_count + 1 entries.
+  /// Index of the first particle of each cell, cell_count + 1 entries.
   [[nodiscard]] const gpu::TexelBuffer& cellStart() const { return cell_start_; }
-  /// Two words, grid/candidates.glsl: particles, summed over the substeps since creation, that had more neighbour
-  /// candidates than they looked at, modulo 2^32. build() binds it for the passes that count.
+  /// Two words, see grid/candidates.glsl: number of particles, summed over the substeps since creation, with more
+  /// neighbour candidates than the search limit, modulo 2^32. build() binds it for the passes that count.
   [[nodiscard]] const gpu::TexelBuffer& crowded() const { return crowded_; }
 
  private:

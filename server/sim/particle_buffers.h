@@ -1,4 +1,4 @@
-// The particles' state on the device; see shaders/shared/bindings.h for the layout of each.
+// Particle state on the device; shaders/shared/bindings.h has the layout of each buffer.
 #pragma once
 
 #include <spindrift/core/result.h>
@@ -9,8 +9,8 @@
 
 namespace spindrift::sim {
 
-/// Between steps only `position` and `velocity` carry meaning, and density in `acceleration.w`; the rest is rebuilt in
-/// each.
+/// Between steps only `position`, `velocity` and the density in `acceleration.w` are valid; each step computes the
+/// rest.
 struct ParticleBuffers {
   gpu::TexelBuffer position, velocity;
   gpu::TexelBuffer sorted_position, sorted_velocity;

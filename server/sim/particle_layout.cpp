@@ -15,15 +15,16 @@ using core::Boundary;
 using core::Error;
 using core::ErrorCode;
 
-/// Softness of the position-based constraint over its squared gradient inside the lattice: 0 makes lone pairs jump, 1
-/// halves every correction.
+/// Softness of the position-based constraint over its squared gradient inside the lattice: with 0 pairs of particles
+/// jump, 1 halves every correction.
 constexpr double kConstraintSoftness = 0.05;
-/// A droplet is spread over 25 cells or more, at most 14 % on one; more than this and a single one would bare the
-/// ground.
+/// Upper bound of a droplet's height over the depth. A droplet is spread over 25 cells or more, at most 14 % on one; a
+/// larger one alone could leave the ground dry.
 constexpr double kMaxDropletHeight = 2.0;
-/// Standard deviation of a droplet's spread: at least this share of its size s, so that one that lands does not make
-/// cells rise fast enough to break and throw the next; and at least this share of sqrt(s d), so that many small ones do
-/// not. Found with splashes on 192 to 768 cells: 0.42 s ran away, as did 0.14 sqrt(s d); 0.17 threw a third too much.
+/// Standard deviation of a droplet's spread: at least this share of its size s, because otherwise a landing droplet
+/// raises cells fast enough to break and emit the next one; and at least the share below of sqrt(s d), for the same
+/// effect of many small ones. Found with splashes on 192 to 768 cells: 0.42 s and 0.14 sqrt(s d) ran away; 0.17 emitted
+/// a third too much.
 constexpr double kSplatWidthRatio = 0.75;
 constexpr double kSplatDepthRatio = 0.2;
 constexpr std::uint32_t kMaxSplatReach = 8;
@@ -48,7 +49,8 @@ core::Result<void> countCells(ParticleLayout& out) {
   return {};
 }
 
-/// Two-way: particles of a given volume anywhere over the water, none at the start. Sides are the wave's.
+/// Layout of a two-way scene: particles of a given volume anywhere over the water, none at the start. It has the wave's
+/// sides.
 core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
@@ -57,12 +59,12 @@ core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   out.spacing_m = scene.coupling->droplet_spacing_m;
   out.support_radius_m = p.support_ratio * out.spacing_m;
   if (isPeriodicX(*scene.wave) || isPeriodicZ(*scene.wave)) {
-    // The grid's cells have edge H and must tile a periodic side exactly.
+    // The grid's cells have edge H, and a whole number of them must span a periodic side.
     out.support_radius_m = side_m / std::max(std::floor(side_m / out.support_radius_m + 1e-9), 3.0);
   }
   out.neighbours_count = latticeNeighbours(out.spacing_m, out.support_radius_m);
   out.mass_kg = calibratedMass(p.kernel_set, out.spacing_m, out.support_radius_m, p.rest_density_kgpm3);
-  // Walls do not support spray: a share of 0 over any reach.
+  // Walls do not support spray: share 0, any reach.
   out.wall_reach_m = out.support_radius_m;
   out.constraint_softness_pm2 =
       kConstraintSoftness *
@@ -92,7 +94,7 @@ core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   return out;
 }
 
-/// The support radius: whole cells of it must tile every periodic side.
+/// Support radius H: each periodic side must be a whole number of support radii.
 core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, double side_x_m, double side_z_m,
                                    std::uint32_t layers_count) {
   const core::ParticleScene& p = *scene.particles;
@@ -109,7 +111,7 @@ core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, d
         p.count, layers_count, cells, wanted_m, shorter_m));
   }
   if (!along_x || !along_z || side_x_m == side_z_m) return shorter_m / cells;
-  // Two periodic sides of different length: the coarsest tiling of both that widens the support by at most a fifth.
+  // Two periodic sides of different length: the coarsest cells that tile both and widen the support by at most a fifth.
   const double ratio = std::max(side_x_m, side_z_m) / shorter_m;
   for (double k = cells; k >= 3 && shorter_m / k <= 1.2 * wanted_m; --k) {
     if (std::abs(k * ratio - std::round(k * ratio)) < 1e-6) return shorter_m / k;
@@ -120,7 +122,7 @@ core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, d
                   "use a width in a simple ratio to the length, another count, or walls",
                   wanted_m, 1.2 * wanted_m, side_x_m, side_z_m));
 }
-/// A box that is periodic in y has no place for what needs an up and a down.
+/// A box that is periodic in y refuses everything that needs an up and a down.
 core::Result<void> checkVerticalPeriod(const core::Scene& scene) {
   const core::ParticleScene& p = *scene.particles;
   if (!p.periodic_y) {
@@ -140,7 +142,7 @@ core::Result<void> checkVerticalPeriod(const core::Scene& scene) {
 
 }  // namespace
 
-/// k of the equation of state, such that the stress of settled water is c0^2 (rho - rho0).
+/// k of the equation of state, for which the stress of settled water is c0^2 (rho - rho0).
 double stiffnessOf(const core::ParticleScene& p, const ParticleLayout& layout) {
   const double lattice_ratio =
       latticeStressRatio(p.kernel_set, layout.spacing_m, layout.support_radius_m, p.rest_density_kgpm3, layout.mass_kg);
@@ -184,7 +186,7 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   out.floor_drag_pm2 = calibratedFloorDrag(s, H, p.rest_density_kgpm3, out.mass_kg, wall);
   out.constraint_softness_pm2 =
       kConstraintSoftness * latticeConstraintSlope2(p.kernel_set, s, H, p.rest_density_kgpm3, out.mass_kg);
-  // Position-based water has no stiffness; its layers rest as those of a water that gives way by a hundredth.
+  // Position-based water has no stiffness; its layers rest like those of water that is compressed by 1 %.
   const bool is_position_based = p.solver == core::PressureSolver::kPositionBased;
   const double stiffness = is_position_based ? 100 * scene.gravity_mps2 * s * out.layers_count : stiffnessOf(p, out);
   out.layer_heights_m =
@@ -208,8 +210,8 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
         "would meet its own images across the periodic height: use at least {:.0f}",
         out.layers_count, s, H, std::ceil(2 * H / s - 1e-9)));
   }
-  // A dam's column stands free on one side: it starts at rest density, without the pressure that its neighbours would
-  // hold, or its side would burst. Nothing weighs on the layers of a box without surface.
+  // A dam's column is free on one side: it starts at rest density, because with the pressure of water between walls its
+  // free side would burst. The layers of a box without a surface carry no weight.
   if (p.periodic_y || p.fill_x_ratio < 1 || p.fill_z_ratio < 1) {
     for (std::size_t k = 0; k < out.layer_heights_m.size(); ++k)
       out.layer_heights_m[k] = (static_cast<double>(k) + 0.5) * s;
@@ -217,7 +219,7 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   out.band_m = out.layer_heights_m.back() + s / 2;
   const double centre_x = scene.wave ? p.patch_shift_x_m : 0.0;
   const double centre_z = scene.wave ? p.patch_shift_z_m : 0.0;
-  // Below the band the floor can sink as far as the water is deep.
+  // Below the band the floor can be as low as the water is deep.
   const double lowest_m = -out.band_m - (scene.coupling ? scene.wave->depth_m : 0.0);
   out.min_m = {centre_x - side_x_m / 2, lowest_m, centre_z - side_z_m / 2};
   out.max_m = {centre_x + side_x_m / 2, p.periodic_y ? 0.0 : p.headroom_m, centre_z + side_z_m / 2};

@@ -1,6 +1,6 @@
-// The particles of a two-way scene: water that broke. Emission, and how many there are; they return to the water in
-// sph/integrate.comp. All counts live on the device, passes over the particles are dispatched from there, and calm
-// water dispatches nothing but one invocation.
+// The particles of a two-way scene: water that broke. The pool plans emission and counts particles; sph/integrate.comp
+// returns them to the water. All counts are on the device, and passes over the particles are dispatched indirectly, so
+// calm water costs one invocation.
 #pragma once
 
 #include <memory>
@@ -22,13 +22,13 @@ class ParticlePool {
                                                             const gpu::Defines& defines);
 
   void clear() { words_.clear(); }
-  /// Plans the dispatches of a substep: emission of what Breakers::update() counted, passes over the particles there
-  /// are.
+  /// Plans the dispatches of a substep: emission from the cells that Breakers::update() counted, passes over the live
+  /// particles.
   void plan();
-  /// Emits, after plan().
+  /// Emits particles; call it after plan().
   void emit(const ParticleBuffers& particles, Wave& wave, const gpu::TexelBuffer& breaking, std::uint32_t tick);
 
-  /// POOL_WORDS words, shaders/shared/pool.h.
+  /// POOL_WORDS words, see shaders/shared/pool.h.
   [[nodiscard]] gpu::TexelBuffer& words() { return words_; }
   [[nodiscard]] const gpu::TexelBuffer& words() const { return words_; }
   /// Cells that emit in this tick.
@@ -42,18 +42,18 @@ class ParticlePool {
   gpu::Program plan_, emit_;
 };
 
-/// Whom a pass over particles, grid cells or scan blocks is for: a fixed number, or what the pool says.
+/// Sizes of the dispatches over particles, grid cells and scan blocks: fixed numbers, or the counts of the pool.
 class Population {
  public:
   Population(std::uint32_t count, std::uint32_t cell_count, const ParticlePool* pool)
       : count_(count), cell_count_(cell_count), pool_(pool) {}
 
   void forParticles(gpu::Program& program) const;
-  /// cell_count + 1, or fewer invocations that loop over them: at most MAX_GROUPS groups.
+  /// Covers cell_count + 1 invocations, or fewer that loop over them: at most MAX_GROUPS groups.
   void forCells(gpu::Program& program) const;
-  void forScanBlocks(gpu::Program& program) const;  ///< groups that cover cell_count + 1
+  void forScanBlocks(gpu::Program& program) const;  ///< covers cell_count + 1
   void forOneGroup(gpu::Program& program) const;
-  /// Makes the counts visible to the passes. Nothing without a pool.
+  /// Makes the counts visible to the passes. Does nothing without a pool.
   void bind() const;
   [[nodiscard]] const ParticlePool* pool() const { return pool_; }
 

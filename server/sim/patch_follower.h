@@ -1,5 +1,5 @@
-// Moves the particle patch of a one-way scene to the newest splash, or along with the first boat (thesis 3.6.4: the
-// patch is placed by shift and scale).
+// Moves the particle patch of a one-way scene to the newest splash, or with the first boat (thesis 3.6.4: shift and
+// scale place the patch).
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ class PatchFollower {
   static core::Result<std::unique_ptr<PatchFollower>> create(gpu::Context& ctx, const core::Scene& scene,
                                                              const gpu::Defines& defines);
 
-  /// Where the next event is; the patch goes there with the next move().
+  /// Sets the place of the next event; the next move() moves the patch there.
   void goTo(double x_m, double z_m);
   /// Rewrites the patch in `sim_uniforms`. `boats` may be null.
   void move(const gpu::Buffer& sim_uniforms, const Boats* boats);

@@ -30,7 +30,7 @@ void PositionBased::project(const ParticleBuffers& particles, const Population& 
                             std::uint32_t iterations_count) {
   population.bind();
   for (std::uint32_t k = 0; k < iterations_count; ++k) {
-    // The first iteration starts from the predicted positions, each later one from what the one before wrote.
+    // The first iteration reads the predicted positions, each later one the result of the one before.
     const gpu::TexelBuffer& iterate = k == 0 ? particles.sorted_position : particles.motion_point;
     iterate.bindTexel(SORTED_POSITION);
     particles.pressure_point.bindStorage(PRESSURE_POINT);
@@ -58,7 +58,7 @@ void PositionBased::finish(const ParticleBuffers& particles, const Population& p
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   population.forParticles(finish_);
-  // Absorbed particles are counted beside the group counts of the next pass.
+  // One buffer holds both the count of absorbed particles and the group counts of the next pass.
   ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
 }
 

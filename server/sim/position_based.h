@@ -1,5 +1,5 @@
-// Position-based fluids (Macklin & Mueller 2013): positions are moved until the density is right. No speed of sound, so
-// steps are bound by the particles' own speed alone.
+// Position-based fluids (Macklin & Mueller 2013): positions are moved until the density is right. There is no speed of
+// sound, so only the particles' own speed limits the step.
 #pragma once
 
 #include <memory>
@@ -17,10 +17,10 @@ class PositionBased {
  public:
   static core::Result<std::unique_ptr<PositionBased>> create(gpu::Context& ctx, const gpu::Defines& defines);
 
-  /// Before NeighborGrid::build(): position and velocity become the predicted ones. In coupled scenes with the surface
-  /// bound, like the rest.
+  /// Call it before NeighborGrid::build(): replaces position and velocity by the predicted ones. Coupled scenes need
+  /// the surface bound, here and in the functions below.
   void predict(const ParticleBuffers& particles, const Population& population);
-  // After it, in this order, with CELL_START bound.
+  // Call these after build(), in this order, with CELL_START bound.
   void project(const ParticleBuffers& particles, const Population& population, std::uint32_t iterations_count);
   void finish(const ParticleBuffers& particles, const Population& population);
 

@@ -9,20 +9,20 @@ namespace {
 using core::Error;
 using core::ErrorCode;
 
-/// What a fresh start of the scene looks like; an error where the running room cannot become that.
+/// Derives the values of the changed scene as for a fresh start; an error if the running room cannot take the change.
 core::Result<Derived> checkChange(const core::Scene& scene, const SceneBasis& basis) {
   auto fresh = derive(scene);
   if (!fresh) return fresh;
   const bool relays = asksForOtherCount(basis.scene, scene);
   if (relays && isTwoWay(basis.scene)) {
-    // A pool's places are counted on the device and do not move.
+    // The device counts the slots of a pool, and their number is fixed.
     return Error{ErrorCode::kInvalidInput,
                  "particles.count: cannot change while a two-way scene runs, where it is the size of the particle "
                  "pool; start the "
                  "room again with the changed scene"};
   }
-  // Compared with a fresh start of the scene as it was, but for the number of particles: the running layout may be one
-  // that no fresh start has.
+  // Compare with a fresh start of the scene before the change, except for the number of particles: no fresh start may
+  // give the running layout.
   core::Scene comparable = basis.scene;
   if (relays) comparable.particles->count = scene.particles->count;
   const auto before = derive(comparable);
@@ -42,7 +42,7 @@ core::Result<PreparedScene> prepareScene(const core::Scene& scene, const SceneBa
   PreparedScene out;
   out.scene = scene;
   out.revision = basis.revision;
-  // Water that is taken away takes its motion with it; water that is added is at rest.
+  // Removed water takes its flow with it; added water is at rest.
   if (scene.wave && scene.wave->depth_m < basis.scene.wave->depth_m)
     out.flow_ratio = scene.wave->depth_m / basis.scene.wave->depth_m;
   if (!asksForOtherCount(basis.scene, scene)) {

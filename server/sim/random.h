@@ -1,4 +1,5 @@
-// SplitMix64 (Steele, Lea & Flood 2014): small, seedable, the same everywhere, which <random>'s distributions are not.
+// SplitMix64 (Steele, Lea & Flood 2014): small, seedable, and the same on every platform, unlike the distributions of
+// <random>.
 #pragma once
 
 #include <cstdint>

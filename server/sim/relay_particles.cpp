@@ -11,7 +11,7 @@
 namespace spindrift::sim {
 namespace {
 
-/// W(q) of a kernel set over W(0): a weighted mean needs no norm.
+/// W(q) over W(0) of a kernel set; a weighted mean needs no norm.
 double weightOf(core::KernelSet set, double q) {
   const double u = 1 - q;
   if (set == core::KernelSet::kMuller) {
@@ -22,8 +22,8 @@ double weightOf(core::KernelSet set, double q) {
   return u * u * u * u * (4 * q + 1);
 }
 
-/// The old particles in the order of their cells, y fastest as in shaders/grid/grid_hash.glsl, so that the
-/// neighbours in a column of cells are one run.
+/// The old particles in the order of their cells, y fastest as in shaders/grid/grid_hash.glsl, so that the neighbours
+/// in a column of cells are contiguous.
 class OldParticles {
  public:
   OldParticles(const core::Scene& scene, const ParticleLayout& layout, const StateCopy& state)
@@ -65,7 +65,7 @@ class OldParticles {
         if (!wrap(cell, at)) continue;
         const std::size_t first = start_[flat(cell)];
         const std::size_t last = start_[flat({cell[0], high_y, cell[2]}) + 1];
-        // As the device's search: a pile-up must not cost the square of its number.
+        // As in the device's search: a pile of particles must not cost the square of its number.
         const std::size_t stop = std::min(last, first + kMaxCandidates);
         for (std::size_t k = first; k < stop; ++k) {
           const Member& m = member_[k];
@@ -106,7 +106,7 @@ class OldParticles {
            layout_.cells[1] *
                (static_cast<std::size_t>(cell[0]) + layout_.cells[0] * static_cast<std::size_t>(cell[2]));
   }
-  /// Brings a neighbouring column round a periodic side, and the place with it; false outside of the domain.
+  /// Wraps a neighbouring column, and the place with it, around periodic sides; false outside the domain.
   bool wrap(std::array<int, 3>& cell, std::array<float, 3>& at_m) const {
     for (const std::size_t axis : {0u, 2u}) {
       const int cells = static_cast<int>(layout_.cells[axis]);

@@ -1,4 +1,4 @@
-// Another number of particles for water in motion: a fresh lattice in place of the old particles, with their motion.
+// Lays out another number of particles in moving water: a new lattice that takes over the motion of the old particles.
 #pragma once
 
 #include <spindrift/core/scene.h>
@@ -7,10 +7,10 @@
 
 namespace spindrift::sim {
 
-/// The lattice of `after`, in coupled scenes lifted with the surface as it is in `state`. Velocity and foam are the
-/// Shepard mean of the old particles within their support radius (sum of W v over sum of W, with the old kernel), zero
-/// where there were none: no faster than the fastest, no kinetic energy beyond the old one's of the same mass. Values
-/// that are not finite are left out. O(count).
+/// Returns the lattice of `after`; in coupled scenes it is lifted with the surface of `state`. Velocity and foam are
+/// the Shepard mean of the old particles within their support radius (sum of W v over sum of W, with the old kernel),
+/// zero where there are none: so no particle is faster than the fastest old one, and the kinetic energy of the same
+/// mass does not grow. Values that are not finite are left out. O(count).
 RelaidParticles relayParticles(const core::Scene& scene, const Derived& before, const StateCopy& state,
                                const ParticleLayout& after);
 

@@ -9,7 +9,7 @@ namespace {
 
 using core::WaveBoundary;
 
-/// As shaders/particles/kernels.glsl numbers them.
+/// Number of a kernel set in shaders/particles/kernels.glsl.
 int kernelSetNumber(core::KernelSet set) {
   switch (set) {
     case core::KernelSet::kMuller:
@@ -90,7 +90,7 @@ bool asksForOtherCount(const core::Scene& before, const core::Scene& after) {
 gpu::Defines shaderDefines(const core::Scene& scene) {
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
   const bool has_particles = scene.particles.has_value();
-  // The particles of a two-way scene are all over the water, and its sides are theirs.
+  // The particles of a two-way scene can be anywhere over the water and have the wave's sides.
   const bool periodic_x = isTwoWay(scene) ? isPeriodicX(*scene.wave)
                                           : has_particles && scene.particles->boundary_x == core::Boundary::kPeriodic;
   const bool periodic_z = isTwoWay(scene) ? isPeriodicZ(*scene.wave)

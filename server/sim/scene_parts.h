@@ -1,4 +1,4 @@
-// Which parts a scene has, and the defines that specialise its shaders: only what is present is compiled.
+// The parts that a scene has, and the defines that specialise its shaders: only present parts are compiled.
 #pragma once
 
 #include <spindrift/core/scene.h>
@@ -6,12 +6,12 @@
 
 namespace spindrift::sim {
 
-/// Whether shaders need tables: the bed or the sides differ from a flat basin with periodic sides, or with walls under
-/// the 5-point stencil.
+/// Returns whether shaders need tables: the bed or the sides differ from a flat basin with periodic sides, or with
+/// walls under the 5-point stencil.
 bool isVaried(const core::Scene& scene);
-/// Whether water can leave: a side absorbs.
+/// Returns whether water can leave: a side absorbs.
 bool isOpen(const core::Scene& scene);
-/// Whether particles or boats look at the surface.
+/// Returns whether particles or boats read the surface.
 bool isSampled(const core::Scene& scene);
 bool isTwoWay(const core::Scene& scene);
 /// Returns whether the surface has external pressure: from hulls or falling particles.
@@ -22,15 +22,15 @@ bool hasSurfaceFoam(const core::Scene& scene);
 bool isPeriodicX(const core::WaveScene& wave);
 bool isPeriodicZ(const core::WaveScene& wave);
 
-/// Whether few neighbours make foam in this scene; the weakly compressible solver then keeps what its density pass
-/// counted in one more buffer.
+/// Returns whether particles with few neighbours become foam; the weakly compressible solver then stores the neighbour
+/// count of its density pass in one more buffer.
 bool countsNeighbours(const core::Scene& scene);
 bool storesFoamSource(const core::Scene& scene);
 
-/// What the patch follows, as shaders/coupling/follow.comp numbers it; 0 = nothing.
+/// Number of what the patch follows, see shaders/coupling/follow.comp; 0 = nothing.
 int followNumber(const core::Scene& scene);
 
-/// Whether a change of a scene with particles wants another number of them.
+/// Returns whether a change of a scene with particles changes their number.
 bool asksForOtherCount(const core::Scene& before, const core::Scene& after);
 
 gpu::Defines shaderDefines(const core::Scene& scene);

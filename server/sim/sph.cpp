@@ -44,7 +44,7 @@ void Sph::integrate(const ParticleBuffers& particles, const Population& populati
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
   population.forParticles(integrate_);
-  // Absorbed particles are counted beside the group counts of the next pass.
+  // One buffer holds both the count of absorbed particles and the group counts of the next pass.
   ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
 }
 

@@ -16,7 +16,7 @@ class Sph {
  public:
   static core::Result<std::unique_ptr<Sph>> create(gpu::Context& ctx, const gpu::Defines& defines);
 
-  // In this order, after NeighborGrid::build(), with CELL_START and (in coupled scenes) the surface bound.
+  // Call these in this order, after NeighborGrid::build(), with CELL_START and (in coupled scenes) the surface bound.
   void density(const ParticleBuffers& particles, const Population& population);
   void forces(const ParticleBuffers& particles, const Population& population);
   void integrate(const ParticleBuffers& particles, const Population& population);

@@ -13,14 +13,14 @@ double chooseThree(int x) {
   return x < 3 ? 0.0 : x * (x - 1.0) * (x - 2.0) / 6.0;
 }
 
-/// As splatWeight() of shaders/coupling/splat.glsl.
+/// The same as splatWeight() of shaders/coupling/splat.glsl.
 double weight(int offset, int reach) {
   const int k = 2 * reach - std::abs(offset);
   if (k < 0) return 0.0;
   return (chooseThree(k + 3) - 4 * chooseThree(k + 2 - reach)) / std::pow(reach + 1.0, 4);
 }
 
-/// Largest sum of weights on one axis if each block of `block` cells holds one particle, wherever in it.
+/// Largest sum of weights on one axis if each block of `block` cells holds one particle, at any place in it.
 double largestSum(int reach, int block) {
   double largest = 0.0;
   for (int shift = 0; shift < block; ++shift) {

@@ -1,4 +1,4 @@
-// Where particles start: a lattice at rest density, with a little seeded jitter.
+// Starting positions of the particles: a lattice at rest density, with a little seeded jitter.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace spindrift::sim {
 
-/// 4 floats a particle: position [m] and id, layer by layer from below. The same on every machine for a seed.
+/// 4 floats per particle: position [m] and id, layer by layer from below. The same on every machine for a given seed.
 std::vector<float> startingPositions(const core::Scene& scene, const ParticleLayout& layout);
 
-/// The same after `settle_s` in which nothing happens and the particles lose their speed three times a second: a
-/// lattice is no rest state of the solver, and slides into a looser order with all the energy that it has to spare.
+/// The same after `settle_s` without events, in which three times per second all speeds are set to zero: a lattice is
+/// not the solver's state of rest, and releases its surplus energy when it slides into a looser order.
 core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core::Scene& scene);
 
 }  // namespace spindrift::sim

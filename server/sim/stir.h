@@ -1,4 +1,4 @@
-// Effects in a scene of particles alone: they move the particles themselves. See shaders/sph/stir.comp.
+// Effects in a scene without a wave: they move the particles themselves. See shaders/sph/stir.comp.
 #pragma once
 
 #include <memory>
@@ -20,10 +20,10 @@ class Stir {
  public:
   static core::Result<std::unique_ptr<Stir>> create(gpu::Context& ctx, const gpu::Defines& defines);
 
-  /// Adds a tick's share of the effects to positions and velocities; nothing where no effect acts.
+  /// Adds the effects of one tick to positions and velocities; does nothing without an active effect.
   void apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population);
 
-  /// What effects are measured by where there is no wave: the particles' box, and long waves on their resting depth.
+  /// The stage of effects in a scene without a wave: the particles' box, and long waves on its resting depth.
   static EffectStage stage(const core::Scene& scene, const Derived& derived);
 
  private:

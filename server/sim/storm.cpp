@@ -10,11 +10,12 @@
 namespace spindrift::sim {
 namespace {
 
-/// A drop's dent is as wide as the wave grid can show without ringing.
+/// The dent of a drop is as wide as the wave grid can represent without ringing.
 constexpr double kDropRadius_cells = 2.5;
 constexpr double kDropDuration_s = 0.08;
 constexpr double kDropDepthShare = 0.1;  ///< of the water's depth, at most
-/// Wind waves: one group each so many seconds at full storm, this long, spread about the wind.
+/// Wind waves at full storm: mean interval of the groups, their length, and the spread of their direction about the
+/// wind.
 constexpr double kGroupInterval_s = 1.6;
 constexpr double kGroupLengthShare = 0.09;  ///< of the side of the water
 constexpr double kGroupSpread_deg = 25.0;

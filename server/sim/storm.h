@@ -11,12 +11,12 @@
 
 namespace spindrift::sim {
 
-/// Places among the splashes and waves that rain and wind leave free for people.
+/// Places for splashes and waves that rain and wind leave free for clients.
 inline constexpr std::size_t kSpareSplashes = 32;
 inline constexpr std::size_t kSpareCrests = 8;
 
-/// Effects that start in tick `tick` (counted from the scene's start), drops first. At most as many as there are
-/// places.
+/// Returns the effects that start in tick `tick` (counted from the scene's start), drops first. At most as many as
+/// there are places.
 std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayout& wave, std::uint64_t tick,
                                        double tick_s);
 

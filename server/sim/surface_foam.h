@@ -1,4 +1,4 @@
-// White water on the surface: (n/2)^2 samples, once a tick. See shaders/foam/advance.comp.
+// White water on the surface: (n/2)^2 samples, once per tick. See shaders/foam/advance.comp.
 #pragma once
 
 #include <memory>
@@ -23,9 +23,9 @@ class SurfaceFoam {
   void clear();
   /// `boats` may be null.
   void advance(const Wave& wave, Breakers& breakers, const Boats* boats);
-  /// Where absorbed particles are counted; null outside two-way scenes.
+  /// Counts of absorbed particles per sample; null except in two-way scenes.
   [[nodiscard]] const gpu::TexelBuffer* landed() const { return has_landings_ ? &landed_ : nullptr; }
-  /// Shares of white by source: breaking, wake, landing, 0.
+  /// Shares of white water by source: breaking, wake, landing, 0.
   [[nodiscard]] gpu::TexelBuffer& field() { return now_; }
 
  private:

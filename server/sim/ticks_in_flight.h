@@ -1,4 +1,4 @@
-// How far the host may run ahead of the device.
+// Bounds how far the host may run ahead of the device.
 #pragma once
 
 #include <chrono>
@@ -12,23 +12,23 @@
 
 namespace spindrift::sim {
 
-/// One fence per submitted tick. Without a bound a device that is slower than real time collects ticks without end:
-/// frames grow older and older, health arrives too late to act on, and the time that a step takes on the host says
-/// nothing about the device.
+/// One fence per submitted tick. Without a bound, a device that is slower than real time would collect ticks without
+/// limit: frames would grow older, health would arrive too late to act on, and the duration of a step on the host would
+/// not show how slow the device is.
 class TicksInFlight {
  public:
-  /// Ticks that may be submitted and not done. Two keep a device busy while the host prepares the next; the third
-  /// covers a host that is late once.
+  /// Largest number of submitted, unfinished ticks. Two keep a device busy while the host prepares the next; the third
+  /// covers a delay of the host.
   static constexpr std::size_t kMaxCount = 3;
-  /// A tick that takes longer than this is taken for a hang. Drivers reset a device after 2 to 10 s.
+  /// A tick that takes longer than this counts as a hang. Drivers reset a device after 2 to 10 s.
   static constexpr std::chrono::seconds kPatience{10};
 
   explicit TicksInFlight(gpu::Context& ctx) : ctx_(ctx) {}
 
-  /// Waits until fewer than kMaxCount ticks are in flight. Error kInternal when the oldest is not done after kPatience,
-  /// or the driver cannot tell; it says which tick.
+  /// Waits until fewer than kMaxCount ticks are in flight. kInternal when the oldest tick has not finished after
+  /// kPatience, or when the driver reports an error; the message names the tick.
   core::Result<void> waitForRoom();
-  /// The tick has been submitted, all of it.
+  /// Call it after all work of the tick has been submitted.
   void submitted(std::uint64_t tick);
   [[nodiscard]] std::size_t count() const { return ticks_.size(); }
 

@@ -15,14 +15,14 @@ void WaterSim::step() {
   parts_->uniforms.bindUniform(SIM_UNIFORMS);  // rooms share the context
   watchHealth();
   startEvents();
-  // The surface, its breakers and the boats move once a tick; the wave divides it by its own bound.
+  // The surface, its breakers and the boats advance once per tick; the wave divides the tick by its own step-size rule.
   advanceWave();
   stirParticles();
   sampleSurface();
   breakWaves();
   moveBoats();
   movePatch();
-  // Particles take as many substeps as their bounds ask for.
+  // Particles take as many substeps as their step-size rules require.
   for (std::uint32_t substep = 0; parts_->particles && substep < derived_.substeps_count; ++substep) {
     emitParticles(substep);
     leadSurface(substep);
@@ -45,7 +45,7 @@ void WaterSim::advanceWave() {
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr,
                           parts_->effects.advance(end_s, stageOf(*derived_.wave)));
   }
-  parts_->wave->clearPressure();  // hulls and falling particles press anew for the next tick
+  parts_->wave->clearPressure();  // hulls and falling particles set it again for the next tick
 }
 
 void WaterSim::stirParticles() {
@@ -218,8 +218,8 @@ core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
   return {};
 }
 
-/// Whatever depends on the number of particles, made anew; programs stay. After an error the particles are the old ones
-/// and other parts may be of either size: resize them back.
+/// Replaces everything whose size depends on the number of particles; programs stay. After an error the particles are
+/// the old ones, and other parts may have either size: call resizeBack().
 core::Result<void> WaterSim::Parts::resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived) {
   auto fresh = ParticleBuffers::create(ctx, derived.particles->count, storesFoamSource(scene));
   if (!fresh) return fresh.error();

@@ -1,4 +1,4 @@
-// WaterSim: what people and scenes ask of it.
+// WaterSim: commands of clients and events of the scene.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 using core::Error;
 using core::ErrorCode;
 
-/// A splash reaches at most this share of the way to the ground.
+/// Largest depth of a splash, as a share of the water's depth.
 constexpr double kLargestDepthShare = 0.9;
 
 }  // namespace
@@ -64,7 +64,7 @@ std::uint32_t WaterSim::particleCount() const {
 void WaterSim::startEvents() {
   if (scene_.storm) {
     for (const core::Effect& effect : stormEffects(scene_, *derived_.wave, tick_ - start_tick_, derived_.tick_s)) {
-      // Weather gives way to people: a drop that finds no place does not fall.
+      // Effects of clients have priority: a drop without a free place is dropped.
       (void)parts_->effects.start(effect, time_s(),
                                   std::holds_alternative<core::Splash>(effect) ? kSpareSplashes : kSpareCrests);
     }
@@ -77,7 +77,7 @@ void WaterSim::startEvents() {
     const double due_s = event.at_s + repeats * event.every_s;
     if (due_s < from_s - 1e-9 || due_s >= to_s - 1e-9) continue;
     core::Effect effect = event.effect;
-    // The scene was checked with the depth it began with; an effect shrinks with water that was made shallower since.
+    // The scene's events were checked for its first depth; reduce them if the water has become shallower.
     if (auto* splash = std::get_if<core::Splash>(&effect); splash && scene_.wave) {
       splash->depth_m = std::min(splash->depth_m, kLargestDepthShare * scene_.wave->depth_m);
     }

@@ -1,4 +1,4 @@
-// What a WaterSim is made of. For its own source files only.
+// The parts of a WaterSim. Only for its own source files.
 #pragma once
 
 #include <memory>
@@ -27,7 +27,7 @@
 
 namespace spindrift::sim {
 
-/// What the tables of a basin (basin.h) follow from.
+/// The scene values from which the tables of a basin (basin.h) are computed.
 struct BasinInputs {
   BasinInputs(const core::Scene& scene, const WaveLayout& layout);
   bool operator==(const BasinInputs&) const = default;
@@ -38,7 +38,7 @@ struct BasinInputs {
   std::vector<core::Beach> beaches;
 };
 
-/// What the scene named, and nothing else.
+/// The parts that the scene names; all others are null.
 struct WaterSim::Parts {
   explicit Parts(gpu::Context& ctx);
 
@@ -54,27 +54,27 @@ struct WaterSim::Parts {
   std::unique_ptr<Boats> boats;
   std::unique_ptr<SurfaceFoam> foam;
   std::unique_ptr<PatchFollower> follower;
-  std::unique_ptr<Stir> stir;  ///< where there is no wave for effects to act on
+  std::unique_ptr<Stir> stir;  ///< in scenes without a wave
   std::unique_ptr<FramePacker> frames;
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
   TicksInFlight ticks_in_flight;
-  std::vector<float> settled_positions;     ///< where particles start; empty: on the lattice
-  std::vector<float> starting_positions;    ///< the lattice, once it was needed
+  std::vector<float> settled_positions;     ///< starting positions; empty: the lattice
+  std::vector<float> starting_positions;    ///< the lattice; computed when first needed
   double start_jitter_ratio = 0.0;          ///< of starting_positions
-  std::optional<BasinInputs> basin_inputs;  ///< what the wave's tables were made of
+  std::optional<BasinInputs> basin_inputs;  ///< inputs of the wave's present tables
 
-  /// Where particles start, 4 floats each.
+  /// Starting positions, 4 floats per particle.
   const std::vector<float>& startOf(const core::Scene& scene, const ParticleLayout& layout);
 
-  /// Whom the passes over particles are for.
+  /// Sizes of the dispatches over particles.
   [[nodiscard]] Population population(const Derived& derived) const {
     return {derived.particles->count, derived.particles->cell_count, pool.get()};
   }
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
   core::Result<void> makeCheckpoints(gpu::Context& ctx);
   core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
-  /// After resize() failed; `derived` is the one before.
+  /// Call it after resize() failed; `derived` is that of the old size.
   core::Result<void> resizeBack(const Derived& derived);
 };
 

@@ -38,14 +38,14 @@ core::Result<void> WaterSim::adopt(PreparedScene prepared) {
   if (prepared.flow_ratio != 1.0) parts_->wave->scaleFlow(prepared.flow_ratio);
   scene_ = std::move(prepared.scene);
   setCareful(is_careful_);
-  if (prepared.flow_ratio != 1.0) parts_->wave->fillUpToBed(scene_, *derived_.wave);  // shallower
+  if (prepared.flow_ratio != 1.0) parts_->wave->fillUpToBed(scene_, *derived_.wave);  // the water is shallower
   ++revision_;
   return {};
 }
 
 core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
   if (auto sized = parts_->resize(ctx_, prepared.scene, prepared.derived); !sized) {
-    // The device refused. It held the old sizes a moment ago; the particles themselves have not been touched.
+    // The device has no memory for the new sizes. It just held the old ones; the particles have not changed.
     if (auto back = parts_->resizeBack(derived_); !back) device_error_ = back.error();
     return sized;
   }
@@ -53,7 +53,7 @@ core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
   parts_->particles->position.upload(prepared.particles->position);
   parts_->particles->velocity.upload(prepared.particles->velocity);
   parts_->particles->setDensity(prepared.scene.particles->rest_density_kgpm3);
-  abandoned_until_tick_ = tick_;  // health that is still to come is about the old particles
+  abandoned_until_tick_ = tick_;  // health in flight belongs to the old particles
   return {};
 }
 
@@ -61,7 +61,7 @@ core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
 
 const std::vector<float>& WaterSim::Parts::startOf(const core::Scene& scene, const ParticleLayout& layout) {
   const std::size_t wanted = std::size_t{layout.count} * 4;
-  if (settled_positions.size() == wanted) return settled_positions;  // not after another live count
+  if (settled_positions.size() == wanted) return settled_positions;  // false after a change of the particle count
   const bool is_known = starting_positions.size() == wanted && start_jitter_ratio == scene.particles->jitter_ratio;
   if (!is_known) {
     starting_positions = startingPositions(scene, layout);
@@ -80,7 +80,7 @@ void WaterSim::uploadStartingState() {
   } else if (parts_->particles) {
     parts_->particles->position.upload(parts_->startOf(scene_, *derived_.particles));
     parts_->particles->velocity.clear();
-    // Density is known before the first step, so that a first frame can be packed.
+    // A first frame may be packed before the first step, so the density must be set.
     parts_->particles->setDensity(scene_.particles->rest_density_kgpm3);
   }
 }
@@ -96,7 +96,8 @@ void WaterSim::reset() {
   ++revision_;
 }
 
-/// The tables of the basin follow from the scene alone, and take longer than anything else of a reset.
+/// The basin's tables depend on the scene only. Uploading them is the slowest part of a reset, so it is skipped when
+/// unchanged.
 void WaterSim::uploadBasin() {
   if (!parts_->wave) return;
   const BasinInputs inputs(scene_, *derived_.wave);
@@ -107,7 +108,7 @@ void WaterSim::uploadBasin() {
 
 BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
     : wave(*scene.wave), speed_mps(layout.speed_mps), obstacles(scene.obstacles), beaches(scene.beaches) {
-  // Live parameters that no table holds.
+  // Parameters that may change while running and that no table contains.
   wave.damping_per_s = 0.0;
   wave.steepening_ratio = 0.0;
   wave.fixed_substeps_count = 0;

@@ -1,4 +1,4 @@
-// WaterSim: its health, its frames, its state as numbers.
+// WaterSim: health, frames, and copies of the state.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -13,7 +13,7 @@ namespace spindrift::sim {
 namespace {
 
 constexpr double kCheckpointInterval_s = 1.0;
-/// How long a room that was put back runs with half the step.
+/// A room runs this long with half the step after a recovery.
 constexpr double kCareful_s = 5.0;
 
 }  // namespace
@@ -42,8 +42,7 @@ void WaterSim::watchHealth() {
     if (health.crowded_count > 0 && crowded_count_ == 0) {
       spdlog::warn(
           "scene {}: tick {}: {} particles lie so close together that their neighbour search was cut at {} candidates "
-          "a "
-          "column; later ticks are only counted",
+          "per column; later ticks are only counted",
           scene_.name, health.tick, health.crowded_count, derived_.uniforms.candidates_max_count);
     }
     crowded_count_ += health.crowded_count;
@@ -73,7 +72,7 @@ void WaterSim::recover(const Health& breach) {
   ++revision_;
   careful_until_tick_ = tick_ + static_cast<std::uint64_t>(kCareful_s / derived_.tick_s);
   setCareful(true);
-  // The checkpoint may be of deeper water than there is now.
+  // The checkpoint may come from deeper water.
   if (restored && parts_->wave) parts_->wave->fillUpToBed(scene_, *derived_.wave);
   if (recovered_count_ <= 10 || recovered_count_ % 100 == 0) {
     spdlog::warn(
@@ -94,7 +93,7 @@ void WaterSim::setCareful(bool careful) {
     if (halved.wave) halved.wave->fixed_substeps_count = 2 * derived->wave->substeps_count;
     derived = derive(halved, kept ? &*kept : nullptr);
   }
-  // scene_ was accepted before and halving a step breaks no rule; at the bound of substeps the step stays as it was.
+  // scene_ was valid, and half the step breaks no rule. Only the limit on substeps can refuse it; then the step stays.
   if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
   uploadBasin();

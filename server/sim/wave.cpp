@@ -59,7 +59,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
   if (create.error()) return *create.error();
-  // Rows are one group high. Momentum sets the first word where there is something to limit, continuity puts it back.
+  // Rows are one group high. Momentum sets the first word if transfers have to be limited; continuity clears it.
   wave->limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.resolution_count, 1});
   wave->uploadBasin(scene, layout);
   return wave;
@@ -107,7 +107,7 @@ void Wave::fillUpToBed(const core::Scene& scene, const WaveLayout& layout) {
   if (!filled.is_changed) return;
   elevation_.upload(elevation_units);
   if (filled.from_outside_units > 0) {
-    // Only the sum over all cells counts: the first one's is as good as any. Low 24 bits, the rest.
+    // Only the sum over all cells matters, so the first cell takes the difference. Low 24 bits, then the rest.
     auto outflow = outflow_.downloadVector<std::int32_t>(2);
     const std::int64_t units = std::int64_t{outflow[1]} * (1 << 24) + outflow[0] - filled.from_outside_units;
     outflow_.upload(std::array<std::int32_t, 2>{static_cast<std::int32_t>(units & 0xffffff),
@@ -147,7 +147,7 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
-/// Adds to TRANSFER, and with crests to FLOW, which advance() has bound.
+/// Adds to TRANSFER and, for crests, to FLOW; advance() has bound both.
 void Wave::displace(const shared::EventUniforms& events) {
   const bool any = events.splash_count + events.crest_count > 0;
   if (!any && !had_events_) return;
@@ -155,11 +155,7 @@ void Wave::displace(const shared::EventUniforms& events) {
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   if (events.splash_count > 0) {
-    float radius_m = 0.0f;
-    for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
-    // The largest splash decides; wave/splash.comp leaves out what a smaller one does not reach.
-    const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
-    splash_.dispatch(std::min(across, 2 * n_), std::min(across, 2 * n_), events.splash_count);
+    displaceBySplashes(events);
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
   if (events.crest_count > 0) {
@@ -168,7 +164,21 @@ void Wave::displace(const shared::EventUniforms& events) {
   }
 }
 
-/// Both passes run no group in steps in which nothing could empty a cell.
+/// Chooses the way of wave/splash.comp that needs fewer invocations.
+void Wave::displaceBySplashes(const shared::EventUniforms& events) {
+  float radius_m = 0.0f;
+  for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
+  const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
+  const bool every_cell = std::uint64_t{across} * across * events.splash_count > std::uint64_t{n_} * n_;
+  splash_.setUniform("every_cell", std::uint32_t{every_cell});
+  if (every_cell) {
+    splash_.dispatch(n_, n_);
+  } else {
+    splash_.dispatch(across, across, events.splash_count);
+  }
+}
+
+/// Both passes run no group in a step in which no cell could become empty.
 void Wave::limit() {
   ctx_.barrier(gpu::Barrier::kIndirect);
   transfer_.bindTexel(TRANSFER);

@@ -1,6 +1,6 @@
-// The wave equation on the device: integer elevations, the flow through the faces between cells, and the surface as
-// particles and boats see it. A step is momentum, then continuity: eliminating the flow gives the leapfrog on three
-// elevation levels of the thesis (3.4, 3.6.3), to the same dispersion relation, and keeps the volume to the last unit.
+// The wave equation on the device: integer elevations, the flow through the faces between cells, and the surface for
+// particles and boats. A step is momentum, then continuity. Eliminating the flow gives the thesis's leapfrog on three
+// elevation levels (3.4, 3.6.3), with the same dispersion relation, and the volume is conserved to the last unit.
 #pragma once
 
 #include <memory>
@@ -17,28 +17,29 @@ namespace spindrift::sim {
 
 class Wave {
  public:
-  /// `sampled`: particles or boats look at the surface; also makes what they read. Tables for the basin only where it
-  /// is varied, outflow only where it is open.
+  /// `sampled`: particles or boats read the surface; creates the buffers for them, too. The basin has tables only if it
+  /// is varied, and outflow is counted only if a side is open.
   static core::Result<std::unique_ptr<Wave>> create(gpu::Context& ctx, const core::Scene& scene,
                                                     const WaveLayout& layout, const gpu::Defines& defines,
                                                     bool sampled);
 
-  /// Level and still, nothing has flowed out.
+  /// Sets a level surface at rest and the outflow to zero.
   void clear();
-  /// The surface has no external pressure until a caller adds to pressureHead().
+  /// Clears the external pressure on the surface; callers then add to pressureHead().
   void clearPressure();
-  /// Tables for changed parameters (depth, gravity).
+  /// Uploads the tables for changed parameters (depth, gravity).
   void uploadBasin(const core::Scene& scene, const WaveLayout& layout);
 
-  /// Multiplies the flow everywhere. Waits: for what people rarely do.
+  /// Multiplies the flow everywhere. Waits for the device: for rare changes only.
   void scaleFlow(double ratio);
-  /// After the bed has risen (shallower water, an older checkpoint): cells whose surface lies below it are filled up to
-  /// it with water of the others, in proportion to what these hold; where sides are open and there is too little, with
-  /// water from outside, counted as outflow. Not a unit is made or lost. Waits: for what people rarely do.
+  /// Call it after the bed has risen (shallower water, an older checkpoint). Cells whose surface is below their bed are
+  /// filled up to it with water of the other cells, in proportion to their water; if that is not enough and sides are
+  /// open, with water from outside, counted as outflow. Conserves the volume to the unit. Waits for the device: for
+  /// rare changes only.
   void fillUpToBed(const core::Scene& scene, const WaveLayout& layout);
 
-  /// One wave step: what the slope sets in motion and what this step's share of the active effects displaces, limited
-  /// to what cells hold. `breaking` may be null; empty `events` say that no effect acts now.
+  /// Advances one wave step: the flow driven by the slope plus this step's share of the active effects, limited to the
+  /// water that cells hold. `breaking` may be null; empty `events` mean that no effect is active.
   void advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events);
   /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
@@ -50,20 +51,21 @@ class Wave {
   }  ///< n x n [units: low 24 bits, the rest]
   /// 2, or 4 with the 9-point stencil.
   [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
-  /// Binds SURFACE and SURFACE_FLOW for lookups. Sampled scenes only.
+  /// Binds SURFACE and SURFACE_FLOW for lookups. Only in scenes whose surface is sampled.
   void bindSurface() const;
   /// Binds the effects of the last wave step.
   void bindEvents() const;
-  /// Binds BASIN and BED where there are tables.
+  /// Binds BASIN and BED if the scene has tables.
   void bindBasin() const;
-  /// Binds TERRAIN and LANDING where there is ground to see.
+  /// Binds TERRAIN and LANDING if the scene has a terrain.
   void bindTerrain() const;
-  /// n x n [units]: hulls and falling particles. Scenes with boats or two-way coupling only.
+  /// n x n [units]: pressure of hulls and falling particles. Only in scenes with boats or two-way coupling.
   [[nodiscard]] gpu::TexelBuffer& pressureHead() { return pressure_head_; }
 
  private:
   Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count), cell_m_(layout.cell_m) {}
   void displace(const shared::EventUniforms& events);
+  void displaceBySplashes(const shared::EventUniforms& events);
   void limit();
 
   gpu::Context& ctx_;
@@ -77,8 +79,8 @@ class Wave {
   bool has_terrain_ = false;
   gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_;
   gpu::TexelBuffer transfer_;     ///< n x n x 2 (9-point: 4) [units]
-  gpu::TexelBuffer given_share_;  ///< n x n; written in steps that limit something
-  gpu::Buffer limit_args_;        ///< groups of the two passes that limit; none in most steps
+  gpu::TexelBuffer given_share_;  ///< n x n; written in steps that limit transfers
+  gpu::Buffer limit_args_;        ///< groups of the two passes of the limit; 0 in most steps
   gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;
   gpu::Buffer event_uniforms_;

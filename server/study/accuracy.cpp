@@ -5,7 +5,7 @@
 namespace spindrift::study {
 namespace {
 
-/// A device that is lost after a case's last tick has read nothing that means anything.
+/// Turns the results of a device that was lost into an error: values read after the loss are meaningless.
 Case unlessLost(Case measured) {
   measured.run = [run = std::move(measured.run)](gpu::Context& ctx, bool quick) -> Outcome {
     Outcome out = run(ctx, quick);

@@ -1,4 +1,4 @@
-// Boats: how deep they lie, what they drag behind them.
+// Boats: draught and wake.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ Outcome floatingBody(gpu::Context& ctx, bool quick) {
     if (auto done = run(**water, quick ? 900 : 1800); !done) return done.error();
     const sim::StateCopy state = (*water)->copyState();
     const double keel_m = state.boats[1] - 0.4;
-    // Walls keep the water that the hull displaced: the level away from it stands a little higher.
+    // The walls keep the displaced water, so the level away from the hull is a little higher.
     const double level_m = state.elevation_m[5 + 128 * 5];
     rows.push_back({fmt::format("draught of a hull of 0.8 m at density {}", density_ratio), "m", level_m - keel_m,
                     density_ratio * 0.8, Tolerance::kRelative, 0.03, "Archimedes"});
@@ -55,7 +55,7 @@ Outcome machWedge(gpu::Context& ctx, bool /*quick*/) {
   const double x_m = state.boats[0];
   const double forward_mps = state.boats[8];
   const double cell_m = 40.0 / 256;
-  // Where the wedge's arm is highest abeam of the track, so far behind the boat.
+  // Distance from the track to the highest point of the wake's arm, this far behind the boat.
   const auto arm_m = [&](double behind_m) {
     const auto x = static_cast<std::size_t>((x_m - behind_m + 20.0) / cell_m);
     std::size_t best = 130;

@@ -1,4 +1,4 @@
-// The rooms of cases, for accuracy.cpp to list.
+// The cases, for the list in accuracy.cpp.
 #pragma once
 
 #include <spindrift/study/accuracy.h>

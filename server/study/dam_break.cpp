@@ -48,14 +48,14 @@ constexpr std::array<Point, 10> kNarrow = {{{0.849, 1.245},
                                             {4.961, 6.271},
                                             {5.316, 6.717}}};
 
-/// Share of the water that counts as ahead of its front: single particles fly before the tongue.
+/// Share of the water that counts as ahead of the front: single particles fly before the tongue.
 constexpr double kAheadShare = 0.01;
 constexpr double kFirstT = 1.0;
 constexpr double kLastT = 9.0;
 
-/// Viscosity [Pa s] between those that suit the two series best. They are of 5.7 and 2.9 cm of real water on a real
-/// floor, whose friction is not modelled; and every kernel set and solver adds some of its own (`--case taylor-green`),
-/// Mueller's the least.
+/// Viscosity [Pa s] between the values that fit the two series best. The experiments used columns of 5.7 and 2.9 cm of
+/// real water on a floor whose friction is not modelled. Every kernel set and solver adds viscosity of its own (`--case
+/// taylor-green`), Mueller's the least.
 double viscosity(core::PressureSolver solver, core::KernelSet set) {
   if (solver == core::PressureSolver::kPositionBased) return 1.7;
   switch (set) {
@@ -69,7 +69,7 @@ double viscosity(core::PressureSolver solver, core::KernelSet set) {
   return 2.2;
 }
 
-/// A column of 1 m x 2 m x 0.3 m of `layers` layers in a dry channel long enough for T = 9. The channel is periodic
+/// A column of 1 m x 2 m x 0.3 m with `layers` layers in a dry channel, long enough for T = 9. The channel is periodic
 /// across.
 core::Scene damScene(core::PressureSolver solver, core::KernelSet set, std::uint32_t layers) {
   core::Scene scene;
@@ -96,15 +96,15 @@ core::Scene damScene(core::PressureSolver solver, core::KernelSet set, std::uint
   return scene;
 }
 
-/// What is read from a collapsing column, a point per tick, over the column's length a.
+/// Measured values of a collapsing column, one point per tick, over the column's length a.
 struct Collapse {
-  std::vector<Point> front;   ///< behind it lies all but kAheadShare of the water
-  std::vector<Point> tongue;  ///< leading edge of the water that hangs together with the column's foot
+  std::vector<Point> front;   ///< all but kAheadShare of the water is behind it
+  std::vector<Point> tongue;  ///< leading edge of the water connected with the column's foot
   std::vector<Point> column;  ///< height of that water at the wall
 };
 
-/// Water that hangs together: particles that reach each other through neighbours closer than the support radius, from
-/// the one nearest to the foot of the wall on.
+/// The connected body of water: particles that reach each other through neighbours closer than the support radius,
+/// starting at the one nearest to the foot of the wall.
 class ConnectedWater {
  public:
   ConnectedWater(const std::vector<float>& position, const sim::ParticleLayout& layout)
@@ -120,13 +120,13 @@ class ConnectedWater {
     grow(foot);
   }
 
-  /// Farthest particle from the wall at the start of the box. [m]
+  /// Distance of the farthest particle from the wall at the start of the box. [m]
   [[nodiscard]] double edge_m() const {
     double x_m = 0.0;
     for (const std::size_t i : members_) x_m = std::max(x_m, position_[4 * i] - layout_.min_m[0]);
     return x_m + 0.5 * layout_.spacing_m;
   }
-  /// Highest particle within a support radius of the wall, over the floor. [m]
+  /// Height over the floor of the highest particle within a support radius of the wall. [m]
   [[nodiscard]] double columnHeight_m() const {
     double y_m = 0.0;
     for (const std::size_t i : members_) {
@@ -229,8 +229,8 @@ void compare(const std::vector<Point>& computed, const auto& measured, const std
       {name + ", " + series + ": front, worst point", "%", 100 * worst, 10.0, Tolerance::kAtMost, 0.0, source});
 }
 
-/// Where the front has no single meaning: the leading edge of the tongue beside the front of 99 % of the water, and
-/// what is left of the column.
+/// For columns whose front is not well defined: prints the leading edge of the tongue, the front of 99 % of the water,
+/// and the rest of the column.
 void describe(const Collapse& computed, const std::string& name, std::vector<Row>& rows) {
   const auto report = [&](std::string what, double value) {
     rows.push_back({name + ": " + std::move(what), "", value, 0.0, Tolerance::kNone, 0.0, "reported only"});
@@ -272,7 +272,7 @@ Outcome damBreak(gpu::Context& ctx, bool quick) {
   for (Figure::Curve& curve : figure.curves) curve.is_measured = true;
   for (const core::PressureSolver solver : kSolvers) {
     for (const core::KernelSet set : kKernelSets) {
-      // The quick table takes the default kernel set of each solver.
+      // The quick table uses the default kernel set of each solver.
       if (quick && set != core::KernelSet::kWendlandC2) continue;
       auto computed = collapse(ctx, damScene(solver, set, 40));
       if (!computed) return computed.error();

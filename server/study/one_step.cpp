@@ -1,4 +1,4 @@
-// One step on the device against the same step in double precision, every pair of particles looked at.
+// Compares one step on the device with the same step in double precision over all pairs of particles.
 #include <algorithm>
 #include <cmath>
 
@@ -72,7 +72,7 @@ Outcome oneStep(gpu::Context& ctx, bool quick) {
   for (const core::PressureSolver solver : kSolvers) {
     for (const core::KernelSet set : kKernelSets) {
       for (const bool coupled : {true, false}) {
-        // The reference of a correction knows floors at rest.
+        // The reference of a correction supports floors at rest only.
         if (coupled && solver == core::PressureSolver::kPositionBased) continue;
         core::Scene scene = smallWater(quick ? 700 : 2100, coupled);
         scene.particles->solver = solver;

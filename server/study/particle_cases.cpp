@@ -64,7 +64,7 @@ Outcome stillWater(gpu::Context& ctx, bool quick) {
   for (std::size_t i = 1; i < after.position.size(); i += 4) drift_m += after.position[i] - before.position[i];
   drift_m /= static_cast<double>((*water)->particleCount());
   const std::string name = fmt::format("8,112 particles on a level wave, {:.0f} s: ", seconds);
-  // The floor: a ninth of the particles' spacing of 0.46 m a second.
+  // Floor speed: a ninth of the particles' spacing of 0.46 m per second.
   return CaseResult{
       std::vector<Row>{{name + "largest speed (root mean square)", "m/s", fastest_mps, 0.05, Tolerance::kAtMost, 0.0,
                         "nothing moves"},
@@ -77,7 +77,7 @@ Outcome hydrostaticColumn(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const Boundary sides : {Boundary::kPeriodic, Boundary::kWall}) {
     for (const core::KernelSet set : kKernelSets) {
-      // The quick table takes the default kernel set between walls.
+      // The quick table uses the default kernel set between walls.
       if (quick && (set != core::KernelSet::kWendlandC2 || sides != Boundary::kWall)) continue;
       core::Scene scene = column(sides);
       scene.particles->kernel_set = set;
@@ -85,7 +85,7 @@ Outcome hydrostaticColumn(gpu::Context& ctx, bool quick) {
       if (!made) return made.error();
       sim::WaterSim& water = **made;
       const sim::ParticleLayout& l = *water.derived().particles;
-      // Slices as thick as the support radius, below which SPH resolves nothing; mean of the last two seconds.
+      // Slices are as thick as the support radius, the smallest length that SPH resolves; mean of the last two seconds.
       const auto slices = static_cast<std::size_t>(l.layers_count * l.spacing_m / l.support_radius_m);
       std::vector<double> pressure_pa(slices + 1), height_m(slices + 1), count(slices + 1);
       const int tick_count = quick ? 330 : 1200;

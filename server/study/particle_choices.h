@@ -1,4 +1,4 @@
-// The kernel sets and solvers that particle cases go through, and their names in tables.
+// The kernel sets and solvers of the particle cases, and their names in tables.
 #pragma once
 
 #include <array>

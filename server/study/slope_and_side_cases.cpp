@@ -1,4 +1,4 @@
-// The wave where it meets something: absorbing sides, a rising bed.
+// The wave at absorbing sides and over a rising bed.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,18 +17,18 @@ using core::Stencil;
 using core::WaveBoundary;
 using std::numbers::pi;
 
-/// Side of the water that packets cross, and the width of their Gaussian, wide enough to hold one direction. [m]
+/// Side of the water that the packets cross, and the width of their Gaussian, wide enough for one direction only. [m]
 constexpr double kCrossed_m = 96.0;
 constexpr double kPacket_m = 18.0;
 constexpr double kSponge_m = 4.0;
 
-/// A plane wave that meets the sides at +-x at an angle from their normal.
+/// A plane wave that meets the sides at +-x at an angle to their normal.
 struct Incidence {
   double angle_deg;
   double wavelength_m;
 
-  /// Whole waves across the water, which is periodic in z: the wave number follows from them, so that the angle is
-  /// exact and the wavelength near to what was asked for.
+  /// The water is periodic in z, so a whole number of waves fits across it. The wave number follows from that number:
+  /// the angle is exact, and the wavelength close to the requested one.
   [[nodiscard]] double kz_radpm() const {
     const double waves = std::round(kCrossed_m / wavelength_m * std::sin(angle_deg * pi / 180));
     return 2 * pi * waves / kCrossed_m;
@@ -39,9 +39,8 @@ struct Incidence {
   [[nodiscard]] double kx_radpm() const { return k_radpm() * std::cos(angle_deg * pi / 180); }
 };
 
-/// Amplitude that absorbing sides of 4 m at +-x send back of a packet, over what it was. The packet starts in the
-/// middle without flow, so that its halves go apart; each meets one side, once, and is back in the middle when the time
-/// is up.
+/// Amplitude of a packet that absorbing sides of 4 m at +-x reflect, over its first amplitude. The packet starts in the
+/// middle without flow and splits into halves; each meets one side once and is back in the middle at the end.
 core::Result<double> sentBack(gpu::Context& ctx, const Incidence& incidence) {
   core::Scene scene = waveScene(384, kCrossed_m, 1.5, 0.69, Stencil::kFivePoint, WaveBoundary::kPeriodic);
   scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = WaveBoundary::kAbsorb;
@@ -62,9 +61,9 @@ core::Result<double> sentBack(gpu::Context& ctx, const Incidence& incidence) {
   return std::sqrt((*water)->health().wave_energy_j / before_j);
 }
 
-/// Largest share that may come back [%]. Waves no longer than the sponge is wide: 1 % head on and at 30 degrees, 5 %
-/// at 45. Where a sponge has no target, because it is too thin for the wave or the wave runs along it, the bound is
-/// what was measured and a tenth.
+/// Largest permitted reflection [%]. For waves no longer than the sponge is wide: 1 % at normal incidence and at 30
+/// degrees, 5 % at 45. Where the sponge has no target, because it is too thin for the wave or the wave runs along it,
+/// the bound is 1.1 times the measured value.
 double largestShare_percent(const Incidence& incidence) {
   const bool is_long = incidence.wavelength_m > 1.2 * kSponge_m;
   if (incidence.angle_deg < 20) return 1.0;
@@ -80,7 +79,7 @@ Outcome reflection(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const double wavelength_m : {3.0, 6.0}) {
     for (const double angle_deg : {0.0, 30.0, 45.0, 60.0, 75.0}) {
-      // The quick table leaves out what takes longest: waves that hardly move toward the side.
+      // The quick table leaves out the longest runs: waves that hardly move toward the side.
       if (quick && (wavelength_m > 3 || angle_deg > 70 || angle_deg == 30)) continue;
       const Incidence incidence{angle_deg, wavelength_m};
       auto share = sentBack(ctx, incidence);
@@ -103,7 +102,7 @@ Outcome greensLaw(gpu::Context& ctx, bool quick) {
   if (!made) return made.error();
   sim::WaterSim& water = **made;
   setSurface(water, [](double x, double) { return 0.2 * std::pow(std::cosh((x - 14.0) / 1.5), -2); });
-  // The crest's place and height: the highest cell of a row, refined by a parabola.
+  // Place and height of the crest: the highest cell of a row, refined by a parabola.
   const double cell_m = 96.0 / n;
   const auto crest = [&] {
     const auto eta_m = water.copyState().elevation_m;
@@ -118,7 +117,7 @@ Outcome greensLaw(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   double first_m = 0.0;
   double first_depth_m = 0.0;
-  // Heights while the crest runs from the foot of the slope to where it is a third as deep.
+  // Heights while the crest travels from the foot of the slope to a third of the depth.
   for (const double stop_m : {30.0, 50.0, 70.0}) {
     double x_m = 0.0;
     double height_m = 0.0;

@@ -17,13 +17,13 @@ bool isFinite(const core::FrameView& frame) {
   return true;
 }
 
-/// Energy of the motion: particles' and wave's.
+/// Kinetic energy of particles and wave.
 double energyOf(const sim::Health& health) {
   return health.kinetic_energy_j + health.wave_energy_j;
 }
 
-/// What motion is measured by: half the weight of the resting particles times their depth, or, without particles, the
-/// wave's energy soon after the start.
+/// Scale of the motion: half the weight of the resting particles times their depth, or, without particles, the wave's
+/// energy soon after the start.
 double energyScale(const sim::WaterSim& water) {
   const auto& particles = water.derived().particles;
   if (particles && !water.scene().coupling)
@@ -64,7 +64,7 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
     const sim::Health& health = water.health();
     out.max_density_ratio = std::max(out.max_density_ratio, health.max_density_ratio);
     out.max_elevation_m = std::max(out.max_elevation_m, health.max_elevation_m);
-    // A wave's energy counts from when its start is over.
+    // The energy of a wave is taken after its start has ended.
     if (scale_j == 0.0 && water.time_s() > start_s + 0.5) scale_j = energyOf(health);
     if (scale_j > 0.0) out.energy_growth = std::max(out.energy_growth, energyOf(health) / scale_j);
   }
@@ -73,12 +73,12 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
                   out.max_density_ratio <= sweep.stable_density_ratio &&
                   out.max_elevation_m <= sweep.stable_elevation_m;
 
-  // With the rules' own steps again.
+  // Run again with the steps from the rules.
   core::Scene ruled = sweep.disturb ? water.scene() : scene;
   ruled.fixed_substeps_count = 0;
   if (ruled.wave) ruled.wave->fixed_substeps_count = 0;
   if (auto back = water.setScene(ruled); !back) return back.error();
-  for (int k = 0; k < 8; ++k) {  // news of the last breach is still under way
+  for (int k = 0; k < 8; ++k) {  // health of the last breach may still be in flight
     if (auto done = step(); !done) return done.error();
   }
   const std::uint64_t recovered_count = water.recoveredCount();

@@ -1,4 +1,4 @@
-// What is swept: steps in units of their bound, stiffness, viscosity, count, Courant number, depth, amplitude, cells,
+// The sweeps: steps in units of their bound, stiffness, viscosity, count, Courant number, depth, amplitude, cells,
 // patch size, commands.
 #include <algorithm>
 #include <cmath>
@@ -19,13 +19,14 @@ namespace {
 using core::PressureSolver;
 using core::Stencil;
 
-/// A settled column's worth of motion is a hundredth of its weight's energy; this is no longer water at rest.
+/// The motion of a settled column is a hundredth of the energy of its weight; above this share it is not at rest.
 constexpr double kBoilingShare = 0.05;
-/// Moved by a splash: more than that splash can have given.
+/// The same after a splash: more energy than the splash can have added.
 constexpr double kMovingShare = 0.4;
-/// Nor is water that is squeezed by a quarter.
+/// Water compressed by a quarter is not at rest either.
 constexpr double kSqueezed = 1.25;
-/// A wave's energy after its start should never grow; twice allows for what is still under way at half a second.
+/// A wave's energy should not grow after its start; the factor two allows for energy that still arrives after half a
+/// second.
 constexpr double kGrowingWave = 2.0;
 
 /// Water at rest in a periodic box: about `count` particles in 10 layers.
@@ -45,7 +46,7 @@ core::Scene box(std::uint32_t count) {
   return scene;
 }
 
-/// The scene with one substep a tick of `factor` times the tightest bound of its rules.
+/// The scene with one substep per tick of `factor` times the tightest bound of its rules.
 core::Scene withStep(core::Scene scene, double factor) {
   scene.allow_unstable = true;
   scene.fixed_substeps_count = 1;
@@ -113,7 +114,8 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
     for (const core::WaveBoundary side : {core::WaveBoundary::kReflect, core::WaveBoundary::kAbsorb}) {
       const bool nine = stencil == Stencil::kNinePoint;
       const bool absorbs = side == core::WaveBoundary::kAbsorb;
-      // The bound of the inside holds in a sponge, however strong: here it takes more than half of a wave in a step.
+      // The bound for open water also holds in a sponge, however strong: here the sponge takes more than half of a wave
+      // per step.
       sweeps.push_back({fmt::format("Courant number, {}-point{}", nine ? 9 : 5, absorbs ? ", absorbing sides" : ""), "",
                         pick(quick, {0.1, 0.5, 0.7, 0.75, 0.85, 0.9, 1.2},
                              {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.72, 0.75, 0.8, 0.85, 0.87, 0.9, 1.0, 1.1, 1.2}),
@@ -162,7 +164,7 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
                     [](sim::WaterSim& water, double share) {
                       core::BreakingWave wave;
                       wave.amplitude_m = share * 1.5;
-                      wave.duration_s = 0.3;  // over when its energy begins to count
+                      wave.duration_s = 0.3;  // ends before its energy is first measured
                       (void)water.start(wave);
                     },
                     4.0, kGrowingWave});
@@ -175,7 +177,7 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
                     quick ? 1.5 : 4.0, kGrowingWave});
 }
 
-/// Any command that a client may send, at random; refusals are part of it.
+/// Sends a random command out of all that clients may send, including refused ones.
 void command(sim::WaterSim& water, std::mt19937& random) {
   const auto between = [&](double low, double high) {
     return low + (high - low) * std::generate_canonical<double, 53>(random);

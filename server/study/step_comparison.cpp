@@ -19,7 +19,7 @@ Vec3 vectorAt(const std::vector<float>& values, std::size_t i) {
   return {values[4 * i], values[4 * i + 1], values[4 * i + 2]};
 }
 
-/// What a particle did, beside what it should have done.
+/// Compares the computed motion of a particle with the reference.
 class Comparison {
  public:
   void density(double measured, double reference) {
@@ -67,7 +67,7 @@ StepErrors compareAccelerations(const core::Scene& scene, const sim::Derived& d,
       measured[axis] = (v_after[axis] - v[i][axis]) / d.dt_s;
       moved_otherwise = std::max(moved_otherwise, std::abs(x_after[axis] - x[i][axis] - d.dt_s * v_after[axis]));
     }
-    if (moved_otherwise > 1e-5) continue;  // floor, side or wrap had its say
+    if (moved_otherwise > 1e-5) continue;  // the floor, a side or wrapping changed it
     comparison.motion(measured, a[i]);
   }
   return comparison.errors();
@@ -89,7 +89,7 @@ StepErrors compareCorrections(const core::Scene& scene, const sim::Derived& d, c
   Comparison comparison;
   for (std::size_t k = 0; k < n; ++k) {
     const auto i = static_cast<std::size_t>(after.position[4 * k + 3]);
-    // Far from the floor's hard limit and from the sides, before and after.
+    // Only particles far from the floor's hard limit and from the sides, before and after the step.
     bool inside = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double gap_m = axis == 1 ? 0.11 * l.spacing_m : 1e-3;

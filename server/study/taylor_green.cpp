@@ -19,12 +19,13 @@ namespace {
 
 constexpr double kReynolds = 100.0;
 constexpr double k_pm = 2 * std::numbers::pi;  // L = 1 m, U = 1 m/s
-/// In the first second the starting lattice becomes a liquid, which costs speed once; the rate is taken from then on.
+/// In the first second the starting lattice becomes a liquid, which slows the vortex once; the rate is measured after
+/// that.
 constexpr double kFirst_s = 1.0;
 constexpr double kLast_s = 2.0;
 
-/// Support over spacing. More neighbours measure shear better, up to where a kernel lets particles pair: the Wendland
-/// kernel never does (Dehnen & Aly 2012).
+/// Support radius over spacing. More neighbours reproduce shear better, until particles begin to pair; with the
+/// Wendland kernel they never do (Dehnen & Aly 2012).
 double supportRatio(core::KernelSet set) {
   switch (set) {
     case core::KernelSet::kMuller:
@@ -51,7 +52,7 @@ core::Scene vortexScene(core::PressureSolver solver, core::KernelSet set, std::u
   p.box_side_m = 1.0;
   p.boundary_x = p.boundary_z = core::Boundary::kPeriodic;
   p.periodic_y = true;
-  // A fiftieth less water than the box holds at rest: pressure never pulls, so it must not have to, and under pressure
+  // 2 % less water than the box holds at rest. Pressure never pulls, and this flow must not need it to; under pressure
   // the particles would lock into a lattice that resists shear.
   p.fill_density_ratio = 0.98;
   p.sound_speed_mps = 10.0;
@@ -67,7 +68,7 @@ double rootMeanSquareSpeed(const sim::StateCopy& state) {
   return std::sqrt(squares / static_cast<double>(state.velocity.size() / 4));
 }
 
-/// Mean distance of particles (every seventh) to their nearest neighbour.
+/// Mean distance to the nearest neighbour, over every seventh particle.
 double nearestNeighbour(const sim::WaterSim& water, const sim::StateCopy& state) {
   const sim::ParticleLayout& l = *water.derived().particles;
   const std::size_t n = state.position.size() / 4;
@@ -93,7 +94,7 @@ double nearestNeighbour(const sim::WaterSim& water, const sim::StateCopy& state)
 
 struct Decay {
   double late_rate_ratio = 0.0;  ///< rate of decay over 2 nu k^2, between kFirst_s and kLast_s
-  double first_speed = 0.0;      ///< speed at kFirst_s over what it should be
+  double first_speed = 0.0;      ///< speed at kFirst_s over the theoretical one
   double neighbour_gap = 0.0;    ///< nearest neighbour over the spacing at the end
 };
 
@@ -129,7 +130,7 @@ Outcome taylorGreen(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const core::PressureSolver solver : kSolvers) {
     for (const core::KernelSet set : kKernelSets) {
-      // The quick table takes the default kernel set of each solver.
+      // The quick table uses the default kernel set of each solver.
       if (quick && set != core::KernelSet::kWendlandC2) continue;
       const std::uint32_t across_count = quick ? 26 : 40;
       auto found = decay(ctx, vortexScene(solver, set, across_count));

@@ -1,5 +1,5 @@
-// Ticks of a study. A device that does not answer ends the study with its error: what was measured after it would mean
-// nothing, and a loop that waits for simulated time would not end.
+// Ticks of a study. A device error ends the study: later measurements would be meaningless, and a loop that waits for
+// simulated time would not end.
 #pragma once
 
 #include <concepts>
@@ -28,7 +28,7 @@ template <std::invocable Each>
   return run(water, tick_count, [] {});
 }
 
-/// Until the water's time is `time_s`.
+/// Ticks until the water's time is `time_s`.
 template <std::invocable Each>
 [[nodiscard]] core::Result<void> runTo(sim::WaterSim& water, double time_s, Each each) {
   while (water.time_s() < time_s - 1e-9) {

@@ -18,12 +18,13 @@ bool isTwoWay(const core::Scene& scene) {
   return scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
 }
 
-/// `scale` times as many particles across the water: the rules of the fidelity levels (scene/fidelity.cpp).
+/// Returns the scene with `scale` times as many particles across the water, by the rules of the fidelity levels
+/// (scene/fidelity.cpp).
 core::Scene withFinerParticles(core::Scene scene, double scale) {
   core::ParticleScene& p = *scene.particles;
   double count_ratio = std::pow(scale, scene.wave && !isTwoWay(scene) ? 2 : 3);
   if (!scene.wave) {
-    // As deep as before: whole layers decide.
+    // Keeps the depth; whole layers decide.
     const double layers_count = std::clamp(std::round(p.layers_count * scale), 1.0, kMaxLayers);
     count_ratio = std::pow(layers_count / p.layers_count, 3);
     p.layers_count = layers_count;
@@ -75,7 +76,7 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
       if (solver == scene.particles->solver) continue;
       add("solver", nameOf(solver), changed([&](core::Scene& s) {
             s.particles->solver = solver;
-            // As stiff as a column of water needs: 1 % at ten times the speed of its fall.
+            // The stiffness that a column of water needs: 1 % compression at ten times the speed of its fall.
             const double fall_mps =
                 std::sqrt(2 * s.gravity_mps2 * (s.wave ? s.wave->depth_m : s.particles->headroom_m));
             if (!isTwoWay(s)) s.particles->sound_speed_mps = std::max(s.particles->sound_speed_mps, 10 * fall_mps);
@@ -98,7 +99,7 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
           s.coupling.reset();
           if (s.foam && !s.foam->surface) s.foam.reset();
         }));
-    // As a band on the wave, or as spray that gives its mass back: each with the other's water.
+    // As a band on the wave, or as two-way spray: each replaces the other with the same water.
     add("coupling", isTwoWay(scene) ? "one-way" : "two-way", changed([&](core::Scene& s) {
           s.coupling->mode = isTwoWay(s) ? core::CouplingMode::kOneWay : core::CouplingMode::kTwoWay;
         }));
@@ -148,7 +149,7 @@ std::vector<TradeChoice> costSweep() {
           {coupled ? "coupled, 256 x 256 cells" : "particles alone", fmt::format("{} particles", count), scene});
     }
   }
-  // The neighbour grid alone grows and shrinks with the support radius.
+  // Only the neighbour grid changes its size with the support radius.
   for (const double ratio : {1.6, 2.0, 2.4, 3.0}) {
     core::Scene scene = base;
     scene.wave.reset();

@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 /// Share of a dam's water that counts as ahead of its front.
 constexpr double kAheadShare = 0.01;
 
-/// Averages n cells over m <= n of the same length: the share of each cell in each of the m.
+/// Averages n cells to m <= n cells over the same length, by the share of each cell in each of the m.
 std::vector<double> averaged(const std::vector<double>& fine, std::size_t n, std::size_t m) {
   struct Share {
     std::size_t from, to;
@@ -44,7 +44,7 @@ std::vector<double> averaged(const std::vector<double>& fine, std::size_t n, std
   return out;
 }
 
-/// n cells between the centres of m > n, bilinearly.
+/// Interpolates n cells bilinearly between the centres of m > n.
 std::vector<double> interpolated(const std::vector<double>& coarse, std::size_t n, std::size_t m) {
   const auto place = [&](std::size_t i) {
     const double u = (static_cast<double>(i) + 0.5) * static_cast<double>(n) / static_cast<double>(m) - 0.5;
@@ -65,8 +65,8 @@ std::vector<double> interpolated(const std::vector<double>& coarse, std::size_t 
   return out;
 }
 
-/// Volume of the particles over the ground area of columns and over the mean of that, each particle shared among the
-/// four nearest ones: a band on a wave is thinner when it has more particles.
+/// Volume of the particles per ground area of columns, over the mean. Each particle is shared among the four nearest
+/// columns: a band on a wave is thinner when it has more particles.
 std::vector<double> columns(const sim::WaterSim& water, const sim::StateCopy& state) {
   const sim::ParticleLayout& l = *water.derived().particles;
   const double side_x_m = l.max_m[0] - l.min_m[0];
@@ -113,13 +113,13 @@ double densityError(const sim::WaterSim& water, const sim::StateCopy& state) {
   return std::sqrt(squares / static_cast<double>(count));
 }
 
-/// Energy at given times, from what arrives some ticks late.
+/// Energy at given times, from health that arrives some ticks late.
 class EnergySeries {
  public:
   void add(const sim::WaterSim& water) {
     const sim::Health& h = water.health();
     if (!points_.empty() && points_.back().tick == h.tick) return;
-    // The band that a wave carries is as heavy as its particles are many; the energy is the wave's.
+    // In a one-way scene the mass of the band depends on the number of particles, so only the wave's energy counts.
     const bool carries_band = water.scene().coupling && water.scene().coupling->mode == core::CouplingMode::kOneWay;
     points_.push_back({h.tick, h.wave_energy_j + (carries_band ? 0.0 : h.kinetic_energy_j + h.potential_energy_j)});
   }
@@ -141,7 +141,7 @@ WaterRecord::Sample sampleOf(sim::WaterSim& water) {
   const core::Scene& scene = water.scene();
   const sim::StateCopy state = water.copyState();
   if (scene.wave) {
-    // As it is streamed: whole quanta.
+    // As in the stream: whole quanta.
     std::vector<double> elevation_m = state.elevation_m;
     const double quantum_m = scene.stream.surface_quantum_m;
     for (double& eta_m : elevation_m) eta_m = std::round(eta_m / quantum_m) * quantum_m;
@@ -151,7 +151,7 @@ WaterRecord::Sample sampleOf(sim::WaterSim& water) {
   if (!scene.particles) return sample;
   sample.density_rms_ratio = densityError(water, state);
   if (scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay)
-    return sample;  // spray comes and goes by chance
+    return sample;  // the place of spray is random
   sample.column_m = columns(water, state);
   if (scene.particles->fill_x_ratio < 1) sample.front_m = frontOf(water, state);
   return sample;
@@ -205,13 +205,13 @@ struct FieldDifference {
 
 constexpr int kTimedRuns = 3;
 
-/// Wall times of a run's intervals, without what lies between them.
+/// Wall times of the intervals of a run, without the time between them.
 class IntervalTimes {
  public:
   void begin() { begin_ = Clock::now(); }
   void end() { seconds_.push_back(std::chrono::duration<double>(Clock::now() - begin_).count()); }
   [[nodiscard]] double sum() const { return std::accumulate(seconds_.begin(), seconds_.end(), 0.0); }
-  /// Keeps the faster of each interval.
+  /// Keeps the shorter time of each interval.
   void keepFastest(const IntervalTimes& other) {
     for (std::size_t i = 0; i < std::min(seconds_.size(), other.seconds_.size()); ++i)
       seconds_[i] = std::min(seconds_[i], other.seconds_[i]);
@@ -222,7 +222,7 @@ class IntervalTimes {
   std::vector<double> seconds_;
 };
 
-/// Advances to `time_s`, as one interval.
+/// Advances to `time_s` as one interval.
 template <typename EachTick>
 core::Result<void> advance(gpu::Context& ctx, sim::WaterSim& water, double time_s, IntervalTimes& times,
                            EachTick each_tick) {
@@ -233,7 +233,7 @@ core::Result<void> advance(gpu::Context& ctx, sim::WaterSim& water, double time_
   return {};
 }
 
-/// The scene after its first tick, which compiles shaders on some drivers.
+/// Returns the scene after its first tick, because some drivers compile shaders then.
 core::Result<std::unique_ptr<sim::WaterSim>> warm(gpu::Context& ctx, const core::Scene& scene) {
   auto water = sim::WaterSim::create(ctx, scene);
   if (!water) return water.error();

@@ -44,7 +44,7 @@ double length(const Vec3& a) {
   return std::hypot(a[0], a[1], a[2]);
 }
 
-/// x_i - x_j, the shortest way across periodic sides.
+/// Returns x_i - x_j, the shortest way across periodic sides.
 Vec3 between(const core::Scene& scene, const sim::Derived& d, const Vec3& a, const Vec3& b) {
   Vec3 r = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   const bool periodic[3] = {scene.particles->boundary_x == core::Boundary::kPeriodic, scene.particles->periodic_y,
@@ -72,7 +72,7 @@ struct Floor {
     return static_cast<std::size_t>(wrap(x, n(), periodic()) + n() * wrap(z, n(), periodic()));
   }
 
-  /// Nearest cell, carried along its gradient.
+  /// Value of the nearest cell, extrapolated along its gradient.
   double height(double x, double z) const {
     if (flat()) return -d.particles->band_m;
     const double u = (x + d.wave->side_m / 2) / d.wave->cell_m;
@@ -98,13 +98,13 @@ struct Floor {
     return {bilinear(s.flow_x_mps, x, z), bilinear(s.rate_mps, x, z), bilinear(s.flow_z_mps, x, z)};
   }
 
-  /// What a flat floor leaves of its reach at x, which supports like a wall; 0 in a box without one.
+  /// Remaining reach at x of a flat floor, which supports like a wall; 0 in a box without one.
   double reach(const Vec3& x) const {
     if (scene.particles->periodic_y) return 0;
     return std::max(1 - std::max(x[1] + d.particles->band_m, 0.0) / d.particles->wall_reach_m, 0.0);
   }
 
-  /// Share of the density. [kg/m^3]
+  /// The floor's share of the density. [kg/m^3]
   double density(const Vec3& x) const {
     if (!scene.coupling) return scene.particles->rest_density_kgpm3 * d.particles->wall_share * reach(x) * reach(x);
     double sum = 0;
@@ -113,7 +113,8 @@ struct Floor {
     return sum;
   }
 
-  /// Its gradient: under coupled water the sum of the virtual particles', whose heights count as fixed. [kg/m^4]
+  /// Gradient of that share: under coupled water the sum over the virtual particles, whose heights count as fixed.
+  /// [kg/m^4]
   Vec3 gradient(const Vec3& x) const {
     const double slope = -2 * scene.particles->rest_density_kgpm3 * d.particles->wall_share / d.particles->wall_reach_m;
     if (!scene.coupling) return {0, slope * reach(x), 0};
@@ -126,7 +127,7 @@ struct Floor {
     return sum;
   }
 
-  /// Laplacian for the viscosity against it. [1/m^2]
+  /// Laplacian for the viscosity against the floor. [1/m^2]
   double drag(const Vec3& x) const {
     if (!scene.coupling) return d.particles->floor_drag_pm2 * reach(x) * reach(x);
     double sum = 0;
@@ -136,7 +137,7 @@ struct Floor {
     return sum;
   }
 
-  /// Vectors from each virtual particle to the particle; none for one out of reach. Coupled water only.
+  /// Vectors from each virtual particle in reach to the particle. Coupled water only.
   std::vector<Vec3> lattice(const Vec3& x) const {
     std::vector<Vec3> out;
     if (x[1] - height(x[0], x[2]) + d.particles->spacing_m / 2 >= d.particles->support_radius_m) return out;
@@ -154,7 +155,7 @@ struct Floor {
 double pressure(const core::Scene& scene, const sim::Derived& d, double rho) {
   const core::ParticleScene& s = *scene.particles;
   const double rho_0 = s.rest_density_kgpm3;
-  // c0^2 over the virial of the starting lattice, and what settling leaves of it.
+  // c0^2 over the virial of the starting lattice, times the ratio after settling.
   const double settled = s.kernel_set == core::KernelSet::kMuller ? 1.0 : 0.97;
   const double H = d.particles->support_radius_m;
   double virial = 0;
@@ -176,7 +177,7 @@ double length2(const Vec3& a) {
   return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
 
-/// Density of what lies beyond floor and walls: their shares combine like independent covers.
+/// Density beyond floor and walls: the shares combine like independent covers.
 double boundaryDensity(const core::Scene& scene, const sim::Derived& d, const Floor& floor, const Vec3& x) {
   const double rho_0 = scene.particles->rest_density_kgpm3;
   double open = 1;
@@ -193,7 +194,7 @@ double boundaryDensity(const core::Scene& scene, const sim::Derived& d, const Fl
   return rho_0 * (1 - open * (1 - floor.density(x) / rho_0));
 }
 
-/// Its gradient, through walls numerically.
+/// Gradient of that density, numerical for walls.
 Vec3 boundaryGradient(const core::Scene& scene, const sim::Derived& d, const Floor& floor, const Vec3& x) {
   const double H = d.particles->support_radius_m;
   const double rho_0 = scene.particles->rest_density_kgpm3;
@@ -204,7 +205,7 @@ Vec3 boundaryGradient(const core::Scene& scene, const sim::Derived& d, const Flo
   for (const std::size_t axis : {0u, 2u}) {
     const auto side = axis == 0 ? scene.particles->boundary_x : scene.particles->boundary_z;
     if (side == core::Boundary::kPeriodic) continue;
-    // Far above the floor, where only walls count.
+    // Far above the floor only walls count.
     const double e = 1e-5 * H;
     Vec3 low = x;
     Vec3 high = x;
@@ -226,7 +227,7 @@ ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& d, co
   const auto at = [&](int x, int z) {
     return static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic));
   };
-  // Closed faces carry no flow, so wrapping is right for walls too.
+  // Closed faces carry no flow, so wrapping is correct for walls, too.
   const auto flowAt = [&](int x, int z, int axis) -> double {
     return flow[2 * static_cast<std::size_t>(wrap(x, n, true) + n * wrap(z, n, true)) + static_cast<std::size_t>(axis)];
   };

@@ -93,7 +93,7 @@ Outcome phaseError(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const Stencil stencil : {Stencil::kFivePoint, Stencil::kNinePoint}) {
     for (const bool diagonal : {false, true}) {
-      // Whole waves on whole cells: 10 cells a wave along the axis, 480 sqrt(1/2)/34 = 9.98 along the diagonal.
+      // Whole waves on whole cells: 10 cells per wave along the axis, 480 sqrt(1/2)/34 = 9.98 along the diagonal.
       const std::uint32_t n = diagonal ? 480 : 160;
       const int waves = diagonal ? 34 : 16;
       const double k = 2 * pi * waves / 12.0;
@@ -140,8 +140,8 @@ class HumpRings {
   std::vector<double> eta_;
 };
 
-/// Error of the rings of a hump four cells wide after they have gone five widths, root mean square over that of the
-/// rings.
+/// Error of the rings of a hump four cells wide after they have travelled five widths: root mean square over that of
+/// the rings.
 core::Result<double> humpError(gpu::Context& ctx, Stencil stencil, double courant) {
   const double width_m = 1.0;
   const core::Scene scene = waveScene(96, 24.0, 1.5, courant, stencil, WaveBoundary::kPeriodic);
@@ -153,7 +153,7 @@ core::Result<double> humpError(gpu::Context& ctx, Stencil stencil, double couran
   const double c_mps = layout.speed_mps;
   const auto steps = static_cast<int>(std::lround(5 * width_m / (c_mps * layout.dt_s)));
   if (auto done = run(**water, steps); !done) return done.error();
-  // A surface without flow stood still half a step before (setSurface).
+  // setSurface() starts without flow, so the surface was at rest half a step before.
   const HumpRings rings(width_m, c_mps * (steps + 0.5) * layout.dt_s, 17.0);
   const std::vector<double> eta_m = (*water)->copyState().elevation_m;
   double squares = 0.0;
@@ -175,7 +175,7 @@ Outcome roundHump(gpu::Context& ctx, bool /*quick*/) {
   for (const double courant : {0.35, 0.5, 0.69, 0.84}) {
     double five = 0.0;
     for (const Stencil stencil : {Stencil::kFivePoint, Stencil::kNinePoint}) {
-      if (stencil == Stencil::kFivePoint && courant > 0.7) continue;  // beyond its bound
+      if (stencil == Stencil::kFivePoint && courant > 0.7) continue;  // beyond its stability limit
       auto error = humpError(ctx, stencil, courant);
       if (!error) return error.error();
       rows.push_back({fmt::format("{}: error of the rings, S = {}", nameOf(stencil), courant), "%", 100 * *error, 0.0,

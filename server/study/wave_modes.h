@@ -1,4 +1,4 @@
-// Standing modes of the wave and what is read from them.
+// Standing modes of the wave, and their measured frequency and decay.
 #pragma once
 
 #include <functional>
@@ -12,20 +12,20 @@ namespace spindrift::study {
 core::Scene waveScene(std::uint32_t resolution_count, double side_m, double depth_m, double courant,
                       core::Stencil stencil, core::WaveBoundary sides);
 
-/// Sets the surface to eta(x, z) [m], x and z counted from the corner, without flow: half a step later it is as it
-/// would be in a motion that stood still then.
+/// Sets the surface to eta(x, z) [m], x and z counted from the corner, without flow: the state half a step after a
+/// moment of rest.
 void setSurface(sim::WaterSim& water, const std::function<double(double x_m, double z_m)>& eta_m);
 
-/// Amplitude of a mode after each of `steps` ticks: <eta, mode> / <mode, mode>. Errors: the device's.
+/// Returns the amplitude of a mode after each of `steps` ticks: <eta, mode> / <mode, mode>. Errors: those of the
+/// device.
 core::Result<std::vector<double>> amplitudes(sim::WaterSim& water, const std::function<double(double, double)>& mode,
                                              int steps);
 
-/// A series a_n that obeys a_{n+1} - b a_n + r a_{n-1} = 0: fitted b and r (least squares; r fixed at 1 where
-/// `undamped`).
+/// A series a_n with a_{n+1} - b a_n + r a_{n-1} = 0: b and r from least squares; r = 1 if `undamped`.
 struct Recurrence {
   double b = 0.0;
   double r = 1.0;
-  /// omega [rad/s] and decay [1/s] of exp(-decay t) cos(omega t).
+  /// Frequency omega [rad/s] and decay [1/s] of exp(-decay t) cos(omega t).
   [[nodiscard]] double omega_radps(double dt_s) const;
   [[nodiscard]] double decay_per_s(double dt_s) const;
 };

@@ -27,9 +27,9 @@ BoatState unpackBoat(vec4 t[BOAT_TEXELS]) {
 vec2 forwardOf(float heading) { return vec2(cos(heading), sin(heading)); }
 vec2 starboardOf(float heading) { return vec2(-sin(heading), cos(heading)); }
 
-/// Height of water that the hull displaces, at (along, across) from its centre: what it presses on the surface with. [m]
-/// The norm makes its integral the volume of a box of the hull's length, beam and draught. A hull narrower than three wave cells
-/// is spread over three.
+/// Height of water that the hull displaces at (along, across) from its centre: its pressure on the surface. [m] The
+/// norm makes the integral equal to the volume of a box of the hull's length, beam and draught. A hull narrower than
+/// three wave cells is spread over three.
 float hullHead(BoatState b, vec2 at_m) {
   const vec2 half_m = max(0.5 * b.hull_m.xy, vec2(1.5 * sim.wave_cell_m));
   const vec2 q = at_m / half_m;

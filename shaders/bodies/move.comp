@@ -1,14 +1,13 @@
 // One tick of every boat: one invocation per boat, all in one group.
 // Reads SURFACE, SURFACE_FLOW, TERRAIN, BoatControls. Updates BOATS.
-// Equations: buoyancy from HULL_COLUMNS columns of water under the hull, each submerged to where the surface would be without the
-// hull's own dent (elevation + own head): draught at rest = density ratio * height. Heave, pitch and roll are damped oscillators
-// about it, omega^2 = g/draught. Thrust balances quadratic drag, relative to the moving water, at full speed; the rudder
-// turns a moving boat on a circle of about two lengths; the slope of the surface accelerates it. A boat thrown up by waves
-// falls freely: these forces act with the share that the water carries, and twice that share below one half. Contacts:
-// three circles along each hull against other boats, obstacles, shallow ground and sides. Each boat moves by half of the
-// overlap and loses its approaching speed.
+// Equations: buoyancy from HULL_COLUMNS columns of water under the hull. Each column is submerged up to the surface
+// without the hull's own dent (elevation + own head); draught at rest = density ratio * height. Heave, pitch and roll
+// are damped oscillators about it, omega^2 = g/draught. Thrust balances quadratic drag, relative to the moving water,
+// at full speed; the rudder turns a moving boat on a circle of about two lengths; the slope of the surface accelerates
+// it. A boat thrown up by waves falls freely: all forces but buoyancy are multiplied by min(1, 2 s), s being the share
+// of its weight that the water carries. Contacts: three circles along each hull against other boats, obstacles, shallow
+// ground and sides. Each boat moves by half of the overlap and loses its approaching speed.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
-// variants: WAVE=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | WAVE=1 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
 #include "bodies/boat.glsl"
 #include "wave/wave_cell.glsl"
 #if WAVE
@@ -128,7 +127,7 @@ void drive(inout BoatState b, float slope) {
   b.centre_m.xz += dt_s * velocity_mps;
 }
 
-/// Boats before this tick: every invocation sees the same.
+/// Boats before this tick: all invocations read the same state.
 void meetBoats(BoatState b, uint own, inout vec2 shift_m, inout vec2 velocity_mps) {
   for (uint other = 0u; other < boat_place_count; ++other) {
     const BoatState o = boatAt(other);

@@ -1,8 +1,7 @@
 // Pressure of hulls on the water: invocations (x, y) cover the square around a boat, z is its slot.
 // Reads BOATS. Adds to PRESSURE_HEAD [n x n, units] (cleared before).
-// A moving pressure disc of the hull's size (PHYSICS: boat wake; thesis 3.6.4 uses a point). The wave equation has no
-// dispersion: a boat slower than the waves carries a dent, a faster one drags a Mach wedge of half angle asin(c/U).
-// variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0
+// A moving pressure disc of the hull's size (the thesis, 3.6.4, uses a point). The wave equation has no dispersion: a
+// boat slower than the waves carries a dent, a faster one drags a Mach wedge of half angle asin(c/U).
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "bodies/boat.glsl"

@@ -1,4 +1,4 @@
-// Tests for finite numbers by their bits, because compilers may assume that no NaN occurs and drop isnan().
+// Tests for finite numbers by their bits, because compilers may assume that there are no NaNs and remove isnan().
 #ifndef SPINDRIFT_FINITE
 #define SPINDRIFT_FINITE
 

@@ -5,8 +5,8 @@
 #include "common/terrain_texels.glsl"
 #include "wave/wave_cell.glsl"
 
-/// (signed distance, its gradient, still depth; minus its height above the water inside an obstacle) under a place, the distance
-/// carried from the cell's centre along the gradient.
+/// Returns the signed distance, its gradient and the still depth (inside an obstacle: minus its height above the water)
+/// at a place. The distance is extrapolated from the cell's centre along the gradient.
 vec4 terrainAt(vec2 xz) {
   const int n = int(sim.wave_n);
   const vec2 u = (xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m;

@@ -14,9 +14,10 @@ layout(std430, binding = POOL) restrict buffer PoolWords { uint pool_words[]; };
 layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
 #endif
 
-/// A particle at xz with downward speed `impact_mps` ends here. Its momentum acts on the surface during the next tick as the height
-/// of water V v / (g dt) over the cell's area: the ring of a falling drop. An impulse as narrow as the splat moves water
-/// to about that depth, while the shallow-water flow moves the whole column: so much less of it counts.
+/// Absorbs a particle at xz with downward speed `impact_mps`. During the next tick its momentum acts on the surface as
+/// the height of water V v / (g dt) over the cell's area, which makes the ring of a falling drop. An impulse as narrow
+/// as the splat moves water only to about that depth, while the shallow-water flow moves the whole column, so the
+/// impulse is reduced in that ratio.
 /// Invariant: ELEVATION gains exactly droplet_units.
 void absorb(vec2 xz, float impact_mps) {
   const int n = int(sim.wave_n);

@@ -4,7 +4,6 @@
 // velocity, the wave's along it, and the rise of the surface, each slightly randomised) or of a splash's crown.
 // Invariant: ELEVATION loses exactly droplet_units per particle, and no cell more than it holds. The slot of a particle
 // depends on the order of invocations; the sort then orders particles by position.
-// variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=1 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "common/hash.glsl"
 #include "wave/transfer.glsl"

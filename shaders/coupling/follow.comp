@@ -1,7 +1,6 @@
 // Moves the particle patch to its target: a position from the host, or the first boat. One invocation.
 // Reads BOATS. Writes min and max of x and z in the simulation's uniforms; the patch keeps its size and stays on the water.
 // The host need not read back the boat's position; the next pass reads the moved uniforms.
-// variants: FOLLOW=1 HULLS=0 | FOLLOW=2 HULLS=1
 #include "shared/bindings.h"
 #include "shared/dual.h"
 

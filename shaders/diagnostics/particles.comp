@@ -1,9 +1,8 @@
 // Health of the particles: one partial result per invocation, summed on the host in double precision.
-// Reads POSITION, VELOCITY, ACCELERATION.w, CROWDED. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
-// non-finite values, escaped particles, max speed, max density; sum of density, sum of v^2, sum of y, 0; four words 0, but for the
-// first one of the first invocation: CROWDED[0].
+// Reads POSITION, VELOCITY, ACCELERATION.w, CROWDED. Writes PARTIAL_SUM, 12 words per invocation, floats as their bits:
+// non-finite values, escaped particles, max speed, max density; sum of density, sum of v^2, sum of y, 0; four words 0,
+// except the first of these in invocation 0: CROWDED[0].
 // Particles that were absorbed in the last substep are left out.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "common/finite.glsl"
 #include "particles/population.glsl"

@@ -1,9 +1,8 @@
 // Health of the wave: one partial result per invocation, summed on the host in double and 64-bit integer precision.
-// Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words an invocation, floats as their bits:
-// breaches (flows not finite or beyond range, elevations beyond range, non-finite boats), 0, max |eta|, cells that break; sum of
-// eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0;
-// sum of ELEVATION >> 16, sum of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers: the volume to the last unit).
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 BREAKERS=0 HULLS=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1 BREAKERS=1 HULLS=1
+// Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words per invocation, floats
+// as their bits: breaches (flows not finite or out of range, elevations out of range, non-finite boats), 0, max |eta|,
+// number of breaking cells; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0; sum of ELEVATION >> 16, sum
+// of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers, so the volume is exact).
 #include "shared/groups.h"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"

@@ -1,8 +1,7 @@
-// White water on the surface, once per tick: carried by the water, fading by source, fed by breakers, wakes and
-// landings.
+// White water on the surface, once per tick: carried by the water, fading at a rate per source, produced by breakers,
+// wakes and landings.
 // Reads FOAM_BEFORE [(n/2)^2: breaking, wake, landing, 0], SURFACE_FLOW, BREAKING, BOATS, LANDED. Writes FOAM_FIELD; clears LANDED.
 // Equation: semi-Lagrangian transport, f(x, t + dt) = f(x - u dt, t) exp(-dt/lifetime) + source; each share of white is at most 1.
-// variants: WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 HULLS=0 LANDINGS=0 | WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 HULLS=1 LANDINGS=1
 #include "shared/groups.h"
 #include "wave/wave_cell.glsl"
 #if HULLS

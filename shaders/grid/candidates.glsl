@@ -9,8 +9,8 @@
 layout(binding = CELL_START) uniform usamplerBuffer cell_start;
 
 #if defined(COUNT_CROWDED) || defined(COUNT_CANDIDATES)
-/// [0]: particles with skipped candidates since the buffer was made. [1]: candidates visited, with COUNT_CANDIDATES
-/// only (tests).
+/// [0]: number of particles with skipped candidates since the buffer was made. [1]: number of candidates visited, only
+/// with COUNT_CANDIDATES (tests).
 layout(std430, binding = CROWDED) restrict buffer Crowded { uint crowded[]; };
 #endif
 bool is_crowded = false;
@@ -28,13 +28,13 @@ CandidateRange candidateRange(Grid g, ivec3 cell, int dx, int dz) {
 }
 
 #ifdef COUNT_CROWDED
-/// After the last range of a particle.
+/// Call it after the last range of a particle.
 void countCrowded() {
   if (is_crowded) atomicAdd(crowded[0], 1u);
 }
 #endif
 
-/// Vector from a candidate at x_j to the particle at x, with its range's shift; the shorter way where y is periodic.
+/// Vector from a candidate at x_j to the particle at x, with the shift of the range; the shorter way if y is periodic.
 vec3 fromCandidate(Grid g, vec3 x, vec3 x_j) {
   vec3 r = x - x_j;
 #if PERIODIC_Y

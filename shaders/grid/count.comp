@@ -1,8 +1,8 @@
 // Counts the particles of each cell and notes each particle's cell and arrival number.
-// Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last: positions without a cell). Writes CELL_ARRIVAL
-// = (cell, arrival); particles that were absorbed have NO_CELL and leave here, those whose position is not finite count behind the
-// last cell. The arrival order is not repeatable; grid/reorder.comp makes the final order so.
-// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=1 POOL_PARTICLES=1
+// Reads POSITION [unsortedCount()]. Adds to CELL_COUNT [cell_count + 1] (cleared before; the last entry counts
+// positions without a cell). Writes CELL_ARRIVAL = (cell, arrival). Absorbed particles have NO_CELL and are dropped
+// here; particles whose position is not finite are counted after the last cell. The order of arrival is not
+// reproducible; grid/reorder.comp makes the final order reproducible.
 #include "shared/groups.h"
 #include "grid/grid_hash.glsl"
 #include "particles/population.glsl"

@@ -1,7 +1,8 @@
-// Positions to cells and cells to ranges of the sorted particles. Cells have edge H and are numbered y fastest: y is the axis
-// that water's own box never has periodic, so the three y-neighbours of a column are one contiguous range everywhere, and the 27
-// cells around a particle are nine ranges without a special case at the sides. In a box that is periodic in y, meant to be a few
-// cells thick, all of a column are candidates. PERIODIC_X, PERIODIC_Y and PERIODIC_Z are 0 or 1.
+// Positions to cells, and cells to ranges of the sorted particles. Cells have edge H and are numbered y fastest. y is
+// never periodic in a scene with a water surface, so the three y-neighbours of a column are one contiguous range, and
+// the 27 cells around a particle are nine ranges without a special case at the sides. In a box that is periodic in y,
+// which should be only a few cells high, all particles of a column are candidates. PERIODIC_X, PERIODIC_Y and
+// PERIODIC_Z are 0 or 1.
 #ifndef SPINDRIFT_GRID_HASH
 #define SPINDRIFT_GRID_HASH
 
@@ -9,7 +10,7 @@
 #include "shared/grid.h"
 #include "shared/sim_uniforms.h"
 
-/// The grid in registers: loops must not touch the uniform block.
+/// The grid in registers, so that loops do not read the uniform block.
 struct Grid {
   vec3 min_m;
   vec3 side_m;
@@ -28,12 +29,13 @@ Grid loadGrid() {
   return g;
 }
 
-/// Whether a position is in a cell: all of it is finite. Others are kept behind the particles of the last cell, where no
-/// search finds them, until diagnostics have counted them and the watchdog acts.
+/// Returns whether a position is in a cell, which means that all its components are finite. The others are stored after
+/// the particles of the last cell, where no search finds them, until diagnostics have counted them and the watchdog
+/// acts.
 bool hasCell(vec3 position_m) { return isFinite(position_m); }
 
-/// Cell of a position, clamped to the grid. The first one for a position without a cell, whose sums are not finite
-/// whatever it meets.
+/// Cell of a position, clamped to the grid. A position without a cell gets the first cell; its sums are not finite
+/// anyway.
 ivec3 cellOf(Grid g, vec3 position_m) {
   const vec3 c = floor((position_m - g.min_m) / g.cell_m);
   return ivec3(hasCell(position_m) ? clamp(c, vec3(0.0), vec3(g.cells - 1)) : vec3(0.0));
@@ -43,15 +45,15 @@ int flatCell(Grid g, ivec3 cell) {
   return cell.y + g.cells.y * (cell.x + g.cells.x * cell.z);
 }
 
-/// A run of sorted particles, and what to add to one's own position so that distances to them are right across a
-/// periodic side. Empty when first == last.
+/// A range of sorted particles, and the shift to add to the own position so that distances are right across a periodic
+/// side. Empty when first == last.
 struct CandidateRange {
   int first;
   int last;
   vec3 shift_m;
 };
 
-/// One axis of a neighbouring column: wraps on a periodic side and says by how much to shift; false outside of walls.
+/// Moves one axis to a neighbouring column: wraps at a periodic side and sets the shift; returns false outside a wall.
 bool neighbourColumn(inout int c, int cells, float side_m, bool periodic, out float shift_m) {
   const bool below = c < 0;
   const bool above = c >= cells;
@@ -60,7 +62,8 @@ bool neighbourColumn(inout int c, int cells, float side_m, bool periodic, out fl
   return periodic || !(below || above);
 }
 
-/// Cells of the column at (dx, dz) in -1..1 that can hold neighbours, as [first, last), before the start lookup.
+/// Returns the cells of the column at (dx, dz) in -1..1 that can hold neighbours as [first, last), not yet as particle
+/// indices.
 CandidateRange columnCells(Grid g, ivec3 cell, int dx, int dz) {
   CandidateRange r;
   int x = cell.x + dx;

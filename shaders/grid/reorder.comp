@@ -1,8 +1,8 @@
-// Sorts particles by cell and, inside a cell, by their previous index. Neighbours become contiguous, and a run repeats
-// bit for bit, because the order does not depend on the order of invocations.
+// Sorts particles by cell and, inside a cell, by their previous index. Neighbours become contiguous, and a run is
+// reproducible bit for bit, because the result does not depend on the order of invocations.
 // Reads POSITION, VELOCITY, CELL_ARRIVAL, CELL_START, CELL_MEMBER. Writes SORTED_POSITION, SORTED_VELOCITY.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
-// Cost: a particle counts the smaller indices in its cell, so n particles in one cell cost n^2, up to ORDERED_MAX of them.
+// Cost: each particle counts the smaller indices in its cell, so n particles in one cell cost n^2, up to ORDERED_MAX
+// particles.
 #include "shared/groups.h"
 #include "shared/grid.h"
 #include "particles/population.glsl"
@@ -33,7 +33,7 @@ void main() {
 #endif
   const int cell = int(a.x);
   const int first = int(texelFetch(cell_start, cell).x);
-  // Positions behind the last cell are not finite and need no order.
+  // Positions after the last cell are not finite and need no order.
   int last = a.x < sim.cell_count ? int(texelFetch(cell_start, cell + 1).x) : first;
   uint slot = uint(first);
   if (a.x == sim.cell_count || last - first > ORDERED_MAX) {

@@ -1,7 +1,8 @@
-// Exclusive prefix sum, last of three: adds the sum of the blocks before. The last entry is the number of particles in cells.
-// Reads BLOCK_TOTAL, CELL_COUNT. Adds to CELL_START [cell_count + 1]; in a pool writes POOL_LIVE, with those that have no cell.
+// Exclusive prefix sum, last of three passes: adds the sum of the blocks before. The last entry is the number of
+// particles in cells.
+// Reads BLOCK_TOTAL, CELL_COUNT. Adds to CELL_START [cell_count + 1]; in a pool also writes POOL_LIVE, which includes
+// particles without a cell.
 // The dispatch may have fewer invocations than cells (MAX_GROUPS): each handles several cells with a stride.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 

@@ -1,6 +1,8 @@
-// Exclusive prefix sum, first of three: each group scans one block of SCAN_BLOCK cells and notes the block's total.
+// Exclusive prefix sum, first of three passes: each group scans one block of SCAN_BLOCK cells and writes the block's
+// total.
 // Reads CELL_COUNT [cell_count + 1]. Writes CELL_START (sum of the cells before it in its block), BLOCK_TOTAL.
-// Work: Blelloch's idea with a serial run of SCAN_ITEMS per invocation, then Hillis & Steele over the group in shared memory.
+// Algorithm: as Blelloch's, with a serial run of SCAN_ITEMS per invocation, then Hillis & Steele over the group in
+// shared memory.
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
 

@@ -1,5 +1,5 @@
-// Exclusive prefix sum, second of three: one group turns the block totals into sums of the blocks before, any number of
-// blocks, SCAN_GROUP at a time.
+// Exclusive prefix sum, second of three passes: one group turns the block totals into sums of the blocks before,
+// SCAN_GROUP blocks at a time.
 // Reads and writes BLOCK_TOTAL [ceil((cell_count + 1) / SCAN_BLOCK)].
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"

@@ -1,6 +1,5 @@
 // Groups particle indices by cell, in arrival order.
 // Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "shared/grid.h"
 #include "particles/population.glsl"

@@ -1,9 +1,10 @@
-// What the particles miss beyond floor and walls. The floor has its virtual lattice (particles/floor_support.glsl); a wall has a
-// share of the rest density that depends on the distance d alone, f(d) = C max(1 - d/D, 0)^2, with C and D from derive(): a
-// particle half a spacing from the wall gets exactly the density of the layers that are missing beyond it, and the gradient is
-// twice theirs, because a wall particle pushes with its own pressure only while a missing neighbour would have brought its
-// own. So the column at a wall rests where the lattice has it, at the pressure of its depth. Shares of several boundaries
-// combine as 1 - (1 - f_x)(1 - f_z)(1 - f_floor), so that corners are not counted twice. Without walls nothing of it is compiled.
+// Replaces the neighbours that are missing beyond floor and walls. The floor has its virtual lattice
+// (particles/floor_support.glsl). A wall contributes a share of the rest density that depends only on the distance d:
+// f(d) = C max(1 - d/D, 0)^2, with C and D from derive(). A particle half a spacing from the wall gets exactly the
+// density of the missing layers. The gradient is twice theirs, because the wall pushes only with the particle's own
+// pressure, while a missing neighbour would have added its own. So the column at a wall rests where the lattice rests,
+// at the pressure of its depth. Shares of several boundaries combine as 1 - (1 - f_x)(1 - f_z)(1 - f_floor), so that
+// corners are not counted twice. Without walls none of this is compiled.
 #ifndef SPINDRIFT_BOUNDARY
 #define SPINDRIFT_BOUNDARY
 
@@ -31,7 +32,7 @@ vec4 wallShares(vec3 x_i) {
   return w;
 }
 
-/// The share of floor and walls of the density at x_i. [kg/m^3]
+/// Density at x_i from floor and walls. [kg/m^3]
 float boundaryDensity(vec3 x_i) {
   const float floor_density = floorDensity(x_i);
 #if HAS_WALLS
@@ -45,7 +46,7 @@ float boundaryDensity(vec3 x_i) {
 
 /// Acceleration from floor and walls: -(p_i / rho_i^2) grad of boundaryDensity, and the floor's viscosity.
 vec3 boundaryAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
-  const float own = max(pressure_term, 0.0);  // with cohesion, too, neither floor nor walls pull
+  const float own = max(pressure_term, 0.0);  // neither floor nor walls pull, with cohesion either
 #if HAS_WALLS
   const vec4 w = wallShares(x_i);
   const float covered = sim.rest_density_kgpm3 - floorDensity(x_i);

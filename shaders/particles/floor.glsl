@@ -1,5 +1,5 @@
-// The floor that carries the particles: with COUPLED the water surface lowered by the band's thickness, else the plane
-// y = -band. Samples come from the SURFACE texels, written by coupling/sample_surface.comp.
+// The floor that carries the particles: with COUPLED the water surface lowered by the band's thickness, otherwise the
+// plane y = -band. Samples come from the SURFACE texels, written by coupling/sample_surface.comp.
 #ifndef SPINDRIFT_FLOOR
 #define SPINDRIFT_FLOOR
 
@@ -11,7 +11,7 @@ layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 #endif
 
-/// What lookups need, in registers.
+/// Inputs of the lookups, in registers.
 struct Floor {
   float band_m;
   int n;
@@ -33,8 +33,8 @@ Floor loadFloor() {
 }
 
 #if COUPLED
-/// (elevation, d eta/dt, d eta/dx, d eta/dz) of the nearest wave cell, the elevation carried to (x, z) along the
-/// gradient: one fetch, second order in the cell size like the bilinear sample.
+/// (elevation, d eta/dt, d eta/dx, d eta/dz) of the nearest wave cell, with the elevation extrapolated to (x, z) along
+/// the gradient: one fetch, second order in the cell size like the bilinear sample.
 vec4 surfaceNear(Floor f, vec2 xz) {
   const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm;
   const vec2 c = floor(u);
@@ -44,7 +44,7 @@ vec4 surfaceNear(Floor f, vec2 xz) {
   return s;
 }
 
-/// The four numbers above and the flow, bilinear between cell centres.
+/// The same four numbers and the flow, bilinear between cell centres.
 vec4 surfaceAt(Floor f, vec2 xz, out vec2 flow_mps) {
   const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm - 0.5;
   const vec2 c = floor(u);

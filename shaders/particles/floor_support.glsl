@@ -1,10 +1,11 @@
-// The floor's support. A flat floor (!COUPLED) supports like a wall (particles/boundary.glsl): f(d) = C max(1 - d/D, 0)^2 of the rest
-// density, whose slope carries the lowest layer at the pressure of its depth.
-// Under coupled water it is virtual particles: a LATTICE x LATTICE grid at spacing s, centred under the particle and snapped to
-// half a spacing below the floor, where the next layer of the water would be, seen by particles closer to it than H (thesis,
-// algorithm 10, cubic kernel). Their mass is calibrated in derive() so that a particle of the resting lattice's lowest layer has
-// rest density. Snapped to the floor itself, as in the thesis, their density hardly changed with the distance, and the lowest
-// layer fell through. Either way the push is the gradient of the density, so that a floor at rest neither adds nor takes energy.
+// The support of the floor. A flat floor (!COUPLED) supports like a wall (particles/boundary.glsl): f(d) = C max(1 -
+// d/D, 0)^2 of the rest density, whose slope carries the lowest layer at the pressure of its depth.
+// Under coupled water the floor consists of virtual particles: a LATTICE x LATTICE grid with spacing s, centred under
+// the particle and half a spacing below the floor, where the next layer of the water would be. It acts on particles
+// closer than H (thesis, algorithm 10, cubic kernel). derive() calibrates the mass so that a particle of the resting
+// lattice's lowest layer has rest density. With the grid on the floor itself, as in the thesis, its density hardly
+// changed with the distance, and the lowest layer fell through. In both forms the force is the gradient of the density,
+// so that a floor at rest neither adds nor removes energy.
 #ifndef SPINDRIFT_FLOOR_SUPPORT
 #define SPINDRIFT_FLOOR_SUPPORT
 
@@ -12,24 +13,24 @@
 #include "particles/kernels.glsl"
 
 #if POOL_PARTICLES || PERIODIC_Y
-// In two-way scenes the surface takes particles in instead of carrying them; a box that is periodic in y has no floor.
+// In two-way scenes the surface absorbs particles instead of carrying them; a box that is periodic in y has no floor.
 float floorDensity(vec3 x_i) { return 0.0; }
 vec3 floorGradient(vec3 x_i) { return vec3(0.0); }
 vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) { return vec3(0.0); }
 #elif !COUPLED
-/// What is left of the reach above a flat floor.
+/// Remaining reach above a flat floor, 1 at the floor, 0 beyond its reach.
 float flatFloorReach(vec3 x_i) { return max(1.0 - max(x_i.y + sim.band_m, 0.0) / sim.wall_reach_m, 0.0); }
 
-/// The floor's share of the density at x_i. [kg/m^3]
+/// Density at x_i from the floor. [kg/m^3]
 float floorDensity(vec3 x_i) {
   const float u = flatFloorReach(x_i);
   return sim.rest_density_kgpm3 * sim.wall_share * u * u;
 }
 
-/// Its gradient. [kg/m^4]
+/// Gradient of floorDensity. [kg/m^4]
 vec3 floorGradient(vec3 x_i) { return vec3(0.0, -2.0 * sim.rest_density_kgpm3 * sim.wall_share * flatFloorReach(x_i) / sim.wall_reach_m, 0.0); }
 
-/// The floor's share of the acceleration: pressure, -(p_i / rho_i^2) times the gradient, and viscosity against the floor at rest.
+/// Acceleration by the floor: pressure, -(p_i / rho_i^2) times the gradient, and viscosity against the floor at rest.
 /// `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
 vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
   const float u = flatFloorReach(x_i);
@@ -38,19 +39,19 @@ vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
 #else
 #define LATTICE_REACH (LATTICE / 2)
 
-/// From the virtual particle at (ix, iz) spacings to the particle. [m]
+/// Vector from the virtual particle at (ix, iz) spacings to the particle. [m]
 vec3 latticeOffset(Floor f, vec3 x_i, float spacing_m, int ix, int iz) {
   const vec2 d = vec2(ix, iz) * spacing_m;
   return vec3(-d.x, x_i.y - floorHeight(f, x_i.xz + d) + 0.5 * spacing_m, -d.y);
 }
 
-/// Rows of the lattice that a particle sees: -LATTICE_REACH to this, all or none. A loop bound instead of a branch: llvmpipe
-/// runs both sides of a branch, but leaves a loop that no lane needs.
+/// Last row of the lattice in reach of a particle, from -LATTICE_REACH: all rows or none. A loop bound instead of a
+/// branch, because llvmpipe executes both sides of a branch but leaves a loop that no lane needs.
 int lastLatticeRow(Floor f, vec3 x_i, float H, float spacing_m) {
   return x_i.y - floorHeight(f, x_i.xz) + 0.5 * spacing_m < H ? LATTICE_REACH : -LATTICE_REACH - 1;
 }
 
-/// The floor's share of the density at x_i. [kg/m^3]
+/// Density at x_i from the floor. [kg/m^3]
 float floorDensity(vec3 x_i) {
   const Floor f = loadFloor();
   const float H = sim.support_radius_m;
@@ -64,7 +65,8 @@ float floorDensity(vec3 x_i) {
   return sim.virtual_mass_kg * sim.cubic_norm * sum;
 }
 
-/// Sums over the virtual particles: xyz of the cubic kernel's slope toward the particle, w of the viscosity's Laplacian, without norms.
+/// Sums over the virtual particles: xyz is the cubic kernel's slope toward the particle, w the viscosity's Laplacian,
+/// without norms.
 vec4 latticeSums(vec3 x_i) {
   const Floor f = loadFloor();
   const float H = sim.support_radius_m;
@@ -87,7 +89,7 @@ vec4 latticeSums(vec3 x_i) {
 /// Gradient of floorDensity. [kg/m^4]
 vec3 floorGradient(vec3 x_i) { return -sim.virtual_mass_kg * sim.cubic_norm / sim.support_radius_m * latticeSums(x_i).xyz; }
 
-/// The floor's share of the acceleration: pressure, -(p_i / rho_i^2) grad of floorDensity (Akinci et al. 2012, eq. 9), and
+/// Acceleration by the floor: pressure, -(p_i / rho_i^2) grad of floorDensity (Akinci et al. 2012, eq. 9), and
 /// viscosity against the velocity of the moving surface. `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
 vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
   const vec4 sums = latticeSums(x_i);

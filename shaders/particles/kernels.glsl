@@ -30,7 +30,7 @@ float cubicShape(float q) {
   return q <= 0.5 ? 6.0 * q * q * (q - 1.0) + 1.0 : 2.0 * u * u * u;
 }
 
-// For the inner loops: H and its inverse, so that nothing is divided there.
+// For the inner loops: H and its inverse, so that they need no division.
 struct Support {
   float H;
   float inverse_H;
@@ -41,7 +41,8 @@ Support makeSupport(float H) {
 }
 
 // densityShape: W / density norm, from the squared distance.
-// pressurePull: -(dW/dr) / r / slope norm, from the squared distance: times the vector from the neighbour, it pushes outwards.
+// pressurePull: -(dW/dr) / r / slope norm, from the squared distance. Multiplied by the vector from the neighbour, it
+// points away from it.
 #if KERNEL_SET == KERNEL_SET_MULLER
 float densityShape(float r2, Support k) {
   const float u = max(k.H * k.H - r2, 0.0);

@@ -18,7 +18,7 @@ void wrapAround(inout float x, float low, float high) {
 }
 
 #if FOLLOW
-/// The patch moves: particles left behind enter at its front, at the same height above the water and moving with it.
+/// For a moving patch: particles left behind enter at its front, at the same height above the water and moving with it.
 void carryAlong(inout vec3 x, inout vec3 v) {
   const vec2 low = vec2(sim.min_x_m, sim.min_z_m);
   const vec2 side = vec2(sim.max_x_m, sim.max_z_m) - low;

@@ -37,16 +37,17 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
   if (gap_m < 0.0) {
     const float approach_mps = floor_velocity_mps.y - v.y;
     if (approach_mps > 0.0 || gap_m < -sim.spacing_m) {
-      // With its own speed: what rises to meet it would push itself, and more than its own weight where much falls.
+      // Only the particle's own speed counts: with that of the rising surface, the surface would push itself, by more
+      // than its weight where much water falls.
       absorb(x.xz, max(-v.y, 0.0));
       return false;
     }
-    x.y -= gap_m;  // thrown out by the water below
+    x.y -= gap_m;  // the water below throws it out
   }
 #else
   if (gap_m < sim.floor_gap_m) {
-    // Lift to the floor in the column, so that a slope cannot push the particle across a side; the velocity loses what
-    // points into the floor along its normal.
+    // Lift the particle to the floor vertically, so that a slope cannot push it across a side, and remove the component
+    // of its velocity into the floor.
     x.y += sim.floor_gap_m - gap_m;
     v -= normal * min(dot(v - floor_velocity_mps, normal), 0.0);
   }

@@ -1,8 +1,7 @@
 // Moves each particle by the corrections of the constraints around it, then out of walls and floor.
 // Reads PRESSURE_POINT (position, lambda), CELL_START, floor and walls. Writes MOTION_POINT (position of the next iteration).
 // Equation: dx_i = sum_j (lambda_i + lambda_j) m/rho_0 grad W (Macklin & Mueller 2013, eq. 12) + lambda_i/rho_0 grad rho_boundary.
-// Invariant: one iteration moves a particle by at most a quarter of the spacing, but for the lift to the floor.
-// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 COHESION=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 COHESION=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0
+// Invariant: one iteration moves a particle by at most a quarter of the spacing, except for the lift to the floor.
 #include "shared/groups.h"
 #include "particles/population.glsl"
 #include "grid/candidates.glsl"

@@ -1,9 +1,8 @@
-// The multiplier of each particle's density constraint C_i = rho_i / rho_0 - 1, without COHESION only where C_i > 0.
+// The multiplier of each particle's density constraint C_i = rho_i / rho_0 - 1; without COHESION it is 0 where C_i < 0.
 // Reads SORTED_POSITION (the positions of this iteration), CELL_START, floor and walls. Writes PRESSURE_POINT (position, lambda [m^2])
 // and ACCELERATION.w (rho); counts in CROWDED.
-// Equation: lambda_i = -C_i / (sum_k |grad_k C_i|^2 + softness) (Macklin & Mueller 2013, eq. 11); floor and walls count in rho_i
-// and in the particle's own gradient, they do not move.
-// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=1 COHESION=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 LATTICE=3 KERNEL_SET=2 COHESION=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 LATTICE=5 KERNEL_SET=3 COHESION=0
+// Equation: lambda_i = -C_i / (sum_k |grad_k C_i|^2 + softness) (Macklin & Mueller 2013, eq. 11). Floor and walls
+// contribute to rho_i and to the particle's own gradient; they do not move.
 #define COUNT_CROWDED
 #include "shared/groups.h"
 #include "particles/population.glsl"

@@ -2,7 +2,6 @@
 // Reads SORTED_POSITION, SORTED_VELOCITY (predicted), MOTION_POINT (corrected). Writes PRESSURE_POINT (position, m/rho) and
 // ACCELERATION (velocity, rho) for pbf/finish.comp.
 // Equation: v = (x - x_old) / dt (Macklin & Mueller 2013, algorithm 1), not faster than max_speed_mps.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "particles/population.glsl"
 #include "shared/sim_uniforms.h"

@@ -27,16 +27,17 @@
 #define CELL_MEMBER 10
 #define BLOCK_TOTAL 11
 
-// Wave, n x n cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance of those
-// faces [m]; loss of flow and of elevation in sponges and on beaches [1/s] with the still depth of the cell [m]; what left through
-// absorbing sides [units: low 24 bits, the rest].
+// Wave, n x n cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance
+// of those faces [m]; loss rates of flow and of elevation in sponges and on beaches [1/s] with the still depth of the
+// cell [m]; water that left through absorbing sides [units: low 24 bits, the rest].
 #define FLOW 12
 #define ELEVATION 13
 #define BASIN 14
 #define BED 19
 #define OUTFLOW 20
-// Water that a wave step moves through the faces that a cell owns [units]; share of it that a cell can give [0..1]; arguments of
-// the indirect dispatches that find and apply those shares. Only passes of the wave use them; the numbers are the grid's.
+// Water that a wave step moves through the faces that a cell owns [units]; the share of it that a cell can give [0..1];
+// arguments of the indirect dispatches that compute and apply those shares. The numbers are those of the grid; only
+// passes of the wave use these buffers.
 #define TRANSFER 7
 #define GIVEN_SHARE 8
 #define LIMIT_ARGS 9
@@ -45,7 +46,7 @@
 // Breaking: seconds since a cell began to break, intensity 0..1; and the same one substep ago.
 #define BREAKING 22
 #define BREAKING_BEFORE 23
-// Surface as the particles see it: elevation, d eta/dt, d eta/dx, d eta/dz; horizontal flow of the wave [m/s].
+// Surface for the particles: elevation, d eta/dt, d eta/dx, d eta/dz; horizontal flow of the wave [m/s].
 #define SURFACE 15
 #define SURFACE_FLOW 16
 
@@ -53,8 +54,8 @@
 #define PACKED_WORDS 17
 #define PARTIAL_SUM 18
 
-// Ground as particles and boats see it, one texel a wave cell: signed distance to the nearest obstacle [m], its gradient (x, z),
-// still depth [m]. Where water that falls on a cell goes: the cell itself, or the nearest wet one.
+// Ground for particles and boats, one texel per wave cell: signed distance to the nearest obstacle [m], its gradient
+// (x, z), still depth [m]. The wet cell that receives water falling on a cell: the cell itself, or the nearest wet one.
 #define TERRAIN 24
 #define LANDING 25
 // Pool of a two-way scene; shared/pool.h.
@@ -64,8 +65,8 @@
 // Boats; shared/boats.h. Their controls are a uniform block.
 #define BOATS 27
 #define BOAT_CONTROLS 2
-// Foam on the surface, (n/2)^2 cells: share of white by source (breaking, wakes, landings); one tick ago; particles that landed
-// since the last tick.
+// Foam on the surface, (n/2)^2 cells: share of white water by source (breaking, wakes, landings); the same one tick
+// ago; number of particles that landed since the last tick.
 #define FOAM_FIELD 28
 #define FOAM_BEFORE 29
 #define LANDED 30

@@ -1,12 +1,11 @@
 // Boats: BOAT_TEXELS texels each in BOATS, one slot per boat. Axes: forward is (cos heading, sin heading) in (x, z),
-// starboard
-// (-sin, cos); pitch lifts the bow, roll lowers starboard.
+// starboard (-sin, cos); pitch lifts the bow, roll lowers starboard.
 //   0  x, y, z of the hull's centre (half way from keel to deck) [m], heading [rad]
 //   1  pitch, roll [rad], age [s] (negative: the slot is free), id
 //   2  speed forward, to starboard, up [m/s], yaw rate [rad/s]
 //   3  pitch rate, roll rate [rad/s], throttle, rudder [-1..1]
 //   4  length, beam, height, draught at rest [m]
-//   5  full speed [m/s], share of its hold on the water that it lacks because it flies [0..1], 0, 0
+//   5  full speed [m/s], aloft [0..1] (0: the water carries the boat, 1: it is in the air), 0, 0
 #ifndef SPINDRIFT_SHARED_BOATS_H
 #define SPINDRIFT_SHARED_BOATS_H
 

@@ -1,5 +1,5 @@
-// Effects that act on the wave during one wave step. Each displaces gain * V(x, z), common/event_shapes.glsl; the gains of an
-// effect's pulse sum to its full amplitude.
+// Effects that act on the wave during one wave step. Each one displaces water by gain * V(x, z)
+// (common/event_shapes.glsl); over its duration the gains of an effect sum to its full amplitude.
 #ifndef SPINDRIFT_SHARED_EVENT_UNIFORMS_H
 #define SPINDRIFT_SHARED_EVENT_UNIFORMS_H
 
@@ -25,9 +25,9 @@ struct EventUniform {
   float offset_m;      // crest: present position along its direction
   float front_m;       // crest: width of its front and back
   float back_m;
-  float lateral_m;     // crest: half its extent along the crest; 0 = across the whole domain
+  float lateral_m;     // crest: half its length along the crest; 0 = across the whole domain
   float half_step_m;   // crest: distance travelled in half a step
-  float speed_mps;     // crest: of the wave. splash: of the crown that it throws now; 0 for rain drops
+  float speed_mps;     // crest: of the wave. splash: of the crown that it produces now; 0 for rain drops
   float depth_m;       // splash: full depth
   float half_side_m;   // crest across the whole domain: half of the domain's side along its direction
   float unused_x;

@@ -1,5 +1,5 @@
-// The elevation is an integer: the amount that leaves one cell enters its neighbour to the last unit, so the volume of
-// water stays exact. 2^-24 m is 60 nm; the range is +-128 m.
+// The elevation is an integer: the neighbour gains exactly what a cell loses, so the volume of water is conserved
+// exactly. 2^-24 m is 60 nm; the range is +-128 m.
 #ifndef SPINDRIFT_SHARED_FIXED_POINT_H
 #define SPINDRIFT_SHARED_FIXED_POINT_H
 
@@ -7,7 +7,7 @@
 #define ELEVATION_UNIT_M 5.9604644775390625e-8f
 // A transfer or a pressure head beyond this many units (16 m) is an error of the simulation and is replaced by 0.
 #define TRANSFER_MAX_UNITS 268435456.0f
-// Half of the range: water beyond it (64 m) is an error too; the watchdog acts before the value overflows.
+// Half of the range: water beyond it (64 m) is an error, too; the watchdog acts before the value overflows.
 #define ELEVATION_MAX_UNITS 1073741824
 
 #endif

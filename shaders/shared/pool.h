@@ -7,8 +7,8 @@
 #define POOL_COUNT 0
 // Particles in the sorted arrays, all alive; after integration, in POSITION, some may be dead.
 #define POOL_LIVE 1
-// Particles that breaking cells want to emit in this substep; 0 after coupling/plan.comp where there is no room for
-// all.
+// Particles that breaking cells want to emit in this substep; coupling/plan.comp sets it to 0 if there is no room for
+// all of them.
 #define POOL_WANTED 2
 // Next free slot while coupling/emit.comp runs.
 #define POOL_NEXT 3
@@ -27,7 +27,7 @@
 #define POOL_ONE_ARGS 20
 #define POOL_WORDS 24
 
-// position.w of a particle that has been absorbed and leaves with the next sort.
+// position.w of an absorbed particle; the next sort drops it.
 #define DEAD_ID -1.0f
 
 #endif

@@ -48,13 +48,13 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float floor_gap_m;            // particles are kept this far above the floor
   float downforce_per_m_s2;
 
-  // Coupling. Until when the substep runs, counted from the end of the tick (0 in the last one): the surface moves with its own speed from
-  // where it was to where the tick leaves it.
+  // Coupling: end of the substep minus the end of the tick (0 in the last substep). The surface moves with its own
+  // speed toward its place at the end of the tick.
   float surface_lead_s;
   // Two-way coupling.
   uint pool_capacity_count;
-  uint droplet_units;           // elevation units that a particle's volume is in one wave cell
-  uint splat_reach_count;       // droplet exchange is spread over 4 of these + 1 cells per axis
+  uint droplet_units;           // a particle's volume in elevation units of one wave cell
+  uint splat_reach_count;       // droplet exchange is spread over 4 splat_reach_count + 1 cells per axis
   float splat_width_m;          // standard deviation of that spread
   float emission_ratio;         // factor on the scene's emission
   uint spray_block_count;       // at most one cell in each square of this many cells per axis emits in a tick
@@ -71,11 +71,11 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
 
   float foam_neighbours;  // particles with fewer neighbours than this turn white
 
-  // Walls: f(d) = wall_share max(1 - d / wall_reach_m, 0)^2 of the rest density is what lies beyond one.
+  // Walls: the water missing beyond a wall is f(d) = wall_share max(1 - d / wall_reach_m, 0)^2 of the rest density.
   float wall_share;
   float wall_reach_m;
 
-  // Position-based solver: added to a constraint's squared gradient, so that lone particles stay calm.
+  // Position-based solver: added to a constraint's squared gradient, so that lone particles do not jump.
   float constraint_softness_pm2;
 
   // Wave; n x n cells, x fastest.
@@ -85,19 +85,20 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float wave_dt_s;              // wave substep
   float wave_depth_m;           // still depth away from beaches
   float wave_damping_per_s;     // kappa
-  float wave_pull;              // gravity dt / dx in metres of elevation a unit: flow gained per metre of conductance and unit of slope
+  float wave_pull;              // gravity dt / dx * metres per unit: flow gained per metre of conductance and unit of slope
   float wave_transfer;          // dt / dx in units: elevation moved per flow
   float steepening_ratio;
   float breaking_loss_per_s;    // of flow, where the intensity is 1
 
-  // Frames: positions are quantized between these in x and z, and between min_y_m and max_y_m.
+  // Frames: range of the quantized positions in x and z; in y it is min_y_m to max_y_m.
   float frame_min_x_m;
   float frame_max_x_m;
   float frame_min_z_m;
   float frame_max_z_m;
   float surface_quantum_m;
 
-  // Bound of the neighbour search: candidates of one column of cells that a particle looks at (sim/derive.cpp).
+  // Bound of the neighbour search: largest number of candidates of a column of cells that a particle visits
+  // (sim/derive.cpp).
   uint candidates_max_count;
   uint unused_0;                // std140 rounds the block up to a multiple of 16 bytes
   uint unused_1;

@@ -1,8 +1,8 @@
 // Moves the particles: kick, drift (symplectic Euler), foam, collisions.
 // Reads SORTED_POSITION, SORTED_VELOCITY, ACCELERATION, FOAM_SOURCE (with NEIGHBOUR_FOAM), the floor. Writes POSITION, VELOCITY (in sorted order).
-// Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than max_speed_mps plus
-// the floor's own speed; a periodic side is re-entered reentry_m inside (thesis 3.6.2: no thrashing).
-// variants: PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=0 VARIED=1 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0 NEIGHBOUR_FOAM=0 | PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 NEIGHBOUR_FOAM=1 | PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 COUPLED=1 POOL_PARTICLES=0 VARIED=0 HULLS=1 SURFACE_FOAM=0 FOLLOW=2 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 FOAM=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=1 POOL_PARTICLES=1 VARIED=1 HULLS=1 SURFACE_FOAM=1 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=1 NEIGHBOUR_FOAM=0 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0 COUPLED=0 POOL_PARTICLES=0 VARIED=0 HULLS=0 SURFACE_FOAM=0 FOLLOW=0 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 FOAM=0 NEIGHBOUR_FOAM=0
+// Invariants: every particle ends inside the domain, at least floor_gap_m above the floor, not faster than
+// max_speed_mps plus the floor's own speed. A particle that crosses a periodic side enters reentry_m inside the other
+// one, so that it does not oscillate across the side (thesis 3.6.2).
 #include "shared/groups.h"
 #include "common/finite.glsl"
 #include "particles/foam.glsl"

@@ -1,10 +1,10 @@
 // Effects in a scene without a wave: they move the particles directly, once per tick.
 // Reads EventUniforms. Changes POSITION [m] and VELOCITY [m/s]. (Scenes with a wave move the surface: shaders/wave.)
-// Equation: a change of the surface by eta = div V moves the water under it by -V/d along, and by eta (y + d)/d upward: no divergence, so
-// that the pressure solver has nothing to undo. A splash leaves its cavity to fall in, and brings its rim to the crown's speed, outward and up;
-// a crest sets its water in motion with u = c eta/d (long waves). The gains of a pulse sum to the whole.
+// Equation: a change of the surface by eta = div V moves the water below by -V/d horizontally and by eta (y + d)/d
+// upward. The motion has no divergence, so the pressure solver does not counteract it. A splash leaves its cavity to
+// collapse and gives its rim the crown's speed, outward and up; a crest sets its water in motion with u = c eta/d (long
+// waves). The gains of a pulse sum to 1.
 // Invariant: nothing moves by more than a quarter of the spacing in a tick, or out of the walls.
-// variants: PERIODIC_X=1 PERIODIC_Y=0 PERIODIC_Z=1 | PERIODIC_X=0 PERIODIC_Y=0 PERIODIC_Z=0
 #include "shared/groups.h"
 #include "common/event_shapes.glsl"
 #include "common/finite.glsl"
@@ -42,8 +42,9 @@ void main() {
   for (uint k = 0u; k < crest_count; ++k) {
     const EventUniform e = crests[k];
     const vec2 d = vec2(e.direction_x, e.direction_z);
-    const float eta = crestElevation(e, x.xz);
-    move_m.xz -= e.gain_m / depth_m * crestDisplacement(e, x.xz) * d;
+    const vec2 ends = crestEnds(e);
+    const float eta = crestElevation(e, x.xz, ends);
+    move_m.xz -= e.gain_m / depth_m * crestDisplacement(e, x.xz, ends) * d;
     move_m.y += e.gain_m * height_ratio * eta;
     v_mps.xz += e.gain_m * eta / depth_m * e.speed_mps * d;
   }

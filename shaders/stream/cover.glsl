@@ -1,8 +1,8 @@
-// Which cells of a row of n are covered by a sample of a row with fewer samples, and with which share.
+// Finds the cells of a row of n that a sample of a coarser row covers, and the covered share of each cell.
 #ifndef SPINDRIFT_COVER
 #define SPINDRIFT_COVER
 
-/// From `low`, `width` cells wide; cells `first` to `last` have a share in it.
+/// A sample from `low` to `low + width`, in cells; it covers a part of the cells `first` to `last`.
 struct Cover {
   float low;
   float width;
@@ -17,7 +17,7 @@ Cover coverOf(int sample_index, int n, int sample_count) {
   return Cover(low, width, int(floor(low + 1e-3)), min(int(ceil(low + width - 1e-3)), n) - 1);
 }
 
-/// 0..1: the part of the cell that lies in the sample.
+/// 0..1: share of the cell that the sample covers.
 float weightIn(Cover c, int cell) { return min(float(cell) + 1.0, c.low + c.width) - max(float(cell), c.low); }
 
 #endif

@@ -1,9 +1,10 @@
-// Quantizes particles for the stream: how many were packed, how many there are, then three words each, the layout of
-// core::ParticleView.
-// Reads POSITION, VELOCITY, ACCELERATION.w (density) in cell order. Writes PACKED_WORDS, 2 + 3 a particle, from first_word on; the
-// first word has to be 0 before. Where there are more than budget_count, a part goes out that a hash of their ids chooses: the same
+// Quantizes particles for the stream: number of packed particles, number of live particles, then three words per
+// particle, the layout of core::ParticleView.
+// Reads POSITION, VELOCITY, ACCELERATION.w (density) in cell order. Writes PACKED_WORDS, 2 + 3 words per particle, from
+// first_word on; the first word must be 0 before. If there are more than budget_count particles, a hash of their ids
+// chooses which are packed: the same ones in every frame while their number stays, and a smaller budget chooses a
+// subset of a larger one.
 // particles in every frame while their number stays, and those of a smaller budget among them.
-// variants: POOL_PARTICLES=0 | POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "common/hash.glsl"
 #include "particles/population.glsl"
@@ -27,7 +28,8 @@ uint quantizedSigned(float unit) {
   return isnan(unit) ? 0u : uint(int(round(clamp(unit, -1.0, 1.0) * 127.0))) & 0xffu;
 }
 
-/// Four standard deviations below the budget on average, so that the random choice by hash fits into it.
+/// The mean number of chosen particles is four standard deviations below the budget, so that the random choice fits
+/// into it.
 bool isChosen(float id, uint count) {
   const float budget = float(budget_count);
   const float share = (budget - 4.0 * sqrt(budget)) / float(count);

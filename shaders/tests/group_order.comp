@@ -1,6 +1,6 @@
-// For tests: the order in which a device runs work groups, by the numbers that the shader sees
+// For tests: records the order in which a device runs work groups, by the numbers that the shader sees
 // (server/gpu/shuffled_groups.h).
-// Writes Order: how many groups have run, and the number of each in the order of running.
+// Writes Order: the number of groups that have run, and their numbers in that order.
 layout(local_size_x = 1) in;
 
 layout(std430, binding = 0) restrict buffer Order {

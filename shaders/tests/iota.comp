@@ -1,6 +1,5 @@
-// Writes each invocation's index plus an offset, and counts the invocations inside and outside the guard.
+// For tests: writes each invocation's index plus an offset, and counts the invocations inside and outside the guard.
 // Reads uniforms item_count, offset. Writes VALUES [item_count], COUNTS [2] = (inside, outside).
-// variants: GROUP=64 | GROUP=24
 layout(local_size_x = GROUP) in;
 
 layout(location = 0) uniform uint item_count;

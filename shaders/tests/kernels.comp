@@ -1,6 +1,5 @@
 // For tests: evaluates the kernels of particles/kernels.glsl at many distances.
 // Writes KernelValues: for invocation i at r = i / (count - 1) * 1.25 H: W / density norm, -(dW/dr) / slope norm, viscosity, cubic.
-// variants: KERNEL_SET=1 | KERNEL_SET=2 | KERNEL_SET=3
 #include "particles/kernels.glsl"
 
 layout(local_size_x = 64) in;

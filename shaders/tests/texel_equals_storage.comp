@@ -1,4 +1,4 @@
-// Counts the items whose texelFetch and whose storage load differ in any bit.
+// For tests: counts the items for which texelFetch and the storage load differ in any bit.
 // Reads TEXELS [item_count] both ways. Adds to DIFFERENCES [1].
 #include "tests/block.glsl"
 layout(local_size_x = 32, local_size_y = 2) in;

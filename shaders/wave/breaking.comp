@@ -4,7 +4,6 @@
 // Equation: Kennedy et al. 2000, eqs. 5-7: breaking starts where d eta/dt > 0.65 sqrt(g d); the threshold relaxes to
 // 0.15 sqrt(g d) within 5 sqrt(d/g) of the event; the intensity rises from 0 to 1 between one and two thresholds. The event travels
 // with the crest: a cell inherits the age of the oldest cell that broke where the crest may have come from.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 POOL_PARTICLES=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 POOL_PARTICLES=1
 #include "shared/groups.h"
 #include "wave/wave_faces.glsl"
 #include "coupling/emission.glsl"
@@ -56,14 +55,14 @@ void main() {
 #endif
   const float speed_mps = sqrt(sim.gravity_mps2 * depth_m);
   vec4 state = vec4(0.0);
-  // Nothing breaks below the lowest threshold or on dry ground.
+  // There is no breaking below the lowest threshold or on dry ground.
   if (rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
     // Distance that a crest travels in a tick.
     const int hop = max(int(ceil(speed_mps * sim.tick_s / sim.wave_cell_m - 0.2)), 1);
     const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - hop, n), row), ageAt(waveNeighbourX(cell.x + hop, n), row))),
                             max(ageAt(cell.x, n * waveNeighbourZ(cell.y - hop, n)), ageAt(cell.x, n * waveNeighbourZ(cell.y + hop, n))));
     const float relaxed = age_s * sqrt(sim.gravity_mps2 / depth_m) / 5.0;
-    // An event ends after LONGEST_EVENT relaxation times: by then its front has passed, and only small waves are left.
+    // An event ends after LONGEST_EVENT relaxation times: its front has passed by then, and only small waves are left.
     const float share = age_s > 0.0 && relaxed < LONGEST_EVENT ? min(relaxed, 1.0) : 0.0;
     const float threshold_mps = mix(0.65, 0.15, share) * speed_mps;
     if (rate_mps > threshold_mps) state.xy = vec2(age_s + sim.tick_s, clamp(rate_mps / threshold_mps - 1.0, 0.0, 1.0));

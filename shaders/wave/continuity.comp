@@ -1,14 +1,14 @@
 // Second half of a wave step: water moves through the faces, in whole units.
-// Reads TRANSFER [n x n, units], BED. Updates ELEVATION [n x n, units] and, in basins with an absorbing side, OUTFLOW (units that left
-// for the open water through this cell since the start: low 24 bits, the rest). Lowers LIMIT_ARGS for the next step.
-// Equation: eta_t = -div q - sigma eta; sigma only in a sponge, where it equals the flow's, so that plane waves enter it
-// without reflection. The loss is centred in the step as the flow's is, b = sigma dt/2:
+// Reads TRANSFER [n x n, units], BED. Updates ELEVATION [n x n, units] and, in basins with an absorbing side, OUTFLOW
+// (units that have left through this cell since the start: low 24 bits, the rest). Lowers LIMIT_ARGS for the next step.
+// Equation: eta_t = -div q - sigma eta. sigma is not 0 only in a sponge, where the flow has the same loss rate, so that
+// plane waves enter it without reflection. Like the flow's loss, the loss is centred in the step, b = sigma dt/2:
 //   eta+ = ((1 - b) eta + gain)/(1 + b), so lost = (2 eta + gain) b/(1 + b)
-// Then the step's bound is that of water without losses, whatever they are: with G the scaled gradient, A and B the losses of flow
-// and elevation over half a step and m the mean of the flow before and after, |eta|^2 - |G eta|^2/4 + |m|^2 + |A m|^2 never grows,
-// and |G| < 2 is the Courant bound. (Taken after the step, exp(-sigma dt) lowered the bound to sqrt((1 + exp(-sigma dt))/2) of it.)
+// The step then has the stability bound of water without losses, however large they are: with G the scaled gradient, A
+// and B the losses of flow and elevation over half a step and m the mean of the flow before and after, |eta|^2 - |G
+// eta|^2/4 + |m|^2 + |A m|^2 never grows, and |G| < 2 is the Courant bound. (Applied after the step, the loss
+// exp(-sigma dt) lowered the bound by the factor sqrt((1 + exp(-sigma dt))/2).)
 // Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit; no cell loses more than it holds.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 OPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 OPEN=1
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
 
@@ -43,11 +43,11 @@ void main() {
   const vec4 ground = texelFetch(bed, i);
   const float b = 0.5 * ground.y * sim.wave_dt_s;
   const float wanted = clamp(round((2.0 * float(elevation[i]) + float(gain)) * (b / (1.0 + b))), -float(ELEVATION_MAX_UNITS), float(ELEVATION_MAX_UNITS));
-  // If more than half of it is lost in a step, water above the still level would be taken below the bed. The float's
-  // last bit may be 128 units, so compare as floats and take integers.
+  // If more than half of the elevation is lost in a step, water above the still level would be taken below the bed. The
+  // float's last bit may be 128 units, so compare as floats and subtract integers.
   const uint held = heldUnits(elevation[i] + gain, ground.z);
   const int lost = wanted >= float(held) ? int(held) : int(wanted);
-  // 24 bits and the rest in a second word: 32 bits would overflow after 128 m of water through one cell, hours of a
+  // 24 bits, and the rest in a second word: 32 bits would overflow after 128 m of water through one cell, some hours of
   // storm.
   const int low = int(outflow[i].x) + lost;
   outflow[i] = uvec2(uint(low & 0xffffff), outflow[i].y + uint(low >> 24));

@@ -9,8 +9,8 @@ layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(std430, binding = TRANSFER) restrict buffer Transfer { int transfer[]; };
 layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
 
-/// Adds to a face of the cell `from`; `face` 0 leads to +x, 1 to +z, and `to` is the cell there. Integers, so that effects which
-/// overlap add up in any order to the same bits.
+/// Adds to a face of the cell `from`; `face` 0 leads to +x, 1 to +z, and `to` is the cell there. The sum is an integer,
+/// so overlapping effects give the same bits in any order.
 void addTransfer(int from, int to, uint face, int units) {
   if (units == 0) return;
   const int sum = atomicAdd(transfer[int(OWNED_FACES) * from + int(face)], units) + units;

@@ -1,11 +1,11 @@
-// Before water moves: the share of its outflow that a cell can give. Runs only in steps in which some transfer is large
-// compared with the water of its giver (LIMIT_ARGS).
+// Before the water moves: computes the share of its outflow that each cell can give. Runs only in steps in which some
+// transfer is large compared with the water of the giving cell (LIMIT_ARGS).
 // Reads ELEVATION, TRANSFER [n x n, units], BED. Writes GIVEN_SHARE [n x n, 0..1].
-// Equation: share = held / outflow where the outflow through all faces of a cell is more than the cell holds, else 1: a donor cell's
-// limit as in flux-corrected transport (Zalesak 1979). What flows in during the same step does not count.
-// Invariant: shares times transfers, each cut toward zero, add up to no more than the cell holds. The margin of 2^-20 is
-// sixteen times what a float's rounding of the four operations can add.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
+// Equation: share = held / outflow if the outflow through all faces of a cell exceeds the water that it holds,
+// otherwise 1: the limit of a donor cell as in flux-corrected transport (Zalesak 1979). Inflow during the same step
+// does not count.
+// Invariant: shares times transfers, each cut toward zero, sum to no more than the cell holds. The margin of 2^-20 is
+// sixteen times the largest rounding error of the four operations.
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
 

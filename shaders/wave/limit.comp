@@ -1,9 +1,8 @@
-// Before water moves: multiplies each face by the share that its giver can give (wave/given_share.comp, in the same
-// steps).
-// Reads GIVEN_SHARE. Updates TRANSFER [n x n, units], and FLOW [m^2/s], which loses the same share: water that is not there has no
-// momentum.
-// Invariant: a face is limited only by its giver; if no giver lacks water, no bit changes.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1
+// Before the water moves: multiplies the transfer through each face by the share of the giving cell
+// (wave/given_share.comp, in the same steps).
+// Reads GIVEN_SHARE. Updates TRANSFER [n x n, units], and FLOW [m^2/s] by the same share: water that does not move has
+// no momentum.
+// Invariant: only the giving cell limits a face; if no cell lacks water, no bit changes.
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
 

@@ -1,15 +1,16 @@
 // First half of a wave step: the slope of the surface accelerates the flow through each face.
-// Reads ELEVATION [n x n, units], PRESSURE_HEAD (boats, falling water), BASIN, BED, BREAKING where the scene has them.
-// Updates FLOW [n x n, m^2/s per metre of face]. Writes TRANSFER [n x n, units]: what wave/continuity.comp is to move. Raises
-// LIMIT_ARGS where a transfer could empty a cell, so that wave/given_share.comp looks at them all.
-// Equation: q_t = -g d grad(eta + head) - (kappa + sigma) q, centred in time; with wave/continuity.comp this is the leapfrog of
-// eta_tt + kappa eta_t = div(g d grad eta) (thesis 3.21), the damping on the velocity term alone:
-//   q+ = keep q - gain g dt d_face (eta_there - eta_here)/dx,  keep = (1 - a)/(1 + a), gain = 1/(1 + a), a = (kappa + sigma) dt/2
-// STEEPEN: d grows with the elevation, d (1 + 3 s eta/d): to first order the speed of simple waves in shallow water (Whitham 1974,
-// 13.10), so that crests overtake troughs. The growth has bounds; between two cells its mean over the elevations in between counts, so
-// that the push is the difference of a potential and energy is kept when water stands beyond them. Breaking water loses its flow at intensity * 2 sqrt(g/d).
-// Invariant: a level surface without flow stays so to the last bit; closed faces carry nothing.
-// variants: STENCIL=5 WAVE_PERIODIC_X=1 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=0 BREAKERS=0 STEEPEN=0 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=0 VARIED=1 HEAD=1 BREAKERS=1 STEEPEN=1 | STENCIL=9 WAVE_PERIODIC_X=0 WAVE_PERIODIC_Z=1 VARIED=0 HEAD=1 BREAKERS=0 STEEPEN=1
+// Reads ELEVATION [n x n, units], PRESSURE_HEAD (boats, falling water), BASIN, BED, BREAKING if the scene has them.
+// Updates FLOW [n x n, m^2/s per metre of face]. Writes TRANSFER [n x n, units], which wave/continuity.comp moves.
+// Raises LIMIT_ARGS if a transfer could empty a cell, so that wave/given_share.comp runs over all cells.
+// Equation: q_t = -g d grad(eta + head) - (kappa + sigma) q, centred in time. Together with wave/continuity.comp this
+// is the leapfrog of eta_tt + kappa eta_t = div(g d grad eta) (thesis 3.21), with damping of the velocity term alone:
+//   q+ = keep q - gain g dt d_face (eta_there - eta_here)/dx,  keep = (1 - a)/(1 + a), gain = 1/(1 + a), a = (kappa +
+// sigma) dt/2
+// STEEPEN: d grows with the elevation, d (1 + 3 s eta/d): to first order the speed of simple waves in shallow water
+// (Whitham 1974, 13.10), so that crests overtake troughs. The growth is bounded. The mean of the factor over the
+// elevations between two cells is used: the force is then the difference of a potential, and energy is conserved for
+// elevations beyond the bounds, too. Breaking water loses its flow at the rate intensity * 2 sqrt(g/d).
+// Invariant: a level surface without flow does not change in any bit; closed faces carry nothing.
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "wave/transfer.glsl"
@@ -64,7 +65,8 @@ float steepFactor(int a, int b) {
   const float growth_pu = 3.0 * max(sim.steepening_ratio, 1e-6) * ELEVATION_UNIT_M / sim.wave_depth_m;
   const float step_units = float(b - a);
   const float middle = 1.0 + clamp(growth_pu * 0.5 * (float(a) + float(b)), -0.75 * sim.steepening_ratio, sim.steepening_ratio);
-  // Where the two are close, or inside the bounds, it is the factor in the middle, to the last bit.
+  // Inside the bounds this quotient equals the factor in the middle. Close elevations use that, because the quotient
+  // would be inexact.
   const float steep = (steepPotential(float(b), growth_pu) - steepPotential(float(a), growth_pu)) / (abs(step_units) < 65536.0 ? 1.0 : step_units);
   return abs(step_units) < 65536.0 ? middle : steep;
 }

@@ -6,8 +6,8 @@
 
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 
-/// d eta/dt over 3 x 3 places with weights (1 2 1)^2 / 16, a cell apart, or as far as drops are spread: a front is wider than that,
-/// the ripples of single drops are not.
+/// d eta/dt as a mean over 3 x 3 places with weights (1 2 1)^2 / 16. The places are one cell apart, or as far as
+/// droplets are spread: a front is wider than that, the ripples of single droplets are not.
 float smoothRate(ivec2 cell, int n) {
   const int apart = max(int(sim.splat_width_m / sim.wave_cell_m + 0.5), 1);
   float sum = 0.0;

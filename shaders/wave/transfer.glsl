@@ -1,6 +1,6 @@
-// Water through the faces of wave cells, in integer units. Each face's transfer is computed by one invocation, that of the cell
-// which owns the face, and stored in TRANSFER; both cells of the face then read the same integer. So what one cell loses the other
-// gains, whatever a compiler makes of the floating-point expressions before.
+// Water through the faces of wave cells, in integer units. One invocation, that of the cell which owns the face,
+// computes a face's transfer and stores it in TRANSFER; both cells of the face then read the same integer. So one cell
+// gains what the other loses, whatever a compiler does with the floating-point expressions before.
 #ifndef SPINDRIFT_TRANSFER
 #define SPINDRIFT_TRANSFER
 

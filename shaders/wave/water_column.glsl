@@ -1,4 +1,4 @@
-// The water that stands over the bed of a wave cell, elevation + still depth, in units. No pass of the wave takes more than that
+// The water over the bed of a wave cell, elevation + still depth, in units. No pass of the wave takes more than that
 // from a cell, so it is never negative.
 #ifndef SPINDRIFT_WATER_COLUMN
 #define SPINDRIFT_WATER_COLUMN
@@ -34,7 +34,7 @@ uint heldUnits(int elevation_units, float depth_m) {
   return elevation_units > bed_units ? uint(elevation_units) - uint(bed_units) : 0u;
 }
 
-/// Returns whether a transfer could exceed the water of its giver if all faces of the giver carried as much.
+/// Returns whether a transfer could exceed the water of the giving cell if all its faces carried as much.
 bool mayEmpty(int transfer_units, uint held_here, uint held_there) {
   return uint(abs(transfer_units)) > (transfer_units > 0 ? held_here : held_there) / FACES_PER_CELL;
 }

@@ -1,4 +1,4 @@
-// The quick table of `spindrift study --suite accuracy`, a test a case.
+// The quick form of `spindrift study --suite accuracy`, one test per case.
 #include <limits>
 #include <string>
 

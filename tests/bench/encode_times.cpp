@@ -1,5 +1,5 @@
-// How long the encoder takes for recorded frames of a scene, on one core. Recording and measuring are apart, so that
-// two builds can be measured in turn on the same frames; the check sum says whether they wrote the same bytes.
+// Times of the encoder for recorded frames of a scene, on one core. Recording and measuring are separate, so that two
+// builds can be measured in turn on the same frames; equal checksums mean that both wrote the same bytes.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -28,7 +28,7 @@ int failWith(const char* message) {
   return 1;
 }
 
-/// What a FrameView points to, and the numbers beside it.
+/// The data that a FrameView points to, and its numbers.
 struct RecordedFrame {
   core::SurfaceView surface{};
   core::ParticleView particles{};
@@ -45,7 +45,7 @@ struct RecordedFrame {
   }
 };
 
-/// Views as they lie in memory, their words behind them: a file for this machine and this build's layout only.
+/// The views as in memory, followed by their words: a file only for this machine and this build.
 int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
   auto loaded = scene::loadSceneFile(scene_file, std::nullopt);
   if (!loaded) return failWith(loaded.error().message.c_str());
@@ -55,7 +55,7 @@ int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
   auto sim = sim::WaterSim::create(**ctx, scene);
   if (!sim) return failWith(sim.error().message.c_str());
   if (!scene.wave || !scene.particles) return failWith("the scene has to have a surface and particles");
-  double next_s = 1.0;  // the first effect
+  double next_s = 1.0;  // time of the first effect
   for (std::size_t count = 0; count < frame_count;) {
     (*sim)->step();
     if ((*sim)->time_s() + 1e-9 < next_s) continue;
@@ -97,8 +97,7 @@ double threadCpu_ms() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// CPU time of each layer's frames that continue, over the rounds: a frame's least, its mean, both averaged over
-/// frames.
+/// CPU time of each layer's delta frames over the rounds: least and mean time per frame, both averaged over the frames.
 int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
   if (frames.size() < 2) return failWith("no frames in that file");
   constexpr std::array kLayers = {v1::LAYER_SURFACE, v1::LAYER_PARTICLES};

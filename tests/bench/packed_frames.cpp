@@ -1,5 +1,5 @@
-// Packed frames of a scene in a file: what a benchmark of their reader reads. Each is a ServerMessage with its length
-// before it, u32 little endian; surface and particles in turn, the first surface a keyframe.
+// Writes packed frames of a scene to a file, as input for a benchmark of the decoder. Each is a ServerMessage after its
+// length (u32, little endian); surface and particles in turn, the first surface a keyframe.
 #include <cstdio>
 #include <cstdlib>
 
@@ -31,7 +31,7 @@ int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
   auto sim = sim::WaterSim::create(**ctx, scene);
   if (!sim) return failWith(sim.error());
   codec::FrameEncoder encoder;
-  double next_s = 1.0;  // the first effect
+  double next_s = 1.0;  // time of the first effect
   for (std::size_t count = 0; count < frame_count;) {
     (*sim)->step();
     if ((*sim)->time_s() + 1e-9 < next_s) continue;

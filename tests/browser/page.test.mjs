@@ -73,7 +73,7 @@ async function stillWater(target) {
   await waitFor(target, "still water", (stats) => stats.maxElevationM - stats.minElevationM < 0.02);
 }
 
-/** A test that needs the page that the first one opened. */
+/** A test that uses the page opened by the first test. */
 function step(name, body) {
   it(name, slow, async () => {
     assert.ok(page, "the page never came up");

@@ -14,7 +14,7 @@ const STOP_LIMIT_MS = 30_000;
  * @param {number} port 0 = any free port
  * @param {string[]} scenes options that choose scenes; by default those of this folder
  * @returns {Promise<{url: string, port: number, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
- *   rejects with the server's own words when it ends before it is ready, or after 120 s
+ *   rejects with the server's output if it ends before it is ready, or after 120 s
  */
 export function startServer(port = 0, scenes = kTestScenes) {
   const child = spawn(

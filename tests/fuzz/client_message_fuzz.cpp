@@ -1,4 +1,4 @@
-// Bytes from a client, up to the point where a command is handed to a room. Two scenes: one with every part, one with
+// Bytes from a client, up to the point where a command is passed to a room. Two scenes: one with every part, one with
 // the wave alone.
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
-// Frames as a client reads them. An input is one serialized ServerMessage or several with a mark between them; the
-// decoders of packed planes keep their state from one to the next. The mutator of this target damages payloads inside
-// of messages that stay whole; lengths and checksums would stop almost every blind change before it reached a decoder.
+// Frames as a client reads them. An input is one serialized ServerMessage, or several with a separator; the decoders of
+// packed planes keep their state from one to the next. The mutator of this target changes payloads inside valid
+// messages: lengths and checksums would stop almost every random change before the decoder.
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -22,7 +22,7 @@ namespace spindrift::fuzz {
 namespace {
 
 constexpr std::string_view kMark = "\xff\xff====";
-/// A larger plane or count is only slower: decoders are tested at their bounds elsewhere.
+/// Larger planes and counts only cost time; other tests run the decoders at their bounds.
 constexpr std::uint32_t kResolutionMaxCount = 128;
 constexpr std::uint32_t kParticleMaxCount = 4096;
 
@@ -53,7 +53,7 @@ void check(const Decoded& decoded) {
        "a frame decodes to finite values, as many as it says, or not at all");
 }
 
-/// A frame with a wrong checksum is refused, whatever else it says.
+/// A frame with a wrong checksum is always refused.
 void checkRefused(const v1::LayerFrame& frame) {
   must(!codec::decodeSurface(frame) && !codec::decodeParticles(frame) && !codec::decodeFoam(frame) &&
            !codec::decodeBodies(frame) && !codec::decodePackedParticles(frame) &&
@@ -80,7 +80,7 @@ class Client {
   codec::PackedFoamDecoder packed_foam_;
 };
 
-/// Another payload for one of the frames, and the checksum that belongs to it. False: there is no frame to change.
+/// Replaces the payload of one of the frames, with the matching checksum. False: there is no frame to change.
 bool damagePayload(std::string& message_bytes, std::size_t growth_max_bytes) {
   auto message =
       codec::parseServerMessage({reinterpret_cast<const std::uint8_t*>(message_bytes.data()), message_bytes.size()});

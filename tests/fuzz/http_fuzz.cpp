@@ -1,5 +1,5 @@
-// Bytes of a new connection, as connection.cpp reads them: requests one after another out of one buffer, each routed or
-// judged as an upgrade. The first byte says in which pieces they come.
+// Bytes of a new connection, as connection.cpp reads them: requests one after another from one buffer, each routed or
+// checked as an upgrade. The first byte decides how the input is split.
 #include <algorithm>
 #include <cstring>
 #include <optional>
@@ -82,7 +82,7 @@ bool read(net::RequestParser& parser, boost::beast::flat_buffer& buffer, More mo
   return true;
 }
 
-/// One request out of the buffer; false when the connection ends. `more` hands over the next piece, false at the end.
+/// Handles one request from the buffer; false when the connection ends. `more` adds the next piece, false at the end.
 template <typename More>
 bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Application& application) {
   net::RequestParser parser;
@@ -145,7 +145,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::size_t piece_bytes = std::size_t{1} + 7 * data[0];
   const std::uint8_t* at = data + 1;
   const std::uint8_t* const end = data + size;
-  // The seeds are whole requests, so the text itself is looked at as a target too.
+  // The seeds are whole requests, so the text itself is also used as a target path.
   if (const auto target = net::parseTarget({reinterpret_cast<const char*>(at), size - 1})) {
     fuzz::must(target->path.starts_with('/'), "a path is absolute");
     fuzz::must(target->path.find('\0') == std::string::npos, "a path holds no NUL");

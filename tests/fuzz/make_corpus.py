@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the fuzz targets below corpus/ from messages and requests in words.
+"""Writes the seeds of the fuzz targets below corpus/ from messages and requests that are given as text.
 
 usage: make_corpus.py            (needs protoc)
 
-Frames: rows of golden messages that build on each other. Whole scenes and single golden messages are seeds where they
-lie, see CMakeLists.txt.
+Frames: sequences of golden messages that build on each other. Scenes and single golden messages are used as seeds without a
+copy, see CMakeLists.txt.
 """
 
 import subprocess
@@ -129,7 +129,7 @@ def main():
     golden = ROOT / "tests" / "golden"
     write("client_message", {name: encoded(text) for name, text in CLIENT_MESSAGES.items()})
     write("frame", {name: MARK.join((golden / file).read_bytes() for file in row) for name, row in FRAME_ROWS.items()})
-    # The first byte says how large the pieces are that a request arrives in.
+    # The first byte is the size of the pieces in which a request arrives.
     pieces = (b"\xff", b"\x00", b"\x03")
     write("http", {name: pieces[i % 3] + text.encode("latin-1") for i, (name, text) in enumerate(REQUESTS.items())})
     write("scene", {name: text.encode() for name, text in SCENES.items()})

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kLabel = "fuzz.textproto";
 
-/// Every line of a report begins with the file's name, and none holds a control character.
+/// Every line of a report begins with the file's name, and none contains a control character.
 bool isReport(std::string_view text) {
   while (true) {
     const std::size_t end = text.find('\n');
@@ -45,7 +45,7 @@ void checkLoaded(const v1::Scene& scene) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace spindrift;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  // Scene files themselves are seeds, so the choice comes from a number that every input has.
+  // The seeds are plain scene files, so the choice depends on a number that every input has.
   std::optional<v1::Fidelity> fidelity;
   if (const int choice = static_cast<int>(size % 8); v1::Fidelity_IsValid(choice) && choice > 0) {
     fidelity = static_cast<v1::Fidelity>(choice);

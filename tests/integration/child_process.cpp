@@ -35,7 +35,7 @@ std::vector<std::string> environmentWith(const std::vector<std::string>& extra) 
   return all;
 }
 
-/// Appends what there is; false at the end of the stream.
+/// Appends the available bytes; false at the end of the stream.
 bool append(int pipe, std::string& text) {
   char chunk[4096];
   const ssize_t got = ::read(pipe, chunk, sizeof chunk);
@@ -97,7 +97,7 @@ std::optional<int> ChildProcess::wait(std::chrono::milliseconds timeout) {
   const auto deadline = Clock::now() + timeout;
   while (readSome(deadline)) {
   }
-  // Both outputs end with the process, which has no children of its own.
+  // Both outputs end with the process, because it starts no other processes.
   if (pid_ <= 0 || out_pipe_ >= 0 || err_pipe_ >= 0) return std::nullopt;
   int status = 0;
   if (::waitpid(std::exchange(pid_, -1), &status, 0) < 0) return std::nullopt;
@@ -106,7 +106,7 @@ std::optional<int> ChildProcess::wait(std::chrono::milliseconds timeout) {
 
 bool ChildProcess::readSome(Clock::time_point deadline) {
   const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
-  // A negative descriptor is left out by poll().
+  // poll() ignores negative descriptors.
   pollfd pipes[2] = {{out_pipe_, POLLIN, 0}, {err_pipe_, POLLIN, 0}};
   if ((out_pipe_ < 0 && err_pipe_ < 0) || left.count() <= 0) return false;
   if (::poll(pipes, 2, static_cast<int>(left.count())) <= 0) return false;

@@ -1,4 +1,4 @@
-// Runs a program and reads what it prints, with a bound on every wait.
+// Runs a program and reads its output, with a bound on every wait.
 #pragma once
 
 #include <chrono>
@@ -14,26 +14,27 @@ namespace spindrift::test {
 
 class ChildProcess {
  public:
-  /// Starts `program` with `arguments`, this process's environment and `extra_environment` ("NAME=value") on top, and
-  /// nothing on standard input. Throws std::runtime_error if that does not work.
+  /// Starts `program` with `arguments`, this process's environment plus `extra_environment` ("NAME=value"), and an
+  /// empty standard input. Throws std::runtime_error on failure.
   ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
                const std::vector<std::string>& extra_environment = {});
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();  ///< kills it if it still runs
 
-  /// Reads until standard output holds a whole line that begins with `prefix`; that line, or nullopt after kPatience or
-  /// the end of the output.
+  /// Reads until standard output contains a whole line that begins with `prefix`. Returns the line, or nullopt after
+  /// kPatience or at the end of the output.
   std::optional<std::string> waitForLine(const std::string& prefix);
   void signal(int number) const;
-  /// Reads to the end of both outputs; the exit code, 128 + the signal that ended it, or nullopt after `timeout`.
+  /// Reads both outputs to the end. Returns the exit code, 128 + the signal that ended the process, or nullopt after
+  /// `timeout`.
   std::optional<int> wait(std::chrono::milliseconds timeout = kPatience);
 
   const std::string& out() const { return out_; }
   const std::string& err() const { return err_; }
 
  private:
-  /// Reads what comes before `deadline`; false once both outputs have ended or time is up.
+  /// Reads until `deadline`; false once both outputs have ended or the time is over.
   bool readSome(std::chrono::steady_clock::time_point deadline);
 
   pid_t pid_ = -1;

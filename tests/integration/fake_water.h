@@ -1,5 +1,5 @@
-// The network and the encoder with no water behind them: a thread makes frames of random samples and hands them to the
-// server's own EncoderThread. Needs no device, so sanitizers see every thread there is.
+// The network and the encoder without water: a thread makes frames of random samples and passes them to the server's
+// EncoderThread. Needs no device, so that sanitizers observe all threads.
 #pragma once
 
 #include <array>
@@ -24,12 +24,12 @@ namespace spindrift::test {
 inline constexpr std::uint32_t kFakeResolutionCount = 32;
 inline constexpr std::uint32_t kFakeCoarseCount = 16;
 inline constexpr double kFakeQuantum_m = 1.0 / 1024;
-/// The first sample of every frame, so that a reader can tell whether the samples belong to the tick.
+/// The first sample of every frame, so that a reader can check whether the samples belong to the tick.
 inline std::int16_t markOf(std::uint64_t tick) {
   return static_cast<std::int16_t>(tick % 30'000);
 }
 
-/// One frame; the spans live in what the lease owns, as a readback slot does.
+/// One frame; its spans point into memory that the lease owns, as with a readback slot.
 inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
   struct Slot {
     std::vector<std::uint32_t> surface = std::vector<std::uint32_t>(kFakeResolutionCount * kFakeResolutionCount / 2);
@@ -69,7 +69,7 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
   return frame;
 }
 
-/// What a client meets: greets, takes subscriptions as the real gateway does, answers every command with an Ack.
+/// The application for clients: greets, takes subscriptions like the real gateway, answers every command with an Ack.
 class FakeGateway final : public net::Application, public rooms::FrameOutlet {
  public:
   FakeGateway() {
@@ -85,7 +85,7 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
     facts.room = room;
     facts.session_id = session;
     hub_->sendAnswer(session, wire::greeting(facts, scene_));
-    hub_->join(session, room);  // afterwards, so that no news of the room comes before the greeting
+    hub_->join(session, room);  // afterwards, so that no state message precedes the greeting
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
     const wire::ClientMessage message = wire::parseClientMessage(bytes);
@@ -116,7 +116,7 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
   }
   void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
 
-  /// The rooms that frames are made for.
+  /// The rooms that get frames.
   static inline const std::array<std::string, 2> kRooms{"", "pool"};
 
   std::atomic<int> opened_count{0};
@@ -127,7 +127,7 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
   v1::Scene scene_;
 };
 
-/// A server, its encoder, and one thread a room that makes frames until the end.
+/// A server, its encoder, and one thread per room that makes frames until the end.
 class FakeWater {
  public:
   explicit FakeWater(net::ServerOptions options) {
@@ -150,7 +150,7 @@ class FakeWater {
   FakeWater& operator=(const FakeWater&) = delete;
 
   std::uint64_t tick(std::size_t room) const { return ticks_[room]; }
-  /// Returns once the room has made so many more frames.
+  /// Waits until the room has made this many more frames.
   void waitFrames(std::size_t room, std::uint64_t count) const {
     const std::uint64_t end = ticks_[room] + count;
     while (ticks_[room] < end) std::this_thread::sleep_for(std::chrono::milliseconds(1));

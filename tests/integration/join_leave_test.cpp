@@ -1,5 +1,5 @@
-// Clients that come, watch, stop reading, leave and come again while frames are made, encoded and sent. Under the
-// thread sanitizer this is the run that has every thread of the network and the encoder at work at once.
+// Clients connect, watch, stop reading, leave and come back while frames are made, encoded and sent. In the thread
+// sanitizer's build this run covers all threads of the network and the encoder at once.
 #include <map>
 #include <mutex>
 
@@ -16,8 +16,8 @@ namespace {
 constexpr int kFrameCount = 12;
 constexpr double kAsManyAsThereAre_hz = 240.0;
 
-/// Reads frames of every layer in one packing until each has come often enough; what is wrong with the first bad one.
-/// They come at whatever level the link carries.
+/// Reads frames of every layer in one packing, at any level, until each has arrived often enough. Returns what is wrong
+/// with the first bad one.
 std::string readFrames(ScriptedClient& client, v1::Packing packing, v1::Level level = v1::LEVEL_FULL) {
   const bool packed = packing == v1::PACKING_PACKED;
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_FOAM, v1::LAYER_PARTICLES}) {
@@ -61,7 +61,7 @@ std::string readFrames(ScriptedClient& client, v1::Packing packing, v1::Level le
   return "";
 }
 
-/// A client that subscribes to all and reads nothing while the room goes on.
+/// A client that subscribes to all layers and reads nothing while the room continues.
 std::string holdBack(const FakeWater& water, std::uint16_t port, std::size_t room) {
   ScriptedClient client(port, FakeGateway::kRooms[room]);
   if (!client.isOpen()) return "not let in";
@@ -69,11 +69,11 @@ std::string holdBack(const FakeWater& water, std::uint16_t port, std::size_t roo
   client.subscribe(v1::LAYER_SURFACE, kAsManyAsThereAre_hz, packing);
   client.subscribe(v1::LAYER_PARTICLES, kAsManyAsThereAre_hz, packing);
   water.waitFrames(room, 2 * kFrameCount);
-  // What waited for it is whole or builds on what it has.
+  // The frames that waited for it can all be decoded.
   return room == 0 ? readFrames(client, packing) : "";
 }
 
-/// Comes and goes in one of several ways; what went wrong, empty if nothing did.
+/// Connects and leaves in one of several ways. Returns what went wrong, empty if nothing did.
 std::string visit(const FakeWater& water, std::uint16_t port, int person, int turn) {
   const auto room = static_cast<std::size_t>(person % 2);
   if (turn % 3 == 2) return holdBack(water, port, room);
@@ -84,11 +84,11 @@ std::string visit(const FakeWater& water, std::uint16_t port, int person, int tu
   const v1::Level level = person % 3 == 1 ? v1::LEVEL_COARSE : v1::LEVEL_FULL;
   if (auto wrong = readFrames(client, first, level); !wrong.empty()) return wrong;
   if (!client.apply(person % 3 == 0 ? reset() : splash())) return "no answer to a command";
-  // Frames of the packing before may still be on their way; behind the pong there are none.
+  // Frames of the previous packing may still be in flight; after the pong there are none.
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_FOAM, v1::LAYER_PARTICLES}) client.unsubscribe(layer);
   if (!client.barrier()) return "no pong";
   if (turn % 2 == 0) return client.ws().close() ? "" : "no goodbye";
-  return readFrames(client, v1::PACKING_PLAIN);  // and hangs up without a word
+  return readFrames(client, v1::PACKING_PLAIN);  // then disconnects without a close frame
 }
 
 TEST(JoinLeave, EveryFrameDecodesWhileClientsJoinAndLeave) {
@@ -108,12 +108,13 @@ TEST(JoinLeave, EveryFrameDecodesWhileClientsJoinAndLeave) {
       }
     });
   }
-  // Somebody looks at the counters all the while, as the log does.
+  // Reads the counters all the time, as the log does.
   std::uint64_t frame_count = 0;
   for (int look = 0; look < 20; ++look) {
     water.waitFrames(0, 2);
-    frame_count = water.server->stats().sent_frame_count + water.encoder->replacedCount() +
-                  water.encoder->encodeCount("", {v1::LAYER_SURFACE});
+    frame_count =
+        water.server->stats().sent_frame_count + water.encoder->replacedCount() +
+        water.encoder->costs()[codec::indexOf({v1::LAYER_SURFACE})][core::indexOf(core::Level::kFull)].frame_count;
   }
   for (std::thread& one : people) one.join();
   EXPECT_TRUE(wrongs.empty()) << wrongs.front() << " and " << wrongs.size() - 1 << " more";

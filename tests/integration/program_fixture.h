@@ -40,7 +40,8 @@ inline auto lineCount(const std::string& text) {
   return std::count(text.begin(), text.end(), '\n');
 }
 
-/// Exactly one line on standard error, in the program's form, with every one of `words`; nothing on standard output.
+/// Checks for exactly one line on standard error, in the program's form, with each of `words`, and nothing on standard
+/// output.
 inline void expectOneErrorLine(const Outcome& outcome, int exit_code, const std::vector<std::string>& words) {
   EXPECT_EQ(outcome.exit_code, exit_code);
   EXPECT_EQ(outcome.out, "");
@@ -51,7 +52,7 @@ inline void expectOneErrorLine(const Outcome& outcome, int exit_code, const std:
 
 class ProgramTest : public testing::Test {
  protected:
-  /// A scene file in this test's own folder; its path.
+  /// Writes a scene file in this test's folder and returns its path.
   std::string scene(const std::string& text, const std::string& name = "scene.textproto") const {
     folder_.write(name, text);
     return (folder_.path() / name).string();

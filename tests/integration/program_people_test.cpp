@@ -1,4 +1,4 @@
-// The program as its people use it: tokens, scripted clients, logs and their replay.
+// Tokens, scripted clients, logs and their replay, through the program.
 #include <filesystem>
 
 #include <boost/json.hpp>
@@ -16,7 +16,7 @@ using testing::Not;
 
 class People : public ProgramTest {
  protected:
-  /// The server's URL; empty where no device is usable (the test is skipped then).
+  /// The server's URL; empty without a usable device (the test is then skipped).
   std::string serve(std::vector<std::string> more = {}, const std::vector<std::string>& environment = {}) {
     std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -93,7 +93,7 @@ TEST_F(People, TokensComeFromAFileOrTheEnvironmentAndAreNeverPrinted) {
   stop();
 }
 
-TEST_F(People, TokensThatCannotBeReadAreNamed) {
+TEST_F(People, TokensThatCannotBeReadAreReported) {
   const auto refused = [&](std::vector<std::string> more, const std::vector<std::string>& words) {
     std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
     arguments.insert(arguments.end(), more.begin(), more.end());

@@ -1,4 +1,4 @@
-// `spindrift serve` as a process: how it starts, what it refuses, how it ends.
+// `spindrift serve` as a process: start, refusals, end.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Spindrift's own bound: patience for goodbyes plus a second, with room for a loaded machine.
+/// Spindrift's bound for its shutdown plus a second, and extra time for a loaded machine.
 constexpr std::chrono::milliseconds kStopBound{5'000};
 
 /// A port of the loopback interface that is already in use.
@@ -60,7 +60,7 @@ class Serve : public ProgramTest {
   }
 };
 
-/// A server that is ready; the test is skipped where no device is usable.
+/// A server that is ready; without a usable device the test is skipped.
 class RunningServe : public Serve {
  protected:
   void SetUp() override {
@@ -97,24 +97,24 @@ class RunningServe : public Serve {
   std::uint16_t port_ = 0;
 };
 
-TEST_F(Serve, PortInUseIsNamedWithTheFlag) {
+TEST_F(Serve, NamesAPortInUseWithTheFlag) {
   const TakenPort taken;
   const Outcome outcome = runProgram(arguments({"--port", taken.text()}));
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   expectOneErrorLine(outcome, 2, {"port " + taken.text(), "in use", "--port"});
 }
 
-TEST_F(Serve, AnInvalidAddressIsNamedWithTheFlag) {
+TEST_F(Serve, NamesAnInvalidAddressWithTheFlag) {
   const Outcome outcome = runProgram(arguments({"--address", "300.1.2.3"}));
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   expectOneErrorLine(outcome, 2, {"300.1.2.3", "--address"});
 }
 
-TEST_F(Serve, DeviceThatDoesNotExistIsNamed) {
+TEST_F(Serve, NamesADeviceThatDoesNotExist) {
   expectOneErrorLine(runProgram(arguments({"--device", "99"})), 3, {"device 99 does not exist", "software"});
 }
 
-TEST_F(Serve, AnInvalidDeviceIsNamed) {
+TEST_F(Serve, NamesAnInvalidDevice) {
   expectOneErrorLine(runProgram(arguments({"--device", "fast"})), 2, {"\"fast\"", "auto, software"});
 }
 
@@ -124,12 +124,12 @@ TEST_F(Serve, WithoutAnyDeviceSaysWhatToInstall) {
   expectOneErrorLine(runProgram(arguments(), withoutDevices()), 3, {"no usable EGL device", "apt install"});
 }
 
-TEST_F(Serve, MissingSceneIsNamed) {
+TEST_F(Serve, NamesAMissingScene) {
   expectOneErrorLine(runProgram({"serve", "--scene", "/nonexistent/lake.textproto"}), 2,
                      {"'/nonexistent/lake.textproto'", "no such file"});
 }
 
-TEST_F(Serve, BadSceneIsNamedWithFileLineAndColumn) {
+TEST_F(Serve, ReportsABadSceneWithFileLineAndColumn) {
   const std::string file = scene("wave {\n  depht_m: 1\n}\n");
   expectOneErrorLine(runProgram({"serve", "--scene", file}), 2, {file + ":2:", "depht_m"});
 }
@@ -143,11 +143,11 @@ TEST_F(Serve, RoomWithoutANameIsRefusedWithTheForm) {
   expectOneErrorLine(runProgram(arguments({"--room", "=default"})), 2, {"--room '=default'", "NAME=SCENE"});
 }
 
-TEST_F(Serve, AnInvalidRoomNameIsNamed) {
+TEST_F(Serve, NamesAnInvalidRoomName) {
   expectOneErrorLine(runProgram(arguments({"--room", "the pond=" + smallScene()})), 2, {"'the pond'", "letters"});
 }
 
-TEST_F(Serve, RoomGivenTwiceIsNamed) {
+TEST_F(Serve, NamesARoomGivenTwice) {
   expectOneErrorLine(runProgram(arguments({"--room", "a=" + smallScene(), "--room", "a=" + smallScene()})), 2,
                      {"--room 'a=", "of this name already"});
   expectOneErrorLine(runProgram(arguments({"--room", "main=" + smallScene()})), 2, {"'main' is the one of --scene"});

@@ -1,4 +1,4 @@
-// What the program says and how it ends when it is not serving: usage, `check`, `info`.
+// Output and exit codes of the program when it does not serve: usage, `check`, `info`.
 #include <filesystem>
 
 #include <boost/json/parse.hpp>
@@ -21,15 +21,15 @@ TEST_F(Usage, WithoutACommandIsRefused) {
   expectOneErrorLine(runProgram({}), 2, {"subcommand is required", "spindrift --help"});
 }
 
-TEST_F(Usage, UnknownCommandIsNamed) {
+TEST_F(Usage, NamesAnUnknownCommand) {
   expectOneErrorLine(runProgram({"swim"}), 2, {"'swim'", "spindrift --help"});
 }
 
-TEST_F(Usage, UnknownFlagIsNamed) {
+TEST_F(Usage, NamesAnUnknownFlag) {
   expectOneErrorLine(runProgram({"--swim"}), 2, {"'--swim'", "spindrift --help"});
 }
 
-TEST_F(Usage, UnknownFlagOfACommandIsNamed) {
+TEST_F(Usage, NamesAnUnknownFlagOfACommand) {
   expectOneErrorLine(runProgram({"serve", "--swim"}), 2, {"--swim", "spindrift --help"});
 }
 
@@ -79,7 +79,7 @@ TEST_F(Usage, UnknownLogLevelIsRefusedWithTheLevels) {
 
 class Help : public testing::TestWithParam<std::string> {};
 
-TEST_P(Help, GoesToStandardOutputAndIsFine) {
+TEST_P(Help, GoesToStandardOutputAndExitsWith0) {
   std::vector<std::string> arguments = {"--help"};
   if (!GetParam().empty()) arguments.insert(arguments.begin(), GetParam());
   const Outcome outcome = runProgram(arguments);
@@ -102,26 +102,26 @@ TEST_F(Check, WithoutASceneIsRefused) {
   expectOneErrorLine(runProgram({"check"}), 2, {"scene", "required"});
 }
 
-TEST_F(Check, MissingSceneIsNamed) {
+TEST_F(Check, NamesAMissingScene) {
   expectOneErrorLine(runProgram({"check", "/nonexistent/lake.textproto"}), 2,
                      {"'/nonexistent/lake.textproto'", "no such file", "give the path"});
 }
 
-TEST_F(Check, DirectoryIsNoScene) {
+TEST_F(Check, RefusesADirectory) {
   expectOneErrorLine(runProgram({"check", folder().path().string()}), 2, {folder().path().string(), "is a directory"});
 }
 
-TEST_F(Check, UnknownFieldIsNamedWithFileLineAndColumn) {
+TEST_F(Check, ReportsAnUnknownFieldWithFileLineAndColumn) {
   const std::string file = scene("wave {\n  depht_m: 1\n}\n");
   expectOneErrorLine(runProgram({"check", file}), 2, {file + ":2:", "depht_m"});
 }
 
-TEST_F(Check, ValueOutOfRangeIsNamedWithFileLineColumnAndBound) {
+TEST_F(Check, ReportsAValueOutOfRangeWithFileLineColumnAndBound) {
   const std::string file = scene("wave {\n  depth_m: 1000\n}\n");
   expectOneErrorLine(runProgram({"check", file}), 2, {file + ":2:3: wave.depth_m: 1000 m", "maximum of 100 m"});
 }
 
-TEST_F(Check, UnstableFixedStepIsNamedWithTheRuleAndTheRemedy) {
+TEST_F(Check, ReportsAnUnstableFixedStepWithTheRuleAndTheRemedy) {
   const std::string file = scene(
       "fixed_substeps_count: 1\nwave { resolution_count: 32 side_m: 8 depth_m: 1 }\n"
       "particles { count: 512 layers_count: 2 sound_speed_mps: 400 }\n");
@@ -129,13 +129,13 @@ TEST_F(Check, UnstableFixedStepIsNamedWithTheRuleAndTheRemedy) {
                      {file, "fixed_substeps_count: 1", "above the bound of", "particle CFL", "use at least"});
 }
 
-TEST_F(Check, GoesOnAfterABadSceneAndRemembersIt) {
+TEST_F(Check, ContinuesAfterABadSceneAndExitsWith2) {
   const Outcome outcome = runProgram({"check", "/nonexistent/lake.textproto", smallScene()});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.out, HasSubstr("small.textproto: fine"));
 }
 
-TEST_F(Check, SmallSceneIsFineWithItsDerivedQuantities) {
+TEST_F(Check, PrintsTheDerivedQuantitiesOfASmallScene) {
   const Outcome outcome = runProgram({"check", smallScene()});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
@@ -144,7 +144,7 @@ TEST_F(Check, SmallSceneIsFineWithItsDerivedQuantities) {
   }
 }
 
-TEST_F(Check, PrintsSidesSolverAndWhatFloatsAndStandsInTheWater) {
+TEST_F(Check, PrintsSidesSolverBoatsAndObstacles) {
   const std::string file = scene(
       "wave { resolution_count: 32 side_m: 16 depth_m: 1 steepening_ratio: 0.5\n"
       "  boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_REFLECT sponge_width_m: 3 }\n"
@@ -182,7 +182,7 @@ TEST_F(Check, EveryShippedSceneIsFineAtEveryFidelity) {
   expectOneErrorLine(runProgram({"check", "--fidelity", "best", smallScene()}), 2, {"--fidelity", "best"});
 }
 
-TEST_F(Check, RuleBetweenFieldsIsNamedWithFileLineColumnAndRemedy) {
+TEST_F(Check, ReportsARuleBetweenFieldsWithFileLineColumnAndRemedy) {
   const std::string file = scene("wave {}\nboats {\n  boats { x_m: 50 }\n}\n");
   expectOneErrorLine(runProgram({"check", file}), 2,
                      {file + ":3:11: boats.boats[0].x_m: 50 m", "choose -10.8 to 10.8 m"});
@@ -208,7 +208,7 @@ std::vector<std::string> shippedNames() {
 INSTANTIATE_TEST_SUITE_P(Of, ShippedScene, testing::ValuesIn(shippedNames()),
                          [](const auto& one) { return one.param; });
 
-TEST_F(Info, JsonIsAllThatStandardOutputGets) {
+TEST_F(Info, JsonIsTheOnlyTextOnStandardOutput) {
   const Outcome outcome = runProgram({"info", "--json", "-"});
   if (outcome.exit_code == 3) GTEST_SKIP() << "no usable device";
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -229,7 +229,7 @@ TEST_F(Info, JsonGoesToAFileBesideTheText) {
   EXPECT_GT(std::filesystem::file_size(file), 100u);
 }
 
-TEST_F(Info, JsonFileThatCannotBeWrittenIsNamed) {
+TEST_F(Info, NamesAJsonFileThatCannotBeWritten) {
   const Outcome outcome = runProgram({"info", "--json", "/nonexistent/info.json"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--json '/nonexistent/info.json': cannot be written"));
@@ -254,7 +254,7 @@ TEST_F(Info, ParameterReferenceIsATable) {
 }
 
 TEST_F(Bundle, FindsItsScenesBesideItself) {
-  // As ./dev bundle lays it out: the program two folders deep, its data in share/.
+  // The layout of ./dev bundle: the program two folders deep, its data in share/.
   const auto program = folder().path() / "bin" / "spindrift";
   std::filesystem::create_directories(program.parent_path());
   std::filesystem::copy_file(SPINDRIFT_PROGRAM, program);

@@ -1,4 +1,4 @@
-// Another number of particles in a running room: laid out beside it, taken over between two ticks.
+// Another number of particles in a running room: prepared on another thread, taken over between two ticks.
 #include "room_fixture.h"
 
 namespace spindrift::test {
@@ -13,7 +13,8 @@ class RoomChange : public RoomTest {
 
   static core::Action count(double value) { return core::SetParameter{.path = "particles.count", .value = value}; }
   std::uint32_t sceneCount() const { return room_->snapshot()->scene.particles().count(); }
-  /// Another person's splash in the same round tells that the change has begun: what is heavy comes first in its lane.
+  /// Another person's splash in the same round shows that the change has begun: heavy commands come first in their
+  /// lane.
   void begin(std::uint64_t command_id, double value) {
     ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
     send(command_id, count(value));
@@ -23,7 +24,7 @@ class RoomChange : public RoomTest {
   }
 };
 
-TEST_F(RoomChange, IsLaidOutBesideTheRoomWhoseTicksWait) {
+TEST_F(RoomChange, IsPreparedOnAThreadOfItsOwnWhileTheTicksOfTheRoomWait) {
   begin(1, 60000);
   const std::uint64_t tick = room_->tick();
   send(2, core::Reset{});
@@ -68,7 +69,7 @@ TEST_F(RoomChange, EndsWithTheRoom) {
   EXPECT_THAT(outlets_.rejected[0], HasSubstr("closed"));
 }
 
-/// Refuses every fast sound, by its step rule: derive() has to be asked each time.
+/// Refuses every fast sound speed by its step rule, so that derive() runs each time.
 class RoomValues : public RoomChange {
  protected:
   std::string sceneText() const override { return std::string("fixed_substeps_count: 1\n") + kStillPool; }
@@ -95,7 +96,7 @@ TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
   EXPECT_GT(room_->tick(), tick + 1) << "ticks go on in between";
 }
 
-TEST_F(RoomValues, ThatArePutOffAreAnsweredWhenTheRoomCloses) {
+TEST_F(RoomValues, ThatWaitAreAnsweredWhenTheRoomCloses) {
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
   sendRefusedValues();
   send(100, core::SetSpeed{.speed = 1.0}, 2);

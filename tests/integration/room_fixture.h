@@ -1,4 +1,4 @@
-// A room alone, run tick by tick by the test: no network, no simulation thread.
+// A room alone, run tick by tick by the test: without network and simulation thread.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ namespace spindrift::test {
 
 using namespace std::chrono_literals;
 
-/// Keeps what a room tells; one session is there, which watches everything at full detail.
+/// Records the room's outlets; one session watches everything at full detail.
 struct RecordingOutlets final : rooms::RoomOutlets {
   int scene_count = 0;
   int recovered_count = 0;
@@ -68,7 +68,7 @@ class RoomTest : public testing::Test {
 
   virtual std::string sceneText() const { return kStillPool; }
 
-  /// Runs the room until it is so; false after kPatience.
+  /// Runs the room until the condition holds; false after kPatience.
   bool runUntil(const std::function<bool()>& holds) {
     const auto deadline = Clock::now() + kPatience;
     while (!holds()) {

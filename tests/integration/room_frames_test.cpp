@@ -7,8 +7,8 @@ namespace {
 using RoomFrames = RoomTest;
 
 TEST_F(RoomFrames, ComeAtLeastEveryFewTenthsOfASecondHoweverSlowTheTicksAre) {
-  // A round takes as long as a tick on a machine that is far too slow: the clock drops its lag and ticks once per
-  // round, so that a frame's worth of simulated time is two rounds or more.
+  // On a machine that is far too slow, a round takes as long as a tick: the clock drops its lag and ticks once per
+  // round, so that the simulated time between two frames is two rounds or more.
   constexpr int kRoundCount = 10;
   ASSERT_TRUE(runUntil([&] { return outlets_.frame_count > 0; }));
   const std::uint64_t first_tick = room_->tick();

@@ -1,4 +1,4 @@
-// A room whose device fails: it says so, answers, and runs again from its scene's start on a new context.
+// A room whose device fails: it reports the failure, answers, and starts its scene again on a new context.
 #include "room_fixture.h"
 
 namespace spindrift::test {
@@ -35,7 +35,7 @@ TEST_F(RoomLoss, AnswersCommandsThatCameBeforeTheLoss) {
   EXPECT_THAT(outlets_.rejected[0], testing::HasSubstr("the device failed"));
 }
 
-TEST_F(RoomLoss, ARoomThatClosesAnswersWhatWaits) {
+TEST_F(RoomLoss, AClosingRoomAnswersWaitingCommands) {
   send(7);
   send(8);
   room_->abandonCommands();

@@ -203,7 +203,7 @@ bool ScriptedClient::hasReceived(v1::ServerMessage::MessageCase kind) {
 }
 
 bool ScriptedClient::runFor(std::uint64_t ticks_count) {
-  // A command that changes nothing tells the tick at which it was applied.
+  // Any command that changes nothing: its answer contains the tick at which it was applied.
   const double speed = greeting_.room_state().speed();
   const auto begin = apply(setSpeed(speed));
   const auto deadline = Clock::now() + kPatience;

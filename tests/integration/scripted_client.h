@@ -25,7 +25,7 @@ v1::Command removeBoat(std::uint32_t boat_id);
 v1::Command step(std::uint32_t tick_count);
 v1::Command changeScene(const std::string& name);
 
-/// Who says hello.
+/// The identity in Hello.
 struct Person {
   std::string name{};
   std::string token{};
@@ -35,8 +35,8 @@ struct Person {
 
 class ScriptedClient {
  public:
-  /// Connects to a room ("" = the default one) and reads the greeting; isOpen() tells whether that worked. The kernel
-  /// holds about `receive_buffer_bytes` that were not read yet; 0 = its choice.
+  /// Connects to a room ("" = the default one) and reads the greeting; isOpen() returns whether that worked.
+  /// `receive_buffer_bytes`: size of the kernel's buffer for unread bytes; 0 = its choice.
   explicit ScriptedClient(std::uint16_t port, const std::string& room = "", int receive_buffer_bytes = 0);
 
   bool isOpen() const { return !ws_.closed() && greeting_.session_id() != 0; }
@@ -44,7 +44,7 @@ class ScriptedClient {
   WsClient& ws() { return ws_; }
 
   void hello(const Person& who = {});
-  /// The answer to hello(); empty if there was none. Waits for it the first time.
+  /// Returns the answer to hello(); empty if there was none. Waits for it the first time.
   const v1::Welcome& welcome();
   void subscribe(v1::Layer layer, double max_rate_hz = 60.0, v1::Packing packing = v1::PACKING_PLAIN);
   void subscribe(const v1::Subscribe& subscribe);
@@ -52,22 +52,23 @@ class ScriptedClient {
   void send(const v1::ClientMessage& message);
 
   using Wanted = std::function<bool(const v1::ServerMessage&)>;
-  /// The first message that `wanted` accepts; nullopt once closed or after kPatience. Frames and diagnostics that come
-  /// before it are forgotten, everything else is kept for a later call, which looks through it first.
+  /// Returns the first message that `wanted` accepts; nullopt once closed or after kPatience. Frames and diagnostics
+  /// before it are dropped; all other messages are kept, and a later call searches them first.
   std::optional<v1::ServerMessage> waitFor(const Wanted& wanted);
   std::optional<v1::ServerMessage> waitFor(v1::ServerMessage::MessageCase kind);
   std::optional<v1::LayerFrame> nextFrame(v1::Layer layer);
 
-  /// Sends the command under a fresh id and waits for its Ack or Reject; an empty message if none came.
+  /// Sends the command with a new id and waits for its Ack or Reject; an empty message if none came.
   v1::ServerMessage ask(v1::Command command);
-  /// ask() for a command that is fine: the tick of its Ack; nullopt if there was none.
+  /// ask() for a valid command: the tick of its Ack; nullopt if there was none.
   std::optional<std::uint64_t> apply(v1::Command command);
-  /// ask() for a command that is not: its Reject; empty if there was none.
+  /// ask() for a command that is rejected: its Reject; empty if there was none.
   v1::Reject rejected(v1::Command command);
 
-  /// A ping and its pong: whatever the server had queued for this client before has arrived. False if it is gone.
+  /// Sends a ping and waits for its pong: everything that the server had queued for this client has then arrived. False
+  /// if it is gone.
   bool barrier();
-  /// barrier(), then whether a message of the kind is among those kept.
+  /// barrier(), then returns whether a message of the kind is among those kept.
   bool hasReceived(v1::ServerMessage::MessageCase kind);
   /// Lets the room run until its tick has grown by `ticks_count`; false if it does not.
   bool runFor(std::uint64_t ticks_count);

@@ -1,4 +1,4 @@
-// Boats from end to end: which clients are told of them, and which commands are refused.
+// Boats over a real connection: which clients get the boat list, and which commands are refused.
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -32,7 +32,7 @@ std::vector<std::uint32_t> nextList(ScriptedClient& client) {
   return idsOf(message->boat_list());
 }
 
-TEST_F(Boats, OfTheSceneStandInTheGreeting) {
+TEST_F(Boats, OfTheSceneAreInTheGreeting) {
   const ScriptedClient one = client();
   EXPECT_THAT(one.greeting().layers(), ElementsAre(v1::LAYER_SURFACE, v1::LAYER_BODIES, v1::LAYER_DIAGNOSTICS));
   ASSERT_EQ(one.greeting().boat_list().boats_size(), 1);
@@ -68,7 +68,7 @@ TEST_F(Boats, BeyondTheCapacityAreRefused) {
   EXPECT_TRUE(one.apply(spawnBoat(0, -4))) << "a place became free";
 }
 
-TEST_F(Boats, ThatAreUnknownAreNamed) {
+TEST_F(Boats, UnknownIdsAreRejectedAndNamed) {
   ScriptedClient one = client();
   const v1::Reject control = one.rejected(controlBoat(77, 1, 0));
   EXPECT_EQ(control.reason(), v1::REJECT_REASON_UNKNOWN_BOAT);
@@ -80,14 +80,14 @@ TEST_F(Boats, ThatAreUnknownAreNamed) {
   EXPECT_FALSE(one.hasReceived(v1::ServerMessage::kBoatList));
 }
 
-TEST_F(Boats, WhereTheyCannotBeAreRefused) {
+TEST_F(Boats, AreRefusedOutsideTheWaterAndInObstacles) {
   ScriptedClient one = client();
   EXPECT_EQ(one.rejected(spawnBoat(20, 0)).field(), "spawn_boat.boat.x_m");
   EXPECT_THAT(one.rejected(spawnBoat(5, 0)).message(), HasSubstr("obstacles[0]"));
   EXPECT_EQ(one.rejected(setParameter("wave.depth_m", 0.2)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
 }
 
-TEST_F(Boats, AreThoseOfTheStartAfterAResetAndAllClientsAreTold) {
+TEST_F(Boats, AreThoseOfTheStartAfterAResetForAllClients) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ASSERT_TRUE(one.apply(spawnBoat(0, 4)));
@@ -122,7 +122,7 @@ TEST_F(Boats, AreCountedByTheDiagnostics) {
   EXPECT_EQ(message->diagnostics().boat_count(), 1u);
 }
 
-TEST_F(NoBoats, ARoomWithoutThemSaysSo) {
+TEST_F(NoBoats, ARoomWithoutBoatsRejectsBoatCommands) {
   ScriptedClient one = client();
   EXPECT_EQ(one.greeting().boat_list().boats_size(), 0);
   for (const v1::Command& command : {spawnBoat(0, 0), controlBoat(1, 0, 0), removeBoat(1)}) {

@@ -1,4 +1,4 @@
-// Commands from end to end: applied at a tick, answered once, visible in the water.
+// Commands over a real connection: applied at a tick, answered once, visible in the water.
 #include <map>
 
 #include "server_fixture.h"
@@ -11,7 +11,7 @@ using testing::HasSubstr;
 class Commands : public ServerTest {};
 class WaveCommands : public WaveServerTest {};
 
-/// Whether the room's surface rises above `wanted_m` within a few seconds of simulated time.
+/// Returns whether the room's surface rises above `wanted_m` within a few seconds of simulated time.
 bool surfaceRises(ScriptedClient& client, double wanted_m) {
   for (int i = 0; i < 300; ++i) {
     const auto frame = client.nextFrame(v1::LAYER_SURFACE);
@@ -118,7 +118,7 @@ TEST_F(WaveCommands, OutsideOfTheSceneAreRejectedWithFieldValueAndBound) {
   EXPECT_THAT(fast.message(), HasSubstr("4"));
 }
 
-TEST_F(WaveCommands, WithoutAnActionAreRejectedAndTheSessionGoesOn) {
+TEST_F(WaveCommands, WithoutAnActionAreRejectedAndTheSessionContinues) {
   ScriptedClient one = client();
   EXPECT_EQ(one.rejected(v1::Command{}).reason(), v1::REJECT_REASON_MALFORMED);
   EXPECT_TRUE(one.apply(splash()));

@@ -40,9 +40,9 @@ class ServerTest : public testing::Test {
  protected:
   virtual std::vector<RoomText> rooms() const { return {{"main", kStillPool}}; }
 
-  /// What rooms can be changed to.
+  /// The scenes for ChangeScene.
   virtual rooms::SceneCatalog scenes() const { return {}; }
-  /// Everything else that a test wants otherwise.
+  /// Further changes to the options by a test.
   virtual void adjust(service::WaterServerOptions& /*options*/) const {}
 
   void SetUp() override {
@@ -65,6 +65,20 @@ class ServerTest : public testing::Test {
   service::WaterServer& server() { return *server_; }
   const rooms::EncoderThread& encoder() const { return server_->encoder(); }
 
+  /// Frames of a stream encoded so far, of all levels and rooms.
+  std::uint64_t encodedFrameCount(codec::Stream stream) const {
+    std::uint64_t count = 0;
+    for (const auto& level : encoder().costs()[codec::indexOf(stream)]) count += level.frame_count;
+    return count;
+  }
+
+  /// Layer frames that sessions were given so far: sent, or replaced by a newer one before they were sent. Frames that
+  /// still wait are not counted: at most two per session and layer, one in its slot and one on its way to the socket.
+  std::uint64_t offeredFrameCount() const {
+    const net::ServerStats stats = server_->networkStats();
+    return stats.sent_frame_count + stats.dropped_frame_count;
+  }
+
   /// A client that has said hello.
   ScriptedClient client(const std::string& room = "") { return person({}, room); }
 
@@ -73,7 +87,7 @@ class ServerTest : public testing::Test {
     ScriptedClient made(server_->port(), room);
     EXPECT_TRUE(made.isOpen());
     made.hello(who);
-    (void)made.welcome();  // from here on it hears the room's news
+    (void)made.welcome();  // from here on it receives state messages
     return made;
   }
 
@@ -86,7 +100,11 @@ class WaveServerTest : public ServerTest {
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
 };
 
-/// Largest elevation of a frame; -1 where it does not decode.
+/// Encoded frames of one layer that a session may not have counted yet: those of ServerTest::offeredFrameCount(), and
+/// one that is between the encoder and the sessions.
+inline constexpr std::uint64_t kWaitingFrames = 3;
+
+/// Largest elevation of a frame; -1 if it cannot be decoded.
 inline double maxElevation_m(const v1::LayerFrame& frame) {
   const auto surface = codec::decodeSurface(frame);
   if (!surface) return -1.0;

@@ -11,7 +11,7 @@ class HelloDeadline : public WaveServerTest {
   void adjust(service::WaterServerOptions& options) const override { options.hello_patience = std::chrono::seconds(1); }
 };
 
-TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedHoweverManyPingsItSends) {
+TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedDespiteItsPings) {
   ScriptedClient silent(server().port());
   ScriptedClient pinging(server().port());
   ASSERT_TRUE(silent.isOpen());
@@ -19,7 +19,7 @@ TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedHoweverManyPingsItSends)
   const auto begin = std::chrono::steady_clock::now();
   while (pinging.barrier()) {
     ASSERT_LT(std::chrono::steady_clock::now() - begin, kPatience);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // far below the rate of messages
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // far below the message rate
   }
   EXPECT_EQ(pinging.ws().closeCode(), 1008);
   EXPECT_THAT(pinging.ws().closeReason(), HasSubstr("no hello"));
@@ -42,7 +42,7 @@ class BeforeHello : public WaveServerTest {
   }
 };
 
-TEST_F(BeforeHello, NamesAndNewsAreNotSent) {
+TEST_F(BeforeHello, NamesAndStateMessagesAreNotSent) {
   ScriptedClient known = person({.name = "Ada", .token = "token-of-some-operator"});
   ASSERT_NE(known.welcome().person_id(), 0u);
   ScriptedClient stranger(server().port());
@@ -58,7 +58,7 @@ TEST_F(BeforeHello, NamesAndNewsAreNotSent) {
   EXPECT_FALSE(stranger.hasReceived(v1::ServerMessage::kParameterChanged));
 }
 
-TEST_F(BeforeHello, WhatChangedBetweenGreetingAndHelloIsToldThen) {
+TEST_F(BeforeHello, ChangesBetweenGreetingAndHelloAreSentAfterHello) {
   ScriptedClient known = person({.token = "token-of-some-operator"});
   ScriptedClient late(server().port());
   ASSERT_TRUE(late.isOpen());
@@ -71,7 +71,7 @@ TEST_F(BeforeHello, WhatChangedBetweenGreetingAndHelloIsToldThen) {
 
 class CommandRate : public WaveServerTest {};
 
-TEST_F(CommandRate, ABurstWithinTheLimitsIsCarriedOutWhole) {
+TEST_F(CommandRate, ABurstWithinTheLimitsIsAppliedCompletely) {
   ScriptedClient one = client();
   const auto count = static_cast<std::uint64_t>(one.greeting().limits().command_burst_count());
   ASSERT_EQ(count, 400u);
@@ -110,7 +110,7 @@ TEST_F(CommandRate, CommandsBeyondTheRateAreBusyAndOnlyAFloodCloses) {
   }
   EXPECT_GT(busy_count, 0u);
   EXPECT_TRUE(one.barrier()) << "the session is not closed for that";
-  // Twice the burst of messages at once is more than the rate makes good while they are read.
+  // Twice the burst of messages at once exceeds what the rate adds while they are read.
   v1::ClientMessage ping;
   ping.mutable_ping()->set_client_time_s(1);
   for (int k = 0; k < 100'000 && !one.ws().closed(); ++k) one.send(ping);

@@ -18,12 +18,12 @@ class Hostile : public WaveServerTest {
     bystander_->subscribe(v1::LAYER_SURFACE);
   }
 
-  /// The server still takes commands and sends frames to a client that did nothing wrong.
+  /// Checks that the server still takes commands and sends frames to a well-behaved client.
   bool isFineForOthers() {
     return bystander_->apply(splash(0.01)).has_value() && bystander_->nextFrame(v1::LAYER_SURFACE).has_value();
   }
 
-  /// Sends the bytes after a hello and expects a readable line and a close with 1008.
+  /// Sends the bytes after a hello and expects a line of text and a close with 1008.
   void expectRefusal(const std::string& bytes, const std::string& words) {
     ScriptedClient one = client();
     one.ws().sendBinary({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
@@ -81,7 +81,7 @@ TEST_F(Hostile, MessageOfAnUnknownKindIsRefused) {
   expectRefusal("\x9a\x06" + std::string(1, '\0'), "message of a kind that this server does not know");
 }
 
-TEST_F(Hostile, LayerThatTheWireDoesNotDeclareIsRefused) {
+TEST_F(Hostile, UndeclaredLayerIsRefused) {
   ScriptedClient one = client();
   one.subscribe(static_cast<v1::Layer>(77));
   expectRefusal(one, "subscribe.layer: 77");
@@ -162,7 +162,7 @@ TEST_F(Hostile, FloodEndsTheSessionOnly) {
   ScriptedClient one = client();
   v1::ClientMessage ping;
   ping.mutable_ping()->set_client_time_s(1);
-  // Far beyond the burst that the limiter grants: it refills by 200 a second.
+  // Far beyond the limiter's burst; it refills by 200 per second.
   for (int i = 0; i < 100'000 && !one.ws().closed(); ++i) one.send(ping);
   EXPECT_TRUE(one.ws().waitClosed());
   EXPECT_TRUE(isFineForOthers());

@@ -1,4 +1,4 @@
-// What two-way coupling, boats and live counts look like to clients.
+// Two-way coupling, boats and changing counts, from a client's view.
 #include <algorithm>
 #include <cstring>
 
@@ -33,7 +33,7 @@ TEST_F(Harbour, SendsParticlesOnlyWhereWaterBroke) {
   const auto calm = one.nextFrame(v1::LAYER_PARTICLES);
   ASSERT_TRUE(calm);
   EXPECT_EQ(calm->particles_fixed12().count(), 0u);
-  EXPECT_TRUE(codec::decodeParticles(*calm)) << "a frame of no particles is a frame";
+  EXPECT_TRUE(codec::decodeParticles(*calm)) << "a frame without particles is valid";
   ASSERT_TRUE(one.apply(splash(0.85)));
   const auto broken = one.waitFor([](const v1::ServerMessage& m) {
     return m.has_frame() && m.frame().layer() == v1::LAYER_PARTICLES && m.frame().particles_fixed12().count() > 5;
@@ -50,7 +50,7 @@ TEST_F(Harbour, SendsParticlesOnlyWhereWaterBroke) {
   EXPECT_EQ(diagnostics->diagnostics().boat_count(), 1u);
 }
 
-TEST_F(Harbour, SendsFoamOfWhatBroke) {
+TEST_F(Harbour, SendsFoamOfBreakingWater) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_FOAM);
   const auto calm = one.nextFrame(v1::LAYER_FOAM);

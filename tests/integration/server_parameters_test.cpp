@@ -1,4 +1,4 @@
-// SetParameter from end to end: which clients are told of a change, and which errors a refusal names.
+// SetParameter over a real connection: which clients are told of a change, and which errors a refusal names.
 #include <limits>
 
 #include "server_fixture.h"
@@ -15,7 +15,7 @@ class FixedStepParameters : public ServerTest {
   std::vector<RoomText> rooms() const override { return {{"main", scene_}}; }
 
  private:
-  // GCC 12 takes the move of a text of known length for one beyond its bounds.
+  // GCC 12 wrongly warns that the move of a text of known length exceeds its bounds.
   const std::string scene_ = std::string("fixed_substeps_count: 1\n") + kStillPool;
 };
 
@@ -33,7 +33,7 @@ TEST_F(Parameters, ChangeReachesEveryClientOfTheRoom) {
   }
 }
 
-TEST_F(Parameters, ChangeStandsInTheNextGreeting) {
+TEST_F(Parameters, ChangeIsInTheNextGreeting) {
   ASSERT_TRUE(client().apply(setParameter("particles.viscosity_pas", 12.5)));
   const ScriptedClient newcomer = client();
   EXPECT_EQ(newcomer.greeting().scene().particles().viscosity_pas(), 12.5);
@@ -84,14 +84,14 @@ TEST_F(Parameters, UnknownPathIsRejectedByName) {
   EXPECT_EQ(reject.field(), "particles.stickiness");
 }
 
-TEST_F(Parameters, WhatNeedsARestartIsRejectedByName) {
+TEST_F(Parameters, OneThatNeedsARestartIsRejectedByName) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("wave.resolution_count", 64));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_NEEDS_RESTART);
   EXPECT_EQ(reject.field(), "wave.resolution_count");
 }
 
-TEST_F(FixedStepParameters, WhatBreaksAStepRuleIsRejectedWithTheRule) {
+TEST_F(FixedStepParameters, AValueThatBreaksAStepRuleIsRejectedWithTheRule) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("particles.sound_speed_mps", 500));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_BREAKS_STEP_RULE);
@@ -103,7 +103,7 @@ TEST_F(FixedStepParameters, WhatBreaksAStepRuleIsRejectedWithTheRule) {
   EXPECT_TRUE(one.apply(setParameter("particles.sound_speed_mps", 10)));
 }
 
-TEST_F(Parameters, WhatLeavesNoLatticeIsRejectedAsOutOfRange) {
+TEST_F(Parameters, AValueWithoutAPossibleLatticeIsOutOfRange) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("particles.count", 1));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_OUT_OF_RANGE) << reject.message();

@@ -1,4 +1,4 @@
-// People in a room: roles, presence, whose boat is whose, and coming back.
+// People in a room: roles, presence, owners of boats, and resuming.
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -22,7 +22,7 @@ class People : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kLagoon}}; }
   void adjust(service::WaterServerOptions& options) const override {
-    // Tokens live for a while; the brief one ends while its client is connected.
+    // Most tokens are valid for long; one expires while its client is connected.
     const auto soon =
         std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()) + std::chrono::seconds(3);
     const std::time_t at = std::chrono::system_clock::to_time_t(soon);
@@ -55,7 +55,7 @@ std::vector<std::string> namesOf(const v1::People& people) {
   return names;
 }
 
-/// The first list that `wanted` accepts, older ones forgotten; empty if none comes.
+/// Returns the first list that `wanted` accepts and drops older ones; empty if none comes.
 v1::People peopleWhen(ScriptedClient& client, const std::function<bool(const v1::People&)>& wanted) {
   while (const auto message = client.waitFor(v1::ServerMessage::kPeople)) {
     if (wanted(message->people())) return message->people();
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> boatsOf(const v1::People& people, std::uint32_t perso
   return {};
 }
 
-TEST_F(People, AreWelcomedWithTheirRoleAndToldToOthers) {
+TEST_F(People, GetAWelcomeWithTheirRoleAndAreListedForOthers) {
   ScriptedClient ada = player("Ada");
   EXPECT_EQ(ada.welcome().role(), v1::ROLE_PLAYER);
   EXPECT_EQ(ada.welcome().person_id(), 1U);
@@ -85,7 +85,7 @@ TEST_F(People, AreWelcomedWithTheirRoleAndToldToOthers) {
   peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 1; });
 }
 
-TEST_F(People, WhoseNameShowsNothingAreNamedAsGuests) {
+TEST_F(People, WithoutAVisibleNameAreNamedAsGuests) {
   ScriptedClient ada = player("\u202EAda\u202C  ");
   ScriptedClient blank = player(" \u3000\u2066 \u200D");
   const v1::People people = peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 2; });
@@ -113,7 +113,7 @@ TEST_F(People, MayDoWhatTheirRoleAllows) {
   EXPECT_TRUE(chief.apply(reset()));
 }
 
-TEST_F(People, WithAWrongOrExpiredTokenAreTurnedAway) {
+TEST_F(People, WithAWrongOrExpiredTokenAreRefused) {
   for (const char* token : {"wrong-wrong-wrong-1", "expired-expired-1"}) {
     ScriptedClient stranger = person({.token = token});
     const auto refusal = stranger.waitFor(v1::ServerMessage::kRefusal);
@@ -124,7 +124,7 @@ TEST_F(People, WithAWrongOrExpiredTokenAreTurnedAway) {
   }
 }
 
-TEST_F(NoGuests, TurnsGuestsAwayAndLetsTokensIn) {
+TEST_F(NoGuests, RefusesGuestsAndAcceptsTokens) {
   ScriptedClient guest = client();
   ASSERT_TRUE(guest.ws().waitClosed());
   EXPECT_EQ(guest.ws().closeCode(), 4401);
@@ -183,7 +183,7 @@ TEST_F(People, TakeABoatWithoutOwner) {
   EXPECT_TRUE(ada.apply(spawnBoat(0, 4))) << "a person without a boat may launch one";
 }
 
-TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
+TEST_F(People, ResumeWithTheirBoatWhichHasStopped) {
   ScriptedClient bob = player("Bob");
   bob.subscribe(v1::LAYER_BODIES);
   ScriptedClient ada = player("Ada");
@@ -216,7 +216,7 @@ TEST_F(People, ComeBackToTheirBoatWhichHasStoppedMeanwhile) {
   EXPECT_TRUE(again.apply(controlBoat(boat_id, 1, 0)));
 }
 
-TEST_F(People, ThatComeBackWhileTheOldConnectionHangsTakeItsPlace) {
+TEST_F(People, ResumeWhileTheOldConnectionHangsAndReplaceIt) {
   ScriptedClient ada = player();
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
   ScriptedClient again = player("", ada.welcome().resume_key());
@@ -231,7 +231,7 @@ TEST_F(ShortGrace, HandsTheBoatOverWhenItsPersonStaysAway) {
   ScriptedClient ada = player("Ada");
   const v1::Welcome first = ada.welcome();
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
-  // She stays until he was told of her: a person who joins and leaves between two lists is in neither.
+  // She stays until he has her in a list: a person who joins and leaves between two lists is in neither.
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 2; });
   ada.ws().vanish();
   peopleWhen(bob, [&](const v1::People& list) { return list.people_size() == 1; });
@@ -240,7 +240,7 @@ TEST_F(ShortGrace, HandsTheBoatOverWhenItsPersonStaysAway) {
   EXPECT_FALSE(player("", first.resume_key()).welcome().resumed()) << "the grace time is over";
 }
 
-TEST_F(People, LoseTheirBoatsWithTheResetThatTakesThem) {
+TEST_F(People, LoseTheirBoatsWhenAResetRemovesThem) {
   ScriptedClient ada = player();
   ASSERT_TRUE(ada.apply(spawnBoat(0, 4)));
   ScriptedClient chief = person({.token = kOperator});

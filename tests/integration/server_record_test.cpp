@@ -1,4 +1,4 @@
-// A room's log: recorded from a live server with people at work, run again, and compared.
+// A room's log: recorded from a live server with clients at work, replayed, and compared.
 #include <filesystem>
 #include <fstream>
 
@@ -46,7 +46,7 @@ class Recorded : public ServerTest {
     return rooms::replayLog(device, **log);
   }
 
-  /// A session of everything that touches the water, recorded; the server has stopped.
+  /// Records a session with every kind of change of the water; the server has stopped at the end.
   void live() {
     ScriptedClient one = client();
     one.subscribe(v1::LAYER_SURFACE);
@@ -80,7 +80,7 @@ TEST_F(Recorded, ARoomRunsAgainBitForBit) {
   EXPECT_FALSE(outcome->device_difference) << *outcome->device_difference;
 }
 
-/// Particles whose number may change while they run.
+/// Particles whose number may change while the room runs.
 class RecordedPool : public Recorded {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillPool}}; }
@@ -103,7 +103,7 @@ TEST_F(RecordedPool, RunsAgainBitForBitWhenItsParticlesAreLaidOutAnew) {
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
 }
 
-TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndSaysSo) {
+TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndReported) {
   live();
   fs::resize_file(logFile(), fs::file_size(logFile()) - 3);
   const auto outcome = replayed(logFile());
@@ -115,7 +115,7 @@ TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndSaysSo) {
 
 TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
   live();
-  // The same log with the first splash left out.
+  // The same log without the first splash.
   const auto log = rooms::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);
   v1::RecordHeader header = (*log)->header();
@@ -138,7 +138,7 @@ TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
   EXPECT_LE(outcome->difference->last_equal_tick, splash_tick);
 }
 
-TEST_F(Recorded, AnotherDriverThanTheLogsIsTold) {
+TEST_F(Recorded, AnotherDriverThanTheLogsIsReported) {
   live();
   const auto log = rooms::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);

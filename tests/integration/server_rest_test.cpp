@@ -49,7 +49,7 @@ class Rest : public ServerTest {
     return out;
   }
 
-  /// Asks now and then, within the rate of an address, until it holds; false only after kPatience.
+  /// Asks repeatedly, within the rate of an address, until the condition holds; false only after kPatience.
   static bool becomes(const std::function<bool()>& holds) {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (!holds()) {
@@ -99,7 +99,7 @@ TEST_F(Rest, CommandsAreReadInBothSpellings) {
   EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", R"({"set_paused": {"paused": false}})").status, 200U);
 }
 
-TEST_F(Rest, BadCommandsAreNamed) {
+TEST_F(Rest, BadCommandsAreRejectedWithTheReason) {
   const auto post = [&](const std::string& body) { return ask("POST", "/api/v1/rooms/main/commands", body); };
   for (const char* body : {"splash", "{", "[]", R"({"splosh": {}})", R"({"splash": {"depth_m": "deep"}})"}) {
     const Answer answer = post(body);
@@ -155,7 +155,7 @@ TEST_F(Rest, EveryErrorIsAProblemInJson) {
             200U);
 }
 
-TEST_F(Rest, TellsRoomsScenesParametersAndPeople) {
+TEST_F(Rest, ListsRoomsScenesParametersAndPeople) {
   ScriptedClient ada = person({.name = "Ada"});
   ASSERT_EQ(ada.welcome().person_id(), 1U);
   const Answer room = ask("GET", "/api/v1/rooms/main");
@@ -192,7 +192,7 @@ TEST_F(Rest, RoomsOpenAndClose) {
       << "the name is free again";
 }
 
-TEST_F(Rest, RoomsThatCannotBeAreRefusedWithTheReason) {
+TEST_F(Rest, ImpossibleRoomsAreRefusedWithTheReason) {
   const auto post = [&](const std::string& body) { return ask("POST", "/api/v1/rooms", body); };
   EXPECT_EQ(post(R"({"name": "no way", "scene": "pond"})").status, 422U);
   EXPECT_EQ(post(R"({"name": "", "scene": "pond"})").status, 422U);
@@ -209,7 +209,7 @@ TEST_F(Rest, RoomsThatCannotBeAreRefusedWithTheReason) {
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/zzz").status, 404U);
 }
 
-TEST_F(RestByRole, WhatActsAsksForAToken) {
+TEST_F(RestByRole, RequestsThatChangeSomethingNeedAToken) {
   const std::string splash = R"({"splash": {"depth_m": 0.3}})";
   const std::string reset = R"({"reset": {}})";
   const std::string room = R"({"name": "duck", "scene": "pond"})";
@@ -235,7 +235,7 @@ TEST_F(Rest, ARoomWithoutWatchersSleepsIfItsSceneSaysSo) {
   ASSERT_TRUE(becomes(isAsleep));
   const auto asleep_tick = tickOf("bay");
   const auto main_tick = tickOf("main");
-  // Commands are carried out all the same, and do not wake it.
+  // Commands are still applied, and do not wake the room.
   EXPECT_EQ(ask("POST", "/api/v1/rooms/bay/commands", R"({"splash": {"depth_m": 0.2}})").status, 200U);
   EXPECT_TRUE(becomes([&] { return tickOf("main") > main_tick; })) << "the others go on";
   EXPECT_EQ(tickOf("bay"), asleep_tick);
@@ -248,7 +248,7 @@ TEST_F(Rest, ARoomWithoutWatchersSleepsIfItsSceneSaysSo) {
   EXPECT_TRUE(becomes([&] { return !isAsleep(); }));
 }
 
-TEST_F(Rest, MetricsTellWhatIsGoingOn) {
+TEST_F(Rest, MetricsCountSessionsCommandsFramesAndRefusals) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   ASSERT_TRUE(one.nextFrame(v1::LAYER_SURFACE));

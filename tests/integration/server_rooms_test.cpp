@@ -1,4 +1,4 @@
-// Several rooms in one server, paused rooms, plain HTTP, and the end of it all.
+// Several rooms in one server, paused rooms, plain HTTP, and the shutdown.
 #include <future>
 
 #include <boost/json/parse.hpp>
@@ -20,7 +20,7 @@ class Rooms : public ServerTest {
 
 class PausedRoom : public ServerTest {};
 
-TEST_F(Rooms, DoNotMix) {
+TEST_F(Rooms, HaveTheirOwnSceneFramesAndCommands) {
   ScriptedClient lake = client("lake");
   ScriptedClient pond = client("pond");
   EXPECT_EQ(lake.greeting().room(), "lake");
@@ -46,7 +46,7 @@ TEST_F(Rooms, DoNotMix) {
   }
 }
 
-TEST_F(Rooms, AreToldOnlyOfTheirOwnChanges) {
+TEST_F(Rooms, SendChangesToTheirOwnClientsOnly) {
   ScriptedClient lake = client("lake");
   ScriptedClient pond = client("pond");
   ASSERT_TRUE(lake.apply(setParameter("wave.damping_per_s", 1)));
@@ -126,7 +126,7 @@ TEST_F(Rooms, StopClosesEveryClientAndThePort) {
   clients[0].subscribe(v1::LAYER_SURFACE);
   ASSERT_TRUE(clients[0].nextFrame(v1::LAYER_SURFACE));
   const std::uint16_t port = server().port();
-  // The clients act only inside their calls, so the server needs a thread of its own to say goodbye.
+  // The clients run only inside their calls, so the server is stopped on a thread of its own.
   auto stopped = std::async(std::launch::async, [this] { server().stop(); });
   for (ScriptedClient& one : clients) {
     EXPECT_TRUE(one.ws().waitClosed());
@@ -135,14 +135,14 @@ TEST_F(Rooms, StopClosesEveryClientAndThePort) {
   stopped.get();
   EXPECT_EQ(server().summary().size(), 2u);
   EXPECT_FALSE(WsClient().connect("127.0.0.1", port));
-  server().stop();  // twice does no harm
+  server().stop();  // a second call does no harm
 }
 
 TEST_F(Rooms, StopDoesNotWaitForAClientThatDoesNotRead) {
   ScriptedClient deaf = client("lake");
   deaf.subscribe(v1::LAYER_SURFACE);
   ASSERT_TRUE(deaf.nextFrame(v1::LAYER_SURFACE));
-  server().stop();  // returns although the closing handshake stays unanswered
+  server().stop();  // returns although the client does not answer the close frame
   EXPECT_EQ(server().networkStats().open_session_count, 0u);
 }
 

@@ -1,4 +1,4 @@
-// ChangeScene from end to end: all clients get a new greeting; layers and ticks continue.
+// ChangeScene over a real connection: all clients get a new greeting; layers and ticks continue.
 #include <thread>
 
 #include "server_fixture.h"
@@ -25,7 +25,7 @@ class Scenes : public ServerTest {
     return rooms::SceneCatalog(folder_.path());
   }
 
-  /// Changes the scene as soon as the room lets us; the tick of its Ack.
+  /// Changes the scene as soon as the room allows it; returns the tick of its Ack.
   static std::optional<std::uint64_t> changeTo(ScriptedClient& client, const std::string& name) {
     for (int i = 0; i < 50; ++i) {
       const v1::ServerMessage answer = client.ask(changeScene(name));
@@ -100,7 +100,7 @@ TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
       one.waitFor([&](const v1::ServerMessage& m) { return m.has_diagnostics() && m.diagnostics().tick() > *pond; }));
 }
 
-TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldGoesOn) {
+TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldOneContinues) {
   ScriptedClient one = client();
   for (const char* name : {"sea", "../main", ""}) {
     const v1::Reject reject = one.rejected(changeScene(name));
@@ -110,7 +110,7 @@ TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldGoesOn) {
   EXPECT_TRUE(one.runFor(5));
 }
 
-TEST_F(Scenes, ThatDoNotLoadAreRejectedWithTheReasonAndTheOldGoesOn) {
+TEST_F(Scenes, ThatDoNotLoadAreRejectedWithTheReasonAndTheOldOneContinues) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   const v1::Reject broken = one.rejected(changeScene("broken"));
@@ -168,7 +168,7 @@ TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
     const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
     ASSERT_TRUE(greeting);
     EXPECT_EQ(greeting->greeting().scene().name(), name);
-    // Every layer that the scene has sends frames of it, and they decode.
+    // The room sends frames of every layer that the scene has, and they can be decoded.
     for (const int layer : greeting->greeting().layers()) {
       if (layer == v1::LAYER_DIAGNOSTICS) continue;
       const auto frame = one.waitFor([&](const v1::ServerMessage& m) {

@@ -1,4 +1,4 @@
-// Scripted clients against a live server: what a script expects holds, and what does not hold is told.
+// Scripted clients against a live server: expectations that hold, and reports of those that do not.
 #include <spindrift/script/script_file.h>
 #include <spindrift/script/script_runner.h>
 
@@ -96,7 +96,7 @@ TEST_F(Script, PeopleDriveTheirBoatsAndComeBackToThem) {
   EXPECT_TRUE(report.passed()) << failures(report);
 }
 
-TEST_F(Script, WhatDoesNotHoldIsToldAndEndsTheScript) {
+TEST_F(Script, AFailedStepIsReportedAndEndsTheScript) {
   const auto report = run(R"(
     steps { command { command { splash { depth_m: 49 } } } }
     steps { command { command { splash { depth_m: 0.2 } } } }
@@ -107,7 +107,7 @@ TEST_F(Script, WhatDoesNotHoldIsToldAndEndsTheScript) {
   EXPECT_EQ(report.step_count, 2);
 }
 
-TEST_F(Script, GoesOnWhereItIsToldToAndNamesEveryFailure) {
+TEST_F(Script, ContinuesWithKeepGoingAndReportsEveryFailure) {
   const auto report = run(R"(
     keep_going: true
     steps { command { command { splash { depth_m: 0.2 } } rejected: REJECT_REASON_BUSY } }
@@ -144,7 +144,7 @@ TEST_F(Script, SeesEventsAndRefusals) {
   EXPECT_TRUE(report.passed()) << failures(report);
 }
 
-TEST_F(Script, BadScriptsAreNamedWithTheirPlace) {
+TEST_F(Script, BadScriptsAreRefusedWithTheirPlace) {
   const auto error = [](const std::string& text) {
     const auto script = script::parseScript(text, "test");
     return script ? std::string("(accepted)") : script.error().message;

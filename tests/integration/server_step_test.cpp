@@ -1,4 +1,4 @@
-// Step from end to end: a paused room advances exactly as many ticks as it is told.
+// Step over a real connection: a paused room advances exactly the requested number of ticks.
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -24,7 +24,7 @@ TEST_F(Step, AdvancesAPausedRoomByExactlyItsTicksAndShowsThem) {
   EXPECT_NEAR(later->time_s(), static_cast<double>(*paused + 7) / 60.0, 1e-9);
 }
 
-TEST_F(Step, StatesOfAPausedRoomAreToldApartByTheirNumber) {
+TEST_F(Step, StatesOfAPausedRoomHaveDifferentStateIds) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   one.subscribe(v1::LAYER_DIAGNOSTICS);
@@ -73,7 +73,7 @@ TEST_F(Step, MovesTheWaterAsRunningDoes) {
   EXPECT_GT(maxElevation_m(frame->frame()), 0.01);
 }
 
-TEST_F(Step, OfARunningRoomIsRejectedWithWhatToDo) {
+TEST_F(Step, OfARunningRoomIsRejectedWithARemedy) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(step(1));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
@@ -88,7 +88,7 @@ TEST_F(Step, BeyondItsBoundIsRejected) {
   EXPECT_EQ(one.rejected(step(0)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
 }
 
-TEST_F(Step, OnTopOfOnesThatAreStillToComeIsBusy) {
+TEST_F(Step, BeyondTheBoundOfWaitingTicksIsBusy) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.apply(setPaused(true)));
   v1::ClientMessage first;

@@ -1,6 +1,6 @@
-// Hostile clients of every role beside bystanders, which keep their connections, frames and answers.
-// SPINDRIFT_STORM_SECONDS makes it long, with another seed each time (SPINDRIFT_STORM_SEED: with that one), and checks
-// the times that a quiet machine of two cores keeps.
+// Hostile clients of every role beside other clients, which keep their connections, frames and answers.
+// SPINDRIFT_STORM_SECONDS makes the run long, with another seed each time (or that of SPINDRIFT_STORM_SEED), and then
+// checks the times that a quiet machine with two cores keeps.
 #include <cstdlib>
 #include <ctime>
 
@@ -54,7 +54,7 @@ class Storm : public ServerTest {
     EXPECT_EQ(storm.unanswered_count, 0u);
     EXPECT_GT(storm.fewest_frames, 0u);
     EXPECT_FALSE(storm.answers_s.empty());
-    if (!longStorm_s()) return;  // a loaded machine may be as slow as it likes
+    if (!longStorm_s()) return;  // no bounds on time for a loaded machine
     EXPECT_LE(storm.longest_gap_s, 0.5);
     EXPECT_LE(quantile(0.99), 0.3);
   }
@@ -75,7 +75,7 @@ TEST_F(Storm, ScenesAreBuiltBesideTheWater) {
   expectNobodyElseNoticed("scenes", storm);
 }
 
-TEST_F(Storm, ParametersLeaveTheOthersTheirWater) {
+TEST_F(Storm, ParametersDoNotDisturbOtherClients) {
   const auto storm = runStorm(options({{Attack::kParameters}, {Attack::kParticleCount}}, 4.0));
   expectNobodyElseNoticed("parameters", storm);
 }

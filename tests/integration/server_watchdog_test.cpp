@@ -1,4 +1,5 @@
-// The watchdog from end to end: a room whose water really becomes unstable goes back, says so, and sends no nonsense.
+// The watchdog over a real connection: a room whose water becomes unstable is restored, reports it, and sends no
+// invalid values.
 #include <chrono>
 #include <cstdio>
 #include <thread>
@@ -8,8 +9,8 @@
 namespace spindrift::test {
 namespace {
 
-/// A third too few wave steps: Courant number 0.73 where 0.707 is the limit, and a splash to start from. Deep, because
-/// no cell gives more than it holds: shallow water would rock within bounds for ever.
+/// A third too few wave steps: Courant number 0.73 instead of at most 0.707, and a splash at the start. The water is
+/// deep, because no cell gives more than it holds: shallow water would oscillate within bounds without end.
 constexpr const char* kUnstable = R"(
   wave { resolution_count: 64 side_m: 22.4 depth_m: 24 fixed_substeps_count: 1 }
   allow_unstable: true
@@ -17,7 +18,7 @@ constexpr const char* kUnstable = R"(
   events { at_s: 0.2 effect { splash { radius_m: 1 depth_m: 0.5 duration_s: 0.1 } } }
 )";
 
-/// Cells a third as wide: Courant number 2.1, unstable with half the step as well.
+/// Cells a third as wide: Courant number 2.1, unstable with half the step, too.
 constexpr const char* kHopeless = R"(
   wave { resolution_count: 64 side_m: 8 depth_m: 24 fixed_substeps_count: 1 }
   allow_unstable: true
@@ -31,7 +32,7 @@ class Watchdog : public ServerTest {
   }
 };
 
-TEST_F(Watchdog, SaysThatItPutARoomBackAndTheRoomGoesOn) {
+TEST_F(Watchdog, ReportsARecoveryAndTheRoomContinues) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ScriptedClient elsewhere = client("calm");
@@ -46,7 +47,7 @@ TEST_F(Watchdog, SaysThatItPutARoomBackAndTheRoomGoesOn) {
     EXPECT_THAT(news->room_event().message(), testing::HasSubstr("1 times"));
     tick = news->room_event().tick();
   }
-  // Water at rest again, or as good: what went wild is not what people see.
+  // Water at rest again, or nearly: clients do not see the unstable water.
   one.subscribe(v1::LAYER_SURFACE);
   one.subscribe(v1::LAYER_DIAGNOSTICS);
   for (int frame = 0; frame < 10; ++frame) {
@@ -93,7 +94,7 @@ TEST_F(Watchdog, ReportsAtMostOncePerSecond) {
     ASSERT_TRUE(news);
     told += news->room_event().kind() == v1::ROOM_EVENT_KIND_RECOVERED ? 1 : 0;
   }
-  // Counted over all that time, so that a late message is no early one.
+  // Counted over the whole time, so that a late message does not count as an early one.
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
   one.subscribe(v1::LAYER_DIAGNOSTICS);
   const auto message = one.waitFor(v1::ServerMessage::kDiagnostics);

@@ -36,7 +36,7 @@ double seconds(Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
-/// Watches every layer, splashes four times a second, notes what comes late.
+/// Watches every layer, splashes four times per second, and records late frames and answers.
 class Bystander {
  public:
   Bystander(net::ClientPool& pool, const net::ClientUrl& url, const std::string& token) {
@@ -50,7 +50,7 @@ class Bystander {
                                 }});
   }
 
-  /// From here on gaps count.
+  /// Gaps count from here on.
   void begin(Clock::time_point now) {
     const std::lock_guard lock(mutex_);
     last_frame_ = now;
@@ -127,7 +127,7 @@ class Bystander {
   std::vector<double> answers_s_;
 };
 
-/// One hostile visitor; connects again when it was thrown out.
+/// One hostile client; it connects again after it was disconnected.
 class Visitor {
  public:
   Visitor(net::ClientPool& pool, net::ClientUrl url, Attacker attacker, std::uint32_t seed)
@@ -135,7 +135,7 @@ class Visitor {
     connect();
   }
 
-  /// What is due now; the number of messages sent.
+  /// Sends what is due now; returns the number of messages.
   std::uint64_t act(Clock::time_point now) {
     if (now < next_ || !is_open_) {
       if (is_closed_.exchange(false)) connect();
@@ -189,14 +189,14 @@ class Visitor {
                                  }});
   }
 
-  /// Learns what there is to attack.
+  /// Reads from the greeting what it can attack.
   void see(core::ByteView bytes) {
     v1::ServerMessage message;
     if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return;
     const std::lock_guard lock(mutex_);
     if (message.has_greeting()) {
       parameters_.assign(message.greeting().parameters().begin(), message.greeting().parameters().end());
-      // A room that was told to send one frame per second does.
+      // Not the frame rate: a room that is set to one frame per second obeys.
       std::erase_if(parameters_, [](const auto& known) { return known.path() == "stream.frame_rate_hz"; });
       scenes_.assign(message.greeting().scenes().begin(), message.greeting().scenes().end());
     }
@@ -352,7 +352,7 @@ net::ClientUrl urlOf(const StormOptions& options, const std::string& room) {
 StormReport runStorm(const StormOptions& options) {
   constexpr auto kPatience = 60s;
   constexpr auto kSplashInterval = 250ms;
-  // Callbacks come from runFor() alone; clients end before their pools.
+  // Callbacks run only inside runFor(); clients must be destroyed before their pools.
   const auto watching = net::ClientPool::create(0);
   const auto attacking = net::ClientPool::create(0);
   std::vector<std::unique_ptr<Bystander>> bystanders;
@@ -387,7 +387,7 @@ StormReport runStorm(const StormOptions& options) {
   }
   const auto end = Clock::now();
   out.fewest_frames = UINT64_MAX;
-  // What was asked last may still be answered.
+  // The last requests may still be answered.
   while (Clock::now() < end + kPatience &&
          std::ranges::any_of(bystanders, [](const auto& one) { return one->waitingCount() > 0; }))
     turn(5ms);

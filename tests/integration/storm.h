@@ -1,5 +1,5 @@
-// A storm: hostile visitors of every role do whatever the wire lets them do, as fast as they can, while bystanders
-// watch and splash. Tells what the bystanders noticed.
+// A storm: hostile clients of every role send whatever the wire allows, as fast as they can, while other clients watch
+// and splash. Reports what those others noticed.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace spindrift::test {
 
-/// What one attacker does, over and over.
+/// What one attacker repeats.
 enum class Attack {
   kSpeedBursts,    ///< 300 SetSpeed in one go, once per second
   kResets,         ///< 190 Reset per second

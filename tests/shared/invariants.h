@@ -1,5 +1,5 @@
-// What holds for anything that hostile bytes may be taken for: the claims of the headers of wire and codec, as
-// questions.
+// Properties of everything that is parsed from hostile bytes: the claims in the headers of wire and codec, as
+// predicates.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace spindrift::test {
 
-/// Every number of the action is finite and, where it has bounds of its own, inside them.
+/// Every number of the action is finite and within its bounds.
 inline bool isFinite(const core::Action& action) {
   if (const auto* splash = std::get_if<core::Splash>(&action)) {
     return std::isfinite(splash->x_m + splash->z_m + splash->radius_m + splash->depth_m + splash->duration_s);
@@ -38,7 +38,7 @@ inline bool isFinite(const core::Action& action) {
   return true;
 }
 
-/// What parseClientMessage() promises about its result.
+/// The guarantees of parseClientMessage() for its result.
 inline bool isHarmless(const wire::ClientMessage& message) {
   if (const auto* hello = std::get_if<wire::Hello>(&message)) {
     return hello->client.size() <= wire::kClientNameMaxBytes && hello->name.size() <= wire::kPersonNameMaxBytes;
@@ -61,7 +61,7 @@ inline bool allFinite(const std::vector<float>& values) {
   return true;
 }
 
-/// As many values as the frame's numbers say, all finite.
+/// The number of values matches the header, and all are finite.
 inline bool isWhole(const codec::SurfaceSamples& surface) {
   return surface.elevation_m.size() == std::size_t{surface.resolution_count} * surface.resolution_count &&
          allFinite(surface.elevation_m);

@@ -39,7 +39,7 @@ struct WsClient::Impl {
   bool reading = false;
   bool closed = false;
 
-  /// Runs what is pending until `done` or the deadline; returns done().
+  /// Runs pending operations until `done` or the deadline; returns done().
   template <typename Done>
   bool runUntil(Done done, std::chrono::milliseconds timeout) {
     const auto deadline = Clock::now() + timeout;
@@ -50,7 +50,7 @@ struct WsClient::Impl {
     return done();
   }
 
-  /// Starts an operation and runs it to its end; false if it failed or did not end in time.
+  /// Starts an operation and runs it to its end; false if it fails or does not end in time.
   template <typename Start>
   bool complete(Start start) {
     auto result = std::make_shared<std::optional<error_code>>();
@@ -268,7 +268,7 @@ HttpAnswer parseAnswer(const std::string& bytes) {
 HttpAnswer httpExchange(std::uint16_t port, std::string_view request_bytes) {
   RawTcp tcp;
   if (!tcp.connect("127.0.0.1", port)) return {};
-  (void)tcp.send(request_bytes);  // the server may answer and hang up before it has read everything
+  (void)tcp.send(request_bytes);  // the server may answer and disconnect before it has read everything
   const std::string bytes = tcp.receiveAll();
   return tcp.closed() ? parseAnswer(bytes) : HttpAnswer{};
 }

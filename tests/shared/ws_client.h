@@ -1,5 +1,5 @@
-// Blocking network clients for tests: a WebSocket client that acts only inside its calls (so one that is not asked to
-// receive really does not read), a raw TCP one, and a plain HTTP request. Link spindrift::ws_client.
+// Blocking network clients for tests: a WebSocket client that runs only inside its calls (without a receive call it
+// really does not read), a raw TCP client, and a plain HTTP request. Link spindrift::ws_client.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace spindrift::test {
 
-/// Long enough for a loaded machine; reached only by a test that fails.
+/// Long enough for a loaded machine; only failing tests reach it.
 inline constexpr std::chrono::milliseconds kPatience{60'000};
 
 class WsClient {
@@ -24,33 +24,33 @@ class WsClient {
   WsClient& operator=(WsClient&& other) noexcept;
   ~WsClient();  ///< hangs up without a goodbye if still open
 
-  /// Kernel buffer for what was not received yet; 0 = the system's choice. Before connect().
+  /// Size of the kernel's buffer for unread bytes; 0 = the system's choice. Set it before connect().
   void setReceiveBuffer(int bytes_count);
 
-  /// False if refused; the handshake* calls then say how. An empty subprotocol offers none.
+  /// False if refused; the handshake* functions then return the details. An empty subprotocol offers none.
   bool connect(const std::string& host, std::uint16_t port, const std::string& target = "/ws",
                const std::string& subprotocol = "spindrift.v1");
   unsigned handshakeStatus() const;  ///< 101 = upgraded, 0 = no answer
   std::string handshakeBody() const;
   std::string handshakeHeader(const std::string& name) const;
 
-  /// False if the connection is gone or the peer takes nothing for kPatience.
+  /// False if the connection is gone or the peer reads nothing for kPatience.
   bool sendBinary(core::ByteView message);
   bool sendText(std::string_view message);
   bool sendPing();
 
-  /// The next whole message; nullopt after `timeout` or once closed. Answers pings meanwhile.
+  /// Returns the next whole message; nullopt after `timeout` or once closed. Answers pings meanwhile.
   std::optional<core::Bytes> receive(std::chrono::milliseconds timeout = kPatience);
-  /// Receives and forgets until the connection is closed; false after `timeout`.
+  /// Receives and drops messages until the connection is closed; false after `timeout`.
   bool waitClosed(std::chrono::milliseconds timeout = kPatience);
 
   bool closed() const;
   std::uint16_t closeCode() const;  ///< from the peer's close frame; 0 if there was none
   std::string closeReason() const;
 
-  /// The closing handshake, to its end. False if the peer does not take part.
+  /// Performs the closing handshake. False if the peer does not take part.
   bool close(std::uint16_t code = 1000);
-  /// Closes the TCP connection without a word.
+  /// Closes the TCP connection without a close frame.
   void vanish();
 
  private:
@@ -66,13 +66,13 @@ class RawTcp {
   ~RawTcp();
 
   bool connect(const std::string& host, std::uint16_t port);
-  /// False if the peer has hung up.
+  /// False if the peer has disconnected.
   bool send(std::string_view bytes);
-  /// Reads until `bytes_count` are there, the peer hangs up (then closed()), or `timeout`.
+  /// Reads until `bytes_count` bytes are there, the peer disconnects (then closed()), or `timeout`.
   std::string receive(std::size_t bytes_count, std::chrono::milliseconds timeout = kPatience);
-  /// Reads up to and with `mark`; less if the peer hangs up or nothing comes for `timeout`.
+  /// Reads up to and including `mark`; less if the peer disconnects or sends nothing for `timeout`.
   std::string receiveUntil(std::string_view mark, std::chrono::milliseconds timeout = kPatience);
-  /// Everything until the peer hangs up; check closed().
+  /// Reads everything until the peer disconnects; check closed().
   std::string receiveAll(std::chrono::milliseconds timeout = kPatience);
   bool closed() const { return closed_; }
   void close();
@@ -91,7 +91,7 @@ struct HttpAnswer {
 /// Parses the bytes of one whole response.
 HttpAnswer parseAnswer(const std::string& bytes);
 
-/// Sends the bytes as they are on a new connection and reads until the server hangs up.
+/// Sends the bytes unchanged on a new connection and reads until the server disconnects.
 HttpAnswer httpExchange(std::uint16_t port, std::string_view request_bytes);
 
 /// `METHOD target` with "Connection: close" and `extra_headers` (each line ended by CRLF).

@@ -1,5 +1,5 @@
-// A WebSocket client that sends exactly the frames it is told to, also those that no client may send (RFC 6455 section
-// 5.2), and shows the frames that come back. Link spindrift::ws_client.
+// A WebSocket client that sends exactly the given frames, including those that no client may send (RFC 6455 section
+// 5.2), and returns the received frames. Link spindrift::ws_client.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ enum class Opcode : std::uint8_t {
   kReservedControl = 11,
 };
 
-/// How a frame's length is written; kShortest is the only one that is allowed.
+/// Form of a frame's length; only kShortest is allowed.
 enum class LengthForm { kShortest, kSixteenBits, kSixtyFourBits };
 
 struct Frame {
@@ -34,27 +34,27 @@ struct Frame {
   LengthForm length_form = LengthForm::kShortest;
 };
 
-/// The frame as bytes of a client.
+/// Returns the bytes of a client's frame.
 std::string bytesOf(const Frame& frame);
 
-/// A close frame with this code and reason.
+/// Returns a close frame with this code and reason.
 Frame closeFrame(std::uint16_t code, std::string_view reason = "");
 
-/// An upgrade request for `/ws`; `headers` takes the place of version and key where it is not empty.
+/// Returns an upgrade request for `/ws`; `headers`, if not empty, replaces version and key.
 std::string upgradeRequest(const std::string& headers = "");
 
 class FrameClient {
  public:
-  /// Connects, upgrades and reads up to the answer's end. False if it was not 101.
+  /// Connects, upgrades and reads the whole answer. False if it was not 101.
   bool connect(std::uint16_t port);
 
   bool send(const Frame& frame) { return tcp_.send(bytesOf(frame)); }
-  /// The next frame; nullopt if the peer has hung up, sends nothing for kPatience, or breaks the rules for servers:
-  /// no mask, no reserved bits, shortest length, control frames whole and at most 125 bytes.
+  /// Returns the next frame; nullopt if the peer has disconnected, sends nothing for kPatience, or breaks the rules for
+  /// servers: no mask, no reserved bits, shortest length, control frames unfragmented and at most 125 bytes.
   std::optional<Frame> receive();
-  /// Receives and forgets up to the close frame. Its code, 1005 for one without; 0 if none came.
+  /// Receives and drops frames up to the close frame. Returns its code, 1005 for one without; 0 if none came.
   std::uint16_t receiveClose();
-  /// True once the peer has hung up.
+  /// True once the peer has disconnected.
   bool waitClosed();
 
   RawTcp& tcp() { return tcp_; }

@@ -1,5 +1,5 @@
-// The same scene, seed and commands give the same bits: again, with another number of the rasteriser's threads, with
-// work groups in another order.
+// The same scene, seed and commands give the same bits: in a repetition, with another number of the rasteriser's
+// threads, and with another order of the work groups.
 #include <array>
 #include <cstdio>
 #include <ostream>
@@ -13,7 +13,8 @@
 namespace spindrift {
 namespace {
 
-/// What state_hash prints for a scene, with llvmpipe on so many threads and the given test modes (gpu::Checks).
+/// Returns the output of state_hash for a scene, with this many threads of llvmpipe and the given test modes
+/// (gpu::Checks).
 std::string hashOf(const std::string& scene, int ticks, int threads, const std::string& checks = "barriers") {
   const std::string command = "SPINDRIFT_GPU_CHECKS=" + checks + " LP_NUM_THREADS=" + std::to_string(threads) +
                               " '" SPINDRIFT_STATE_HASH "' '" SPINDRIFT_SOURCE_DIR "/server/scenes/" + scene +

@@ -1,7 +1,7 @@
-// Every live parameter of every shipped scene over its whole range, with every kind of side: the water stays finite and
-// above its bed, the ledger exact, and the watchdog is never needed. Parameters come from their descriptions, scenes
-// from the folder, so that new ones are swept too. A short form by default: both ends of each range, depths at which
-// absorbing sides used to blow up, few ticks. Longer: SPINDRIFT_SWEEP_VALUES values between the ends,
+// Sweeps every live parameter of every shipped scene over its whole range, with every kind of side: the water stays
+// finite and above its bed, the ledger is exact, and the watchdog never acts. Parameters come from their descriptions
+// and scenes from the folder, so new ones are included. The default form is short: both ends of each range, depths at
+// which absorbing sides used to be unstable, few ticks. Longer: SPINDRIFT_SWEEP_VALUES values between the ends,
 // SPINDRIFT_SWEEP_TICKS ticks each, SPINDRIFT_SWEEP_SIDES=1 for every kind of side in every scene, SPINDRIFT_COUNT_MAX
 // particles.
 #include <algorithm>
@@ -30,7 +30,7 @@ std::filesystem::path sceneFolder() {
 
 enum class Which { kAll, kWithWave };
 
-/// Names of the shipped scenes, sorted; a file that is no scene counts as one, so that its test says what is wrong.
+/// Names of the shipped scenes, sorted. A file that is not a scene is included, so that its test reports the error.
 std::vector<std::string> sceneNames(Which which) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(sceneFolder())) {
@@ -38,7 +38,7 @@ std::vector<std::string> sceneNames(Which which) {
     const auto scene = scene::loadSceneFile(entry.path());
     if (which == Which::kAll || !scene || scene->has_wave()) names.insert(entry.path().stem().string());
   }
-  // "splash_wave" is the wave of "splash" by itself: the same once the particles of "splash" are left out.
+  // "splash_wave" is "splash" without the particles, so the wave alone would be tested twice.
   if (which == Which::kWithWave)
     std::erase_if(names, [&](const std::string& name) {
       return name.ends_with("_wave") && names.contains(name.substr(0, name.size() - 5));
@@ -46,10 +46,10 @@ std::vector<std::string> sceneNames(Which which) {
   return {names.begin(), names.end()};
 }
 
-/// The ends of a parameter's range, `between` values between them, and what a scene adds for a path.
+/// Both ends of a parameter's range, `between` values between them, and values that a scene adds for a path.
 std::vector<double> valuesOf(const v1::ParameterDescription& parameter, int between, std::vector<double> more) {
   std::vector<double> values = {parameter.min(), parameter.max()};
-  // Ranges that span decades are divided by ratio, others evenly.
+  // Ranges over several decades are divided by ratio, others evenly.
   const bool by_ratio = parameter.min() > 0 && parameter.max() > 30 * parameter.min();
   for (int i = 1; i <= between; ++i) {
     const double share = static_cast<double>(i) / (between + 1);
@@ -63,16 +63,16 @@ std::vector<double> valuesOf(const v1::ParameterDescription& parameter, int betw
   return values;
 }
 
-/// Depths at which the step rule's step is nearly its bound in scenes with absorbing sides.
+/// Depths for which the step of the rule is close to its bound in scenes with absorbing sides.
 const std::vector<double> kBadDepths_m = {1.2, 2.05, 3.5};
-/// A splash of 0.5 m ends in rings a third as high. An unstable wave stands higher than this within a second: as no
-/// cell gives more than it holds, it grows to about the depth and no further.
+/// A splash of 0.5 m ends in rings a third as high. An unstable wave exceeds this height within a second; it grows to
+/// about the depth and no further, because no cell gives more than it holds.
 constexpr double kHighest_m = 0.5;
-/// Spray that falls back into the middle of the splash throws the surface up after 0.8 to 1.2 s: 0.59 m in boat_wake
-/// with particles of at most 0.5 m/s, and as much with half the step.
+/// Spray that falls back into the middle of the splash lifts the surface after 0.8 to 1.2 s: 0.59 m in boat_wake with
+/// particles of at most 0.5 m/s, and as much with half the step.
 constexpr double kRebound_m = 0.75;
 constexpr double kReboundBegin_s = 0.7;
-/// Root mean square over the basin. A splash raises a few cells, an unstable wave a large part of them.
+/// Root mean square over the basin. A splash lifts a few cells, an unstable wave a large part of them.
 constexpr double kRoughest_m = 0.1;
 class Parameters : public Endurance, public ::testing::WithParamInterface<std::string> {
  protected:
@@ -84,12 +84,12 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
     const double depth_m = scene.wave ? scene.wave->depth_m : scene.particles->headroom_m;
     ASSERT_TRUE(water.start(core::Splash{0.3, -0.2, 1.6, std::min(0.5, 0.9 * depth_m), 0.22}));
     if (scene.wave) {
-      // A sharp one at a corner: what grows at a side has something to grow from at once.
+      // A sharp splash at a corner excites instabilities at the sides at once.
       const double place_m = 0.5 * scene.wave->side_m - 6 * water.derived().wave->cell_m;
       const double radius_m = 1.5 * water.derived().wave->cell_m;
       ASSERT_TRUE(water.start(core::Splash{place_m, place_m, radius_m, std::min(0.1, 0.5 * depth_m), 0.05}));
     }
-    // The fastest sound takes hundreds of substeps per tick.
+    // The fastest sound speed needs hundreds of substeps per tick.
     const int most = std::max(ticks / static_cast<int>(water.derived().substeps_count), 2);
     for (int tick = 0; tick < most; ++tick) {
       water.step();
@@ -118,9 +118,9 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
     roughest_seen_m_ = std::max(roughest_seen_m_, rms_m);
   }
 
-  /// Each live parameter of a room in turn, the others as in the scene. Where the scene or its room refuses an end of
-  /// the range (a boat needs water to float in, a pool's drops need a column to come from) the nearest value that they
-  /// take stands for it.
+  /// Sweeps each live parameter of a room in turn, the others as in the scene. If the scene or its room refuses an end
+  /// of the range (a boat needs a depth, a pool's drops need a column of water), the nearest accepted value is used
+  /// instead.
   void sweep(const v1::Scene& scene, int between, int ticks, int bad_depth_ticks) {
     sim::WaterSim& water = make(scene::toCore(scene));
     v1::Scene changed;
@@ -145,7 +145,7 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
     }
   }
 
-  /// Between a value that is not taken and the scene's own, which is.
+  /// Searches between a refused value and the scene's own, which is accepted.
   static double nearestTaken(const v1::ParameterDescription& parameter, double refused, const auto& takes) {
     double allowed = parameter.value();
     for (int i = 0; i < 12; ++i) {
@@ -164,18 +164,18 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
 
 class WaveParameters : public Parameters {};
 
-TEST_P(Parameters, OverTheirWholeRangesKeepTheWaterWell) {
+TEST_P(Parameters, KeepTheWaterHealthyOverTheirWholeRanges) {
   const v1::Scene scene = shipped(GetParam());
   sweep(scene, wanted("SPINDRIFT_SWEEP_VALUES", 0), wanted("SPINDRIFT_SWEEP_TICKS", 8), 24);
   std::printf("%d runs, elevations of up to %.2f m, %.3f m root mean square\n", run_count_, highest_seen_m_,
               roughest_seen_m_);
   EXPECT_GE(run_count_, 8);
-  // A pool's size, and what a room that was made without it has no shaders for.
+  // Fixed parameters: the size of a pool, and values for which the room has no shaders.
   const std::set<std::string> may_refuse = {"particles.count", "wave.steepening_ratio", "foam.neighbours_count"};
   for (const std::string& path : refused_) EXPECT_TRUE(may_refuse.contains(path)) << path;
 }
 
-/// The waves of a scene by themselves, with one kind of side all round.
+/// The wave of a scene alone, with one kind of side everywhere.
 v1::Scene withSides(v1::Scene scene, v1::WaveBoundary side) {
   v1::WaveScene& wave = *scene.mutable_wave();
   wave.set_boundary_minus_x(side);
@@ -183,11 +183,11 @@ v1::Scene withSides(v1::Scene scene, v1::WaveBoundary side) {
   wave.set_boundary_minus_z(side);
   wave.set_boundary_plus_z(side);
   wave.set_sponge_width_m(std::min(wave.sponge_width_m(), 0.5 * wave.side_m()));
-  if (side == v1::WAVE_BOUNDARY_PERIODIC) scene.clear_beaches();  // they need a side
+  if (side == v1::WAVE_BOUNDARY_PERIODIC) scene.clear_beaches();  // beaches need sides that are not periodic
   return scene;
 }
 
-TEST_P(WaveParameters, KeepItWellWithEveryKindOfSide) {
+TEST_P(WaveParameters, KeepTheWaveHealthyWithEveryKindOfSide) {
   v1::Scene scene = shipped(GetParam());
   scene.clear_particles();
   scene.clear_coupling();
@@ -195,7 +195,7 @@ TEST_P(WaveParameters, KeepItWellWithEveryKindOfSide) {
   constexpr std::array kSides = {v1::WAVE_BOUNDARY_ABSORB, v1::WAVE_BOUNDARY_REFLECT, v1::WAVE_BOUNDARY_PERIODIC};
   const int between = wanted("SPINDRIFT_SWEEP_VALUES", 0);
   const int ticks = wanted("SPINDRIFT_SWEEP_TICKS", 8);
-  // In the short form: absorbing sides everywhere, and one of the others in turn.
+  // The short form: absorbing sides in every scene, and one of the other kinds in turn.
   const std::vector<std::string> names = sceneNames(Which::kWithWave);
   const auto turn = static_cast<std::size_t>(std::ranges::find(names, GetParam()) - names.begin()) % 2;
   for (std::size_t i = 0; i < kSides.size(); ++i) {

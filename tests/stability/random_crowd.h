@@ -28,8 +28,7 @@ class Dice {
   std::mt19937 random_;
 };
 
-/// Random effects, boats and parameters over their whole ranges, within what the scene allows, as people could send
-/// them.
+/// Random effects, boats and parameters over their whole ranges, within the scene's limits, as clients could send them.
 class Crowd {
  public:
   enum class Sends { kEverything, kEffectsAndBoats };
@@ -37,7 +36,7 @@ class Crowd {
   explicit Crowd(v1::Scene scene, Sends sends = Sends::kEverything)
       : scene_(std::move(scene)), parameters_(scene::describeParameters(scene_)), sends_(sends) {}
 
-  /// Sends one command; whether the scene allowed it.
+  /// Sends one command; returns whether the scene allowed it.
   bool send(sim::WaterSim& water) {
     const core::Action action = any(water);
     if (wire::checkAgainstScene(core::Command{{}, 1, action}, scene_)) return false;
@@ -61,7 +60,7 @@ class Crowd {
     return true;
   }
 
-  /// The live parameters that no command has changed so far: refused every time, or never asked for.
+  /// The live parameters that no command has changed so far: always refused, or never tried.
   [[nodiscard]] std::vector<std::string> untouched() const {
     std::vector<std::string> out;
     for (const auto& parameter : parameters_) {
@@ -70,7 +69,7 @@ class Crowd {
     return out;
   }
 
-  /// The scene with every change that the room took.
+  /// The scene with all accepted changes.
   [[nodiscard]] const v1::Scene& scene() const { return scene_; }
 
  private:
@@ -108,10 +107,10 @@ class Crowd {
     if (kind < 800 && !boats.empty())
       return core::RemoveBoat{boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id};
     if (sends_ == Sends::kEffectsAndBoats) return any(water);
-    // Somebody always puts back what makes a step several times as dear: it lasts until the next change of a parameter,
-    // a few ticks, so that a run is about 10,000 commands and not about patience.
+    // Parameters that make a step several times as expensive are always set back at the next change of a parameter,
+    // after a few ticks, so that a run of 10,000 commands ends in time.
     if (costly_) return core::SetParameter{std::exchange(costly_, nullptr)->path(), costly_value_before_};
-    // In turn, so that a short run has been through them all.
+    // In turn, so that a short run tries all of them.
     const auto& parameter = parameters_[next_parameter_++ % parameters_.size()];
     double value = dice_.between(parameter.min(), parameter.max());
     if (parameter.step() >= 1) value = std::round(value);

@@ -1,5 +1,5 @@
-// The default scene for a long time, as fast as the machine allows: 40 simulated seconds in a test run, or as many as
-// SPINDRIFT_SOAK_S says (600 for the ten minutes of docs/operations.md).
+// Runs the default scene for a long time, as fast as the machine can: 40 simulated seconds in a test run, or
+// SPINDRIFT_SOAK_S (600 for the ten minutes of docs/operations.md).
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>

@@ -43,7 +43,7 @@ class Endurance : public ::testing::Test {
     return *water_;
   }
 
-  /// A number of the environment, for runs longer than a test's.
+  /// Reads a number from the environment, for runs longer than the default.
   static int wanted(const char* variable, int otherwise) {
     const char* text = std::getenv(variable);
     return text ? std::atoi(text) : otherwise;

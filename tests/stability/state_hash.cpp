@@ -1,5 +1,5 @@
-// Prints the state hash of a shipped scene after some ticks with fixed commands: for runs in an environment of their
-// own, above all another SPINDRIFT_GPU_CHECKS.
+// Prints the state hash of a shipped scene after some ticks with fixed commands: for runs with another environment,
+// above all another SPINDRIFT_GPU_CHECKS.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

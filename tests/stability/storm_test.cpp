@@ -1,4 +1,4 @@
-// However hard people and weather work on the water, no cell holds less than nothing: the surface stays above the bed.
+// Whatever clients and weather do, no cell holds a negative amount of water: the surface stays above the bed.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -33,7 +33,7 @@ Extremes extremesOf(sim::WaterSim& water) {
   Extremes out;
   for (std::size_t i = 0; i < state.elevation_m.size(); ++i) {
     if (basin.depth_m[i] <= 0) continue;
-    // Both are exact: the elevation is a whole number of units, and so is the bed as the shaders see it.
+    // Both are exact: the elevation is a whole number of units, and so is the bed in the shaders.
     const auto bed_units = static_cast<std::int64_t>(double{basin.depth_m[i]} * double{ELEVATION_UNITS_PER_M});
     const auto units = static_cast<std::int64_t>(std::llround(state.elevation_m[i] * double{ELEVATION_UNITS_PER_M}));
     out.add({bed_units + units, state.elevation_m[i], state.elevation_m[i]});
@@ -41,15 +41,15 @@ Extremes extremesOf(sim::WaterSim& water) {
   return out;
 }
 
-/// Largest elevations that are allowed. 168 splashes, waves and boats a second, each as large as the harbor takes them,
-/// pile water up where they meet rocks and walls (13.0 m were measured in 400 ticks); full storm and boats at full
-/// speed do not (1.24 m in 600 ticks).
+/// Largest allowed elevations. 168 splashes, waves and boats per second, each as large as the harbor accepts, pile up
+/// water at rocks and walls (13.0 m measured in 400 ticks); full storm and boats at full speed do not (1.24 m in 600
+/// ticks).
 constexpr double kHighestOfCrowd_m = 16.0;
 constexpr double kHighestOfWeather_m = 2.0;
 
 class Storm : public Endurance {
  protected:
-  /// `ticks` of a scene with random commands, its boats at full speed; the bed is looked at every third tick.
+  /// Runs `ticks` of a scene with random commands and its boats at full speed; checks the bed every third tick.
   Extremes run(const v1::Scene& scene, Crowd::Sends sends, int ticks, double commands_per_tick = 2.8) {
     sim::WaterSim& water = make(scene::toCore(scene));
     Crowd crowd(scene, sends);
@@ -93,7 +93,7 @@ TEST_F(Storm, WeatherAndBoatsAloneStayLow) {
   EXPECT_LE(extremes.highest_m, kHighestOfWeather_m);
 }
 
-TEST_F(Storm, ParametersThatChangeMeanwhileNeverBareTheBedEither) {
+TEST_F(Storm, ParameterChangesNeverEmptyTheHarborBelowItsBed) {
   const int ticks = wanted("SPINDRIFT_STORM_TICKS", 400);
   const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEverything, ticks);
   EXPECT_GE(extremes.thinnest_units, 0);

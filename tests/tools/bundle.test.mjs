@@ -1,5 +1,5 @@
-// The bundle in a root folder that holds nothing but the C library, a shell and five small tools: no driver, no C++
-// runtime, no Spindrift elsewhere. What runs there runs on a bare machine.
+// Runs the bundle in a root folder with only the C library, a shell and five small tools: no driver, no C++ runtime, no other
+// Spindrift. So it also runs on a bare machine.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, realpathSync, rmSync, writeFileSync } from "node:fs";
@@ -11,7 +11,7 @@ import { after, before, describe, it } from "node:test";
 import { repository } from "./workshop.mjs";
 
 const TOOLS = ["/bin/sh", "/usr/bin/readlink", "/usr/bin/dirname", "/usr/bin/basename", "/usr/bin/sed", "/usr/bin/head"];
-/** All that the environment holds. */
+/** The whole environment. */
 const TOOL_PATH = { PATH: "/usr/sbin:/usr/bin:/sbin:/bin" };
 const START_LIMIT_MS = 120_000;
 
@@ -32,7 +32,7 @@ describe("the bundle", () => {
   let folder;
   let bundle;
   let root;
-  /** The command line that starts something inside `root`, or undefined where this machine forbids it. */
+  /** Returns the command line that starts a program inside `root`, or undefined if this machine forbids it. */
   let enter;
 
   before(
@@ -44,14 +44,14 @@ describe("the bundle", () => {
 
       root = join(folder, "root");
       for (const tool of TOOLS) for (const path of [tool, ...loaded(tool)]) install(root, path);
-      // The C library's other halves, which the bundle leaves to the machine.
+      // Parts of the C library, which the bundle takes from the machine.
       const libc = loaded("/bin/sh").find((path) => basename(path) === "libc.so.6");
       for (const name of ["libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libresolv.so.2"]) install(root, join(dirname(libc), name));
       for (const name of ["dev", "proc", "tmp"]) mkdirSync(join(root, name));
       writeFileSync(join(root, "dev/null"), "");
       cpSync(bundle, join(root, "opt/a bundle"), { recursive: true, verbatimSymlinks: true });
 
-      // /proc is part of any Linux; a mount namespace of its own takes it away again at the end.
+      // Every Linux has /proc; a separate mount namespace removes it at the end.
       const script = 'mount --rbind /proc "$0/proc" && exec chroot "$0" "$@"';
       const ways = [["--mount"], ["--user", "--map-root-user", "--mount"]].map((options) => ["/usr/bin/unshare", ...options, "/bin/sh", "-c", script, root]);
       enter = ways.find((way) => spawnSync(way[0], [...way.slice(1), "/bin/sh", "-c", "exit 0"], { env: TOOL_PATH }).status === 0);
@@ -60,7 +60,7 @@ describe("the bundle", () => {
   );
   after(() => rmSync(folder, { recursive: true, force: true }));
 
-  /** The command line that starts the launcher in the bare root. Signals reach the server itself: every link of the chain is an exec. */
+  /** Returns the command line that starts the launcher in the bare root. Signals reach the server, because each step is an exec. */
   const inRoot = (...args) => [...enter, "/opt/a bundle/spindrift", ...args];
 
   it("finds every library, and none of the machine's but the C library's", () => {

@@ -25,18 +25,18 @@ PLACEHOLDER = re.compile(r"\b(?:NAME|TARGET|FILE|SUBJECT|VERB)\b")
 
 
 def is_record(name):
-    """Whether the document tells what was true when it was written."""
+    """Returns whether the document describes the past, so that its paths may be gone."""
     return name == "CHANGELOG.md" or name.startswith("docs/decisions/")
 
 
 def anchor_of(heading):
-    """The anchor that GitHub gives a heading."""
+    """Returns the anchor that GitHub gives a heading."""
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading).lower()
     return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
 
 
 class Checkout:
-    """What Git knows of a folder: committed files and those about to be."""
+    """The files of a folder that Git does not ignore: committed and new ones."""
 
     def __init__(self, root):
         self.root = root
@@ -59,7 +59,7 @@ class Checkout:
         return (self.root / name).read_text(encoding="utf-8")
 
     def matches(self, name):
-        """The files that `name` can mean: a path from the root, or the end of one."""
+        """Returns the files that `name` can mean: a path from the root, or the end of one."""
         return [name] if name in self.files else [known for known in self.files if known.endswith("/" + name)]
 
 
@@ -70,7 +70,7 @@ class Document:
         self.name = name
         self.lines = text.splitlines()
         self.anchors = set()
-        prose = []  # the same lines, empty inside of fenced code, without code in back quotes
+        prose = []  # the same lines, empty inside fenced code, without code in back quotes
         fence = None
         for line in self.lines:
             mark = FENCE.match(line)
@@ -84,7 +84,7 @@ class Document:
                 self._add_anchor(anchor_of(heading.group(2)))
             if not fence:
                 self.anchors.update(re.findall(r"<a (?:id|name)=\"([^\"]+)\"", line))
-        text = "\n".join(prose)  # a link's text may go on in the next line
+        text = "\n".join(prose)  # a link's text may continue on the next line
         found = [*LINK.finditer(text), *LINK_IN_LINK.finditer(text)]
         self.links = dict.fromkeys((text.count("\n", 0, link.start(1)) + 1, link.group(1)) for link in found)
 
@@ -97,7 +97,7 @@ class Document:
 
 
 def check_link(checkout, documents, document, target, linked):
-    """The fault of one link, or None; notes in `linked` which document it leads to."""
+    """Returns what is wrong with a link, or None; adds the document that it leads to to `linked`."""
     if re.match(r"[a-zA-Z][a-zA-Z0-9+.-]*:", target):
         return None
     path, _, anchor = target.partition("#")
@@ -119,7 +119,7 @@ def check_link(checkout, documents, document, target, linked):
 
 
 def check_function(checkout, name, function):
-    """The fault of one `file:function`, or None."""
+    """Returns what is wrong with a `file:function`, or None."""
     files = checkout.matches(name)
     if not files:
         return f"{name}:{function}: there is no such file"

@@ -1,4 +1,4 @@
-// What `./dev lint` checks, a test each, so that it cannot go wrong unseen.
+// One test for each check of `./dev lint`: it must fail on a faulty file.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { describe, it } from "node:test";

@@ -3,11 +3,11 @@
 
 usage: summarise.py NAME:EXIT_CODE:FILE...
 
-Prints one line a part, what failed with the head of its output, what was skipped and why, and last
+Prints one line per part, the failed tests with the head of their output, the skipped tests with the reason, and last
 `N passed, N failed, N skipped`. Exit code 1 when anything failed.
 
-A part that ends badly without saying what failed counts as one failure, and so does a part without a report or without a
-single test: silence is not success. CTest calls two things "notrun": a test that skipped itself and a test whose program
+A part that fails without naming a failed test counts as one failure, and so does a part without a report or without a
+single test. CTest calls two things "notrun": a test that skipped itself and a test whose program
 is missing; only the first is a skip.
 """
 

@@ -25,7 +25,7 @@ describe("the total of ./dev test", () => {
   });
   afterEach(() => rmSync(folder, { recursive: true }));
 
-  /** Sums up parts given as [name, exit code, report or undefined for none]. */
+  /** Summarises parts, each given as [name, exit code, report or undefined]. */
   function summarise(...parts) {
     const args = parts.map(([name, code, report]) => {
       const path = join(folder, `${name}.xml`);

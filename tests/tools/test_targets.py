@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Prints which C++ test programs hold the tests that a regular expression names, one per line.
+"""Prints the C++ test programs that contain the tests which match a regular expression, one per line.
 
     test_targets.py REGEX [FOLDER]
 
 REGEX is searched in "LABEL/Suite.Test", as `ctest -R` does with names of tests; FOLDER is tests/. The names are read from
-the sources, so that nothing has to be built. Exit code 1 when there is none.
+the sources, so that nothing has to be built. Exit code 1 if no test matches.
 """
 
 import pathlib
@@ -17,7 +17,7 @@ KEYWORDS = {"NAME", "LABEL", "TIMEOUT", "SOURCES", "LIBRARIES", "THREADS"}
 
 
 def programs(folder):
-    """(name, label, sources) of every spindrift_test(...) below the folder."""
+    """Returns (name, label, sources) of every spindrift_test(...) below the folder."""
     for lists in sorted(folder.rglob("CMakeLists.txt")):
         for match in PROGRAM.finditer(re.sub(r"\$\{\w+\}", "", lists.read_text(encoding="utf-8"))):
             words = match.group(1).split()

@@ -1,4 +1,4 @@
-// Which programs `./dev test -R REGEX` builds.
+// The programs that `./dev test -R REGEX` builds.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";

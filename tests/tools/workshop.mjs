@@ -1,5 +1,5 @@
-// A copy of ./dev in a folder with a space in its name, with tools on the PATH that note how they were called instead of
-// installing and compiling. What is tested is ./dev: what it calls, when, in which order, and what it does not call.
+// A copy of ./dev in a folder with a space in its name. The tools on the PATH record their calls instead of installing and
+// compiling, so tests can check which programs ./dev calls, and in which order.
 import { spawnSync } from "node:child_process";
 import { chmodSync, cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";

@@ -5,7 +5,7 @@ import WebSocket from "ws";
 import { parse } from "../../web-client/src/codec/parse";
 import { ClientMessageSchema, ServerMessageSchema } from "../../web-client/src/gen/spindrift/v1/wire_pb";
 
-/** Far longer than any step takes; only a failing test reaches it. */
+/** Far longer than any step; only a failing test reaches it. */
 const kPatienceMs = 60_000;
 
 export class Client {
@@ -26,7 +26,7 @@ export class Client {
     this.ws.on("error", () => {}); // "close" follows
   }
 
-  /** Returns the first message that `accept` takes and drops the ones before it. Rejects when the socket is closed or after kPatienceMs. */
+  /** Returns the first message that `accept` accepts and drops the ones before it. Rejects when the socket is closed or after kPatienceMs. */
   async next(accept) {
     const deadline_ms = Date.now() + kPatienceMs;
     for (;;) {

@@ -15,14 +15,14 @@ CODES = json.loads((pathlib.Path(__file__).resolve().parents[2] / "proto" / "pac
 
 
 class Damaged(Exception):
-    """The message or frame has to be dropped; says why."""
+    """The message or frame must be dropped; the text gives the reason."""
 
 
 # ---- Protobuf, as far as the wire needs it (protobuf.dev, "Encoding") ------------------------------------------------
 
 
 def fields_of(data):
-    """(number, value) of each field: an int for varints, bytes for the rest."""
+    """Yields (number, value) of each field: an int for varints, bytes for the rest."""
     at, out = 0, []
 
     def varint():
@@ -114,7 +114,7 @@ def unpacked(data):
 
 
 def frame_of(data):
-    """The LayerFrame of a ServerMessage with its codec's name and header; None for a message of another kind."""
+    """Returns the LayerFrame of a ServerMessage with its codec's name and header; None for a message of another kind."""
     kinds = [(number, value) for number, value in fields_of(data) if number in KINDS]
     if not kinds:
         raise Damaged("no known kind of message")
@@ -229,7 +229,7 @@ class Residuals:
         self.bits, self.sum = bits, 0
 
     def group(self, n, l, a):
-        """The class and n residuals."""
+        """Returns the class and n residuals."""
         bits = self.bits
         zeros = (l == 0) + (a == 0)
         e = {2: 9, 1: l + a, 0: (l + a + 1) // 2}[zeros]
@@ -314,10 +314,10 @@ def read_plane(residuals, n, weights, before, earlier):
 
 
 class Reader:
-    """One client's subscriptions: keeps the planes that the next packed frame builds on."""
+    """The subscriptions of one client: keeps the planes that the next packed frame builds on."""
 
     def __init__(self):
-        self.history = {}  # layer → (what has to be the same, tick, last plane, the one before)
+        self.history = {}  # layer → (values that must stay the same, tick, last plane, the one before)
 
     def read(self, frame):
         check_header(frame)
@@ -431,7 +431,7 @@ class Reader:
 
 
 def differs(found, wanted):
-    """Where two values of JSON differ, or None. 64-bit integers are strings there; nine digits of a number are given."""
+    """Returns where two JSON values differ, or None. 64-bit integers are strings; numbers have nine digits."""
     if isinstance(wanted, list):
         if len(found) != len(wanted):
             return f"{len(found)} instead of {len(wanted)}"
@@ -445,7 +445,7 @@ def differs(found, wanted):
 
 
 def fault_of(case, folder, cases):
-    """What is wrong with what this reader makes of a case, or None."""
+    """Returns what is wrong with this reader's result for a case, or None."""
     reader, chain = Reader(), [case]
     while chain[0].get("follows"):
         chain.insert(0, cases[chain[0]["follows"]])

@@ -1,4 +1,4 @@
-// The golden bytes, read by a program that was written from proto/README.md alone.
+// Reads the golden bytes with a program that was written from proto/README.md alone.
 import { spawnSync } from "node:child_process";
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";

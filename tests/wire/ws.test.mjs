@@ -10,7 +10,7 @@ beforeAll(async () => {
 });
 afterAll(() => server?.stop("SIGTERM"));
 
-/** Connected and greeted. */
+/** Returns a client that has received its greeting. */
 async function greeted() {
   const client = new Client(server.port);
   await client.nextOf("greeting");
@@ -61,7 +61,7 @@ describe("the npm package ws", () => {
     expect(payload.byteLength).toBe(2 * 128 * 128);
     const next = await client.nextOf("surface");
     const passedS = next.header.serverTimeS - header.serverTimeS;
-    // A frame of twenty a second, however late the machine is with it.
+    // One frame of twenty per second, even on a slow machine.
     expect(passedS).toBeGreaterThan(0.01);
     expect((await client.close()).code).toBe(1000);
   });

@@ -11,7 +11,7 @@ import { FrameUnpacker } from "../src/codec/frame_unpacker";
 import { parse } from "../src/codec/parse";
 import { ServerMessageSchema, type LayerFrame, type ServerMessage } from "../src/gen/spindrift/v1/wire_pb";
 
-/** Thousands of frames, also on a busy machine. */
+/** Long enough for thousands of frames on a busy machine. */
 vi.setConfig({ testTimeout: 60_000 });
 
 const kFiles = ["surface_packed_0", "surface_packed_1", "foam_packed_0", "foam_packed_1", "particles_packed"];
@@ -26,7 +26,7 @@ function frameOf(message: ServerMessage): LayerFrame {
   return message.message.value;
 }
 
-/** The frame with another payload and the checksum that belongs to it. */
+/** Returns the frame with another payload and its checksum. */
 function bytesWith(message: ServerMessage, payload: Uint8Array): ArrayBuffer {
   const frame = { ...frameOf(message), payload, crc32c: crc32c(payload) };
   const bytes = toBinary(ServerMessageSchema, create(ServerMessageSchema, { message: { case: "frame", value: frame } }));

@@ -30,7 +30,7 @@ function camel(name: string): string {
   return name.replace(/_([a-z0-9])/g, (_, letter: string) => letter.toUpperCase());
 }
 
-/** As the connection does: unpacks packed frames, after the golden frames that they build on. */
+/** Unpacks packed frames like the connection, after the golden frames that they build on. */
 function unpacked(golden: GoldenCase, unpacker = new FrameUnpacker()): Exclude<ParsedMessage, PackedFrame> | Malformed {
   const before = cases.find((c) => c.file !== "" && c.file === golden["follows"]);
   if (before) unpacked(before, unpacker);

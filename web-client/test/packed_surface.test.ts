@@ -58,7 +58,7 @@ describe("packed frames", () => {
     deliver(rig, 0);
     deliver(rig, 1);
     expect(rig.frames).toHaveLength(2);
-    deliver(rig, 1); // builds on 0, but 1 is the last one
+    deliver(rig, 1); // builds on 0, but the last frame was 1
     expect(rig.frames).toHaveLength(2);
   });
 

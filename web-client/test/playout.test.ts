@@ -4,9 +4,9 @@ import { PlayoutClock } from "../src/scene/playout_clock";
 
 interface Stream {
   frameRateHz: number;
-  /** What a frame takes to come, by its number [s]. */
+  /** Transit time of a frame, by its number [s]. */
   transitS: (frame: number) => number;
-  /** Simulated seconds a second. */
+  /** Simulated seconds per second. */
   speed?: number;
   /** The server's clock minus the client's. */
   leadS?: number;
@@ -16,12 +16,12 @@ interface Stream {
 interface Picture {
   nowS: number;
   shownS: number;
-  /** Simulation time of the newest frame that was there. */
+  /** Simulation time of the newest frame that had arrived. */
   newestS: number;
   delayS: number;
 }
 
-/** What a display of 60 Hz shows of a stream, from its third second on. */
+/** The times that a display of 60 Hz shows of a stream, from the third second on. */
 function watch({ frameRateHz, transitS, speed = 1, leadS = 1000, durationS = 8 }: Stream): Picture[] {
   const clock = new PlayoutClock();
   clock.sync(leadS);
@@ -30,7 +30,7 @@ function watch({ frameRateHz, transitS, speed = 1, leadS = 1000, durationS = 8 }
     const sentS = k / frameRateHz;
     frames.push({ timeS: speed * sentS, stampS: sentS + leadS, arrivedS: sentS + transitS(k) });
   }
-  // TCP delivers in order: what comes late holds back what follows.
+  // TCP delivers in order: a late frame delays the ones after it.
   frames.forEach((frame, k) => (frame.arrivedS = Math.max(frame.arrivedS, frames[k - 1]?.arrivedS ?? 0)));
   const pictures: Picture[] = [];
   let next = 0;
@@ -61,7 +61,7 @@ describe("the playout clock", () => {
       expect(step).toBeGreaterThan(0.88 / 60);
       expect(step).toBeLessThan(1.12 / 60);
     }
-    // There is a frame to interpolate to, nearly always.
+    // Nearly always there is a frame to interpolate to.
     expect(pictures.filter(({ shownS, newestS }) => shownS >= newestS).length).toBeLessThan(0.01 * pictures.length);
   });
 

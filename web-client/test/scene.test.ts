@@ -9,7 +9,7 @@ import { TapDetector, toDeviceCoordinates } from "../src/ui/tap";
 
 const flat: WaterShape = { sideM: 16, minM: 0, maxM: 0, elevationAtM: () => 0 };
 
-/** From the middle of a pixel of an 800 x 600 canvas to a ray, as the page does it. */
+/** Returns the page's ray through the middle of a pixel of an 800 x 600 canvas. */
 function clickRay(camera: PerspectiveCamera, xPx: number, yPx: number) {
   const { x, y } = toDeviceCoordinates(xPx, yPx, { left: 0, top: 0, width: 800, height: 600 });
   const direction = new Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize();

@@ -27,12 +27,12 @@ describe("the server's clock", () => {
     clock.greeted(0, 0);
     clock.answered(0, 0.02, 40);
     expect(clock.leadMs()).toBeCloseTo(0, 6);
-    // A shorter round trip says 50 ms: 1 % of the time since may be made good.
+    // A shorter round trip gives 50 ms; the correction is at most 1 % of the time since then.
     clock.answered(2000, 2.055, 2010);
     expect(clock.leadMs()).toBeCloseTo(0.01 * 1970, 6);
     for (let ms = 4000; ms < 14_000; ms += 2000) clock.answered(ms, (ms + 55) / 1000, ms + 10);
     expect(clock.leadMs()).toBeCloseTo(50, 6);
-    // A laptop that slept: pings of before have had their time.
+    // After a laptop has slept, the pings before are too old.
     clock.answered(100_000, 400, 100_010);
     expect(clock.leadMs()).toBeCloseTo(299_995, 3);
   });

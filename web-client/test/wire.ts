@@ -67,7 +67,7 @@ export interface BodyRecord {
   rudder: number;
 }
 
-/** The wire's 28 bytes a boat. */
+/** Writes the 28 bytes per boat of the wire. */
 export function bodiesPayload(records: Partial<BodyRecord>[]): Uint8Array<ArrayBuffer> {
   const view = new DataView(new ArrayBuffer(28 * records.length));
   records.forEach((record, at) => {

@@ -1,6 +1,6 @@
-// A sample needs its neighbours at x - 1, at z - 1 and at both, so a row by itself is one long chain. Eight rows are
-// taken together instead, each a sample behind the one above it: what the eight samples of such a diagonal need lies on
-// the two diagonals before.
+// A sample is predicted from its neighbours at x - 1, at z - 1 and at both, so one row alone is a serial chain.
+// Therefore eight rows are predicted together, each one sample behind the row above it: the eight samples of such a
+// diagonal depend only on the two diagonals before.
 #include "band_prediction.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Words splat(std::int32_t value) {
   return Words{v, v, v, v};
 }
 
-/// Two weights for samples in pairs; they fit into 16 bits.
+/// Two weights for products of sample pairs, 16 bits each.
 struct NarrowPair {
   Shorts weights;
   NarrowPair(std::int32_t a, std::int32_t b)
@@ -31,7 +31,7 @@ struct NarrowPair {
                                                        static_cast<std::uint32_t>(b) << 16)))) {}
   Words operator()(Shorts pairs) const { return sumsOfProducts(pairs, weights); }
 };
-/// Two vectors of any size.
+/// Two weights of up to 32 bits each.
 struct WidePair {
   Words a, b;
   WidePair(std::int32_t of_a, std::int32_t of_b) : a(splat(of_a)), b(splat(of_b)) {}
@@ -55,7 +55,7 @@ void sumFrames(const HistoryRows& history, const SurfaceWeights& weights, const 
   for (std::size_t x = 0; x < kTile * tiles_count; x += kTile, ++tiles) {
     const Shorts r = loadVector<Shorts>(tiles->of.data() + j * kTile);
     const Shorts zeros{};
-    // The residual in the upper half of each 32 bits, shifted down to where it counts.
+    // Residual times 2^kWeightBits with its sign: it starts in the upper half of each 32 bits.
     Words low = Words(SignedWords(interleaveLow(zeros, r)) >> (16 - kWeightBits)) + kHalf;
     Words high = Words(SignedWords(interleaveHigh(zeros, r)) >> (16 - kWeightBits)) + kHalf;
     const auto add = [&](const std::int16_t* p, const std::int16_t* q, const Pair& pair) {
@@ -79,7 +79,7 @@ void sumFrames(const HistoryRows& history, const SurfaceWeights& weights, const 
   }
 }
 
-/// The weights of the known neighbours for four rows. In row 0 all three neighbours are the one at x - 1.
+/// The weights of the known neighbours for four rows. In row 0 the neighbour at x - 1 replaces all three.
 struct NarrowKnown {
   Shorts west_and_north, north_west;
   NarrowKnown(const SurfaceWeights& weights, bool begins_with_row_0) {
@@ -93,7 +93,7 @@ struct NarrowKnown {
     west_and_north[1] = 0;
     north_west[0] = 0;
   }
-  /// What is known last is added last.
+  /// The neighbour that is known last is added last.
   Words operator()(Words sums, Words west, Words north, Words diagonal) const {
     return sums + sumsOfProducts(Shorts(diagonal), north_west) +
            sumsOfProducts(Shorts((west & 0xffffu) | north << 16), west_and_north);
@@ -114,7 +114,7 @@ struct WideKnown {
   }
 };
 
-/// Rows of four become columns of four.
+/// Transposes 4 x 4 words: rows become columns.
 void transpose(Words (&v)[4]) {
   const Words a = interleaveLow(v[0], v[2]), b = interleaveHigh(v[0], v[2]);
   const Words c = interleaveLow(v[1], v[3]), d = interleaveHigh(v[1], v[3]);
@@ -134,13 +134,13 @@ void transpose(Shorts (&v)[8]) {
   }
 }
 
-/// Samples of a diagonal, and those above them; rows 0 to 3 and 4 to 7, sign-extended.
+/// Samples of a diagonal and the samples above them, sign-extended; `upper` holds rows 0 to 3, `lower` rows 4 to 7.
 struct Diagonal {
   Words upper{}, lower{};
   Words above_upper{}, above_lower{};
 };
 
-/// Lane k of four, all bits of it.
+/// Mask with all bits of lane k of four.
 constexpr Words onlyLane(int k) {
   return Words{k == 0 ? ~0u : 0u, k == 1 ? ~0u : 0u, k == 2 ? ~0u : 0u, k == 3 ? ~0u : 0u};
 }
@@ -169,8 +169,8 @@ class BandPredictor {
   }
 
  private:
-  /// Eight diagonals; the sample of row j of diagonal s lies at s - j. The first eight begin the rows: there the
-  /// neighbour above stands for all three.
+  /// Predicts eight diagonals; the sample of row j of diagonal s is at x = s - j. The first eight contain the starts of
+  /// the rows: there the neighbour above replaces all three.
   template <bool kBeginsRows>
   void takeEight(std::size_t begin) {
     Shorts out[8];

@@ -1,4 +1,4 @@
-// Eight rows of a plane from what the frames before say and what was left over.
+// Decodes eight rows of a plane from the previous frames and the residuals.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,25 @@
 
 namespace spindrift::codec {
 
-/// Rows of samples around the first of a row, in the frame before and in the one before that.
+/// Pointers to the first sample of a row in the previous frame and in the one before that, with rows around them.
 struct HistoryRows {
   const std::int16_t* before;
   const std::int16_t* earlier;
   std::size_t stride;
 };
 
-/// What a row of sums has room for before its first and behind its last sum.
+/// Room in a row of sums before its first and after its last sum.
 inline constexpr std::size_t kSumsLeft = 8, kSumsRight = 16;
 
-/// sums[x] = 4096 * residual + what the history says times 4096, rounding included, modulo 2^32; for 8 * tiles_count
-/// samples of row j of a row of tiles.
+/// Sets sums[x] = 4096 * (residual + prediction from the history), rounding included, modulo 2^32, for the 8 *
+/// tiles_count samples of row j of a row of tiles.
 void sumHistory(const HistoryRows& history, const SurfaceWeights& weights, const ResidualGroup* tiles, std::size_t j,
                 std::size_t tiles_count, std::uint32_t* sums);
-/// The same where there is no history.
+/// The same without a history.
 void sumResiduals(const ResidualGroup* tiles, std::size_t j, std::size_t tiles_count, std::uint32_t* sums);
 
-/// Eight rows from their sums and the row above, which for the first rows of a plane is 0. Row j of the sums and of the
-/// samples begins j strides behind the first. Writes up to 7 samples before each row and 14 behind it.
+/// Decodes eight rows from their sums and the row above, which is 0 for the first rows of a plane. Row j of the sums
+/// and of the samples begins j strides after the first. Writes up to 7 samples before each row and 14 after it.
 void predictBand(const std::uint32_t* sums, std::size_t sums_stride, const SurfaceWeights& weights, bool is_first,
                  std::int16_t* samples, std::size_t stride, std::size_t n);
 

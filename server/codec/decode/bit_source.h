@@ -1,4 +1,4 @@
-// Bits one behind the other, lowest first, as codec/bit_stream writes them: read through a window of 57.
+// Reads a sequence of bits, lowest first, as written by codec/bit_stream, through a window of 57 bits.
 #pragma once
 
 #include <bit>
@@ -11,24 +11,24 @@ static_assert(std::endian::native == std::endian::little, "eight bytes are loade
 
 class BitSource {
  public:
-  /// Zeros that have to lie behind the bytes: a run of reads needs only one look at where it is.
+  /// Number of zero bytes that must follow the input, so that a run of reads needs only one check of the position.
   static constexpr std::uint32_t kSlackBytes = 512;
-  /// Between two calls of prepare(): a group of residuals behind an escape each takes 262 bytes.
+  /// Largest number of bits between two calls of prepare(). A group whose residuals all use an escape takes 262 bytes.
   static constexpr std::uint32_t kRunMaxBits = 8 * (kSlackBytes - 2 * sizeof(std::uint64_t));
-  /// Places of bits fit into 32 of them.
+  /// Keeps positions in bits below 2^32.
   static constexpr std::uint32_t kMaxBytes = 1u << 28;
 
-  /// `byte_count` <= kMaxBytes; kSlackBytes of 0 behind them.
+  /// `byte_count` <= kMaxBytes; kSlackBytes of 0 must follow the bytes.
   BitSource(const std::uint8_t* bytes, std::uint32_t byte_count) : bytes_(bytes), end_(8 * byte_count) {}
 
-  /// To be called before reading at most kRunMaxBits. Who has read beyond the end reads zeros from there on, and
-  /// isAtEnd() is false.
+  /// Call it before reading at most kRunMaxBits. After a read beyond the end, reads return zeros and isAtEnd() is
+  /// false.
   void prepare() {
     if (at_ <= end_) return;
     at_ = end_;
     is_past_end_ = true;
   }
-  /// The next 57 bits and perhaps more, without taking them.
+  /// Returns at least the next 57 bits without consuming them.
   [[nodiscard]] std::uint64_t peek() const {
     std::uint64_t word = 0;
     std::memcpy(&word, bytes_ + at_ / 8, sizeof word);
@@ -41,20 +41,20 @@ class BitSource {
     take(bit_count);
     return static_cast<std::uint32_t>(bits);
   }
-  /// `bit_count` bits that are read apart from the others, with peekAt(). False: there are not so many.
+  /// Skips `bit_count` bits that are read separately with peekAt(). False: fewer are left.
   bool skip(std::uint64_t bit_count) {
     if (at_ > end_ || bit_count > end_ - at_) return false;
     at_ += static_cast<std::uint32_t>(bit_count);
     return true;
   }
   [[nodiscard]] std::uint32_t place() const { return at_; }
-  /// As peek(), of another place; before the end.
+  /// Like peek(), at another place before the end.
   [[nodiscard]] std::uint64_t peekAt(std::uint32_t place) const {
     std::uint64_t word = 0;
     std::memcpy(&word, bytes_ + place / 8, sizeof word);
     return word >> place % 8;
   }
-  /// Whether everything but the filling was read, and nothing beyond.
+  /// Returns whether everything except zero padding was read, and nothing beyond the end.
   [[nodiscard]] bool isAtEnd() const {
     return !is_past_end_ && at_ <= end_ && end_ - at_ < 8 && (at_ == end_ || peek() == 0);
   }

@@ -13,7 +13,7 @@ constexpr std::uint32_t kReflectedPolynomial = 0x82F63B78u;
 
 using Tables = std::array<std::array<std::uint32_t, 256>, 16>;
 
-/// tables[k][b]: the checksum of byte b followed by k zero bytes.
+/// tables[k][b]: checksum of byte b followed by k zero bytes.
 constexpr Tables makeTables() {
   Tables tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {

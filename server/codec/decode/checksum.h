@@ -1,4 +1,4 @@
-// CRC-32C by tables, sixteen bytes a turn: where the machine has no instruction for it.
+// CRC-32C with tables, sixteen bytes per step: for processors without an instruction for it.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace spindrift::codec {
 
-/// Castagnoli's polynomial, reflected; of "123456789" it is 0xE3069283.
+/// Castagnoli's polynomial, reflected; the checksum of "123456789" is 0xE3069283.
 std::uint32_t crc32cByTables(const std::uint8_t* bytes, std::size_t byte_count);
 
 }  // namespace spindrift::codec

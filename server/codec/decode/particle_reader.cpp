@@ -30,12 +30,13 @@ std::uint32_t getGamma(BitSource& in) {
   return ((1u << bits) | in.get(bits)) - 1;
 }
 
-/// x, z, y of 16 bits each, as they stand in a particle's words.
+/// Packs x, z, y of 16 bits each, in the layout of a particle's words.
 constexpr std::uint64_t placeOf(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return x | z << 16 | y << 32;
 }
 
-/// For the counts of four eighths, two bits each: how many particles lie before the end of each, a byte each.
+/// Table by the counts of four eighths (two bits each): number of particles before the end of each eighth, one byte
+/// each.
 constexpr std::array<std::uint32_t, kHalfSymbolCount> makeEnds() {
   std::array<std::uint32_t, kHalfSymbolCount> ends{};
   for (std::uint32_t symbol = 0; symbol < ends.size(); ++symbol) {
@@ -48,7 +49,7 @@ constexpr std::array<std::uint32_t, kHalfSymbolCount> makeEnds() {
 }
 constexpr std::array<std::uint32_t, kHalfSymbolCount> kEnds = makeEnds();
 
-/// Writes what cells hold: for each particle the place of its eighth.
+/// Decodes the cells: writes the corner of its eighth as each particle's place.
 class CellReader {
  public:
   CellReader(const ParticleShape& shape, std::uint8_t* out) : shape_(shape), out_(out), left_(shape.count) {
@@ -63,7 +64,7 @@ class CellReader {
     const auto [cells_x, cells_y, cells_z] = shape_.cells_count;
     std::uint32_t x = 0, y = 0, z = 0;
     for (; left_ > 0; ++y) {
-      // At most 11 bits of the gap, 23 that are raw, 22 of the halves.
+      // At most 11 bits for the gap's code, 23 raw bits, 22 bits for the two halves.
       bits.prepare();
       std::uint64_t window = bits.peek();
       const Slot gap = gap_code[window];
@@ -72,7 +73,7 @@ class CellReader {
       const std::uint32_t one = gap.symbol > 0 ? 1u : 0u;
       y += (one << raw_bits) + (static_cast<std::uint32_t>(window) & ((1u << raw_bits) - 1));
       window >>= raw_bits;
-      // Mostly the next column, if another at all: no branch to foresee.
+      // The next cell is mostly in this column or the next one: handled without a branch.
       const std::uint32_t is_beyond = y >= cells_y ? 1 : 0;
       y -= cells_y & (0 - is_beyond);
       x += is_beyond;
@@ -88,7 +89,7 @@ class CellReader {
       const Slot low_half = half_code[window], high_half = half_code[window >> low_half.length];
       bits.take(gap.length + raw_bits + low_half.length + high_half.length);
       const std::uint32_t halves = low_half.symbol | static_cast<std::uint32_t>(high_half.symbol) << 8;
-      if (halves == 0) return false;  // a cell that is named holds something
+      if (halves == 0) return false;  // a coded cell is not empty
       const std::uint64_t corner = placeOf(x, y, z) << shape_.offset_bits;
       const bool has_many = (halves & halves >> 1 & 0x5555u) != 0;
       if (!has_many && left_ >= kSureCount)
@@ -101,11 +102,12 @@ class CellReader {
   }
 
  private:
-  /// As many as eight eighths of at most two hold.
+  /// Largest number of particles in eight eighths with at most two each.
   static constexpr std::uint32_t kSureCount = 16;
 
   static void put(std::uint8_t* at, std::uint64_t place) { std::memcpy(at, &place, sizeof place); }
-  /// No eighth holds more than two: two are written for each, and the next eighth begins behind those that are there.
+  /// For cells with at most two particles per eighth: always writes two per eighth; the next eighth overwrites the
+  /// surplus.
   void putFew(std::uint64_t corner, std::size_t low_half, std::size_t high_half) {
     const std::uint32_t low_ends = kEnds[low_half];
     const std::uint32_t high_ends = kEnds[high_half] + (low_ends >> 24) * 0x01010101u;
@@ -138,7 +140,7 @@ class CellReader {
   std::array<std::uint64_t, 8> eighths_;
 };
 
-/// One attribute of the particles from group to group: values are the mean plus what differs from it.
+/// State of one attribute of the particles from group to group: a value is the group's mean plus a residual.
 struct Attribute {
   ResidualGroup values;
   std::int16_t mean = 0;
@@ -163,7 +165,7 @@ Shorts clamped(Shorts v, std::int16_t least, std::int16_t most) {
 Shorts bytesOf(Shorts velocities) {
   return clamped(velocities, -127, 127) & 0xff;
 }
-/// 255 / 7 of a tint, rounded down, is this much over 32.
+/// 255 / 7 of a tint, rounded down, is tint times this over 32.
 constexpr int kTintScale = 1166;
 static_assert([] {
   for (int tint = 0; tint < 8; ++tint) {
@@ -178,7 +180,7 @@ Shorts foamsOf(Shorts foams) {
   return clamped(foams, 0, 3) * 85;
 }
 
-/// Velocity, tint and foam of a group: the last six bytes of each particle, two and four of them.
+/// Velocity, tint and foam of a group: the last six bytes of each particle, as two and four bytes.
 struct Tails {
   alignas(16) std::array<std::uint16_t, kGroupMaxCount> first;
   alignas(16) std::array<std::uint32_t, kGroupMaxCount> second;
@@ -203,7 +205,8 @@ class AttributeReader {
   Attribute vx_, vy_, vz_, foam_, tint_;
 };
 
-/// Adds a group's low bits of places and its tails to what the cells gave. `place` is that of its bits.
+/// Adds the low bits of the places and the attributes of a group to the places from the cells. `place`: position of the
+/// low bits.
 void putGroup(const BitSource& bits, std::uint32_t place, std::uint32_t low, const Tails& tails, std::size_t count,
               std::uint8_t* out) {
   const std::uint64_t mask = (1u << low) - 1;
@@ -218,7 +221,7 @@ void putGroup(const BitSource& bits, std::uint32_t place, std::uint32_t low, con
   }
 }
 
-/// The same for cells of 32 quanta, as the server makes them: shifts by constants.
+/// The same for cells of 32 quanta, the server's usual size: shifts by constants.
 void putUsualGroup(const BitSource& bits, std::uint32_t place, const Tails& tails, std::size_t count,
                    std::uint8_t* out) {
   constexpr std::uint32_t kLow = kUsualOffsetBits - 1, kAtOnce = 4;

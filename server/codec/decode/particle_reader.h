@@ -1,4 +1,5 @@
-// Packed particles -> the words of plain ones, in the quanta of the packed: the reading half of codec/particle_cells.
+// Decodes packed particles into the words of plain ones, in the quanta of the packed form. The decoder for
+// codec/particle_cells.
 #pragma once
 
 #include <array>
@@ -7,7 +8,7 @@
 
 namespace spindrift::codec {
 
-/// What a frame's header says. readParticles() refuses shapes beyond the bounds.
+/// Values from a frame's header. readParticles() refuses values beyond the bounds.
 struct ParticleShape {
   std::uint32_t count = 0;                     ///< at most kParticleReadMaxCount
   std::array<std::uint32_t, 3> cells_count{};  ///< along x, y, z; cells << offset_bits at most 2^16, in all 2^24
@@ -15,13 +16,13 @@ struct ParticleShape {
 };
 inline constexpr std::uint32_t kParticleReadMaxCount = 4 * 1024 * 1024;
 inline constexpr std::size_t kParticleWordBytes = 12;
-/// What readParticles() may write behind the last particle.
+/// readParticles() may write this many bytes after the last particle.
 inline constexpr std::size_t kParticleSlackBytes = 64;
 
-/// Particles in the order of the wire, kParticleWordBytes each: places along x, z, y in quanta (u16), velocity along
-/// x, y, z (i8, -127..127), tint (u8, 0..255 in eight steps), foam (u8, in four), 0. `out` has room for `count` of them
-/// and kParticleSlackBytes; the payload is followed by BitSource::kSlackBytes of 0. False: the shape is beyond the
-/// bounds or the bytes are damaged; what `out` holds then means nothing.
+/// Writes particles in the order of the wire, kParticleWordBytes each: places along x, z, y in quanta (u16), velocity
+/// along x, y, z (i8, -127..127), tint (u8, 0..255 in eight steps), foam (u8, in four steps), 0. `out` has room for
+/// `count` of them and kParticleSlackBytes; the payload is followed by BitSource::kSlackBytes of 0. False: the shape is
+/// beyond the bounds or the bytes are damaged; the contents of `out` are then undefined.
 bool readParticles(const std::uint8_t* payload, std::uint32_t byte_count, const ParticleShape& shape,
                    std::uint8_t* out);
 

@@ -9,7 +9,7 @@
 namespace spindrift::codec {
 namespace {
 
-/// Parts of memory one behind the other; from null, only how much they take.
+/// Splits a block of memory into parts. With a null pointer it only computes the size.
 class Parts {
  public:
   explicit Parts(std::uint8_t* memory) : memory_(memory) {}
@@ -76,7 +76,7 @@ bool PlaneRow::readDelta(const std::uint8_t* payload, std::uint32_t byte_count, 
 
 void PlaneRow::readPlane(ResidualReader& in, const History& history, const SurfaceWeights& weights,
                          std::int16_t* plane) {
-  // A plane that is not there counts for nothing.
+  // A missing plane has the weight 0.
   SurfaceWeights known = weights;
   if (history.earlier == nullptr) std::fill_n(known.of.begin() + SurfaceWeights::kEarlier, 3, 0);
   const std::int16_t* const earlier = history.earlier != nullptr ? history.earlier : history.before;
@@ -107,7 +107,7 @@ void PlaneRow::readTiles(ResidualReader& in, std::size_t rows) {
     left = in.group(group, rows * columns, left, classes_[tile]);
     classes_[tile] = static_cast<std::uint8_t>(left);
     if (columns == kTile) continue;
-    // Narrow rows take their places in the tile, the last one first.
+    // Move the rows of a narrow tile to their places in the group, the last one first.
     for (std::size_t j = rows; j-- > 0;)
       std::memmove(group.of.data() + j * kTile, group.of.data() + j * columns, columns * sizeof group.of[0]);
   }

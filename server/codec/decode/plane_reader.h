@@ -1,5 +1,5 @@
-// Planes in a row, each predicted from the two before it: the reading half of codec/plane_chain and
-// codec/surface_predictor. All memory is the caller's.
+// Decodes a sequence of planes, each predicted from the two before it. The decoder for codec/plane_chain and
+// codec/surface_predictor. The caller owns all memory.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace spindrift::codec {
 
-/// A grid of n x n samples in memory, with room around: two samples repeat the outermost ones, the others are anything
-/// and let whole vectors be read and written.
+/// A grid of n x n samples in memory, with a border: two samples repeat the outermost ones, the rest is undefined and
+/// only lets vectors be loaded and stored as a whole.
 struct PlaneLayout {
   static constexpr std::size_t kBorder = 2;
   static constexpr std::size_t kLeft = 8;
@@ -34,21 +34,21 @@ class PlaneRow {
   static constexpr std::size_t kMaxResolutionCount = 4096;
   static constexpr std::size_t kAlignment = alignof(ResidualGroup);
 
-  /// What place() takes for n samples a side, in bytes.
+  /// Number of bytes that place() needs for n x n samples.
   static std::size_t bytesFor(std::size_t n);
-  /// Works in this memory from now on, aligned to kAlignment; there is no row yet. 1 <= n <= kMaxResolutionCount.
+  /// Sets the memory to work in, aligned to kAlignment; there is no plane yet. 1 <= n <= kMaxResolutionCount.
   void place(std::uint8_t* memory, std::size_t n);
-  /// There is no row to continue any more.
+  /// Forgets the planes, so that only a keyframe can follow.
   void forget() { has_row_ = false; }
 
-  /// The payload of a frame that stands by itself, with BitSource::kSlackBytes of 0 behind it. False: it is damaged,
-  /// and there is no row any more.
+  /// Decodes the payload of a keyframe, which BitSource::kSlackBytes of 0 must follow. False: it is damaged, and the
+  /// planes are forgotten.
   bool readKeyframe(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights,
                     const SurfaceWeights& earlier_weights);
-  /// The payload of a frame that continues the row. False: as above, or there is none.
+  /// Decodes the payload of a delta. False: it is damaged (as above), or there is no plane before it.
   bool readDelta(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights);
 
-  /// Whether there is a row; then row(z) holds n samples of the plane read last.
+  /// Returns whether there is a plane; then row(z) holds n samples of the newest one.
   [[nodiscard]] bool hasRow() const { return has_row_; }
   [[nodiscard]] std::size_t resolution() const { return layout_.n; }
   [[nodiscard]] const std::int16_t* row(std::size_t z) const {
@@ -57,20 +57,20 @@ class PlaneRow {
 
  private:
   struct History {
-    const std::int16_t *before, *earlier;  ///< null where there is none
+    const std::int16_t *before, *earlier;  ///< null if there is none
   };
-  /// The parts of the memory; how much they take in bytes. Memory null: nothing else.
+  /// Assigns the parts of the memory and returns their size in bytes. With null memory it only returns the size.
   std::size_t takeParts(std::uint8_t* memory);
   void readPlane(ResidualReader& in, const History& history, const SurfaceWeights& weights, std::int16_t* plane);
-  /// The residuals of a row of tiles.
+  /// Reads the residuals of a row of tiles.
   void readTiles(ResidualReader& in, std::size_t rows);
   void fillBorder(std::int16_t* plane) const;
 
   PlaneLayout layout_;
   std::int16_t *next_ = nullptr, *before_ = nullptr, *earlier_ = nullptr;
-  ResidualGroup* residuals_ = nullptr;  ///< of a row of tiles, for each kTile rows of kTile
-  std::uint32_t* sums_ = nullptr;       ///< of kTile rows, with room around
-  std::uint8_t* classes_ = nullptr;     ///< of the tiles read last in each column
+  ResidualGroup* residuals_ = nullptr;  ///< of a row of tiles, kTile rows of kTile each
+  std::uint32_t* sums_ = nullptr;       ///< of kTile rows, with a border
+  std::uint8_t* classes_ = nullptr;     ///< class of the newest tile in each column
   bool has_row_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Prefix codes of at most 11 bits to read with: one look at the next bits gives symbol and length.
+// Decoding tables of prefix codes of at most 11 bits: one lookup of the next bits gives the symbol and its length.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace spindrift::codec {
 
-/// One symbol and the number of bits that its code takes.
+/// One symbol and the number of bits of its code.
 struct Slot {
   std::uint8_t symbol = 0;
   std::uint8_t length = 0;
@@ -18,12 +18,12 @@ struct Slot {
 
 class PrefixSlots {
  public:
-  /// False where the lengths are not those of a code that every sequence of bits has a meaning in.
+  /// False if the lengths do not form a complete prefix code.
   bool assign(std::span<const std::uint8_t> lengths);
-  /// A code that was sent along. False: the bits are damaged. `symbol_count` <= kMaxSymbolCount.
+  /// Reads a code from the payload. False: the bits are damaged. `symbol_count` <= kMaxSymbolCount.
   bool read(std::size_t symbol_count, BitSource& in);
 
-  /// By the lowest bits of a window.
+  /// Looks up the lowest bits of a window.
   [[nodiscard]] Slot operator[](std::uint64_t window) const { return slots_[window % (1u << kMaxCodeBits)]; }
   std::uint32_t get(BitSource& in) const {
     const Slot slot = (*this)[in.peek()];

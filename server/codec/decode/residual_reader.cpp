@@ -14,8 +14,8 @@ namespace {
 struct JointSlot {
   std::uint8_t symbol = 0;
   std::uint8_t second = 0;
-  std::uint8_t lengths = 0;  ///< of the first in the lower four bits, of all in the upper ones
-  std::uint8_t advance = 0;  ///< how many residuals that is
+  std::uint8_t lengths = 0;  ///< of the first symbol in the lower four bits, of both in the upper four
+  std::uint8_t advance = 0;  ///< number of residuals in these symbols
   [[nodiscard]] std::uint32_t firstLength() const { return lengths & 15u; }
   [[nodiscard]] std::uint32_t allLength() const { return lengths >> 4; }
 };
@@ -41,7 +41,7 @@ struct JointCode {
   }
   [[nodiscard]] JointSlot operator[](std::uint64_t window) const { return slots[window % slots.size()]; }
 
-  /// What the symbols mean, in 16 bits each.
+  /// The residuals of each symbol, 16 bits each.
   static constexpr std::array<Word, kEscape + 1> kMeanings = [] {
     std::array<Word, kEscape + 1> meanings{};
     for (std::uint32_t symbol = 0; symbol < kEscape; ++symbol) {
@@ -67,7 +67,7 @@ constexpr std::uint32_t kFirstSingleClass = kLastPairClass + 1;
 
 }  // namespace
 
-/// Every fixed code.
+/// All fixed codes.
 struct ResidualReader::Codes {
   std::array<FourCode, kFirstPairClass - kFirstFourClass> fours;
   std::array<PairCode, kFirstSingleClass - kFirstPairClass> pairs;
@@ -138,7 +138,7 @@ void ResidualReader::joint(std::int16_t* out, std::size_t count, const Code& cod
     for (int look = 0; look < kLooks && i < count; ++look) {
       const JointSlot slot = code[window];
       is_escape = slot.symbol == Code::kEscape;
-      // The last of a group stand by themselves, whatever comes next.
+      // The last symbol of a group is decoded alone: a second one would belong to the next group.
       const bool is_last = i + kCount >= count;
       const std::uint32_t length = is_last ? slot.firstLength() : slot.allLength();
       in.take(length);

@@ -1,4 +1,4 @@
-// Reads what codec/residual_coder wrote: residuals in groups of up to 64, with the fixed code of each group's class.
+// Decodes residuals written by codec/residual_coder: groups of up to 64, each with the fixed code of its class.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@ namespace spindrift::codec {
 
 class ResidualReader {
  public:
-  /// As of a BitSource.
+  /// Same requirements as BitSource.
   ResidualReader(const std::uint8_t* bytes, std::uint32_t byte_count) : codes_(codes()), bits_(bytes, byte_count) {}
 
-  /// The next `count` residuals; those behind are 0 in what an encoder wrote. `left` and `above`: the classes of the
-  /// groups before it, below kResidualClassCount. Returns the group's class.
+  /// Reads the next `count` residuals; the others of the group are 0 in valid streams. `left` and `above`: the classes
+  /// of the neighbouring groups, below kResidualClassCount. Returns the group's class.
   std::uint32_t group(ResidualGroup& out, std::size_t count, std::uint32_t left, std::uint32_t above);
-  /// For what stands beside the groups.
+  /// For bits outside the groups.
   BitSource& bits() { return bits_; }
-  /// To be called last. Whether the sum fits and nothing is left over: else the bytes are damaged.
+  /// Call it last. Returns whether the sum is right and no bits are left; otherwise the bytes are damaged.
   bool isAtEnd();
 
  private:

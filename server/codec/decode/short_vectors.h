@@ -1,5 +1,5 @@
-// Vectors of 128 bits for both compilers and both machines (SSE2, WebAssembly): the compilers' own vector types, and
-// the one operation that these lack.
+// Vectors of 128 bits for both compilers and both targets (SSE2, WebAssembly): the compilers' own vector types, and the
+// one operation that they lack.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ using Shorts = std::int16_t __attribute__((vector_size(16)));
 using Words = std::uint32_t __attribute__((vector_size(16)));
 using SignedWords = std::int32_t __attribute__((vector_size(16)));
 
-/// From and to any address.
+/// Load from and store to any address, without alignment.
 template <typename Vector, typename Element>
 Vector loadVector(const Element* from) {
   Vector out;
@@ -29,8 +29,8 @@ void storeVector(Element* to, Vector vector) {
   std::memcpy(to, &vector, sizeof vector);
 }
 
-/// 64 times the same number. Stores and nothing else: a compiler that sees the number makes memory.fill or rep stos of
-/// them, slow for so few bytes.
+/// Writes the same number 64 times with plain stores: if the compiler knew the number, it would emit memory.fill or rep
+/// stos, which are slow for so few bytes.
 inline void fill64(std::int16_t* to, std::int16_t value) {
   asm("" : "+r"(value));
   const Shorts v{value, value, value, value, value, value, value, value};
@@ -44,7 +44,7 @@ inline void fill64(std::int16_t* to, std::int16_t value) {
   storeVector(to + 56, v);
 }
 
-/// a[0], b[0], a[1], b[1], ... of the lower or the upper halves.
+/// Returns a[0], b[0], a[1], b[1], ... of the lower or the upper halves.
 inline Shorts interleaveLow(Shorts a, Shorts b) {
   return __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
 }
@@ -58,7 +58,7 @@ inline Words interleaveHigh(Words a, Words b) {
   return __builtin_shufflevector(a, b, 2, 6, 3, 7);
 }
 
-/// a[0] b[0] + a[1] b[1], a[2] b[2] + a[3] b[3], ...; wraps around at 32 bits.
+/// Returns a[0] b[0] + a[1] b[1], a[2] b[2] + a[3] b[3], ...; wraps around at 32 bits.
 inline Words sumsOfProducts(Shorts a, Shorts b) {
 #if defined(__wasm_simd128__)
   return Words(wasm_i32x4_dot_i16x8(v128_t(a), v128_t(b)));
@@ -71,7 +71,7 @@ inline Words sumsOfProducts(Shorts a, Shorts b) {
 #endif
 }
 
-/// The low halves of both, one behind the other; each has to be a sign-extended number of 16 bits.
+/// Returns the low halves of both, a before b; each value must be a sign-extended 16-bit number.
 inline Shorts narrowed(SignedWords a, SignedWords b) {
 #if defined(__wasm_simd128__)
   return Shorts(wasm_i16x8_narrow_i32x4(v128_t(a), v128_t(b)));

@@ -1,4 +1,4 @@
-// Bits one behind the other, least significant first: written in runs through a cursor that lives in registers.
+// Writes a sequence of bits, least significant first, through a cursor that stays in registers.
 #pragma once
 
 #include <bit>
@@ -11,18 +11,18 @@ namespace spindrift::codec {
 
 static_assert(std::endian::native == std::endian::little, "eight bytes are stored as one little-endian word");
 
-/// Where a BitWriter goes on writing. Between two flush() at most 56 bits.
+/// Write position of a BitWriter. At most 56 bits between two calls of flush().
 struct BitCursor {
   std::uint8_t* at = nullptr;
   std::uint64_t pending = 0;
   std::uint32_t count = 0;
 
-  /// The low `bit_count` bits of value; the others have to be 0. bit_count <= 32.
+  /// Writes the low `bit_count` bits of value; all other bits must be 0. bit_count <= 32.
   void put(std::uint32_t value, std::uint32_t bit_count) {
     pending |= std::uint64_t{value} << count;
     count += bit_count;
   }
-  /// Likewise; bit_count <= 56.
+  /// The same with bit_count <= 56.
   void putLong(std::uint64_t value, std::uint32_t bit_count) {
     pending |= value << count;
     count += bit_count;
@@ -37,7 +37,7 @@ struct BitCursor {
 
 class BitWriter {
  public:
-  /// Room for `byte_count` more bytes; the writer takes note of what was written when the cursor comes back.
+  /// Reserves `byte_count` more bytes and returns a cursor; the written bits count once the cursor is handed back.
   BitCursor begin(std::size_t byte_count) {
     if (bytes_.size() < used_ + byte_count + sizeof(std::uint64_t))
       bytes_.resize(2 * bytes_.size() + byte_count + sizeof(std::uint64_t));
@@ -55,7 +55,7 @@ class BitWriter {
     cursor.put(value, bit_count);
     end(cursor);
   }
-  /// Appends what was written, filled up with zero bits to whole bytes. Empty afterwards; keeps its memory.
+  /// Appends the written bits, padded with zeros to whole bytes. The writer is empty afterwards and keeps its memory.
   void finish(core::Bytes& out) {
     const auto begin = bytes_.begin();
     out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(used_ + (count_ > 0 ? 1 : 0)));

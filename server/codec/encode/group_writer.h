@@ -1,5 +1,5 @@
-// The writing half of residual_coder.h. It is inlined into the callers that write many groups, so that the bits at hand
-// stay in registers and the caller decides what processor it is compiled for.
+// The encoder of residual_coder.h. It is inlined into callers that write many groups, so that pending bits stay in
+// registers and the caller decides for which processor it is compiled.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +19,10 @@ namespace spindrift::codec {
 
 #if defined(__SSE2__)
 
-/// A group in registers, and what is asked of all its residuals at once.
+/// A group in registers, with operations on all its residuals at once.
 class GroupRows {
  public:
-  /// Eight residuals from each of eight places, `stride` apart.
+  /// Loads eight rows of eight residuals, `stride` apart.
   SPINDRIFT_INLINE GroupRows(const std::int16_t* first, std::size_t stride) {
     for (std::size_t j = 0; j < 8; ++j)
       rows_[j] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(first + j * stride));
@@ -35,7 +35,7 @@ class GroupRows {
     for (std::size_t j = 1; j < 8; ++j) any = _mm_or_si128(any, rows_[j]);
     return _mm_movemask_epi8(_mm_cmpeq_epi8(any, _mm_setzero_si128())) == 0xffff;
   }
-  /// Magnitudes of -32768 count as 32767.
+  /// The magnitude of -32768 counts as 32767.
   SPINDRIFT_INLINE void sumUp(std::uint32_t& magnitudes_sum, int& largest_magnitude, int& signed_sum) const {
     const __m128i ones = _mm_set1_epi16(1);
     __m128i sum = _mm_setzero_si128(), largest = sum, plain = sum;
@@ -45,7 +45,7 @@ class GroupRows {
       plain = _mm_add_epi32(plain, _mm_madd_epi16(r, ones));
       largest = _mm_max_epi16(largest, magnitude);
     }
-    // Both sums side by side, two halves each.
+    // Both sums in one register, two halves each.
     __m128i sums = _mm_add_epi32(_mm_unpacklo_epi32(sum, plain), _mm_unpackhi_epi32(sum, plain));
     sums = _mm_add_epi32(sums, _mm_shuffle_epi32(sums, _MM_SHUFFLE(1, 0, 3, 2)));
     largest = _mm_max_epi16(largest, _mm_shuffle_epi32(largest, _MM_SHUFFLE(1, 0, 3, 2)));
@@ -62,7 +62,7 @@ class GroupRows {
     sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(1, 0, 3, 2)));
     return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(2, 3, 0, 1))));
   }
-  /// Bit k: residual k is beyond `largest`, or below its negative; of all but -32768, which counts as 32767.
+  /// Bit k: the magnitude of residual k exceeds `largest`. -32768 counts as 32767.
   [[nodiscard]] SPINDRIFT_INLINE std::uint64_t beyond(int largest) const {
     const __m128i bound = _mm_set1_epi16(static_cast<std::int16_t>(largest));
     std::uint64_t out = 0;
@@ -75,7 +75,7 @@ class GroupRows {
     }
     return out;
   }
-  /// Bit k: residual k is not 0, or is below 0; all of them from -1 to 1.
+  /// Bit k of `not_zero` and `below_zero`: residual k is not 0, or negative. All residuals must be from -1 to 1.
   SPINDRIFT_INLINE void signs(std::uint64_t& not_zero, std::uint64_t& below_zero) const {
     not_zero = below_zero = 0;
     for (std::size_t j = 0; j < 8; j += 2) {
@@ -85,7 +85,7 @@ class GroupRows {
       below_zero |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(bytes))} << (8 * j);
     }
   }
-  /// One symbol for each four residuals, all of them from -1 to 1; out[4 i] and out[4 i + 2] are those of row i.
+  /// Computes one symbol per four residuals, all from -1 to 1; out[4 i] and out[4 i + 2] belong to row i.
   SPINDRIFT_INLINE void symbolsOfFours(std::uint32_t* out) const {
     const __m128i factors = _mm_setr_epi16(1, 3, 9, 27, 1, 3, 9, 27);
     for (std::size_t j = 0; j < 8; ++j) {
@@ -95,7 +95,7 @@ class GroupRows {
       _mm_storeu_si128(reinterpret_cast<__m128i*>(out + 4 * j), fours);
     }
   }
-  /// One for each two, all of them from -4 to 4.
+  /// Computes one symbol per two residuals, all from -4 to 4.
   SPINDRIFT_INLINE void symbolsOfPairs(std::uint32_t* out) const {
     const __m128i factors = _mm_setr_epi16(1, 9, 1, 9, 1, 9, 1, 9);
     for (std::size_t j = 0; j < 8; ++j) {
@@ -163,7 +163,7 @@ class GroupRows {
 
 #endif
 
-/// From class 5 on: the one whose mean magnitude is nearest to sum / count.
+/// Returns the class from 5 on whose mean magnitude is nearest to sum / count.
 SPINDRIFT_INLINE std::uint32_t meanClassOf(std::uint32_t sum, std::size_t count) {
   const std::uint64_t whole = std::uint64_t{sum} * 1024;
   const std::uint64_t scaled = count == kGroupMaxCount ? whole : whole * kGroupMaxCount / count;  // 65536 * mean
@@ -173,9 +173,9 @@ SPINDRIFT_INLINE std::uint32_t meanClassOf(std::uint32_t sum, std::size_t count)
   return static_cast<std::uint32_t>(std::clamp(doubled_log2 + 13, 5, static_cast<int>(kResidualClassCount) - 1));
 }
 
-/// Writes groups one behind the other. From ResidualEncoder::begin(), and back to its end().
+/// Writes groups; made by ResidualEncoder::begin() and handed back with end().
 struct GroupWriter {
-  /// Room for a class and 64 residuals behind an escape each.
+  /// Room for a class and 64 residuals with an escape each.
   static constexpr std::size_t kGroupMaxBytes = 4 + kGroupMaxCount * 5;
   static constexpr std::uint32_t kPlaceBits = 6;
 
@@ -183,20 +183,20 @@ struct GroupWriter {
   BitCursor out;
   std::uint32_t residual_sum = 0;
 
-  /// As ResidualEncoder::putGroup().
+  /// The same as ResidualEncoder::putGroup().
   SPINDRIFT_INLINE std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
                                           std::uint32_t above) {
     assert(count >= 1 && count <= kGroupMaxCount);
     const GroupRows rows(residuals.of.data(), 8);
     return rows.areZero() ? putZeros(left, above) : putRows(rows, count, left, above);
   }
-  /// A whole group from eight rows of eight, `stride` apart.
+  /// Writes a whole group from eight rows of eight, `stride` apart.
   SPINDRIFT_INLINE std::uint32_t putTile(const std::int16_t* first, std::size_t stride, std::uint32_t left,
                                          std::uint32_t above) {
     const GroupRows rows(first, stride);
     return rows.areZero() ? putZeros(left, above) : putRows(rows, kGroupMaxCount, left, above);
   }
-  /// A group of one residual; `before`: the class of the one before it.
+  /// Writes a group of one residual; `before`: the class of the group before it.
   SPINDRIFT_INLINE std::uint32_t putOne(std::int16_t residual, std::uint32_t before) {
     if (residual == 0) return putZeros(before, before);
     const auto magnitude = static_cast<std::uint32_t>(std::min(std::abs(int{residual}), 32767));
@@ -205,7 +205,7 @@ struct GroupWriter {
     if (magnitude == 1)
       out.put(residual < 0 ? 1u << kPlaceBits : 0, kPlaceBits + 1);
     else
-      putSingles(&residual, 1, group_class);  // two alone have class 15 already
+      putSingles(&residual, 1, group_class);  // a single 2 already has class 15
     out.flush();
     residual_sum += static_cast<std::uint32_t>(int{residual});
     return group_class;
@@ -255,7 +255,8 @@ struct GroupWriter {
     }
   }
 
-  /// At most kLastSparseClass residuals that are not 0, behind a class: less than 56 bits.
+  /// Writes the places and signs of at most kLastSparseClass residuals that are not 0, after the class: less than 56
+  /// bits.
   SPINDRIFT_INLINE void putPlaces(const GroupRows& rows) {
     std::uint64_t not_zero = 0, below_zero = 0;
     for (rows.signs(not_zero, below_zero); not_zero != 0; not_zero &= not_zero - 1) {
@@ -265,7 +266,7 @@ struct GroupWriter {
     out.flush();
   }
 
-  /// Fours (Count 4) or pairs.
+  /// Writes the residuals as fours (Count 4) or pairs (Count 2).
   template <std::size_t Count, int Largest>
   SPINDRIFT_INLINE void putJoint(const GroupRows& rows, std::size_t count, bool has_larger, const PrefixWriter& code,
                                  std::uint32_t escape_class) {

@@ -12,7 +12,7 @@
 namespace spindrift::codec {
 namespace {
 
-/// A whole number from 0 on, small ones in few bits (Elias gamma).
+/// Writes a whole number >= 0, small ones in few bits (Elias gamma).
 void putGamma(std::uint32_t value, BitCursor& out) {
   const auto bits = static_cast<std::uint32_t>(std::bit_width(value + 1)) - 1;
   out.put(1u << bits, bits + 1);
@@ -20,8 +20,8 @@ void putGamma(std::uint32_t value, BitCursor& out) {
   out.flush();
 }
 
-/// One attribute of the particles, group after group: each group's mean as its difference from the one before, then
-/// what each particle differs from it.
+/// State of one attribute of the particles: each group's mean is coded as the difference from the previous mean, then
+/// each particle's difference from the mean.
 struct AttributeState {
   int mean = 0;
   std::uint32_t mean_class = 0;
@@ -32,7 +32,7 @@ static_assert(kGroupMaxCount == 64, "twice as many are 1 << 7");
 constexpr std::size_t kAttributeCount = 5;  ///< velocity along x, y, z, foam, tint
 using AttributeStates = std::array<AttributeState, kAttributeCount>;
 
-/// Where an attribute stands in what attributesOf() gives: (word << up) >> down with its sign, and the mask.
+/// Position of an attribute in the result of attributesOf(): (word << up) >> down with its sign, and the mask.
 struct AttributeBits {
   std::uint32_t up, down;
   std::int32_t mask;
@@ -40,7 +40,7 @@ struct AttributeBits {
 constexpr std::array<AttributeBits, kAttributeCount> kAttributes = {
     {{24, 24, -1}, {16, 24, -1}, {8, 24, -1}, {0, 24, 3}, {0, 26, 7}}};
 
-/// Values of up to 64 particles.
+/// Writes the attributes of up to 64 particles.
 SPINDRIFT_INLINE GroupWriter putAttributes(std::span<const std::uint64_t> items, AttributeStates& states,
                                            GroupWriter out) {
   const std::size_t count = items.size();
@@ -56,7 +56,7 @@ SPINDRIFT_INLINE GroupWriter putAttributes(std::span<const std::uint64_t> items,
       values.of[k] =
           static_cast<std::int16_t>((static_cast<std::int32_t>(words[k] << bits.up) >> bits.down) & bits.mask);
     const int raised = 2 * GroupRows(values.of.data(), 8).sum() + static_cast<int>(count);
-    // To the nearest; a shift rounds down as the other does.
+    // Rounds to nearest. Both branches floor: the shift does, and the division is corrected for negative values.
     const int mean = count == kGroupMaxCount ? raised >> 7 : raised / doubled - (raised % doubled < 0 ? 1 : 0);
     state.mean_class = out.putOne(static_cast<std::int16_t>(mean - state.mean), state.mean_class);
     state.mean = mean;

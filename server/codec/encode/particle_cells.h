@@ -1,6 +1,6 @@
-// Particles as what each cell of a grid holds. A cell is cut into eight; the counts of its eighths take the place of
-// the highest bit of every coordinate, and since the order of particles means nothing they cost less than those bits.
-// Empty cells cost a run length. The other bits of a place are as good as random and go out as they are.
+// Codes particles as the contents of the cells of a grid. A cell is cut into eighths, whose counts replace the highest
+// bit of each coordinate. The order of particles carries no information, so the counts cost less than those bits. Empty
+// cells cost a run length. The other bits of a place are nearly random and are written unchanged.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace spindrift::codec {
 
-/// Cells along x, y, z; the linear index of a cell is (z * cells x + x) * cells y + y, so that columns lie together, in
-/// the order in which the simulation has them.
+/// Number of cells along x, y, z; the linear index of a cell is (z * cells x + x) * cells y + y, so that a column is
+/// contiguous, as in the simulation.
 struct CellGrid {
   std::array<std::uint32_t, 3> cells_count{};
   std::uint32_t offset_bits = 5;  ///< a cell's side is 2^offset_bits quanta; 1..8
@@ -25,17 +25,18 @@ struct CellGrid {
   }
 };
 
-/// From the words of core::ParticleView to quanta, place = u16 * scale along each axis, velocity = i8 * speed_scale.
+/// Conversion of the words of core::ParticleView to quanta: place = u16 * scale along each axis, velocity = i8 *
+/// speed_scale.
 struct ParticleScale {
   std::array<float, 3> place{};
   float speed = 0.0f;  ///< 0..1
 };
 
-/// Sorts the particles into the order of the wire and writes them: cells, places within them, then in groups of 64
-/// particles the velocities along x, y, z, foam, tint. Keeps its memory from frame to frame.
+/// Sorts the particles into the order of the wire and writes them: cells, places within the cells, then in groups of 64
+/// particles the velocities along x, y, z, foam, tint. Reuses its memory.
 class ParticleCellsEncoder {
  public:
-  /// Three words a particle, as in core::ParticleView.
+  /// Three words per particle, as in core::ParticleView.
   void encode(std::span<const std::uint32_t> words, const ParticleScale& scale, const CellGrid& grid,
               ResidualEncoder& out);
 

@@ -15,11 +15,11 @@ namespace spindrift::codec {
 namespace {
 
 constexpr int kRadixBits = 11;
-/// Up to this many cells a particle, looking at all cells costs less than sorting.
+/// Up to this many cells per particle, a pass over all cells costs less than sorting.
 constexpr std::uint64_t kCountedCells = 8;
 constexpr std::uint64_t kEveryByte = 0x0101010101010101u;
 
-/// The lowest two bits of each byte, side by side.
+/// Returns the lowest two bits of each byte, packed.
 std::uint16_t packedPairs(std::uint64_t bytes) {
   std::uint64_t x = (bytes | bytes >> 6) & 0x000f000f000f000fu;
   x = (x | x >> 12) & 0x000000ff000000ffu;
@@ -31,7 +31,7 @@ std::uint64_t sumOfBytes(std::uint64_t bytes) {
   return ((bytes & kEven) + (bytes >> 8 & kEven)) * 0x0001000100010001u >> 48;
 }
 
-/// The highest bit of each byte that is kManyCount or more.
+/// Returns the highest bit of each byte that is kManyCount or more.
 std::uint64_t whereMany(std::uint64_t bytes) {
   return (((bytes & 0x7f * kEveryByte) + (0x80 - kManyCount) * kEveryByte) | bytes) & 0x80 * kEveryByte;
 }
@@ -71,7 +71,7 @@ void ParticleOrder::sort(std::span<const std::uint32_t> keys, std::span<const st
     sortByDigits(keys, items, cell_count);
 }
 
-/// False: a cell holds more than a byte can count.
+/// False: a cell holds more particles than a byte can count.
 bool ParticleOrder::sortByCounting(std::span<const std::uint32_t> keys, std::span<const std::uint64_t> items,
                                    std::uint64_t cell_count) {
   static_assert(std::endian::native == std::endian::little, "byte e of a cell's word is its eighth e");
@@ -120,7 +120,7 @@ bool ParticleOrder::sortByCounting(std::span<const std::uint32_t> keys, std::spa
   }
   std::uint64_t* sorted = items_.data();
   for (std::size_t i = 0; i < keys.size(); ++i) sorted[begins_[keys[i] >> 3] + bytes[keys[i]] + ranks[i]] = items[i];
-  // The next frame finds zeros.
+  // Clear the counts for the next frame.
   std::uint32_t used = 0;
   for (const OccupiedCell& cell : cells_) {
     used += cell.gap;
@@ -134,7 +134,7 @@ void ParticleOrder::sortByDigits(std::span<const std::uint32_t> keys, std::span<
   entries_.resize(keys.size());
   scratch_.resize(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) entries_[i] = {keys[i], static_cast<std::uint32_t>(i)};
-  // From the lowest digit to the highest; each pass keeps the order of equal digits.
+  // Radix sort from the lowest digit to the highest; each pass is stable.
   for (int shift = 0; (cell_count * 8 - 1) >> shift != 0; shift += kRadixBits) {
     std::array<std::uint32_t, 1 << kRadixBits> begin{};
     const auto digit = [shift](const Entry& e) { return e.key >> shift & ((1u << kRadixBits) - 1); };

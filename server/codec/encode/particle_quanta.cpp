@@ -47,8 +47,8 @@ void quantize(const std::uint32_t* words, std::size_t count, const Steps& s, std
 #if SPINDRIFT_HAS_VECTORS
 #define SPINDRIFT_AVX2 __attribute__((target("avx2"), always_inline)) inline
 
-/// Eight particles' words of one kind, from the 24 words of all kinds. `Kind` is the number of the first; the words of
-/// a kind stand in lanes of their own in each of the three vectors.
+/// Extracts the words of one kind for eight particles from the 24 words of all kinds. `Kind`: index of the kind's first
+/// word. The words of a kind are in different lanes of each of the three vectors.
 template <int Kind>
 SPINDRIFT_AVX2 __m256i wordsOf(__m256i v0, __m256i v1, __m256i v2) {
   constexpr int kEvery3[] = {0b01001001, 0b10010010, 0b00100100};  // lanes 0, 3, 6; 1, 4, 7; 2, 5
@@ -57,19 +57,19 @@ SPINDRIFT_AVX2 __m256i wordsOf(__m256i v0, __m256i v1, __m256i v2) {
   constexpr auto at = [](int particle) { return (3 * particle + Kind) % 8; };
   return _mm256_permutevar8x32_epi32(mixed, _mm256_setr_epi32(at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)));
 }
-/// 16 bits as a number, times a scale, at most `last`.
+/// Converts 16 bits to a number, times a scale, at most `last`.
 SPINDRIFT_AVX2 __m256i placesOf(__m256i bits, float scale, std::int32_t last) {
   const __m256 scaled = _mm256_mul_ps(_mm256_cvtepi32_ps(bits), _mm256_set1_ps(scale));
   return _mm256_min_epi32(_mm256_cvttps_epi32(scaled), _mm256_set1_epi32(last));
 }
-/// From a signed byte in the highest bits.
+/// Reads a signed byte in the highest bits.
 SPINDRIFT_AVX2 __m256i velocitiesOf(__m256i words, __m256i speed) {
   const __m256i scaled = _mm256_mullo_epi32(_mm256_srai_epi32(words, 24), speed);
   const __m256i rounded = _mm256_srai_epi32(_mm256_add_epi32(scaled, _mm256_set1_epi32(1 << 15)), 16);
   return _mm256_and_si256(rounded, _mm256_set1_epi32(0xff));
 }
-/// From the byte at `Shift`, in 0 .. factor. Products stay below 2^16 up to the last one, of which the high half
-/// counts.
+/// Scales the byte at `Shift` to 0 .. factor. Products stay below 2^16 except the last one, whose high half is the
+/// result.
 template <int Shift>
 SPINDRIFT_AVX2 __m256i levelsOf(__m256i words, int factor) {
   const __m256i byte = _mm256_and_si256(_mm256_srli_epi32(words, Shift), _mm256_set1_epi32(0xff));
@@ -77,7 +77,7 @@ SPINDRIFT_AVX2 __m256i levelsOf(__m256i words, int factor) {
   return _mm256_mulhi_epu16(scaled, _mm256_set1_epi32(257));
 }
 
-/// The same, eight particles at a time.
+/// The same as the plain loop, eight particles at a time.
 __attribute__((target("avx2"))) void quantizeEights(const std::uint32_t* words, std::size_t count, const Steps& s,
                                                     std::uint32_t* keys, std::uint64_t* items) {
   const __m256i low_16 = _mm256_set1_epi32(0xffff), one = _mm256_set1_epi32(1);
@@ -115,7 +115,7 @@ __attribute__((target("avx2"))) void quantizeEights(const std::uint32_t* words, 
     const __m256i foam = _mm256_slli_epi32(levelsOf<16>(c, 3), 24), tint = _mm256_slli_epi32(levelsOf<8>(c, 7), 26);
     const __m256i attributes = _mm256_or_si256(_mm256_or_si256(_mm256_or_si256(velocity_x, velocity_y), velocity_z),
                                                _mm256_or_si256(foam, tint));
-    // Particles 0, 1, 4, 5 and 2, 3, 6, 7.
+    // Order of the lanes: particles 0, 1, 4, 5 and 2, 3, 6, 7.
     const __m256i first = _mm256_unpacklo_epi32(offsets, attributes),
                   second = _mm256_unpackhi_epi32(offsets, attributes);
     auto* to = reinterpret_cast<__m256i*>(items + i);

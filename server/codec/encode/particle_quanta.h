@@ -1,4 +1,4 @@
-// Particles as the GPU packed them -> what the coder sorts and writes.
+// Converts particles as packed by the GPU to the keys and items that the coder sorts and writes.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace spindrift::codec {
 
-/// An item's parts: the low bits of x, z, y from the lowest on; velocity along x, y, z, a signed byte each, then two
-/// bits of foam and three of tint.
+/// An item holds, from the lowest bit: the low bits of x, z, y; velocity along x, y, z, one signed byte each; two bits
+/// of foam, three of tint.
 inline std::uint32_t placeBitsOf(std::uint64_t item) {
   return static_cast<std::uint32_t>(item);
 }
@@ -17,7 +17,7 @@ inline std::uint32_t attributesOf(std::uint64_t item) {
   return static_cast<std::uint32_t>(item >> 32);
 }
 
-/// Three words a particle; keys[i] = 8 * cell + eighth (x, z, y from the highest bit on).
+/// Three words per particle; keys[i] = 8 * cell + eighth (x, z, y from the highest bit on).
 void quantizeParticles(std::span<const std::uint32_t> words, const ParticleScale& scale, const CellGrid& grid,
                        std::span<std::uint32_t> keys, std::span<std::uint64_t> items);
 

@@ -1,6 +1,5 @@
-// Planes in a row, each predicted from the two before it. A plane can be had in two forms: one that
-// continues the row, and one that stands by itself and brings the plane before it along, so that a reader can go on
-// from there.
+// Encodes a sequence of planes, each predicted from the two before it. A plane has two forms: a delta, and a keyframe,
+// which contains the previous plane as well, so that a client can continue from it.
 #pragma once
 
 #include <optional>
@@ -15,18 +14,18 @@ class PlaneChainEncoder {
  public:
   struct Form {
     SurfaceWeights weights;
-    SurfaceWeights earlier_weights;  ///< of a keyframe: of the plane before it
+    SurfaceWeights earlier_weights;  ///< keyframe only: of the previous plane
     core::Bytes payload;
   };
   struct Forms {
-    std::optional<Form> delta;     ///< absent at the beginning of a row
-    std::optional<Form> keyframe;  ///< at the beginning of a row, or when it was wanted
+    std::optional<Form> delta;     ///< absent for the first plane of a sequence
+    std::optional<Form> keyframe;  ///< for the first plane of a sequence, or when wanted
   };
-  /// Where the next plane's samples go.
+  /// The plane that the caller fills with the next samples.
   SurfacePlane& next() { return next_; }
-  /// The forms of the plane that was put there. Another resolution begins a new row.
+  /// Encodes the plane in next(). Another resolution begins a new sequence.
   Forms encode(bool wants_keyframe);
-  /// The next plane begins a new row.
+  /// The next plane begins a new sequence.
   void restart() { before_.resize(0); }
 
  private:

@@ -1,5 +1,5 @@
-// Most of an encoder's time on a surface is spent here: 25 samples for each one. Where the machine has AVX2, they are
-// taken in pairs of 16-bit numbers, sixteen predictions at a time.
+// The encoder spends most of its time on a surface here: each prediction reads 25 samples. With AVX2 it multiplies
+// pairs of 16-bit samples and computes sixteen predictions at a time.
 #include "predicted_row.h"
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace {
 using W = SurfaceWeights;
 constexpr std::int32_t kHalf = 1 << (kWeightBits - 1);
 
-/// The rows around sample 0 of row z of the frames before, and their weights. Where there is none: rows of another
-/// plane, with weights 0.
+/// Pointers to sample 0 of row z and its neighbour rows in the two previous frames, and the weights. A missing frame is
+/// replaced by another plane with the weights 0.
 struct Rows {
   const std::int16_t *b0, *bn, *bs, *bnn, *bss;
   const std::int16_t *e0, *en, *es;
@@ -72,7 +72,7 @@ bool fits16Bits(const SurfaceWeights& weights) {
 
 #define SPINDRIFT_AVX2 __attribute__((target("avx2"), always_inline)) inline
 
-/// Sixteen sums of 32 bits, the low and the high fours of eight each.
+/// Sixteen sums of 32 bits: the low and the high four of each eight.
 struct Sums {
   __m256i low, high;
 };
@@ -81,8 +81,8 @@ SPINDRIFT_AVX2 __m256i pairOf(std::int32_t a, std::int32_t b) {
   return _mm256_set1_epi32(
       static_cast<std::int32_t>(static_cast<std::uint32_t>(a & 0xffff) | static_cast<std::uint32_t>(b) << 16));
 }
-/// Adds weight a times p[0..15] and weight b times q[0..15]. The product of two pairs wraps around at 32 bits as sums
-/// do.
+/// Adds weight a times p[0..15] and weight b times q[0..15]. Like the sums, the sum of two products wraps around at 32
+/// bits.
 SPINDRIFT_AVX2 void add(Sums& sums, __m256i a, __m256i b, __m256i weights) {
   sums.low = _mm256_add_epi32(sums.low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a, b), weights));
   sums.high = _mm256_add_epi32(sums.high, _mm256_madd_epi16(_mm256_unpackhi_epi16(a, b), weights));
@@ -93,12 +93,12 @@ SPINDRIFT_AVX2 __m256i load(const std::int16_t* p) {
 SPINDRIFT_AVX2 void add(Sums& sums, const std::int16_t* p, const std::int16_t* q, __m256i weights) {
   add(sums, load(p), load(q), weights);
 }
-/// The low 16 bits of sum >> kWeightBits, with their sign.
+/// Returns the low 16 bits of sum >> kWeightBits, sign-extended.
 SPINDRIFT_AVX2 __m256i shifted(__m256i sum) {
   return _mm256_srai_epi32(_mm256_slli_epi32(sum, 16 - kWeightBits), 16);
 }
 
-/// Residuals from sample 1 on, at least 16 of them. Not for row 0, where not all neighbours are known.
+/// Computes the residuals from sample 1 on, at least 16. Not for row 0, where not all neighbours are known.
 __attribute__((target("avx2"))) void residualsInSixteens(const std::int16_t* here, const std::int16_t* above,
                                                          const Rows& rows, std::span<std::int16_t> out) {
   const auto [b0, bn, bs, bnn, bss, e0, en, es, weights] = rows;
@@ -111,7 +111,7 @@ __attribute__((target("avx2"))) void residualsInSixteens(const std::int16_t* her
   const __m256i e_diagonal = pairOf(w[W::kEarlierDiagonal], w[W::kEarlierDiagonal]);
   const __m256i known = pairOf(w[W::kWest], w[W::kNorth]);
   const __m256i north_west = pairOf(w[W::kNorthWest], 0);
-  // The last sixteen overlap those before them.
+  // The last sixteen overlap the sixteen before them.
   const std::size_t last = out.size() - 16;
   for (std::size_t x = 1;; x = std::min(x + 16, last)) {
     Sums sums{_mm256_set1_epi32(kHalf), _mm256_set1_epi32(kHalf)};
@@ -139,7 +139,7 @@ SPINDRIFT_AVX2 __m256i sumOf(const std::int16_t* a, const std::int16_t* b, const
                              const std::int16_t* d) {
   return _mm256_add_epi16(_mm256_add_epi16(load(a), load(b)), _mm256_add_epi16(load(c), load(d)));
 }
-/// The same where sums of four samples fit into 16 bits: neighbours are added before they are weighed.
+/// The same if sums of four samples fit into 16 bits: adds the neighbours before it multiplies.
 __attribute__((target("avx2"))) void smallResidualsInSixteens(const std::int16_t* here, const std::int16_t* above,
                                                               const Rows& rows, std::span<std::int16_t> out) {
   const auto [b0, bn, bs, bnn, bss, e0, en, es, weights] = rows;
@@ -149,7 +149,7 @@ __attribute__((target("avx2"))) void smallResidualsInSixteens(const std::int16_t
   const __m256i earlier_nearest = pairOf(w[W::kEarlier], w[W::kEarlierNearest]);
   const __m256i diagonal_corner = pairOf(w[W::kEarlierDiagonal], w[W::kNorthWest]);
   const __m256i west_north = pairOf(w[W::kWest], w[W::kNorth]);
-  // The last sixteen overlap those before them.
+  // The last sixteen overlap the sixteen before them.
   const std::size_t last = out.size() - 16;
   for (std::size_t x = 1;; x = std::min(x + 16, last)) {
     Sums sums{_mm256_set1_epi32(kHalf), _mm256_set1_epi32(kHalf)};

@@ -1,4 +1,4 @@
-// A row of a surface's prediction.
+// Predicts one row of a surface.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace spindrift::codec {
 
-/// What the prediction leaves over of row z of a plane that is known already. `sums` is for its own use.
+/// Computes the residuals of row z of a known plane. `sums` is scratch memory.
 void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                     std::size_t z, std::span<std::int32_t> sums, std::span<std::int16_t> out);
 
-/// Addition and multiplication that wrap around.
+/// Multiplication and addition that wrap around.
 inline std::int32_t wrappingTimes(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) * static_cast<std::uint32_t>(b));
 }
@@ -20,7 +20,7 @@ inline std::int32_t wrappingSum(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }
 
-/// Neighbours that are known already.
+/// Neighbours in this frame that are already decoded.
 struct KnownSamples {
   std::int32_t west, north, north_west;
 };

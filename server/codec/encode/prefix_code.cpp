@@ -13,11 +13,11 @@ PrefixWriter::PrefixWriter(std::span<const std::uint8_t> lengths) {
   assert(is_complete);
 }
 
-// Huffman's code, two queues instead of a heap; lengths above the limit are cut, and what that costs in code space is
-// taken from the longest codes below it.
+// Huffman's algorithm with two queues instead of a heap. Lengths above the limit are cut; the longest codes below the
+// limit are lengthened to pay for it.
 void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> lengths) {
   assert(counts.size() <= kMaxSymbolCount && lengths.size() == counts.size());
-  std::array<std::uint64_t, kMaxSymbolCount> order;  // count << 8 | symbol, rising
+  std::array<std::uint64_t, kMaxSymbolCount> order;  // count << 8 | symbol, ascending
   std::size_t n = 0;
   for (std::size_t symbol = 0; symbol < counts.size(); ++symbol) {
     lengths[symbol] = 0;
@@ -25,7 +25,7 @@ void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> l
   }
   assert(n >= 2);
   std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
-  // Nodes 0..n-1 are the symbols, the others in the order of their making.
+  // Nodes 0..n-1 are the symbols, the others follow in order of creation.
   std::array<std::uint64_t, 2 * kMaxSymbolCount> weight;
   std::array<std::size_t, 2 * kMaxSymbolCount> parent;
   for (std::size_t i = 0; i < n; ++i) weight[i] = order[i] >> 8;
@@ -42,7 +42,7 @@ void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> l
   std::array<std::uint32_t, 2 * kMaxSymbolCount> depth;
   depth[2 * n - 2] = 0;
   for (std::size_t i = 2 * n - 2; i-- > 0;) depth[i] = depth[parent[i]] + 1;
-  // Parts of 2^11 that the codes take up; the symbols are in rising order of counts, so in falling one of lengths.
+  // Code space in use, in units of 2^-11. Symbols are in ascending order of counts, so in descending order of lengths.
   std::uint32_t used = 0;
   for (std::size_t i = 0; i < n; ++i) {
     depth[i] = std::min(depth[i], kMaxCodeBits);

@@ -1,4 +1,4 @@
-// Prefix codes of at most 11 bits to write with, canonical: the lengths say everything.
+// Encoder of prefix codes of at most 11 bits. Codes are canonical: the lengths define them.
 #pragma once
 
 #include <array>
@@ -10,14 +10,15 @@
 
 namespace spindrift::codec {
 
-/// A code to write with.
+/// A code for writing.
 class PrefixWriter {
  public:
-  /// lengths[s]: bits of symbol s, 0 where it does not occur; at most kMaxSymbolCount. They have to be complete.
+  /// lengths[s]: bits of symbol s, 0 if it does not occur; at most kMaxSymbolCount. The code must be complete.
   explicit PrefixWriter(std::span<const std::uint8_t> lengths);
 
   void put(std::size_t symbol, BitCursor& out) const { out.put(words_[symbol] & 0xffffu, words_[symbol] >> 16); }
-  /// One behind the other, 44 bits at most. Joined in pairs, so that only one step of three waits for the bits before.
+  /// Writes four symbols, at most 44 bits. They are joined in pairs, so that only one of three steps depends on the
+  /// pending bits.
   void putFour(std::size_t a, std::size_t b, std::size_t c, std::size_t d, BitCursor& out) const {
     const std::uint32_t wa = words_[a], wb = words_[b], wc = words_[c], wd = words_[d];
     const std::uint64_t ab = (wa & 0xffffu) | std::uint64_t{wb & 0xffffu} << (wa >> 16);
@@ -30,11 +31,10 @@ class PrefixWriter {
   std::array<std::uint32_t, kMaxSymbolCount> words_{};  ///< code | length << 16
 };
 
-/// The lengths that fit the counts, at most kMaxSymbolCount; at least two of them above 0.
+/// Computes lengths for the counts, at most kMaxSymbolCount; at least two counts must be above 0.
 void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> lengths);
 
-/// A code for one frame, sent along with it: fitted to the counts of its symbols. Symbols 0 and 1 are in it in any
-/// case.
+/// Writes a code for one frame, fitted to the counts of its symbols. It always contains symbols 0 and 1.
 PrefixWriter putFittedCode(std::span<const std::uint32_t> counts, BitWriter& out);
 
 }  // namespace spindrift::codec

@@ -1,5 +1,6 @@
-// What loops may count on. Where a loop gains from it, its function is there twice, written once: the body always
-// inlined, one caller for any processor and one (SPINDRIFT_VECTORS) for those that usesVectors() is true on.
+// Processor features for hot loops. Where a loop gains from AVX2, its function exists twice from one source: an always
+// inlined body, with one caller for any processor and one (SPINDRIFT_VECTORS) for processors where usesVectors() is
+// true.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +16,17 @@
 
 namespace spindrift::codec {
 
-/// Asks for memory that a loop comes to soon: frames lie far away, and processors look ahead only to the end of a page.
+/// Prefetches memory for a later iteration: frames are not in the cache, and hardware prefetching stops at the end of a
+/// page.
 SPINDRIFT_INLINE void fetchAhead(const void* at) {
   constexpr std::ptrdiff_t kAheadBytes = 2048;
   __builtin_prefetch(static_cast<const char*>(at) + kAheadBytes);
 }
 
-/// Whether loops take AVX2 and BMI2: where the processor has them, unless they were switched off. Both ways give the
-/// same bytes.
+/// Returns whether loops use AVX2 and BMI2: if the processor has them and they were not switched off. The bytes are the
+/// same either way.
 bool usesVectors();
-/// false: plain loops only, also where the processor has more. For tests and measurements; of the whole process.
+/// false: only plain loops, even if the processor has more. For tests and measurements; applies to the whole process.
 void useVectors(bool wanted);
 
 }  // namespace spindrift::codec

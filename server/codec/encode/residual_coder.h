@@ -1,9 +1,9 @@
-// What prediction left over, in groups of up to 64 neighbours: a group's class says how large its residuals are, and
-// each class has a fixed code. Nothing is learned on the way, so groups of any frame cost the same work.
+// Codes residuals in groups of up to 64 neighbours. The class of a group gives the size of its residuals, and each
+// class has a fixed code. Nothing is adapted while coding, so the cost per group is the same in every frame.
 //
-// Classes: 0, all are zero and nothing follows; c = 1..4, c of them are 1 or -1 and the rest 0, and their places
-// follow; from 5 on mean magnitude about 2^((c - 13) / 2): fours together up to 9, pairs up to 12, one by one from 13
-// on, and from 18 on the lowest (c - 16) / 2 bits of each stand raw. Whatever is larger than a code has values for
+// Classes: 0: all residuals are zero, nothing follows. c = 1..4: c residuals are 1 or -1, the rest 0; their places
+// follow. From 5 on the mean magnitude is about 2^((c - 13) / 2): residuals are coded in fours up to 9, in pairs up to
+// 12, singly from 13 on; from 18 on the lowest (c - 16) / 2 bits of each are raw. A value larger than its code allows
 // follows an escape.
 #pragma once
 
@@ -18,15 +18,15 @@ struct GroupWriter;
 
 class ResidualEncoder {
  public:
-  /// To write up to so many groups with; end() takes note of them.
+  /// Returns a writer for up to group_count groups; hand it back with end().
   GroupWriter begin(std::size_t group_count);
   void end(const GroupWriter& writer);
-  /// `left` and `above`: the classes of the groups before it in two directions, 0 where there is none; along a line
-  /// both are the one before. Returns the group's class.
+  /// Writes one group. `left` and `above`: the classes of the neighbouring groups, 0 if there is none; along a line
+  /// both are the class of the group before. Returns the group's class.
   std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left, std::uint32_t above);
-  /// For what stands beside the groups.
+  /// For bits outside the groups.
   BitWriter& bits() { return bits_; }
-  /// Appends everything, and the sum of all residuals, 16 bits of it. Empty afterwards.
+  /// Appends everything, with 16 bits of the sum of all residuals. The coder is empty afterwards.
   void finish(core::Bytes& out);
 
  private:

@@ -7,10 +7,10 @@ namespace spindrift::codec {
 namespace {
 
 using W = SurfaceWeights;
-/// Below what 16 bits hold, so that a prediction can work on pairs of 16-bit numbers.
+/// Weights stay within 16 bits, so that a prediction can use pairs of 16-bit numbers.
 constexpr double kMaxWeight = 32000.0;
 
-/// Solves A x = b, A symmetric (upper half given) and made positive definite by a little on its diagonal.
+/// Solves A x = b for a symmetric A (upper half given). A small term on the diagonal makes A positive definite.
 template <std::size_t N>
 std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<double, N> b) {
   for (std::size_t i = 0; i < N; ++i) {
@@ -35,14 +35,14 @@ std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<d
 
 constexpr std::size_t kCount = W::kTermCount;
 constexpr std::size_t kWanted = kCount;
-/// Samples that are looked at side by side, and how often in a row; rows likewise.
+/// Samples per run, runs per row, and number of rows that the fit reads.
 constexpr std::size_t kRun = 16;
 constexpr std::size_t kRunsPerRow = 4;
 constexpr std::size_t kRows = 64;
 
-/// The terms of a run and, last, its samples; 0 beyond the plane.
+/// The terms of a run of samples and, last, the samples themselves; 0 beyond the plane.
 using Run = std::array<std::array<float, kRun>, kCount + 1>;
-/// Sums over a row's runs of products of terms, four lanes each.
+/// Sums of the products of terms over the runs of a row, in four lanes each.
 using RowSums = std::array<std::array<std::array<float, 4>, kCount + 1>, kCount>;
 
 struct AroundRows {
@@ -61,7 +61,7 @@ void putTermsAround(const AroundRows& rows, std::ptrdiff_t count, std::size_t fi
   }
 }
 
-/// From sample (x, z) on, x and z at least 1.
+/// Computes the terms of a run that starts at sample (x, z), x and z at least 1.
 void putTerms(const SurfacePlane& plane, const SurfaceHistory& history, std::ptrdiff_t x, std::ptrdiff_t z, Run& out) {
   const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kRun, static_cast<std::ptrdiff_t>(plane.resolution()) - x);
   if (history.before != nullptr) {
@@ -108,7 +108,7 @@ SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& histo
   Run run{};
   for (std::size_t z = 1, line = 0; z < n; z += row_stride, ++line) {
     RowSums sums{};
-    // Other columns in each row, lest a pattern of the grid's spacing be all that is seen.
+    // Start at another column in each row, so that the samples do not all fall on one regular pattern.
     for (std::size_t x = 1 + line * 37 % (run_stride - kRun + 1); x < n; x += run_stride) {
       putTerms(plane, history, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(z), run);
       addProducts(run, sums);
@@ -123,7 +123,8 @@ SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& histo
     }
   }
   const std::array<double, kCount> fitted = solve(products, right);
-  // How many samples each weight counts for: a level surface stays level only if their sum survives the rounding.
+  // Number of samples that each weight multiplies: a level surface stays level only if the weighted sum of the weights
+  // survives rounding.
   constexpr std::array<int, kCount> kSamples = {1, 4, 4, 4, 1, 4, 4, 1, 1, 1};
   SurfaceWeights weights;
   double sum = 0.0;

@@ -5,8 +5,8 @@
 
 namespace spindrift::codec {
 
-/// The weights that fit some 4,096 samples of the plane best, spread over all of it. Each weight fits into 16 bits;
-/// those of frames that `history` lacks are 0.
+/// Returns the weights that fit best for some 4,096 samples, spread over the whole plane. Each weight fits into 16
+/// bits; those of frames that `history` lacks are 0.
 SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history);
 
 }  // namespace spindrift::codec

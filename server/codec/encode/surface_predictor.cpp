@@ -18,9 +18,9 @@ class TileBand {
   [[nodiscard]] std::span<const std::int16_t> rows(std::size_t count) const {
     return std::span(residuals_).first(count * n_);
   }
-  /// Of the tiles coded last in each column.
+  /// Class of the newest tile in each column.
   [[nodiscard]] std::span<std::uint32_t> classes() { return classes_; }
-  /// Sums of one row, for the function that predicts it.
+  /// Scratch memory of the prediction for one row.
   [[nodiscard]] std::span<std::int32_t> sums() { return sums_; }
   /// Calls code(x, columns, count, left, above) for each tile; it returns the tile's class.
   template <typename Code>
@@ -39,7 +39,7 @@ class TileBand {
   std::vector<std::int32_t> sums_;
 };
 
-/// Calls code(band, top, rows) for each eight rows.
+/// Calls code(band, top, rows) for each band of eight rows.
 template <typename Code>
 void forEachBand(std::size_t n, Code code) {
   TileBand band(n);
@@ -57,7 +57,7 @@ void SurfacePlane::resize(std::size_t resolution_count) {
 void SurfacePlane::assign(std::span<const std::int16_t> samples) {
   assert(samples.size() == n_ * n_);
   constexpr std::size_t kLine = 64 / sizeof(std::int16_t);
-  int bits = 0;  // of all samples, those below 0 inverted
+  int bits = 0;  // all samples combined by or, negative ones inverted
   for (std::size_t z = 0; z < n_; ++z) {
     const std::int16_t* from = samples.data() + z * n_;
     std::int16_t* to = row(static_cast<std::ptrdiff_t>(z));
@@ -94,7 +94,7 @@ void SurfacePlane::fillBorder() {
 
 namespace {
 
-/// The tiles of a band; classes[i]: of the tile above, afterwards of tile i.
+/// Writes the tiles of a band; classes[i] is the class of the tile above, afterwards of tile i.
 SPINDRIFT_INLINE GroupWriter putTiles(std::span<const std::int16_t> residuals, std::size_t n,
                                       std::span<std::uint32_t> classes, GroupWriter writer) {
   const std::size_t rows = residuals.size() / n;

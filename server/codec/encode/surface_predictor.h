@@ -1,7 +1,7 @@
-// A heightfield from what is known of it: its two frames before and the samples already coded of this one. The wave
-// equation says how: eta(t + dt) depends on eta(t) around the place and on eta(t - dt). The weights are not derived
-// from the scene but fitted to each frame (fitWeights), which takes in depth, damping, the frame interval and the noise
-// of the quanta. Whole numbers only, so that every reader comes to the same.
+// Predicts a heightfield from its two previous frames and from the samples of this frame that are already coded. The
+// form follows the wave equation: eta(t + dt) depends on eta(t) around the place and on eta(t - dt). The weights are
+// fitted to each frame (fitWeights), which includes depth, damping, the frame interval and the quantization noise.
+// Integers only, so that every client computes the same result.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,25 @@
 
 namespace spindrift::codec {
 
-/// Samples of a square grid in quanta, row by row, with a border of two that repeats the outermost ones.
+/// Samples of a square grid in quanta, row by row, with a border of two that repeats the outermost samples.
 class SurfacePlane {
  public:
   static constexpr std::size_t kBorder = 2;
 
-  /// Another size; the samples are anything until they are written.
+  /// Changes the size; the samples are undefined until they are written.
   void resize(std::size_t resolution_count);
 
   [[nodiscard]] std::size_t resolution() const { return n_; }
   [[nodiscard]] std::size_t stride() const { return n_ + 2 * kBorder; }
-  /// Row z from its sample 0 on; samples -2 to n + 1 are there, rows -2 to n + 1 likewise.
+  /// Pointer to sample 0 of row z; samples and rows from -2 to n + 1 are valid.
   [[nodiscard]] std::int16_t* row(std::ptrdiff_t z) { return samples_.data() + offsetOf(z); }
   [[nodiscard]] const std::int16_t* row(std::ptrdiff_t z) const { return samples_.data() + offsetOf(z); }
-  /// n * n samples into the plane, borders as well.
+  /// Copies n * n samples into the plane and fills the border.
   void assign(std::span<const std::int16_t> samples);
   void assign(std::span<const std::uint8_t> samples);
-  /// Writes the border from the samples inside.
+  /// Fills the border from the samples inside.
   void fillBorder();
-  /// Whether sums of four samples fit into 16 bits for sure: known of planes that were assigned.
+  /// Returns true if sums of four samples surely fit into 16 bits; known only after assign().
   [[nodiscard]] bool isSmall() const { return is_small_; }
 
  private:
@@ -44,7 +44,7 @@ class SurfacePlane {
   std::vector<std::int16_t> samples_;
 };
 
-/// The frames that a plane is predicted from. Null where there is none: its weights are 0 then.
+/// The frames that a plane is predicted from. Null if there is none; its weights are then 0.
 struct SurfaceHistory {
   const SurfacePlane* before = nullptr;
   const SurfacePlane* earlier = nullptr;

@@ -1,5 +1,5 @@
-// What a prefix code's lengths say: codes are numbered by length, then symbol, and stand in the stream with their
-// highest bit first, as in deflate (RFC 1951, 3.2.2). Shared by both directions.
+// Canonical prefix codes from their lengths: codes are numbered by length, then by symbol, and written highest bit
+// first, as in deflate (RFC 1951, 3.2.2). Shared by encoder and decoder.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@ namespace spindrift::codec {
 
 inline constexpr std::uint32_t kMaxCodeBits = 11;
 inline constexpr std::size_t kMaxSymbolCount = 256;
-/// Bits for the length of one symbol's code, where the payload carries the code.
+/// Bits per length of a symbol's code, where the payload contains the code.
 inline constexpr std::uint32_t kLengthBits = 4;
 
-/// Calls use(symbol, code, length) for each symbol of a code, the code with its highest bit lowest. False: the lengths
-/// belong to no complete code.
+/// Calls use(symbol, code, length) for each symbol of a code; `code` is bit-reversed. False: the lengths form no
+/// complete code.
 template <typename Use>
 constexpr bool forEachCode(std::span<const std::uint8_t> lengths, Use use) {
   std::array<std::uint32_t, kMaxCodeBits + 1> count_of{};

@@ -1,4 +1,4 @@
-// How much each known sample counts for in a prediction. Shared by both directions.
+// Weights of the known samples in a prediction. Shared by encoder and decoder.
 #pragma once
 
 #include <array>
@@ -7,9 +7,9 @@
 
 namespace spindrift::codec {
 
-/// Weights in units of 1 / 4096, of sums over: the place one frame before (kBefore), its 4 nearest, its 4 diagonal
-/// neighbours, the 4 two cells away along the axes; the place two frames before and its 4 nearest and 4 diagonal
-/// neighbours; in this frame the neighbours at -x, at -z, and at both.
+/// Weights in units of 1 / 4096. Each multiplies a sum over: the same place one frame before (kBefore), its 4 nearest,
+/// its 4 diagonal neighbours, the 4 samples two cells away along the axes; the same place two frames before and its 4
+/// nearest and 4 diagonal neighbours; in this frame the neighbours at -x, at -z, and at both.
 struct SurfaceWeights {
   enum Term : std::size_t {
     kBefore,
@@ -27,7 +27,7 @@ struct SurfaceWeights {
   std::array<std::int32_t, kTermCount> of{};
 };
 inline constexpr int kWeightBits = 12;
-/// A plane is coded in tiles of so many samples along each side.
+/// Number of samples along each side of a tile.
 inline constexpr std::size_t kTile = 8;
 
 }  // namespace spindrift::codec

@@ -1,6 +1,6 @@
-// The readers of decode/ as a WebAssembly module for the page's worker. An instance reads one layer: its memory holds,
-// behind the module's own, what that layer needs and nothing else. Every function takes and gives plain numbers; places
-// in memory hold until the next call that prepares.
+// The decoders of decode/ as a WebAssembly module for the page's worker. An instance decodes one layer: after the
+// module's own memory comes what that layer needs, nothing else. All functions take and return plain numbers; addresses
+// are valid until the next prepare call.
 #include <algorithm>
 
 #include "decode/checksum.h"
@@ -9,7 +9,7 @@
 
 #define SPINDRIFT_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
-/// Where the module's own memory ends; from the linker.
+/// End of the module's own memory, set by the linker.
 extern "C" std::uint8_t __heap_base;
 
 namespace spindrift::codec {
@@ -33,8 +33,8 @@ std::uint8_t* heapBegin() {
   return reinterpret_cast<std::uint8_t*>(aligned(reinterpret_cast<std::size_t>(&__heap_base)));
 }
 
-/// `before_bytes` for the layer and room for a payload behind them. Null: the payload is too long, or there is no more
-/// memory.
+/// Makes room for `before_bytes` of the layer and for a payload after them. Null: the payload is too long, or there is
+/// no memory left.
 std::uint8_t* makeRoom(std::size_t before_bytes, std::uint32_t byte_count) {
   if (byte_count > BitSource::kMaxBytes) return nullptr;
   payload = heapBegin() + aligned(before_bytes);
@@ -52,13 +52,13 @@ std::uint8_t* makeRoom(std::size_t before_bytes, std::uint32_t byte_count) {
 
 using namespace spindrift::codec;
 
-/// Room for the payload of so many particles. 0: there is none.
+/// Returns room for the payload of `count` particles. 0: there is none.
 SPINDRIFT_EXPORT(prepareParticles) std::uint8_t* prepareParticles(std::uint32_t count, std::uint32_t byte_count) {
   words = heapBegin();
   if (count > kParticleReadMaxCount) return nullptr;
   return makeRoom(count * kParticleWordBytes + kParticleSlackBytes, byte_count);
 }
-/// Where kParticleWordBytes a particle lie. 0: the payload is damaged.
+/// Returns the address of the particles, kParticleWordBytes each. 0: the payload is damaged.
 SPINDRIFT_EXPORT(readParticles)
 std::uint8_t* readPreparedParticles(std::uint32_t count, std::uint32_t cells_x, std::uint32_t cells_y,
                                     std::uint32_t cells_z, std::uint32_t offset_bits) {
@@ -66,7 +66,7 @@ std::uint8_t* readPreparedParticles(std::uint32_t count, std::uint32_t cells_x, 
                                                                                                          : nullptr;
 }
 
-/// Room for the payload of a plane of so many samples a side. 0: there is none. Another size forgets the row.
+/// Returns room for the payload of a plane of n x n samples. 0: there is none. Another size forgets the planes.
 SPINDRIFT_EXPORT(preparePlane) std::uint8_t* preparePlane(std::uint32_t n, std::uint32_t byte_count) {
   if (n < 1 || n > PlaneRow::kMaxResolutionCount) return nullptr;
   const std::size_t row_bytes = aligned(PlaneRow::bytesFor(n));
@@ -79,21 +79,21 @@ SPINDRIFT_EXPORT(preparePlane) std::uint8_t* preparePlane(std::uint32_t n, std::
   }
   return room;
 }
-/// Where ten weights go, then ten of the earlier plane.
+/// Address where the caller writes ten weights, then the ten of the earlier plane.
 SPINDRIFT_EXPORT(weights) std::int32_t* weightsRoom() {
   return weights.of.data();
 }
 SPINDRIFT_EXPORT(earlierWeights) std::int32_t* earlierWeightsRoom() {
   return earlier_weights.of.data();
 }
-/// A plane that stands by itself, or one that continues the row. 0: the payload is damaged or there is no row.
+/// Decodes a keyframe or a delta. 0: the payload is damaged, or a delta has no plane before it.
 SPINDRIFT_EXPORT(readKeyframePlane) bool readKeyframePlane() {
   return row.readKeyframe(payload, payload_bytes, weights, earlier_weights);
 }
 SPINDRIFT_EXPORT(readDeltaPlane) bool readDeltaPlane() {
   return row.readDelta(payload, payload_bytes, weights);
 }
-/// The n x n samples of the plane read last, row by row: 16 bits each.
+/// The n x n samples of the newest plane, row by row, 16 bits each.
 SPINDRIFT_EXPORT(surfaceSamples) std::int16_t* surfaceSamples() {
   auto* const out = reinterpret_cast<std::int16_t*>(plain_samples);
   const std::size_t n = row.resolution();
@@ -110,7 +110,7 @@ SPINDRIFT_EXPORT(foamSamples) std::uint8_t* foamSamples() {
   return plain_samples;
 }
 
-/// Room for any payload whose checksum is wanted. 0: there is none.
+/// Returns room for any payload whose checksum is wanted. 0: there is none.
 SPINDRIFT_EXPORT(prepareChecksum) std::uint8_t* prepareChecksum(std::uint32_t byte_count) {
   return makeRoom(0, byte_count);
 }

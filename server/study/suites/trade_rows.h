@@ -1,5 +1,4 @@
-// One way to run a scene as the trade suite keeps it: what it cost and how far it was off, as JSON and as a row of the
-// table.
+// One run of the trade suite: its cost and error, as JSON and as a row of the table.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@ using study::WaterRecord;
 /// Results of one run.
 struct TradeRow {
   std::string knob, setting;
-  std::string refused;  ///< why the scene could not be run; empty: it was
+  std::string refused;  ///< why the scene could not run; empty: it ran
   double wall_ms_per_s = 0.0;
   double device_mb = 0.0;
   double stream_mbit_per_s = 0.0;
@@ -33,11 +32,11 @@ struct TradeRow {
 };
 
 boost::json::object toJson(const TradeRow& row);
-/// With "on_front".
+/// Includes "on_front".
 boost::json::array toJson(const std::vector<TradeRow>& rows);
 TradeRow rowFromJson(const boost::json::object& json);
 
-/// Everything but the errors and the front.
+/// Fills all members except the errors and the front.
 TradeRow rowOf(const TradeChoice& choice, const WaterRecord& run);
 
 void printTradeHeader(std::FILE* out);

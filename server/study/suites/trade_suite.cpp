@@ -1,4 +1,4 @@
-// What accuracy costs: every way to run a scene beside a run finer than the finest that is offered.
+// The cost of accuracy: compares every choice for a scene with a run that is finer than the finest level.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -20,11 +20,11 @@
 namespace spindrift::study_suites {
 namespace {
 
-/// A shipped scene and how much of it is looked at.
+/// A shipped scene and the time to simulate.
 struct TradeScene {
   const char* name;
   double seconds;
-  double quick_seconds;  ///< of the quick form, whose yardstick is REFERENCE itself; 0: no part of it
+  double quick_seconds;  ///< of the quick form, which compares with REFERENCE itself; 0: not part of it
 };
 constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.1},
                                        {"breaking_wave", 4.5, 0.0},
@@ -34,15 +34,15 @@ constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.1},
 constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
                                     v1::FIDELITY_REFERENCE};
 constexpr const char* kLevelKnob = "fidelity";
-/// Each of the shipped effects as it is, as the wave alone, and as particles alone (thesis, section 3.8.1).
+/// Each shipped effect as it is, with the wave alone, and with particles alone (thesis, section 3.8.1).
 constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
 
-/// Differences of less than this share are chance at least: the same scene with another seed is off by so much more or
-/// less, and costs so much more or less when the machine is quiet.
+/// Differences below this share are chance: the error of the same scene with another seed varies by this much, and so
+/// does its cost on a quiet machine.
 constexpr double kChance = 0.05;
 constexpr const char* kSeedKnob = "seed";
 
-/// Counts what the room's encoder would send.
+/// Counts the bytes that the room's encoder would send.
 study::FrameBytes frameBytes() {
   auto encoder = std::make_shared<codec::FrameEncoder>();
   return [encoder](const core::FrameView& frame) {
@@ -62,7 +62,7 @@ core::Result<core::Scene> loadLevel(const std::string& name, v1::Fidelity level)
   return scene::toCore(*scene);
 }
 
-/// The levels first, then BALANCED with one thing changed.
+/// Returns the levels first, then BALANCED with one change each.
 core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool quick) {
   std::vector<TradeChoice> choices;
   for (const v1::Fidelity level : kLevels) {
@@ -75,13 +75,12 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
   return choices;
 }
 
-/// Whether it is another way to the same water: not another chance, nor less water to be right about.
+/// Returns whether the choice simulates the same water: not with another seed, nor with less water.
 bool isComparable(const auto& choice) {
   return choice.knob != kSeedKnob && choice.knob != "coupling";
 }
 
-/// What chance does to a cost and an error: as much as it did to those of another seed beside `balanced`, in the same
-/// run.
+/// Effect of chance on cost and error: the difference between another seed and `balanced` in the same run.
 study::CostAndError chanceOf(const study::CostAndError& seed, const study::CostAndError& balanced) {
   const auto share = [](double a, double b) { return std::max(kChance, 1 - std::min(a / b, b / a)); };
   return {share(seed.cost, balanced.cost), share(seed.error, balanced.error)};
@@ -108,7 +107,7 @@ double secondsOf(const TradeScene& scene, bool quick) {
   return quick ? scene.quick_seconds : scene.seconds;
 }
 
-/// Runs what the journal does not know yet; the finest run only when something is left to compare.
+/// Runs what is not yet in the journal; the finest run only if there is something left to compare.
 class TradeRuns {
  public:
   TradeRuns(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal)
@@ -117,7 +116,7 @@ class TradeRuns {
   core::Result<std::vector<TradeRow>> run(const TradeScene& scene) {
     auto choices = choicesOf(scene, options_.quick);
     if (!choices) return choices.error();
-    // The quick form judges by the finest that is offered, the full one by a run that is finer still.
+    // The quick form compares with the finest level, the full form with a run that is finer still.
     core::Scene finest_scene = (*choices)[3].scene;
     if (options_.quick)
       choices->resize(3);
@@ -162,7 +161,7 @@ class TradeRuns {
     return rows;
   }
 
-  /// What scenes cost, without a look at them.
+  /// Costs of scenes, without comparing their results.
   core::Result<std::vector<TradeRow>> costs(const std::vector<TradeChoice>& choices, double seconds) {
     std::vector<TradeRow> rows;
     for (const TradeChoice& choice : choices) {
@@ -189,7 +188,7 @@ class TradeRuns {
   StudyJournal& journal_;
 };
 
-/// In every scene no level is closer than REFERENCE by more than chance.
+/// Checks for each scene that no level is closer than REFERENCE by more than chance.
 void judgeScene(const std::vector<TradeRow>& rows, SuiteResult& result, std::FILE* out) {
   const TradeRow* closest = nullptr;
   const TradeRow* finest = nullptr;
@@ -205,8 +204,8 @@ void judgeScene(const std::vector<TradeRow>& rows, SuiteResult& result, std::FIL
              100 * finest->errors.height_rms_ratio, 100 * kChance);
 }
 
-/// One way to run every scene: geometric means of what it costs and how far it is off, over those of BALANCED. A scene
-/// that lacks the knob counts as BALANCED.
+/// One choice over all scenes: geometric means of its cost and error over those of BALANCED. A scene without the
+/// changed part counts as BALANCED.
 struct MeanChoice {
   std::string knob, setting;
   double cost = 1.0;
@@ -240,7 +239,7 @@ std::vector<MeanChoice> meansOver(const std::vector<std::vector<TradeRow>>& scen
   return means;
 }
 
-/// The levels hold what they promise: over all scenes each is on the front, and finer ones are closer.
+/// Checks the levels over all scenes: each is on the front, and finer levels are closer.
 void judgeLevels(const std::vector<MeanChoice>& means, SuiteResult& result, std::FILE* out) {
   fmt::print(out, "over all scenes, against balanced; * = not beaten in cost and height both\n");
   const MeanChoice* before = nullptr;

@@ -12,7 +12,7 @@ core::ByteView viewOf(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// The definition, bit by bit: the oracle for the fast ones.
+/// The definition, bit by bit, as the reference for the fast implementations.
 std::uint32_t bitwiseCrc32c(core::ByteView bytes) {
   std::uint32_t crc = ~0u;
   for (const std::uint8_t byte : bytes) {
@@ -26,7 +26,7 @@ TEST(Crc32c, EqualsThePublishedCheckValueByTables) {
   EXPECT_EQ(crc32cTable(viewOf("123456789")), 0xE3069283u);
 }
 
-TEST(Crc32c, EqualsThePublishedCheckValueByWhateverThisMachineUses) {
+TEST(Crc32c, EqualsThePublishedCheckValueOnThisMachine) {
   EXPECT_EQ(crc32c(viewOf("123456789")), 0xE3069283u);
 }
 
@@ -35,7 +35,7 @@ TEST(Crc32c, EqualsThePublishedCheckValueByInstruction) {
   EXPECT_EQ(crc32cInstruction(viewOf("123456789")), 0xE3069283u);
 }
 
-TEST(Crc32c, OfNothingIsZero) {
+TEST(Crc32c, OfNoBytesIsZero) {
   EXPECT_EQ(crc32c({}), 0u);
   EXPECT_EQ(crc32cTable({}), 0u);
 }

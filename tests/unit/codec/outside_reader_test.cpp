@@ -1,5 +1,5 @@
-// The packed frames as proto/README.md describes them: tests/wire/packed_reader.py was written from its text alone and
-// has to read what the encoder writes, to the same values as the decoder here.
+// Reads packed frames with tests/wire/packed_reader.py, which was written from the text of proto/README.md alone: it
+// must read what the encoder writes, to the same values as the decoder here.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ namespace {
 /// A folder of cases like tests/golden.
 class Cases {
  public:
-  /// `follows`: the file of the frame before, or empty.
+  /// `follows`: the file of the previous frame, or empty.
   std::string add(const core::Bytes& message, const std::string& follows, const std::string& values) {
     const std::string file = std::to_string(count_++) + ".bin";
     folder_.write(file, std::string(message.begin(), message.end()));
@@ -29,7 +29,7 @@ class Cases {
              "\", \"verdict\": \"ok\", \"kind\": \"frame\", \"follows\": \"" + follows + "\", " + values + "}";
     return file;
   }
-  /// The reader's exit status over all of them; what it says goes to standard output.
+  /// Returns the exit status of the reader over all cases; its messages go to standard output.
   int readOutside() {
     folder_.write("golden.json", json_ + "]\n");
     const std::string command =
@@ -62,7 +62,7 @@ v1::LayerFrame frameOf(const core::Bytes& bytes) {
 TEST(OutsideReader, ReadsPlanesOfEverySizeOfResidual) {
   Cases cases;
   std::mt19937 random(1);
-  // From a plane that does not move to noise over all 16 bits; sides that tiles of 8 fit into and others.
+  // From a plane at rest to noise over all 16 bits; sides that are multiples of 8 and others.
   for (const int noise_bits : {0, 1, 2, 3, 5, 7, 9, 11, 13, 15, 16}) {
     const std::uint32_t n = noise_bits % 2 == 0 ? 24 : 18;
     FrameEncoder encoder;
@@ -137,7 +137,7 @@ TEST(OutsideReader, ReadsParticlesInCellsOfEverySize) {
   EXPECT_GE(std::ranges::count(seen_offset_bits, true), 4) << "cells of several sizes were made";
 }
 
-TEST(OutsideReader, SaysSoWhereValuesDiffer) {
+TEST(OutsideReader, ReportsDifferentValues) {
   Cases cases;
   const std::vector<std::uint32_t> words(2 * 2 / 2);
   core::FrameView view;

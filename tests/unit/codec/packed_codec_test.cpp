@@ -1,4 +1,4 @@
-// The parts of the packed codecs by themselves: codes, groups, order, prediction.
+// The parts of the packed codecs: codes, groups, order, prediction.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -20,7 +20,7 @@
 namespace spindrift::codec {
 namespace {
 
-/// 32 bits at a time.
+/// Reads 32 bits at a time.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
@@ -61,7 +61,7 @@ TEST(PrefixCode, FitsAnyCountsAndReadsThemBack) {
   }
 }
 
-TEST(PrefixCode, RefusesLengthsThatLeaveBitsWithoutMeaning) {
+TEST(PrefixCode, RefusesIncompleteLengths) {
   PrefixSlots slots;
   EXPECT_TRUE(slots.assign(std::vector<std::uint8_t>{1, 2, 2}));
   EXPECT_FALSE(slots.assign(std::vector<std::uint8_t>{1, 2, 3}));
@@ -70,7 +70,7 @@ TEST(PrefixCode, RefusesLengthsThatLeaveBitsWithoutMeaning) {
   EXPECT_FALSE(slots.assign(std::vector<std::uint8_t>{0, 0}));
 }
 
-TEST(Residuals, OfEverySizeComeBack) {
+TEST(Residuals, OfEverySizeRoundTrip) {
   Random random(2);
   ResidualEncoder out;
   struct Group {
@@ -131,7 +131,7 @@ SurfacePlane planeOf(std::size_t n, auto sample_at) {
   return plane;
 }
 
-/// What the frames before say about one sample, rounding included, times 4096.
+/// Prediction of one sample from the previous frames, rounding included, times 4096.
 std::int32_t fromHistoryAt(const SurfaceHistory& history, const SurfaceWeights& weights, std::size_t x, std::size_t z) {
   using W = SurfaceWeights;
   std::uint32_t sum = 1u << (kWeightBits - 1);
@@ -155,7 +155,7 @@ std::int32_t fromHistoryAt(const SurfaceHistory& history, const SurfaceWeights& 
   return static_cast<std::int32_t>(sum);
 }
 
-TEST(Prediction, OfAWholeRowIsThatOfEachSample) {
+TEST(Prediction, OfARowEqualsThatOfItsSamples) {
   Random random(4);
   const auto noise = [&](std::size_t, std::size_t) { return random(); };
   for (const std::size_t n : {2u, 16u, 17u, 18u, 33u, 64u}) {
@@ -203,7 +203,7 @@ void expectSame(const PlaneRow& read, const SurfacePlane& plane, const std::stri
   }
 }
 
-TEST(Planes, OfAnySizeAndWeightsComeBackToTheBit) {
+TEST(Planes, RoundTripToTheBitAtAnySizeAndWeights) {
   Random random(5);
   const auto noise = [&](std::size_t, std::size_t) { return random(); };
   for (const std::size_t n : {1u, 2u, 7u, 8u, 9u, 16u, 17u, 23u, 33u, 64u}) {
@@ -268,7 +268,7 @@ class Water {
   std::vector<double> now_, before_;
 };
 
-TEST(SurfacePredicted, TakesAtMost2Point3BitsASampleOfWavesEveryOtherTick) {
+TEST(SurfacePredicted, TakesAtMost2Point3BitsPerSampleOfWavesEveryOtherTick) {
   constexpr std::uint32_t kSide = 128;
   Water water(kSide);
   FrameEncoder encoder;

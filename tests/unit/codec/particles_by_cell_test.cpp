@@ -1,4 +1,4 @@
-// The packed particles: the same particles as the plain ones to half a quantum, near the bound of unordered points.
+// Packed particles: equal to the plain ones within half a quantum, and near the size bound for unordered points.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,7 +94,7 @@ std::vector<Row> rowsOf(const ParticleSamples& samples) {
   return rows;
 }
 
-/// Each packed particle is one of the plain ones, and each plain one has one: orders differ.
+/// Matches packed and plain particles one to one, because their orders differ.
 void expectSame(const Cloud& cloud) {
   const v1::LayerFrame frame = packed(cloud);
   const auto samples = decodePackedParticles(frame);
@@ -157,7 +157,7 @@ TEST(ParticlesByCell, PlacesTakeHardlyMoreThanTheBound) {
   still.view.words = still.words;
   const double bits = 8.0 * static_cast<double>(packed(still).payload().size()) / still.view.count;
   const double bound = 3 * std::log2(16.0) + 1.44;
-  EXPECT_LE(bits, bound + 1) << "particles a sixteenth of their spacing apart can be told, in no order";
+  EXPECT_LE(bits, bound + 1) << "the bound for unordered particles with a quantum of a sixteenth of their spacing";
   EXPECT_GE(bits, bound - 2) << "or something was lost";
 }
 

@@ -1,4 +1,4 @@
-// The packed surface: the same samples as the plain one to the bit, in fewer bytes, however damaged or late the frames.
+// The packed surface: the same samples as the plain one to the bit, in fewer bytes, also after lost or damaged frames.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -87,7 +87,7 @@ TEST(SurfacePredicted, IsThePlainSurfaceToTheBitFrameAfterFrame) {
   }
 }
 
-TEST(SurfacePredicted, CarriesAnythingThatFitsInto16Bits) {
+TEST(SurfacePredicted, RoundTripsAnythingThatFitsInto16Bits) {
   std::mt19937 random(1);
   const auto wild = [&](std::uint32_t, std::uint32_t) { return static_cast<std::int16_t>(random()); };
   const auto ends = [](std::uint32_t x, std::uint32_t z) { return (x + z) % 2 != 0 ? -32768 : 32767; };

@@ -1,4 +1,4 @@
-// The encoder's loops are there twice, plain and with vectors: whatever the frames are, both write the same bytes.
+// The encoder's loops exist twice, plain and with vectors: both must write the same bytes for all frames.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -12,7 +12,7 @@
 namespace spindrift::codec {
 namespace {
 
-/// Plain loops from here on, vectors again at the end.
+/// Uses plain loops until its destruction.
 class PlainLoops {
  public:
   PlainLoops() { useVectors(false); }
@@ -45,7 +45,7 @@ void expectSameBytes(const Frames& frames, v1::Layer layer) {
   EXPECT_EQ(encoded(frames, layer), with_vectors);
 }
 
-/// Waves of an amplitude, noise on top; beyond 8191 quanta sums of four samples leave 16 bits.
+/// Waves of a given amplitude with noise. Beyond 8191 quanta, sums of four samples exceed 16 bits.
 Frames surfaces(std::uint32_t n, double amplitude, int noise) {
   Frames out;
   std::mt19937 random(n);
@@ -68,7 +68,7 @@ Frames surfaces(std::uint32_t n, double amplitude, int noise) {
   return out;
 }
 
-/// `counts` particles frame by frame, `crowded` of each frame in one spot.
+/// Frames with `counts` particles each, `crowded` of them in one spot.
 Frames clouds(std::initializer_list<std::uint32_t> counts, double side_m, std::uint32_t crowded, std::uint32_t speeds) {
   Frames out;
   std::mt19937 random(5);
@@ -119,7 +119,8 @@ TEST(PackedParticles, AreTheSameAfterAFrameThatOverfilledACell) {
   const Frames one = clouds({5000, 5000}, 4.0, 0, 9);
   Frames two = clouds({5000, 5000}, 4.0, 0, 9);
   Frames crowded = clouds({5000}, 4.0, 700, 9), spread = clouds({5000}, 4.0, 250, 9);
-  // The crowded spot is one eighth of a cell, once beyond what a byte counts and once only with its neighbours.
+  // The spot is one eighth of a cell. In one frame it alone exceeds a byte's count, in another only with its
+  // neighbours.
   for (Frames* full : {&crowded, &spread}) two.views.insert(two.views.begin() + 1, full->views.front());
   two.views.back().tick = one.views.back().tick;
   EXPECT_EQ(encoded(two, v1::LAYER_PARTICLES).end()[-2], encoded(one, v1::LAYER_PARTICLES).end()[-2]);

@@ -1,4 +1,4 @@
-// The tables that proto/README.md and proto/packed_codes.json repeat are those of the code.
+// Compares the tables in proto/README.md and proto/packed_codes.json with those of the code.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -23,7 +23,7 @@ std::string arrayOf(std::string_view digits) {
   return text + "]";
 }
 
-TEST(WireTables, CodesStandInTheReadmeAndInTheDataFile) {
+TEST(WireTables, CodesAreInTheReadmeAndInTheDataFile) {
   const std::string readme = readFile("README.md"), data = readFile("packed_codes.json");
   constexpr std::uint32_t kFirstClass = kLastSparseClass + 1;
   std::string expected = "{\n  \"residual_codes\": [\n";
@@ -53,7 +53,7 @@ TEST(WireTables, CodesStandInTheReadmeAndInTheDataFile) {
   EXPECT_EQ(data, expected + "  ]\n}\n");
 }
 
-TEST(WireTables, BoundsOfTheTextAreThoseOfTheCode) {
+TEST(WireTables, BoundsInTheReadmeAreThoseOfTheCode) {
   const std::string readme = readFile("README.md");
   EXPECT_EQ(kOffsetBitsMax, 8u);
   EXPECT_EQ(kCoordinateMaxCount, 1u << 16);

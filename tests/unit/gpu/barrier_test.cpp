@@ -1,4 +1,4 @@
-// The barriers that Buffer issues, and the checker that finds those which callers forget.
+// The barriers that Buffer issues, and the checker that reports those that callers forget.
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -89,12 +89,12 @@ class BarrierTest : public GpuTest {
 
 TEST_F(BarrierTest, AForgottenBarrierIsReportedWithBothProgramsAndTheBuffer) {
   runWrite();
-  ctx->barrier(Barrier::kStorage);  // the texels are forgotten
+  ctx->barrier(Barrier::kStorage);  // no barrier for the texels
   runCompare();
   EXPECT_THAT(ctx->takeFaults(), ElementsAre(AllOf(HasSubstr("tests/texel_equals_storage.comp reads buffer \"values\""),
                                                    HasSubstr("tests/iota.comp"), HasSubstr("Barrier::kTexel"))));
   runWrite();
-  ctx->barrier(Barrier::kTexel);  // the storage is forgotten, for what is read and for what is written
+  ctx->barrier(Barrier::kTexel);  // no barrier for the storage, neither for reads nor for writes
   runCompare();
   EXPECT_THAT(ctx->takeFaults(), testing::Contains(AllOf(HasSubstr("texel_equals_storage.comp reads buffer \"values\""),
                                                          HasSubstr("Barrier::kStorage"))));
@@ -110,7 +110,7 @@ TEST_F(BarrierTest, PassesWithTheirBarriersAreNoFault) {
   EXPECT_THAT(ctx->takeFaults(), IsEmpty());
 }
 
-TEST_F(BarrierTest, AStoreOverWhatIsStillReadIsAFault) {
+TEST_F(BarrierTest, AStoreToABufferThatIsStillReadIsAFault) {
   runCompare();
   runWrite();
   EXPECT_THAT(ctx->takeFaults(),
@@ -160,7 +160,7 @@ TEST_F(BarrierTest, ABindingWithoutABufferAndABlockLargerThanItsBufferAreFaults)
                                                    HasSubstr("\"small block\" bound to it only 56"))));
 }
 
-TEST_F(BarrierTest, UploadsDownloadsClearsAndCopiesBringTheirOwnBarriers) {
+TEST_F(BarrierTest, UploadsDownloadsClearsAndCopiesIssueTheirOwnBarriers) {
   auto other = Buffer::create(*ctx, "other", values.sizeBytes());
   auto ring = ReadbackRing::create(*ctx, "ring", values.sizeBytes(), 1);
   ASSERT_TRUE(other && ring);
@@ -207,13 +207,13 @@ TEST_F(BarrierTest, UpdatesOfAUniformBlockNeedNoBarrier) {
       << "only the test's own";
 }
 
-TEST_F(BarrierTest, FaultsAreToldOnceAndBounded) {
+TEST_F(BarrierTest, FaultsAreReportedOnceAndBounded) {
   for (int round = 0; round < 200; ++round) runWrite();
   EXPECT_THAT(ctx->takeFaults(), SizeIs(testing::Le(4u)));
   EXPECT_THAT(ctx->takeFaults(), IsEmpty());
 }
 
-TEST(BarrierDeathTest, FaultsThatNoTestTakesEndTheProcess) {
+TEST(BarrierDeathTest, UntakenFaultsEndTheProcess) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto forget = [] {
     auto ctx = Context::create(*testDevice(), Checks{.barriers = true});

@@ -52,7 +52,7 @@ TEST_F(ContextTest, SoftwareMeansARendererWithoutHardware) {
   EXPECT_EQ((*software)->device().index, -1);
 }
 
-TEST_F(ContextTest, ASecondContextTakesItsPlaceAndLeavesItWhole) {
+TEST_F(ContextTest, ASecondContextReplacesTheCurrentOneAndDoesNotDamageIt) {
   {
     auto second = Context::create(*testDevice());
     ASSERT_TRUE(second);
@@ -63,27 +63,27 @@ TEST_F(ContextTest, ASecondContextTakesItsPlaceAndLeavesItWhole) {
     second->reset();
     EXPECT_TRUE(ctx->isOwnedHere()) << "destroying the second unbound the first";
   }
-  glEnable(GL_TEXTURE_BUFFER);  // not a capability: the first context's callback must still hear of it
+  glEnable(GL_TEXTURE_BUFFER);  // not a valid capability: the first context's callback must still report it
   ctx->finish();
   expected_error_count = 1;
 }
 
 TEST_F(ContextTest, DebugCallbackCountsErrors) {
   EXPECT_EQ(ctx->debugErrorCount(), 0u);
-  glEnable(GL_TEXTURE_BUFFER);  // not a capability
+  glEnable(GL_TEXTURE_BUFFER);  // not a valid capability
   ctx->finish();
   EXPECT_EQ(ctx->debugErrorCount(), 1u);
   expected_error_count = 1;
 }
 
-TEST_F(ContextTest, DebugCallbackIgnoresWhatIsNoError) {
+TEST_F(ContextTest, DebugCallbackCountsErrorsOnly) {
   const char text[] = "a remark";
   glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_PERFORMANCE, 7, GL_DEBUG_SEVERITY_LOW, -1, text);
   ctx->finish();
   EXPECT_EQ(ctx->debugErrorCount(), 0u);
 }
 
-TEST_F(ContextTest, RemarksOnPerformanceAreLoggedOnceEachAtInfo) {
+TEST_F(ContextTest, PerformanceMessagesAreLoggedOnceEachAtInfo) {
   std::ostringstream log;
   const auto before = spdlog::default_logger();
   spdlog::set_default_logger(

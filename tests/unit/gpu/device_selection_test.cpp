@@ -1,4 +1,4 @@
-// Which device is taken, with devices that are not there.
+// Selection among imaginary devices.
 #include "device_selection.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ egl::Candidate software() {
   return c;
 }
 
-/// Devices of which only those in `working` (by drm_file, "" for software) run the program.
+/// Opens only the devices in `working` (by drm_file, "" for software).
 class Selecting : public testing::Test {
  protected:
   egl::Attempt open(const egl::Candidate& c) {
@@ -83,7 +83,7 @@ TEST_F(Selecting, AutoEndsAtSoftwareAndSaysWhyNoHardware) {
   EXPECT_THAT(selected->why, HasSubstr("software, because no hardware device works; not used: device 0"));
 }
 
-TEST_F(Selecting, NothingThatWorksNamesAllThatWasTried) {
+TEST_F(Selecting, WithoutAWorkingDeviceTheErrorListsEveryAttempt) {
   candidates = {hardware(0, "card0"), software()};
   const auto selected = select();
   ASSERT_FALSE(selected);

@@ -15,7 +15,7 @@ const EmbeddedShader& sample() {
   return kShader;
 }
 
-TEST(EmbeddedShader, FindsWhereALineWasWritten) {
+TEST(EmbeddedShader, MapsALineToItsFileAndLine) {
   EXPECT_EQ(sourcePosition(sample(), 1), "a.comp:1");
   EXPECT_EQ(sourcePosition(sample(), 2), "a.comp:2");
   EXPECT_EQ(sourcePosition(sample(), 3), "b.glsl:1");

@@ -1,4 +1,4 @@
-// Shaders read from a folder, and again when they change.
+// Shaders read from a folder, and read again when they change.
 #include "shader_folder.h"
 
 #include <filesystem>
@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// The repository's shaders, in a folder where they may change.
+/// A copy of the repository's shaders that tests may change.
 class ShaderFolderTest : public testing::Test {
  protected:
   void SetUp() override { fs::copy(fs::path(SPINDRIFT_SOURCE_DIR) / "shaders", root(), fs::copy_options::recursive); }
@@ -31,7 +31,7 @@ class ShaderFolderTest : public testing::Test {
   }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(root() / name) << text;
-    // Whatever the file system's clock: this version is newer than the one before.
+    // Makes this version newer than the one before at any resolution of the file system's clock.
     fs::last_write_time(root() / name, fs::last_write_time(root() / name) + std::chrono::seconds(++write_count_));
   }
   void replace(const std::string& name, const std::string& before, const std::string& after) const {
@@ -48,7 +48,7 @@ class ShaderFolderTest : public testing::Test {
 TEST_F(ShaderFolderTest, ExpandsEveryEntryPointToWhatTheBuildEmbeds) {
   const ShaderFolder shaders(root());
   const auto words = [](std::string_view text) {
-    // Guards and dropped lines differ: compare what is left without directives.
+    // Guards and dropped lines differ: compare without directives.
     std::string out;
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -95,7 +95,7 @@ class LiveShader : public ShaderFolderTest {
     if (!made) GTEST_SKIP() << made.error().message;
     ctx_ = *std::move(made);
   }
-  /// What tests/iota.comp writes for item 3 with offset 5.
+  /// Value that tests/iota.comp writes for item 3 with offset 5.
   std::int32_t fourth(Program& program) {
     auto values = Buffer::create(*ctx_, "values", 4 * 32);
     auto counts = Buffer::create(*ctx_, "counts", 8);
@@ -107,7 +107,7 @@ class LiveShader : public ShaderFolderTest {
     EXPECT_TRUE(program.dispatch(32));
     return values->downloadVector<std::int32_t>(32)[3];
   }
-  /// As once per tick, until the folder was looked at again.
+  /// Calls it repeatedly, like once per tick, until the folder was checked again.
   void waitForALook() {
     std::this_thread::sleep_for(std::chrono::milliseconds(350));
     ctx_->reloadChangedShaders();
@@ -116,7 +116,7 @@ class LiveShader : public ShaderFolderTest {
   std::unique_ptr<Context> ctx_;
 };
 
-TEST_F(LiveShader, RunsAsItsFileSaysNowAndKeepsItsUniforms) {
+TEST_F(LiveShader, RunsTheChangedFileAndKeepsItsUniforms) {
   auto program = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "32"}});
   ASSERT_TRUE(program) << program.error().message;
   EXPECT_EQ(fourth(*program), 8);
@@ -126,7 +126,7 @@ TEST_F(LiveShader, RunsAsItsFileSaysNowAndKeepsItsUniforms) {
   EXPECT_EQ(ctx_->debugErrorCount(), 0u);
 }
 
-TEST_F(LiveShader, GoesOnAsItWasWhenItsFileDoesNotCompile) {
+TEST_F(LiveShader, KeepsTheOldProgramWhenItsFileDoesNotCompile) {
   auto program = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "32"}});
   ASSERT_TRUE(program) << program.error().message;
   replace("tests/iota.comp", "+ offset", "+ no_such_name");

@@ -55,7 +55,8 @@ TEST_F(TestModes, ShuffledGroupsCoverEveryInvocationOnce) {
     if (!ctx) return;
     auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
     ASSERT_TRUE(program) << program.error().message;
-    for (const std::uint32_t count : {1u, 24u, 25u, 1009u, 24u * 7919u}) {  // the last: as many groups as the factor
+    // The last count is a multiple of the factor, so that 1 replaces the factor.
+    for (const std::uint32_t count : {1u, 24u, 25u, 1009u, 24u * 7919u}) {
       auto values = Buffer::create(*ctx, "values", 4 * count);
       auto counts = Buffer::create(*ctx, "counts", 8);
       ASSERT_TRUE(values && counts);
@@ -74,7 +75,7 @@ TEST_F(TestModes, ShuffledGroupsCoverEveryInvocationOnce) {
 
 TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
   constexpr std::uint32_t kGroups = 100;
-  // Of the groups g, in how many cases g + 1 ran later than g.
+  // Counts the groups g for which g + 1 ran later.
   const auto ascendingCount = [&](std::uint32_t seed) -> std::uint32_t {
     make({.shuffle_seed = seed});
     if (!ctx) return 0;
@@ -95,7 +96,7 @@ TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
     for (std::size_t g = 0; g + 1 < kGroups; ++g) count += *place[g] < *place[g + 1] ? 1 : 0;
     return count;
   };
-  // Each of a device's threads takes its groups in ascending order, however the threads fall together.
+  // Each of a device's threads runs its groups in ascending order, whatever the schedule of the threads.
   if (const std::uint32_t plain_count = ascendingCount(0); ctx) {
     EXPECT_GE(plain_count, 90u);
     EXPECT_LE(ascendingCount(55), 75u);
@@ -147,7 +148,7 @@ TEST_F(ProgramCacheTest, AnErrorIsNotKept) {
   }
 }
 
-TEST_F(ProgramCacheTest, UniformsAreEachOnesOwnThoughTheProgramIsShared) {
+TEST_F(ProgramCacheTest, ProgramsThatShareACompiledOneHaveTheirOwnUniforms) {
   auto values = Buffer::create(*ctx, "values", 16);
   auto counts = Buffer::create(*ctx, "counts", 8);
   auto ten = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
@@ -157,7 +158,7 @@ TEST_F(ProgramCacheTest, UniformsAreEachOnesOwnThoughTheProgramIsShared) {
   counts->bindStorage(1);
   ten->setUniform("item_count", 4u);
   ten->setUniform("offset", 10);
-  zero->setUniform("item_count", 4u);  // its offset was never set: zero
+  zero->setUniform("item_count", 4u);  // its offset was not set, so it is zero
   const auto first = [&](Program& program) {
     EXPECT_TRUE(program.dispatch(4));
     ctx->barrier(Barrier::kStorage);

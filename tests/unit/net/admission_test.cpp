@@ -1,5 +1,5 @@
-// Who is heard at all: pages by their origin, addresses by their rate, tokens only where they belong; and requests that
-// the application answers late, never, or after the server has gone.
+// Admission of clients: pages by their origin, addresses by their rate, tokens only where they are allowed; and
+// requests that the application answers late, never, or after the server has ended.
 #include <gtest/gtest.h>
 
 #include "address_limits.h"
@@ -57,7 +57,7 @@ TEST(Origin, ListedOriginsAreAccepted) {
   EXPECT_TRUE(isOriginAllowed("https://anything.example", "localhost:8080", true, std::vector<std::string>{"*"}));
 }
 
-TEST(AddressLimits, AddressesDoNotTakeFromEachOther) {
+TEST(AddressLimits, EachAddressHasItsOwnLimit) {
   AddressLimits limits({.address_requests_per_s = 1.0, .address_request_burst_count = 2.0});
   const Clock::time_point now{};
   EXPECT_TRUE(limits.takeRequest("192.0.2.1", now));
@@ -67,7 +67,7 @@ TEST(AddressLimits, AddressesDoNotTakeFromEachOther) {
   EXPECT_TRUE(limits.takeRequest("192.0.2.1", now + 1s));
 }
 
-TEST(AddressLimits, MessagesBeyondTheBurstWaitTheirTurn) {
+TEST(AddressLimits, DelaysMessagesBeyondTheBurst) {
   AddressLimits limits({.address_messages_per_s = 10.0, .address_message_burst_count = 2.0});
   const Clock::time_point now{};
   EXPECT_EQ(limits.reserveMessage("192.0.2.1", now), 0s);
@@ -100,7 +100,7 @@ TEST(Admission, RefusesTheUpgradeOfAForeignPageAndCountsIt) {
   EXPECT_TRUE(own.receiveUntil("hello ").starts_with("HTTP/1.1 101 "));
 }
 
-TEST(Admission, RefusesActsOfAForeignPageButLetsItRead) {
+TEST(Admission, RefusesChangesByAForeignPageButAllowsReads) {
   const TestServer served;
   const std::string foreign = "Origin: http://evil.example\r\n";
   EXPECT_EQ(httpRequest(served.server->port(), "POST", "/api/echo", foreign, "x").status, 403U);
@@ -140,7 +140,7 @@ TEST(Admission, RefusesATokenInTheAddress) {
   EXPECT_EQ(answer.body.find("secret"), std::string::npos);
 }
 
-TEST(Admission, ASessionEndsAtItsTime) {
+TEST(Admission, ClosesASessionAtItsTime) {
   TestServer served;
   auto client = served.client();
   served.application.hub->closeAt(served.application.opened().at(0), Clock::now() + 1h, CloseCode::kNormal, "later");
@@ -187,7 +187,7 @@ TEST(LateAnswer, ServerStopsWhileARequestWaits) {
   (*server)->stop();
   EXPECT_LT(Clock::now() - begin, options.answer_timeout);
   *server = nullptr;
-  application.kept.front()(HttpReply{});  // the connection is gone, and the server
+  application.kept.front()(HttpReply{});  // neither the connection nor the server exists any more
 }
 
 }  // namespace

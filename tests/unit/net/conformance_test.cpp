@@ -1,5 +1,5 @@
-// RFC 6455 from the server's side, frame by frame. Whoever breaks a rule is told so with a close code and cut; a
-// bystander is served through all of it.
+// RFC 6455 on the server's side, frame by frame. A peer that breaks a rule gets a close code and is disconnected;
+// another client is served all the time.
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class Conformance : public testing::Test {
     EXPECT_EQ(text(bystander_.receive()), "echo unharmed");
   }
 
-  /// Upgraded, and its greeting received.
+  /// A client after the upgrade and the greeting.
   FrameClient peer() {
     FrameClient out;
     EXPECT_TRUE(out.connect(served_.server->port()));
@@ -46,11 +46,11 @@ class Conformance : public testing::Test {
     const auto frame = client.receive();
     return frame ? frame->payload : "(no frame)";
   }
-  /// The session still does what it is asked.
+  /// Checks that the session still answers.
   static bool isServed(FrameClient& client) {
     return client.send({.payload = "echo alive"}) && payload(client) == "echo alive";
   }
-  /// A new peer that sends these frames is closed with the code and cut.
+  /// Checks that a new peer that sends these frames is closed with this code and disconnected.
   void expectClosed(const std::vector<Frame>& frames, std::uint16_t code, const std::string& what) {
     FrameClient client = peer();
     for (const Frame& frame : frames) ASSERT_TRUE(client.send(frame)) << what;
@@ -96,7 +96,7 @@ TEST_F(Conformance, RefusesEveryReservedBitAndOpcode) {
   }
 }
 
-TEST_F(Conformance, RefusesFramesWithoutAMaskWhateverTheyAre) {
+TEST_F(Conformance, RefusesEveryFrameWithoutAMask) {
   for (const Opcode opcode : {Opcode::kText, Opcode::kBinary, Opcode::kPing, Opcode::kPong, Opcode::kClose}) {
     expectClosed({{.opcode = opcode, .masked = false}}, kProtocolError, "not masked");
   }
@@ -147,7 +147,7 @@ TEST_F(Conformance, IgnoresUnsolicitedPongs) {
   EXPECT_TRUE(isServed(client));
 }
 
-TEST_F(Conformance, RefusesControlFramesThatAreLongOrInPieces) {
+TEST_F(Conformance, RefusesLongAndFragmentedControlFrames) {
   for (const Opcode opcode : {Opcode::kPing, Opcode::kPong, Opcode::kClose}) {
     const std::string what = "opcode " + std::to_string(static_cast<int>(opcode));
     const std::string long_payload = "\x03\xe8" + std::string(124, 'x');
@@ -190,7 +190,7 @@ TEST_F(Conformance, RefusesACloseReasonThatIsNotUtf8) {
   expectClosed({closeFrame(1000, "cut \xe2\x82")}, kProtocolError, "a character that is cut");
 }
 
-TEST_F(Conformance, IgnoresWhatComesBehindAClose) {
+TEST_F(Conformance, IgnoresBytesAfterAClose) {
   FrameClient client = peer();
   ASSERT_TRUE(client.tcp().send(bytesOf(closeFrame(1000)) + bytesOf({.payload = "echo late"}) +
                                 bytesOf({.opcode = Opcode::kReservedData})));
@@ -204,7 +204,8 @@ TEST_F(Conformance, RefusesTextThatIsNotUtf8) {
   for (const char* wrong : {"\xff", "a\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "cut \xe2\x82"}) {
     expectClosed({{.opcode = Opcode::kText, .payload = wrong}}, kBadPayload, "no UTF-8");
   }
-  // A character that is cut by the frames' border is whole again in the message: then text itself is what is refused.
+  // A character that is split between two frames is whole again in the message, so the message is refused only for
+  // being text.
   expectClosed({{.opcode = Opcode::kText, .payload = "\xe2\x82", .fin = false},
                 {.opcode = Opcode::kContinuation, .payload = "\xac"}},
                1003, "a character in two pieces");
@@ -218,7 +219,7 @@ TEST_F(Conformance, RefusesMessagesOverTheLimitInOneFrameOrInMany) {
   EXPECT_EQ(served_.application.message_count, 0);
 }
 
-/// With the rate of messages that a server has by default.
+/// With a server's default message rate.
 struct Fragments : testing::Test {
   test::TestServer served{{.close_timeout = std::chrono::milliseconds(500)}};
   FrameClient client;
@@ -247,7 +248,7 @@ TEST_F(Fragments, EmptyOnesAreBoundedByTheRateOfMessages) {
   std::string thousand;
   for (int i = 0; i < 1000; ++i) thousand += bytesOf({.opcode = Opcode::kContinuation, .fin = false});
   ASSERT_TRUE(client.send({.payload = "echo ", .fin = false}));
-  // 100 million would take a server that reads them minutes; this one stops reading and hangs up.
+  // A server that read 100 million of them would need minutes; this one stops reading and disconnects.
   int sent_count = 0;
   while (sent_count < 100'000 && client.tcp().send(thousand)) ++sent_count;
   EXPECT_LT(sent_count, 100'000);

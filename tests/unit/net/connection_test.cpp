@@ -1,4 +1,4 @@
-// Plain HTTP over loopback, as browsers and strangers send it.
+// Plain HTTP over loopback, from browsers and from other programs.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -101,7 +101,7 @@ TEST_F(ConnectionTest, FindsNothingOutsideTheWebRoot) {
   EXPECT_EQ(httpRequest(served.server->port(), "GET", std::string("/index\0.html", 12)).status, 400U);
 }
 
-TEST_F(ConnectionTest, SaysWhatIsWrongWithARequest) {
+TEST_F(ConnectionTest, AnswersABadRequestWithTheReason) {
   ServerOptions small = options();
   small.request_body_max_bytes = 100;
   const TestServer served(small);
@@ -117,13 +117,13 @@ TEST_F(ConnectionTest, SaysWhatIsWrongWithARequest) {
   EXPECT_EQ(httpRequest(port, "GET", "/ws").status, 426U);
 }
 
-TEST_F(ConnectionTest, RefusesChunkedBodiesHoweverTheyCome) {
+TEST_F(ConnectionTest, RefusesEveryFormOfChunkedBody) {
   const TestServer served(options());
   const std::string head = "POST /api/echo HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n";
   EXPECT_EQ(httpExchange(served.server->port(), head + "4\r\nbody\r\n0\r\n\r\n").status, 411U);
-  // A chunk's line without an end would be kept without an end.
+  // A chunk line without an end must not be stored without limit.
   EXPECT_EQ(httpExchange(served.server->port(), head + "4;" + std::string(100'000, 'x')).status, 411U);
-  // Boost's parser would fail an assertion on this one: its last chunk's line, then single bytes.
+  // Boost's parser would fail an assertion on this input: the last chunk's line, then single bytes.
   RawTcp tcp;
   ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
   for (const std::string_view piece : {std::string_view(head), "0\r\n"sv, "\r"sv, "\n"sv}) {
@@ -134,7 +134,7 @@ TEST_F(ConnectionTest, RefusesChunkedBodiesHoweverTheyCome) {
   EXPECT_TRUE(served.serves());
 }
 
-TEST_F(ConnectionTest, WantsExactlyOneHostOfEveryHttp11Request) {
+TEST_F(ConnectionTest, RequiresExactlyOneHostPerHttp11Request) {
   const TestServer served(options());
   const auto ask = [&](const std::string& version, const std::string& headers) {
     return httpExchange(served.server->port(),
@@ -201,7 +201,7 @@ TEST_F(ConnectionTest, OpensRestToListedPagesAndToNoOthers) {
   EXPECT_FALSE(refused.headers.contains("access-control-allow-origin"));
   EXPECT_FALSE(preflight(good, "/healthz").headers.contains("access-control-allow-origin")) << "REST alone";
 
-  // What the page then sends it may read, errors as well.
+  // The page may read the answers to its requests, errors included.
   const auto ask = [&](const std::string& method, const std::string& target, const std::string& headers) {
     return httpRequest(served.server->port(), method, target,
                        headers + (method == "POST" ? "Content-Length: 0\r\n" : ""));
@@ -237,7 +237,7 @@ TEST_F(ConnectionTest, RandomBytesDoNoHarm) {
   EXPECT_EQ(httpRequest(served.server->port(), "GET", "/").status, 200U);
 }
 
-TEST_F(ConnectionTest, CutsRequestsThatNeverEnd) {
+TEST_F(ConnectionTest, ClosesRequestsThatNeverEnd) {
   ServerOptions hurried = options();
   hurried.handshake_timeout = std::chrono::milliseconds(300);
   const TestServer served(hurried);

@@ -15,7 +15,7 @@ core::ByteView view(const std::string& bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
-/// Frames of every length form; three of them are fragments.
+/// Frames with every form of length; three of them are fragments.
 std::string frames() {
   return bytesOf({.payload = std::string(200, 'a'), .fin = false}) +
          bytesOf({.opcode = Opcode::kPing, .payload = "p"}) + bytesOf({.opcode = Opcode::kContinuation, .fin = false}) +

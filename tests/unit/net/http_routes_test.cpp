@@ -18,7 +18,7 @@ struct HttpRoutesTest : testing::Test {
     auto routed = routeRequest({method, target, if_none_match}, files);
     return std::holds_alternative<Reply>(routed) ? std::get<Reply>(std::move(routed)) : Reply{};
   }
-  /// What the application would be asked.
+  /// The request that would go to the application.
   std::optional<Target> target(const std::string& method, const std::string& text) {
     StaticFiles files(folder.path().string());
     auto routed = routeRequest({method, text, ""}, files);
@@ -39,7 +39,7 @@ TEST_F(HttpRoutesTest, SaysHowToBuildAMissingWebClient) {
   EXPECT_TRUE(reply.body->starts_with("The web client is not built: run ./dev build"));
 }
 
-TEST_F(HttpRoutesTest, LetsHashedAssetsBeKeptAndAsksAgainForTheRest) {
+TEST_F(HttpRoutesTest, LetsBrowsersCacheHashedAssetsAndRevalidateTheRest) {
   folder.write("index.html", "<h1>water</h1>");
   folder.write("assets/main-abc.js", "run()");
   EXPECT_EQ(header(route("GET", "/assets/main-abc.js"), "Cache-Control"), "public, max-age=31536000, immutable");
@@ -84,7 +84,7 @@ TEST_F(HttpRoutesTest, AllowsOnlyReadingFiles) {
   EXPECT_EQ(route("TRACE", "/api/echo").status, 405U);
 }
 
-TEST_F(HttpRoutesTest, LeavesTheApplicationItsPaths) {
+TEST_F(HttpRoutesTest, PassesItsPathsToTheApplication) {
   const auto echo = target("POST", "/api/echo?x=1");
   ASSERT_TRUE(echo);
   EXPECT_EQ(echo->path, "/api/echo");
@@ -133,7 +133,7 @@ TEST(Query, GivesTheValuesOfAName) {
   }
 }
 
-TEST(Printable, LeavesNothingOfAStrangersBytesThatIsNotPlain) {
+TEST(Printable, EscapesAndShortensBytesOfClients) {
   EXPECT_EQ(printable("/a b\xff\"\n"), "/a%20b%FF\"%0A");
   EXPECT_EQ(printable(std::string(1000, '\x01')).size(), 198U + 3U);
 }

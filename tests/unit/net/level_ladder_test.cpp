@@ -10,14 +10,14 @@ namespace {
 using core::Level;
 using std::chrono::seconds;
 
-/// A link that carries the levels up to `carries`, one second a call.
+/// A link that carries the levels up to `carries`, one second per call.
 class Link {
  public:
   explicit Link(std::uint32_t reduced_count) : reduced_count_(reduced_count) {
     (void)ladder.review(now_, reduced_count_);
   }
 
-  /// Seconds at which the level changed, with the level.
+  /// The seconds at which the level changed, with the new level.
   struct Change {
     int second;
     Level level;
@@ -43,7 +43,7 @@ class Link {
   std::uint32_t reduced_count_;
 };
 
-TEST(LevelLadder, ComesDownAStepASecondToWhatTheLinkCarries) {
+TEST(LevelLadder, StepsDownOncePerSecondToWhatTheLinkCarries) {
   Link link(3);
   EXPECT_EQ(link.run(4, Level::kCoarse),
             (std::vector<Link::Change>{{1, Level::kFine}, {2, Level::kMedium}, {3, Level::kCoarse}}));
@@ -81,7 +81,7 @@ TEST(LevelLadder, RetriesAFailedStepUpLessAndLessOften) {
   EXPECT_EQ(link.ladder.level(), Level::kMedium);
 }
 
-TEST(LevelLadder, ClimbsAllTheWayWhenTheLinkRecovers) {
+TEST(LevelLadder, ReturnsToFullWhenTheLinkRecovers) {
   Link link(3);
   link.run(60, Level::kCoarse);
   const auto changes = link.run(300, Level::kFull);

@@ -11,7 +11,7 @@ using test::shared;
 
 constexpr double kAnyRate_hz = 1e9;
 
-/// Each call a second later, so that no rate gets in the way.
+/// Returns a time one second after the last call, so that no rate limit applies.
 Clock::time_point later() {
   static Clock::time_point now{};
   return now += std::chrono::seconds(1);
@@ -46,7 +46,7 @@ std::string sentText(Outbox& outbox) {
   return message ? std::string(message->begin(), message->end()) : std::string("(nothing)");
 }
 
-TEST(Outbox, TheNewestStateTakesThePlaceOfTheOlderOne) {
+TEST(Outbox, TheNewestStateReplacesTheOlderOne) {
   Outbox outbox(8);
   outbox.pushState({.name = "people"}, shared("people 1"));
   outbox.pushAnswer(shared("answer"));
@@ -130,7 +130,7 @@ TEST(Outbox, HoldsOneFramePerLayer) {
   EXPECT_EQ(std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }), 2);
 }
 
-TEST(Outbox, ContinuesWhereTheClientHasTheFrameBefore) {
+TEST(Outbox, SendsADeltaIfTheClientHasTheFrameBefore) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe) << "it has nothing yet";
@@ -175,7 +175,7 @@ TEST(Outbox, ASlowerWatchTakesKeyframesOnly) {
   Clock::time_point now = later();
   std::vector<std::string> taken;
   int asked_count = 0;
-  for (int k = 0; k < 30; ++k) {  // 30 frames a second, of which every third is taken
+  for (int k = 0; k < 30; ++k) {  // 30 frames per second, every third is taken
     now += std::chrono::microseconds(33'333);
     const bool wants_keyframe = outbox.demand(1, 0, now).wants_keyframe;
     asked_count += wants_keyframe ? 1 : 0;
@@ -208,20 +208,20 @@ TEST(Outbox, TakesFramesOfItsOwnLevelOnly) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
-  // A scene that has less than the level allows gives everything.
+  // In a scene that is smaller than the level, the level equals full.
   EXPECT_EQ(outbox.demand(1, 1, later()).level, core::Level::kFull);
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
 }
 
-TEST(Outbox, NeverContinuesAFrameOfAnotherLevel) {
+TEST(Outbox, NeverSendsADeltaAcrossLevels) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kMedium});
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
   EXPECT_EQ(textOf(outbox.next().message), "whole");
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
   EXPECT_EQ(textOf(outbox.next().message), "continuing");
-  // Another scene, in which the level is the full one.
+  // In another scene the level equals full.
   EXPECT_TRUE(outbox.demand(1, 1, later()).wants_keyframe);
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
   EXPECT_EQ(textOf(outbox.next().message), "whole");
@@ -229,7 +229,7 @@ TEST(Outbox, NeverContinuesAFrameOfAnotherLevel) {
   EXPECT_EQ(textOf(outbox.next().message), "continuing");
 }
 
-TEST(Outbox, AReducedLevelThatIsTheFullOneKeepsItsRate) {
+TEST(Outbox, AReducedLevelThatEqualsFullKeepsItsRate) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = 60.0, .level = core::Level::kCoarse});
   Clock::time_point now = later();
@@ -242,7 +242,7 @@ TEST(Outbox, AReducedLevelThatIsTheFullOneKeepsItsRate) {
   EXPECT_NEAR(taken_count, 2 * core::kLevelBudgets[0].rate_hz, 5);
 }
 
-/// Offers 30 frames a second of whatever level the outbox is at; the writer takes one of `taken_of` of them.
+/// Offers 30 frames per second of the outbox's present level; the writer takes one of `taken_of`.
 class LinkOf30Hz {
  public:
   LinkOf30Hz(Outbox& outbox, std::uint32_t reduced_count) : outbox_(outbox), reduced_count_(reduced_count) {}
@@ -265,7 +265,7 @@ class LinkOf30Hz {
   Clock::time_point now_ = later();
 };
 
-TEST(Outbox, AnAdaptingSessionWhoseFramesWaitComesDownAndClimbsBack) {
+TEST(Outbox, LowersAnAdaptingSessionWhoseFramesWaitAndRaisesItAgain) {
   using core::Level;
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .adapts = true});
@@ -276,7 +276,7 @@ TEST(Outbox, AnAdaptingSessionWhoseFramesWaitComesDownAndClimbsBack) {
   EXPECT_EQ(link.run(10, 1), (std::vector{Level::kMedium, Level::kFull}));
 }
 
-TEST(Outbox, OneThatDoesNotAdaptKeepsItsLevel) {
+TEST(Outbox, ASessionThatDoesNotAdaptKeepsItsLevel) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kFine});
   LinkOf30Hz link(outbox, 3);
@@ -298,7 +298,7 @@ TEST(Outbox, TakesLayersInTurn) {
   std::vector<core::SharedBytes> last(4);
   for (LayerIndex layer = 0; layer < 4; ++layer) outbox.setWatch(layer, Watch{.max_rate_hz = kAnyRate_hz});
   std::vector<std::size_t> order;
-  // Every layer is refilled after every send: without turns the first layer would be sent alone.
+  // Every layer is refilled after every send: without taking turns, only the first layer would be sent.
   for (int k = 0; k < 8; ++k) {
     for (LayerIndex layer = 0; layer < 4; ++layer) outbox.offerFrame(layer, {last[layer] = shared("f"), {}}, later());
     const auto sent = outbox.next().message;
@@ -352,7 +352,7 @@ TEST(Outbox, ClosesWhenTooManyAnswersWait) {
   EXPECT_FALSE(outbox.pushAnswer(shared("1")).overflow);
   EXPECT_FALSE(outbox.pushAnswer(shared("2")).overflow);
   EXPECT_TRUE(outbox.pushAnswer(shared("3")).overflow);
-  EXPECT_FALSE(outbox.pushAnswer(shared("4")).overflow) << "the overflow is told once";
+  EXPECT_FALSE(outbox.pushAnswer(shared("4")).overflow) << "the overflow is reported once";
   ASSERT_TRUE(outbox.closeRequest());
   EXPECT_EQ(outbox.closeRequest()->code, 1013);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
@@ -374,7 +374,7 @@ TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
   EXPECT_EQ(outbox.closeRequest()->reason, "first");
 }
 
-TEST(Outbox, KeepsNothingOnceShut) {
+TEST(Outbox, KeepsNothingOnceClosed) {
   Outbox outbox(8);
   const auto message = shared("message");
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});

@@ -15,7 +15,7 @@ using test::TestServer;
 using test::text;
 using test::WsClient;
 
-/// More than the kernel buffers of a connection hold, so that a write to a client that does not read cannot end.
+/// More than the kernel buffers of a connection hold, so that a write to a client that does not read never ends.
 constexpr std::size_t kHugeFrameBytes = 16U << 20U;
 constexpr int kTinyReceiveBuffer = 4096;
 constexpr double kAnyRate_hz = 1e6;
@@ -40,17 +40,17 @@ TEST(Outflow, SharesOneBufferAmongAllClients) {
   for (int k = 0; k < 6; ++k) clients.push_back(served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer));
   const core::SharedBytes frame = core::share(core::Bytes(kHugeFrameBytes));
   served.server->hub().publish("pool", 1, {frame, {}});
-  // Nobody reads, so every session keeps its one reference, in its slot or in the write that cannot end.
+  // No client reads, so each session holds one reference, in its slot or in the unfinished write.
   EXPECT_EQ(frame.use_count(), 1 + 6);
   served.server->stop();
   EXPECT_EQ(frame.use_count(), 1);
 }
 
 TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
-  TestServer served({.write_stall_timeout = 3 * test::kPatience});  // however slowly it reads in the end
+  TestServer served({.write_stall_timeout = 3 * test::kPatience});  // longer than the client needs to read at the end
   WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
   WsClient lively = served.watcher(1);
-  // The first frame can never be written to the stuck client; it is in flight before the small ones come.
+  // The first frame can never be written to the stuck client; it is in flight before the small ones are published.
   std::vector<std::weak_ptr<const core::Bytes>> frames;
   constexpr int kFrameCount = 100;
   for (int k = 0; k < kFrameCount; ++k) {
@@ -62,24 +62,24 @@ TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
     ASSERT_TRUE(received) << "frame " << k;
     ASSERT_EQ(*received, *frame) << "frame " << k;
   }
-  // Of 100 frames one is in flight, the newest waits, the others are gone and counted.
+  // Of 100 frames one is in flight, the newest waits, and the others are dropped and counted.
   EXPECT_TRUE(eventually([&] { return served.server->stats().sent_frame_count == kFrameCount; }));
   EXPECT_EQ(served.server->stats().dropped_frame_count, kFrameCount - 2U);
   EXPECT_TRUE(eventually(
       [&] { return std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }) == 2; }));
-  // And when it reads at last, it gets the frame in flight and then the newest.
+  // When it reads at last, it gets the frame in flight and then the newest one.
   EXPECT_EQ(stuck.receive().value_or(core::Bytes{}).size(), kHugeFrameBytes);
   EXPECT_EQ(stuck.receive(), core::Bytes(1000, kFrameCount - 1));
 }
 
-TEST(Outflow, PutsNothingIntoAFrameThatGoesOutInPieces) {
+TEST(Outflow, SendsNothingInsideAPartlyWrittenFrame) {
   TestServer served;
   WsClient slow = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
   core::Bytes frame(kHugeFrameBytes);
   for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<std::uint8_t>(k * 13 + k / 65'521);
   served.server->hub().publish("pool", 1, {core::share(frame), {}});
   ASSERT_TRUE(eventually([&] { return served.server->stats().waiting_frame_count == 0; }));
-  // The write is out and cannot end; its rest is offered to the kernel again and again while these are answered.
+  // The write has begun and cannot end; the kernel is offered the rest again and again while these are answered.
   for (int k = 0; k < 5; ++k) {
     ASSERT_TRUE(slow.sendPing());
     ASSERT_TRUE(slow.sendBinary(bytes("echo " + std::to_string(k))));
@@ -100,7 +100,7 @@ TEST(Outflow, EvictsAClientWhoseWriteStalls) {
   EXPECT_TRUE(served.serves());
 }
 
-TEST(Outflow, CutsAStuckClientThatIsToClose) {
+TEST(Outflow, DropsAStuckClientThatIsBeingClosed) {
   TestServer served({.close_timeout = std::chrono::milliseconds(200)});
   const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
   served.server->hub().publish("pool", 1, {core::share(core::Bytes(kHugeFrameBytes)), {}});

@@ -12,7 +12,7 @@ Clock::time_point at(double time_s) {
   return Clock::time_point(std::chrono::duration_cast<Clock::duration>(duration<double>(100.0 + time_s)));
 }
 
-/// How many of `count` frames at `rate_hz`, every second one late by `jitter_s`, pass.
+/// Number of frames that pass out of `count` frames at `rate_hz`, every second one late by `jitter_s`.
 int passed(RateGate gate, int count, double rate_hz, double jitter_s = 0.0) {
   int out = 0;
   for (int k = 0; k < count; ++k) out += gate.pass(at(k / rate_hz + (k % 2) * jitter_s));

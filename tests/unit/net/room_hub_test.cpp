@@ -9,7 +9,7 @@ namespace {
 
 using test::shared;
 
-/// Writes down what the hub asks of it.
+/// Records the hub's calls.
 struct RecordingLink final : SessionLink {
   int control_count = 0;
   int frame_count = 0;
@@ -63,7 +63,7 @@ TEST_F(RoomHubTest, ReportsTheDemandPerLevel) {
   EXPECT_EQ(at("pool", 3, 2, Level::kMedium).watcher_count, 1U);
   EXPECT_TRUE(at("pool", 3, 2, Level::kMedium).wants_keyframe);
   EXPECT_EQ(at("pool", 3, 2, Level::kCoarse).watcher_count, 0U);
-  // Where the medium level leaves nothing out, it is the full one.
+  // If the medium level leaves nothing out, full is used instead.
   EXPECT_EQ(at("pool", 3, 1, Level::kFull).watcher_count, 2U);
   EXPECT_TRUE(at("pool", 3, 1, Level::kFull).wants_keyframe);
   EXPECT_EQ(at("pool", 4, 2, Level::kFull).watcher_count, 0U);
@@ -108,7 +108,7 @@ TEST_F(RoomHubTest, TreatsAnInvalidRateAsStop) {
   }
 }
 
-TEST_F(RoomHubTest, TakesWatchesAlongIntoTheNextRoomButNoFrames) {
+TEST_F(RoomHubTest, MovesWatchesToAnotherRoomAndClearsFrames) {
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.join(1, "pool");
   EXPECT_EQ(test::watcherCount(hub, "pool", 3), 1U);

@@ -19,7 +19,7 @@ const std::string kUpgrade =
     "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
     "Sec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3RzIQ==\r\n\r\n";
 
-/// A bare connection after the upgrade and the greeting.
+/// A raw connection after the upgrade and the greeting.
 RawTcp upgraded(const TestServer& served) {
   RawTcp raw;
   EXPECT_TRUE(raw.connect("127.0.0.1", served.server->port()));
@@ -103,7 +103,7 @@ TEST(Session, KeepsTheOrderOfControlMessages) {
 TEST(Session, ClosesWithTryAgainLaterWhenTooManyAnswersWait) {
   TestServer served({.answer_max_count = 8});
   WsClient client = served.client();
-  // The flood is queued inside one callback, so the writer cannot take any of it before the ninth.
+  // The flood is queued inside one callback, so the writer can take none of it before the ninth message.
   ASSERT_TRUE(client.sendBinary(bytes("flood 20 0")));
   for (int k = 0; k < 8; ++k) ASSERT_EQ(text(client.receive()), std::to_string(k) + " ");
   EXPECT_TRUE(client.waitClosed());
@@ -116,7 +116,7 @@ TEST(Session, ClosesWithTryAgainLaterWhenTooManyAnswersWait) {
 TEST(Session, IsNotReadFromWhileItsAnswersWait) {
   TestServer served({.answer_pause_count = 4, .messages_per_s = 1e6, .message_burst_count = 1e6});
   WsClient client = served.client();
-  // More answers than kernels hold, asked for by messages that they do.
+  // The answers exceed the kernel's buffers; the requests for them fit.
   constexpr int kCount = 600;
   constexpr std::size_t kAnswerBytes = 65'536;
   for (int k = 0; k < kCount; ++k) ASSERT_TRUE(client.sendBinary(bytes("flood 1 65536")));
@@ -181,7 +181,7 @@ TEST(Session, ClosesOnAFloodOfPings) {
   EXPECT_EQ(client.closeCode(), 1008);
 }
 
-TEST(Session, EndsAloneWhenTheApplicationThrows) {
+TEST(Session, AnExceptionOfTheApplicationEndsOnlyItsSession) {
   TestServer served;
   WsClient client = served.client();
   WsClient other = served.client();
@@ -192,7 +192,7 @@ TEST(Session, EndsAloneWhenTheApplicationThrows) {
   EXPECT_EQ(text(other.receive()), "echo unharmed");
 }
 
-TEST(Session, TellsTheApplicationHowThePeerLeft) {
+TEST(Session, ReportsToTheApplicationHowThePeerLeft) {
   TestServer served;
   WsClient polite = served.client();
   EXPECT_TRUE(polite.close(1000));
@@ -207,7 +207,7 @@ TEST(Session, TellsTheApplicationHowThePeerLeft) {
 
 TEST(Session, ClosesWhenThePeerStaysSilent) {
   TestServer served({.idle_timeout = std::chrono::milliseconds(300)});
-  const WsClient client = served.client();  // acts only inside its calls: it answers no ping
+  const WsClient client = served.client();  // runs only inside its calls, so it answers no ping
   EXPECT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
 }
 
@@ -219,14 +219,14 @@ TEST(Session, ClosesAPeerThatSendsACloseFrameButStaysConnected) {
 }
 
 TEST(Session, EndsOnBrokenFrames) {
-  // The peer holds its end open, so that the server has to give up waiting for it as well.
+  // The peer keeps its side open, so that the server has to stop waiting for it as well.
   TestServer served({.idle_timeout = std::chrono::milliseconds(2000)});
   const std::string protocol_error("\x88\x02\x03\xea", 4);  // a close frame with code 1002
   const std::vector<std::string> broken = {
       std::string("\x82\x01x", 3),         // not masked
       std::string("\x83\x80\0\0\0\0", 6),  // reserved opcode
       std::string("\xf2\x80\0\0\0\0", 6),  // reserved bits
-      std::string("\x80\x80\0\0\0\0", 6),  // continues nothing
+      std::string("\x80\x80\0\0\0\0", 6),  // a continuation without a start
   };
   std::vector<RawTcp> peers;
   for (const std::string& frame : broken) {
@@ -251,7 +251,7 @@ TEST(Session, RefusesAFrameThatClaimsToBeImmense) {
   EXPECT_EQ(served.application.closed()[0].end.code, 1009);
 }
 
-TEST(Session, RefusesBytesBehindAnUpgradeThatWasNotAnswered) {
+TEST(Session, RefusesBytesAfterAnUnansweredUpgrade) {
   const TestServer served;
   EXPECT_EQ(test::httpExchange(served.server->port(), kUpgrade + "\x82").status, 400U);
   EXPECT_TRUE(served.application.opened().empty());
@@ -309,7 +309,7 @@ TEST(Session, CallbacksNeverOverlapAndCloseComesLastWhenManyComeAndGo) {
           ++echo_count;
           break;
         }
-        if (visit % 2 == 0) (void)client.close();  // the others just hang up
+        if (visit % 2 == 0) (void)client.close();  // the others disconnect without a close frame
       }
     });
   }

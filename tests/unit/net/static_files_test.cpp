@@ -62,7 +62,7 @@ TEST_F(StaticFilesTest, ServesNothingWithoutARoot) {
   EXPECT_FALSE(StaticFiles((folder.path() / "secret.txt").string()).find("/"));
 }
 
-TEST(ContentType, KnowsWhatAWebClientIsMadeOf) {
+TEST(ContentType, KnowsTheFileTypesOfAWebClient) {
   EXPECT_EQ(contentType("index.html"), "text/html; charset=utf-8");
   EXPECT_EQ(contentType("a.js"), "text/javascript; charset=utf-8");
   EXPECT_EQ(contentType("a.mjs"), "text/javascript; charset=utf-8");

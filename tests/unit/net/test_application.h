@@ -1,4 +1,4 @@
-// A small Application for tests: greets, echoes, and does what a client's message asks.
+// A small Application for tests: greets, echoes, and follows commands in the clients' messages.
 #pragma once
 
 #include <atomic>
@@ -31,7 +31,7 @@ inline core::SharedBytes shared(std::string_view content) {
   return core::share(bytes(content));
 }
 
-/// Waits for something that must come; false only after kPatience.
+/// Waits for a condition that must become true; false only after kPatience.
 inline bool eventually(const std::function<bool()>& holds) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (!holds()) {
@@ -41,7 +41,7 @@ inline bool eventually(const std::function<bool()>& holds) {
   return true;
 }
 
-/// Watchers of a layer, whatever the level.
+/// Number of watchers of a layer at any level.
 inline std::size_t watcherCount(const net::Hub& hub, const std::string& room, net::LayerIndex layer) {
   std::size_t count = 0;
   const core::LayerDemand demand = hub.demand(room, layer, 0);
@@ -49,8 +49,9 @@ inline std::size_t watcherCount(const net::Hub& hub, const std::string& room, ne
   return count;
 }
 
-/// Messages: "echo ..." comes back; "watch L RATE" watches and answers "watching"; "flood N BYTES" sends N control
-/// messages "0 ...", "1 ..."; "throw" throws; "bye" closes with 1000. Rooms: "" and "pool"; each session joins its own.
+/// Messages: "echo ..." is sent back; "watch L RATE" watches and answers "watching"; "flood N BYTES" sends N control
+/// messages "0 ...", "1 ..."; "throw" throws; "bye" closes with 1000. Rooms: "" and "pool"; each session joins the room
+/// of its path.
 class TestApplication final : public net::Application {
  public:
   struct Closed {
@@ -155,7 +156,7 @@ class TestApplication final : public net::Application {
   std::atomic<int> after_closed_count{0};  ///< callbacks after sessionClosed
 
  private:
-  /// Notes a callback that runs beside another of its session, or after its last.
+  /// Reports a callback that runs at the same time as another of its session, or after its last one.
   class Alone {
    public:
     Alone(TestApplication& application, net::SessionId session) : application_(application), session_(session) {
@@ -191,7 +192,7 @@ struct TestServer {
     server = std::move(*started);
   }
 
-  /// Connected, and its greeting received.
+  /// Returns a client that has received its greeting.
   WsClient client(const std::string& target = "/ws", int receive_buffer_bytes = 0) const {
     WsClient out;
     if (receive_buffer_bytes > 0) out.setReceiveBuffer(receive_buffer_bytes);
@@ -200,7 +201,7 @@ struct TestServer {
     return out;
   }
 
-  /// A client that watches the layer from now on.
+  /// Returns a client that watches the layer.
   WsClient watcher(net::LayerIndex layer, double rate_hz = 1e6, int receive_buffer_bytes = 0) const {
     WsClient out = client("/ws/pool", receive_buffer_bytes);
     out.sendBinary(bytes("watch " + std::to_string(layer) + " " + std::to_string(rate_hz)));
@@ -208,7 +209,7 @@ struct TestServer {
     return out;
   }
 
-  /// The server still answers a new client.
+  /// Returns whether the server still answers a new client.
   bool serves() const {
     WsClient probe = client();
     return probe.sendBinary(bytes("echo alive")) && text(probe.receive()) == "echo alive";

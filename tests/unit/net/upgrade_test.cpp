@@ -1,4 +1,4 @@
-// The opening handshake as RFC 6455 section 4 wants it: what a server refuses, with which answer, and how long it
+// The opening handshake of RFC 6455, section 4: which requests a server refuses, with which answer, and how long it
 // waits.
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ TEST(Upgrade, SaysWhichVersionItSpeaksToOtherVersions) {
   EXPECT_TRUE(served.serves());
 }
 
-TEST(Upgrade, BlamesAWrongVersionOnTheVersion) {
+TEST(Upgrade, ReportsAWrongVersionAsTheFault) {
   const TestServer served;
   EXPECT_EQ(httpExchange(served.server->port(), upgradeRequest(kKey)).body,
             "The upgrade has no Sec-WebSocket-Version: send version 13.\n");
@@ -42,7 +42,7 @@ TEST(Upgrade, BlamesAWrongVersionOnTheVersion) {
             "Sec-WebSocket-Version 8 is not spoken here: send version 13.\n");
 }
 
-TEST(Upgrade, RefusesHeadersThatMayStandOnceButComeTwice) {
+TEST(Upgrade, RefusesSingleHeadersThatAreRepeated) {
   const TestServer served;
   for (const std::string& twice :
        {kVersion, kKey, std::string("Host: localhost\r\n"), std::string("Origin: http://a\r\n")}) {
@@ -102,7 +102,7 @@ TEST(Upgrade, RefusesKeysThatAreNotSixteenBytesInBase64) {
   EXPECT_TRUE(served.serves());
 }
 
-TEST(Upgrade, IsNoUpgradeWithAnotherMethodVersionOrWithoutItsHeaders) {
+TEST(Upgrade, IsRefusedWithAnotherMethodOrVersionOrWithoutItsHeaders) {
   const TestServer served;
   const std::string rest = "Host: localhost\r\nConnection: close\r\n" + kVersion + kKey;
   for (const std::string& request :
@@ -138,12 +138,12 @@ TEST(Upgrade, TakesAHeaderThatComesByteByByte) {
   EXPECT_TRUE(tcp.receiveUntil("hello ").starts_with("HTTP/1.1 101 "));
 }
 
-TEST(Upgrade, IsCutWhenItsHeaderTricklesOnForever) {
+TEST(Upgrade, IsClosedWhenItsHeaderNeverEnds) {
   const TestServer served({.handshake_timeout = std::chrono::milliseconds(300)});
   RawTcp tcp;
   ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
   ASSERT_TRUE(tcp.send("GET /ws HTTP/1.1\r\nX-Long: "));
-  // Each byte comes well within the limit; the limit is on the whole.
+  // Each byte arrives within the limit, but the limit applies to the whole header.
   EXPECT_TRUE(eventually([&] {
     (void)tcp.receive(1, std::chrono::milliseconds(20));
     return tcp.closed() || !tcp.send("x");

@@ -1,4 +1,4 @@
-// What ticks and heavy commands may cost.
+// Budgets of ticks and heavy commands.
 #include <gtest/gtest.h>
 
 #include <spindrift/rooms/tick_cost.h>
@@ -9,11 +9,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(WorkBudget, TakesItsShareOfTheTimeAndPaysDebtsFirst) {
+TEST(WorkBudget, UsesItsShareOfTheTimeAndRepaysOverrunsFirst) {
   WorkBudget budget(0.25, 30ms);
   auto now = WorkBudget::Clock::time_point{} + 1h;
   EXPECT_TRUE(budget.isOpen(now));
-  budget.spend(130ms);  // known afterwards only
+  budget.spend(130ms);  // the cost is known only afterwards
   EXPECT_FALSE(budget.isOpen(now += 390ms)) << "97.5 of 100 ms are paid";
   EXPECT_TRUE(budget.isOpen(now += 20ms));
   EXPECT_TRUE(budget.isOpen(now += 1h));
@@ -21,7 +21,7 @@ TEST(WorkBudget, TakesItsShareOfTheTimeAndPaysDebtsFirst) {
   EXPECT_FALSE(budget.isOpen(now)) << "what is not used does not add up beyond the burst";
 }
 
-TEST(WorkBudget, TakesNoMoreThanItsShareInALongRun) {
+TEST(WorkBudget, UsesNoMoreThanItsShareInALongRun) {
   WorkBudget budget(0.25, 30ms);
   auto now = WorkBudget::Clock::time_point{} + 1h;
   auto spent = 0ms;
@@ -34,7 +34,7 @@ TEST(WorkBudget, TakesNoMoreThanItsShareInALongRun) {
   EXPECT_GE(spent, 14s);
 }
 
-TEST(TickCost, GrowsWithTheDearerPart) {
+TEST(TickCost, GrowsWithTheMoreExpensivePart) {
   TickCost cost;
   cost.restart(10.0);
   const TickWork now{.particle_step_count = 1000, .wave_step_count = 500};
@@ -43,14 +43,14 @@ TEST(TickCost, GrowsWithTheDearerPart) {
   EXPECT_DOUBLE_EQ(cost.predict_ms(now, {.particle_step_count = 1, .wave_step_count = 1}), 10.0);
 }
 
-TEST(TickCost, FollowsWhatTicksTake) {
+TEST(TickCost, FollowsTheMeasuredTicks) {
   TickCost cost;
   cost.restart(10.0);
   for (int k = 0; k < 100; ++k) cost.note(50.0);
   EXPECT_NEAR(cost.predict_ms({}, {}), 50.0, 0.1);
 }
 
-TEST(TickCost, KnowsWhatASceneAsksFor) {
+TEST(TickCost, CountsTheStepsOfAScene) {
   core::Scene scene;
   scene.particles.emplace();
   scene.particles->solver = core::PressureSolver::kPositionBased;

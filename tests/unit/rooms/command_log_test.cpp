@@ -72,7 +72,7 @@ TEST_F(CommandLogTest, ReadsWhatWasWritten) {
   EXPECT_FALSE((*log)->truncation());
 }
 
-TEST_F(CommandLogTest, CutAnywhereItGivesItsWholeRecordsAndSaysWhereItEnds) {
+TEST_F(CommandLogTest, ATruncatedLogGivesItsWholeRecordsAndThePlaceOfItsEnd) {
   const std::string whole = bytesOf(written(3));
   std::size_t most = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {

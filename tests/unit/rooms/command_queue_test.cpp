@@ -52,7 +52,7 @@ TEST_F(CommandQueueTest, LanesTakeTurnsAndKeepTheirOrder) {
   EXPECT_EQ(queue_.size(), 0u);
 }
 
-TEST_F(CommandQueueTest, WithoutBudgetLightCommandsOfOthersGoOn) {
+TEST_F(CommandQueueTest, LightCommandsOfOthersContinueWithoutBudget) {
   push(queue_, from(1, 1, core::Reset{}));
   push(queue_, from(1, 2, core::Splash{}));
   push(queue_, from(2, 21, core::Splash{}));
@@ -74,7 +74,7 @@ TEST_F(CommandQueueTest, EqualResetsOfAnySendersAreCarriedOutOnce) {
   EXPECT_THAT(next(queue_), ElementsAre(101));
 }
 
-TEST_F(CommandQueueTest, ValuesForOneParameterComeTogether) {
+TEST_F(CommandQueueTest, SuccessiveValuesForOneParameterAreReturnedTogether) {
   push(queue_, from(1, 1, set("wave.depth_m", 1)));
   push(queue_, from(1, 2, set("wave.depth_m", 2)));
   push(queue_, from(1, 3, set("wave.damping_per_s", 0.1)));
@@ -119,7 +119,7 @@ TEST_F(CommandQueueTest, RefusesBeyondEachBoundAndSaysWhich) {
   EXPECT_THAT(*all, testing::HasSubstr("5 commands wait"));
 }
 
-TEST_F(CommandQueueTest, HeavyCommandsThatWaitTooLongAreGivenUp) {
+TEST_F(CommandQueueTest, HeavyCommandsThatWaitTooLongAreDropped) {
   push(queue_, from(1, 1, core::Reset{}), 0ms);
   push(queue_, from(1, 2, core::Splash{}), 0ms);
   push(queue_, from(2, 21, core::Reset{}), 900ms);
@@ -137,7 +137,7 @@ TEST_F(CommandQueueTest, DrainTakesEverything) {
   EXPECT_THAT(next(queue_), ElementsAre(3));
 }
 
-TEST_F(CommandQueueTest, LosesAndInventsNothingWithManyProducers) {
+TEST_F(CommandQueueTest, ReturnsEveryCommandOnceWithManyProducers) {
   constexpr std::uint64_t kProducers = 4;
   constexpr std::uint64_t kCommands = 2000;
   std::vector<std::jthread> producers;

@@ -8,13 +8,13 @@ namespace {
 using namespace std::chrono_literals;
 const GrowthNews::TimePoint kStart = GrowthNews::TimePoint{} + 1h;
 
-TEST(GrowthNews, TellsNothingWhileNothingGrows) {
+TEST(GrowthNews, ReportsNothingWithoutGrowth) {
   GrowthNews news(1s);
   EXPECT_FALSE(news.tell(0, kStart));
   EXPECT_FALSE(news.tell(0, kStart + 1h));
 }
 
-TEST(GrowthNews, TellsGrowthOnce) {
+TEST(GrowthNews, ReportsGrowthOnce) {
   GrowthNews news(1s);
   EXPECT_TRUE(news.tell(1, kStart));
   EXPECT_FALSE(news.tell(1, kStart + 5s));
@@ -32,7 +32,7 @@ TEST(GrowthNews, ReportsAFloodOncePerIntervalAndItsLastCountAtTheEnd) {
   }
   EXPECT_EQ(told_count, 3);
   EXPECT_LT(last, 300u);
-  EXPECT_TRUE(news.tell(300, kStart + 10s)) << "growth within the interval is told later";
+  EXPECT_TRUE(news.tell(300, kStart + 10s)) << "growth within the interval is reported later";
 }
 
 TEST(GrowthNews, FollowsACounterThatBeginsAgain) {

@@ -28,7 +28,7 @@ TEST_F(RosterTest, PeopleHaveNumbersNamesAndColors) {
   EXPECT_EQ(people.people(0).role(), v1::ROLE_PLAYER);
   EXPECT_NE(people.people(0).color_rgb(), people.people(1).color_rgb());
   EXPECT_TRUE(roster.settle(now).is_news);
-  EXPECT_FALSE(roster.settle(now).is_news) << "told once";
+  EXPECT_FALSE(roster.settle(now).is_news) << "reported once";
 }
 
 TEST_F(RosterTest, APersonWithoutABoatIsForgottenAtOnce) {
@@ -70,13 +70,13 @@ TEST_F(RosterTest, AfterTheGraceTimeTheBoatHasNoOwner) {
   EXPECT_FALSE(arrive(8, "", ada.resume_key).resumed);
 }
 
-TEST_F(RosterTest, ReturningBeforeTheOldConnectionIsGoneTakesItsPlace) {
+TEST_F(RosterTest, ResumingReplacesTheOldConnection) {
   const Admission ada = arrive(7);
   roster.give(3, ada.person_id);
   const Admission again = arrive(8, "", ada.resume_key);
   EXPECT_TRUE(again.resumed);
   EXPECT_EQ(again.displaced, 7U);
-  roster.leave(7, now);  // the old one ends at last
+  roster.leave(7, now);  // the old connection ends
   EXPECT_FALSE(roster.people().people(0).away());
   EXPECT_EQ(roster.ownerOf(3), ada.person_id);
 }

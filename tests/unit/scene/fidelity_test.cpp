@@ -1,4 +1,4 @@
-// What the fidelity levels make of a scene's numbers.
+// The effect of the fidelity levels on a scene's numbers.
 #include <string>
 
 #include <gtest/gtest.h>

@@ -66,7 +66,7 @@ TEST(Parameters, EveryNumberOfASceneHasLabelRangeStepAndADefaultWithin) {
   EXPECT_GE(count, 30);
 }
 
-TEST(Parameters, EveryOneThatCanBeSetExplainsItself) {
+TEST(Parameters, EveryOneThatCanBeSetHasAHelpText) {
   for (const v1::ParameterDescription& description : describeParameters(fullScene())) {
     EXPECT_FALSE(description.help().empty()) << description.path();
     EXPECT_FALSE(description.label().empty()) << description.path();
@@ -108,7 +108,7 @@ TEST(Parameters, DescribeOnlyTheLiveOnesOfThePartsPresent) {
                                                             "wave.steepening_ratio", "stream.frame_rate_hz"));
 }
 
-TEST(Parameters, EveryOneDescribedCanBeSetToItsBoundsAndThenTellsItsValue) {
+TEST(Parameters, EveryDescribedOneCanBeSetToItsBounds) {
   v1::Scene scene = fullScene();
   for (const v1::ParameterDescription& description : describeParameters(scene)) {
     EXPECT_FALSE(setParameter(scene, description.path(), description.min())) << description.path();
@@ -119,7 +119,7 @@ TEST(Parameters, EveryOneDescribedCanBeSetToItsBoundsAndThenTellsItsValue) {
   }
 }
 
-TEST(Parameters, SettingReachesTheFieldAndOnlyIt) {
+TEST(Parameters, SettingChangesItsFieldOnly) {
   v1::Scene scene = fullScene();
   v1::Scene expected = scene;
   expected.mutable_particles()->set_viscosity_pas(12.5);
@@ -133,7 +133,7 @@ TEST(Parameters, StepsOfTheSliderAreNotEnforced) {
   EXPECT_EQ(scene.wave().depth_m(), 1.2345);
 }
 
-TEST(Parameters, CannotMakeTheWaterTooShallowForWhatFloatsInIt) {
+TEST(Parameters, CannotMakeTheWaterTooShallowForItsBoats) {
   auto scene = parseSceneText(
       "wave { depth_m: 2 boundary_minus_x: WAVE_BOUNDARY_REFLECT boundary_plus_x: WAVE_BOUNDARY_REFLECT }\n"
       "beaches { shore_depth_m: 0.2 }\n"
@@ -161,7 +161,7 @@ struct BadSet {
 
 class RejectedParameter : public testing::TestWithParam<BadSet> {};
 
-TEST_P(RejectedParameter, SaysWhyAndLeavesTheSceneAlone) {
+TEST_P(RejectedParameter, HasAReasonAndDoesNotChangeTheScene) {
   const BadSet& bad = GetParam();
   v1::Scene scene = fullScene();
   scene.clear_foam();
@@ -207,7 +207,7 @@ const BadSet kBadSets[] = {
 INSTANTIATE_TEST_SUITE_P(Parameters, RejectedParameter, testing::ValuesIn(kBadSets),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-TEST(Parameters, AnEndlessPathIsEchoedShortAndClean) {
+TEST(Parameters, ALongPathIsEchoedShortenedAndCleaned) {
   v1::Scene scene = fullScene();
   const auto error = setParameter(scene, "\n\x1b[2J" + std::string(10'000, 'x'), 1.0);
   ASSERT_TRUE(error);
@@ -228,7 +228,7 @@ TEST(Parameters, TheReferenceListsEveryNumberWithItsUnitAndRange) {
     ++number_count;
     EXPECT_THAT(table, HasSubstr(field.name() + "` |"));
   });
-  // Two lines of heading.
+  // The table has two lines of heading.
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), number_count + 2);
 }
 

@@ -26,7 +26,7 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-/// The errors of a scene that must not load, one a line.
+/// Returns the errors of a scene that must not load, one per line.
 std::vector<std::string> errorsOf(const std::string& text) {
   const auto scene = parseSceneText(text, "pool.textproto");
   if (scene) {

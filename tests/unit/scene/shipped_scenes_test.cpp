@@ -13,7 +13,7 @@ std::filesystem::path sceneFolder() {
   return std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server" / "scenes";
 }
 
-TEST(ShippedScenes, AllLoadAndSayWhatTheyShow) {
+TEST(ShippedScenes, AllLoadAndHaveATitleAndDescription) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(sceneFolder())) {
     if (entry.path().extension() != ".textproto") continue;

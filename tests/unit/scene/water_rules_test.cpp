@@ -1,4 +1,4 @@
-// Rules between the water and what stands and floats in it, each broken once.
+// Rules between the water and the obstacles and boats in it, each broken once.
 #include <string>
 #include <vector>
 
@@ -103,7 +103,7 @@ const BrokenRule kBrokenRules[] = {
 INSTANTIATE_TEST_SUITE_P(WaterRules, OneBrokenRule, testing::ValuesIn(kBrokenRules),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-TEST(WaterRules, LetASceneWithEverythingIn) {
+TEST(WaterRules, AcceptASceneWithEveryPart) {
   const auto scene = parseSceneText(
       "wave { side_m: 40 depth_m: 2 boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_REFLECT\n"
       "       sponge_width_m: 20 }\n"
@@ -120,12 +120,12 @@ TEST(WaterRules, LetASceneWithEverythingIn) {
   EXPECT_TRUE(scene) << scene.error().message;
 }
 
-TEST(WaterRules, LetFoamOfTheSurfaceInWithoutParticles) {
+TEST(WaterRules, AcceptFoamOfTheSurfaceWithoutParticles) {
   const auto scene = parseSceneText("wave {}\nfoam { surface: true }", "pool.textproto");
   EXPECT_TRUE(scene) << scene.error().message;
 }
 
-TEST(WaterRules, LetASmallWaterWithoutSpongeIn) {
+TEST(WaterRules, AcceptASmallWaterWithoutASponge) {
   const auto scene = parseSceneText("wave { side_m: 2 }", "pool.textproto");
   EXPECT_TRUE(scene) << "the default sponge is wider, but no side absorbs: " << scene.error().message;
 }

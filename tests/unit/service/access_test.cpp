@@ -47,7 +47,7 @@ TEST(Access, UnknownTokensGiveNothingAndAreNotRepeated) {
   }
 }
 
-TEST(Access, GuestsMayBeTurnedAway) {
+TEST(Access, RefusesGuestsWhereConfigured) {
   const auto grant = parsed("operator aaaaaaaaaaaaaaaa", std::nullopt).resolve("", kNow);
   ASSERT_FALSE(grant);
   EXPECT_THAT(grant.error().message, HasSubstr("send a token"));
@@ -63,7 +63,7 @@ TEST(Access, TokensExpire) {
   EXPECT_THAT(late.error().message, HasSubstr("expired"));
 }
 
-TEST(Access, BadLinesAreNamedWithoutTheirToken) {
+TEST(Access, BadLinesAreReportedWithoutTheirToken) {
   EXPECT_THAT(refusal("king aaaaaaaaaaaaaaaa"), HasSubstr("tokens:1:"));
   EXPECT_THAT(refusal("\noperator"), HasSubstr("tokens:2:"));
   EXPECT_THAT(refusal("operator short"), HasSubstr("at least 16"));

@@ -1,5 +1,5 @@
-// What proto/README.md lists is all that the proto files and the server have: a kind, a field, a reason or a code that
-// is added without its line in the text shows here.
+// Compares the lists in proto/README.md with the proto files and the server: fails when a kind, a field, a reason or a
+// code is added without its line in the text.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -45,7 +45,7 @@ class WireReadme : public testing::Test {
     rows.erase(rows.begin(), rows.begin() + std::min<std::ptrdiff_t>(2, std::ssize(rows)));
     return rows;
   }
-  /// What stands in back quotes in the first cells of the rows.
+  /// Returns the words in back quotes in the first cells of the rows.
   [[nodiscard]] static std::multiset<std::string> namesOf(const std::vector<std::string>& rows) {
     std::multiset<std::string> names;
     for (const std::string& row : rows) {
@@ -55,7 +55,7 @@ class WireReadme : public testing::Test {
     }
     return names;
   }
-  /// Without UNSPECIFIED; `prefix` is cut off.
+  /// Returns the names without UNSPECIFIED and without `prefix`.
   [[nodiscard]] static std::multiset<std::string> valuesOf(const EnumDescriptor& type, const std::string& prefix) {
     std::multiset<std::string> names;
     for (int i = 0; i < type.value_count(); ++i) {

@@ -1,5 +1,5 @@
-// Everything that touches the particles and the surface, in turn: the barrier checker reports what lacks a barrier when
-// the test ends (sim_fixture.h).
+// Runs every pass on the particles and the surface; at the end of a test the barrier checker reports missing barriers
+// (sim_fixture.h).
 #include <gtest/gtest.h>
 
 #include "sim_fixture.h"
@@ -9,7 +9,7 @@ namespace {
 
 class Barriers : public OnDevice, public ::testing::WithParamInterface<core::PressureSolver> {
  protected:
-  /// Two checkpoints, a frame of everything after each other tick, people's commands in between.
+  /// Two checkpoints, a frame of all layers every other tick, commands in between.
   void run(core::Scene scene) {
     scene.particles->solver = GetParam();
     WaterSim& sim = make(scene);

@@ -1,4 +1,4 @@
-// Boats: floating, driving, meeting things, wakes.
+// Boats: floating, driving, collisions, wakes.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// 20 m of water, nothing but the wave and what a test puts there.
+/// 20 m of water with the wave only; tests add what they need.
 core::Scene boatScene() {
   core::Scene scene;
   scene.name = "boats";
@@ -49,7 +49,7 @@ TEST_F(BoatsOnDevice, FloatsAtTheDraughtOfItsDensity) {
     for (int i = 0; i < 1200; ++i) sim.step();
     const BoatPose b = pose(sim);
     const double keel_m = b.y_m - 0.4;
-    // Walls keep the water that the hull displaced: the level away from it stands a little higher.
+    // The walls keep the displaced water, so the level away from the hull is a little higher.
     const double level_m = sim.copyState().elevation_m[5 + 128 * 5];
     EXPECT_NEAR(level_m - keel_m, density * 0.8, 0.03 * density * 0.8) << "density " << density;
     EXPECT_NEAR(b.pitch, 0.0, 1e-3);
@@ -121,7 +121,7 @@ TEST_F(BoatsOnDevice, StaysOutOfRocksOtherBoatsAndWalls) {
   EXPECT_LE(deepest_m, 0.25) << "centres of hulls never come closer than a beam, or into the rock";
 }
 
-TEST_F(BoatsOnDevice, ComeAndGo) {
+TEST_F(BoatsOnDevice, AreAddedAndRemoved) {
   core::Scene scene = boatScene();
   scene.boats->capacity_count = 2;
   scene.boats->boats = {core::Boat{}};
@@ -197,7 +197,7 @@ TEST_F(BoatsOnDevice, HullsPushParticles) {
   EXPECT_EQ(sim.escapedCount(), 0u);
 }
 
-TEST_F(BoatsOnDevice, ABoatThatIsNotANumberIsMendedAndHarmsNobody) {
+TEST_F(BoatsOnDevice, ANonFiniteBoatStartsAgainAndChangesNoOther) {
   core::Scene scene = boatScene();
   scene.boats->boats = {core::Boat{.x_m = -3.0}, core::Boat{.x_m = 3.0}};
   WaterSim& sim = make(scene);

@@ -199,7 +199,7 @@ TEST(Derive, TaitWaterTakesSmallerStepsForItsFasterSound) {
               1e-12);
 }
 
-TEST(Derive, WallsGiveWhatTheMissingLayersWouldHave) {
+TEST(Derive, WallsReplaceTheDensityOfTheMissingLayers) {
   const double s = 0.1;
   for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
     for (const double H : {0.17, 0.2, 0.24, 0.3}) {
@@ -239,7 +239,7 @@ TEST(Derive, APoolOfAMillionParticlesHasRoomAtTheDefaultHeadroom) {
 
 TEST(Derive, RefusesMoreCellsThanTheBoundAndNamesIt) {
   core::Scene scene = boxScene(262'144);
-  scene.particles->layers_count = 64;  // 64^3: 33^2 cells or so over the floor
+  scene.particles->layers_count = 64;  // 64^3: about 33^2 cells over the floor
   const auto low = derive(scene);
   ASSERT_TRUE(low) << low.error().message;
   const double cell_m = low->particles->support_radius_m;
@@ -315,7 +315,7 @@ TEST(Derive, ABoxPeriodicInHeightIsAsHighAsItsLayers) {
   EXPECT_NEAR(fuller->particles->mass_kg, 1.1 * l.mass_kg, 1e-9 * l.mass_kg);
 }
 
-TEST(Derive, ABoxPeriodicInHeightRefusesWhatNeedsUpAndDown) {
+TEST(Derive, ABoxPeriodicInHeightRefusesPartsThatNeedAFloor) {
   const auto refuses = [](const core::Scene& scene, const char* field) {
     const auto derived = derive(scene);
     ASSERT_FALSE(derived) << field;

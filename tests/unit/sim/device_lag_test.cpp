@@ -1,4 +1,4 @@
-// A device that is slower than the host: ticks in flight are bounded, health keeps coming, nothing waits for ever.
+// A device that is slower than the host: ticks in flight are bounded, health arrives, and no wait is endless.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Far behind: more fences than a hundred ticks insert.
+/// A large lag: more fences than a hundred ticks insert.
 constexpr std::uint64_t kFarBehind = 1000;
 
 class DeviceLag : public OnDevice {
@@ -70,7 +70,7 @@ TEST_F(DeviceLag, ACheckpointIsConfirmedAlthoughTheNextOneIsDueBefore) {
   ctx_->fenceDelay().set(kFarBehind);
   for (int i = 0; i < 24; ++i) sim.step();
   ASSERT_EQ(sim.recoveredCount(), 0u);
-  // Copied now: a copy waits, and with it a device that lags catches up.
+  // Copied here and not earlier: a copy waits, which lets a slow device catch up.
   StateCopy broken = sim.copyState();
   broken.velocity[5] = std::numeric_limits<float>::quiet_NaN();
   ASSERT_TRUE(sim.start(core::Splash{0.5, 0.5, 1.0, 0.3, 0.1}));
@@ -79,11 +79,11 @@ TEST_F(DeviceLag, ACheckpointIsConfirmedAlthoughTheNextOneIsDueBefore) {
   sim.setState(broken);
   for (int i = 0; sim.recoveredCount() == 0 && i < 10; ++i) sim.step();
   ASSERT_EQ(sim.recoveredCount(), 1u);
-  // Back at a checkpoint since the splash, where the water moves, and not before it, where the surface is level.
+  // Restored to a checkpoint after the splash, where the water moves; before the splash the surface is level.
   EXPECT_THAT(sim.copyState().elevation_m, ::testing::Contains(::testing::Ne(0.0)));
 }
 
-TEST_F(DeviceLag, FramesThatAreLostOnTheWayAreNotInFlight) {
+TEST_F(DeviceLag, LostFramesAreNotInFlight) {
   core::Scene scene = smallScene();
   WaterSim& sim = make(scene);
   ctx_->fenceDelay().set(kFarBehind);

@@ -12,7 +12,7 @@ std::int64_t sumOf(const std::vector<std::int32_t>& units) {
   return std::accumulate(units.begin(), units.end(), std::int64_t{0});
 }
 
-TEST(FillUp, LeavesWaterAloneThatLiesAboveItsBed) {
+TEST(FillUp, DoesNotChangeWaterAboveItsBed) {
   const std::vector<std::int64_t> bed = {100, 100, 0};
   std::vector<std::int32_t> eta = {-100, 7, -5};  // empty, full, dry ground
   const std::vector<std::int32_t> before = eta;
@@ -32,9 +32,9 @@ TEST(FillUp, RaisesCellsToTheirBedWithWaterOfTheOthersToTheLastUnit) {
   for (const std::int32_t units : eta) EXPECT_GE(units, -1'000'003);
 }
 
-TEST(FillUp, TakesWhatAllLackTogetherFromOutsideOrLeavesIt) {
+TEST(FillUp, TakesMissingWaterFromOutsideOrLeavesCellsBelowTheirBed) {
   const std::vector<std::int64_t> bed = {100, 100};
-  std::vector<std::int32_t> eta = {-350, -20};  // 250 lacking, 80 held
+  std::vector<std::int32_t> eta = {-350, -20};  // 250 missing, 80 available
   std::vector<std::int32_t> closed = eta;
   const FillUp filled = fillUp(bed, eta, Lack::kComesFromOutside);
   EXPECT_EQ(filled.from_outside_units, 170);

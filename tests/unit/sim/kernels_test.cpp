@@ -1,4 +1,4 @@
-// The kernels: in double precision against their own definition, on the device against those.
+// The kernels: on the host against their definition, on the device against the host.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,7 +56,7 @@ TEST(Kernels, SlopesAreTheNegativeDerivative) {
       const double derivative = (densityKernel(set, r + e, H) - densityKernel(set, r - e, H)) / (2 * e);
       EXPECT_NEAR(pressureSlope(set, r, H), -derivative, 1e-5 * std::abs(derivative) + 1e-4) << r;
     }
-    // MULLER's pressure kernel is another one: spiky, W = 15/(pi H^6) (H - r)^3.
+    // MULLER has a different pressure kernel: spiky, W = 15/(pi H^6) (H - r)^3.
     const auto spiky = [&](double x) { return 15 / (std::numbers::pi * std::pow(H, 6)) * std::pow(H - x, 3); };
     EXPECT_NEAR(pressureSlope(KernelSet::kMuller, r, H), -(spiky(r + e) - spiky(r - e)) / (2 * e), 1e-3);
   }
@@ -92,7 +92,7 @@ TEST_F(KernelsOnDevice, EqualTheDoublePrecisionOnes) {
   }
 }
 
-TEST_F(KernelsOnDevice, UniformsLieWhereTheDriverPutsThem) {
+TEST_F(KernelsOnDevice, UniformOffsetsAreThoseOfTheDriver) {
   auto program = gpu::Program::create(*ctx_, "sph/integrate.comp",
                                       {{"PERIODIC_X", "1"},
                                        {"PERIODIC_Y", "0"},

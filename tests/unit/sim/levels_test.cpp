@@ -1,4 +1,4 @@
-// Reduced levels of a frame: planes of fewer samples, a part of the particles.
+// Reduced levels of a frame: planes with fewer samples, a subset of the particles.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,7 +47,7 @@ std::set<Words> particlesOf(const core::ParticleView& particles) {
   return out;
 }
 
-/// n x n values as m x m means of what each covers.
+/// Reduces n x n values to m x m means over the area that each covers.
 std::vector<double> means(const std::vector<double>& values, std::size_t n, std::size_t m) {
   const double width = static_cast<double>(n) / static_cast<double>(m);
   const auto share = [width](std::size_t cell, std::size_t sample) {
@@ -68,7 +68,7 @@ std::vector<double> means(const std::vector<double>& values, std::size_t n, std:
   return out;
 }
 
-/// A wave of its own in every direction, so that no mean is zero by symmetry.
+/// A different wave in each direction, so that no mean is zero by symmetry.
 void ripple(WaterSim& sim, std::size_t n) {
   StateCopy state = sim.copyState();
   for (std::size_t k = 0; k < n; ++k) {
@@ -81,7 +81,7 @@ void ripple(WaterSim& sim, std::size_t n) {
   sim.setState(state);
 }
 
-TEST_F(Levels, AReducedSurfaceIsTheMeanOfWhatEachSampleCovers) {
+TEST_F(Levels, AReducedSurfaceSampleIsTheMeanOfItsArea) {
   // 192 cells into 128 samples: a sample covers one cell and a half.
   constexpr std::size_t kN = 192;
   core::Scene scene = smallScene();
@@ -114,7 +114,7 @@ TEST_F(Levels, AReducedSurfaceIsTheMeanOfWhatEachSampleCovers) {
   EXPECT_GT(*std::ranges::max_element(reduced) - *std::ranges::min_element(reduced), 100) << "the surface is not flat";
 }
 
-TEST_F(Levels, AReducedFoamIsTheMeanAsWell) {
+TEST_F(Levels, AReducedFoamSampleIsTheMeanOfItsArea) {
   core::Scene scene = smallScene();
   scene.particles.reset();
   scene.coupling.reset();
@@ -140,11 +140,11 @@ TEST_F(Levels, AReducedFoamIsTheMeanAsWell) {
   const std::vector<double> got = bytesOf(*reduced);
   ASSERT_EQ(got.size(), expected.size());
   EXPECT_GT(*std::ranges::max_element(got), 50.0) << "there is foam";
-  // Both are rounded.
+  // Both values are rounded.
   for (std::size_t i = 0; i < got.size(); ++i) ASSERT_NEAR(got[i], expected[i], 1.01) << i;
 }
 
-TEST_F(Levels, AFullSurfaceIsWhatItWasWithReducedOnesBesideIt) {
+TEST_F(Levels, AFullSurfaceIsTheSameBesideReducedOnes) {
   core::Scene scene = smallScene();
   scene.wave->resolution_count = 192;
   WaterSim& sim = make(scene);
@@ -154,7 +154,7 @@ TEST_F(Levels, AFullSurfaceIsWhatItWasWithReducedOnesBesideIt) {
   EXPECT_EQ(beside, alone);
 }
 
-TEST_F(Levels, NobodysLevelsAreNotPacked) {
+TEST_F(Levels, UnwatchedLevelsAreNotPacked) {
   core::Scene scene = smallScene();
   scene.wave->resolution_count = 192;
   WaterSim& sim = make(scene);
@@ -170,7 +170,7 @@ TEST_F(Levels, NobodysLevelsAreNotPacked) {
   EXPECT_FALSE(sim.requestFrame({})) << "nothing was asked for";
 }
 
-TEST_F(Levels, PartsOfTheParticlesAreWithinEachOtherAndStayTheSame) {
+TEST_F(Levels, ALowerLevelHasASubsetOfTheParticlesTheSameInEveryFrame) {
   core::Scene scene = smallScene(40'000);
   scene.wave->side_m = 40.0;
   WaterSim& sim = make(scene);
@@ -186,7 +186,7 @@ TEST_F(Levels, PartsOfTheParticlesAreWithinEachOtherAndStayTheSame) {
     const std::uint32_t budget = core::kLevelBudgets[indexOf(level)].particle_count;
     EXPECT_LE(part->count, budget);
     EXPECT_GT(part->count, budget * 9 / 10);
-    // What is drawn keeps its volume.
+    // The drawn volume stays the same.
     EXPECT_NEAR(std::pow(part->radius_m / view.particles->radius_m, 3) * part->count, view.particles->count, 1.0);
     const std::set<Words> words = particlesOf(*part);
     EXPECT_EQ(words.size(), part->count) << "each of them once";

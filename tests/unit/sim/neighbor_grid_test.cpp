@@ -30,7 +30,7 @@ class Grid : public OnDevice {
       *b = *gpu::TexelBuffer::create(*ctx_, "particles", n, gpu::TexelFormat::kRGBA32F);
     }
     p.position.upload(positions);
-    p.velocity.upload(positions);  // so that a test sees both move together
+    p.velocity.upload(positions);  // lets a test check that both move together
     auto grid = NeighborGrid::create(
         *ctx_, *derived_.particles,
         {{"PERIODIC_X", "1"}, {"PERIODIC_Y", "0"}, {"PERIODIC_Z", "1"}, {"POOL_PARTICLES", "0"}}, false);
@@ -46,7 +46,7 @@ class Grid : public OnDevice {
     const ParticleLayout& l = *derived_.particles;
     std::array<std::uint32_t, 3> c{};
     for (int axis = 0; axis < 3; ++axis) {
-      // In float, as the shader computes it.
+      // In float, like the shader.
       const float u =
           std::floor((x[axis] - static_cast<float>(l.min_m[axis])) / static_cast<float>(l.support_radius_m));
       c[axis] = static_cast<std::uint32_t>(std::clamp(u, 0.0f, static_cast<float>(l.cells[axis] - 1)));
@@ -73,12 +73,12 @@ class Grid : public OnDevice {
   std::vector<std::uint32_t> start_;
 };
 
-TEST_F(Grid, SortsByCellAndThenByIndexAtSizesThatDivideByNothing) {
+TEST_F(Grid, SortsByCellAndThenByIndexAtOddSizes) {
   for (const std::size_t count : {1u, 7u, 63u, 65u, 257u, 1021u, 5003u}) {
     const auto d = derive(smallScene(3000));
     const auto positions = randomPositions(*d, count);
     sort(*d, positions);
-    // The CPU's stable sort is the oracle.
+    // The reference is a stable sort on the CPU.
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cellOf(&positions[4 * i]); });

@@ -1,4 +1,4 @@
-// The particle patch goes where the action is.
+// The particle patch follows splashes and boats.
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -62,7 +62,7 @@ TEST_F(Patch, StaysUnderTheFirstBoat) {
   EXPECT_EQ(sim.recoveredCount(), 0u);
 }
 
-TEST_F(Patch, FramesOfAMovingPatchAreInTheFrameOfTheWater) {
+TEST_F(Patch, FramesOfAMovingPatchHaveTheCoordinatesOfTheWater) {
   WaterSim& sim = make(patchScene(core::PatchFollow::kEvent));
   ASSERT_TRUE(sim.start(core::Splash{5.0, -4.0, 1.0, 0.5, 0.2}));
   for (int i = 0; i < 10; ++i) sim.step();

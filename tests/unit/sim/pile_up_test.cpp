@@ -1,4 +1,4 @@
-// Particles that are all in one place, or nowhere: a step stays bounded and the watchdog learns of it.
+// Particles in one place or without a finite position: a step stays bounded, and the watchdog is informed.
 #include <cmath>
 #include <limits>
 
@@ -15,7 +15,7 @@
 namespace spindrift::sim {
 namespace {
 
-/// After so many ticks the health of the first is there, on an asynchronous device too.
+/// After this many ticks the health of the first one has arrived, also on an asynchronous device.
 constexpr int kHealthArrives_ticks = WaterSim::kMaxTicksInFlight + 2;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -38,7 +38,7 @@ class PileUp : public OnDevice {
     std::uint32_t count = 0;       ///< particles
   };
 
-  /// One substep with every particle in the same cell; shaders count what they look at.
+  /// One substep with every particle in the same cell; shaders count the candidates that they visit.
   Looked lookAround(core::PressureSolver solver, std::uint32_t count, std::uint32_t candidates_max_count) {
     const core::Scene scene = boxScene(solver, count);
     auto derived = derive(scene);
@@ -71,7 +71,7 @@ class PileUp : public OnDevice {
   }
 };
 
-TEST_F(PileUp, APassLooksAtABoundedNumberOfCandidatesPerParticle) {
+TEST_F(PileUp, APassVisitsABoundedNumberOfCandidatesPerParticle) {
   constexpr std::uint32_t kUnbounded = 1u << 30;
   for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
     const std::uint32_t passes = solver == core::PressureSolver::kPositionBased ? 3 : 2;
@@ -84,14 +84,14 @@ TEST_F(PileUp, APassLooksAtABoundedNumberOfCandidatesPerParticle) {
   }
 }
 
-TEST_F(PileUp, DerivesABoundThatNoWaterAtRestComesNear) {
+TEST_F(PileUp, TheBoundIsFarAboveTheCandidatesOfWaterAtRest) {
   core::Scene scene = boxScene(core::PressureSolver::kWeaklyCompressible, 700);
   EXPECT_EQ(derive(scene)->uniforms.candidates_max_count, 1024u);
   scene.particles->support_ratio = 3.0;
   EXPECT_GE(derive(scene)->uniforms.candidates_max_count, 32 * 3 * 27u);
 }
 
-TEST_F(PileUp, IsReportedInHealthAndTheRoomGoesOn) {
+TEST_F(PileUp, IsReportedInHealthAndTheRoomContinues) {
   for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
     WaterSim& sim = make(boxScene(solver, 3000));
     for (int i = 0; i < 5; ++i) sim.step();
@@ -123,7 +123,7 @@ TEST_F(PileUp, APositionThatIsNotFiniteIsInNoCellAndCounted) {
   }
 }
 
-TEST_F(PileUp, EveryPositionMayBeLostWithoutAnUnboundedStep) {
+TEST_F(PileUp, AStepStaysBoundedWhenNoPositionIsFinite) {
   for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
     WaterSim& sim = make(boxScene(solver, 3000));
     StateCopy state = sim.copyState();

@@ -1,5 +1,5 @@
-// Changes of a running room: a reset uploads next to nothing, and another number of particles is worked out apart from
-// the device.
+// Changes of a running room: a reset uploads almost nothing, and another number of particles is prepared without the
+// device.
 #include <cmath>
 #include <future>
 
@@ -26,7 +26,7 @@ class SceneChange : public OnDevice {
     return {after.upload_count - before.upload_count, after.uploaded_bytes - before.uploaded_bytes};
   }
 
-  /// A harbor: two-way, ground that differs from place to place, boats.
+  /// A harbor: two-way, with ground of different depth, and boats.
   static core::Scene harbor() {
     core::Scene scene = smallScene(600);
     scene.wave->resolution_count = 96;
@@ -75,7 +75,7 @@ TEST_F(SceneChange, AnotherDepthUploadsTheTablesOnceAndAnotherDampingDoesNot) {
   EXPECT_LT(uploadsOf([&] { sim.reset(); }).bytes, cells);
 }
 
-TEST_F(SceneChange, ARoomAfterChangesAndAResetIsTheRoomThatStartsWithThem) {
+TEST_F(SceneChange, ChangesAndAResetGiveTheStateOfAFreshStart) {
   core::Scene scene = harbor();
   WaterSim& sim = make(scene);
   for (int i = 0; i < 5; ++i) sim.step();
@@ -90,7 +90,7 @@ TEST_F(SceneChange, ARoomAfterChangesAndAResetIsTheRoomThatStartsWithThem) {
   EXPECT_EQ(changed, fresh.stateHash());
 }
 
-TEST_F(SceneChange, PreparedOnAnotherThreadItIsWhatOneCallGives) {
+TEST_F(SceneChange, PreparationOnAnotherThreadGivesTheSameAsOneCall) {
   core::Scene scene = smallScene(1500);
   const auto run = [&](bool apart) {
     core::Scene changed = scene;

@@ -1,4 +1,4 @@
-// The uniform blocks that C++ fills and shaders read: size and offset of every member as the driver laid them out.
+// The uniform blocks that C++ fills and shaders read: size and offset of each member in the driver's layout.
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -29,7 +29,7 @@ class SharedBlocks : public OnDevice {
     return found->second;
   }
 
-  /// Offset of a member, whatever the driver puts before its name ("SimUniforms.dt_s", "splashes[0].gain_m").
+  /// Offset of a member, with any prefix that the driver adds to its name ("SimUniforms.dt_s", "splashes[0].gain_m").
   static std::optional<std::uint32_t> offsetOf(const gpu::BlockLayout& block, const std::string& member) {
     for (const auto& [name, offset] : block.offsets) {
       if (name == member || name.ends_with("." + member)) return offset;
@@ -37,8 +37,7 @@ class SharedBlocks : public OnDevice {
     return std::nullopt;
   }
 
-  /// The members of a header that both compilers read, in order: C++ and std140 put each scalar 4 bytes behind the
-  /// last.
+  /// The members of a shared header in order: in C++ and std140 each scalar is 4 bytes after the one before.
   static std::vector<std::string> members(const char* header, const std::string& after) {
     std::ifstream in(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "shaders/shared" / header);
     std::vector<std::string> out;
@@ -46,7 +45,8 @@ class SharedBlocks : public OnDevice {
     for (std::string line; std::getline(in, line);) {
       is_inside = is_inside || line.find(after) != std::string::npos;
       if (is_inside && line.starts_with("};")) break;
-      // "  float NAME;  // ..." or "  uint NAME;". No std::regex: g++ 12 warns inside of it with sanitizers.
+      // Matches "  float NAME;  // ..." or "  uint NAME;". Without std::regex, because g++ 12 warns inside it with
+      // sanitizers.
       std::istringstream words(line);
       std::string type, name;
       if (!is_inside || !(words >> type >> name) || (type != "float" && type != "uint")) continue;
@@ -56,7 +56,7 @@ class SharedBlocks : public OnDevice {
   }
 };
 
-TEST_F(SharedBlocks, SimUniformsAreAsLargeAsTheirBlockAndEveryMemberLiesWhereTheDriverReadsIt) {
+TEST_F(SharedBlocks, SimUniformsHaveTheLayoutOfTheDriver) {
   const gpu::BlockLayout sim = block("sph/integrate.comp", "SimUniforms", smallScene());
   EXPECT_EQ(sim.binding, static_cast<std::uint32_t>(SIM_UNIFORMS));
   EXPECT_EQ(sim.size_bytes, sizeof(shared::SimUniforms));
@@ -65,7 +65,7 @@ TEST_F(SharedBlocks, SimUniformsAreAsLargeAsTheirBlockAndEveryMemberLiesWhereThe
   for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(offsetOf(sim, names[k]), 4 * k) << names[k];
 }
 
-TEST_F(SharedBlocks, EventUniformsLikewise) {
+TEST_F(SharedBlocks, EventUniformsHaveTheLayoutOfTheDriver) {
   const gpu::BlockLayout events = block("wave/splash.comp", "EventUniforms", smallScene());
   EXPECT_EQ(events.binding, static_cast<std::uint32_t>(EVENT_UNIFORMS));
   EXPECT_EQ(events.size_bytes, sizeof(shared::EventUniforms));
@@ -79,7 +79,7 @@ TEST_F(SharedBlocks, EventUniformsLikewise) {
   }
 }
 
-TEST_F(SharedBlocks, BoatControlsLikewise) {
+TEST_F(SharedBlocks, BoatControlsHaveTheLayoutOfTheDriver) {
   core::Scene scene = smallScene();
   scene.boats.emplace();
   const gpu::BlockLayout boats = block("bodies/move.comp", "BoatControls", scene);

@@ -1,4 +1,4 @@
-// A software device for the simulation's tests, and scenes to begin with.
+// A software device for the simulation's tests, and starting scenes.
 #pragma once
 
 #include <memory>
@@ -36,7 +36,7 @@ class OnDevice : public ::testing::Test {
   std::unique_ptr<WaterSim> sim_;
 };
 
-/// Everything present, small: 32^2 wave of 8 m, about `count` particles in 3 layers.
+/// A small scene with every part: 32^2 wave of 8 m, about `count` particles in 3 layers.
 inline core::Scene smallScene(std::uint32_t count = 600) {
   core::Scene scene;
   scene.name = "test";

@@ -1,4 +1,4 @@
-// The device's step against the double-precision reference, through the solver's public interface.
+// The device's step against the reference in double precision, through the solver's public interface.
 #include <algorithm>
 #include <cmath>
 
@@ -64,7 +64,7 @@ TEST_F(Solver, AgreesWithTheReferenceWithOnePeriodicAxisAndAWiderSupport) {
 }
 
 TEST_F(Solver, AgreesWithTheReferenceForEachEquationOfStateAndForceForm) {
-  std::uint32_t count = 310;  // another size each time, none of them a multiple of the work group
+  std::uint32_t count = 310;  // changes for each case; never a multiple of the work group
   for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
     for (const auto equation : {core::EquationOfState::kLinear, core::EquationOfState::kTait}) {
       for (const auto force : {core::PressureForce::kConserving, core::PressureForce::kMean}) {
@@ -137,7 +137,7 @@ TEST_F(Solver, PairForcesCancel) {
   scene.tick_rate_hz = 240;
   WaterSim& sim = make(scene);
   StateCopy state = study::stirredState(sim);
-  // Far above the floor, so that it adds nothing.
+  // Far above the floor, so that the floor adds nothing.
   for (std::size_t i = 1; i < state.position.size(); i += 4)
     state.position[i] = std::min(state.position[i] + 2.2f, 2.9f);
   sim.setState(state);

@@ -56,7 +56,7 @@ TEST_F(StirredBox, ASplashThrowsACrownAroundItsCavity) {
       const double y_m = state.position[i + 1];
       if (r_m < 0.35) middle_now_m = std::max(middle_now_m, y_m);
       if (r_m > 0.7 && r_m < 1.8) crown_m = std::max(crown_m, y_m);
-      // What lies beyond its reach stays put.
+      // Particles outside its reach do not move.
       if (r_m > 2.4) {
         EXPECT_LT(y_m, 2.5 * l.spacing_m);
       }

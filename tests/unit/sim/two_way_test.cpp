@@ -1,4 +1,4 @@
-// Breaking water becomes particles and comes back: the ledger of its volume, calm water, repeatability.
+// Breaking water becomes particles and returns: the volume ledger, calm water, reproducibility.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class TwoWay : public OnDevice {
   }
 };
 
-TEST_F(TwoWay, ASplashThrowsWaterThatAllComesBack) {
+TEST_F(TwoWay, ASplashEmitsWaterThatAllReturns) {
   WaterSim& sim = make(twoWayScene());
   ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 1.5, 0.9, 0.15}));
   std::uint32_t most = 0;
@@ -61,9 +61,9 @@ TEST_F(TwoWay, ASplashThrowsWaterThatAllComesBack) {
   EXPECT_EQ(sim.escapedCount(), 0u);
 }
 
-TEST_F(TwoWay, DropsWiderThanTheCellsDoNotShakeThemIntoThrowingMore) {
-  // With drops spread over 5 cells whatever their size, those on 256 cells broke the water that they fell into, for
-  // ever.
+TEST_F(TwoWay, LandingDropsWiderThanTheCellsAddNoWaveEnergy) {
+  // When drops of every size were spread over 5 cells, those on 256 cells broke the water that they fell into, without
+  // end.
   const auto run = [&](std::uint32_t resolution_count) {
     core::Scene scene = twoWayScene();
     scene.wave->resolution_count = resolution_count;
@@ -162,7 +162,7 @@ TEST_F(TwoWay, AGridOfWholeScanBlocksCountsItsParticles) {
   EXPECT_EQ(sim.health().volume_error_units, 0);
 }
 
-TEST_F(TwoWay, AFullPoolThrowsNoMoreAndLosesNothing) {
+TEST_F(TwoWay, AFullPoolEmitsNothingAndLosesNoWater) {
   core::Scene scene = twoWayScene();
   scene.particles->count = 30;
   WaterSim& sim = make(scene);
@@ -175,7 +175,7 @@ TEST_F(TwoWay, AFullPoolThrowsNoMoreAndLosesNothing) {
   EXPECT_GT(sim.health().pool_refused_count, 0u);
 }
 
-TEST_F(TwoWay, FramesHoldTheParticlesThatThereAre) {
+TEST_F(TwoWay, FramesHaveTheLiveParticles) {
   WaterSim& sim = make(twoWayScene());
   const auto frame = [&] {
     EXPECT_TRUE(sim.requestFrame({.surface = true, .particles = true, .foam = true}));

@@ -1,5 +1,5 @@
-// The choices a particle scene has, as water in motion: both solvers, walls, dams, foam, and another number of
-// particles while it runs.
+// The variants of particle scenes, in motion: both solvers, walls, dams, foam, and another number of particles in a
+// running room.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -83,8 +83,8 @@ TEST_F(Variants, ASettledColumnHasThePressureOfItsDepthFromTheFloorUp) {
     p.equation_of_state = equation;
     WaterSim& sim = make(scene);
     const ParticleLayout& l = *sim.derived().particles;
-    // By height, a support radius each, below which SPH resolves nothing; the mean of a second after the lattice has
-    // lost its order.
+    // In slices as thick as a support radius, the smallest length that SPH resolves; mean of a second after the lattice
+    // has lost its order.
     struct Mean {
       double p = 0, y = 0, n = 0;
     };
@@ -112,7 +112,7 @@ TEST_F(Variants, ASettledColumnHasThePressureOfItsDepthFromTheFloorUp) {
     for (const auto& [means, where] : {std::pair(inside, "inside"), std::pair(all, "walls included")}) {
       for (std::size_t k = 0; k + 1 < slices; ++k) {
         const double expected_pa = bottom_pa - 1000.0 * scene.gravity_mps2 * means[k].y / means[k].n;
-        // Near the surface, where there is little pressure to be right about, 4 % of the bottom's.
+        // Near the surface, where the pressure is small, the tolerance is 4 % of that at the bottom.
         EXPECT_NEAR(means[k].p / means[k].n, expected_pa, std::max(0.05 * expected_pa, 0.04 * bottom_pa))
             << "at " << means[k].y / means[k].n / l.spacing_m << " spacings over the floor, " << where;
       }
@@ -120,7 +120,7 @@ TEST_F(Variants, ASettledColumnHasThePressureOfItsDepthFromTheFloorUp) {
   }
 }
 
-TEST_F(Variants, ADamBreakRunsDownTheBoxWithBothSolvers) {
+TEST_F(Variants, ADamBreakReachesTheEndOfTheBoxWithBothSolvers) {
   for (const auto solver : {PressureSolver::kWeaklyCompressible, PressureSolver::kPositionBased}) {
     core::Scene scene = boxScene(2000, 14, Boundary::kWall);
     scene.particles->solver = solver;
@@ -180,7 +180,7 @@ TEST_F(Variants, EachSolverCompilesItsOwnProgramsOnly) {
 
 TEST_F(Variants, SprayWithFewNeighboursIsFoam) {
   core::Scene scene = boxScene(400, 3, Boundary::kPeriodic);
-  scene.foam->density_deficit_ratio = 10.0;  // never
+  scene.foam->density_deficit_ratio = 10.0;  // never reached
   for (const auto solver : {PressureSolver::kWeaklyCompressible, PressureSolver::kPositionBased}) {
     for (const std::uint32_t neighbours : {0u, 6u}) {
       scene.particles->solver = solver;
@@ -263,7 +263,7 @@ TEST_F(Variants, SixtyFiveThousandParticlesWork) {
   EXPECT_LE(fastest(state), 1.0) << "still water";
 }
 
-/// What shaders are compiled for: every coupling on every ground, with boats and foam or without.
+/// All combinations of defines: every coupling on every ground, with boats and foam or without.
 TEST_F(Variants, EveryMixOfPartsRuns) {
   enum class Ground { kPeriodic, kSponge, kRockAndBeach };
   for (const auto mode : {core::CouplingMode::kOneWay, core::CouplingMode::kTwoWay}) {

@@ -1,4 +1,4 @@
-// The room's water as a whole: frames, commands, the watchdog, repeatability, and that absent parts cost nothing.
+// The simulation of a room: frames, commands, the watchdog, reproducibility, and that absent parts cost nothing.
 #include <cmath>
 #include <limits>
 
@@ -68,25 +68,26 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   const Cost all = cost(full);
   const Cost wave = cost(wave_only);
   const Cost particles = cost(particles_only);
-  // A wave alone: splash, crest, momentum, two that limit outflow, continuity, its diagnostics and packing; one wave
-  // step per tick of four dispatches, of which calm water runs two with no group, and one for its health.
+  // A wave alone has programs for splash, crest, momentum, two passes that limit outflow, continuity, its diagnostics
+  // and packing. A tick has one wave step with four dispatches, two of which have no groups in calm water, and one
+  // dispatch for the health.
   EXPECT_EQ(wave.programs, 8u);
   EXPECT_EQ(wave.dispatches, 5u);
-  // Particles alone: 6 grid, 3 sph, effects on particles, their diagnostics and packing; 2 x 9 dispatches per tick
-  // and one for their health.
+  // Particles alone: 6 programs of the grid, 3 of sph, effects on particles, their diagnostics and packing; 2 x 9
+  // dispatches per tick, and one for the health.
   EXPECT_EQ(particles.programs, 12u);
   EXPECT_EQ(particles.dispatches, 19u);
-  // Together: the sum, and the surface sampling once per tick; effects are the wave's.
+  // Together: the sum, and the sampling of the surface once per tick; the effects act on the wave.
   EXPECT_EQ(all.programs, wave.programs + particles.programs - 1 + 1);
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 1);
   EXPECT_LT(wave.bytes, all.bytes);
   EXPECT_LT(particles.bytes, all.bytes);
-  // derive() says what will be allocated, to the packing and readback of frames.
+  // derive() predicts the allocations, except those for packing and readback of frames.
   sim_.reset();
   EXPECT_EQ(derive(wave_only)->device_bytes, sizeof(shared::SimUniforms) + 32 * 32 * 24);
 
-  // Two-way: a pool and its plan, breaking, emission, a clearing pass in the grid; calm water dispatches the particle
-  // passes with no group.
+  // Two-way: a pool and its plan, breaking, emission, a clearing pass in the grid; in calm water the particle passes
+  // have no groups.
   core::Scene two_way = full;
   two_way.coupling->mode = core::CouplingMode::kTwoWay;
   two_way.coupling->droplet_spacing_m = 0.25;
@@ -157,7 +158,7 @@ TEST_F(Water, DropsFramesWhileAllSlotsAreRead) {
   EXPECT_TRUE(sim.requestFrame({.surface = true}));
 }
 
-TEST_F(Water, ASplashThrowsParticlesAndMakesFoam) {
+TEST_F(Water, ASplashEmitsParticlesAndMakesFoam) {
   core::Scene scene = smallScene(2000);
   scene.wave->resolution_count = 64;
   WaterSim& sim = make(scene);
@@ -208,7 +209,7 @@ TEST_F(Water, StillWaterStaysStill) {
     worst = std::max(worst, sim.health().kinetic_energy_j);
   }
   const double mass = sim.derived().particles->mass_kg * sim.derived().particles->count;
-  // The starting lattice buckles into a looser order; never faster than 0.3 m/s on average, and calm again after 15 s.
+  // The starting lattice buckles into a looser order: never faster than 0.3 m/s on average, and calm again after 15 s.
   EXPECT_LE(worst, 0.5 * mass * 0.3 * 0.3);
   EXPECT_LE(sim.health().kinetic_energy_j, 0.5 * mass * 0.05 * 0.05);
   EXPECT_EQ(sim.health().max_elevation_m, 0.0);
@@ -223,7 +224,7 @@ TEST_F(Water, GoesBackToTheLastGoodCheckpointWhenAValueIsNotFinite) {
   broken.flow_m2ps[3] = std::numeric_limits<float>::infinity();
   sim.setState(broken);
   sim.step();
-  const core::FrameView at_once = frame(sim);  // integers: no client sees the NaN
+  const core::FrameView at_once = frame(sim);  // integers, so no client receives the NaN
   ASSERT_TRUE(at_once.surface);
   for (int i = 0; i < 60; ++i) sim.step();
   EXPECT_GE(sim.recoveredCount(), 1u);

@@ -1,4 +1,4 @@
-// How runs are compared, and which of them are worth their cost.
+// Comparison of runs, and the front of cost against error.
 #include <cmath>
 #include <numbers>
 
@@ -30,7 +30,7 @@ WaterRecord waves(double amplitude_m, int k) {
   return record;
 }
 
-TEST(RecordErrors, AreNoneBetweenEqualRuns) {
+TEST(RecordErrors, AreZeroBetweenEqualRuns) {
   const RecordErrors errors = compare(waves(0.5, 3), waves(0.5, 3), waveOnly());
   EXPECT_EQ(errors.height_rms_ratio, 0.0);
   EXPECT_EQ(errors.surface_max_ratio, 0.0);
@@ -48,18 +48,18 @@ TEST(RecordErrors, AreSharesOfTheReference) {
   EXPECT_NEAR(errors.energy_rms_ratio, 0.44, 1e-9);
 }
 
-TEST(RecordErrors, TellWavesOfAnotherLengthApartByTheirSpectrum) {
+TEST(RecordErrors, ShowWavesOfAnotherLengthInTheSpectrum) {
   const RecordErrors errors = compare(waves(0.5, 5), waves(0.5, 3), waveOnly());
   EXPECT_NEAR(*errors.spectrum_ratio, 2.0, 1e-9);
   EXPECT_NEAR(errors.height_rms_ratio, std::numbers::sqrt2, 1e-9);
 }
 
-TEST(ParetoFront, KeepsWhatNobodyBeatsInBoth) {
+TEST(ParetoFront, KeepsPointsThatNoOtherBeatsInBoth) {
   const std::vector<CostAndError> points = {{1, 10}, {2, 5}, {2, 6}, {3, 5}, {4, 1}, {1, 10}};
   EXPECT_EQ(paretoFront(points), (std::vector<bool>{true, true, false, false, true, true}));
 }
 
-TEST(ParetoFront, MindsNoDifferenceBelowItsResolution) {
+TEST(ParetoFront, IgnoresDifferencesBelowItsResolution) {
   const std::vector<CostAndError> points = {{1.00, 1.00}, {1.03, 1.02}, {1.10, 1.00}};
   EXPECT_EQ(paretoFront(points, {0.05, 0.05}), (std::vector<bool>{true, true, false}));
 }

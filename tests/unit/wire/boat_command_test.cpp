@@ -1,4 +1,4 @@
-// Commands about boats, steps and scenes: what arrives, what is rejected before it reaches the room.
+// Commands on boats, steps and scenes: their values, and rejections before they reach the room.
 #include <functional>
 #include <limits>
 #include <string>
@@ -86,7 +86,7 @@ TEST(StepCommands, TakeTheirRangeAndOneTickByDefault) {
   }
 }
 
-TEST(SceneCommands, TakeNamesAndNoPaths) {
+TEST(SceneCommands, AcceptNamesButNoPaths) {
   EXPECT_EQ(std::get<core::ChangeScene>(actionOf([](v1::Command& c) {
               c.mutable_change_scene()->set_name("wave_only");
             })).name,
@@ -123,7 +123,7 @@ TEST(BoatCommands, NeedASceneWithBoats) {
   }
 }
 
-TEST(BoatCommands, ThatPutABoatWhereTheSceneForbidsItAreRejected) {
+TEST(BoatCommands, AreRejectedWhereTheSceneForbidsABoat) {
   const auto rejectionFor = [](const core::Boat& boat) {
     return checkAgainstScene(core::Command{{}, 2, core::SpawnBoat{boat}}, harbour()).value_or(CommandRejection{});
   };
@@ -138,13 +138,13 @@ TEST(BoatCommands, ThatPutABoatWhereTheSceneForbidsItAreRejected) {
   EXPECT_EQ(rejectionFor({.z_m = 5.0}).reason, v1::REJECT_REASON_UNSPECIFIED) << "open water";
 }
 
-TEST(SceneCommands, AndStepsAreLeftToTheRoom) {
+TEST(SceneCommands, AndStepsAreNotCheckedAgainstTheScene) {
   for (const core::Action& action : {core::Action(core::Step{5}), core::Action(core::ChangeScene{"anything"})}) {
     EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, action}, harbour()));
   }
 }
 
-TEST(WavesInADirection, AreBoundLikeThoseOfASide) {
+TEST(WavesInADirection, HaveTheBoundsOfWavesFromASide) {
   const core::BreakingWave fine{.side = core::Side::kDirection, .amplitude_m = 0.5, .direction_deg = 33};
   EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, fine}, harbour()));
   core::BreakingWave high = fine;

@@ -70,7 +70,7 @@ TEST(ClientMessages, HelloKeepsVersionAndName) {
   EXPECT_FALSE(checkVersion(hello));
 }
 
-TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedReadably) {
+TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedWithALineOfText) {
   const auto refusal = checkVersion(Hello{2, 3, "later"});
   ASSERT_TRUE(refusal);
   EXPECT_THAT(*refusal, HasSubstr("wire version 2.3"));
@@ -78,7 +78,7 @@ TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedReadably) {
   EXPECT_TRUE(checkVersion(Hello{0, 0, ""})) << "a hello without a version";
 }
 
-TEST(Text, NamesKeepNothingThatTurnsOrHidesTheTextAround) {
+TEST(Text, NamesLoseCharactersThatReverseOrHideText) {
   const auto clean = [](const std::string& text) { return core::cleanName(text, kPersonNameMaxBytes); };
   // Right-to-left override, isolates, marks, Arabic letter mark, zero width space, line separator, byte order mark.
   for (const char* hidden : {"\u202E", "\u202A", "\u2066", "\u2069", "\u200E", "\u200F", "\u061C", "\u200B", "\u2028",
@@ -131,7 +131,7 @@ TEST(ClientMessages, SubscribeToNoLayerIsMalformed) {
   EXPECT_THAT(expectMalformed(parse(message)), HasSubstr("subscribe.layer: 99"));
 }
 
-TEST(ClientMessages, PingIsEchoableOrMalformed) {
+TEST(ClientMessages, PingWithANonFiniteTimeIsMalformed) {
   v1::ClientMessage message;
   message.mutable_ping()->set_client_time_s(12.5);
   EXPECT_EQ(std::get<Ping>(parse(message)).client_time_s, 12.5);
@@ -251,7 +251,7 @@ TEST(ClientMessages, ParametersThatAreNoNumbersOrHaveNoNameAreRejected) {
   EXPECT_LT(endless.field.size() + endless.message.size(), 300u);
 }
 
-TEST(ClientMessages, AnUnknownCommandIsRejectedByItsIdAndNotFatal) {
+TEST(ClientMessages, AnUnknownCommandIsRejectedWithItsId) {
   const auto rejection = expectRejection(parseCommand([](v1::Command&) {}));
   EXPECT_EQ(rejection.command_id, 42u);
   EXPECT_EQ(rejection.reason, v1::REJECT_REASON_MALFORMED);
@@ -314,7 +314,7 @@ TEST(ClientMessages, WithoutAWaveTheBoxOfParticlesLimitsEffects) {
   EXPECT_EQ(wide->field, "splash.radius_m");
 }
 
-TEST(ClientMessages, WhatTheSceneAllowsPasses) {
+TEST(ClientMessages, CommandsThatTheSceneAllowsPass) {
   const core::Action fine[] = {core::Splash{2, -2, 2, 0.9, 0.2},
                                core::BreakingWave{core::Side::kMinusZ, 0.9, 4, 0.5},
                                core::SetParameter{"wave.depth_m", 3},

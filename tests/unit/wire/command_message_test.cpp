@@ -1,4 +1,4 @@
-// Commands on their way back to the wire, and as Protobuf JSON.
+// Conversion of commands to the wire and to Protobuf JSON.
 #include <gmock/gmock.h>
 
 #include <spindrift/wire/api_message.h>
@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// One of each kind, no field at its default.
+/// One command of each kind, with no field at its default.
 std::vector<core::Action> everyAction() {
   return {core::Splash{0.5, -0.5, 1.25, 0.25, 0.125},
           core::BreakingWave{core::Side::kDirection, 0.5, 2.0, 0.25, core::WaveShape::kSwell, 45.0},
@@ -26,7 +26,7 @@ std::vector<core::Action> everyAction() {
           core::TakeBoat{3}};
 }
 
-TEST(CommandMessage, EveryCommandComesBackAsItWas) {
+TEST(CommandMessage, EveryCommandRoundTrips) {
   for (const core::Action& action : everyAction()) {
     const v1::Command wire = toWire(core::Command{{}, 9, action});
     const auto checked = checkCommand(wire);
@@ -49,7 +49,7 @@ TEST(CommandMessage, JsonOfEveryCommandIsReadBack) {
   }
 }
 
-TEST(CommandMessage, JsonThatIsNoCommandIsNamed) {
+TEST(CommandMessage, JsonThatIsNotACommandIsMalformed) {
   for (const std::string& text :
        {std::string(""), std::string("nonsense"), std::string("[1]"), std::string("{\"x\": 1}"),
         std::string(100'000, '['), std::string("{\"splash\": {\"x_m\": \xff}}"),
@@ -62,7 +62,7 @@ TEST(CommandMessage, JsonThatIsNoCommandIsNamed) {
   EXPECT_TRUE(std::holds_alternative<CommandRejection>(parseCommandJson("{}")));
 }
 
-TEST(CommandMessage, WhatTakesWhichRole) {
+TEST(CommandMessage, EachCommandNeedsItsRole) {
   using core::Role;
   EXPECT_EQ(core::roleFor(core::Splash{}), Role::kPlayer);
   EXPECT_EQ(core::roleFor(core::ControlBoat{}), Role::kPlayer);
@@ -72,7 +72,7 @@ TEST(CommandMessage, WhatTakesWhichRole) {
   EXPECT_EQ(core::roleFor(core::ChangeScene{}), Role::kOperator);
 }
 
-/// The line that a body is refused with, without what it has in common; empty where it is taken.
+/// The refusal of a body, without the common part; empty if it is accepted.
 std::string whyNot(const std::string& json) {
   const auto parsed = parseCommandJson(json);
   const auto* malformed = std::get_if<Malformed>(&parsed);
@@ -82,7 +82,7 @@ std::string whyNot(const std::string& json) {
   return malformed->message.substr(kBegin.size());
 }
 
-TEST(ApiMessage, TakesJsonAsRfc8259HasIt) {
+TEST(ApiMessage, AcceptsTheJsonOfRfc8259) {
   for (const char* json :
        {R"({"reset":{}})", " \t\r\n{ \"reset\" : { } , \"command_id\" : 7 } \n", R"({"commandId":"7","reset":{}})",
         R"({"splash":{"x_m":-0.5e+1,"zM":1E-2,"radius_m":"0.5","depthM":null}})", R"({"splash":{"depth_m":"NaN"}})",
@@ -92,7 +92,7 @@ TEST(ApiMessage, TakesJsonAsRfc8259HasIt) {
   }
 }
 
-TEST(ApiMessage, RefusesJsonThatRfc8259DoesNotHave) {
+TEST(ApiMessage, RefusesJsonThatRfc8259Forbids) {
   for (const char* json : {"",
                            " ",
                            "{'reset':{}}",
@@ -128,7 +128,7 @@ TEST(ApiMessage, RefusesJsonThatRfc8259DoesNotHave) {
   }
 }
 
-TEST(ApiMessage, SaysWhereAndWhatIsExpected) {
+TEST(ApiMessage, ReportsThePlaceAndWhatIsExpected) {
   EXPECT_EQ(whyNot(""), "it is empty; send a JSON object {...}");
   EXPECT_EQ(whyNot("[]"), "line 1, column 1: a JSON object {...} is expected, not [");
   EXPECT_EQ(whyNot("{\n  'reset': {}}"), "line 2, column 3: a name in double quotes is expected, not '");

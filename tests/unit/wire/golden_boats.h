@@ -8,7 +8,7 @@
 
 namespace spindrift::wire {
 
-/// One at rest at the origin; one far out, turned to both ends, going astern with the rudder hard over.
+/// One boat at rest at the origin; one far out, at both ends of its angles, going astern with the rudder hard over.
 inline std::vector<std::uint32_t> goldenBodyWords() {
   const auto half = [](int low, int high) {
     return static_cast<std::uint32_t>(static_cast<std::uint16_t>(low)) |

@@ -1,5 +1,5 @@
-// The golden cases in one list, so that both languages see the same ones in the same order; 400 lines of cases, not of
-// logic.
+// The golden cases in one list, so that both languages use the same ones in the same order. The file is long because it
+// holds 400 lines of cases.
 #include "golden_cases.h"
 
 #include <cstdio>
@@ -20,7 +20,7 @@ namespace {
 
 // Inputs are powers of two where they can be, so that decoded values print exactly.
 constexpr double kTimeS = 20.5;
-constexpr std::uint64_t kTick = 9'007'199'254'740'993;  // 2^53 + 1: lost by a reader that takes it for a double
+constexpr std::uint64_t kTick = 9'007'199'254'740'993;  // 2^53 + 1: a reader that converts it to double loses it
 
 std::string number(double value) {
   char buffer[40];
@@ -61,7 +61,7 @@ core::Bytes surfaceBytes() {
   return *codec::FrameEncoder().encode(v1::LAYER_SURFACE, frame);
 }
 
-/// A frame of a server that numbers its states; the other golden frames have no number.
+/// A frame with a state id; the other golden frames have none.
 core::Bytes numberedBytes() {
   const std::vector<std::uint32_t> words = goldenBodyWords();
   core::FrameView frame;
@@ -153,7 +153,7 @@ core::Bytes bodiesBytes() {
   return *codec::FrameEncoder().encode(v1::LAYER_BODIES, frame);
 }
 
-/// Written out here rather than made by greeting(), so that a better help text does not change the golden bytes.
+/// Written here instead of using greeting(), so that a changed help text does not change the golden bytes.
 core::Bytes greetingBytes() {
   v1::ServerMessage message;
   v1::Greeting& out = *message.mutable_greeting();

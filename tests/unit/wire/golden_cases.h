@@ -1,4 +1,4 @@
-// The messages whose bytes are frozen in tests/golden, and what a client must make of each.
+// The messages whose bytes are frozen in tests/golden, and how a client must read each.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace spindrift::wire {
 
-/// What a client must make of the bytes.
+/// How a client must read the bytes.
 enum class GoldenVerdict {
   kOk,          ///< parses and, being a frame, decodes to the values expected
   kBadFrame,    ///< parses as a ServerMessage, but its frame must be refused

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kSide = 20;  // tiles of 8 do not fit evenly
 
-/// Whole numbers, so that every machine has the same: a slope that moves, noise in one corner, a spike.
+/// Integers only, so that all machines give the same: a moving slope, noise in one corner, a spike.
 std::vector<std::uint32_t> wordsAt(std::int32_t step) {
   std::vector<std::uint32_t> words(kSide * kSide / 2);
   std::uint32_t noise = 1u + static_cast<std::uint32_t>(step);
@@ -55,7 +55,7 @@ GoldenCase damagedCase(const std::string& name, const std::string& why, const co
   return {name, GoldenVerdict::kBadFrame, "\"why\": \"" + why + "\"", std::move(bytes)};
 }
 
-/// A lattice in a corner, a pile in one place, lone drops, all at some speed.
+/// A lattice in a corner, many particles in one place, single drops, with various speeds.
 std::vector<std::uint32_t> particleWords() {
   std::vector<std::uint32_t> words;
   std::uint32_t noise = 1;
@@ -89,7 +89,7 @@ std::vector<GoldenCase> goldenPackedFoam() {
   codec::PackedFoamDecoder decoder;
   std::vector<GoldenCase> cases;
   for (std::uint32_t step = 0; step < 2; ++step) {
-    // Fading streaks with white spots, 12 samples a side.
+    // Fading streaks with white spots, 12 samples per side.
     std::vector<std::uint32_t> words(36);
     for (std::uint32_t i = 0; i < 144; ++i) {
       const std::uint32_t white = i % 31 == step ? 255u : (i / 12 % 4 == 0 ? 180u - 20u * step : i % 12 * 3);
@@ -169,7 +169,7 @@ std::vector<GoldenCase> goldenPackedSurfaces() {
     cases.push_back({"surface_packed_" + std::to_string(step) + ".bin", GoldenVerdict::kOk,
                      jsonOf(frame, *decoder.decode(frame), follows), bytes});
   }
-  const core::Bytes key = cases.front().bytes;  // a copy: the row grows below
+  const core::Bytes key = cases.front().bytes;  // a copy, because the list grows below
   cases.push_back(damagedCase("bad_surface_packed_cut.bin",
                               "the packed payload is cut in half, checksum of what is there", key,
                               [](v1::LayerFrame& f) { f.mutable_payload()->resize(f.payload().size() / 2); }));

@@ -1,4 +1,4 @@
-// The packed golden frames: three surfaces in a row, the first of which is whole, likewise two of foam, and particles.
+// The packed golden frames: a keyframe and two deltas of the surface, two frames of foam, and particles.
 #pragma once
 
 #include <vector>

@@ -25,7 +25,7 @@ std::string readFile(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// `packed` has read the packed frames before it.
+/// `packed` has read the packed frames before this one.
 bool decodes(const v1::LayerFrame& frame, codec::PackedSurfaceDecoder& packed, codec::PackedFoamDecoder& packed_foam) {
   switch (frame.layer()) {
     case v1::LAYER_SURFACE:
@@ -70,7 +70,7 @@ TEST_F(Golden, FolderHoldsNoOtherBytes) {
   }
 }
 
-TEST_F(Golden, FilesGetTheVerdictTheyAreNamedFor) {
+TEST_F(Golden, FilesGetTheVerdictInTheirNames) {
   codec::PackedSurfaceDecoder packed;
   codec::PackedFoamDecoder packed_foam;
   for (const GoldenCase& golden : goldenCases()) {

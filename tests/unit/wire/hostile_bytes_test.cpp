@@ -1,5 +1,5 @@
-// Untrusted bytes: random ones, and damaged valid messages. Nothing crashes, and no result is non-finite.
-// Run under the sanitizer presets, these find what plain runs would forgive.
+// Untrusted bytes: random ones, and damaged valid messages. Nothing may crash, and no result may be non-finite. The
+// sanitizer presets find errors here that plain runs do not show.
 #include <cmath>
 #include <random>
 #include <string>
@@ -26,7 +26,7 @@ constexpr int kCaseCount = 20'000;
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
-  /// 0 <= result < bound; by remainder, so that every standard library gives the same cases.
+  /// 0 <= result < bound; by remainder, because distributions differ between standard libraries.
   std::size_t below(std::size_t bound) { return engine_() % bound; }
   std::uint8_t byte() { return static_cast<std::uint8_t>(engine_()); }
   core::Bytes bytes(std::size_t max_size) {
@@ -39,7 +39,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// One to four changes: a bit flipped, a byte replaced, the end cut off, bytes put in or taken out.
+/// Makes one to four changes: flips a bit, replaces a byte, cuts the end, inserts or removes bytes.
 core::Bytes mutate(core::Bytes bytes, Random& random) {
   for (std::size_t left = 1 + random.below(4); left > 0; --left) {
     if (bytes.empty()) bytes.push_back(random.byte());
@@ -115,7 +115,7 @@ TEST(HostileBytes, RandomClientMessagesDoNoHarm) {
   for (int i = 0; i < kCaseCount; ++i) ASSERT_TRUE(isHarmless(parseClientMessage(random.bytes(200)))) << "case " << i;
 }
 
-TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndMeetEveryAnswer) {
+TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndGetEveryKindOfResult) {
   Random random(2);
   const std::vector<core::Bytes> valid = validClientMessages();
   const v1::Scene scene = fullScene();
@@ -129,7 +129,7 @@ TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndMeetEveryAnswer) {
       ASSERT_TRUE(!rejection || !rejection->message.empty()) << "case " << i;
     }
   }
-  // Otherwise the damage would be too coarse to test anything behind the parser.
+  // Otherwise the damage would be too coarse to test the code after the parser.
   for (std::size_t answer = 0; answer < answer_counts.size(); ++answer) EXPECT_GT(answer_counts[answer], 50) << answer;
 }
 
@@ -154,7 +154,7 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
     auto message = codec::parseServerMessage(mutate(golden[random.below(golden.size())].bytes, random));
     if (!message || !message->has_frame()) continue;
     v1::LayerFrame& frame = *message->mutable_frame();
-    // The checksum would refuse almost every case; half of them carry the right one and meet the checks behind it.
+    // A wrong checksum would refuse almost every case, so half of them get the right one and reach the checks after it.
     if (random.below(2) == 0) {
       frame.set_crc32c(
           codec::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));

@@ -14,7 +14,7 @@ v1::ServerMessage read(const core::SharedBytes& bytes) {
   return message ? *message : v1::ServerMessage();
 }
 
-TEST(ServerMessages, GreetingTellsAllAClientNeeds) {
+TEST(ServerMessages, GreetingHasAllThatAClientNeeds) {
   const auto scene = scene::parseSceneText("wave { depth_m: 2 } particles {}", "pool.textproto");
   ASSERT_TRUE(scene) << scene.error().message;
   GreetingFacts facts;
@@ -68,7 +68,7 @@ TEST(ServerMessages, AnswersCarryIdTickReasonAndField) {
   EXPECT_EQ(read(reject({9, v1::REJECT_REASON_BUSY, "", "try again"})).reject().reason(), v1::REJECT_REASON_BUSY);
 }
 
-TEST(ServerMessages, NewsOfTheRoomCarryTheirValues) {
+TEST(ServerMessages, StateMessagesHaveTheirValues) {
   const v1::ParameterChanged changed = read(parameterChanged("wave.depth_m", 2.5, 99)).parameter_changed();
   EXPECT_EQ(changed.path(), "wave.depth_m");
   EXPECT_EQ(changed.value(), 2.5);

@@ -1,5 +1,5 @@
-// The page: connects the client in the worker, the display and the panels. handlers() takes what the server and the worker say;
-// input.ts calls what the user does.
+// The page: connects the client in the worker, the display and the panels. handlers() takes the messages of the server and the worker;
+// input.ts calls the methods for the user's actions.
 import type { WebGLRenderer } from "three";
 
 import type { GreetingInfo } from "../codec/greeting";

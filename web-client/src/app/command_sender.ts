@@ -1,4 +1,4 @@
-// Sends commands and remembers what the user called each of them, for the line that reports its answer.
+// Sends commands and keeps a label for each, for the line that reports its answer.
 import type { CommandAction } from "../net/messages";
 import type { WaterClient } from "../net/water_client";
 

@@ -30,7 +30,7 @@ export class Display {
   private readonly layout: PageLayout;
   private readonly loop: DisplayLoop;
   private greeting: GreetingInfo | undefined;
-  /** False until the water's height is known: without a wave only the first frame of particles tells. */
+  /** False until the water's height is known: without a wave it comes with the first frame of particles. */
   private isBoxKnown = true;
 
   constructor(

@@ -1,4 +1,4 @@
-// What the user does with pointer, keys, buttons and window → calls of the App.
+// Turns pointer, key, button and window events into calls of the App.
 import { Vector3 } from "three";
 
 import { pickWater } from "../scene/pick";
@@ -28,7 +28,7 @@ function connectPointer(app: App): void {
   });
   canvas.addEventListener("pointercancel", (event) => taps.cancelled(event.pointerId));
   canvas.addEventListener("pointerup", (event) => {
-    // A drag may have left the view that a button stands for.
+    // A drag may have left the view of the pressed button.
     app.viewButtons.refresh();
     if (taps.released(sampleOf(event))) splashUnder(app, event);
   });

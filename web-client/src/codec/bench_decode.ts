@@ -48,7 +48,7 @@ export function measureDecoding(file: Uint8Array, rounds: number): DecodeTimes {
       if (message.message.case !== "frame") throw new Error("not a frame");
       const parsed = parseFrame(message.message.value);
       const frame = isPacked(parsed) ? unpacker.unpack(parsed) : parsed;
-      // As the worker does: into a buffer that the page has returned.
+      // Like the worker: into a buffer that the page has returned.
       if ("payload" in frame) bufferOf(frame.payload.length).set(frame.payload);
       const ms = performance.now() - begin;
       if (frame.kind === "surface") times.resolution = frame.header.resolutionCount;

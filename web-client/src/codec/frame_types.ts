@@ -71,7 +71,7 @@ export interface PackedPlane<H extends FrameHeader> {
   /** Tick of the frame that a delta builds on; undefined for a keyframe. */
   baseTick: bigint | undefined;
   weights: number[];
-  /** Of a keyframe: the weights of the plane before it, which it carries as well. */
+  /** Of a keyframe: the weights of the plane before it, which it contains as well. */
   earlierWeights: number[];
   payload: Uint8Array;
 }

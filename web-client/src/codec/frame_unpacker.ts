@@ -12,13 +12,13 @@ export class FrameUnpacker {
   private readonly foam = new PlaneHistory<FoamHeader>((a, b) => a.resolutionCount === b.resolutionCount && a.sideM === b.sideM);
   private particles: ParticleReader | undefined;
 
-  /** After a new subscription: no delta builds on what came before. */
+  /** Call it after a new subscription: no delta builds on earlier frames. */
   forget(): void {
     this.surface.forget();
     this.foam.forget();
   }
 
-  /** The returned payload holds until the next frame of its layer. */
+  /** The returned payload is valid until the next frame of its layer. */
   unpack(packed: PackedFrame): PlainFrame | Malformed | MissingBase {
     switch (packed.kind) {
       case "packedSurface": {

@@ -30,7 +30,7 @@ export interface BoatDetail {
   draughtM: number;
 }
 
-/** Side and depth of the resting water, as the server's rules measure them. */
+/** Side and depth of the resting water, as in the server's rules. */
 export interface WaterExtents {
   sideM: number;
   depthM: number;

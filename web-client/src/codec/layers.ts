@@ -12,5 +12,5 @@ export const kLayers = {
 export type LayerName = keyof typeof kLayers;
 export const kLayerNames = Object.keys(kLayers) as LayerName[];
 
-/** The layers that come as frames; diagnostics come as a message of their own kind. */
+/** The layers that are sent as frames; diagnostics have a message of their own. */
 export type FrameLayer = Exclude<LayerName, "diagnostics">;

@@ -14,7 +14,7 @@ export type LevelName = (typeof kLevels)[number]["name"];
 /** Leaves nothing out. */
 export const kFinestLevel: LevelName = kLevels[kLevels.length - 1]!.name;
 
-/** Returns the finest level for a value that this client does not know: the frame itself tells its resolution. */
+/** Returns the finest level for a value that this client does not know: the frame itself contains its resolution. */
 export function levelName(wire: Level): LevelName {
   return kLevels.find((level) => level.wire === wire)?.name ?? kFinestLevel;
 }

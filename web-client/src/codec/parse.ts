@@ -1,5 +1,5 @@
-// Bytes of one WebSocket message → one member of a discriminated union. Pure: no state, no exception. What cannot be trusted
-// comes back as "malformed" with the reason. Payloads are views into the message, not copies.
+// Bytes of one WebSocket message → one member of a discriminated union. Pure: no state, no exception. Bytes that cannot be trusted
+// give "malformed" with the reason. Payloads are views into the message, not copies.
 //
 // kReaders is the one place that declares a server message for the page: the union of messages, the events that the worker posts and
 // the type of the page's handlers follow from it.

@@ -19,7 +19,7 @@ const kMaxOffsetBits = 8;
 /** Positions along one axis of the packed particles' grid, and cells in the whole of it. */
 const kMaxPositionCount = 65536;
 const kMaxCellCount = 2 ** 24;
-/** No size, position or speed on the wire is above this [m, m/s]. */
+/** Largest size, position or speed on the wire [m, m/s]. */
 const kLargest = 1e6;
 
 type Codec = Exclude<LayerFrame["codec"], { case: undefined }>;

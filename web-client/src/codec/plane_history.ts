@@ -3,7 +3,7 @@ import { PlaneReader } from "./frame_reader";
 import type { FrameHeader, PackedPlane } from "./frame_types";
 import { malformed, type Malformed } from "./malformed";
 
-/** The delta's base frame is not here: only a keyframe helps. */
+/** The delta's base frame is missing: only a keyframe can be read. */
 export interface MissingBase {
   kind: "missingBase";
 }

@@ -6,7 +6,7 @@ import { malformed, type Malformed } from "./malformed";
 const kMaxSignedByte = 127;
 const kMaxWord = 65535;
 
-/** Header and range checks are done before; what is left to find is a damaged payload. The result holds until the reader's next call. */
+/** Header and ranges have been checked, so only the payload can be damaged. The result is valid until the reader's next call. */
 export function unpackParticles(reader: ParticleReader, packed: PackedParticles): { header: ParticleHeader; payload: Uint8Array } | Malformed {
   const { count, minM, cellsCount, cellM, offsetBits, velocityQuantumMps, radiusM } = packed;
   const payload = reader.read(packed.payload, count, cellsCount, offsetBits);

@@ -61,7 +61,7 @@ export interface ConnectionWorld {
 
 export interface ConnectionSink {
   event(event: ConnectionEvent): void;
-  /** The payload holds until the call returns. */
+  /** The payload is valid until the call returns. */
   frame(frame: PlainFrame): void;
 }
 
@@ -176,7 +176,7 @@ export class Connection implements ConnectionCalls {
     this.meter.worked(this.world.nowMs() - this.lastHeardMs);
   }
 
-  /** Messages that are not the connection's own business go on to the page as they are. */
+  /** Messages that the connection does not handle itself go to the page unchanged. */
   private read(data: unknown): void {
     if (!(data instanceof ArrayBuffer)) return this.meter.malformed("a text message");
     this.meter.bytes(data.byteLength);
@@ -254,7 +254,7 @@ export class Connection implements ConnectionCalls {
     if (greeting.versionMajor !== kWireMajor)
       return this.refuse(`the server speaks version ${greeting.versionMajor}.${greeting.versionMinor} of the wire, this page ${kWireMajor}.${kWireMinor}; reload the page`);
     this.greeting = greeting;
-    // The greeting of another scene says nothing new about the clock.
+    // The greeting of another scene does not change the estimate of the clock.
     if (this.clock.leadMs() === undefined) this.clock.greeted(greeting.serverTimeS, this.world.nowMs());
     if (this.state.name !== "live") {
       this.liveSinceMs = this.world.nowMs();

@@ -3,7 +3,7 @@
 
 const kMinGrowingBytes = 1024;
 
-/** Buffers come back by release(); the last few are kept for the next payloads. */
+/** release() returns buffers; the last few are kept for the next payloads. */
 export class FrameHandover<T extends { buffer: ArrayBuffer }> {
   supersededCount = 0;
   private underWayCount = 0;

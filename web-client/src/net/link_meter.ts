@@ -1,5 +1,5 @@
 // Measures the link: kB/s, frames/s, latency. Frames of several layers that show the same state count as one frame; for a server
-// that does not number its states, the tick stands for the state.
+// that does not number its states, the tick is used instead.
 import type { FrameLayer } from "../codec/layers";
 import type { LinkStats } from "./messages";
 

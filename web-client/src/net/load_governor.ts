@@ -1,5 +1,5 @@
 // Chooses the level of detail that this device can unpack in time, by the share of time that the worker spends on messages. The
-// server judges the link: it sees what waits in the outbox.
+// server adapts to the link, from the frames that wait in its outbox.
 import { kLevels, type LevelName } from "../codec/level";
 
 const kTooBusy = 0.6;

@@ -1,5 +1,5 @@
-// Messages between the page and the worker. What the server says goes through as codec/parse.ts declares it; calls to the connection
-// go through as ConnectionCalls declares them. Frames travel as transferred ArrayBuffers: the page returns every one with
+// Messages between the page and the worker. The server's messages pass as codec/parse.ts declares them; calls to the connection
+// pass as ConnectionCalls declares them. Frames travel as transferred ArrayBuffers: the page returns every one with
 // "release", which bounds the frames on their way.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 
@@ -16,7 +16,7 @@ export type CommandAction = Exclude<
   { case: undefined }
 >;
 
-/** What Hello says about the user. */
+/** The user's data in Hello. */
 export interface Identity {
   name: string;
   /** Gives a role; empty for a guest. */
@@ -51,12 +51,12 @@ export interface LinkStats {
   receivedCount: Record<LayerName, number>;
   malformedCount: number;
   lastMalformed: string;
-  /** Finest level at which surface and particles come now, and what limits it. */
+  /** Finest level at which surface and particles are sent now, and what limits it. */
   level: LevelName;
   levelLimitedBy: "none" | "choice" | "link" | "device";
 }
 
-/** Messages that end in the connection. Every other one goes on to the page. */
+/** Messages that the connection handles itself. All others go to the page. */
 type Handled = PlainFrame | PackedFrame | Malformed | { kind: "unknown" | "levelChanged" | "pong" | "refusal" };
 
 /** What the connection reports besides frames. */

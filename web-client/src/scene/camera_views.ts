@@ -73,7 +73,7 @@ export class CameraViews {
     this.jump("above");
   }
 
-  /** The water's height became known. Frames the box again unless the user has turned the camera. */
+  /** Takes the water's height once it is known. Frames the box again unless the user has turned the camera. */
   measured(extent: ViewedBox): void {
     this.extent = extent;
     this.frameAgain();

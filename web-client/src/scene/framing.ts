@@ -14,7 +14,7 @@ export interface ViewedBox {
   sideM: number;
   minYM: number;
   maxYM: number;
-  /** If more than the square is to be seen: the land behind shores. */
+  /** Set if the land behind shores must be seen as well as the square. */
   ground?: { minXM: number; maxXM: number; minZM: number; maxZM: number };
 }
 

@@ -1,6 +1,6 @@
 // Chooses the drawing quality: `?quality=low|high`, or by the name of the renderer. With ?quality=high the resolution is never lowered.
 
-/** What the scene needs to know. */
+/** Settings of the scene. */
 export interface Quality {
   /** Cells along each side of the drawn surface. */
   surfaceCellsCount: number;

@@ -1,11 +1,11 @@
-// Makes the WebGL renderer with the quality that suits what draws underneath.
+// Makes the WebGL renderer with the quality that suits the GPU or software renderer below it.
 import { WebGLRenderer } from "three";
 
 import { chooseQuality, type ChosenQuality } from "./quality";
 
 /** Returns undefined where the browser has no WebGL 2 with floating-point targets. */
 export function makeRenderer(canvas: HTMLCanvasElement, search: string): { renderer: WebGLRenderer; quality: ChosenQuality } | undefined {
-  // Antialiasing is fixed when a context is made and depends on what draws: a scratch context tells.
+  // Antialiasing is fixed when a context is made and depends on the renderer's name, which a temporary context returns.
   const scratch = document.createElement("canvas").getContext("webgl2");
   if (!scratch?.getExtension("EXT_color_buffer_float")) return undefined;
   const unmasked = scratch.getExtension("WEBGL_debug_renderer_info");

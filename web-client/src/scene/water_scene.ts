@@ -1,4 +1,4 @@
-// Everything that is drawn of one room. One picture: field pass → sky, floor, solids and particles into a linear target → the water to
+// Draws everything of one room. Order of a picture: field pass → sky, floor, solids and particles into a linear target → the water to
 // the canvas, which reads that target for refraction → the target to the canvas where there is no water.
 import {
   DepthTexture,

@@ -1,4 +1,4 @@
-// The numbers that server and page measure. Every value is written when it arrives.
+// Shows the values measured by the server and the page. Each value is written when it arrives.
 import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
 import type { ConnectionState, LinkStats } from "../net/messages";

@@ -1,4 +1,4 @@
-// A message over the whole page, for what stops the picture.
+// A message over the whole page, for errors that stop the picture.
 import { byId, setText } from "./dom";
 
 /** An empty text hides the notice. */

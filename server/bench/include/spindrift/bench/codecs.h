@@ -11,8 +11,9 @@
 
 namespace spindrift::bench {
 
-/// Runs the scene for a second and then `seconds` (simulated), encodes and decodes every frame of the latter and prints
-/// a row for each stream: bits a sample or particle beside the bound and beside deflate, times, largest error.
+/// Runs the scene for a second and then for `seconds` (simulated), encodes and decodes every frame of the second part,
+/// and prints one row per stream: bits per sample or particle beside the bound and beside deflate, times, largest
+/// error.
 core::Result<boost::json::object> measureCodecs(gpu::Context& ctx, const core::Scene& scene, double seconds,
                                                 std::FILE* out);
 

@@ -1,4 +1,4 @@
-// A crowd of clients on one server: how many frames each gets, how late, and how soon commands are answered.
+// A crowd of clients on one server: how many frames each receives, the delay of frames, and the delay of answers.
 #pragma once
 
 #include <chrono>
@@ -12,46 +12,45 @@
 
 namespace spindrift::bench {
 
-/// What one received message is.
+/// Kind of a received message.
 struct Sighting {
   enum class Kind { kOther, kFrame, kAnswer };
   Kind kind = Kind::kOther;
   std::uint64_t number = 0;                           ///< of the answered command
-  std::chrono::steady_clock::time_point published{};  ///< of a frame that tells; else the epoch
+  std::chrono::steady_clock::time_point published{};  ///< of a frame that contains it; otherwise the epoch
 };
 
 struct CrowdOptions {
   std::size_t client_count = 100;
-  std::size_t deaf_count = 0;                 ///< of them never read
-  double visitors_per_s = 0.0;                ///< come, watch for a second, and go, besides
-  double commands_per_s = 0.0;                ///< of every client that reads
-  std::chrono::duration<double> settle{1.0};  ///< until all clients are connected; not measured
+  std::size_t deaf_count = 0;                 ///< this many of them never read
+  double visitors_per_s = 0.0;                ///< additional clients that connect, watch for a second, and leave
+  double commands_per_s = 0.0;                ///< of each client that reads
+  std::chrono::duration<double> settle{1.0};  ///< time until all clients are connected; not measured
   std::chrono::duration<double> duration{5.0};
-  std::vector<core::SharedBytes> on_open;  ///< what every client says first
+  std::vector<core::SharedBytes> on_open;  ///< first messages of every client
   std::function<core::SharedBytes(std::uint64_t number)>
-      command;  ///< a command of that number; numbers are a client's own
+      command;  ///< returns a command with this number; each client has its own numbers
   std::function<Sighting(core::ByteView)> look;
 };
 
 struct CrowdReport {
-  std::size_t connected_count = 0;  ///< clients that were welcome
-  std::size_t lost_count = 0;       ///< clients that read and whose connection ended nevertheless
-  std::uint64_t fewest_frames = 0;  ///< of a client that reads
+  std::size_t connected_count = 0;  ///< clients that got a Welcome
+  std::size_t lost_count = 0;       ///< clients that read but lost their connection
+  std::uint64_t fewest_frames = 0;  ///< smallest number for a client that reads
   std::uint64_t median_frames = 0;
   std::uint64_t most_frames = 0;
   std::uint64_t received_bytes = 0;
   std::vector<double> delays_ms;  ///< of frames, from publication to receipt, sorted
-  /// Likewise until the last one that reads had it; of frames that all of them got. Sorted.
+  /// Delay until the last client that reads had the frame; only frames that all of them received. Sorted.
   std::vector<double> last_delays_ms;
-  std::vector<double> answers_ms;  ///< of commands, from sending to the answer, sorted
-  std::uint64_t unanswered_count =
-      0;  ///< commands without an answer at the end, those of the last half second left out
+  std::vector<double> answers_ms;      ///< of commands, from sending to the answer, sorted
+  std::uint64_t unanswered_count = 0;  ///< commands without an answer at the end, except those of the last half second
 };
 
-/// Quantile of sorted values; 0 for none.
+/// Returns a quantile of sorted values; 0 if there are none.
 double quantileOf(const std::vector<double>& sorted, double ratio);
 
-/// Connects, watches, and goes. `begin` is called when the measured time begins, `end` when it is over.
+/// Connects the crowd, measures, disconnects. `begin` is called when the measured time begins, `end` when it ends.
 CrowdReport runCrowd(const net::ClientUrl& url, const CrowdOptions& options, const std::function<void()>& begin = {},
                      const std::function<void()>& end = {});
 

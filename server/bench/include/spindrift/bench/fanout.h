@@ -1,4 +1,4 @@
-// One server, many clients: what a frame costs per client, how late it comes, and what clients that do not read change.
+// One server with many clients: cost of a frame per client, delays, and the effect of clients that do not read.
 #pragma once
 
 #include <cstdio>
@@ -10,9 +10,9 @@
 
 namespace spindrift::bench {
 
-/// The network module alone with made-up frames (100 readers; the same with ten that never read; 200 small ones with
-/// visitors and commands), then the whole server with the scene and 200 clients. `seconds` measured per case, clients
-/// and server in this process. Prints a row a case.
+/// Measures the network module alone with synthetic frames (100 readers; the same with ten that never read; 200 small
+/// ones with visitors and commands), then the whole server with the scene and 200 clients. Measures `seconds` per case,
+/// with clients and server in this process. Prints one row per case.
 core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const std::string& device, double seconds,
                                                 std::FILE* out);
 

@@ -1,4 +1,4 @@
-// Bit rate of each level of detail of a scene, compared with its budget and with levels that would add to each other.
+// Bit rate of each level of detail of a scene, compared with its budget and with levels that add to each other.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@
 
 namespace spindrift::bench {
 
-/// Encodes every level of a scene's frames as the server would. One instance a scene; frames in their order.
+/// Encodes every level of a scene's frames as the server would. One instance per scene; frames in order.
 class LevelMeter {
  public:
   explicit LevelMeter(double frame_rate_hz) : frame_rate_hz_(frame_rate_hz) {}
 
-  /// Every level of what the scene has.
+  /// Requests every level of every layer that the scene has.
   static sim::FrameRequest request(const core::Scene& scene);
   void add(const core::FrameView& frame);
-  /// Prints a table, or one line where the scene has one level only. Numbers that there are not are 0 in the rows.
+  /// Prints a table, or one line if the scene has only one level. Absent numbers are 0 in the rows.
   boost::json::array print(std::FILE* out) const;
 
  private:
@@ -41,7 +41,7 @@ class LevelMeter {
   core::ReducedCounts counts_;
   codec::FrameEncoder encoder_;
   std::array<Level, core::kLevelCount> levels_;
-  /// If levels added to each other: bits of all particles up to a level, and their number.
+  /// For levels that add to each other: bits of all particles up to a level, and their number.
   std::array<double, core::kLevelCount> part_bits_{};
   std::array<double, core::kLevelCount> part_counts_{};
 };

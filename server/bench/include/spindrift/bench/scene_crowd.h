@@ -1,4 +1,5 @@
-// Clients of a real room: each says hello, subscribes to every layer packed at 20 Hz, and sends a splash now and then.
+// Clients of a real room: each says hello, subscribes to every layer packed at 20 Hz, and sends a splash from time to
+// time.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Timings of the simulation's passes on this machine.
+// Times of the simulation's passes on this machine.
 #pragma once
 
 #include <cstdio>
@@ -11,8 +11,8 @@
 
 namespace spindrift::bench {
 
-/// Runs the scene, its parts alone and, where its number of particles is fixed, other numbers of particles, for
-/// `seconds` of wall time each. Prints one row per case. Errors are the simulation's, with the case's name.
+/// Runs the scene, its parts alone and, if its number of particles is fixed, other numbers of particles, for `seconds`
+/// of wall time each. Prints one row per case. Errors are those of the simulation, with the case's name.
 core::Result<boost::json::array> measureSteps(gpu::Context& ctx, const core::Scene& scene, double seconds,
                                               std::FILE* out);
 

@@ -68,14 +68,14 @@ class Buffer {
     uploadBytes(std::as_bytes(std::span(&value, 1)), offset_bytes);
   }
   /// Reads back into `out`. Blocks until the device is done: for tests, client commands and hashes only. When the
-  /// device was lost
-  /// (Context::isLost()) or does not answer within 30 s, which is logged and counted, `out` is filled with zeros.
+  /// device was lost (Context::isLost()) or does not answer within 30 s, which is logged and counted, `out` is filled
+  /// with zeros.
   template <typename T>
   void download(std::span<T> out, std::size_t offset_bytes = 0) const {
     static_assert(std::is_trivially_copyable_v<T>);
     downloadBytes(std::as_writable_bytes(out), offset_bytes);
   }
-  /// The first `count` values. Waits, as above.
+  /// Returns the first `count` values. Waits, as above.
   template <typename T>
   [[nodiscard]] std::vector<T> downloadVector(std::size_t count) const {
     std::vector<T> out(count);
@@ -83,9 +83,9 @@ class Buffer {
     return out;
   }
 
-  /// Every whole 32-bit word becomes `word`; a tail of 1 to 3 bytes takes the low bytes of `word`.
+  /// Sets every whole 32-bit word to `word`; a tail of 1 to 3 bytes takes the low bytes of `word`.
   void clear(std::uint32_t word = 0);
-  /// The same for a part; offset and size must be multiples of 4.
+  /// The same for a part of the buffer; offset and size must be multiples of 4.
   void clearRange(std::uint32_t word, std::size_t offset_bytes, std::size_t size_bytes);
   /// Copies on the device, without waiting.
   void copyFrom(const Buffer& source, std::size_t source_offset_bytes, std::size_t size_bytes,
@@ -116,8 +116,6 @@ class Buffer {
 
 /// Type in which texelFetch reads the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
 enum class TexelFormat { kR32F, kRG32F, kRGBA32F, kR32UI, kRG32UI, kRGBA32UI, kR32I, kRG32I, kRGBA32I };
-/// Returns 4, 8 or 16.
-std::size_t texelBytes(TexelFormat format);
 
 /// A buffer that is written as shader storage and read with texelFetch. Hot reads go this way because, measured on
 /// llvmpipe 22.3, storage loads inside a loop are scalarised, and a gather through texelFetch is three to four times
@@ -132,16 +130,11 @@ class TexelBuffer : public Buffer {
   TexelBuffer(TexelBuffer&& other) noexcept;
   TexelBuffer& operator=(TexelBuffer&& other) noexcept;
 
-  [[nodiscard]] std::size_t texelCount() const { return texel_count_; }
-  [[nodiscard]] TexelFormat format() const { return format_; }
-
   /// Binds the view to the texture unit of `layout(binding = …) uniform samplerBuffer`.
   void bindTexel(std::uint32_t unit) const;
 
  private:
   std::uint32_t texture_id_ = 0;
-  std::size_t texel_count_ = 0;
-  TexelFormat format_ = TexelFormat::kR32F;
 };
 
 }  // namespace spindrift::gpu

@@ -1,4 +1,4 @@
-// Runs a script's steps one after another against a server and says what held.
+// Runs a script's steps one after another against a server and reports the results.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ struct ScriptReport {
   [[nodiscard]] bool passed() const;
 };
 
-/// `script` is loadScript()'s. Without a server at the URL the first step fails.
+/// `script` comes from loadScript(). If no server answers at the URL, the first step fails.
 ScriptReport runScript(const v1::Script& script, const net::ClientUrl& url);
 
 }  // namespace spindrift::script

@@ -1,4 +1,4 @@
-// Cases with a known answer (ARCHITECTURE, "Study"): theory, experiment, or conservation.
+// Cases with a known result (ARCHITECTURE, "Study"): theory, experiment, or conservation.
 #pragma once
 
 #include <functional>
@@ -18,13 +18,13 @@ struct CaseResult {
 };
 
 struct Case {
-  std::string name;     ///< one word with dashes, what --case names
+  std::string name;     ///< one word with dashes, as for --case
   std::string purpose;  ///< one line
-  /// `quick`: shorter runs and coarser water, for a table in minutes; tolerances are the same.
+  /// `quick`: shorter runs and coarser water, for a table within minutes; the tolerances are the same.
   std::function<core::Result<CaseResult>(gpu::Context& ctx, bool quick)> run;
 };
 
-/// In the order of the table.
+/// Returns all cases in the order of the table.
 const std::vector<Case>& accuracyCases();
 
 }  // namespace spindrift::study

@@ -11,7 +11,7 @@ struct Figure {
   struct Curve {
     std::string name;
     std::vector<std::pair<double, double>> points;
-    bool is_measured = false;  ///< points of an experiment; otherwise a line of the simulation
+    bool is_measured = false;  ///< points of an experiment; otherwise a computed line
   };
 
   std::string name;  ///< one word with dashes

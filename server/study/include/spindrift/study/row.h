@@ -1,11 +1,11 @@
-// One line of a study's table: a measured number beside the number that it should be.
+// One line of a study's table: a measured number beside the expected one.
 #pragma once
 
 #include <string>
 
 namespace spindrift::study {
 
-/// How far from `expected` the measured value may be.
+/// Meaning of the tolerance between `expected` and the measured value.
 enum class Tolerance {
   kRelative,  ///< |measured - expected| <= tolerance * |expected|
   kAbsolute,  ///< |measured - expected| <= tolerance
@@ -15,15 +15,15 @@ enum class Tolerance {
 };
 
 struct Row {
-  std::string name;  ///< what was measured, with the choices that make it this one
+  std::string name;  ///< the measured quantity and the choices of this row
   std::string unit;  ///< of measured and expected; empty for ratios
   double measured = 0.0;
   double expected = 0.0;
   Tolerance kind = Tolerance::kRelative;
   double tolerance = 0.0;
-  std::string source;  ///< where `expected` comes from
+  std::string source;  ///< source of `expected`
 
-  /// In the measure of the tolerance: relative, absolute, or the measured value itself.
+  /// Returns the error in the unit of the tolerance: relative, absolute, or the measured value itself.
   [[nodiscard]] double error() const;
   [[nodiscard]] bool passes() const;
 };

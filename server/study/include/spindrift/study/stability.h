@@ -1,5 +1,4 @@
-// Where the simulation stays finite, where its watchdog steps in, and that it always comes back: sweeps of one value
-// each.
+// Sweeps of one value each: where the simulation stays finite, where its watchdog acts, and that it always recovers.
 #pragma once
 
 #include <cstdint>
@@ -15,39 +14,39 @@
 
 namespace spindrift::study {
 
-/// What became of one value.
+/// Result for one value of a sweep.
 struct StabilityPoint {
   double value = 0.0;
-  std::string refused;                ///< why no room was made of it; empty: one was
-  bool are_frames_finite = true;      ///< bounds of every frame; what is in them are integers
-  std::uint64_t recovered_count = 0;  ///< how often the watchdog stepped in
-  bool is_well_after = true;          ///< two seconds with the rules' own steps: finite, the watchdog silent
+  std::string refused;                ///< why no room could be made; empty: one was made
+  bool are_frames_finite = true;      ///< bounds of every frame; its contents are integers
+  std::uint64_t recovered_count = 0;  ///< number of times that the watchdog acted
+  bool is_well_after = true;          ///< two seconds with the rules' own steps: finite, without the watchdog
   double max_density_ratio = 0.0;     ///< largest rho / rho0; 0 without particles
   double energy_growth = 0.0;         ///< largest energy over the initial energy
   double max_elevation_m = 0.0;       ///< largest |elevation|; 0 without a wave
   double slowest_step_s = 0.0;        ///< wall time of a substep, mean of the slowest tick
 
-  /// No breach, and no more energy and density than the sweep's bounds.
+  /// No breach, and energy and density within the sweep's bounds.
   bool is_stable = false;
-  /// No client saw invalid values, nothing hung, and the room still runs.
+  /// Returns whether no client saw invalid values, nothing hung, and the room still runs.
   [[nodiscard]] bool isSafe() const { return are_frames_finite && is_well_after && slowest_step_s < 10.0; }
 };
 
 struct Sweep {
-  std::string name;  ///< what is swept
+  std::string name;  ///< the swept value
   std::string unit;
-  std::vector<double> values;                         ///< rising
+  std::vector<double> values;                         ///< in ascending order
   std::optional<double> predicted_bound;              ///< largest stable value by the step rules
-  std::function<core::Scene(double)> scene;           ///< `allow_unstable` where the rules would refuse
-  std::function<void(sim::WaterSim&, double)> start;  ///< what happens at the start; may be empty
-  double seconds = 3.0;                               ///< simulated, a point
+  std::function<core::Scene(double)> scene;           ///< with `allow_unstable` if the rules would refuse it
+  std::function<void(sim::WaterSim&, double)> start;  ///< called at the start; may be empty
+  double seconds = 3.0;                               ///< simulated, per point
   double stable_growth = 0.0;                         ///< largest energy_growth of a stable point
-  double stable_density_ratio = 1e9;                  ///< largest max_density_ratio of one
-  /// What happens before each tick of the sweep; may be empty.
+  double stable_density_ratio = 1e9;                  ///< largest max_density_ratio of a stable point
+  /// Called before each tick of the sweep; may be empty.
   std::function<void(sim::WaterSim&, double value, int tick)> disturb = {};
-  double seconds_after = 2.0;  ///< simulated, with the rules' own steps, that must go well
-  /// Largest max_elevation_m of a stable point. An unstable wave does not grow for ever: no cell gives more water than
-  /// it holds, which bounds its energy, so that it is told by its height.
+  double seconds_after = 2.0;  ///< simulated, with the rules' own steps; must stay healthy
+  /// Largest max_elevation_m of a stable point. The energy of an unstable wave is bounded, because no cell gives more
+  /// water than it holds; so its height is what shows it.
   double stable_elevation_m = 1e9;
 };
 
@@ -56,7 +55,7 @@ std::vector<Sweep> stabilitySweeps(bool quick);
 
 core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, double value);
 
-/// Largest value up to which every point is stable; nullopt where the first is not.
+/// Returns the largest value up to which every point is stable; nullopt if the first point is not.
 std::optional<double> foundBound(const std::vector<StabilityPoint>& points);
 
 }  // namespace spindrift::study

@@ -1,4 +1,4 @@
-// One substep on the device beside the same substep in double precision (water_reference.h).
+// Compares one substep on the device with the same substep in double precision (water_reference.h).
 #pragma once
 
 #include <cstddef>
@@ -9,20 +9,22 @@ namespace spindrift::study {
 
 struct StepErrors {
   double density_ratio = 0.0;  ///< largest |rho - reference| / reference
-  /// Largest error of what moved a particle over the mean of it: its acceleration, or its correction where the solver
-  /// is position-based.
+  /// Largest error of the particles' motion over its mean: of the acceleration, or of the correction with the
+  /// position-based solver.
   double motion_ratio = 0.0;
-  std::size_t compared_count = 0;  ///< particles that met neither floor nor side in the step
+  std::size_t compared_count = 0;  ///< particles without contact with floor and sides in the step
 };
 
-/// The scene as compareStep() needs it: one short substep a tick, one iteration, no viscosity after a correction.
+/// Returns the scene as compareStep() needs it: one short substep per tick, one iteration, no viscosity after a
+/// correction.
 core::Scene oneSubstepScene(core::Scene scene);
 
-/// A state of the scene's own size: the starting lattice, moved by up to 0.3 of the spacing, with random speeds, and a
-/// wavy surface.
+/// Returns a state of the same size: the starting lattice, moved by up to 0.3 of the spacing, with random velocities
+/// and a wavy surface.
 sim::StateCopy stirredState(sim::WaterSim& water);
 
-/// Runs one substep from a stirred state. `water` is of a oneSubstepScene(). Errors: the device's.
+/// Runs one substep from a stirred state. The scene of `water` must come from oneSubstepScene(). Errors: those of the
+/// device.
 core::Result<StepErrors> compareStep(sim::WaterSim& water);
 
 }  // namespace spindrift::study

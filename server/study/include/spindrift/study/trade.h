@@ -1,4 +1,4 @@
-// What there is to choose from when a scene is too dear or not true enough, one choice at a time.
+// Choices between cost and accuracy of a scene, changed one at a time.
 #pragma once
 
 #include <string>
@@ -14,15 +14,15 @@ struct TradeChoice {
   core::Scene scene;
 };
 
-/// The scene with one thing changed: steps, particles, resolution, stencil, kernels, solver, lattice, quantum,
-/// coupling, the thesis's parameters, and another seed, which shows what chance alone does.
+/// Returns the scene with one change each: steps, particles, resolution, stencil, kernels, solver, lattice, quantum,
+/// coupling, the thesis's parameters, and another seed, which shows the effect of chance.
 std::vector<TradeChoice> singleKnobs(const core::Scene& scene);
 
-/// A run to judge others by: finer in every direction than `reference`, which is the finest that is offered.
+/// Returns a scene to compare others with: finer in every direction than `reference`, the finest level.
 core::Scene finerThan(const core::Scene& reference);
 
-/// Pure particles, the pure wave, and both (thesis, tables 3.7 to 3.10): 8,192 to 65,536 particles, 64 to 1,024 cells a
-/// side.
+/// Particles alone, the wave alone, and both (thesis, tables 3.7 to 3.10): 8,192 to 65,536 particles, 64 to 1,024 cells
+/// per side.
 std::vector<TradeChoice> costSweep();
 
 }  // namespace spindrift::study

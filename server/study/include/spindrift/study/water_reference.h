@@ -1,4 +1,4 @@
-// The double-precision oracle of the solver: the same equations, every pair, no grid, no cleverness.
+// Reference implementation of the solver in double precision: the same equations for every pair, without a grid.
 #pragma once
 
 #include <array>
@@ -11,12 +11,13 @@ namespace spindrift::study {
 
 using Vec3 = std::array<double, 3>;
 
-/// The wave's surface as the coupling samples it; n x n, x fastest. Empty = the flat floor.
+/// The wave's surface as sampled for the coupling; n x n, x fastest. Empty = the flat floor.
 struct ReferenceSurface {
   std::vector<double> eta_m, rate_mps, slope_x, slope_z, flow_x_mps, flow_z_mps;
 };
 
-/// Slopes, vertical speed and horizontal velocity, from elevations and the flow through the faces (5-point stencil).
+/// Computes slopes, vertical speed and horizontal velocity from elevations and the flow through the faces (5-point
+/// stencil).
 ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& derived, const std::vector<double>& eta,
                              const std::vector<float>& flow);
 
@@ -29,8 +30,8 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
                                         const ReferenceSurface& surface, const std::vector<Vec3>& x,
                                         const std::vector<Vec3>& v, const std::vector<double>& rho);
 
-/// One iteration of the position-based solver at predicted positions `x`: density, multiplier, and what the constraints
-/// ask for before walls and floor have their say.
+/// One iteration of the position-based solver at predicted positions `x`: density, multiplier, and the corrections by
+/// the constraints before walls and floor limit them.
 struct ReferenceProjection {
   std::vector<double> rho, lambda_m2;
   std::vector<Vec3> move_m;

@@ -11,17 +11,17 @@
 
 namespace spindrift::study_suites {
 
-/// One JSON object a line: {"key", "result"}. The key names all that a result depends on.
+/// One JSON object per line: {"key", "result"}. The key names everything that a result depends on.
 class StudyJournal {
  public:
-  /// Reads what the file holds; a line that was cut off counts as not there. An empty name keeps nothing.
+  /// Reads the file; a truncated line is ignored. With an empty name nothing is kept.
   explicit StudyJournal(std::string file);
 
-  /// kUnavailable when the file cannot be written: to be asked before hours of work.
+  /// kUnavailable when the file cannot be written. Call it before a long run.
   [[nodiscard]] core::Result<void> check() const;
 
   [[nodiscard]] std::optional<boost::json::value> find(const std::string& key) const;
-  /// Errors as check()'s.
+  /// Errors as check().
   core::Result<void> add(const std::string& key, boost::json::value result);
 
  private:

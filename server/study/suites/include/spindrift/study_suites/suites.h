@@ -1,5 +1,5 @@
 // The suites of `spindrift study`. Each prints its table row by row, keeps finished cases in a journal, so that a long
-// run can be continued, and counts the results outside of their bounds.
+// run can be continued, and counts the results outside their bounds.
 #pragma once
 
 #include <cstdio>
@@ -14,7 +14,7 @@
 namespace spindrift::study_suites {
 
 struct SuiteOptions {
-  std::string only;  ///< one case; empty: all
+  std::string only;  ///< run only this case; empty: all
   bool quick = false;
 };
 

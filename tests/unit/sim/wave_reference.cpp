@@ -1,14 +1,13 @@
+#include "wave_reference.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include <spindrift/study/wave_reference.h>
-
-namespace spindrift::study {
+namespace spindrift::sim {
 namespace {
 
-/// A face between two cells, and how well it conducts: still depth times the stencil's weight, 0 where it is closed.
-/// [m]
+/// A face between two cells and its conductance: still depth times the stencil's weight, 0 if it is closed. [m]
 struct Face {
   std::size_t from, to;
   double conductance_m;
@@ -16,7 +15,7 @@ struct Face {
 
 class Faces {
  public:
-  Faces(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed)
+  Faces(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed)
       : wave_(*scene.wave), depth_m_(bed.depth_m), n_(static_cast<int>(derived.wave->resolution_count)) {}
 
   [[nodiscard]] std::size_t count() const { return wave_.stencil == core::Stencil::kNinePoint ? 4 : 2; }
@@ -46,7 +45,7 @@ class Faces {
     if ((!periodic_x && (x < 0 || x >= n_)) || (!periodic_z && (z < 0 || z >= n_))) return false;
     return depth_m_[index(x, z)] > 0;
   }
-  /// Weight of the diagonals of a square that has a dry corner: it goes to the faces beside the square.
+  /// Weight of the diagonals of a square with a dry corner; it goes to the faces beside the square.
   [[nodiscard]] double folded(int x, int z) const {
     return isWet(x, z) && isWet(x + 1, z) && isWet(x, z + 1) && isWet(x + 1, z + 1) ? 0.0 : 1.0 / 6.0;
   }
@@ -63,7 +62,7 @@ class Faces {
 
 }  // namespace
 
-void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed,
+void referenceFlowStep(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed,
                        ReferenceWater& water) {
   const Faces faces(scene, derived, bed);
   const int n = static_cast<int>(derived.wave->resolution_count);
@@ -81,7 +80,7 @@ void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, co
   };
   std::vector<double> leaving_m(water.elevation_m.size(), 0.0);
   forEachFace([&](const Face& face, double& flow_m2ps, int x, int z, std::size_t k) {
-    // Diagonals take the loss of the cell that owns them.
+    // Diagonals have the loss rate of the cell that owns them.
     const double own_per_s = bed.flow_loss_per_s[static_cast<std::size_t>(x + n * z)];
     const double loss_per_s = k < 2 ? 0.5 * (own_per_s + bed.flow_loss_per_s[face.to]) : own_per_s;
     const double a = 0.5 * dt_s * (scene.wave->damping_per_s + loss_per_s);
@@ -112,4 +111,4 @@ void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, co
   }
 }
 
-}  // namespace spindrift::study
+}  // namespace spindrift::sim
