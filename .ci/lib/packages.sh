@@ -13,6 +13,7 @@ declare -rA package_groups=(
   [lint]="shellcheck"
   [fuzz]="clang libclang-rt-dev"
   [bundle]="patchelf binutils"
+  [charts]="python3 python3-matplotlib"
   [npm]="nodejs npm"
   [wasm]="clang lld libc++-14-dev-wasm32"
 )
@@ -26,6 +27,7 @@ declare -rA package_reasons=(
   [lint]="checking shell scripts"
   [fuzz]="fuzzing"
   [bundle]="packing libraries"
+  [charts]="drawing charts"
   [npm]="fetching the web client's libraries and a newer Node"
   [wasm]="compiling the page's reader of frames to WebAssembly"
 )

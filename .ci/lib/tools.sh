@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# bench, study, fmt, lint, clean. Sourced by ./dev.
+# bench, study, charts, fmt, lint, clean. Sourced by ./dev.
 
 command_bench() {
   if wants_help "$@"; then
@@ -22,7 +22,8 @@ command_study() {
     cat <<'TEXT'
 usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift study]
 
-The water against theory and experiment, and where it stays stable; --quick for minutes, --json FILE writes it down.
+The water against theory and experiment, and where it stays stable; --quick for minutes, --json FILE writes it down,
+--plot FOLDER as well, for ./dev charts FOLDER.
 TEXT
     return
   fi
@@ -31,6 +32,25 @@ TEXT
   prepare_server "$preset"
   cd -- "$called_from" || fail 2 "the folder $called_from is gone"
   exec "$(binary_of "$preset")" study "${rest[@]}"
+}
+
+command_charts() {
+  if wants_help "$@"; then
+    cat <<'TEXT'
+usage: ./dev charts FOLDER
+
+Draws the charts of the results that `spindrift study --plot FOLDER` wrote, as SVG files beside them (Python, matplotlib).
+`./dev charts server/study/plots` draws those of the documents again.
+TEXT
+    return
+  fi
+  (($# == 1)) || fail 2 "charts wants one folder; see ./dev charts --help"
+  need_packages charts
+  cd -- "$called_from" || fail 2 "the folder $called_from is gone"
+  # Debian's matplotlib belongs to Debian's Python, which need not be the first on the PATH.
+  local python=/usr/bin/python3
+  [[ -x "$python" ]] || python=python3
+  exec "$python" "$root/server/study/draw_charts.py" "$1"
 }
 
 # Our C++ sources, committed or new. Without shaders/shared: one of its two compilers reads its blocks as GLSL.

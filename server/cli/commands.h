@@ -58,6 +58,7 @@ struct StudyOptions : study_suites::SuiteOptions {
   std::string suite = "accuracy";
   std::string device = "auto";
   std::string json_file;
+  std::string plot_folder;   ///< folder for the results as SUITE.json, for the charts; empty: none
   std::string journal_file;  ///< file that keeps finished cases, which are not run again; empty: none
 };
 int study(const StudyOptions& options);

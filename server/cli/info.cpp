@@ -1,6 +1,7 @@
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
+#include <spindrift/core/version.h>
 #include <spindrift/gpu/info.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/wire/client_message.h>
@@ -42,7 +43,7 @@ int info(const InfoOptions& options) {
   boost::json::array devices;
   for (const gpu::DeviceInfo& d : gpu.devices) devices.push_back(toJson(d));
   const boost::json::object json = {
-      {"program", "spindrift " SPINDRIFT_VERSION},
+      {"program", core::nameAndVersion()},
       {"wire", fmt::format("{}.{}", wire::kWireMajor, wire::kWireMinor)},
       {"egl_client_version", gpu.egl_client_version},
       {"shader_count", gpu.shader_count},
@@ -50,7 +51,7 @@ int info(const InfoOptions& options) {
       {"chosen", gpu.chosen ? boost::json::value(toJson(*gpu.chosen)) : boost::json::value()},
       {"why", gpu.why}};
   if (options.json_file != "-") {
-    fmt::print("program   spindrift {}, wire {}.{}, {} shaders\nEGL       {}\n", SPINDRIFT_VERSION, wire::kWireMajor,
+    fmt::print("program   {}, wire {}.{}, {} shaders\nEGL       {}\n", core::nameAndVersion(), wire::kWireMajor,
                wire::kWireMinor, gpu.shader_count, gpu.egl_client_version);
     for (const gpu::DeviceInfo& d : gpu.devices) {
       fmt::print("device {:>2} {}\n", d.is_software ? "sw" : std::to_string(d.index), d.name);

@@ -8,6 +8,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/core/version.h>
+
 #include "commands.h"
 
 namespace {
@@ -34,7 +36,7 @@ int run(int argc, char** argv) {
       "Spindrift: a headless water server. It simulates coupled particles and waves on a GPU and streams them to "
       "browsers."};
   cli.name("spindrift");
-  cli.set_version_flag("--version", "spindrift " SPINDRIFT_VERSION);
+  cli.set_version_flag("--version", std::string(spindrift::core::nameAndVersion()));
   cli.require_subcommand(1);
   std::string log_level = "info";
   cli.add_option("--log-level", log_level, "Level of the log on standard error")
@@ -152,7 +154,8 @@ int run(int argc, char** argv) {
   study_command->add_flag("--quick", study_options.quick, "Shorter runs, a few minutes in all");
   study_command->add_option("--journal", study_options.journal_file,
                             "Save finished cases in this file; an interrupted study continues from it");
-  study_command->add_option("--plot", study_options.plot_folder, "Draw charts into this folder, as SVG");
+  study_command->add_option("--plot", study_options.plot_folder,
+                            "Write the results into this folder as SUITE.json, from which ./dev charts draws charts");
   study_command->add_option("--json", study_options.json_file, "Write JSON to this file, - = standard output");
 
   try {

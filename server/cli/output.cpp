@@ -11,7 +11,7 @@
 
 namespace spindrift::cli {
 
-core::Result<void> writeJson(const std::string& file, const boost::json::value& value) {
+core::Result<void> writeJson(const std::string& file, const boost::json::value& value, const std::string& option) {
   if (file.empty()) return {};
   const std::string text = boost::json::serialize(value) + "\n";
   if (file == "-") {
@@ -23,7 +23,7 @@ core::Result<void> writeJson(const std::string& file, const boost::json::value& 
   out.close();
   if (!out)
     return core::Error{core::ErrorCode::kUnavailable,
-                       "--json '" + file + "': cannot be written: " + std::strerror(errno)};
+                       option + " '" + file + "': cannot be written: " + std::strerror(errno)};
   return {};
 }
 

@@ -9,7 +9,8 @@
 
 namespace spindrift::cli {
 
-/// Does nothing for an empty name. kUnavailable when the file cannot be written.
-core::Result<void> writeJson(const std::string& file, const boost::json::value& value);
+/// Does nothing for an empty name. kUnavailable when the file cannot be written; the message names the option.
+core::Result<void> writeJson(const std::string& file, const boost::json::value& value,
+                             const std::string& option = "--json");
 
 }  // namespace spindrift::cli

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 #include <thread>
 
 #include <fmt/format.h>
@@ -10,12 +11,27 @@
 #include "output.h"
 
 namespace spindrift::cli {
+namespace {
+
+/// Creates the folder before hours of measuring. kUnavailable where that fails.
+core::Result<void> prepareFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error) return {};
+  return core::Error{core::ErrorCode::kUnavailable,
+                     "--plot '" + folder + "': cannot be created: " + error.message() + ": choose another folder"};
+}
+
+}  // namespace
 
 int study(const StudyOptions& options) {
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
   study_suites::StudyJournal journal(options.journal_file);
   if (auto usable = journal.check(); !usable) return fail(usable.error());
+  if (!options.plot_folder.empty()) {
+    if (auto prepared = prepareFolder(options.plot_folder); !prepared) return fail(prepared.error());
+  }
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());
 
@@ -40,6 +56,10 @@ int study(const StudyOptions& options) {
   json["held"] = result->held_count;
   json["missed"] = result->missed_count;
   if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
+  if (!options.plot_folder.empty()) {
+    const auto file = std::filesystem::path(options.plot_folder) / (options.suite + ".json");
+    if (auto written = writeJson(file, json, "--plot"); !written) return fail(written.error());
+  }
   return result->missed_count == 0 ? 0 : 1;
 }
 

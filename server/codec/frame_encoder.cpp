@@ -114,17 +114,10 @@ FrameEncoder::FrameEncoder() = default;
 FrameEncoder::~FrameEncoder() = default;
 
 EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, bool wants_keyframe) {
-  Slot& slot = slots_.at(indexOf(stream));
-  std::unique_ptr<LayerCodec>& codec = slot.codecs[core::indexOf(frame.level)];
+  std::unique_ptr<LayerCodec>& codec = codecs_.at(indexOf(stream))[core::indexOf(frame.level)];
   if (!codec) codec = makeCodec(stream);
   if (!codec) return {};
-  EncodedFrame encoded = codec->encode(frame, wants_keyframe);
-  if (encoded.keyframe || encoded.delta) slot.encode_count.fetch_add(1, std::memory_order_relaxed);
-  return encoded;
-}
-
-std::uint64_t FrameEncoder::encodeCount(Stream stream) const {
-  return slots_.at(indexOf(stream)).encode_count.load(std::memory_order_relaxed);
+  return codec->encode(frame, wants_keyframe);
 }
 
 }  // namespace spindrift::codec

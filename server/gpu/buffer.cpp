@@ -48,10 +48,6 @@ core::Error refused(std::string_view name, const std::string& what) {
 
 }  // namespace
 
-std::size_t texelBytes(TexelFormat format) {
-  return traits(format).bytes;
-}
-
 Buffer::Buffer() = default;
 
 core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::size_t size_bytes, BufferUse use,
@@ -204,8 +200,6 @@ core::Result<TexelBuffer> TexelBuffer::create(Context& ctx, std::string_view nam
   if (!storage) return storage.error();
   TexelBuffer buffer;
   static_cast<Buffer&>(buffer) = std::move(*storage);
-  buffer.texel_count_ = texel_count;
-  buffer.format_ = format;
   glCreateTextures(GL_TEXTURE_BUFFER, 1, &buffer.texture_id_);
   glTextureBuffer(buffer.texture_id_, texel.gl_format, buffer.id_);
   return buffer;
@@ -216,17 +210,12 @@ TexelBuffer::~TexelBuffer() {
 }
 
 TexelBuffer::TexelBuffer(TexelBuffer&& other) noexcept
-    : Buffer(std::move(other)),
-      texture_id_(std::exchange(other.texture_id_, 0)),
-      texel_count_(std::exchange(other.texel_count_, 0)),
-      format_(other.format_) {}
+    : Buffer(std::move(other)), texture_id_(std::exchange(other.texture_id_, 0)) {}
 
 TexelBuffer& TexelBuffer::operator=(TexelBuffer&& other) noexcept {
   TexelBuffer moved(std::move(other));
   Buffer::operator=(std::move(static_cast<Buffer&>(moved)));
   std::swap(texture_id_, moved.texture_id_);
-  std::swap(texel_count_, moved.texel_count_);
-  std::swap(format_, moved.format_);
   return *this;
 }
 

@@ -167,11 +167,6 @@ void Context::barrierBits(std::uint32_t bits) {
   ++ledger_.barrier_count;
 }
 
-void Context::flush() {
-  assert(isOwnedHere());
-  glFlush();
-}
-
 void Context::finish() {
   assert(isOwnedHere());
   glFinish();

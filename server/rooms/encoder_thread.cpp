@@ -53,12 +53,6 @@ std::uint64_t EncoderThread::replacedCount() const {
   return replaced_count_;
 }
 
-std::uint64_t EncoderThread::encodeCount(const std::string& room, codec::Stream stream) const {
-  const std::lock_guard lock(mutex_);
-  const auto it = encoders_.find(room);
-  return it == encoders_.end() ? 0 : it->second->encodeCount(stream);
-}
-
 void EncoderThread::loop() {
   std::unique_lock lock(mutex_);
   while (true) {

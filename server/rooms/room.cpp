@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/monotonic.h>
+#include <spindrift/core/version.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
 
@@ -57,7 +58,7 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty()) {
     v1::RecordHeader header;
-    header.set_server("spindrift " SPINDRIFT_VERSION);
+    header.set_server(std::string(core::nameAndVersion()));
     describeDevice(header, stage->device());
     header.set_room(name);
     *header.mutable_scene() = stage->scene();

@@ -6,6 +6,7 @@
 
 #include <spindrift/core/monotonic.h>
 #include <spindrift/core/overloaded.h>
+#include <spindrift/core/version.h>
 #include <spindrift/service/gateway.h>
 #include <spindrift/service/layer_index.h>
 #include <spindrift/service/state_topics.h>
@@ -72,7 +73,7 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
 void Gateway::greet(net::SessionId session, const rooms::Room& room) {
   const auto snapshot = room.snapshot();
   wire::GreetingFacts facts;
-  facts.server = "spindrift " SPINDRIFT_VERSION;
+  facts.server = core::nameAndVersion();
   facts.device = simulation().deviceLine();
   facts.room = room.name();
   facts.session_id = session;

@@ -155,16 +155,26 @@ void Wave::displace(const shared::EventUniforms& events) {
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   if (events.splash_count > 0) {
-    float radius_m = 0.0f;
-    for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
-    // The dispatch covers the largest splash; wave/splash.comp skips cells outside a smaller one.
-    const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
-    splash_.dispatch(std::min(across, 2 * n_), std::min(across, 2 * n_), events.splash_count);
+    displaceBySplashes(events);
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
   if (events.crest_count > 0) {
     crest_.dispatch(n_, n_);
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  }
+}
+
+/// Chooses the way of wave/splash.comp that needs fewer invocations.
+void Wave::displaceBySplashes(const shared::EventUniforms& events) {
+  float radius_m = 0.0f;
+  for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
+  const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
+  const bool every_cell = std::uint64_t{across} * across * events.splash_count > std::uint64_t{n_} * n_;
+  splash_.setUniform("every_cell", std::uint32_t{every_cell});
+  if (every_cell) {
+    splash_.dispatch(n_, n_);
+  } else {
+    splash_.dispatch(across, across, events.splash_count);
   }
 }
 

@@ -30,17 +30,19 @@ float crestIntegral(float s_m, float front_m, float back_m) {
   return width_m * tanh(clamp(s_m / width_m, -12.0, 12.0));
 }
 
-/// Displacement of a crest at a position, along its direction. A crest across the whole domain takes its water evenly
-/// from all of it and moves none across the sides; a crest of finite width takes it from a trough behind.
-float crestDisplacement(EventUniform e, vec2 place_m) {
+/// A crest's integral at the two sides of the domain that it crosses, low and high: the same for all places.
+vec2 crestEnds(EventUniform e) {
+  return vec2(crestIntegral(-e.half_side_m - e.offset_m, e.front_m, e.back_m),
+              crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m));
+}
+
+/// Displacement of a crest at a position, along its direction. `ends`: crestEnds(). A crest across the whole domain takes its
+/// water evenly from all of it and moves none across the sides; a crest of finite width takes it from a trough behind.
+float crestDisplacement(EventUniform e, vec2 place_m, vec2 ends) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestIntegral(s - e.offset_m, e.front_m, e.back_m);
-  if (e.lateral_m == 0.0) {
-    const float low = crestIntegral(-e.half_side_m - e.offset_m, e.front_m, e.back_m);
-    const float high = crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m);
-    return own - mix(low, high, (s + e.half_side_m) / (2.0 * e.half_side_m));
-  }
+  if (e.lateral_m == 0.0) return own - mix(ends.x, ends.y, (s + e.half_side_m) / (2.0 * e.half_side_m));
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;
   const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;
@@ -48,15 +50,11 @@ float crestDisplacement(EventUniform e, vec2 place_m) {
 }
 
 /// Change of elevation; the flow of the travelling crest follows from it.
-float crestElevation(EventUniform e, vec2 place_m) {
+float crestElevation(EventUniform e, vec2 place_m, vec2 ends) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestShape(s - e.offset_m, e.front_m, e.back_m);
-  if (e.lateral_m == 0.0) {
-    const float low = crestIntegral(-e.half_side_m - e.offset_m, e.front_m, e.back_m);
-    const float high = crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m);
-    return own - (high - low) / (2.0 * e.half_side_m);
-  }
+  if (e.lateral_m == 0.0) return own - (ends.y - ends.x) / (2.0 * e.half_side_m);
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;
   const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;

@@ -42,8 +42,9 @@ void main() {
   for (uint k = 0u; k < crest_count; ++k) {
     const EventUniform e = crests[k];
     const vec2 d = vec2(e.direction_x, e.direction_z);
-    const float eta = crestElevation(e, x.xz);
-    move_m.xz -= e.gain_m / depth_m * crestDisplacement(e, x.xz) * d;
+    const vec2 ends = crestEnds(e);
+    const float eta = crestElevation(e, x.xz, ends);
+    move_m.xz -= e.gain_m / depth_m * crestDisplacement(e, x.xz, ends) * d;
     move_m.y += e.gain_m * height_ratio * eta;
     v_mps.xz += e.gain_m * eta / depth_m * e.speed_mps * d;
   }

@@ -11,7 +11,16 @@ layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
 layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
 
+shared vec4 ends[MAX_CRESTS];  // crestEnds() now and half a step before
+
 void main() {
+  for (uint k = gl_LocalInvocationIndex; k < crest_count; k += WAVE_GROUP_X * WAVE_GROUP_Y) {
+    EventUniform e = crests[k];
+    ends[k].xy = crestEnds(e);
+    e.offset_m -= e.half_step_m;
+    ends[k].zw = crestEnds(e);
+  }
+  barrier();
   const int n = int(sim.wave_n);
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (cell.x >= n || cell.y >= n) return;
@@ -24,13 +33,13 @@ void main() {
   for (uint k = 0u; k < crest_count; ++k) {
     EventUniform e = crests[k];
     const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-    moved += ivec2(transferUnits(-e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0)), units),
-                   transferUnits(-e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m)), units));
+    moved += ivec2(transferUnits(-e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0), ends[k].xy), units),
+                   transferUnits(-e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m), ends[k].xy), units));
     e.offset_m -= e.half_step_m;
     const vec2 d = vec2(e.direction_x, e.direction_z);
-    const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0));
-    const float at_z = crestElevation(e, p + vec2(0.0, 0.5 * cell_m));
-    const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m));
+    const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0), ends[k].zw);
+    const float at_z = crestElevation(e, p + vec2(0.0, 0.5 * cell_m), ends[k].zw);
+    const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m), ends[k].zw);
     flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d.x * at_x, d.y * at_z, (d.x + d.y) * at_corner, (d.y - d.x) * at_corner));
   }
   if (open.x > 0.0) addTransfer(i, wrapped(cell.x + 1, n) + n * cell.y, 0u, moved.x);

@@ -1,44 +1,67 @@
-// Splashes displace water: invocations (x, y) cover the square that a splash can reach, z is the index of the splash.
-// Each adds to the two faces that its cell owns.
+// Splashes displace water. Each invocation adds to the two faces that its cell owns. Few or small splashes: (x, y) is the
+// cell in the square that a splash can reach, z the index of the splash. Many or large ones (every_cell): (x, y) is the
+// cell of the domain, and the invocation sums all splashes before it adds, because reading the water column and the
+// atomic addition cost more than the splash itself.
 // Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp
 // does.
-// Invariant: a face's transfer is computed by one invocation per splash; nothing passes a closed face.
+// Invariant: both ways add the same integers; nothing passes a closed face.
 #include "shared/groups.h"
 #include "wave/displacement.glsl"
 #include "common/event_shapes.glsl"
 
 layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
 
-void main() {
-  const EventUniform e = splashes[gl_GlobalInvocationID.z];
-  const int n = int(sim.wave_n);
+uniform uint every_cell;
+
+/// Turns a place in the square of a splash into its cell. Returns false outside the square and outside the domain.
+bool findCell(EventUniform e, int n, inout ivec2 cell) {
   const float cell_m = sim.wave_cell_m;
   // Number of cells of the square: as many as the splash needs; along a periodic axis at most the whole domain once.
-  ivec2 across = ivec2(min(2 * int(ceil(SPLASH_REACH * e.radius_m / cell_m)) + 4, 2 * n));
+  ivec2 across = ivec2(2 * int(ceil(SPLASH_REACH * e.radius_m / cell_m)) + 4);
 #if WAVE_PERIODIC_X
   across.x = min(across.x, n);
 #endif
 #if WAVE_PERIODIC_Z
   across.y = min(across.y, n);
 #endif
-  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), across))) return;
-  ivec2 cell = ivec2(floor((vec2(e.x_m, e.z_m) + 0.5 * sim.wave_side_m) / cell_m)) - across / 2 + ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(cell, across))) return false;
+  cell += ivec2(floor((vec2(e.x_m, e.z_m) + 0.5 * sim.wave_side_m) / cell_m)) - across / 2;
 #if WAVE_PERIODIC_X
   cell.x = wrapped(cell.x, n);
 #endif
 #if WAVE_PERIODIC_Z
   cell.y = wrapped(cell.y, n);
 #endif
-  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return;
-  const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
+  return all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, ivec2(n)));
+}
+
+void main() {
+  const int n = int(sim.wave_n);
+  const float cell_m = sim.wave_cell_m;
+  ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  uint first = 0u;
+  uint end = splash_count;
+  if (every_cell == 0u) {
+    first = gl_GlobalInvocationID.z;
+    end = first + 1u;
+    if (!findCell(splashes[first], n, cell)) return;
+  } else if (any(greaterThanEqual(cell, ivec2(n)))) {
+    return;
+  }
   const vec2 p = waveCellCentre(cell);
-  const vec2 centre = vec2(e.x_m, e.z_m);
-  const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
-  const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
+  ivec2 moved = ivec2(0);
+  for (uint k = first; k < end; ++k) {
+    const EventUniform e = splashes[k];
+    const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
+    const vec2 centre = vec2(e.x_m, e.z_m);
+    const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
+    const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
+    moved += ivec2(transferUnits(-splashDisplacement(at_x, e.radius_m).x, units),
+                   transferUnits(-splashDisplacement(at_z, e.radius_m).y, units));
+  }
+  if (moved == ivec2(0)) return;
   const Flow open = conductanceOf(cell, n);
   const int i = cell.x + n * cell.y;
-  if (open.x > 0.0)
-    addTransfer(i, wrapped(cell.x + 1, n) + n * cell.y, 0u, transferUnits(-splashDisplacement(at_x, e.radius_m).x, units));
-  if (open.y > 0.0)
-    addTransfer(i, cell.x + n * wrapped(cell.y + 1, n), 1u, transferUnits(-splashDisplacement(at_z, e.radius_m).y, units));
+  if (open.x > 0.0) addTransfer(i, wrapped(cell.x + 1, n) + n * cell.y, 0u, moved.x);
+  if (open.y > 0.0) addTransfer(i, cell.x + n * wrapped(cell.y + 1, n), 1u, moved.y);
 }

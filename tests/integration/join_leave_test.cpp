@@ -112,8 +112,9 @@ TEST(JoinLeave, EveryFrameDecodesWhileClientsJoinAndLeave) {
   std::uint64_t frame_count = 0;
   for (int look = 0; look < 20; ++look) {
     water.waitFrames(0, 2);
-    frame_count = water.server->stats().sent_frame_count + water.encoder->replacedCount() +
-                  water.encoder->encodeCount("", {v1::LAYER_SURFACE});
+    frame_count =
+        water.server->stats().sent_frame_count + water.encoder->replacedCount() +
+        water.encoder->costs()[codec::indexOf({v1::LAYER_SURFACE})][core::indexOf(core::Level::kFull)].frame_count;
   }
   for (std::thread& one : people) one.join();
   EXPECT_TRUE(wrongs.empty()) << wrongs.front() << " and " << wrongs.size() - 1 << " more";

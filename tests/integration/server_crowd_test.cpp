@@ -20,13 +20,24 @@ class Crowd : public ServerTest {
   }
   void adjust(service::WaterServerOptions& options) const override { options.network.max_session_count = 512; }
 
-  /// Number of packed frames of a layer encoded so far.
-  std::uint64_t encodedCount(v1::Layer layer) const {
-    std::uint64_t count = 0;
+  /// Frames encoded and offered up to a time.
+  struct Counts {
+    std::uint64_t surface = 0;  ///< encoded frames of the packed surface
+    std::uint64_t encoded = 0;  ///< of all streams and levels
+    std::uint64_t offered = 0;  ///< to all sessions
+  };
+  Counts counts() const {
+    Counts out;
+    const std::size_t surface = codec::indexOf(codec::streamOf(v1::LAYER_SURFACE, v1::PACKING_PACKED));
     const rooms::EncoderThread::Costs costs = encoder().costs();
-    for (const auto& level : costs[codec::indexOf(codec::streamOf(layer, v1::PACKING_PACKED))])
-      count += level.frame_count;
-    return count;
+    for (std::size_t stream = 0; stream < costs.size(); ++stream) {
+      for (const auto& level : costs[stream]) {
+        out.encoded += level.frame_count;
+        if (stream == surface) out.surface += level.frame_count;
+      }
+    }
+    out.offered = offeredFrameCount();
+    return out;
   }
 };
 
@@ -34,19 +45,23 @@ TEST_F(Crowd, AllTwoHundredGetFramesAndEveryCommandIsAnswered) {
   auto scene = scene::parseSceneText(rooms()[0].scene, "main");
   ASSERT_TRUE(scene);
   const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string(server().port()) + "/ws");
-  std::uint64_t encoded_before = 0;
-  std::uint64_t encoded_after = 0;
+  Counts before;
+  Counts after;
   const bench::CrowdReport crowd = bench::runCrowd(
-      *url, bench::sceneCrowd(*scene, 200, 6.0), [&] { encoded_before = encodedCount(v1::LAYER_SURFACE); },
-      [&] { encoded_after = encodedCount(v1::LAYER_SURFACE); });
+      *url, bench::sceneCrowd(*scene, 200, 6.0), [&] { before = counts(); }, [&] { after = counts(); });
   EXPECT_EQ(crowd.connected_count, 200u);
   EXPECT_EQ(crowd.lost_count, 0u);
   EXPECT_EQ(crowd.unanswered_count, 0u);
   EXPECT_GE(crowd.answers_ms.size(), 100u);
   EXPECT_GE(crowd.median_frames, 3u);
   EXPECT_GE(2 * crowd.fewest_frames, crowd.median_frames) << "a client gets too few frames";
+  const std::uint64_t encoded_count = after.encoded - before.encoded;
   // A frame that was in flight when the measurement began may arrive within it.
-  EXPECT_LE(crowd.most_frames, encoded_after - encoded_before + 2) << "encoded once, whatever the number of clients";
+  EXPECT_LE(crowd.most_frames, after.surface - before.surface + 2) << "a client gets a frame twice";
+  // Each frame goes to all two hundred clients; frames encoded per client would be as many as the clients were given.
+  EXPECT_GE(encoded_count, 3u);
+  EXPECT_LE(200 * encoded_count, after.offered - before.offered + 200 * 4 * kWaitingFrames)
+      << "encoded once, whatever the number of clients";
   EXPECT_EQ(server().networkStats().evicted_session_count, 0u);
 }
 

@@ -65,6 +65,20 @@ class ServerTest : public testing::Test {
   service::WaterServer& server() { return *server_; }
   const rooms::EncoderThread& encoder() const { return server_->encoder(); }
 
+  /// Frames of a stream encoded so far, of all levels and rooms.
+  std::uint64_t encodedFrameCount(codec::Stream stream) const {
+    std::uint64_t count = 0;
+    for (const auto& level : encoder().costs()[codec::indexOf(stream)]) count += level.frame_count;
+    return count;
+  }
+
+  /// Layer frames that sessions were given so far: sent, or replaced by a newer one before they were sent. Frames that
+  /// still wait are not counted: at most two per session and layer, one in its slot and one on its way to the socket.
+  std::uint64_t offeredFrameCount() const {
+    const net::ServerStats stats = server_->networkStats();
+    return stats.sent_frame_count + stats.dropped_frame_count;
+  }
+
   /// A client that has said hello.
   ScriptedClient client(const std::string& room = "") { return person({}, room); }
 
@@ -85,6 +99,10 @@ class WaveServerTest : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
 };
+
+/// Encoded frames of one layer that a session may not have counted yet: those of ServerTest::offeredFrameCount(), and
+/// one that is between the encoder and the sessions.
+inline constexpr std::uint64_t kWaitingFrames = 3;
 
 /// Largest elevation of a frame; -1 if it cannot be decoded.
 inline double maxElevation_m(const v1::LayerFrame& frame) {

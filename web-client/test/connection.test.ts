@@ -28,6 +28,7 @@ describe("the connection", () => {
     rig.socket.open();
     expect(rig.socket.sent).toHaveLength(1);
     expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { version: { major: 1, minor: 0 } } });
+    expect(rig.socket.sent[0]?.value).toMatchObject({ client: expect.stringMatching(/^spindrift-web \d+\.\d+\.\d+$/) });
     rig.socket.deliver(greeting());
     expect(rig.state.name).toBe("live");
     expect(rig.socket.sentOf("subscribe").map(({ value }) => [value.layer, value.maxRateHz])).toEqual([

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <spindrift/study/accuracy.h>
-#include <spindrift/study_suites/chart.h>
 #include <spindrift/study_suites/suites.h>
 
 namespace spindrift::study_suites {
@@ -127,19 +126,6 @@ study::CaseResult resultFrom(const boost::json::object& json) {
   return result;
 }
 
-core::Result<void> draw(const std::string& folder, const study::Figure& figure) {
-  Chart chart;
-  chart.title = figure.title;
-  chart.x = {figure.x_label, figure.is_logarithmic};
-  chart.y = {figure.y_label, figure.is_logarithmic};
-  for (const study::Figure::Curve& curve : figure.curves) {
-    Chart::Series series{curve.name, {}, curve.is_measured ? Chart::Mark::kLargeDot : Chart::Mark::kLine};
-    for (const auto& [x, y] : curve.points) series.points.push_back({x, y, ""});
-    chart.series.push_back(std::move(series));
-  }
-  return writeChart(folder, "accuracy_" + figure.name + ".svg", chart);
-}
-
 }  // namespace
 
 core::Result<SuiteResult> studyAccuracy(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
@@ -181,11 +167,6 @@ core::Result<SuiteResult> studyAccuracy(gpu::Context& ctx, const SuiteOptions& o
     }
     fmt::print(out, "  {}\n", known ? std::string("from the journal") : fmt::format("{:.1f} s", seconds));
     std::fflush(out);
-    if (!options.plot_folder.empty()) {
-      for (const study::Figure& figure : found.figures) {
-        if (auto drawn = draw(options.plot_folder, figure); !drawn) return drawn.error();
-      }
-    }
     boost::json::object json = toJson(found);
     json["name"] = each.name;
     json["purpose"] = each.purpose;

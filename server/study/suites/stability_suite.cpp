@@ -1,12 +1,10 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
 #include <spindrift/study/stability.h>
-#include <spindrift/study_suites/chart.h>
 #include <spindrift/study_suites/suites.h>
 
 namespace spindrift::study_suites {
@@ -75,37 +73,6 @@ core::Result<std::vector<StabilityPoint>> measure(gpu::Context& ctx, const Sweep
   return points;
 }
 
-/// Makes a file name from a sweep's name: letters and digits stay, everything else becomes an underscore.
-std::string fileName(const std::string& sweep) {
-  std::string name = "stability_";
-  for (const char c : sweep) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-  return name + ".svg";
-}
-
-/// Growth of the energy at each value, the number of times that the watchdog acted, and the bound predicted by the
-/// rules.
-Chart chartOf(const Sweep& sweep, const std::vector<StabilityPoint>& points) {
-  Chart chart;
-  chart.title = "Stability: " + sweep.name;
-  const bool is_wide = sweep.values.front() > 0 && sweep.values.back() / sweep.values.front() >= 20;
-  chart.x = {sweep.unit.empty() ? sweep.name : fmt::format("{} [{}]", sweep.name, sweep.unit), is_wide};
-  chart.y = {"largest energy over what it started with or could have", true};
-  Chart::Series stable{"stable", {}, Chart::Mark::kLargeDot};
-  Chart::Series unstable{"unstable, recovered", {}, Chart::Mark::kLargeDot};
-  Chart::Series lost{"lost", {}, Chart::Mark::kLargeDot};
-  for (const StabilityPoint& point : points) {
-    if (!point.refused.empty()) continue;
-    const std::string label = point.recovered_count > 0 ? fmt::format("watchdog {}", point.recovered_count) : "";
-    Chart::Series& series = point.is_stable ? stable : point.isSafe() ? unstable : lost;
-    series.points.push_back({point.value, std::max(point.energy_growth, 1e-6), label});
-  }
-  for (Chart::Series* series : {&stable, &unstable, &lost}) {
-    if (!series->points.empty()) chart.series.push_back(std::move(*series));
-  }
-  if (sweep.predicted_bound) chart.vertical_line = {{*sweep.predicted_bound, "bound by the rules"}};
-  return chart;
-}
-
 }  // namespace
 
 core::Result<SuiteResult> studyStability(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
@@ -136,10 +103,6 @@ core::Result<SuiteResult> studyStability(gpu::Context& ctx, const SuiteOptions& 
                  *sweep.predicted_bound, found.value_or(0.0), kBoundAgreement);
     }
     std::fflush(out);
-    if (!options.plot_folder.empty()) {
-      if (auto drawn = writeChart(options.plot_folder, fileName(sweep.name), chartOf(sweep, *points)); !drawn)
-        return drawn.error();
-    }
     json_sweeps.push_back(std::move(json));
   }
   if (json_sweeps.empty()) {

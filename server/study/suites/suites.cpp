@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <spindrift/core/version.h>
 #include <spindrift/study_suites/suites.h>
 
 namespace spindrift::study_suites {
@@ -15,7 +16,7 @@ void showProgress(const std::string& text) {
 
 std::string journalKey(const std::string& suite, const std::string& name, const SuiteOptions& options,
                        const gpu::Context& ctx) {
-  return fmt::format("{} {} {} {} {}", suite, name, options.quick ? "quick" : "full", SPINDRIFT_VERSION,
+  return fmt::format("{} {} {} {} {}", suite, name, options.quick ? "quick" : "full", core::version(),
                      ctx.device().name);
 }
 

@@ -13,7 +13,6 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/study/trade.h>
 #include <spindrift/study/water_record.h>
-#include <spindrift/study_suites/chart.h>
 #include <spindrift/study_suites/suites.h>
 
 #include "trade_rows.h"
@@ -259,30 +258,6 @@ void judgeLevels(const std::vector<MeanChoice>& means, SuiteResult& result, std:
   }
 }
 
-/// Cost against error of every choice for a scene, and the front.
-Chart tradeChart(const TradeScene& scene, const std::vector<TradeRow>& rows) {
-  Chart chart;
-  chart.title = fmt::format("What accuracy costs: {}", scene.name);
-  chart.x = {"wall time of a simulated second [ms]", true};
-  chart.y = {"error of the water's height, RMS [%]", true};
-  Chart::Series front{"not beaten in both", {}, Chart::Mark::kLine};
-  Chart::Series levels{"fidelity levels", {}, Chart::Mark::kLargeDot};
-  Chart::Series knobs{"one thing changed", {}, Chart::Mark::kDot};
-  for (const TradeRow& row : rows) {
-    if (!row.refused.empty()) continue;
-    const Chart::Point point{row.wall_ms_per_s, 100 * row.errors.height_rms_ratio,
-                             row.knob == kLevelKnob ? row.setting
-                             : row.is_on_front      ? row.knob + " " + row.setting
-                                                    : ""};
-    (row.knob == kLevelKnob ? levels : knobs).points.push_back(point);
-    if (row.is_on_front) front.points.push_back({point.x, point.y, ""});
-  }
-  std::ranges::sort(front.points, {}, &Chart::Point::x);
-  chart.vertical_line = {{1000.0, "real time"}};
-  chart.series = {front, knobs, levels};
-  return chart;
-}
-
 }  // namespace
 
 core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
@@ -290,11 +265,6 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
   SuiteResult result;
   TradeRuns runs(ctx, options, journal);
   boost::json::array json_scenes;
-  Chart levels_chart;
-  levels_chart.title = "What accuracy costs: the fidelity levels";
-  levels_chart.x = {"wall time of a simulated second [ms]", true};
-  levels_chart.y = {"error of the water's height, RMS [%]", true};
-  levels_chart.vertical_line = {{1000.0, "real time"}};
   bool found = false;
   std::vector<std::vector<TradeRow>> all_rows;
   for (const TradeScene& scene : kTradeScenes) {
@@ -311,18 +281,6 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
     judgeScene(*rows, result, out);
     all_rows.push_back(*rows);
     std::fflush(out);
-    if (!options.plot_folder.empty()) {
-      if (auto drawn =
-              writeChart(options.plot_folder, fmt::format("trade_{}.svg", scene.name), tradeChart(scene, *rows));
-          !drawn)
-        return drawn.error();
-    }
-    Chart::Series series{scene.name, {}, Chart::Mark::kLineAndDots};
-    for (const TradeRow& row : *rows) {
-      if (row.knob == kLevelKnob)
-        series.points.push_back({row.wall_ms_per_s, 100 * row.errors.height_rms_ratio, row.setting});
-    }
-    levels_chart.series.push_back(std::move(series));
     json_scenes.push_back({{"scene", scene.name}, {"rows", toJson(*rows)}});
   }
   result.json["scenes"] = std::move(json_scenes);
@@ -337,9 +295,6 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
                             {"error_ratio", mean.error},
                             {"on_front", mean.is_on_front}});
     result.json["over_all_scenes"] = std::move(json_means);
-  }
-  if (found && !options.plot_folder.empty() && options.only.empty()) {
-    if (auto drawn = writeChart(options.plot_folder, "trade.svg", levels_chart); !drawn) return drawn.error();
   }
 
   if (!options.quick && (options.only.empty() || options.only == "cost")) {

@@ -173,27 +173,13 @@ TEST(FrameEncoding, CarriesDiagnostics) {
   EXPECT_EQ(message->diagnostics().passes(1).name(), "sph");
 }
 
-TEST(FrameEncoding, OfAMissingLayerIsNullAndNotCounted) {
+TEST(FrameEncoding, OfAMissingLayerIsNull) {
   FrameEncoder encoder;
   const core::FrameView empty;
-  for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS, v1::LAYER_BODIES}) {
+  for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS, v1::LAYER_BODIES})
     EXPECT_EQ(encoder.encode(layer, empty), nullptr);
-    EXPECT_EQ(encoder.encodeCount({layer}), 0u);
-  }
   EXPECT_EQ(encoder.encode(v1::LAYER_FOAM, TestFrame().view), nullptr) << "the frame has none";
   EXPECT_EQ(encoder.encode(v1::LAYER_UNSPECIFIED, TestFrame().view), nullptr) << "no codec for it";
-}
-
-TEST(FrameEncoding, CountsOneEncodePerFrameForAnyNumberOfReaders) {
-  FrameEncoder encoder;
-  const TestFrame test;
-  for (std::uint64_t frame = 1; frame <= 3; ++frame) {
-    const core::SharedBytes bytes = encoder.encode(v1::LAYER_SURFACE, test.view);
-    const std::vector<core::SharedBytes> clients(100, bytes);
-    for (const core::SharedBytes& client : clients) EXPECT_EQ(client->data(), bytes->data());
-    EXPECT_EQ(encoder.encodeCount({v1::LAYER_SURFACE}), frame);
-  }
-  EXPECT_EQ(encoder.encodeCount({v1::LAYER_PARTICLES}), 0u);
 }
 
 TEST(FrameEncoding, EachLevelIsEncodedSeparatelyWithItsLevel) {
@@ -222,7 +208,6 @@ TEST(FrameEncoding, EachLevelIsEncodedSeparatelyWithItsLevel) {
     ASSERT_TRUE(coarse_samples) << coarse_samples.error().message;
     EXPECT_EQ(coarse_samples->resolution_count, 8u);
   }
-  EXPECT_EQ(encoder.encodeCount(kPacked), 6u + 4u);
   EXPECT_FALSE(encoder.encode(kPacked, core::frameAt(test.view, core::Level::kMedium), true).keyframe)
       << "not in the frame";
 }

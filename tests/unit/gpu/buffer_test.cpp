@@ -151,11 +151,8 @@ TEST_F(BufferTest, TexelFormatsHaveTheSizeOfTheirWords) {
                                                          {TexelFormat::kRG32UI, 8},   {TexelFormat::kRGBA32UI, 16},
                                                          {TexelFormat::kR32I, 4},     {TexelFormat::kRGBA32I, 16}};
   for (const auto& [format, bytes] : formats) {
-    EXPECT_EQ(texelBytes(format), bytes);
     const auto buffer = TexelBuffer::create(*ctx, "format", 5, format);
     ASSERT_TRUE(buffer);
-    EXPECT_EQ(buffer->texelCount(), 5u);
-    EXPECT_EQ(buffer->format(), format);
     EXPECT_EQ(buffer->sizeBytes(), 5 * bytes);
     buffer->bindTexel(0);
   }

@@ -50,7 +50,8 @@ TEST_F(FenceTest, ASlowDeviceLagsAndAWaitLetsItCatchUp) {
 
 TEST_F(FenceTest, ASlowDeviceDelaysFramesWithoutReorderingThem) {
   ctx->fenceDelay().set(2);
-  auto ring = ReadbackRing::create(*ctx, "frames", 4, 4);
+  constexpr std::size_t kSlotCount = 4;
+  auto ring = ReadbackRing::create(*ctx, "frames", 4, kSlotCount);
   auto source = Buffer::create(*ctx, "source", 4);
   ASSERT_TRUE(ring && source);
   std::vector<std::uint64_t> tags;
@@ -63,11 +64,11 @@ TEST_F(FenceTest, ASlowDeviceDelaysFramesWithoutReorderingThem) {
     ctx->finish();
     for (const auto& lease : (*ring)->poll()) tags.push_back(lease->tag());
     most_in_flight = std::max(most_in_flight, (*ring)->usedCount());
-    if ((*ring)->usedCount() == (*ring)->slotCount()) {  // an asynchronous driver may report completion later
-      for (const auto& lease : (*ring)->wait(kLimit)) tags.push_back(lease->tag());
+    if ((*ring)->usedCount() == kSlotCount) {  // an asynchronous driver may report completion later
+      for (const auto& lease : waitForSlots(*ctx, **ring)) tags.push_back(lease->tag());
     }
   }
-  for (const auto& lease : (*ring)->wait(kLimit)) tags.push_back(lease->tag());
+  for (const auto& lease : waitForSlots(*ctx, **ring)) tags.push_back(lease->tag());
   std::vector<std::uint64_t> expected(20);
   std::iota(expected.begin(), expected.end(), 1u);
   EXPECT_EQ(tags, expected);

@@ -2,21 +2,32 @@
 // `--device`. Without the device the tests are skipped.
 #pragma once
 
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <glad/gl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <spindrift/gpu/context.h>
+#include <spindrift/gpu/fence.h>
+#include <spindrift/gpu/readback_ring.h>
 
 namespace spindrift::gpu {
 
 inline core::Result<DeviceChoice> testDevice() {
   const char* const wanted = std::getenv("SPINDRIFT_TEST_DEVICE");
   return parseDeviceChoice(wanted ? wanted : "software");
+}
+
+/// Waits for the device, then returns all slots of the ring that were in flight. A minute is far above what a copy of
+/// some bytes takes.
+inline std::vector<std::shared_ptr<const ReadbackRing::Slot>> waitForSlots(Context& ctx, ReadbackRing& ring) {
+  (void)Fence::insert(ctx).wait(std::chrono::minutes(1));
+  return ring.poll();
 }
 
 class GpuTest : public testing::Test {

@@ -1,5 +1,3 @@
-#include <chrono>
-
 #include <gmock/gmock.h>
 
 #include <spindrift/gpu/pass_timer.h>
@@ -39,32 +37,31 @@ class PassTimersTest : public GpuTest {
   Buffer counts;
 };
 
-TEST_F(PassTimersTest, CountsScopesByNameAndStaysWithinTheWallClock) {
+TEST_F(PassTimersTest, CountsScopesByNameAndTheirSumStaysWithinTheOuterScope) {
   PassTimers timers(*ctx);
-  ctx->finish();
-  const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < 3; ++i) {
-    const auto grid = timers.scope("grid");
-    ASSERT_TRUE(program.dispatch(kCount));
-    ctx->barrier(Barrier::kStorage);
-  }
   {
+    const auto step = timers.scope("step");
+    for (int i = 0; i < 3; ++i) {
+      const auto grid = timers.scope("grid");
+      ASSERT_TRUE(program.dispatch(kCount));
+      ctx->barrier(Barrier::kStorage);
+    }
     const auto sph = timers.scope("sph");
     ASSERT_TRUE(program.dispatch(kCount));
   }
   ctx->finish();
-  const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
   const auto costs = timers.take();
-  ASSERT_EQ(costs.size(), 2u);
-  EXPECT_EQ(costs[0].name, "grid");
-  EXPECT_EQ(costs[0].scope_count, 3u);
-  EXPECT_EQ(costs[1].name, "sph");
-  EXPECT_EQ(costs[1].scope_count, 1u);
-  EXPECT_GT(costs[0].total_ms, 0.0);
+  ASSERT_EQ(costs.size(), 3u);
+  EXPECT_EQ(costs[0].name, "step");
+  EXPECT_EQ(costs[1].name, "grid");
+  EXPECT_EQ(costs[1].scope_count, 3u);
+  EXPECT_EQ(costs[2].name, "sph");
+  EXPECT_EQ(costs[2].scope_count, 1u);
   EXPECT_GT(costs[1].total_ms, 0.0);
-  EXPECT_DOUBLE_EQ(costs[0].mean_ms, costs[0].total_ms / 3);
-  // The device's clock may differ from the host's by a tenth.
-  EXPECT_LE(costs[0].total_ms + costs[1].total_ms, 1.1 * wall.count());
+  EXPECT_GT(costs[2].total_ms, 0.0);
+  EXPECT_DOUBLE_EQ(costs[1].mean_ms, costs[1].total_ms / 3);
+  // All three are timestamps of the device, so that no other clock has to agree.
+  EXPECT_LE(costs[1].total_ms + costs[2].total_ms, costs[0].total_ms + 1e-9);
   EXPECT_EQ(timers.droppedCount(), 0u);
 }
 
@@ -77,20 +74,6 @@ TEST_F(PassTimersTest, TakeStartsAfresh) {
   ctx->finish();
   EXPECT_EQ(timers.take().size(), 1u);
   EXPECT_TRUE(timers.take().empty());
-}
-
-TEST_F(PassTimersTest, AnOuterScopeIncludesItsInner) {
-  PassTimers timers(*ctx);
-  {
-    const auto outer = timers.scope("step");
-    const auto inner = timers.scope("sph");
-    ASSERT_TRUE(program.dispatch(kCount));
-  }
-  ctx->finish();
-  const auto costs = timers.take();
-  ASSERT_EQ(costs.size(), 2u);
-  EXPECT_EQ(costs[0].name, "step");
-  EXPECT_GE(costs[0].total_ms, costs[1].total_ms);
 }
 
 TEST_F(PassTimersTest, DropsScopesBeyondItsRingAndCountsThem) {

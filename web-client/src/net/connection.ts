@@ -17,7 +17,9 @@ import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
 
 const kSubprotocol = "spindrift.v1";
-const kClientName = "spindrift-web 0.1.0";
+/** Version of the program; vite.config.ts defines it. */
+declare const __PROGRAM_VERSION__: string;
+const kClientName = `spindrift-web ${__PROGRAM_VERSION__}`;
 const kPingEveryMs = 2000;
 /** The first pings go with every housekeeping tick: until they are answered, the server's clock is only estimated. */
 const kFirstPings = 5;

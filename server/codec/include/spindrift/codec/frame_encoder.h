@@ -2,8 +2,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <cstdint>
 #include <memory>
 
 #include <spindrift/codec/stream.h>
@@ -21,8 +19,8 @@ struct EncodedFrame {
   core::SharedBytes delta;     ///< for clients that have the previously encoded frame; null if there is none
 };
 
-/// The codecs of one room: one per stream and level, made at the first use. Call the methods on one thread (the encoder
-/// thread), except encodeCount(): any thread.
+/// The codecs of one room: one per stream and level, made at the first use. Call the methods on one thread, the
+/// encoder thread.
 class FrameEncoder {
  public:
   FrameEncoder();
@@ -35,15 +33,9 @@ class FrameEncoder {
     return encode({layer}, frame, true).keyframe;
   }
 
-  /// Number of encoded frames of the stream so far: one per level and frame, for any number of clients.
-  std::uint64_t encodeCount(Stream stream) const;
-
  private:
-  struct Slot {
-    std::array<std::unique_ptr<LayerCodec>, core::kLevelCount> codecs;
-    std::atomic<std::uint64_t> encode_count{0};
-  };
-  std::array<Slot, kStreamCount> slots_;
+  /// By indexOf(Stream) and core::indexOf(Level).
+  std::array<std::array<std::unique_ptr<LayerCodec>, core::kLevelCount>, kStreamCount> codecs_;
 };
 
 }  // namespace spindrift::codec

@@ -116,8 +116,6 @@ class Buffer {
 
 /// Type in which texelFetch reads the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
 enum class TexelFormat { kR32F, kRG32F, kRGBA32F, kR32UI, kRG32UI, kRGBA32UI, kR32I, kRG32I, kRGBA32I };
-/// Returns 4, 8 or 16.
-std::size_t texelBytes(TexelFormat format);
 
 /// A buffer that is written as shader storage and read with texelFetch. Hot reads go this way because, measured on
 /// llvmpipe 22.3, storage loads inside a loop are scalarised, and a gather through texelFetch is three to four times
@@ -132,16 +130,11 @@ class TexelBuffer : public Buffer {
   TexelBuffer(TexelBuffer&& other) noexcept;
   TexelBuffer& operator=(TexelBuffer&& other) noexcept;
 
-  [[nodiscard]] std::size_t texelCount() const { return texel_count_; }
-  [[nodiscard]] TexelFormat format() const { return format_; }
-
   /// Binds the view to the texture unit of `layout(binding = …) uniform samplerBuffer`.
   void bindTexel(std::uint32_t unit) const;
 
  private:
   std::uint32_t texture_id_ = 0;
-  std::size_t texel_count_ = 0;
-  TexelFormat format_ = TexelFormat::kR32F;
 };
 
 }  // namespace spindrift::gpu

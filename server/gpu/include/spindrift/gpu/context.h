@@ -105,8 +105,6 @@ class Context {
   /// Makes earlier shader writes visible to the kinds of access named in `readers`. The caller issues the barriers
   /// between passes. Buffer and ReadbackRing issue those around upload, download, clear and copy where they are needed.
   void barrier(Barrier readers);
-  /// Hands queued work to the device; does not wait.
-  void flush();
   /// Waits until the device is done. For tests and benchmarks: the simulation never waits.
   void finish();
 

@@ -33,10 +33,9 @@ class EncoderThread {
   void stop();
 
   [[nodiscard]] std::uint64_t replacedCount() const;
-  /// Number of messages encoded so far for a stream of a room: one per frame and level, for any number of clients.
-  [[nodiscard]] std::uint64_t encodeCount(const std::string& room, codec::Stream stream) const;
 
-  /// Cost of one level of a stream, summed over all rooms since the start.
+  /// Cost of one level of a stream, summed over all rooms since the start. Each frame counts once, for any number of
+  /// clients.
   struct StreamCost {
     std::uint64_t frame_count = 0;
     std::uint64_t bytes_count = 0;

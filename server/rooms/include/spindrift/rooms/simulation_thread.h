@@ -51,7 +51,6 @@ class SimulationThread {
 
   /// Settings shared by all rooms.
   [[nodiscard]] const RoomRules& rules() const { return rules_; }
-  [[nodiscard]] std::size_t maxRoomCount() const { return max_room_count_; }
   /// Returns seconds since the last round over all rooms; large while the thread is stuck or compiles.
   [[nodiscard]] double sinceLastRound_s() const;
   /// One line: the device and why it was chosen.

@@ -1,4 +1,4 @@
-// Curves of a case, for a chart beside its table.
+// Curves of a case, beside its table; server/study/draw_charts.py draws them.
 #pragma once
 
 #include <string>

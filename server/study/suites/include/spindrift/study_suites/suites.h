@@ -14,8 +14,7 @@
 namespace spindrift::study_suites {
 
 struct SuiteOptions {
-  std::string only;         ///< run only this case; empty: all
-  std::string plot_folder;  ///< folder for the charts; empty: none
+  std::string only;  ///< run only this case; empty: all
   bool quick = false;
 };
 

@@ -7,7 +7,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/sim/derive.h>
 
-namespace spindrift::study {
+namespace spindrift::sim {
 
 /// Ground of n x n wave cells, x fastest.
 struct ReferenceBed {
@@ -27,7 +27,7 @@ struct ReferenceWater {
 
 /// Computes one wave step of linear water (steepening_ratio 0) without external pressure and effects. As in the
 /// shaders, `water` holds elevations at the beginning of the step and flows of half a step before.
-void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed,
+void referenceFlowStep(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed,
                        ReferenceWater& water);
 
-}  // namespace spindrift::study
+}  // namespace spindrift::sim

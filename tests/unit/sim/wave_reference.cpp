@@ -1,10 +1,10 @@
+#include "wave_reference.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
-#include <spindrift/study/wave_reference.h>
-
-namespace spindrift::study {
+namespace spindrift::sim {
 namespace {
 
 /// A face between two cells and its conductance: still depth times the stencil's weight, 0 if it is closed. [m]
@@ -15,7 +15,7 @@ struct Face {
 
 class Faces {
  public:
-  Faces(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed)
+  Faces(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed)
       : wave_(*scene.wave), depth_m_(bed.depth_m), n_(static_cast<int>(derived.wave->resolution_count)) {}
 
   [[nodiscard]] std::size_t count() const { return wave_.stencil == core::Stencil::kNinePoint ? 4 : 2; }
@@ -62,7 +62,7 @@ class Faces {
 
 }  // namespace
 
-void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, const ReferenceBed& bed,
+void referenceFlowStep(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed,
                        ReferenceWater& water) {
   const Faces faces(scene, derived, bed);
   const int n = static_cast<int>(derived.wave->resolution_count);
@@ -111,4 +111,4 @@ void referenceFlowStep(const core::Scene& scene, const sim::Derived& derived, co
   }
 }
 
-}  // namespace spindrift::study
+}  // namespace spindrift::sim
