@@ -18,7 +18,7 @@ class RoomChange : public RoomTest {
   void begin(std::uint64_t command_id, double value) {
     ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
     send(command_id, count(value));
-    send(100, core::SetSpeed{.speed = 1.0}, 2);
+    send(100, setSpeed(1.0), 2);
     ASSERT_TRUE(runUntil([&] { return !outlets_.applied.empty(); }));
     ASSERT_THAT(outlets_.applied, ElementsAre(100)) << "the change is still being laid out";
   }
@@ -85,7 +85,7 @@ TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
   sendRefusedValues();
   send(kValueCount + 1);
   const std::uint64_t tick = room_->tick();
-  send(100, core::SetSpeed{.speed = 1.0}, 2);
+  send(100, setSpeed(1.0), 2);
   ASSERT_TRUE(runUntil([&] { return !outlets_.applied.empty(); }));
   EXPECT_THAT(outlets_.applied, ElementsAre(100)) << "others do not wait for them";
   EXPECT_THAT(outlets_.rejected_ids, testing::IsEmpty()) << "one round does not try all of them";
@@ -99,7 +99,7 @@ TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
 TEST_F(RoomValues, ThatWaitAreAnsweredWhenTheRoomCloses) {
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
   sendRefusedValues();
-  send(100, core::SetSpeed{.speed = 1.0}, 2);
+  send(100, setSpeed(1.0), 2);
   ASSERT_TRUE(runUntil([&] { return !outlets_.applied.empty(); }));
   room_->abandonCommands();
   EXPECT_EQ(outlets_.rejected_ids.size(), kValueCount);
