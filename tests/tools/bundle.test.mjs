@@ -63,7 +63,7 @@ describe("the bundle", () => {
   /** Returns the command line that starts the launcher in the bare root. Signals reach the server, because each step is an exec. */
   const inRoot = (...args) => [...enter, "/opt/a bundle/spindrift", ...args];
 
-  it("finds every library, and none of the machine's but the C library's", () => {
+  it("finds every library in the bundle, except those of the C library", () => {
     const { stdout } = spawnSync("ldd", [join(bundle, "bin/spindrift")], { encoding: "utf8" });
     assert.doesNotMatch(stdout, /not found/);
     const own = new Set(readdirSync(join(bundle, "lib")).concat(readdirSync(join(bundle, "lib/fallback"))));
@@ -74,18 +74,18 @@ describe("the bundle", () => {
     }
   });
 
-  it("carries a licence for itself and for what it brings along", () => {
+  it("has a licence for itself and for every bundled part", () => {
     assert.ok(existsSync(join(bundle, "LICENSE")));
     const licences = readdirSync(join(bundle, "share/licenses")).join(" ");
     for (const part of ["libprotobuf", "libegl-mesa0", "libgl1-mesa-dri", "libllvm", "three"]) assert.ok(licences.includes(part), part);
   });
 
-  it("runs here without anything in the environment but the PATH", () => {
+  it("runs with only PATH in the environment", () => {
     const info = spawnSync(join(bundle, "spindrift"), ["info"], { env: TOOL_PATH, encoding: "utf8", timeout: START_LIMIT_MS });
     assert.equal(info.status, 0, info.stderr);
   });
 
-  it("finds its own software rasteriser on a machine that has no driver", (t) => {
+  it("uses its own software rasteriser on a machine without a driver", (t) => {
     if (!enter) return t.skip("this machine allows neither chroot nor user namespaces");
     const [command, ...args] = inRoot("info", "--json", "-");
     const info = spawnSync(command, args, { env: TOOL_PATH, encoding: "utf8", timeout: START_LIMIT_MS });
@@ -93,7 +93,7 @@ describe("the bundle", () => {
     assert.match(JSON.stringify(JSON.parse(info.stdout)), /llvmpipe/);
   });
 
-  it("serves its own page and its own default scene there, and ends when asked to", { timeout: 2 * START_LIMIT_MS }, async (t) => {
+  it("serves its own page and default scene there, and ends on a signal", { timeout: 2 * START_LIMIT_MS }, async (t) => {
     if (!enter) return t.skip("this machine allows neither chroot nor user namespaces");
     const [command, ...args] = inRoot("serve", "--port", "0");
     const server = spawn(command, args, { env: TOOL_PATH, stdio: ["ignore", "pipe", "pipe"] });

@@ -15,7 +15,7 @@ describe("./dev", () => {
   });
   afterEach(() => shop.remove());
 
-  it("explains every command and calls nothing for it", () => {
+  it("prints the help of every command without calling a tool", () => {
     const overview = shop.dev(["--help"]);
     assert.equal(overview.code, 0);
     for (const command of COMMANDS) {
@@ -36,7 +36,7 @@ describe("./dev", () => {
     }
   });
 
-  it("installs what is missing once, says why, and then leaves apt alone", () => {
+  it("installs missing packages once, prints the reason, and does not call apt again", () => {
     shop.missing("ninja-build libspdlog-dev libgl1-mesa-dri");
     const first = shop.dev(["build"]);
     assert.equal(first.code, 0, first.stderr);
@@ -50,7 +50,7 @@ describe("./dev", () => {
     assert.deepEqual(shop.dev(["build"]).calls.filter((call) => call.startsWith("apt-get")), []);
   });
 
-  it("goes through sudo when it is not root, without a prompt where nobody could answer", (t) => {
+  it("uses sudo when it is not root, without a prompt where there is no terminal", (t) => {
     shop.missing("ninja-build");
     const prefix = process.getuid() === 0 ? ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--"] : [];
     spawnSync("chmod", ["-R", "a+rwX", shop.folder]);
@@ -80,14 +80,14 @@ describe("./dev", () => {
     assert.deepEqual(shop.dev(["build"]).calls.filter((call) => call.startsWith("npm")).map((call) => call.split(" ")[1]), ["ci", "run"]);
   });
 
-  it("hands the server every argument and the folder it was called from", () => {
+  it("passes every argument and the calling folder to the server", () => {
     const run = shop.dev(["run", "--preset", "debug", "--port", "9000", "--scene", "my scene.textproto"], { cwd: shop.folder });
     assert.equal(run.code, 0, run.stderr);
     assert.equal(run.stdout, `${shop.folder}\n<serve><--port><9000><--scene><my scene.textproto>`);
     assert.ok(run.calls.includes("cmake --preset debug"));
   });
 
-  it("fetches a private Node where the machine's is too old, once", () => {
+  it("installs a private Node once if the machine's is too old", () => {
     shop.useNode("v18.20.4");
     const first = shop.dev(["build"]);
     assert.equal(first.code, 0, first.stderr);
@@ -97,14 +97,14 @@ describe("./dev", () => {
     assert.equal(shop.dev(["build"]).calls.filter((call) => call.startsWith("npm")).length, 0);
   });
 
-  it("takes the Node versions that Vite takes and no others", () => {
+  it("accepts the Node versions that Vite supports and no others", () => {
     const accepts = (version) =>
       spawnSync("bash", ["-c", 'source "$1"; node_is_new_enough "$2"', "bash", join(repository, ".ci/lib/node.sh"), version]).status === 0;
     for (const version of ["v20.19.0", "v20.20.2", "v22.12.0", "v24.0.0", "v26.1.0"]) assert.ok(accepts(version), version);
     for (const version of ["v18.20.4", "v20.18.3", "v21.7.3", "v22.11.0", "v23.3.0", "", "nonsense"]) assert.ok(!accepts(version), version);
   });
 
-  it("shows the end of the log when a step fails, and where the rest is", () => {
+  it("shows the end of the log and its path when a step fails", () => {
     shop.breakCompiler();
     const failed = shop.dev(["run"]);
     assert.equal(failed.code, 1);
@@ -112,14 +112,14 @@ describe("./dev", () => {
     assert.match(failed.stderr, /error: something does not compile\nthe whole log: build\/logs\/build-release\.log\ndev: step 'build-release' failed/);
   });
 
-  it("ends ./dev test with a total that is no success even when nothing could be built", () => {
+  it("ends ./dev test with a failing total when the build fails", () => {
     shop.breakCompiler();
     const failed = shop.dev(["test", "unit"]);
     assert.equal(failed.code, 1);
     assert.equal(failed.stdout, "0 passed, 1 failed, 0 skipped\n");
   });
 
-  it("cleans what it built and keeps what it fetched unless told otherwise", () => {
+  it("removes what it built, and what it downloaded only with --all", () => {
     shop.useNode("v18.20.4");
     shop.dev(["build"]);
     shop.dev(["clean"]);

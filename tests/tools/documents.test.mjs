@@ -15,7 +15,7 @@ function check(folder) {
 }
 
 describe("the documents", () => {
-  it("link what exists and name functions and files that exist", () => {
+  it("have no broken links and name only existing functions and files", () => {
     const { code, faults } = check(repository);
     assert.deepEqual(faults, []);
     assert.equal(code, 0);
@@ -58,7 +58,7 @@ describe("documents.py", () => {
   });
   afterEach(() => rmSync(folder, { recursive: true }));
 
-  it("is content with links, anchors, functions and paths that exist", () => {
+  it("accepts links, anchors, functions and paths that exist", () => {
     write("pictures/a.png", "");
     write(
       "README.md",
@@ -72,7 +72,7 @@ describe("documents.py", () => {
     assert.deepEqual(check(folder), { code: 0, faults: [] });
   });
 
-  it("reports each link, anchor, function, path and lonely document that is wrong, with file and line", () => {
+  it("reports each wrong link, anchor, function and path, and unlinked documents, with file and line", () => {
     const cases = [
       ["[gone](docs/missing.md)", "README.md:2: link docs/missing.md: there is no docs/missing.md"],
       ["![gone](missing.png)", "README.md:2: link missing.png: there is no missing.png"],
@@ -96,7 +96,7 @@ describe("documents.py", () => {
     assert.deepEqual(check(folder), { code: 1, faults: ["docs/guide.md:1: no other document links it"] });
   });
 
-  it("takes what stands in code for no link, but reads functions there", () => {
+  it("ignores links inside code, but checks functions there", () => {
     write("README.md", "[guide](docs/guide.md) `[a](b.md)`\n\n```\n# [c](d.md)\nserver/net/session.cpp:nothing\n```\n[e](f.md)\n");
     assert.deepEqual(check(folder).faults, [
       "README.md:5: server/net/session.cpp:nothing: server/net/session.cpp does not contain that name",
@@ -104,7 +104,7 @@ describe("documents.py", () => {
     ]);
   });
 
-  it("forgives old paths in decisions and the changelog, but no link", () => {
+  it("accepts old paths in decisions and the changelog, but no broken links", () => {
     write("README.md", "[guide](docs/guide.md) [log](CHANGELOG.md) [why](docs/decisions/001-why.md)\n");
     write("CHANGELOG.md", "`server/old/file.cpp`\n");
     write("docs/decisions/001-why.md", "`server/old/file.cpp` [x](002-gone.md)\n");

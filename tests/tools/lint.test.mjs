@@ -1,4 +1,4 @@
-// One test for each check of `./dev lint`: it must fail on a faulty file.
+// One test for each check of `./dev lint`, over this repository.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { describe, it } from "node:test";
@@ -13,7 +13,7 @@ describe("./dev lint", () => {
     });
   }
 
-  it("does not know other parts", () => {
+  it("refuses unknown parts", () => {
     const run = spawnSync("./dev", ["lint", "grammar"], { cwd: repository, encoding: "utf8" });
     assert.equal(run.status, 2);
     assert.match(run.stderr, /lint does not know 'grammar'/);

@@ -43,13 +43,13 @@ describe("the total of ./dev test", () => {
     assert.match(sum.text, /FAILED native: unit\/Outbox\.Drops\n {4}expected 1, got 2/);
   });
 
-  it("takes a test that skipped itself for a skip and one whose program is missing for a failure", () => {
+  it("counts a test that skipped itself as skipped and one whose program is missing as failed", () => {
     const { text } = summarise(["native", 8, CTEST]);
     assert.match(text, /skipped native: gpu\/Wave\.Travels \(no EGL device\)/);
     assert.match(text, /FAILED native: unit_net_NOT_BUILT\n {4}did not run: Unable to find executable/);
   });
 
-  it("is content when nothing failed", () => {
+  it("succeeds when nothing failed", () => {
     const sum = summarise(["browser", 0, NODE]);
     assert.equal(sum.last, "1 passed, 0 failed, 1 skipped");
     assert.equal(sum.code, 0);
@@ -64,7 +64,7 @@ describe("the total of ./dev test", () => {
     }
   });
 
-  it("counts a part that ended badly although every test passed as failed", () => {
+  it("counts a part as failed if it exits with an error although every test passed", () => {
     const sum = summarise(["web", 124, NODE]);
     assert.equal(sum.last, "1 passed, 1 failed, 1 skipped");
     assert.match(sum.text, /ended with exit code 124/);

@@ -28,13 +28,13 @@ describe("test_targets.py", () => {
   });
   after(() => rmSync(folder, { recursive: true }));
 
-  it("names every program that holds a test of that name", () => {
+  it("names every program with a matching test", () => {
     assert.deepEqual(targets("Queue", folder).names, ["one_test", "two_test"]);
     assert.deepEqual(targets("IsBounded", folder).names, ["two_test"]);
     assert.deepEqual(targets("^gpu/Sweep", folder).names, ["two_test"]);
   });
 
-  it("fails where there is none, and says what is no regular expression", () => {
+  it("fails if there is none, and reports an invalid regular expression", () => {
     assert.deepEqual(targets("nothere", folder), { code: 1, names: [], complaint: "" });
     const wrong = targets("(", folder);
     assert.equal(wrong.code, 2);

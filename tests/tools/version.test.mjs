@@ -11,7 +11,7 @@ const text = (file) => readFileSync(join(repository, file), "utf8");
 const version = /^project\(spindrift VERSION (\d+\.\d+\.\d+) /m.exec(text("CMakeLists.txt"))?.[1];
 
 describe("the version", () => {
-  it("is what the program prints and what names the bundle", () => {
+  it("is printed by the program and part of the bundle's name", () => {
     const printed = spawnSync(process.env.SPINDRIFT_BINARY, ["--version"], { encoding: "utf8" });
     assert.equal(printed.status, 0, printed.stderr);
     assert.equal(printed.stdout, `spindrift ${version}\n`);
@@ -28,7 +28,7 @@ describe("the version", () => {
     assert.deepEqual(dates, [...dates].sort().reverse());
   });
 
-  it("stands in CMakeLists.txt, the changelog and the release recipe, and nowhere else", () => {
+  it("is in CMakeLists.txt, the changelog and the release recipe only", () => {
     const escaped = version.replaceAll(".", "\\.");
     const command = ["-c", "safe.directory=*", "grep", "-lE", `(^|[^0-9.])${escaped}($|[^0-9.])`, "--", ":!*package-lock.json"];
     const found = spawnSync("git", command, { cwd: repository, encoding: "utf8" });
