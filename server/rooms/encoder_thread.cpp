@@ -83,7 +83,7 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
   for (std::size_t k = 0; k < reduced.size(); ++k) reduced[k] = core::frameAt(frame, core::kLevels[k]);
   for (const codec::Stream stream : codec::allStreams()) {
     const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
-    const core::LayerDemand demand = outlet_.demand(room, stream, reduced_count);
+    const core::StreamDemand demand = outlet_.demand(room, stream, reduced_count);
     for (const core::Level level : core::kLevels) {
       const core::FrameView& view = level == core::Level::kFull ? frame : reduced[core::indexOf(level)];
       const core::LevelDemand& wanted = demand[core::indexOf(level)];

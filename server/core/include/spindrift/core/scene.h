@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 #include <spindrift/core/scene_defaults.h>
 
 namespace spindrift::core {
