@@ -6,7 +6,7 @@ readonly fuzz_targets=(client_message frame http scene)
 # build_fuzz: builds the targets as build/fuzz/tests/fuzz_TARGET.
 build_fuzz() {
   need_packages server fuzz
-  build_server fuzz
+  build_server fuzz "${fuzz_targets[@]/#/fuzz_}"
 }
 
 # fuzz_one TARGET SECONDS: runs the seeds, then the findings of earlier runs, then new inputs; fails at the first input

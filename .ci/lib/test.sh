@@ -3,7 +3,7 @@
 # by ./dev.
 
 # Limits against hanging parts: far above their times on two cores without a GPU.
-readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=1200 tools_limit_s=1800
+readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=1200 tools_limit_s=1800 tidy_limit_s=7200
 
 # run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, and records its exit code. The command
 # writes build/reports/NAME.xml.
@@ -58,6 +58,11 @@ test_zink() {
     --output-junit "$root/build/reports/zink.xml"
 }
 
+# The programs of the part `memory`: unit tests that need no device, under clang's address and undefined-behaviour
+# sanitizers, in the tree of the fuzz targets, whose libraries are built with them already. Tests on a device stay out: the
+# shaders that the rasteriser compiles are not instrumented, and it is slow under the sanitizers.
+readonly memory_programs=(core_test codec_test scene_test wire_test)
+
 # write_skipped FILE NAME REASON: writes a report of one skipped test and prints the reason.
 write_skipped() {
   say "skipped: $3"
@@ -82,6 +87,12 @@ test_wire() {
     --root tests/wire --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/wire.xml"
 }
 
+test_tidy() {
+  local files=()
+  mapfile -t files < <(list_tidy_sources)
+  run_part tidy "$tidy_limit_s" python3 tests/tools/tidy.py build/fuzz "$root/build/reports/tidy.xml" "${files[@]}"
+}
+
 # node_tests NAME SECONDS FILE…
 node_tests() {
   local name="$1" limit_s="$2"
@@ -100,7 +111,9 @@ Builds everything and runs every test, or the parts named: unit, integration, ac
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents), fuzz (parsers and decoders under hostile input, some
-seconds each), threads (network and encoder under the thread sanitizer). The last two have presets of their own.
+seconds each), memory (unit tests without a device under the address and undefined-behaviour sanitizers), threads
+(network and encoder under the thread sanitizer). The last three have presets of their own.
+Only when named: tidy (clang-tidy over every C++ file, a test per file).
 -R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only their programs.
 The last line is `N passed, N failed, N skipped`; exit code 1 when anything failed. Reports: build/reports/*.xml, logs:
 build/logs.
@@ -119,10 +132,10 @@ TEXT
     esac
   done
   [[ -z "$test_regex" ]] || ((${#parts[@]} > 0)) || parts=(native)
-  ((${#parts[@]} > 0)) || parts=(native zink web wire browser tools fuzz threads)
+  ((${#parts[@]} > 0)) || parts=(native zink web wire browser tools fuzz memory threads)
   for part in "${parts[@]}"; do
     case "$part" in
-      native | unit | integration | accuracy | stability | gpu | zink | web | wire | browser | tools | fuzz | threads) ;;
+      native | unit | integration | accuracy | stability | gpu | zink | web | wire | browser | tools | fuzz | memory | threads | tidy) ;;
       *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
     esac
   done
@@ -134,7 +147,9 @@ TEXT
     case "$part" in
       native) test_native native "$preset" ;;
       zink) test_zink ;;
-      fuzz) test_native fuzz fuzz ;;
+      fuzz) test_native fuzz fuzz fuzz ;;
+      memory) test_native memory fuzz memory ;;
+      tidy) test_tidy ;;
       threads) test_native threads tsan threads ;;
       web) test_web ;;
       wire) test_wire ;;
@@ -145,6 +160,11 @@ TEXT
   done
   trap - EXIT
   python3 tests/tools/summarise.py "${reports[@]}"
+}
+
+build_memory_tests() {
+  need_packages server fuzz
+  build_server fuzz "${memory_programs[@]}"
 }
 
 # Installs and builds everything that the parts need.
@@ -171,6 +191,8 @@ prepare_tests() {
     build_server "$preset" spindrift
   fi
   [[ "$wanted" != *" fuzz "* ]] || build_fuzz
+  [[ "$wanted" != *" memory "* ]] || build_memory_tests
+  [[ "$wanted" != *" tidy "* ]] || prepare_tidy
   [[ "$wanted" != *" threads "* ]] || build_server tsan net_test join_leave_test
   [[ "$wanted" != *" web "* ]] || npm_install web-client web
   [[ ! "$wanted" =~ \ (wire|browser|tools)\  ]] || build_web

@@ -107,23 +107,26 @@ check_format() { list_sources | xargs -0 --no-run-if-empty clang-format --dry-ru
 command_lint() {
   if wants_help "$@"; then
     cat <<'TEXT'
-usage: ./dev lint [--tidy] [PART…]
+usage: ./dev lint [PART…]
+       ./dev lint tidy [--all]
 
 Checks the formatting of the C++ sources (format), the shell scripts (shell) and the types of the web client (web), or the
-parts named; --tidy adds clang-tidy over the server (minutes). Fails when any of them complains.
+parts named. `tidy` runs clang-tidy over the C++ files that differ from the upstream branch, and prints which; --all: over
+all of them (as `./dev test tidy`). Fails when any of them complains.
 TEXT
     return
   fi
   local code=0 part parts=()
+  lint_all=false
   for part in "$@"; do
     case "$part" in
-      format | shell | web) parts+=("$part") ;;
-      --tidy) ;;
+      format | shell | web | tidy) parts+=("$part") ;;
+      --all) lint_all=true ;;
       *) fail 2 "lint does not know '$part'; see ./dev lint --help" ;;
     esac
   done
+  "$lint_all" && [[ " ${parts[*]} " != *" tidy "* ]] && fail 2 "--all is for tidy; see ./dev lint --help"
   ((${#parts[@]} > 0)) || parts=(format shell web)
-  [[ " $* " != *" --tidy "* ]] || parts+=(tidy)
   for part in "${parts[@]}"; do "lint_$part" || code=1; done
   return "$code"
 }
@@ -150,12 +153,56 @@ lint_web() {
 }
 
 lint_tidy() {
-  need_packages server driver tidy
-  build_server release
-  say "clang-tidy"
-  # Left out: server/codec/wasm, which web-client/scripts/wasm.mjs compiles for another target.
-  git ls-files -z -- 'server/*.cpp' ':!server/codec/wasm' | xargs -0 --no-run-if-empty --max-args=4 --max-procs="$(nproc)" \
-    clang-tidy --quiet -p build/release
+  local files=()
+  if "$lint_all"; then
+    mapfile -t files < <(list_tidy_sources)
+  else
+    mapfile -t files < <(list_changed_sources)
+    ((${#files[@]} > 0)) || { say "clang-tidy: no C++ file differs from $(tidy_base)"; return; }
+    say "clang-tidy over what differs from $(tidy_base):"
+    printf '  %s\n' "${files[@]}" >&2
+  fi
+  lock_build
+  prepare_tidy
+  unlock_build
+  python3 tests/tools/tidy.py build/fuzz build/reports/lint-tidy.xml "${files[@]}"
+}
+
+# Every .cpp file that a build compiles. server/codec/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
+list_tidy_sources() { git ls-files -- 'server/*.cpp' 'tests/*.cpp' ':!server/codec/wasm'; }
+
+# What a change is compared with: where the branch left its upstream, the last commit where there is none.
+tidy_base() { git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD; }
+
+# included_by HEADER: one .cpp file that includes it, if any.
+included_by() {
+  local name="${1##*/}" folder="${1%/*}"
+  git grep --files-with-matches --fixed-strings -e "${folder##*/}/$name>" -e "${folder##*/}/$name\"" -e "\"$name\"" \
+    -- 'server/*.cpp' 'tests/*.cpp' ':!server/codec/wasm' | head -n 1 || true
+}
+
+# The .cpp files that differ from the base, committed or not, and for a changed header one file that includes it.
+list_changed_sources() {
+  local path
+  { git diff --name-only --diff-filter=d "$(tidy_base)" && git ls-files --others --exclude-standard; } |
+    while IFS= read -r path; do
+      case "$path" in
+        server/codec/wasm/*) ;;
+        server/*.cpp | tests/*.cpp) printf '%s\n' "$path" ;;
+        server/*.h | tests/*.h) included_by "$path" ;;
+      esac
+    done | sort --unique
+}
+
+# prepare_tidy: build/fuzz, whose compiler is clang, with all that must exist before a file can be parsed: generated sources
+# and precompiled headers. Nothing else is compiled.
+prepare_tidy() {
+  local inputs=()
+  need_packages server fuzz tidy
+  [[ -f build/fuzz/build.ninja ]] || step configure-fuzz "configuring build/fuzz" cmake --preset fuzz
+  mapfile -t inputs < <(ninja -C build/fuzz -t targets all | sed -n 's/^\(.*cmake_pch\.hxx\.pch\|cmake_object_order_depends_target_.*\): .*/\1/p')
+  build_server fuzz "${inputs[@]}"
+  mkdir -p build/reports
 }
 
 command_clean() {

@@ -123,7 +123,7 @@ struct PackedPlaneDecoder::History {
   template <typename Header>
   std::optional<core::Error> read(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
                                   double header_quantum_m) {
-    const auto error = check(frame, layer, header, header_quantum_m);
+    auto error = check(frame, layer, header, header_quantum_m);
     if (error) memory.row().forget();
     side_m = header.side_m();
     quantum_m = header_quantum_m;

@@ -249,7 +249,7 @@ core::Boat toCore(const v1::Boat& boat) {
 
 void fillDefaults(v1::Scene& scene) {
   scene.mutable_stream();
-  if (scene.seed() == 0) scene.set_seed(1);
+  if (scene.seed() == 0) scene.set_seed(core::Scene{}.seed);
   fillMessageDefaults(scene);
 }
 

@@ -114,7 +114,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.ok((await shown(page, "display-fps")) > 0);
     assert.ok((await shown(page, "kbps")) > 0);
     const speed = await shown(page, "rtf");
-    assert.ok(speed > 0 && speed < 5, `real-time factor ${speed}`);
+    assert.ok(speed > 0, `real-time factor ${speed}`);
     const latency_ms = await shown(page, "latency");
     assert.ok(latency_ms >= 0 && latency_ms < WAIT_MS, `latency ${latency_ms} ms`);
     const particle_count = await shown(page, "particles");

@@ -21,7 +21,7 @@ TEST_F(Frames, GreetingHasSceneLayersAndParameters) {
   EXPECT_EQ(greeting.device(), server().deviceLine());
   EXPECT_THAT(greeting.layers(), ElementsAre(v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS));
   EXPECT_EQ(greeting.scene().wave().resolution_count(), 32u);
-  EXPECT_EQ(greeting.scene().gravity_mps2(), 9.81) << "a default that the scene leaves out";
+  EXPECT_EQ(greeting.scene().gravity_mps2(), core::Scene{}.gravity_mps2) << "a default that the scene leaves out";
   EXPECT_GT(greeting.limits().message_max_bytes(), 0u);
   EXPECT_EQ(greeting.room_state().speed(), 1.0);
   EXPECT_FALSE(greeting.room_state().paused());

@@ -40,7 +40,7 @@ TEST_F(Parameters, ChangeIsInTheNextGreeting) {
   for (const v1::ParameterDescription& parameter : newcomer.greeting().parameters()) {
     if (parameter.path() != "particles.viscosity_pas") continue;
     EXPECT_EQ(parameter.value(), 12.5);
-    EXPECT_EQ(parameter.default_(), 60.0);
+    EXPECT_EQ(parameter.default_(), core::ParticleScene{}.viscosity_pas);
     return;
   }
   FAIL() << "the greeting lacks the parameter";

@@ -92,12 +92,14 @@ TEST_F(Storm, WeatherAndBoatsAloneStayLow) {
   const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEffectsAndBoats, ticks, 0.0);
   EXPECT_GE(extremes.thinnest_units, 0);
   EXPECT_LE(extremes.highest_m, kHighestOfWeather_m);
+  EXPECT_GT(extremes.highest_m, 0.1) << "no weather";
 }
 
 TEST_F(Storm, ParameterChangesNeverEmptyTheHarborBelowItsBed) {
   const int ticks = wanted("SPINDRIFT_STORM_TICKS", 400);
   const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEverything, ticks);
   EXPECT_GE(extremes.thinnest_units, 0);
+  EXPECT_GT(extremes.highest_m, 0.1) << "a storm that moves no water proves nothing";
 }
 
 }  // namespace

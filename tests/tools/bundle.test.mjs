@@ -67,6 +67,7 @@ describe("the bundle", () => {
     const { stdout } = spawnSync("ldd", [join(bundle, "bin/spindrift")], { encoding: "utf8" });
     assert.doesNotMatch(stdout, /not found/);
     const own = new Set(readdirSync(join(bundle, "lib")).concat(readdirSync(join(bundle, "lib/fallback"))));
+    assert.match(stdout, /libprotobuf/);
     for (const line of lines(stdout)) {
       const name = line.trim().split(" ")[0];
       const is_of_the_system = /^(linux-vdso|\/lib64\/ld-linux|ld-linux|lib(c|m|dl|pthread|rt|resolv)\.so)/.test(name);

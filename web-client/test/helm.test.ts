@@ -1,6 +1,10 @@
+import { getOption, type DescField } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../src/codec/greeting";
+import { parameter } from "../src/gen/spindrift/v1/options_pb";
+import { BoatSchema } from "../src/gen/spindrift/v1/scene_pb";
+import { SetSpeedSchema } from "../src/gen/spindrift/v1/wire_pb";
 import { boatLimits, boatOfLength, effectLimits, speedRange } from "../src/ui/effect_limits";
 import { Helm, helmKey } from "../src/ui/helm";
 import { LatestSender } from "../src/ui/latest_sender";
@@ -89,15 +93,16 @@ describe("the helm", () => {
 });
 
 describe("limits from the scene", () => {
+  const defaultOf = (field: DescField): number => getOption(field, parameter).default;
   const wave = { resolutionCount: 256, sideM: 24, depthM: 1.5, periodicX: true, periodicZ: true };
   const greeting = (change: Partial<GreetingInfo>) => ({ wave, waterExtents: wave, hasBoats: true, ...change }) as GreetingInfo;
 
   it("allow waves from every direction", () => {
-    expect(effectLimits(greeting({}))!.waveDirectionDeg).toMatchObject({ min: -180, max: 180, step: 1, default: 0 });
+    expect(effectLimits(greeting({}))!.waveDirectionDeg).toMatchObject({ min: -180, max: 180, step: 1 });
   });
 
   it("keep boats afloat: no longer than a quarter of the side, nor deeper than the water", () => {
-    expect(boatLimits(greeting({}))!.lengthM).toMatchObject({ min: 0.3, max: 6, default: 2.4 });
+    expect(boatLimits(greeting({}))!.lengthM).toMatchObject({ min: 0.3, max: 6, default: defaultOf(BoatSchema.field.lengthM) });
     const shallow = boatLimits(greeting({ waterExtents: { sideM: 24, depthM: 0.2 } }))!.lengthM;
     expect(boatOfLength(shallow.max).draughtM).toBeLessThanOrEqual(0.6 * 0.2 + 1e-9);
     expect(boatLimits(greeting({ hasBoats: false }))).toBeUndefined();
@@ -106,10 +111,15 @@ describe("limits from the scene", () => {
   });
 
   it("give boats the shape of the proto's default boat", () => {
-    const boat = boatOfLength(2.4);
-    expect(boat.beamM).toBeCloseTo(0.9, 9);
-    expect(boat.heightM).toBeCloseTo(0.6, 9);
-    expect(boat.densityRatio).toBe(0.4);
-    expect(speedRange()).toMatchObject({ min: 0.1, max: 4, default: 1 });
+    const { field } = BoatSchema;
+    const boat = boatOfLength(defaultOf(field.lengthM));
+    expect(boat.beamM).toBeCloseTo(defaultOf(field.beamM), 9);
+    expect(boat.heightM).toBeCloseTo(defaultOf(field.heightM), 9);
+    expect(boat.densityRatio).toBe(defaultOf(field.densityRatio));
+    expect(boatOfLength(2 * defaultOf(field.lengthM)).beamM).toBeCloseTo(2 * defaultOf(field.beamM), 9);
+  });
+
+  it("give time the range of the proto", () => {
+    expect(speedRange()).toMatchObject({ min: 0.1, max: 4, default: defaultOf(SetSpeedSchema.field.speed) });
   });
 });

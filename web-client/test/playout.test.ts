@@ -41,6 +41,7 @@ function watch({ frameRateHz, transitS, speed = 1, leadS = 1000, durationS = 8 }
     if (shownS === undefined || nowS < 3) continue;
     pictures.push({ nowS, shownS, newestS: frames[next - 1]!.timeS, delayS: clock.delayS()! });
   }
+  expect(pictures.length).toBeGreaterThan(100); // a clock that shows nothing would pass whatever is said of each picture
   return pictures;
 }
 

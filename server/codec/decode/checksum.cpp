@@ -34,18 +34,18 @@ constexpr Tables kTables = makeTables();
 
 }  // namespace
 
-std::uint32_t crc32cByTables(const std::uint8_t* at, std::size_t byte_count) {
+std::uint32_t crc32cByTables(const std::uint8_t* bytes, std::size_t byte_count) {
   std::uint32_t crc = ~0u;
-  for (; byte_count >= 16; byte_count -= 16, at += 16) {
+  for (; byte_count >= 16; byte_count -= 16, bytes += 16) {
     std::uint64_t low = 0, high = 0;
-    std::memcpy(&low, at, sizeof low);
-    std::memcpy(&high, at + sizeof low, sizeof high);
+    std::memcpy(&low, bytes, sizeof low);
+    std::memcpy(&high, bytes + sizeof low, sizeof high);
     low ^= crc;
     crc = 0;
     for (unsigned k = 0; k < 8; ++k)
       crc ^= kTables[15 - k][(low >> (8 * k)) & 0xFFu] ^ kTables[7 - k][(high >> (8 * k)) & 0xFFu];
   }
-  for (; byte_count > 0; --byte_count, ++at) crc = (crc >> 8) ^ kTables[0][(crc ^ *at) & 0xFFu];
+  for (; byte_count > 0; --byte_count, ++bytes) crc = (crc >> 8) ^ kTables[0][(crc ^ *bytes) & 0xFFu];
   return ~crc;
 }
 

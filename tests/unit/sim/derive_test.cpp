@@ -22,6 +22,7 @@ TEST(Derive, KeepsEveryStepRule) {
     scene.particles->sound_speed_mps = c0;
     const auto d = derive(scene);
     ASSERT_TRUE(d) << d.error().message;
+    EXPECT_FALSE(d->rules.empty());
     for (const StepRule& rule : d->rules) {
       const double dt_s = rule.name.starts_with("wave") ? d->wave->dt_s : d->dt_s;
       EXPECT_LE(dt_s, rule.max_dt_s * (1 + 1e-9)) << rule.name;

@@ -53,8 +53,14 @@ export interface BoatLimits {
 
 /** Longest hull as a share of the water's side. */
 const kLongestBoatSides = 0.25;
+const defaultOf = (field: DescField): number => getOption(field, parameter).default;
+const { field: kBoat } = BoatSchema;
 /** Beam and height of a new boat as shares of its length, and its density: the shape of the proto's default boat. */
-const kBoatShape = { beam: 0.375, height: 0.25, density: 0.4 };
+const kBoatShape = {
+  beam: defaultOf(kBoat.beamM) / defaultOf(kBoat.lengthM),
+  height: defaultOf(kBoat.heightM) / defaultOf(kBoat.lengthM),
+  density: defaultOf(kBoat.densityRatio),
+};
 /** Greatest draught as a share of the water's depth. */
 const kDraughtDepths = 0.6;
 
