@@ -12,8 +12,7 @@
 #include <shared/event_uniforms.h>
 #include <shared/sim_uniforms.h>
 
-#include <spindrift/sim_setup/scene_parts.h>
-
+#include "shader_defines.h"
 #include "sim_fixture.h"
 
 namespace spindrift::sim {
