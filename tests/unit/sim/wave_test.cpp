@@ -9,10 +9,9 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <shared/fixed_point.h>
 
 #include <spindrift/study/water_reference.h>
-
-#include <shared/fixed_point.h>
 
 #include "basin.h"
 #include "sim_fixture.h"
