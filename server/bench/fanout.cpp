@@ -100,14 +100,14 @@ Sighting look(core::ByteView bytes) {
   return out;
 }
 
-struct Case {
+struct FanoutCase {
   std::string name;
   std::size_t frame_bytes = 200'000;
   double rate_hz = 20.0;
   CrowdOptions crowd;
 };
 
-struct Row {
+struct FanoutRow {
   std::string name;
   CrowdReport crowd{};
   net::ServerStats before{};
@@ -117,7 +117,7 @@ struct Row {
   double real_time_factor = 0.0;
 };
 
-core::Result<Row> measure(const Case& test) {
+core::Result<FanoutRow> measure(const FanoutCase& test) {
   EchoApplication application;
   net::ServerOptions options;
   options.port = 0;
@@ -133,7 +133,7 @@ core::Result<Row> measure(const Case& test) {
       std::this_thread::sleep_until(next);
     }
   });
-  Row out{.name = test.name};
+  FanoutRow out{.name = test.name};
   const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string((*server)->port()) + "/ws");
   double begin_cpu_s = 0.0;
   double begin_mb = 0.0;
@@ -154,7 +154,7 @@ core::Result<Row> measure(const Case& test) {
   return out;
 }
 
-core::Result<Row> measureServer(const v1::Scene& scene, const gpu::DeviceChoice& device, double seconds) {
+core::Result<FanoutRow> measureServer(const v1::Scene& scene, const gpu::DeviceChoice& device, double seconds) {
   service::WaterServerOptions options;
   options.device = device;
   options.network.port = 0;
@@ -162,7 +162,7 @@ core::Result<Row> measureServer(const v1::Scene& scene, const gpu::DeviceChoice&
   options.rooms.push_back({"main", scene});
   auto server = service::WaterServer::start(std::move(options));
   if (!server) return server.error();
-  Row out{.name = fmt::format("{}, 200 clients", scene.name())};
+  FanoutRow out{.name = fmt::format("{}, 200 clients", scene.name())};
   const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string((*server)->port()) + "/ws");
   double begin_mb = 0.0;
   out.crowd = runCrowd(
@@ -179,7 +179,7 @@ core::Result<Row> measureServer(const v1::Scene& scene, const gpu::DeviceChoice&
   return out;
 }
 
-void print(std::FILE* out, const Row& row) {
+void print(std::FILE* out, const FanoutRow& row) {
   const CrowdReport& c = row.crowd;
   const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
   // Frames of a real scene do not contain the time of their publication.
@@ -197,7 +197,7 @@ void print(std::FILE* out, const Row& row) {
   if (row.real_time_factor > 0) fmt::print(out, "{:<30} real-time factor {:.2f}\n", "", row.real_time_factor);
 }
 
-boost::json::object toJson(const Row& row) {
+boost::json::object toJson(const FanoutRow& row) {
   const CrowdReport& c = row.crowd;
   const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
   return {{"name", row.name},
@@ -237,7 +237,7 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
     options.look = look;
     return options;
   };
-  std::vector<Case> cases = {
+  std::vector<FanoutCase> cases = {
       {"100 readers, 200 kB", 200'000, 20.0, crowd(100, 0, std::chrono::duration<double>(seconds))},
       {"the same, 10 never read", 200'000, 20.0, crowd(100, 10, slow_case)},
       {"200 readers, 25 kB, visitors", 25'000, 20.0, crowd(200, 0, std::chrono::duration<double>(seconds))}};
@@ -247,7 +247,7 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
              "frames, each", "p50 ms", "p99 ms", "last p99", "us/frame", "drops", "evicted", "ack p50", "ack p99",
              "+MB", "lost");
   boost::json::array rows;
-  for (const Case& test : cases) {
+  for (const FanoutCase& test : cases) {
     auto row = measure(test);
     if (!row) return row.error();
     print(out, *row);

@@ -47,7 +47,7 @@ void LevelMeter::add(const core::FrameView& frame) {
   std::map<std::pair<v1::Layer, core::Level>, double> encoded_bytes;  // a level that downsamples nothing is not encoded
   for (const core::Level level : core::kLevels) {
     if (!isSent(level, level_count) || frame_count_ % core::frameStride(level, frame_rate_hz_) != 0) continue;
-    Level& row = levels_[indexOf(level)];
+    LevelCost& row = levels_[indexOf(level)];
     const auto begin = Clock::now();
     const auto bytes = [&](v1::Layer layer) {
       const core::Level effective = core::effectiveLevel(level, codec::reducedCountOf(layer, counts_));
@@ -109,7 +109,7 @@ boost::json::array LevelMeter::print(std::FILE* out) const {
              "if they added");
   for (const core::Level level : core::kLevels) {
     const std::size_t k = indexOf(level);
-    const Level& row = levels_[k];
+    const LevelCost& row = levels_[k];
     if (row.frame_count == 0) continue;
     const auto frames = static_cast<double>(row.frame_count);
     const double rate_hz = frame_rate_hz_ / core::frameStride(level, frame_rate_hz_);

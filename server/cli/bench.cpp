@@ -1,4 +1,6 @@
 #include <cstdio>
+#include <memory>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -20,6 +22,15 @@
 namespace spindrift::cli {
 namespace {
 
+struct BenchOptions {
+  std::string suite = "all";  ///< step, codec, fanout; all: step and codec
+  std::string scene = "harbor";
+  std::string fidelity;  ///< as in ServeOptions
+  std::string device = "auto";
+  std::string json_file;
+  double seconds = 2.0;  ///< measured time per case
+};
+
 /// Runs apart from the other suites, because the server that it measures has its own GL context.
 int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
   auto result =
@@ -28,8 +39,6 @@ int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
   if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
   return 0;
 }
-
-}  // namespace
 
 int bench(const BenchOptions& options) {
   auto device = gpu::parseDeviceChoice(options.device);
@@ -64,6 +73,25 @@ int bench(const BenchOptions& options) {
   }
   if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
   return 0;
+}
+
+}  // namespace
+
+ProgramCommand addBench(CLI::App& program) {
+  const auto options = std::make_shared<BenchOptions>();
+  CLI::App* command = program.add_subcommand(
+      "bench", "Time the passes of a step, the stream's codecs on real frames, and a crowd of clients");
+  command->add_option("--suite", options->suite, "What to time")
+      ->check(CLI::IsMember({"all", "step", "codec", "fanout"}))
+      ->capture_default_str();
+  command->add_option("--scene", options->scene, "Scene file or name of a shipped scene")->capture_default_str();
+  addFidelity(*command, options->fidelity);
+  addDevice(*command, options->device);
+  command->add_option("--seconds", options->seconds, "Measured time per case")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  addJson(*command, options->json_file);
+  return {command, [options] { return bench(*options); }};
 }
 
 }  // namespace spindrift::cli

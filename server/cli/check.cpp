@@ -1,18 +1,26 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <spindrift/core/paths.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 #include "commands.h"
 
 namespace spindrift::cli {
 namespace {
+
+struct CheckOptions {
+  std::vector<std::string> scenes;
+  std::string fidelity;  ///< as in ServeOptions
+};
 
 const char* nameOf(core::WaveBoundary boundary) {
   switch (boundary) {
@@ -98,8 +106,6 @@ void print(const std::string& file, const v1::Scene& scene, const core::Scene& i
   fmt::print("  memory     {:.2f} MB on the device\n", static_cast<double>(d.device_bytes) / 1e6);
 }
 
-}  // namespace
-
 int check(const CheckOptions& options) {
   int code = 0;
   for (const std::string& name : options.scenes) {
@@ -122,6 +128,17 @@ int check(const CheckOptions& options) {
     print(file->string(), *scene, in, *derived);
   }
   return code;
+}
+
+}  // namespace
+
+ProgramCommand addCheck(CLI::App& program) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App* command = program.add_subcommand("check", "Check scenes and print the derived quantities");
+  command->add_option("scene", options->scenes, "Scene files or names of shipped scenes")->required();
+
+  addFidelity(*command, options->fidelity);
+  return {command, [options] { return check(*options); }};
 }
 
 }  // namespace spindrift::cli

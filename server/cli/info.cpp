@@ -1,3 +1,6 @@
+#include <memory>
+#include <string>
+
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
@@ -11,6 +14,11 @@
 
 namespace spindrift::cli {
 namespace {
+
+struct InfoOptions {
+  std::string json_file;  ///< "-" = standard output
+  bool parameters = false;
+};
 
 boost::json::object toJson(const gpu::DeviceInfo& d) {
   const gpu::DeviceLimits& l = d.limits;
@@ -31,8 +39,6 @@ boost::json::object toJson(const gpu::DeviceInfo& d) {
                                          {"max_shared_memory_bytes", l.max_shared_memory_bytes},
                                          {"max_ssbo_bindings", l.max_ssbo_bindings}}}};
 }
-
-}  // namespace
 
 int info(const InfoOptions& options) {
   if (options.parameters) {
@@ -69,6 +75,18 @@ int info(const InfoOptions& options) {
   }
   if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
   return gpu.chosen ? 0 : core::exitCode(core::ErrorCode::kNoDevice);
+}
+
+}  // namespace
+
+ProgramCommand addInfo(CLI::App& program) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* command =
+      program.add_subcommand("info", "Devices, OpenGL and driver versions, limits, versions of program and wire");
+  addJson(*command, options->json_file);
+  command->add_flag("--parameters", options->parameters,
+                    "Print the reference of all scene parameters instead, as Markdown");
+  return {command, [options] { return info(*options); }};
 }
 
 }  // namespace spindrift::cli

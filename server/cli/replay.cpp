@@ -1,3 +1,6 @@
+#include <memory>
+#include <string>
+
 #include <boost/json.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -11,6 +14,12 @@
 
 namespace spindrift::cli {
 namespace {
+
+struct ReplayOptions {
+  std::string file;
+  std::string device = "auto";
+  std::string json_file;
+};
 
 void print(const rooms::ReplayOutcome& outcome) {
   fmt::print("{} ticks, {} commands carried out again, {} states compared\n", outcome.tick_count, outcome.command_count,
@@ -51,8 +60,6 @@ boost::json::object toJson(const rooms::ReplayOutcome& outcome) {
   return out;
 }
 
-}  // namespace
-
 int replay(const ReplayOptions& options) {
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
@@ -73,6 +80,17 @@ int replay(const ReplayOptions& options) {
   }
   if (auto written = writeJson(options.json_file, toJson(*outcome)); !written) return fail(written.error());
   return outcome->difference ? core::exitCode(core::ErrorCode::kCheckFailed) : 0;
+}
+
+}  // namespace
+
+ProgramCommand addReplay(CLI::App& program) {
+  const auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = program.add_subcommand("replay", "Run a room's log again and compare the states");
+  command->add_option("file", options->file, "A log that serve --record wrote")->required();
+  addDevice(*command, options->device);
+  addJson(*command, options->json_file);
+  return {command, [options] { return replay(*options); }};
 }
 
 }  // namespace spindrift::cli

@@ -1,3 +1,6 @@
+#include <memory>
+#include <string>
+
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
@@ -9,6 +12,12 @@
 
 namespace spindrift::cli {
 namespace {
+
+struct ScriptOptions {
+  std::string url = "ws://127.0.0.1:8080";
+  std::string file;
+  std::string json_file;
+};
 
 void print(const script::ScriptReport& report) {
   for (const script::StepReport& step : report.steps) {
@@ -61,8 +70,6 @@ boost::json::object toJson(const script::ScriptReport& report) {
           {"clients", std::move(clients)}};
 }
 
-}  // namespace
-
 int script(const ScriptOptions& options) {
   const auto url = net::ClientUrl::parse(options.url);
   if (!url) return fail(url.error());
@@ -72,6 +79,17 @@ int script(const ScriptOptions& options) {
   if (options.json_file != "-") print(report);
   if (auto written = writeJson(options.json_file, toJson(report)); !written) return fail(written.error());
   return report.passed() ? 0 : core::exitCode(core::ErrorCode::kCheckFailed);
+}
+
+}  // namespace
+
+ProgramCommand addScript(CLI::App& program) {
+  const auto options = std::make_shared<ScriptOptions>();
+  CLI::App* command = program.add_subcommand("script", "Run scripted clients against a server and check what they see");
+  command->add_option("file", options->file, "The script, a .textproto of spindrift.v1.Script")->required();
+  command->add_option("--url", options->url, "The server, ws://HOST:PORT")->capture_default_str();
+  addJson(*command, options->json_file);
+  return {command, [options] { return script(*options); }};
 }
 
 }  // namespace spindrift::cli

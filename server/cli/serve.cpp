@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
@@ -17,6 +20,26 @@
 
 namespace spindrift::cli {
 namespace {
+
+struct ServeOptions {
+  std::string scene = "harbor";
+  std::vector<std::string> rooms;  ///< NAME=SCENE
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8080;
+  std::string fidelity;  ///< replaces the fidelity of the scenes; empty: theirs
+  std::string device = "auto";
+  std::string web_root;       ///< empty: searched beside the program
+  std::string shader_folder;  ///< empty: the embedded shaders
+  std::size_t thread_count = 1;
+  double address_session_share = 0.5;  ///< share of the sessions that one address may hold
+  std::size_t max_room_count = 8;
+  std::string token_file;            ///< empty: SPINDRIFT_TOKENS in the environment, if set
+  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with tokens
+  std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
+  double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
+  std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs
+  std::uint32_t hash_interval_ticks = 60;
+};
 
 using core::Error;
 using core::ErrorCode;
@@ -106,8 +129,6 @@ std::string forUrl(const std::string& address) {
   return address.find(':') != std::string::npos ? "[" + address + "]" : address;
 }
 
-}  // namespace
-
 int serve(const ServeOptions& options) {
   StopSignals signals;
   auto device = gpu::parseDeviceChoice(options.device);
@@ -160,6 +181,59 @@ int serve(const ServeOptions& options) {
                stats.accepted_session_count, stats.sent_frame_count, static_cast<double>(stats.sent_bytes_count) / 1e6,
                stats.dropped_frame_count, stats.evicted_session_count);
   return 0;
+}
+
+}  // namespace
+
+ProgramCommand addServe(CLI::App& program) {
+  const auto options = std::make_shared<ServeOptions>();
+  CLI::App* command = program.add_subcommand("serve", "Simulate and serve rooms until interrupted");
+  command
+      ->add_option("--scene", options->scene,
+                   "Scene of the room 'main': a .textproto file or the name of a shipped scene")
+      ->capture_default_str();
+  addFidelity(*command, options->fidelity);
+  command->add_option("--room", options->rooms, "An additional room, NAME=SCENE; may be repeated");
+  command->add_option("--address", options->address, "Address to listen on")->capture_default_str();
+  command->add_option("--port", options->port, "Port to listen on; 0 = any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  addDevice(*command, options->device);
+  command->add_option("--web-root", options->web_root, "Folder of the built web client (default: next to the program)");
+  command
+      ->add_option("--shader-dir", options->shader_folder,
+                   "For shader development: read shaders from this folder (shaders/) and reload changed files")
+      ->check(CLI::ExistingDirectory);
+  command->add_option("--threads", options->thread_count, "I/O threads")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+
+  command
+      ->add_option("--address-share", options->address_session_share,
+                   "Share of the sessions that one address may use; 1 behind a proxy")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--max-rooms", options->max_room_count, "Maximum number of rooms, including those opened later")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_option("--tokens", options->token_file,
+                      "File with lines ROLE TOKEN (default: the environment variable SPINDRIFT_TOKENS)");
+  command
+      ->add_option("--guests", options->guest_role,
+                   "Role of clients without a token (default: operator without tokens, viewer with tokens)")
+      ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
+  command->add_option("--origin", options->origins,
+                      "Additional allowed Origin of pages, https://HOST; * = any; may be repeated");
+  command
+      ->add_option("--grace", options->grace_s,
+                   "Seconds for which a boat keeps its owner after the connection was lost")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command->add_option("--record", options->record_folder, "Write the log of every room into this folder");
+  command->add_option("--hash-every", options->hash_interval_ticks, "Interval of the state hashes in the log, in ticks")
+      ->check(CLI::Range(1, 36000))
+      ->capture_default_str();
+  return {command, [options] { return serve(*options); }};
 }
 
 }  // namespace spindrift::cli

@@ -1,5 +1,7 @@
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <thread>
 
 #include <fmt/format.h>
@@ -13,6 +15,14 @@
 namespace spindrift::cli {
 namespace {
 
+struct StudyOptions : study_suites::SuiteOptions {
+  std::string suite = "accuracy";
+  std::string device = "auto";
+  std::string json_file;
+  std::string plot_folder;   ///< folder for the results as SUITE.json, for the charts; empty: none
+  std::string journal_file;  ///< file that keeps finished cases, which are not run again; empty: none
+};
+
 /// Creates the folder before hours of measuring. kUnavailable where that fails.
 core::Result<void> prepareFolder(const std::string& folder) {
   std::error_code error;
@@ -21,8 +31,6 @@ core::Result<void> prepareFolder(const std::string& folder) {
   return core::Error{core::ErrorCode::kUnavailable,
                      "--plot '" + folder + "': cannot be created: " + error.message() + ": choose another folder"};
 }
-
-}  // namespace
 
 int study(const StudyOptions& options) {
   auto device = gpu::parseDeviceChoice(options.device);
@@ -61,6 +69,27 @@ int study(const StudyOptions& options) {
     if (auto written = writeJson(file, json, "--plot"); !written) return fail(written.error());
   }
   return result->missed_count == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+ProgramCommand addStudy(CLI::App& program) {
+  const auto options = std::make_shared<StudyOptions>();
+  CLI::App* command = program.add_subcommand("study", "Measure the simulation against theory and experiment");
+  command->add_option("--suite", options->suite, "What to study")
+      ->check(CLI::IsMember({"accuracy", "stability", "trade"}))
+      ->capture_default_str();
+  command->add_option("--case", options->only,
+                      "One case of the accuracy suite, the sweeps of the stability suite whose name contains "
+                      "this, or one scene of the trade suite");
+  addDevice(*command, options->device);
+  command->add_flag("--quick", options->quick, "Shorter runs, a few minutes in all");
+  command->add_option("--journal", options->journal_file,
+                      "Save finished cases in this file; an interrupted study continues from it");
+  command->add_option("--plot", options->plot_folder,
+                      "Write the results into this folder as SUITE.json, from which ./dev charts draws charts");
+  addJson(*command, options->json_file);
+  return {command, [options] { return study(*options); }};
 }
 
 }  // namespace spindrift::cli

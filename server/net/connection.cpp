@@ -158,7 +158,7 @@ asio::awaitable<void> Connection::run() {
     Reply reply;
     if (isPreflight(request)) {
       reply = preflightReply();
-    } else if (auto* target = std::get_if<Target>(&routed)) {
+    } else if (auto* target = std::get_if<RequestTarget>(&routed)) {
       // HEAD is handled as GET for every path; send() leaves out the body.
       HttpRequest question;
       question.method = head.method == "HEAD" ? "GET" : head.method;

@@ -104,8 +104,8 @@ void allowOrigin(Reply& reply, std::string_view origin) {
   reply.headers.emplace_back("Access-Control-Allow-Origin", origin);
 }
 
-std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files) {
-  std::optional<Target> target = parseTarget(head.target);
+std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticFiles& files) {
+  std::optional<RequestTarget> target = parseTarget(head.target);
   if (!target) return textReply(400, "The request's path is not a plain absolute path.");
   if (isApplicationPath(target->path)) {
     if (head.method == "TRACE" || head.method == "CONNECT") {

@@ -55,7 +55,7 @@ void allowOrigin(Reply& reply, std::string_view origin);
 
 /// Routes a complete request. Returns a reply (a file of the web client, or an error with one line), or the target of a
 /// request that the application has to answer.
-std::variant<Reply, Target> routeRequest(const RequestHead& head, StaticFiles& files);
+std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticFiles& files);
 
 /// Converts the application's answer to a reply; nullopt is 404.
 Reply applicationReply(std::string_view path, std::optional<HttpReply> answer);

@@ -38,10 +38,10 @@ Outbox::Outcome Outbox::pushState(const StateTopic& topic, core::SharedBytes mes
   return {.wake = takeWake()};
 }
 
-Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Clock::time_point now) {
+Outbox::Outcome Outbox::offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  if (close_ || shut_ || layer >= kMaxLayerCount) return {};
-  Slot& slot = slots_[layer];
+  if (close_ || shut_ || stream >= kMaxStreamCount) return {};
+  Slot& slot = slots_[stream];
   if (!slot.watch) return {};
   const core::Level wanted = levelOf(slot);
   if (core::effectiveLevel(wanted, frame.reduced_count) != frame.level) return {};
@@ -71,10 +71,10 @@ Outbox::Outcome Outbox::offerFrame(LayerIndex layer, const LayerBytes& frame, Cl
   return {.wake = takeWake(), .dropped = is_pending};
 }
 
-Outbox::Demand Outbox::demand(LayerIndex layer, std::uint32_t reduced_count, Clock::time_point now) const {
+Outbox::Demand Outbox::demand(StreamIndex stream, std::uint32_t reduced_count, Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
-  if (layer >= kMaxLayerCount || !slots_[layer].watch) return {};
-  const Slot& slot = slots_[layer];
+  if (stream >= kMaxStreamCount || !slots_[stream].watch) return {};
+  const Slot& slot = slots_[stream];
   const core::Level wanted = levelOf(slot);
   const core::Level level = core::effectiveLevel(wanted, reduced_count);
   if (close_ || shut_) return {.level = level};
@@ -92,10 +92,10 @@ bool Outbox::isOpen(const Slot& slot, core::Level wanted, core::Level effective,
   return slot.gate.isOpen(now) && (wanted == effective || slot.level_gates[indexOf(wanted)].isOpen(now));
 }
 
-void Outbox::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
+void Outbox::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
   const std::lock_guard lock(mutex_);
-  if (layer >= kMaxLayerCount) return;
-  Slot& slot = slots_[layer];
+  if (stream >= kMaxStreamCount) return;
+  Slot& slot = slots_[stream];
   slot = {};  // a new watch, also one to recover from a loss, starts with a keyframe
   if (!watch) return;
   slot.watch = watch;
@@ -168,11 +168,11 @@ Outbox::Next Outbox::next() {
 
 core::SharedBytes Outbox::takeFrame() {
   for (std::size_t k = 0; k < slots_.size(); ++k) {
-    const std::size_t layer = (turn_ + k) % slots_.size();
-    if (!slots_[layer].frame) continue;
-    turn_ = (layer + 1) % slots_.size();
+    const std::size_t stream = (turn_ + k) % slots_.size();
+    if (!slots_[stream].frame) continue;
+    turn_ = (stream + 1) % slots_.size();
     control_run_count_ = 0;
-    return std::exchange(slots_[layer].frame, nullptr);
+    return std::exchange(slots_[stream].frame, nullptr);
   }
   return nullptr;
 }

@@ -1,6 +1,6 @@
 // The messages that wait to be sent to one session. Producers on any thread put messages in; the session's writer takes
 // them out one at a time. Bounded by construction: `answer_max_count` answers, one message per state topic and one
-// frame per layer, whatever this or any other client does. No task is queued per frame.
+// frame per stream, whatever this or any other client does. No task is queued per frame.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ namespace spindrift::net {
 
 /// Thread-safe. Two planes; control goes first. Answers are ordered and never dropped. Of a state topic only the newest
 /// message waits, in the place of the older one, so that a client never reads an answer before a state that is at least
-/// as new. Data: the newest frame per layer, layers in turn. A waiting frame is sent after at most kControlRunMaxCount
-/// control messages.
+/// as new. Data: the newest frame per stream, streams in turn. A waiting frame is sent after at most
+/// kControlRunMaxCount control messages.
 class Outbox {
  public:
   explicit Outbox(std::size_t answer_max_count) : answer_max_count_(answer_max_count) {}
@@ -45,22 +45,22 @@ class Outbox {
   /// requested.
   Outcome pushState(const StateTopic& topic, core::SharedBytes message);
 
-  /// Puts the frame into its layer's slot if the session watches the layer at this level and its rate allows: the delta
-  /// if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe an unsent older frame is
-  /// dropped, and the session waits. Ignored after a close was requested.
-  Outcome offerFrame(LayerIndex layer, const LayerBytes& frame, Clock::time_point now);
+  /// Puts the frame into its stream's slot if the session watches the stream at this level and its rate allows: the
+  /// delta if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe an unsent older
+  /// frame is dropped, and the session waits. Ignored after a close was requested.
+  Outcome offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now);
 
-  /// The frame that the session would take next of a layer that it watches.
+  /// The frame that the session would take next of a stream that it watches.
   struct Demand {
     core::Level level = core::Level::kFull;
     /// Only a keyframe can be taken. False for a session that has read nothing since it lost a frame: no keyframe is
     /// made for a client that cannot take it.
     bool wants_keyframe = false;
   };
-  Demand demand(LayerIndex layer, std::uint32_t reduced_count, Clock::time_point now) const;
+  Demand demand(StreamIndex stream, std::uint32_t reduced_count, Clock::time_point now) const;
 
-  /// Starts, changes or stops (nullopt) a layer, and drops its unsent frame.
-  void setWatch(LayerIndex layer, const std::optional<Watch>& watch);
+  /// Starts, changes or stops (nullopt) a stream, and drops its unsent frame.
+  void setWatch(StreamIndex stream, const std::optional<Watch>& watch);
 
   /// Evaluates from time to time how many frames of adapting watches were lost; returns the new level if it changed.
   /// The writer calls it after each sent message.
@@ -125,7 +125,7 @@ class Outbox {
     core::SharedBytes message;
     std::optional<StateTopic> topic;  ///< nullopt: an answer
   };
-  /// Returns the frame of the next layer in turn; null if none waits.
+  /// Returns the frame of the next stream in turn; null if none waits.
   core::SharedBytes takeFrame();
 
   const std::size_t answer_max_count_;
@@ -134,9 +134,9 @@ class Outbox {
   std::size_t answer_count_ = 0;       ///< answers in control_
   bool whole_state_waits_ = false;     ///< control_ holds a message with Scope::kWhole
   std::size_t control_run_count_ = 0;  ///< control messages taken since the last frame
-  std::array<Slot, kMaxLayerCount> slots_;
+  std::array<Slot, kMaxStreamCount> slots_;
   LevelLadder ladder_;
-  std::size_t turn_ = 0;          ///< the layer that is checked first
+  std::size_t turn_ = 0;          ///< the stream that is checked first
   std::uint64_t turn_count_ = 0;  ///< number of messages that the writer took
   bool writer_sleeps_ = false;
   bool shut_ = false;

@@ -39,21 +39,21 @@ void RoomHub::broadcastState(const std::string& room, const StateTopic& topic, c
   }
 }
 
-void RoomHub::publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) {
-  assert(layer < kMaxLayerCount && (frame.keyframe || frame.delta));
+void RoomHub::publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
+  assert(stream < kMaxStreamCount && (frame.keyframe || frame.delta));
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
-  if (found == rooms_.end() || layer >= kMaxLayerCount) return;
-  for (const Watcher& watcher : found->second.watchers[layer]) watcher.link->offerFrame(layer, frame);
+  if (found == rooms_.end() || stream >= kMaxStreamCount) return;
+  for (const Watcher& watcher : found->second.watchers[stream]) watcher.link->offerFrame(stream, frame);
 }
 
-core::LayerDemand RoomHub::demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const {
+core::StreamDemand RoomHub::demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count) const {
   const std::lock_guard lock(mutex_);
-  core::LayerDemand out;
+  core::StreamDemand out;
   const auto found = rooms_.find(room);
-  if (found == rooms_.end() || layer >= kMaxLayerCount) return out;
-  for (const Watcher& watcher : found->second.watchers[layer]) {
-    const Outbox::Demand one = watcher.link->demand(layer, reduced_count);
+  if (found == rooms_.end() || stream >= kMaxStreamCount) return out;
+  for (const Watcher& watcher : found->second.watchers[stream]) {
+    const Outbox::Demand one = watcher.link->demand(stream, reduced_count);
     core::LevelDemand& of_level = out[indexOf(one.level)];
     ++of_level.watcher_count;
     of_level.wants_keyframe = of_level.wants_keyframe || one.wants_keyframe;
@@ -69,16 +69,16 @@ void RoomHub::join(SessionId session, const std::string& room) {
   enterRoom(session, found->second, room);
 }
 
-void RoomHub::watch(SessionId session, LayerIndex layer, const Watch& watch) {
-  assert(layer < kMaxLayerCount);
+void RoomHub::watch(SessionId session, StreamIndex stream, const Watch& watch) {
+  assert(stream < kMaxStreamCount);
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
-  if (found == members_.end() || layer >= kMaxLayerCount) return;
+  if (found == members_.end() || stream >= kMaxStreamCount) return;
   Member& member = found->second;
   const bool wanted = std::isfinite(watch.max_rate_hz) && watch.max_rate_hz > 0.0;
-  member.link->setWatch(layer, wanted ? std::optional(watch) : std::nullopt);
-  if (std::exchange(member.watches[layer], wanted) == wanted || !member.room) return;
-  std::vector<Watcher>& watchers = rooms_[*member.room].watchers[layer];
+  member.link->setWatch(stream, wanted ? std::optional(watch) : std::nullopt);
+  if (std::exchange(member.watches[stream], wanted) == wanted || !member.room) return;
+  std::vector<Watcher>& watchers = rooms_[*member.room].watchers[stream];
   if (wanted) {
     watchers.push_back({session, member.link.get()});
   } else {
@@ -130,11 +130,11 @@ std::size_t RoomHub::roomCount() const {
 }
 
 void RoomHub::enterRoom(SessionId session, Member& member, const std::string& room) {
-  Room& entered = rooms_[room];
+  Group& entered = rooms_[room];
   ++entered.session_count;
   member.room = room;
-  for (std::size_t layer = 0; layer < kMaxLayerCount; ++layer) {
-    if (member.watches[layer]) entered.watchers[layer].push_back({session, member.link.get()});
+  for (std::size_t stream = 0; stream < kMaxStreamCount; ++stream) {
+    if (member.watches[stream]) entered.watchers[stream].push_back({session, member.link.get()});
   }
 }
 

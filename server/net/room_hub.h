@@ -22,17 +22,17 @@ class SessionLink {
   virtual ~SessionLink() = default;
   virtual void sendAnswer(core::SharedBytes message) = 0;
   virtual void sendState(const StateTopic& topic, core::SharedBytes message) = 0;
-  virtual void offerFrame(LayerIndex layer, const LayerBytes& frame) = 0;
-  virtual Outbox::Demand demand(LayerIndex layer, std::uint32_t reduced_count) const = 0;
-  /// Sets the watch of a layer; nullopt stops it.
-  virtual void setWatch(LayerIndex layer, const std::optional<Watch>& watch) = 0;
+  virtual void offerFrame(StreamIndex stream, const FrameBytes& frame) = 0;
+  virtual Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count) const = 0;
+  /// Sets the watch of a stream; nullopt stops it.
+  virtual void setWatch(StreamIndex stream, const std::optional<Watch>& watch) = 0;
   virtual void clearFrames() = 0;
   virtual Outbox::Waiting waiting() const = 0;
   virtual void close(CloseCode code, std::string reason) = 0;
   virtual void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) = 0;
 };
 
-/// The Hub of a Server. One mutex; publish() visits only the sessions that watch that room and layer. A session keeps
+/// The Hub of a Server. One mutex; publish() visits only the sessions that watch that room and stream. A session keeps
 /// its watches when it changes the room.
 class RoomHub final : public Hub {
  public:
@@ -43,12 +43,12 @@ class RoomHub final : public Hub {
   void sendAnswer(SessionId session, core::SharedBytes message) override;
   void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) override;
   void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) override;
-  void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) override;
-  core::LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const override;
+  void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) override;
+  core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count) const override;
   void join(SessionId session, const std::string& room) override;
   std::size_t sessionCount(const std::string& room) const override;
   std::size_t sessionCount() const override;
-  void watch(SessionId session, LayerIndex layer, const Watch& watch) override;
+  void watch(SessionId session, StreamIndex stream, const Watch& watch) override;
   void close(SessionId session, CloseCode code, std::string reason) override;
   void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
                std::string reason) override;
@@ -62,15 +62,15 @@ class RoomHub final : public Hub {
   struct Member {
     std::shared_ptr<SessionLink> link;
     std::optional<std::string> room;
-    std::array<bool, kMaxLayerCount> watches{};
+    std::array<bool, kMaxStreamCount> watches{};
   };
   struct Watcher {
     SessionId session = 0;
     SessionLink* link = nullptr;  ///< owned by the session, which leaves the room before it is destroyed
   };
-  struct Room {
+  struct Group {
     std::size_t session_count = 0;
-    std::array<std::vector<Watcher>, kMaxLayerCount> watchers;
+    std::array<std::vector<Watcher>, kMaxStreamCount> watchers;
   };
 
   void enterRoom(SessionId session, Member& member, const std::string& room);
@@ -78,7 +78,7 @@ class RoomHub final : public Hub {
 
   mutable std::mutex mutex_;
   std::unordered_map<SessionId, Member> members_;
-  std::map<std::string, Room> rooms_;
+  std::map<std::string, Group> rooms_;
 };
 
 }  // namespace spindrift::net

@@ -267,18 +267,18 @@ void Session::sendState(const StateTopic& topic, core::SharedBytes message) {
   if (outbox_.pushState(topic, std::move(message)).wake) wakeWriter();
 }
 
-void Session::offerFrame(LayerIndex layer, const LayerBytes& frame) {
-  const Outbox::Outcome outcome = outbox_.offerFrame(layer, frame, Clock::now());
+void Session::offerFrame(StreamIndex stream, const FrameBytes& frame) {
+  const Outbox::Outcome outcome = outbox_.offerFrame(stream, frame, Clock::now());
   if (outcome.dropped) ++context_.counters.dropped_frame_count;
   if (outcome.wake) wakeWriter();
 }
 
-Outbox::Demand Session::demand(LayerIndex layer, std::uint32_t reduced_count) const {
-  return outbox_.demand(layer, reduced_count, Clock::now());
+Outbox::Demand Session::demand(StreamIndex stream, std::uint32_t reduced_count) const {
+  return outbox_.demand(stream, reduced_count, Clock::now());
 }
 
-void Session::setWatch(LayerIndex layer, const std::optional<Watch>& watch) {
-  outbox_.setWatch(layer, watch);
+void Session::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
+  outbox_.setWatch(stream, watch);
 }
 
 void Session::clearFrames() {

@@ -35,9 +35,9 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   void sendAnswer(core::SharedBytes message) override;
   void sendState(const StateTopic& topic, core::SharedBytes message) override;
-  void offerFrame(LayerIndex layer, const LayerBytes& frame) override;
-  Outbox::Demand demand(LayerIndex layer, std::uint32_t reduced_count) const override;
-  void setWatch(LayerIndex layer, const std::optional<Watch>& watch) override;
+  void offerFrame(StreamIndex stream, const FrameBytes& frame) override;
+  Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count) const override;
+  void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override;
   void clearFrames() override;
   Outbox::Waiting waiting() const override { return outbox_.waiting(); }
   void close(CloseCode code, std::string reason) override;

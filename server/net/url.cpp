@@ -18,9 +18,9 @@ std::optional<unsigned char> escapedByte(std::string_view text, std::size_t at) 
 
 }  // namespace
 
-std::optional<Target> parseTarget(std::string_view target) {
+std::optional<RequestTarget> parseTarget(std::string_view target) {
   if (!target.starts_with('/')) return std::nullopt;
-  Target out;
+  RequestTarget out;
   const std::size_t mark = target.find('?');
   if (mark != std::string_view::npos) {
     out.query = target.substr(mark + 1);

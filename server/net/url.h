@@ -8,14 +8,14 @@
 
 namespace spindrift::net {
 
-struct Target {
+struct RequestTarget {
   std::string path;   ///< percent-decoded, starts with '/', no control characters, no backslash
   std::string query;  ///< undecoded, without '?'
 };
 
 /// Returns nullopt if the target does not start with '/', an escape is broken, or the decoded path contains a control
 /// character (NUL included) or a backslash.
-std::optional<Target> parseTarget(std::string_view target);
+std::optional<RequestTarget> parseTarget(std::string_view target);
 
 /// Returns the values of the parameter `name` in a query ("room=pool&x=1"), in order: percent-decoded, '+' as a space.
 /// Returns nullopt if an escape in one of them is broken or gives a control character. Other parameters are not

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -9,35 +8,31 @@
 namespace spindrift::rooms {
 namespace {
 
-/// Returns whether both can be carried out as one, regardless of the senders.
-bool isEqual(const core::Action& a, const core::Action& b) {
-  if (std::holds_alternative<core::Reset>(a)) return std::holds_alternative<core::Reset>(b);
-  const auto* change = std::get_if<core::ChangeScene>(&a);
-  const auto* other = std::get_if<core::ChangeScene>(&b);
-  return change && other && change->name == other->name;
+bool isHeavy(const Command& command) {
+  return traitsOf(command.message).is_heavy;
 }
 
-bool setsTheSame(const core::Action& a, const core::Action& b) {
-  const auto* change = std::get_if<core::SetParameter>(&a);
-  const auto* other = std::get_if<core::SetParameter>(&b);
-  return change && other && change->path == other->path;
+/// Returns whether both can be carried out as one, regardless of the senders.
+bool isEqual(const v1::Command& a, const v1::Command& b) {
+  if (a.action_case() != b.action_case() || !traitsOf(a).is_shared) return false;
+  v1::Command same = b;
+  same.set_command_id(a.command_id());
+  return a.SerializeAsString() == same.SerializeAsString();
+}
+
+bool setsTheSame(const v1::Command& a, const v1::Command& b) {
+  return a.has_set_parameter() && b.has_set_parameter() && a.set_parameter().path() == b.set_parameter().path();
 }
 
 }  // namespace
 
-bool isHeavy(const core::Action& action) {
-  return std::holds_alternative<core::Reset>(action) || std::holds_alternative<core::ChangeScene>(action) ||
-         std::holds_alternative<core::SetParameter>(action) || std::holds_alternative<core::SpawnBoat>(action) ||
-         std::holds_alternative<core::RemoveBoat>(action);
-}
-
-std::optional<std::string> CommandQueue::tryPush(core::Command command, TimePoint now) {
+std::optional<std::string> CommandQueue::tryPush(Command command, TimePoint now) {
   const std::lock_guard lock(mutex_);
   if (count_ >= bounds_.max_count)
     return fmt::format("{} commands wait for this room, as many as may: try again", bounds_.max_count);
   const LaneKey key = keyOf(command.sender);
   Lane& lane = lanes_[key];
-  const bool is_heavy = isHeavy(command.action);
+  const bool is_heavy = isHeavy(command);
   if (lane.entries.size() >= bounds_.lane_max_count)
     return fmt::format("{} of your commands wait, as many as may: try again when they are answered",
                        bounds_.lane_max_count);
@@ -56,10 +51,10 @@ std::optional<CommandQueue::Batch> CommandQueue::next(const Allowed& allowed) {
   const std::lock_guard lock(mutex_);
   const auto may_go = [&](LaneKey key) {
     const Lane& lane = lanes_.at(key);
-    const core::Action& action = lane.entries.front().command.action;
+    const Command& command = lane.entries.front().command;
     if (lane.is_held) return false;
-    if (std::holds_alternative<core::ChangeScene>(action)) return allowed.heavy && allowed.scene_change;
-    return allowed.heavy || !isHeavy(action);
+    if (command.message.has_change_scene()) return allowed.heavy && allowed.scene_change;
+    return allowed.heavy || !isHeavy(command);
   };
   const auto turn = std::ranges::find_if(turns_, may_go);
   if (turn == turns_.end()) return std::nullopt;
@@ -69,31 +64,31 @@ std::optional<CommandQueue::Batch> CommandQueue::next(const Allowed& allowed) {
   Lane& lane = lanes_.at(key);
   Batch out;
   out.push_back(pop(lane));
-  const core::Action action = out.front().action;
-  while (!lane.entries.empty() && setsTheSame(action, lane.entries.front().command.action)) out.push_back(pop(lane));
+  const v1::Command first = out.front().message;
+  while (!lane.entries.empty() && setsTheSame(first, lane.entries.front().command.message)) out.push_back(pop(lane));
   tidy(key);
-  takeEqual(action, out);
+  takeEqual(first, out);
   return out;
 }
 
 void CommandQueue::hold(const Batch& batch) {
   const std::lock_guard lock(mutex_);
-  for (const core::Command& command : batch) lanes_[keyOf(command.sender)].is_held = true;
+  for (const Command& command : batch) lanes_[keyOf(command.sender)].is_held = true;
 }
 
 void CommandQueue::release(const Batch& batch) {
   const std::lock_guard lock(mutex_);
-  for (const core::Command& command : batch) {
+  for (const Command& command : batch) {
     const LaneKey key = keyOf(command.sender);
     lanes_[key].is_held = false;
     tidy(key);
   }
 }
 
-CommandQueue::Batch CommandQueue::takeEqual(const core::Action& action) {
+CommandQueue::Batch CommandQueue::takeEqual(const v1::Command& command) {
   const std::lock_guard lock(mutex_);
   Batch out;
-  takeEqual(action, out);
+  takeEqual(command, out);
   return out;
 }
 
@@ -103,7 +98,7 @@ CommandQueue::Batch CommandQueue::takeExpired(TimePoint now) {
   const auto is_expired = [&](const Lane& lane) {
     if (lane.entries.empty() || lane.is_held) return false;
     const Entry& first = lane.entries.front();
-    return isHeavy(first.command.action) && now - first.arrived > bounds_.heavy_wait_max;
+    return isHeavy(first.command) && now - first.arrived > bounds_.heavy_wait_max;
   };
   for (const LaneKey key : std::deque(turns_)) {
     Lane& lane = lanes_.at(key);
@@ -134,19 +129,19 @@ CommandQueue::LaneKey CommandQueue::keyOf(const core::Sender& sender) {
   return sender.session_id != 0 ? sender.session_id : kRequests | sender.request_id;
 }
 
-core::Command CommandQueue::pop(Lane& lane) {
-  core::Command out = std::move(lane.entries.front().command);
+Command CommandQueue::pop(Lane& lane) {
+  Command out = std::move(lane.entries.front().command);
   lane.entries.pop_front();
-  lane.heavy_count -= isHeavy(out.action) ? 1 : 0;
+  lane.heavy_count -= isHeavy(out) ? 1 : 0;
   --count_;
   return out;
 }
 
-void CommandQueue::takeEqual(const core::Action& action, Batch& out) {
-  if (!isEqual(action, action)) return;  // Kinds that never equal another command.
+void CommandQueue::takeEqual(const v1::Command& command, Batch& out) {
+  if (!traitsOf(command).is_shared) return;
   for (const LaneKey key : std::deque(turns_)) {
     Lane& lane = lanes_.at(key);
-    while (!lane.entries.empty() && isEqual(action, lane.entries.front().command.action)) out.push_back(pop(lane));
+    while (!lane.entries.empty() && isEqual(command, lane.entries.front().command.message)) out.push_back(pop(lane));
     tidy(key);
   }
 }

@@ -81,7 +81,7 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
   Costs spent{};
   for (const codec::Stream stream : codec::allStreams()) {
     const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
-    const core::LayerDemand demand = outlet_.demand(room, stream, reduced_count);
+    const core::StreamDemand demand = outlet_.demand(room, stream, reduced_count);
     for (const core::Level level : core::kLevels) {
       const core::LevelDemand& wanted = demand[core::indexOf(level)];
       if (wanted.watcher_count == 0) continue;

@@ -22,9 +22,9 @@ core::Result<void> carryOut(Stage& stage, const v1::Record& record) {
   if (const auto* rejected = std::get_if<wire::CommandRejection>(&checked)) {
     return failed(rejected->field + " " + rejected->message);
   }
-  const auto& command = std::get<core::Command>(checked);
-  if (!Stage::takes(command.action)) return failed("it is of a kind that no log holds");
-  if (auto rejected = stage.apply(command.action)) return failed(rejected->field + " " + rejected->message);
+  const auto& command = std::get<v1::Command>(checked);
+  if (!Stage::takes(command)) return failed("it is of a kind that no log holds");
+  if (auto rejected = stage.apply(command)) return failed(rejected->field + " " + rejected->message);
   return {};
 }
 

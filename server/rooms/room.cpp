@@ -82,7 +82,8 @@ std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
 }
 
 void Room::publishSnapshot() {
-  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{stage_->scene(), paused_, clock_.speed(), boats_});
+  auto fresh = std::make_shared<const RoomSnapshot>(
+      RoomSnapshot{stage_->scene(), stage_->sceneVersion(), paused_, clock_.speed(), boats_});
   const std::lock_guard lock(snapshot_mutex_);
   snapshot_ = std::move(fresh);
 }

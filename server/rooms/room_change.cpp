@@ -3,7 +3,6 @@
 #include <iterator>
 #include <ranges>
 #include <utility>
-#include <variant>
 
 #include <spindrift/rooms/room.h>
 
@@ -19,23 +18,24 @@ constexpr int kTriedMaxCount = 8;
 
 }  // namespace
 
+void Room::setParameters(Batch values) {
+  applyNewest({.untried = std::move(values), .tried = {}});
+}
+
 void Room::applyNewest(Values values) {
   bool is_taken = false;
   for (int k = 0; !values.untried.empty() && !is_taken; ++k) {
     if (k == kTriedMaxCount) return putOff(std::move(values));
-    core::Command command = std::move(values.untried.back());
+    Command command = std::move(values.untried.back());
     values.untried.pop_back();
-    const auto* change = std::get_if<core::SetParameter>(&command.action);
-    Outcome outcome = change ? refuseChange(command, *change) : apply(command);
-    if (change && !outcome) {
+    Outcome outcome = refuseChange(command);
+    if (!outcome) {
       if (beginChange(command, values)) return;
       outcome = applyToWater(command);
-      if (!outcome) parameterChanged(*change);
+      if (!outcome) parameterChanged(command.message.set_parameter());
     }
     is_taken = !outcome;
-    const bool is_spawn = std::holds_alternative<core::SpawnBoat>(command.action);
-    values.tried.push_back(
-        {std::move(command), std::move(outcome), is_taken && is_spawn ? stage_->spawnedBoatId() : 0});
+    values.tried.push_back({std::move(command), std::move(outcome)});
   }
   conclude(std::move(values));
 }
@@ -59,8 +59,8 @@ void Room::conclude(Values values) {
   std::ranges::move(values.tried | std::views::reverse, std::back_inserter(answers_));
 }
 
-bool Room::beginChange(const core::Command& command, Values& others) {
-  auto relayout = stage_->relayout(command.action);
+bool Room::beginChange(const Command& command, Values& others) {
+  auto relayout = stage_->relayout(command.message.set_parameter());
   if (!relayout) return false;
   auto prepared = builder_.prepare(relayout->wanted, std::exchange(relayout->basis, {}));
   commands_.hold({command});
@@ -79,7 +79,7 @@ void Room::finishChange() {
   const bool is_taken = !outcome;
   if (is_taken) {
     recordCommand(change.command);
-    parameterChanged(std::get<core::SetParameter>(change.command.action));
+    parameterChanged(change.command.message.set_parameter());
   }
   change.others.tried.push_back({std::move(change.command), std::move(outcome)});
   if (is_taken) return conclude(std::move(change.others));
@@ -102,17 +102,17 @@ void Room::abandonChanges(const wire::CommandRejection& rejection) {
   if (put_off_) abandon(*std::exchange(put_off_, std::nullopt));
 }
 
-Room::Outcome Room::refuseChange(const core::Command& command, const core::SetParameter& change) const {
-  // Checked when it arrived, but the scene may have changed since.
-  if (auto rejected = wire::checkAgainstScene(command, stage_->scene())) return rejected;
+Room::Outcome Room::refuseChange(const Command& command) const {
+  if (auto rejected = checkAgain(command)) return rejected;
+  const v1::SetParameter& change = command.message.set_parameter();
   const auto wanted = stage_->workWith(change);
   if (!wanted) return {};
-  return refuseSlow(command.sender, change.path, tick_cost_.predict_ms(stage_->work(), *wanted), kTickMax_ms);
+  return refuseSlow(command.sender, change.path(), tick_cost_.predict_ms(stage_->work(), *wanted), kTickMax_ms);
 }
 
-void Room::parameterChanged(const core::SetParameter& change) {
+void Room::parameterChanged(const v1::SetParameter& change) {
   next_frame_s_ = 0.0;  // the frame rate may have changed; by the old rate the next frame could be up to a second away
-  news_.parameters[change.path] = change.value;
+  news_.parameters[change.path()] = change.value();
 }
 
 }  // namespace spindrift::rooms

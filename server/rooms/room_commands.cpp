@@ -1,16 +1,15 @@
-// Carries out the commands of a room. Every command gets one answer. All clients in the room are told the changes once
-// per round, before the senders get their answers.
+// Carries out the commands of a room, dispatched by the table of kinds below. Every command gets one answer. All
+// clients in the room are told the changes once per round, before the senders get their answers.
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <ranges>
 #include <set>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/core/overloaded.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/wire/client_message.h>
 
@@ -35,17 +34,65 @@ wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::u
 
 }  // namespace
 
-std::optional<wire::CommandRejection> Room::admit(core::Command command) {
+/// A new command needs its message in wire.proto, a row here with a handler, and, if it has rules about the scene, a
+/// case in wire::checkAgainstScene(). A handler gets commands that wire::checkCommand() accepted.
+struct Room::CommandKind {
+  v1::Command::ActionCase action;
+  CommandTraits traits;
+  /// Changes the water. Such commands are written to the log and replayed.
+  Stage::Handler on_water;
+  /// Carries the command out; null: on_water is all.
+  Outcome (Room::*in_room)(const Command& command);
+  /// Begins a batch whose commands are answered later; takes the place of in_room.
+  void (Room::*begin)(Batch batch);
+};
+
+const Room::CommandKind& Room::kindOf(const v1::Command& command) {
+  using C = v1::Command;
+  constexpr auto kPlayer = core::Role::kPlayer;
+  constexpr auto kOperator = core::Role::kOperator;
+  constexpr bool kLight = false, kHeavy = true;
+  constexpr bool kShared = true;
+  static constexpr CommandKind kKinds[] = {
+      {C::kSplash, {kPlayer, kLight}, &Stage::splash, nullptr, nullptr},
+      {C::kBreakingWave, {kPlayer, kLight}, &Stage::breakingWave, nullptr, nullptr},
+      {C::kSetParameter, {kOperator, kHeavy}, &Stage::setParameter, nullptr, &Room::setParameters},
+      {C::kReset, {kOperator, kHeavy, kShared}, &Stage::reset, &Room::reset, nullptr},
+      {C::kSetPaused, {kOperator, kLight}, nullptr, &Room::setPaused, nullptr},
+      {C::kSetSpeed, {kOperator, kLight}, nullptr, &Room::setSpeed, nullptr},
+      {C::kSpawnBoat, {kPlayer, kHeavy}, &Stage::spawnBoat, &Room::spawnBoat, nullptr},
+      {C::kControlBoat, {kPlayer, kLight}, &Stage::controlBoat, &Room::controlBoat, nullptr},
+      {C::kRemoveBoat, {kPlayer, kHeavy}, &Stage::removeBoat, &Room::removeBoat, nullptr},
+      {C::kStep, {kOperator, kLight}, nullptr, &Room::advance, nullptr},
+      {C::kChangeScene, {kOperator, kHeavy, kShared}, nullptr, nullptr, &Room::beginScene},
+      {C::kTakeBoat, {kPlayer, kLight}, nullptr, &Room::takeBoat, nullptr},
+  };
+  const auto* kind = std::ranges::find(kKinds, command.action_case(), &CommandKind::action);
+  assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action
+  return *kind;
+}
+
+const CommandTraits& traitsOf(const v1::Command& command) {
+  return Room::kindOf(command).traits;
+}
+
+Stage::Handler Stage::handlerOf(const v1::Command& command) {
+  return Room::kindOf(command).on_water;
+}
+
+std::optional<wire::CommandRejection> Room::admit(Command command) {
   const core::Sender& sender = command.sender;
   Outcome refused;
-  if (const core::Role needed = core::roleFor(command.action); sender.role < needed) {
+  if (const core::Role needed = traitsOf(command.message).role; sender.role < needed) {
     refused = rejection(
         v1::REJECT_REASON_FORBIDDEN, "",
         fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));
   } else {
-    refused = wire::checkAgainstScene(command, snapshot()->scene);
+    const auto now = snapshot();
+    refused = wire::checkAgainstScene(command.message, now->scene);
+    command.scene_version = now->scene_version;
   }
-  const std::uint64_t command_id = command.command_id;
+  const std::uint64_t command_id = command.id();
   if (!refused) {
     if (auto full = commands_.tryPush(std::move(command), std::chrono::steady_clock::now()))
       refused = rejection(v1::REJECT_REASON_BUSY, "", *std::move(full));
@@ -64,7 +111,7 @@ void Room::applyCommands(TimePoint now) {
     const bool may_be_heavy = !change_ && !put_off_ && heavy_budget_.isOpen(now);
     auto batch = commands_.next({.heavy = may_be_heavy, .scene_change = !build_});
     if (!batch) break;
-    const bool is_heavy = isHeavy(batch->front().action);
+    const bool is_heavy = traitsOf(batch->front().message).is_heavy;
     const auto begin = Clock::now();
     apply(*std::move(batch));
     if (is_heavy) heavy_budget_.spend(Clock::now() - begin);
@@ -83,57 +130,37 @@ void Room::abandonCommands() {
 }
 
 void Room::apply(Batch batch) {
-  if (std::holds_alternative<core::ChangeScene>(batch.front().action)) return beginScene(std::move(batch));
-  if (std::holds_alternative<core::Reset>(batch.front().action)) {
-    const Outcome outcome = apply(batch.front());
-    return answer(std::move(batch), outcome);
-  }
-  applyNewest({.untried = std::move(batch), .tried = {}});
+  const CommandKind& kind = kindOf(batch.front().message);
+  if (kind.begin) return (this->*kind.begin)(std::move(batch));
+  new_boat_id_ = 0;
+  Outcome outcome = checkAgain(batch.front());
+  if (!outcome) outcome = kind.in_room ? (this->*kind.in_room)(batch.front()) : applyToWater(batch.front());
+  answer(std::move(batch), outcome);
+}
+
+Room::Outcome Room::checkAgain(const Command& command) const {
+  if (command.scene_version == stage_->sceneVersion()) return {};
+  return wire::checkAgainstScene(command.message, stage_->scene());
 }
 
 void Room::answer(Batch batch, const Outcome& outcome) {
-  for (core::Command& command : batch) answers_.push_back({std::move(command), outcome});
+  for (Command& command : batch) answers_.push_back({std::move(command), outcome, outcome ? 0 : new_boat_id_});
 }
 
-Room::Outcome Room::apply(const core::Command& command) {
-  // Checked against the scene when it arrived, but the scene may have changed since.
-  if (auto rejected = wire::checkAgainstScene(command, stage_->scene())) return rejected;
-  return std::visit(
-      core::Overloaded{[&](const core::Splash&) { return applyToWater(command); },
-                       [&](const core::BreakingWave&) { return applyToWater(command); },
-                       // applyNewest() handles them.
-                       [&](const core::SetParameter&) -> Outcome { return {}; },
-                       [&](const core::Reset&) { return reset(command); },
-                       [&](const core::SetPaused& pause) { return setPaused(pause.paused); },
-                       [&](const core::SetSpeed& speed) -> Outcome {
-                         clock_.setSpeed(speed.speed);
-                         news_.state = true;
-                         return {};
-                       },
-                       [&](const core::SpawnBoat&) { return spawnBoat(command); },
-                       [&](const core::ControlBoat& control) { return controlBoat(command, control.boat_id); },
-                       [&](const core::RemoveBoat& remove) { return removeBoat(command, remove.boat_id); },
-                       [&](const core::TakeBoat& take) { return takeBoat(command.sender, take.boat_id); },
-                       [&](const core::Step& step) { return advance(step); },
-                       // Handled by apply(Batch), which calls beginScene().
-                       [&](const core::ChangeScene&) -> Outcome { return {}; }},
-      command.action);
-}
-
-Room::Outcome Room::applyToWater(const core::Command& command) {
-  if (auto rejected = stage_->apply(command.action)) return rejected;
+Room::Outcome Room::applyToWater(const Command& command) {
+  if (auto rejected = stage_->apply(command.message)) return rejected;
   recordCommand(command);
   return {};
 }
 
-void Room::recordCommand(const core::Command& command) {
+void Room::recordCommand(const Command& command) {
   if (!log_) return;
   v1::Record line;
-  *line.mutable_command() = wire::toWire(command);
+  *line.mutable_command() = command.message;
   record(std::move(line));
 }
 
-Room::Outcome Room::reset(const core::Command& command) {
+Room::Outcome Room::reset(const Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
   next_frame_s_ = 0.0;
   next_idle_frame_ = {};
@@ -143,7 +170,8 @@ Room::Outcome Room::reset(const core::Command& command) {
   return {};
 }
 
-Room::Outcome Room::setPaused(bool paused) {
+Room::Outcome Room::setPaused(const Command& command) {
+  const bool paused = command.message.set_paused().paused();
   if (paused_ && !paused) clock_.restart(std::chrono::steady_clock::now());
   paused_ = paused;
   pending_tick_count_ = 0;
@@ -151,20 +179,28 @@ Room::Outcome Room::setPaused(bool paused) {
   return {};
 }
 
+Room::Outcome Room::setSpeed(const Command& command) {
+  clock_.setSpeed(command.message.set_speed().speed());
+  news_.state = true;
+  return {};
+}
+
 // Boats
 
-Room::Outcome Room::spawnBoat(const core::Command& command) {
+Room::Outcome Room::spawnBoat(const Command& command) {
   const core::Sender& sender = command.sender;
   if (sender.role < core::Role::kOperator && roster_.hasBoat(sender.person_id)) {
     return rejection(v1::REJECT_REASON_HAS_BOAT, "spawn_boat", "you have a boat: remove it before you launch another");
   }
   if (auto rejected = applyToWater(command)) return rejected;
   boatsChanged();
-  roster_.give(stage_->spawnedBoatId(), sender.person_id);
+  new_boat_id_ = stage_->spawnedBoatId();
+  roster_.give(new_boat_id_, sender.person_id);
   return {};
 }
 
-Room::Outcome Room::controlBoat(const core::Command& command, std::uint32_t boat_id) {
+Room::Outcome Room::controlBoat(const Command& command) {
+  const std::uint32_t boat_id = command.message.control_boat().boat_id();
   const std::uint32_t owner_id = roster_.ownerOf(boat_id);
   const bool is_free_to_operators = owner_id == 0 && command.sender.role >= core::Role::kOperator;
   const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
@@ -174,7 +210,8 @@ Room::Outcome Room::controlBoat(const core::Command& command, std::uint32_t boat
   return applyToWater(command);
 }
 
-Room::Outcome Room::removeBoat(const core::Command& command, std::uint32_t boat_id) {
+Room::Outcome Room::removeBoat(const Command& command) {
+  const std::uint32_t boat_id = command.message.remove_boat().boat_id();
   const std::uint32_t owner_id = roster_.ownerOf(boat_id);
   const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
   if (!is_own && command.sender.role < core::Role::kOperator && isOnTheWater(boat_id)) {
@@ -185,7 +222,9 @@ Room::Outcome Room::removeBoat(const core::Command& command, std::uint32_t boat_
   return {};
 }
 
-Room::Outcome Room::takeBoat(const core::Sender& sender, std::uint32_t boat_id) {
+Room::Outcome Room::takeBoat(const Command& command) {
+  const core::Sender& sender = command.sender;
+  const std::uint32_t boat_id = command.message.take_boat().boat_id();
   const char* const kField = "take_boat.boat_id";
   if (!isOnTheWater(boat_id)) {
     return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, kField, fmt::format("there is no boat {} on the water", boat_id));
@@ -219,7 +258,9 @@ void Room::boatsChanged() {
 void Room::settlePeople(TimePoint now) {
   const Roster::Turn turn = roster_.settle(now);
   for (const std::uint32_t boat_id : turn.boats_to_stop) {
-    (void)applyToWater({.action = core::ControlBoat{.boat_id = boat_id}});  // the boat may be gone already
+    Command stop;
+    stop.message.mutable_control_boat()->set_boat_id(boat_id);
+    (void)applyToWater(stop);  // the boat may be gone already
   }
   has_people_news_ = has_people_news_ || turn.is_news;
   if (!has_people_news_ || now < next_people_news_) return;
@@ -230,16 +271,17 @@ void Room::settlePeople(TimePoint now) {
 
 // Time
 
-Room::Outcome Room::advance(const core::Step& step) {
+Room::Outcome Room::advance(const Command& command) {
+  const std::uint32_t tick_count = command.message.step().tick_count();
   if (!paused_) {
     return rejection(v1::REJECT_REASON_OUT_OF_RANGE, "step", "the room is running; pause it first, then step");
   }
-  if (pending_tick_count_ + step.tick_count > kPendingTickMaxCount) {
+  if (pending_tick_count_ + tick_count > kPendingTickMaxCount) {
     return rejection(v1::REJECT_REASON_BUSY, "step.tick_count",
                      fmt::format("{} ticks more than the {} still to come are above {}; try again when they are done",
-                                 step.tick_count, pending_tick_count_, kPendingTickMaxCount));
+                                 tick_count, pending_tick_count_, kPendingTickMaxCount));
   }
-  pending_tick_count_ += step.tick_count;
+  pending_tick_count_ += tick_count;
   return {};
 }
 
@@ -259,7 +301,7 @@ void Room::announce() {
 void Room::deliverAnswers() {
   for (Answer& one : std::exchange(answers_, {})) {
     if (one.rejected) {
-      one.rejected->command_id = one.command.command_id;
+      one.rejected->command_id = one.command.id();
       outlets_.commandRejected(one.command, *one.rejected);
     } else {
       outlets_.commandApplied(one.command, tick(), one.boat_id);

@@ -1,7 +1,5 @@
 // Scene changes of a room. The new water is built and warmed up while the old one runs, then replaces it between two
 // ticks; the senders are answered afterwards.
-#include <variant>
-
 #include <spdlog/spdlog.h>
 
 #include <spindrift/rooms/room.h>
@@ -18,7 +16,7 @@ constexpr const char* kField = "change_scene.name";
 }  // namespace
 
 void Room::beginScene(Batch batch) {
-  const std::string name = std::get<core::ChangeScene>(batch.front().action).name;
+  const std::string name = batch.front().message.change_scene().name();
   if (!rules_.scenes.has(name)) {
     return answer(std::move(batch), rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField,
                                               "there is no scene '" + name + "'; the greeting lists what there is"));
@@ -43,8 +41,8 @@ void Room::adoptWater(TimePoint now) {
   commands_.release(build.commands);
   WaterBuilder::Built water = build.water.get();
   if (build.commands.empty()) return finishRebuild(now, std::move(water));
-  const core::Command first = build.commands.front();
-  const std::string name = std::get<core::ChangeScene>(first.action).name;
+  const Command first = build.commands.front();
+  const std::string name = first.message.change_scene().name();
   if (!water) {
     return answer(std::move(build.commands), rejection(v1::REJECT_REASON_OUT_OF_RANGE, kField,
                                                        "scene '" + name + "': " + firstLine(water.error().message)));
@@ -55,7 +53,7 @@ void Room::adoptWater(TimePoint now) {
   }
   replaceWater(*std::move(water));
   answer(std::move(build.commands), {});
-  answer(commands_.takeEqual(first.action), {});
+  answer(commands_.takeEqual(first.message), {});
 }
 
 void Room::replaceWater(std::unique_ptr<Water> water) {

@@ -1,19 +1,18 @@
 #include <cassert>
 #include <utility>
-#include <variant>
 
-#include <spindrift/core/overloaded.h>
 #include <spindrift/rooms/stage.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
 
 namespace spindrift::rooms {
 namespace {
 
 /// Makes the rejection for a change that a running room cannot take. `wanted`: its scene after `change`.
-wire::CommandRejection whyNot(const core::SetParameter& change, core::Scene wanted, const core::Error& error) {
+wire::CommandRejection whyNot(const v1::SetParameter& change, core::Scene wanted, const core::Error& error) {
   // The message begins with the field that breaks a rule; leave it out if Reject.field has it already.
-  const std::string own = change.path + ": ";
+  const std::string own = change.path() + ": ";
   const std::string message = error.message.starts_with(own) ? error.message.substr(own.size()) : error.message;
   const auto reason = [&] {
     if (error.code == core::ErrorCode::kUnavailable) return v1::REJECT_REASON_BUSY;
@@ -23,7 +22,7 @@ wire::CommandRejection whyNot(const core::SetParameter& change, core::Scene want
     wanted.fixed_substeps_count = 1;
     return sim::derive(wanted) ? v1::REJECT_REASON_BREAKS_STEP_RULE : v1::REJECT_REASON_OUT_OF_RANGE;
   };
-  return rejection(reason(), change.path, message);
+  return rejection(reason(), change.path(), message);
 }
 
 }  // namespace
@@ -39,30 +38,28 @@ std::string firstLine(const std::string& text) {
 
 Stage::Stage(std::unique_ptr<Water> water) : water_(std::move(water)), tick_shift_(0 - water_->sim().tick()) {}
 
-bool Stage::takes(const core::Action& action) {
-  return std::visit(
-      core::Overloaded{[](const core::SetPaused&) { return false; }, [](const core::SetSpeed&) { return false; },
-                       [](const core::Step&) { return false; }, [](const core::ChangeScene&) { return false; },
-                       [](const core::TakeBoat&) { return false; }, [](const auto&) { return true; }},
-      action);
+bool Stage::takes(const v1::Command& command) {
+  return handlerOf(command) != nullptr;
 }
 
-Stage::Outcome Stage::apply(const core::Action& action) {
-  assert(takes(action));
-  Outcome outcome = std::visit(core::Overloaded{[&](const core::Splash& splash) { return startEffect(splash); },
-                                                [&](const core::BreakingWave& wave) { return startEffect(wave); },
-                                                [&](const core::SetParameter& change) { return setParameter(change); },
-                                                [&](const core::Reset&) -> Outcome {
-                                                  water().reset();
-                                                  return {};
-                                                },
-                                                [&](const core::SpawnBoat& spawn) { return spawnBoat(spawn); },
-                                                [&](const core::ControlBoat& control) { return controlBoat(control); },
-                                                [&](const core::RemoveBoat& remove) { return removeBoat(remove); },
-                                                [&](const auto&) -> Outcome { return {}; }},
-                               action);
+Stage::Outcome Stage::apply(const v1::Command& command) {
+  assert(takes(command));
+  Outcome outcome = (this->*handlerOf(command))(command);
   if (!outcome) ++state_id_;
   return outcome;
+}
+
+Stage::Outcome Stage::splash(const v1::Command& command) {
+  return startEffect(scene::toCore(command.splash()));
+}
+
+Stage::Outcome Stage::breakingWave(const v1::Command& command) {
+  return startEffect(scene::toCore(command.breaking_wave()));
+}
+
+Stage::Outcome Stage::reset(const v1::Command& /*command*/) {
+  water().reset();
+  return {};
 }
 
 Stage::Outcome Stage::startEffect(const core::Effect& effect) {
@@ -72,26 +69,25 @@ Stage::Outcome Stage::startEffect(const core::Effect& effect) {
   return rejection(busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "", started.error().message);
 }
 
-Stage::Outcome Stage::setParameter(const core::SetParameter& change) {
+Stage::Outcome Stage::setParameter(const v1::Command& command) {
+  const v1::SetParameter& change = command.set_parameter();
   v1::Scene changed = scene();
-  if (auto error = scene::setParameter(changed, change.path, change.value)) {
+  if (auto error = scene::setParameter(changed, change.path(), change.value())) {
     return rejection(error->reason, error->field, error->message);
   }
   const core::Scene wanted = scene::toCore(changed);
   if (auto applied = water().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());
-  water_->scene() = std::move(changed);
+  setScene(std::move(changed));
   return {};
 }
 
-std::optional<Stage::Relayout> Stage::relayout(const core::Action& action) {
-  const auto* change = std::get_if<core::SetParameter>(&action);
-  if (!change) return std::nullopt;
+std::optional<Stage::Relayout> Stage::relayout(const v1::SetParameter& change) {
   v1::Scene changed = scene();
-  if (scene::setParameter(changed, change->path, change->value)) return std::nullopt;
+  if (scene::setParameter(changed, change.path(), change.value())) return std::nullopt;
   core::Scene wanted = scene::toCore(changed);
   if (!water().relaysParticles(wanted)) return std::nullopt;
   sim::SceneBasis basis = water().sceneBasis(wanted);
-  return Relayout{*change, std::move(changed), std::move(wanted), std::move(basis)};
+  return Relayout{change, std::move(changed), std::move(wanted), std::move(basis)};
 }
 
 Stage::Outcome Stage::adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared) {
@@ -99,7 +95,7 @@ Stage::Outcome Stage::adopt(Relayout relayout, core::Result<sim::PreparedScene> 
   if (auto adopted = water().adopt(*std::move(prepared)); !adopted) {
     return whyNot(relayout.change, relayout.wanted, adopted.error());
   }
-  water_->scene() = std::move(relayout.changed);
+  setScene(std::move(relayout.changed));
   ++state_id_;
   return {};
 }
@@ -108,16 +104,16 @@ TickWork Stage::work() const {
   return workOf(water().scene(), water().derived());
 }
 
-std::optional<TickWork> Stage::workWith(const core::SetParameter& change) const {
+std::optional<TickWork> Stage::workWith(const v1::SetParameter& change) const {
   v1::Scene changed = scene();
-  if (scene::setParameter(changed, change.path, change.value)) return std::nullopt;
+  if (scene::setParameter(changed, change.path(), change.value())) return std::nullopt;
   const core::Scene wanted = scene::toCore(changed);
   const auto derived = sim::derive(wanted);
   return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
 }
 
-Stage::Outcome Stage::spawnBoat(const core::SpawnBoat& spawn) {
-  const auto boat_id = water().spawnBoat(spawn.boat);
+Stage::Outcome Stage::spawnBoat(const v1::Command& command) {
+  const auto boat_id = water().spawnBoat(scene::toCore(command.spawn_boat().boat()));
   if (!boat_id) {
     const bool full = boat_id.error().code == core::ErrorCode::kUnavailable;
     return rejection(full ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "spawn_boat",
@@ -127,14 +123,15 @@ Stage::Outcome Stage::spawnBoat(const core::SpawnBoat& spawn) {
   return {};
 }
 
-Stage::Outcome Stage::controlBoat(const core::ControlBoat& control) {
-  const auto done = water().controlBoat(control.boat_id, control.throttle_ratio, control.rudder_ratio);
+Stage::Outcome Stage::controlBoat(const v1::Command& command) {
+  const v1::ControlBoat& control = command.control_boat();
+  const auto done = water().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio());
   if (done) return {};
   return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "control_boat.boat_id", done.error().message);
 }
 
-Stage::Outcome Stage::removeBoat(const core::RemoveBoat& remove) {
-  const auto done = water().removeBoat(remove.boat_id);
+Stage::Outcome Stage::removeBoat(const v1::Command& command) {
+  const auto done = water().removeBoat(command.remove_boat().boat_id());
   if (done) return {};
   return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "remove_boat.boat_id", done.error().message);
 }
@@ -146,6 +143,7 @@ std::unique_ptr<Water> Stage::replaceWater(std::unique_ptr<Water> water) {
   water_->bind();
   water_->sim().numberBoatsFrom(first_boat_id);
   ++state_id_;
+  ++scene_version_;
   tick_shift_ = first_tick - water_->sim().tick();
   return water;
 }

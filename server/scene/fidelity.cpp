@@ -11,7 +11,7 @@ namespace spindrift::scene {
 namespace {
 
 /// Factors of a level relative to BALANCED, and its values for fields that the scene leaves out.
-struct Level {
+struct FidelityScale {
   v1::Fidelity fidelity;
   double wave_scale;      ///< factor on the wave's resolution
   double particle_scale;  ///< factor on particles per length; the spacing is divided by it
@@ -21,16 +21,16 @@ struct Level {
   double surface_quantum_m;
 };
 
-constexpr std::array<Level, 4> kLevels = {{
+constexpr std::array<FidelityScale, 4> kScales = {{
     {v1::FIDELITY_DRAFT, 0.5, 0.7, 1.0, 3, 3, 0.002},
     {v1::FIDELITY_BALANCED, 1.0, 1.0, 1.0, 3, 4, 0.001},
     {v1::FIDELITY_FINE, 1.5, 1.7, 1.0, 5, 4, 0.0005},
     {v1::FIDELITY_REFERENCE, 2.5, 2.2, 2.0, 5, 8, 0.0005},
 }};
 
-const Level& levelOf(v1::Fidelity fidelity) {
-  const auto level = std::ranges::find(kLevels, fidelity, &Level::fidelity);
-  return level != kLevels.end() ? *level : kLevels[1];
+const FidelityScale& scaleOf(v1::Fidelity fidelity) {
+  const auto level = std::ranges::find(kScales, fidelity, &FidelityScale::fidelity);
+  return level != kScales.end() ? *level : kScales[1];
 }
 
 /// Multiplies a number by `factor`, limited to its range and rounded to an allowed value.
@@ -58,13 +58,13 @@ std::optional<v1::Fidelity> parseFidelity(std::string_view name) {
 }
 
 std::string fidelityName(v1::Fidelity fidelity) {
-  std::string name = v1::Fidelity_Name(levelOf(fidelity).fidelity).substr(9);
+  std::string name = v1::Fidelity_Name(scaleOf(fidelity).fidelity).substr(9);
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return name;
 }
 
 void applyFidelity(v1::Scene& scene) {
-  const Level& level = levelOf(scene.fidelity());
+  const FidelityScale& level = scaleOf(scene.fidelity());
   const bool is_two_way = scene.coupling().mode() == v1::COUPLING_MODE_TWO_WAY;
   scaleNumber(scene, "tick_rate_hz", level.tick_scale);
   if (scene.has_wave()) {

@@ -46,15 +46,15 @@ void describePart(const Message& part, const std::string& prefix, std::vector<v1
 }
 
 /// Target of a path: the part with the field (null if the scene lacks the part), and the field.
-struct Target {
+struct FieldTarget {
   const Message* part = nullptr;
   const FieldDescriptor* field = nullptr;
   std::string absent_part;
 };
 
 /// Returns nullopt if no scene has a parameter with this path.
-std::optional<Target> findTarget(const v1::Scene& scene, std::string_view path) {
-  Target target{&scene, nullptr, {}};
+std::optional<FieldTarget> findTarget(const v1::Scene& scene, std::string_view path) {
+  FieldTarget target{&scene, nullptr, {}};
   const Descriptor* type = scene.GetDescriptor();
   for (std::string_view rest = path;;) {
     const std::size_t dot = rest.find('.');
@@ -80,7 +80,8 @@ std::optional<Target> findTarget(const v1::Scene& scene, std::string_view path) 
   }
 }
 
-std::optional<ParameterError> checkTarget(const std::optional<Target>& target, std::string_view path, double value) {
+std::optional<ParameterError> checkTarget(const std::optional<FieldTarget>& target, std::string_view path,
+                                          double value) {
   const std::string shown = core::cleanText(path, kPathEchoMaxBytes);
   if (!target) {
     return ParameterError{v1::REJECT_REASON_UNKNOWN_PARAMETER, shown,
@@ -142,7 +143,7 @@ std::optional<ParameterError> checkParameter(const v1::Scene& scene, std::string
 
 std::optional<ParameterError> setParameter(v1::Scene& scene, std::string_view path, double value) {
   v1::Scene changed = scene;
-  const std::optional<Target> target = findTarget(changed, path);
+  const std::optional<FieldTarget> target = findTarget(changed, path);
   if (auto error = checkTarget(target, path, value)) return error;
   // The part belongs to `changed`, a copy that may be modified.
   setNumber(const_cast<Message&>(*target->part), *target->field, value);

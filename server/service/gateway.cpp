@@ -8,8 +8,8 @@
 #include <spindrift/core/overloaded.h>
 #include <spindrift/core/version.h>
 #include <spindrift/service/gateway.h>
-#include <spindrift/service/layer_index.h>
 #include <spindrift/service/state_topics.h>
+#include <spindrift/service/stream_index.h>
 #include <spindrift/wire/client_message.h>
 #include <spindrift/wire/server_message.h>
 
@@ -58,9 +58,9 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
   const auto now = std::chrono::steady_clock::now();
   {
     const std::lock_guard lock(mutex_);
-    sessions_.emplace(session, Session{.room = room,
-                                       .greeted = nullptr,
-                                       .commands = {options_.commands_per_s, options_.command_burst_count, now}});
+    sessions_.emplace(session, SessionState{.room = room,
+                                            .greeted = nullptr,
+                                            .commands = {options_.commands_per_s, options_.command_burst_count, now}});
   }
   spdlog::info("session {} from {} joins room {}", session, peer, room->name());
   greet(session, *room);
@@ -124,18 +124,18 @@ void Gateway::refuse(net::SessionId session, net::CloseCode code, const std::str
 }
 
 void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
-  std::optional<Session> known;
+  std::optional<SessionState> known;
   {
     const std::lock_guard lock(mutex_);
     const auto it = sessions_.find(session);
     if (it == sessions_.end()) return;
     known = it->second;
   }
-  const Session& state = *known;
+  const SessionState& state = *known;
   std::visit(core::Overloaded{
                  [&](const wire::Hello& said) { hello(session, state, said); },
                  [&](const wire::Subscribe& asked) { subscribe(session, state, asked); },
-                 [&](const core::Command& parsed) { command(session, state, parsed); },
+                 [&](v1::Command&& parsed) { command(session, state, std::move(parsed)); },
                  [&](const wire::Ping& ping) {
                    hub().sendAnswer(session, wire::pong(ping.client_time_s, core::monotonic_s()));
                  },
@@ -148,7 +148,7 @@ void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
              wire::parseClientMessage(message));
 }
 
-void Gateway::hello(net::SessionId session, const Session& state, const wire::Hello& hello) {
+void Gateway::hello(net::SessionId session, const SessionState& state, const wire::Hello& hello) {
   if (auto why = wire::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
   if (state.said_hello) return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
   const auto now = std::chrono::system_clock::now();
@@ -171,7 +171,7 @@ void Gateway::hello(net::SessionId session, const Session& state, const wire::He
   std::shared_ptr<const rooms::RoomSnapshot> greeted;
   {
     const std::lock_guard lock(mutex_);
-    Session& kept = sessions_.at(session);
+    SessionState& kept = sessions_.at(session);
     greeted = kept.greeted;
     kept.said_hello = true;
     kept.role = grant->role;
@@ -193,7 +193,7 @@ void Gateway::hello(net::SessionId session, const Session& state, const wire::He
   hub().sendState(session, topic::kPeople, wire::people(state.room->roster().people()));
 }
 
-void Gateway::subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe) {
+void Gateway::subscribe(net::SessionId session, const SessionState& state, const wire::Subscribe& subscribe) {
   if (!state.said_hello) {
     return refuse(session, net::CloseCode::kPolicy, "subscribe before hello: send ClientMessage.hello first");
   }
@@ -203,7 +203,7 @@ void Gateway::subscribe(net::SessionId session, const Session& state, const wire
   for (const codec::Stream stream : codec::allStreams()) {
     if (stream.layer != wanted.layer) continue;
     const bool is_wanted = stream.packing == wanted.packing;
-    hub().watch(session, layerIndex(stream),
+    hub().watch(session, streamIndex(stream),
                 {.max_rate_hz = is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0,
                  .level = has_levels ? subscribe.level : core::Level::kFull,
                  .adapts = has_levels && subscribe.adapts});
@@ -215,17 +215,18 @@ void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
   hub().sendState(session, topic::kLevel, wire::levelChanged(level));
 }
 
-void Gateway::command(net::SessionId session, const Session& state, core::Command command) {
-  command.sender = {.session_id = session, .person_id = state.person_id, .role = state.role};
+void Gateway::command(net::SessionId session, const SessionState& state, v1::Command message) {
+  const rooms::Command command{.sender = {.session_id = session, .person_id = state.person_id, .role = state.role},
+                               .message = std::move(message)};
   if (!state.said_hello) {
-    return commandRejected(command, {.command_id = command.command_id,
+    return commandRejected(command, {.command_id = command.id(),
                                      .reason = v1::REJECT_REASON_NO_HELLO,
                                      .field = "",
                                      .message = "say hello before the first command"});
   }
   if (!takeCommand(session)) {
     return commandRejected(command,
-                           {.command_id = command.command_id,
+                           {.command_id = command.id(),
                             .reason = v1::REJECT_REASON_BUSY,
                             .field = "",
                             .message = fmt::format("more than {:g} commands a second after a burst of {:g}: slow down",
@@ -315,7 +316,7 @@ std::size_t Gateway::sessionCount() const {
   return hub().sessionCount();
 }
 
-core::LayerDemand Gateway::demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const {
+core::StreamDemand Gateway::demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const {
   return demandOf(hub(), room, stream, reduced_count);
 }
 
@@ -324,13 +325,13 @@ void Gateway::publish(const std::string& room, codec::Stream stream, const codec
   publishTo(hub(), room, stream, frame, level, reduced_count);
 }
 
-void Gateway::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
   counters_.applied();
   if (command.sender.request_id != 0) return rest_.commandApplied(command, tick, boat_id);
-  hub().sendAnswer(command.sender.session_id, wire::ack(command.command_id, tick, boat_id));
+  hub().sendAnswer(command.sender.session_id, wire::ack(command.id(), tick, boat_id));
 }
 
-void Gateway::commandRejected(const core::Command& command, const wire::CommandRejection& rejection) {
+void Gateway::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   counters_.rejected(rejection.reason);
   if (command.sender.request_id != 0) return rest_.commandRejected(command, rejection);
   hub().sendAnswer(command.sender.session_id, wire::reject(rejection));

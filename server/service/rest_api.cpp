@@ -225,8 +225,8 @@ void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room
     counters_.rejected(rejection->reason);
     return respond(rejected(*rejection));
   }
-  auto& command = std::get<core::Command>(parsed);
-  command.sender = {.request_id = ++last_request_id_, .role = call.role};
+  const rooms::Command command{.sender = {.request_id = ++last_request_id_, .role = call.role},
+                               .message = std::get<v1::Command>(std::move(parsed))};
   {
     const std::lock_guard lock(mutex_);
     pending_[command.sender.request_id] = std::move(respond);
@@ -243,17 +243,17 @@ net::HttpResponder RestApi::takePending(std::uint64_t request_id) {
   return node ? std::move(node.mapped()) : net::HttpResponder();
 }
 
-void RestApi::commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+void RestApi::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
   const auto respond = takePending(command.sender.request_id);
   if (!respond) return;
   v1::CommandAnswer out;
-  out.mutable_ack()->set_command_id(command.command_id);
+  out.mutable_ack()->set_command_id(command.id());
   out.mutable_ack()->set_applied_tick(tick);
   out.mutable_ack()->set_boat_id(boat_id);
   respond(json(200, out));
 }
 
-void RestApi::commandRejected(const core::Command& command, const wire::CommandRejection& rejection) {
+void RestApi::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   if (const auto respond = takePending(command.sender.request_id)) respond(rejected(rejection));
 }
 

@@ -9,13 +9,13 @@
 
 #include <shared/boats.h>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim/boat_record.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 #include "wave.h"
 

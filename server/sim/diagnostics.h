@@ -11,8 +11,8 @@
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 #include <spindrift/gpu/readback_ring.h>
-#include <spindrift/sim/derive.h>
 #include <spindrift/sim/health.h>
+#include <spindrift/sim_setup/derive.h>
 
 #include "boats.h"
 #include "breakers.h"

@@ -7,7 +7,8 @@
 #include <shared/bindings.h>
 #include <shared/boats.h>
 
-#include "basin.h"
+#include <spindrift/sim_setup/basin.h>
+
 #include "create_all.h"
 
 namespace spindrift::sim {

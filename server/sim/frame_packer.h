@@ -15,8 +15,8 @@
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 #include <spindrift/gpu/readback_ring.h>
-#include <spindrift/sim/derive.h>
 #include <spindrift/sim/water_sim.h>
+#include <spindrift/sim_setup/derive.h>
 
 #include "boats.h"
 #include "particle_buffers.h"

@@ -5,7 +5,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

@@ -6,7 +6,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/program.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 #include "particle_buffers.h"
 #include "particle_pool.h"

@@ -1,7 +1,8 @@
 #include <spindrift/sim/prepared_scene.h>
+#include <spindrift/sim_setup/scene_parts.h>
 
 #include "relay_particles.h"
-#include "scene_parts.h"
+#include "shader_defines.h"
 
 namespace spindrift::sim {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <spindrift/core/scene.h>
-#include <spindrift/sim/derive.h>
 #include <spindrift/sim/prepared_scene.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

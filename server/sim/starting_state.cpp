@@ -1,8 +1,7 @@
 #include "starting_state.h"
 
 #include <spindrift/sim/water_sim.h>
-
-#include "random.h"
+#include <spindrift/sim_setup/random.h>
 
 namespace spindrift::sim {
 namespace {

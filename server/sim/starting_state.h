@@ -7,7 +7,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/context.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

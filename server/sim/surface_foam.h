@@ -7,7 +7,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 #include "boats.h"
 #include "breakers.h"

@@ -3,6 +3,7 @@
 #include <shared/bindings.h>
 
 #include "create_all.h"
+#include "shader_defines.h"
 #include "starting_state.h"
 #include "water_sim_parts.h"
 

@@ -4,7 +4,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "storm.h"
+#include <spindrift/sim_setup/storm.h>
+
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {

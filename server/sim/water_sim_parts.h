@@ -6,13 +6,13 @@
 #include <vector>
 
 #include <spindrift/sim/water_sim.h>
+#include <spindrift/sim_setup/basin.h>
+#include <spindrift/sim_setup/effects.h>
 
-#include "basin.h"
 #include "boats.h"
 #include "breakers.h"
 #include "checkpoints.h"
 #include "diagnostics.h"
-#include "effects.h"
 #include "frame_packer.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"

@@ -6,9 +6,10 @@
 
 #include <shared/bindings.h>
 
-#include "basin.h"
+#include <spindrift/sim_setup/basin.h>
+#include <spindrift/sim_setup/fill_up.h>
+
 #include "create_all.h"
-#include "fill_up.h"
 
 namespace spindrift::sim {
 

@@ -68,12 +68,12 @@ std::string toJson(const google::protobuf::Message& message) {
   return out;
 }
 
-std::variant<core::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json) {
+std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json) {
   v1::Command command;
   if (std::string why = readJson(json, command); !why.empty()) return Malformed{std::move(why)};
   return std::visit(
-      [](auto&& checked) -> std::variant<core::Command, CommandRejection, Malformed> { return std::move(checked); },
-      checkCommand(command));
+      [](auto&& checked) -> std::variant<v1::Command, CommandRejection, Malformed> { return std::move(checked); },
+      checkCommand(std::move(command)));
 }
 
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {

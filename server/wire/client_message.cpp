@@ -27,42 +27,9 @@ CommandRejection rejection(std::uint64_t command_id, scene::FieldIssue issue) {
   return {command_id, issue.reason, std::move(issue.path), std::move(issue.message)};
 }
 
-/// Converts the action of a command whose fields are valid.
-core::Action actionOf(const v1::Command& command) {
-  switch (command.action_case()) {
-    case v1::Command::kSplash:
-      return scene::toCore(command.splash());
-    case v1::Command::kBreakingWave:
-      return scene::toCore(command.breaking_wave());
-    case v1::Command::kSetParameter:
-      return core::SetParameter{command.set_parameter().path(), command.set_parameter().value()};
-    case v1::Command::kSetPaused:
-      return core::SetPaused{command.set_paused().paused()};
-    case v1::Command::kSetSpeed:
-      return core::SetSpeed{command.set_speed().speed()};
-    case v1::Command::kSpawnBoat:
-      return core::SpawnBoat{scene::toCore(command.spawn_boat().boat())};
-    case v1::Command::kControlBoat:
-      return core::ControlBoat{command.control_boat().boat_id(), command.control_boat().throttle_ratio(),
-                               command.control_boat().rudder_ratio()};
-    case v1::Command::kRemoveBoat:
-      return core::RemoveBoat{command.remove_boat().boat_id()};
-    case v1::Command::kStep:
-      return core::Step{command.step().has_tick_count() ? command.step().tick_count() : core::Step{}.tick_count};
-    case v1::Command::kChangeScene:
-      return core::ChangeScene{command.change_scene().name()};
-    case v1::Command::kTakeBoat:
-      return core::TakeBoat{command.take_boat().boat_id()};
-    case v1::Command::kReset:
-    case v1::Command::ACTION_NOT_SET:
-      break;
-  }
-  return core::Reset{};
-}
-
 }  // namespace
 
-std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& command) {
+std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command) {
   const std::uint64_t id = command.command_id();
   if (command.action_case() == v1::Command::ACTION_NOT_SET) {
     return CommandRejection{id, v1::REJECT_REASON_MALFORMED, "",
@@ -88,7 +55,11 @@ std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& co
                             "\"" + core::cleanText(command.change_scene().name(), kNameEchoMaxBytes) +
                                 "\" is no scene; the greeting lists what there is"};
   }
-  return core::Command{{}, id, actionOf(command)};
+  // A log keeps the values that were in force, whatever the defaults are when it is replayed.
+  if (command.has_spawn_boat()) command.mutable_spawn_boat()->mutable_boat();
+  scene::fillMessageDefaults(command);
+  command.DiscardUnknownFields();
+  return command;
 }
 
 namespace {
@@ -140,7 +111,7 @@ ClientMessage parseChecked(core::ByteView bytes) {
       return parseSubscribe(message.subscribe());
     case v1::ClientMessage::kCommand:
       return std::visit([](auto&& checked) -> ClientMessage { return std::move(checked); },
-                        checkCommand(message.command()));
+                        checkCommand(std::move(*message.mutable_command())));
     case v1::ClientMessage::kPing:
       if (!std::isfinite(message.ping().client_time_s())) {
         return Malformed{"ping.client_time_s: " + core::formatNumber(message.ping().client_time_s()) +
@@ -171,31 +142,65 @@ std::optional<std::string> checkVersion(const Hello& hello) {
          "; use a client of the same major version";
 }
 
-std::optional<CommandRejection> checkAgainstScene(const core::Command& command, const v1::Scene& scene) {
+v1::Role toWire(core::Role role) {
+  switch (role) {
+    case core::Role::kViewer:
+      return v1::ROLE_VIEWER;
+    case core::Role::kPlayer:
+      return v1::ROLE_PLAYER;
+    case core::Role::kOperator:
+      break;
+  }
+  return v1::ROLE_OPERATOR;
+}
+
+v1::Reject toWire(const CommandRejection& rejection) {
+  v1::Reject out;
+  out.set_command_id(rejection.command_id);
+  out.set_reason(rejection.reason);
+  out.set_field(rejection.field);
+  out.set_message(rejection.message);
+  return out;
+}
+
+std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, const v1::Scene& scene) {
   std::vector<scene::FieldIssue> issues;
-  if (const auto* splash = std::get_if<core::Splash>(&command.action)) {
-    issues = scene::checkEffect(*splash, scene);
-  } else if (const auto* wave = std::get_if<core::BreakingWave>(&command.action)) {
-    issues = scene::checkEffect(*wave, scene);
-  } else if (const auto* set = std::get_if<core::SetParameter>(&command.action)) {
-    if (auto error = scene::checkParameter(scene, set->path, set->value)) {
-      issues.push_back({error->reason, std::move(error->field), std::move(error->message)});
+  const auto needBoats = [&](const char* field) {
+    if (!scene.has_boats()) scene::addAbsent(issues, field, kNoBoats);
+  };
+  switch (command.action_case()) {
+    case v1::Command::kSplash:
+      issues = scene::checkEffect(scene::toCore(command.splash()), scene);
+      break;
+    case v1::Command::kBreakingWave:
+      issues = scene::checkEffect(scene::toCore(command.breaking_wave()), scene);
+      break;
+    case v1::Command::kSetParameter: {
+      const v1::SetParameter& set = command.set_parameter();
+      if (auto error = scene::checkParameter(scene, set.path(), set.value())) {
+        issues.push_back({error->reason, std::move(error->field), std::move(error->message)});
+      }
+      break;
     }
-  } else if (const auto* spawn = std::get_if<core::SpawnBoat>(&command.action)) {
-    if (scene.has_boats()) {
-      issues = scene::checkBoat(spawn->boat, scene, "spawn_boat.boat.");
-    } else {
-      scene::addAbsent(issues, "spawn_boat", kNoBoats);
-    }
-  } else if (std::holds_alternative<core::ControlBoat>(command.action) && !scene.has_boats()) {
-    scene::addAbsent(issues, "control_boat", kNoBoats);
-  } else if (std::holds_alternative<core::RemoveBoat>(command.action) && !scene.has_boats()) {
-    scene::addAbsent(issues, "remove_boat", kNoBoats);
-  } else if (std::holds_alternative<core::TakeBoat>(command.action) && !scene.has_boats()) {
-    scene::addAbsent(issues, "take_boat", kNoBoats);
+    case v1::Command::kSpawnBoat:
+      needBoats("spawn_boat");
+      if (issues.empty())
+        issues = scene::checkBoat(scene::toCore(command.spawn_boat().boat()), scene, "spawn_boat.boat.");
+      break;
+    case v1::Command::kControlBoat:
+      needBoats("control_boat");
+      break;
+    case v1::Command::kRemoveBoat:
+      needBoats("remove_boat");
+      break;
+    case v1::Command::kTakeBoat:
+      needBoats("take_boat");
+      break;
+    default:  // the other commands have no rules about the scene
+      break;
   }
   if (issues.empty()) return std::nullopt;
-  return rejection(command.command_id, std::move(issues.front()));
+  return rejection(command.command_id(), std::move(issues.front()));
 }
 
 }  // namespace spindrift::wire

@@ -30,7 +30,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // SPH.
   float mass_kg;                // of a particle
   float rest_density_kgpm3;
-  float stiffness_m2ps2;        // k in p = k (rho - rho0): c0^2 over the lattice's stress ratio (sim/lattice.h)
+  float stiffness_m2ps2;        // k in p = k (rho - rho0): c0^2 over the lattice's stress ratio (sim_setup/lattice.h)
   float viscosity_pas;
   float max_speed_mps;
   float gravity_mps2;
@@ -98,7 +98,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float surface_quantum_m;
 
   // Bound of the neighbour search: largest number of candidates of a column of cells that a particle visits
-  // (sim/derive.cpp).
+  // (sim_setup/derive.cpp).
   uint candidates_max_count;
   uint unused_0;                // std140 rounds the block up to a multiple of 16 bytes
   uint unused_1;

@@ -2,7 +2,7 @@
 // diagonals of the square that it spans with its neighbours: (i, k) to (i+1, k+1), and (i+1, k) to (i, k+1).
 // A face carries flow [m^2/s] and has a conductance: still depth times the stencil's weight, 0 where it is closed.
 // The weights make the isotropic Laplacian (4 sides + corners - 20 centre)/6 = 2/3 (5-point) + 1/6 (corners - 4 centre); beside
-// closed squares they differ, and come from the table (sim/basin.cpp).
+// closed squares they differ, and come from the table (sim_setup/basin.cpp).
 #ifndef SPINDRIFT_WAVE_FACES
 #define SPINDRIFT_WAVE_FACES
 

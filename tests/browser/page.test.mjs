@@ -9,11 +9,11 @@ import { setTimeout as sleep } from "node:timers/promises";
 
 import { chromium } from "playwright-core";
 
+import { executable, kChromiumArgs } from "./chromium.mjs";
 import { measure, shootWater } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
 const WAIT_MS = 60_000;
-const executable = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 const slow = { skip, timeout: 4 * WAIT_MS };
 
@@ -89,16 +89,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
       executablePath: executable,
       headless: true,
       viewport: { width: 900, height: 600 },
-      args: [
-        "--no-sandbox",
-        "--use-angle=swiftshader",
-        "--enable-unsafe-swiftshader",
-        "--disable-quic",
-        "--no-first-run",
-        "--disable-background-networking",
-        "--disable-component-update",
-        "--disable-sync",
-      ],
+      args: kChromiumArgs,
     });
     page = await openPage();
   });

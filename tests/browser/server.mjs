@@ -5,20 +5,21 @@ import { fileURLToPath } from "node:url";
 
 export const repository = fileURLToPath(new URL("../..", import.meta.url));
 const binary = process.env.SPINDRIFT_BINARY ?? `${repository}/build/release/bin/spindrift`;
+const kTestScenes = ["--scene", `${repository}/tests/browser/scene.textproto`, "--room", `marina=${repository}/tests/browser/marina.textproto`];
 const START_LIMIT_MS = 120_000;
 const STOP_LIMIT_MS = 30_000;
 
 /**
- * Starts `spindrift serve` with the built page and the scene of this folder.
+ * Starts `spindrift serve` with the built page.
  * @param {number} port 0 = any free port
+ * @param {string[]} scenes options that choose scenes; by default those of this folder
  * @returns {Promise<{url: string, port: number, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
  *   rejects with the server's output if it ends before it is ready, or after 120 s
  */
-export function startServer(port = 0) {
+export function startServer(port = 0, scenes = kTestScenes) {
   const child = spawn(
     binary,
-    ["serve", "--port", String(port), "--web-root", `${repository}/web-client/dist`, "--scene", `${repository}/tests/browser/scene.textproto`,
-      "--room", `marina=${repository}/tests/browser/marina.textproto`],
+    ["serve", "--port", String(port), "--web-root", `${repository}/web-client/dist`, ...scenes],
     { stdio: ["ignore", "pipe", "pipe"] },
   );
   let words = "";

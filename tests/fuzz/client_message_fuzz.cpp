@@ -21,15 +21,16 @@ v1::Scene sceneOf(const char* text) {
   return *scene;
 }
 
-void checkCommand(const core::Command& command, const v1::Scene& scene) {
+void checkCommand(const v1::Command& command, const v1::Scene& scene) {
   const auto rejection = wire::checkAgainstScene(command, scene);
   if (rejection) {
     must(rejection->reason != v1::REJECT_REASON_UNSPECIFIED, "a rejection has a reason");
     must(!rejection->message.empty() && rejection->message.find('\n') == std::string::npos, "a rejection has one line");
-    must(rejection->command_id == command.command_id, "a rejection names its command");
-  } else if (const auto* set = std::get_if<core::SetParameter>(&command.action)) {
+    must(rejection->command_id == command.command_id(), "a rejection names its command");
+  } else if (command.has_set_parameter()) {
     v1::Scene changed = scene;
-    must(!scene::setParameter(changed, set->path, set->value), "a parameter that is accepted can be set");
+    must(!scene::setParameter(changed, command.set_parameter().path(), command.set_parameter().value()),
+         "a parameter that is accepted can be set");
     must(!wire::checkAgainstScene(command, changed), "and set again");
   }
 }
@@ -50,17 +51,17 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto refusal = wire::checkVersion(*hello);
     must(refusal.has_value() == (hello->major != wire::kWireMajor), "another major version is refused, no other");
   }
-  if (const auto* command = std::get_if<core::Command>(&message)) {
+  if (const auto* command = std::get_if<v1::Command>(&message)) {
     fuzz::checkCommand(*command, full);
     fuzz::checkCommand(*command, wave_only);
   }
   // The same commands as text, from the REST interface.
   const auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(data), size});
-  if (const auto* command = std::get_if<core::Command>(&parsed)) {
-    must(test::isHarmless(*command), "what comes out of JSON is finite and in range");
+  if (const auto* command = std::get_if<v1::Command>(&parsed)) {
+    must(test::isChecked(*command), "what comes out of JSON is finite and in range");
     fuzz::checkCommand(*command, full);
-    const auto again = wire::checkCommand(wire::toWire(*command));
-    must(std::holds_alternative<core::Command>(again), "a command that was taken is taken again from a log");
+    const auto again = wire::checkCommand(*command);
+    must(std::holds_alternative<v1::Command>(again), "a command that was taken is taken again from a log");
   }
   (void)wire::parseCreateRoomJson({reinterpret_cast<const char*>(data), size});
   return 0;

@@ -15,7 +15,7 @@
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/service/layer_index.h>
+#include <spindrift/service/stream_index.h>
 #include <spindrift/wire/client_message.h>
 #include <spindrift/wire/server_message.h>
 
@@ -93,21 +93,21 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
       const codec::Stream wanted = codec::streamOf(subscribe->layer, subscribe->packing);
       for (const codec::Stream stream : codec::allStreams()) {
         if (stream.layer != wanted.layer) continue;
-        hub_->watch(session, service::layerIndex(stream),
+        hub_->watch(session, service::streamIndex(stream),
                     {.max_rate_hz = stream.packing == wanted.packing ? subscribe->max_rate_hz : 0.0,
                      .level = subscribe->level,
                      .adapts = subscribe->adapts});
       }
     } else if (const auto* ping = std::get_if<wire::Ping>(&message)) {
       hub_->sendAnswer(session, wire::pong(ping->client_time_s, 0.0));
-    } else if (const auto* command = std::get_if<core::Command>(&message)) {
-      hub_->broadcastState(kRooms[command->command_id % 2], {.name = "room_state"}, wire::roomState(false, 1.0));
-      if (std::holds_alternative<core::Reset>(command->action)) hub_->join(session, kRooms[1]);
-      hub_->sendAnswer(session, wire::ack(command->command_id, 0));
+    } else if (const auto* command = std::get_if<v1::Command>(&message)) {
+      hub_->broadcastState(kRooms[command->command_id() % 2], {.name = "room_state"}, wire::roomState(false, 1.0));
+      if (command->has_reset()) hub_->join(session, kRooms[1]);
+      hub_->sendAnswer(session, wire::ack(command->command_id(), 0));
     }
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }
-  core::LayerDemand demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const override {
+  core::StreamDemand demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const override {
     return service::demandOf(*hub_, room, stream, reduced_count);
   }
   void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,

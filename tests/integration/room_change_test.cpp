@@ -11,7 +11,7 @@ class RoomChange : public RoomTest {
  protected:
   static constexpr std::uint32_t kStartCount = 512;  ///< kStillPool's
 
-  static core::Action count(double value) { return core::SetParameter{.path = "particles.count", .value = value}; }
+  static v1::Command count(double value) { return setParameter("particles.count", value); }
   std::uint32_t sceneCount() const { return room_->snapshot()->scene.particles().count(); }
   /// Another person's splash in the same round shows that the change has begun: heavy commands come first in their
   /// lane.
@@ -27,7 +27,7 @@ class RoomChange : public RoomTest {
 TEST_F(RoomChange, IsPreparedOnAThreadOfItsOwnWhileTheTicksOfTheRoomWait) {
   begin(1, 60000);
   const std::uint64_t tick = room_->tick();
-  send(2, core::Reset{});
+  send(2, reset());
   while (outlets_.applied.size() == 1) {
     EXPECT_EQ(room_->tick(), tick) << "the state stands still, so that a log replays it";
     ASSERT_TRUE(runUntil([n = 0]() mutable { return n++ > 0; }));
@@ -76,7 +76,7 @@ class RoomValues : public RoomChange {
   static constexpr std::uint64_t kValueCount = 40;
   void sendRefusedValues() {
     for (std::uint64_t id = 1; id <= kValueCount; ++id)
-      send(id, core::SetParameter{.path = "particles.sound_speed_mps", .value = 400.0 + static_cast<double>(id)});
+      send(id, setParameter("particles.sound_speed_mps", 400.0 + static_cast<double>(id)));
   }
 };
 

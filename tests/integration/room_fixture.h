@@ -29,10 +29,10 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   void wasReset(const rooms::Room&) override {}
   void hasRecovered(const rooms::Room&, const std::string&) override { ++recovered_count; }
   void closed(const rooms::Room&) override {}
-  void commandApplied(const core::Command& command, std::uint64_t, std::uint32_t) override {
-    applied.push_back(command.command_id);
+  void commandApplied(const rooms::Command& command, std::uint64_t, std::uint32_t) override {
+    applied.push_back(command.id());
   }
-  void commandRejected(const core::Command&, const wire::CommandRejection& rejection) override {
+  void commandRejected(const rooms::Command&, const wire::CommandRejection& rejection) override {
     rejected.push_back(rejection.message);
     rejected_ids.push_back(rejection.command_id);
   }
@@ -78,9 +78,11 @@ class RoomTest : public testing::Test {
     }
     return true;
   }
-  void send(std::uint64_t command_id, core::Action action = core::Splash{}, std::uint64_t session_id = 1) {
+  void send(std::uint64_t command_id, v1::Command message = splash(), std::uint64_t session_id = 1) {
+    auto checked = wire::checkCommand(numbered(command_id, std::move(message)));
+    ASSERT_TRUE(std::holds_alternative<v1::Command>(checked));
     const auto refused =
-        room_->admit({.sender = {.session_id = session_id}, .command_id = command_id, .action = std::move(action)});
+        room_->admit({.sender = {.session_id = session_id}, .message = std::get<v1::Command>(std::move(checked))});
     ASSERT_FALSE(refused) << refused->message;
   }
 

@@ -9,21 +9,10 @@
 
 #include <spindrift/v1/wire.pb.h>
 
+#include "commands.h"
 #include "ws_client.h"
 
 namespace spindrift::test {
-
-v1::Command splash(double depth_m = 0.5, double radius_m = 1.5);
-v1::Command setParameter(const std::string& path, double value);
-v1::Command setPaused(bool paused);
-v1::Command setSpeed(double speed);
-v1::Command reset();
-v1::Command spawnBoat(double x_m, double z_m);
-v1::Command controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
-v1::Command takeBoat(std::uint32_t boat_id);
-v1::Command removeBoat(std::uint32_t boat_id);
-v1::Command step(std::uint32_t tick_count);
-v1::Command changeScene(const std::string& name);
 
 /// The identity in Hello.
 struct Person {

@@ -2,40 +2,57 @@
 // predicates.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include <google/protobuf/message.h>
+
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::test {
 
-/// Every number of the action is finite and within its bounds.
-inline bool isFinite(const core::Action& action) {
-  if (const auto* splash = std::get_if<core::Splash>(&action)) {
-    return std::isfinite(splash->x_m + splash->z_m + splash->radius_m + splash->depth_m + splash->duration_s);
+/// Every number of the message is finite.
+inline bool isFinite(const google::protobuf::Message& message) {
+  using google::protobuf::FieldDescriptor;
+  const google::protobuf::Reflection& reflection = *message.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  reflection.ListFields(message, &fields);
+  return std::ranges::all_of(fields, [&](const FieldDescriptor* field) {
+    if (field->is_repeated()) return false;  // no command has one
+    if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE)
+      return std::isfinite(reflection.GetDouble(message, field));
+    if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) return isFinite(reflection.GetMessage(message, field));
+    return true;
+  });
+}
+
+/// The guarantees of wire::checkCommand() for a command that it accepts.
+inline bool isChecked(const v1::Command& command) {
+  if (!isFinite(command)) return false;
+  switch (command.action_case()) {
+    case v1::Command::ACTION_NOT_SET:
+      return false;
+    case v1::Command::kSplash:
+      return command.splash().radius_m() > 0 && command.splash().duration_s() > 0;
+    case v1::Command::kControlBoat:
+      return std::abs(command.control_boat().throttle_ratio()) <= 1 &&
+             std::abs(command.control_boat().rudder_ratio()) <= 1;
+    case v1::Command::kSpawnBoat:
+      return command.spawn_boat().boat().length_m() > 0;
+    case v1::Command::kStep:
+      return command.step().tick_count() >= 1 && command.step().tick_count() <= 600;
+    case v1::Command::kChangeScene: {
+      const std::string& name = command.change_scene().name();
+      return !name.empty() && name.size() <= 64 && name.find('/') == std::string::npos;
+    }
+    default:
+      return true;
   }
-  if (const auto* wave = std::get_if<core::BreakingWave>(&action)) {
-    return std::isfinite(wave->amplitude_m + wave->length_m + wave->duration_s);
-  }
-  if (const auto* set = std::get_if<core::SetParameter>(&action)) return std::isfinite(set->value);
-  if (const auto* speed = std::get_if<core::SetSpeed>(&action)) return std::isfinite(speed->speed);
-  if (const auto* spawn = std::get_if<core::SpawnBoat>(&action)) {
-    const core::Boat& boat = spawn->boat;
-    return std::isfinite(boat.x_m + boat.z_m + boat.heading_deg + boat.length_m + boat.beam_m + boat.height_m +
-                         boat.density_ratio + boat.max_speed_mps + boat.throttle_ratio + boat.rudder_ratio);
-  }
-  if (const auto* control = std::get_if<core::ControlBoat>(&action)) {
-    return std::abs(control->throttle_ratio) <= 1 && std::abs(control->rudder_ratio) <= 1;
-  }
-  if (const auto* step = std::get_if<core::Step>(&action)) return step->tick_count >= 1 && step->tick_count <= 600;
-  if (const auto* change = std::get_if<core::ChangeScene>(&action)) {
-    return !change->name.empty() && change->name.size() <= 64 && change->name.find('/') == std::string::npos;
-  }
-  return true;
 }
 
 /// The guarantees of parseClientMessage() for its result.
@@ -47,7 +64,7 @@ inline bool isHarmless(const wire::ClientMessage& message) {
     return subscribe->max_rate_hz >= 0 && subscribe->max_rate_hz <= 240 && v1::Layer_IsValid(subscribe->layer);
   }
   if (const auto* ping = std::get_if<wire::Ping>(&message)) return std::isfinite(ping->client_time_s);
-  if (const auto* command = std::get_if<core::Command>(&message)) return isFinite(command->action);
+  if (const auto* command = std::get_if<v1::Command>(&message)) return isChecked(*command);
   if (const auto* rejection = std::get_if<wire::CommandRejection>(&message)) {
     return rejection->reason != v1::REJECT_REASON_UNSPECIFIED && !rejection->message.empty();
   }

@@ -17,8 +17,8 @@
 #include <shared/fixed_point.h>
 
 #include <spindrift/scene/parameters.h>
+#include <spindrift/sim_setup/basin.h>
 
-#include "basin.h"
 #include "stability_scene.h"
 
 namespace spindrift {

@@ -12,6 +12,7 @@
 
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/wire/client_message.h>
 
@@ -38,26 +39,35 @@ class Crowd {
 
   /// Sends one command; returns whether the scene allowed it.
   bool send(sim::WaterSim& water) {
-    const core::Action action = any(water);
-    if (wire::checkAgainstScene(core::Command{{}, 1, action}, scene_)) return false;
-    if (const auto* splash = std::get_if<core::Splash>(&action)) return static_cast<bool>(water.start(*splash));
-    if (const auto* wave = std::get_if<core::BreakingWave>(&action)) return static_cast<bool>(water.start(*wave));
-    if (const auto* spawn = std::get_if<core::SpawnBoat>(&action))
-      return static_cast<bool>(water.spawnBoat(spawn->boat));
-    if (const auto* control = std::get_if<core::ControlBoat>(&action))
-      return static_cast<bool>(water.controlBoat(control->boat_id, control->throttle_ratio, control->rudder_ratio));
-    if (const auto* remove = std::get_if<core::RemoveBoat>(&action))
-      return static_cast<bool>(water.removeBoat(remove->boat_id));
-    if (const auto* set = std::get_if<core::SetParameter>(&action)) {
-      v1::Scene changed = scene_;
-      if (scene::setParameter(changed, set->path, set->value)) return false;
-      if (!water.setScene(scene::toCore(changed))) return false;
-      scene_ = std::move(changed);
-      ++accepted_[set->path];
-      return true;
+    const v1::Command command = any(water);
+    if (wire::checkAgainstScene(command, scene_)) return false;
+    switch (command.action_case()) {
+      case v1::Command::kSplash:
+        return static_cast<bool>(water.start(scene::toCore(command.splash())));
+      case v1::Command::kBreakingWave:
+        return static_cast<bool>(water.start(scene::toCore(command.breaking_wave())));
+      case v1::Command::kSpawnBoat:
+        return static_cast<bool>(water.spawnBoat(scene::toCore(command.spawn_boat().boat())));
+      case v1::Command::kControlBoat: {
+        const v1::ControlBoat& control = command.control_boat();
+        return static_cast<bool>(
+            water.controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio()));
+      }
+      case v1::Command::kRemoveBoat:
+        return static_cast<bool>(water.removeBoat(command.remove_boat().boat_id()));
+      case v1::Command::kSetParameter: {
+        const v1::SetParameter& set = command.set_parameter();
+        v1::Scene changed = scene_;
+        if (scene::setParameter(changed, set.path(), set.value())) return false;
+        if (!water.setScene(scene::toCore(changed))) return false;
+        scene_ = std::move(changed);
+        ++accepted_[set.path()];
+        return true;
+      }
+      default:
+        water.reset();
+        return true;
     }
-    water.reset();
-    return true;
   }
 
   /// The live parameters that no command has changed so far: always refused, or never tried.
@@ -73,43 +83,65 @@ class Crowd {
   [[nodiscard]] const v1::Scene& scene() const { return scene_; }
 
  private:
-  core::Action any(const sim::WaterSim& water) {
+  v1::Command any(const sim::WaterSim& water) {
     const double half_m = scene_.wave().side_m() / 2;
     const auto boats = water.boats();
+    const auto anyBoat = [&] {
+      return boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id;
+    };
     const int kind = dice_.upTo(1000);
-    if (kind < 1 && sends_ == Sends::kEverything) return core::Reset{};
-    if (kind < 250) {
-      return core::Splash{dice_.between(-half_m, half_m), dice_.between(-half_m, half_m), dice_.between(0.2, 3.0),
-                          dice_.between(0.05, 1.0), dice_.between(0.05, 0.6)};
+    v1::Command out;
+    if (kind < 1 && sends_ == Sends::kEverything) {
+      out.mutable_reset();
+    } else if (kind < 250) {
+      v1::Splash& splash = *out.mutable_splash();
+      splash.set_x_m(dice_.between(-half_m, half_m));
+      splash.set_z_m(dice_.between(-half_m, half_m));
+      splash.set_radius_m(dice_.between(0.2, 3.0));
+      splash.set_depth_m(dice_.between(0.05, 1.0));
+      splash.set_duration_s(dice_.between(0.05, 0.6));
+    } else if (kind < 400) {
+      v1::BreakingWave& wave = *out.mutable_breaking_wave();
+      wave.set_side(static_cast<v1::Side>(1 + dice_.upTo(5)));
+      wave.set_amplitude_m(dice_.between(0.05, 1.0));
+      wave.set_length_m(dice_.between(0.5, 8.0));
+      wave.set_duration_s(dice_.between(0.1, 1.0));
+      wave.set_shape(static_cast<v1::WaveShape>(1 + dice_.upTo(2)));
+      wave.set_direction_deg(dice_.between(-180, 180));
+    } else if (kind < 500) {
+      v1::Boat& boat = *out.mutable_spawn_boat()->mutable_boat();
+      boat.set_x_m(dice_.between(-half_m, half_m));
+      boat.set_z_m(dice_.between(-half_m, half_m));
+      boat.set_heading_deg(dice_.between(-180, 180));
+      boat.set_length_m(dice_.between(0.8, 5.0));
+      boat.set_beam_m(dice_.between(0.3, 0.8));
+      boat.set_height_m(dice_.between(0.2, 0.8));
+      boat.set_density_ratio(dice_.between(0.1, 0.9));
+      boat.set_max_speed_mps(dice_.between(1.0, 12.0));
+    } else if (kind < 750 && !boats.empty()) {
+      v1::ControlBoat& control = *out.mutable_control_boat();
+      control.set_boat_id(anyBoat());
+      control.set_throttle_ratio(dice_.between(-1, 1));
+      control.set_rudder_ratio(dice_.between(-1, 1));
+    } else if (kind < 800 && !boats.empty()) {
+      out.mutable_remove_boat()->set_boat_id(anyBoat());
+    } else if (sends_ == Sends::kEffectsAndBoats) {
+      return any(water);
+    } else {
+      *out.mutable_set_parameter() = anyParameter();
     }
-    if (kind < 400) {
-      return core::BreakingWave{static_cast<core::Side>(dice_.upTo(5)),
-                                dice_.between(0.05, 1.0),
-                                dice_.between(0.5, 8.0),
-                                dice_.between(0.1, 1.0),
-                                static_cast<core::WaveShape>(dice_.upTo(2)),
-                                dice_.between(-180, 180)};
-    }
-    if (kind < 500) {
-      return core::SpawnBoat{core::Boat{.x_m = dice_.between(-half_m, half_m),
-                                        .z_m = dice_.between(-half_m, half_m),
-                                        .heading_deg = dice_.between(-180, 180),
-                                        .length_m = dice_.between(0.8, 5.0),
-                                        .beam_m = dice_.between(0.3, 0.8),
-                                        .height_m = dice_.between(0.2, 0.8),
-                                        .density_ratio = dice_.between(0.1, 0.9),
-                                        .max_speed_mps = dice_.between(1.0, 12.0)}};
-    }
-    if (kind < 750 && !boats.empty()) {
-      return core::ControlBoat{boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id,
-                               dice_.between(-1, 1), dice_.between(-1, 1)};
-    }
-    if (kind < 800 && !boats.empty())
-      return core::RemoveBoat{boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id};
-    if (sends_ == Sends::kEffectsAndBoats) return any(water);
+    return out;
+  }
+
+  v1::SetParameter anyParameter() {
+    v1::SetParameter out;
     // Parameters that make a step several times as expensive are always set back at the next change of a parameter,
     // after a few ticks, so that a run of 10,000 commands ends in time.
-    if (costly_) return core::SetParameter{std::exchange(costly_, nullptr)->path(), costly_value_before_};
+    if (costly_) {
+      out.set_path(std::exchange(costly_, nullptr)->path());
+      out.set_value(costly_value_before_);
+      return out;
+    }
     // In turn, so that a short run tries all of them.
     const auto& parameter = parameters_[next_parameter_++ % parameters_.size()];
     double value = dice_.between(parameter.min(), parameter.max());
@@ -118,7 +150,9 @@ class Crowd {
       costly_ = &parameter;
       costly_value_before_ = parameter.value();
     }
-    return core::SetParameter{parameter.path(), value};
+    out.set_path(parameter.path());
+    out.set_value(value);
+    return out;
   }
 
   static bool isCostly(const std::string& path) {

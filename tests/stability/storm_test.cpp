@@ -7,7 +7,8 @@
 
 #include <shared/fixed_point.h>
 
-#include "basin.h"
+#include <spindrift/sim_setup/basin.h>
+
 #include "random_crowd.h"
 #include "stability_scene.h"
 

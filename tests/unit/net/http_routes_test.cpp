@@ -19,10 +19,11 @@ struct HttpRoutesTest : testing::Test {
     return std::holds_alternative<Reply>(routed) ? std::get<Reply>(std::move(routed)) : Reply{};
   }
   /// The request that would go to the application.
-  std::optional<Target> target(const std::string& method, const std::string& text) {
+  std::optional<RequestTarget> target(const std::string& method, const std::string& text) {
     StaticFiles files(folder.path().string());
     auto routed = routeRequest({method, text, ""}, files);
-    return std::holds_alternative<Target>(routed) ? std::optional(std::get<Target>(std::move(routed))) : std::nullopt;
+    return std::holds_alternative<RequestTarget>(routed) ? std::optional(std::get<RequestTarget>(std::move(routed)))
+                                                         : std::nullopt;
   }
   static std::string header(const Reply& reply, const std::string& name) {
     for (const auto& [known, value] : reply.headers) {

@@ -188,7 +188,7 @@ TEST(Outbox, ASlowerWatchTakesKeyframesOnly) {
   for (const std::string& frame : taken) EXPECT_EQ(frame, "w");
 }
 
-LayerBytes levelFrame(core::Level level, std::uint32_t reduced_count, bool is_whole = true) {
+FrameBytes levelFrame(core::Level level, std::uint32_t reduced_count, bool is_whole = true) {
   return {.keyframe = is_whole ? shared("whole") : nullptr,
           .delta = shared("continuing"),
           .level = level,
@@ -296,11 +296,12 @@ TEST(Outbox, ANewSubscriptionStartsWithAKeyframe) {
 TEST(Outbox, TakesLayersInTurn) {
   Outbox outbox(8);
   std::vector<core::SharedBytes> last(4);
-  for (LayerIndex layer = 0; layer < 4; ++layer) outbox.setWatch(layer, Watch{.max_rate_hz = kAnyRate_hz});
+  for (StreamIndex stream = 0; stream < 4; ++stream) outbox.setWatch(stream, Watch{.max_rate_hz = kAnyRate_hz});
   std::vector<std::size_t> order;
-  // Every layer is refilled after every send: without taking turns, only the first layer would be sent.
+  // Every stream is refilled after every send: without taking turns, only the first stream would be sent.
   for (int k = 0; k < 8; ++k) {
-    for (LayerIndex layer = 0; layer < 4; ++layer) outbox.offerFrame(layer, {last[layer] = shared("f"), {}}, later());
+    for (StreamIndex stream = 0; stream < 4; ++stream)
+      outbox.offerFrame(stream, {last[stream] = shared("f"), {}}, later());
     const auto sent = outbox.next().message;
     order.push_back(static_cast<std::size_t>(std::ranges::find(last, sent) - last.begin()));
   }
@@ -321,9 +322,9 @@ TEST(Outbox, KeepsToTheRateOfEachWatch) {
   int sent[3] = {};
   for (int k = 0; k < 60; ++k) {
     const auto now = start + std::chrono::microseconds(k * 16'667);
-    for (LayerIndex layer = 1; layer <= 2; ++layer) {
-      outbox.offerFrame(layer, {shared("f"), {}}, now);
-      if (outbox.next().kind == Outbox::Kind::kFrame) ++sent[layer];
+    for (StreamIndex stream = 1; stream <= 2; ++stream) {
+      outbox.offerFrame(stream, {shared("f"), {}}, now);
+      if (outbox.next().kind == Outbox::Kind::kFrame) ++sent[stream];
     }
   }
   EXPECT_EQ(sent[1], 30);

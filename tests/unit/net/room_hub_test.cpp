@@ -22,11 +22,11 @@ struct RecordingLink final : SessionLink {
 
   void sendAnswer(core::SharedBytes) override { ++control_count; }
   void sendState(const StateTopic&, core::SharedBytes) override { ++control_count; }
-  void offerFrame(LayerIndex, const LayerBytes&) override { ++frame_count; }
-  Outbox::Demand demand(LayerIndex, std::uint32_t reduced_count) const override {
+  void offerFrame(StreamIndex, const FrameBytes&) override { ++frame_count; }
+  Outbox::Demand demand(StreamIndex, std::uint32_t reduced_count) const override {
     return {.level = core::effectiveLevel(level, reduced_count), .wants_keyframe = wants_keyframe};
   }
-  void setWatch(LayerIndex, const std::optional<Watch>& watch) override {
+  void setWatch(StreamIndex, const std::optional<Watch>& watch) override {
     rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
     if (watch) level = watch->level;
   }
@@ -53,8 +53,8 @@ TEST_F(RoomHubTest, ReportsTheDemandPerLevel) {
   hub.join(2, "pool");
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   bob->wants_keyframe = true;
-  const auto at = [&](const char* room, LayerIndex layer, std::uint32_t reduced_count, Level level) {
-    return hub.demand(room, layer, reduced_count)[core::indexOf(level)];
+  const auto at = [&](const char* room, StreamIndex stream, std::uint32_t reduced_count, Level level) {
+    return hub.demand(room, stream, reduced_count)[core::indexOf(level)];
   };
   EXPECT_EQ(at("pool", 3, 2, Level::kFull).watcher_count, 1U);
   EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_keyframe) << "he does not watch it";

@@ -41,10 +41,10 @@ inline bool eventually(const std::function<bool()>& holds) {
   return true;
 }
 
-/// Number of watchers of a layer at any level.
-inline std::size_t watcherCount(const net::Hub& hub, const std::string& room, net::LayerIndex layer) {
+/// Number of watchers of a stream at any level.
+inline std::size_t watcherCount(const net::Hub& hub, const std::string& room, net::StreamIndex stream) {
   std::size_t count = 0;
-  const core::LayerDemand demand = hub.demand(room, layer, 0);
+  const core::StreamDemand demand = hub.demand(room, stream, 0);
   for (const core::LevelDemand& level : demand) count += level.watcher_count;
   return count;
 }
@@ -89,10 +89,10 @@ class TestApplication final : public net::Application {
     if (verb == "echo") {
       hub->sendAnswer(session, core::share(core::Bytes(message.begin(), message.end())));
     } else if (verb == "watch") {
-      net::LayerIndex layer = 0;
+      net::StreamIndex stream = 0;
       double rate_hz = 0.0;
-      words >> layer >> rate_hz;
-      hub->watch(session, layer, {.max_rate_hz = rate_hz});
+      words >> stream >> rate_hz;
+      hub->watch(session, stream, {.max_rate_hz = rate_hz});
       hub->sendAnswer(session, shared("watching"));
     } else if (verb == "flood") {
       std::size_t count = 0;
@@ -201,10 +201,10 @@ struct TestServer {
     return out;
   }
 
-  /// Returns a client that watches the layer.
-  WsClient watcher(net::LayerIndex layer, double rate_hz = 1e6, int receive_buffer_bytes = 0) const {
+  /// Returns a client that watches the stream.
+  WsClient watcher(net::StreamIndex stream, double rate_hz = 1e6, int receive_buffer_bytes = 0) const {
     WsClient out = client("/ws/pool", receive_buffer_bytes);
-    out.sendBinary(bytes("watch " + std::to_string(layer) + " " + std::to_string(rate_hz)));
+    out.sendBinary(bytes("watch " + std::to_string(stream) + " " + std::to_string(rate_hz)));
     EXPECT_EQ(text(out.receive()), "watching");
     return out;
   }

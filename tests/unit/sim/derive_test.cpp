@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/lattice.h>
+#include <spindrift/sim_setup/particle_layout.h>
 
-#include "lattice.h"
-#include "particle_layout.h"
 #include "sim_fixture.h"
 
 namespace spindrift::sim {

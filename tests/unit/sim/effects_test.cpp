@@ -1,6 +1,7 @@
-#include "effects.h"
 
 #include <gtest/gtest.h>
+
+#include <spindrift/sim_setup/effects.h>
 
 #include "sim_fixture.h"
 

@@ -1,9 +1,10 @@
-#include "fill_up.h"
 
 #include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include <spindrift/sim_setup/fill_up.h>
 
 namespace spindrift::sim {
 namespace {

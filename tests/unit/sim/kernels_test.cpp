@@ -13,8 +13,8 @@
 
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
+#include <spindrift/sim_setup/lattice.h>
 
-#include "lattice.h"
 #include "sim_fixture.h"
 
 namespace spindrift::sim {

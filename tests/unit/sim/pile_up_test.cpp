@@ -6,9 +6,10 @@
 #include <shared/bindings.h>
 #include <shared/grid.h>
 
+#include <spindrift/sim_setup/scene_parts.h>
+
 #include "neighbor_grid.h"
 #include "position_based.h"
-#include "scene_parts.h"
 #include "sim_fixture.h"
 #include "sph.h"
 

@@ -12,7 +12,8 @@
 #include <shared/event_uniforms.h>
 #include <shared/sim_uniforms.h>
 
-#include "scene_parts.h"
+#include <spindrift/sim_setup/scene_parts.h>
+
 #include "sim_fixture.h"
 
 namespace spindrift::sim {

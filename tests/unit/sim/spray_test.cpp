@@ -1,6 +1,7 @@
-#include "spray.h"
 
 #include <gtest/gtest.h>
+
+#include <spindrift/sim_setup/spray.h>
 
 namespace spindrift::sim {
 namespace {

@@ -8,7 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lattice.h"
+#include <spindrift/sim_setup/lattice.h>
+
 #include "sim_fixture.h"
 
 namespace spindrift::sim {

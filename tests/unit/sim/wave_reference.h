@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <spindrift/core/scene.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

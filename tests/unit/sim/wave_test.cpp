@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 #include <shared/fixed_point.h>
 
+#include <spindrift/sim_setup/basin.h>
 #include <spindrift/study/water_reference.h>
 
-#include "basin.h"
 #include "sim_fixture.h"
 #include "wave_reference.h"
 

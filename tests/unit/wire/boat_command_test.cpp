@@ -9,6 +9,8 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/client_message.h>
 
+#include "commands.h"
+
 namespace spindrift::wire {
 namespace {
 
@@ -22,11 +24,11 @@ ClientMessage parseCommand(const std::function<void(v1::Command&)>& fill) {
   return parseClientMessage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
-core::Action actionOf(const std::function<void(v1::Command&)>& fill) {
+v1::Command checkedCommand(const std::function<void(v1::Command&)>& fill) {
   const ClientMessage message = parseCommand(fill);
-  if (const auto* command = std::get_if<core::Command>(&message)) return command->action;
+  if (const auto* command = std::get_if<v1::Command>(&message)) return *command;
   ADD_FAILURE() << "no command";
-  return core::Reset{};
+  return {};
 }
 
 CommandRejection rejectionOf(const std::function<void(v1::Command&)>& fill) {
@@ -37,27 +39,28 @@ CommandRejection rejectionOf(const std::function<void(v1::Command&)>& fill) {
 }
 
 TEST(BoatCommands, ArriveWithTheirValuesAndDefaults) {
-  const auto spawn = std::get<core::SpawnBoat>(actionOf([](v1::Command& c) {
-    c.mutable_spawn_boat()->mutable_boat()->set_x_m(-3);
-    c.mutable_spawn_boat()->mutable_boat()->set_rudder_ratio(0.5);
-  }));
-  EXPECT_EQ(spawn.boat.x_m, -3.0);
-  EXPECT_EQ(spawn.boat.rudder_ratio, 0.5);
-  EXPECT_EQ(spawn.boat.length_m, core::Boat{}.length_m);
-  const auto plain = std::get<core::SpawnBoat>(actionOf([](v1::Command& c) { c.mutable_spawn_boat(); }));
-  EXPECT_EQ(plain.boat.density_ratio, core::Boat{}.density_ratio);
+  const v1::Boat boat = checkedCommand([](v1::Command& c) {
+                          c.mutable_spawn_boat()->mutable_boat()->set_x_m(-3);
+                          c.mutable_spawn_boat()->mutable_boat()->set_rudder_ratio(0.5);
+                        })
+                            .spawn_boat()
+                            .boat();
+  EXPECT_EQ(boat.x_m(), -3.0);
+  EXPECT_EQ(boat.rudder_ratio(), 0.5);
+  EXPECT_EQ(boat.length_m(), core::Boat{}.length_m);
+  const v1::Boat plain = checkedCommand([](v1::Command& c) { c.mutable_spawn_boat(); }).spawn_boat().boat();
+  EXPECT_EQ(plain.density_ratio(), core::Boat{}.density_ratio);
 
-  const auto control = std::get<core::ControlBoat>(actionOf([](v1::Command& c) {
-    c.mutable_control_boat()->set_boat_id(7);
-    c.mutable_control_boat()->set_throttle_ratio(-1);
-    c.mutable_control_boat()->set_rudder_ratio(0.25);
-  }));
-  EXPECT_EQ(control.boat_id, 7u);
-  EXPECT_EQ(control.throttle_ratio, -1.0);
-  EXPECT_EQ(control.rudder_ratio, 0.25);
-  EXPECT_EQ(
-      std::get<core::RemoveBoat>(actionOf([](v1::Command& c) { c.mutable_remove_boat()->set_boat_id(9); })).boat_id,
-      9u);
+  const v1::ControlBoat control = checkedCommand([](v1::Command& c) {
+                                    c.mutable_control_boat()->set_boat_id(7);
+                                    c.mutable_control_boat()->set_throttle_ratio(-1);
+                                    c.mutable_control_boat()->set_rudder_ratio(0.25);
+                                  }).control_boat();
+  EXPECT_EQ(control.boat_id(), 7u);
+  EXPECT_EQ(control.throttle_ratio(), -1.0);
+  EXPECT_EQ(control.rudder_ratio(), 0.25);
+  EXPECT_EQ(checkedCommand([](v1::Command& c) { c.mutable_remove_boat()->set_boat_id(9); }).remove_boat().boat_id(),
+            9u);
 }
 
 TEST(BoatCommands, OutOfRangeOrNotFiniteAreRejectedWithTheirField) {
@@ -75,9 +78,8 @@ TEST(BoatCommands, OutOfRangeOrNotFiniteAreRejectedWithTheirField) {
 }
 
 TEST(StepCommands, TakeTheirRangeAndOneTickByDefault) {
-  EXPECT_EQ(std::get<core::Step>(actionOf([](v1::Command& c) { c.mutable_step(); })).tick_count, 1u);
-  EXPECT_EQ(std::get<core::Step>(actionOf([](v1::Command& c) { c.mutable_step()->set_tick_count(600); })).tick_count,
-            600u);
+  EXPECT_EQ(checkedCommand([](v1::Command& c) { c.mutable_step(); }).step().tick_count(), 1u);
+  EXPECT_EQ(checkedCommand([](v1::Command& c) { c.mutable_step()->set_tick_count(600); }).step().tick_count(), 600u);
   for (const std::uint32_t count : {0u, 601u}) {
     const auto rejection = rejectionOf([&](v1::Command& c) { c.mutable_step()->set_tick_count(count); });
     EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
@@ -87,10 +89,9 @@ TEST(StepCommands, TakeTheirRangeAndOneTickByDefault) {
 }
 
 TEST(SceneCommands, AcceptNamesButNoPaths) {
-  EXPECT_EQ(std::get<core::ChangeScene>(actionOf([](v1::Command& c) {
-              c.mutable_change_scene()->set_name("wave_only");
-            })).name,
-            "wave_only");
+  EXPECT_EQ(
+      checkedCommand([](v1::Command& c) { c.mutable_change_scene()->set_name("wave_only"); }).change_scene().name(),
+      "wave_only");
   for (const std::string& name : {std::string(), std::string("../etc/passwd"), std::string("a b"), std::string(65, 'a'),
                                   std::string("a\nb"), std::string(5000, 'x')}) {
     const auto rejection = rejectionOf([&](v1::Command& c) { c.mutable_change_scene()->set_name(name); });
@@ -111,48 +112,53 @@ v1::Scene harbour() {
 TEST(BoatCommands, NeedASceneWithBoats) {
   const auto scene = scene::parseSceneText("wave {}", "pool.textproto");
   ASSERT_TRUE(scene);
-  const std::pair<core::Action, std::string> cases[] = {
-      {core::SpawnBoat{}, "spawn_boat"}, {core::ControlBoat{}, "control_boat"}, {core::RemoveBoat{}, "remove_boat"}};
-  for (const auto& [action, field] : cases) {
-    const auto rejection = checkAgainstScene(core::Command{{}, 2, action}, *scene);
+  const std::pair<v1::Command, std::string> cases[] = {{test::spawnBoat(0, 0), "spawn_boat"},
+                                                       {test::controlBoat(1, 0, 0), "control_boat"},
+                                                       {test::removeBoat(1), "remove_boat"},
+                                                       {test::takeBoat(1), "take_boat"}};
+  for (const auto& [command, field] : cases) {
+    const auto rejection = checkAgainstScene(test::numbered(2, command), *scene);
     ASSERT_TRUE(rejection) << field;
     EXPECT_EQ(rejection->command_id, 2u);
     EXPECT_EQ(rejection->reason, v1::REJECT_REASON_ABSENT_PART);
     EXPECT_EQ(rejection->field, field);
-    EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, action}, harbour()));
+    EXPECT_FALSE(checkAgainstScene(command, harbour()));
   }
 }
 
 TEST(BoatCommands, AreRejectedWhereTheSceneForbidsABoat) {
-  const auto rejectionFor = [](const core::Boat& boat) {
-    return checkAgainstScene(core::Command{{}, 2, core::SpawnBoat{boat}}, harbour()).value_or(CommandRejection{});
+  const auto rejectionFor = [](const std::function<void(v1::Boat&)>& change) {
+    v1::Command spawn = test::spawnBoat(0, 0);
+    change(*spawn.mutable_spawn_boat()->mutable_boat());
+    return checkAgainstScene(spawn, harbour()).value_or(CommandRejection{});
   };
-  EXPECT_EQ(rejectionFor({.x_m = 7.5}).field, "spawn_boat.boat.x_m");
-  EXPECT_EQ(rejectionFor({.z_m = -8.0}).field, "spawn_boat.boat.z_m");
-  EXPECT_EQ(rejectionFor({.length_m = 5.0}).field, "spawn_boat.boat.length_m");
-  EXPECT_EQ(rejectionFor({.beam_m = 3.0}).field, "spawn_boat.boat.beam_m");
-  EXPECT_EQ(rejectionFor({.height_m = 3.0}).field, "spawn_boat.boat.height_m");
-  const CommandRejection aground = rejectionFor({.x_m = 4.0});
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_x_m(7.5); }).field, "spawn_boat.boat.x_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_z_m(-8.0); }).field, "spawn_boat.boat.z_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_length_m(5.0); }).field, "spawn_boat.boat.length_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_beam_m(3.0); }).field, "spawn_boat.boat.beam_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_height_m(3.0); }).field, "spawn_boat.boat.height_m");
+  const CommandRejection aground = rejectionFor([](v1::Boat& boat) { boat.set_x_m(4.0); });
   EXPECT_EQ(aground.reason, v1::REJECT_REASON_OUT_OF_RANGE);
   EXPECT_THAT(aground.message, HasSubstr("obstacles[0]"));
-  EXPECT_EQ(rejectionFor({.z_m = 5.0}).reason, v1::REJECT_REASON_UNSPECIFIED) << "open water";
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_z_m(5.0); }).reason, v1::REJECT_REASON_UNSPECIFIED)
+      << "open water";
 }
 
 TEST(SceneCommands, AndStepsAreNotCheckedAgainstTheScene) {
-  for (const core::Action& action : {core::Action(core::Step{5}), core::Action(core::ChangeScene{"anything"})}) {
-    EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, action}, harbour()));
-  }
+  for (const v1::Command& command : {test::step(5), test::changeScene("anything")})
+    EXPECT_FALSE(checkAgainstScene(command, harbour()));
 }
 
 TEST(WavesInADirection, HaveTheBoundsOfWavesFromASide) {
-  const core::BreakingWave fine{.side = core::Side::kDirection, .amplitude_m = 0.5, .direction_deg = 33};
-  EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, fine}, harbour()));
-  core::BreakingWave high = fine;
-  high.amplitude_m = 0.95;
-  EXPECT_EQ(checkAgainstScene(core::Command{{}, 2, high}, harbour())->field, "breaking_wave.amplitude_m");
-  core::BreakingWave longer = fine;
-  longer.length_m = 17;
-  EXPECT_EQ(checkAgainstScene(core::Command{{}, 2, longer}, harbour())->field, "breaking_wave.length_m");
+  v1::Command fine = test::breakingWave(v1::SIDE_DIRECTION, 0.5, 3.0);
+  fine.mutable_breaking_wave()->set_direction_deg(33);
+  EXPECT_FALSE(checkAgainstScene(fine, harbour()));
+  v1::Command high = fine;
+  high.mutable_breaking_wave()->set_amplitude_m(0.95);
+  EXPECT_EQ(checkAgainstScene(high, harbour())->field, "breaking_wave.amplitude_m");
+  v1::Command longer = fine;
+  longer.mutable_breaking_wave()->set_length_m(17);
+  EXPECT_EQ(checkAgainstScene(longer, harbour())->field, "breaking_wave.length_m");
 }
 
 }  // namespace

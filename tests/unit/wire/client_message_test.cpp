@@ -7,11 +7,21 @@
 
 #include <spindrift/core/text.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
 #include <spindrift/wire/client_message.h>
+
+#include "commands.h"
 
 namespace spindrift::wire {
 namespace {
 
+using test::at;
+using test::breakingWave;
+using test::reset;
+using test::setParameter;
+using test::setPaused;
+using test::setSpeed;
+using test::splash;
 using testing::HasSubstr;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -35,11 +45,10 @@ ClientMessage parseCommand(const std::function<void(v1::Command&)>& fill) {
   return parse(commandMessage(fill));
 }
 
-core::Command expectCommand(const std::function<void(v1::Command&)>& fill) {
+v1::Command expectCommand(const std::function<void(v1::Command&)>& fill) {
   const ClientMessage message = parseCommand(fill);
-  if (const auto* command = std::get_if<core::Command>(&message)) {
-    EXPECT_EQ(command->command_id, 42u);
-    EXPECT_EQ(command->sender.session_id, 0u);
+  if (const auto* command = std::get_if<v1::Command>(&message)) {
+    EXPECT_EQ(command->command_id(), 42u);
     return *command;
   }
   ADD_FAILURE() << "no command";
@@ -162,53 +171,49 @@ TEST(ClientMessages, UnknownFieldsAreIgnored) {
   std::string bytes = commandMessage([](v1::Command& c) { c.mutable_reset(); }).SerializeAsString();
   bytes += std::string("\xfa\x01\x03\x61\x62\x63", 6);  // field 31, "abc"
   const ClientMessage message = parseClientMessage(viewOf(bytes));
-  ASSERT_TRUE(std::holds_alternative<core::Command>(message));
-  EXPECT_TRUE(std::holds_alternative<core::Reset>(std::get<core::Command>(message).action));
+  ASSERT_TRUE(std::holds_alternative<v1::Command>(message));
+  const auto& command = std::get<v1::Command>(message);
+  EXPECT_TRUE(command.has_reset());
+  EXPECT_TRUE(command.GetReflection()->GetUnknownFields(command).empty()) << "they would wait in the room's queue";
 }
 
 TEST(ClientMessages, CommandsArriveWithTheirValues) {
-  const auto splash = std::get<core::Splash>(expectCommand([](v1::Command& c) {
-                                               v1::Splash& s = *c.mutable_splash();
-                                               s.set_x_m(-3);
-                                               s.set_z_m(0);
-                                               s.set_radius_m(2);
-                                               s.set_depth_m(0.25);
-                                               s.set_duration_s(0.5);
-                                             }).action);
-  EXPECT_EQ(splash.x_m, -3.0);
-  EXPECT_EQ(splash.z_m, 0.0);
-  EXPECT_EQ(splash.radius_m, 2.0);
-  EXPECT_EQ(splash.depth_m, 0.25);
-  EXPECT_EQ(splash.duration_s, 0.5);
+  const v1::Splash splash = expectCommand([](v1::Command& c) {
+                              v1::Splash& s = *c.mutable_splash();
+                              s.set_x_m(-3);
+                              s.set_z_m(0);
+                              s.set_radius_m(2);
+                              s.set_depth_m(0.25);
+                              s.set_duration_s(0.5);
+                            }).splash();
+  EXPECT_EQ(splash.x_m(), -3.0);
+  EXPECT_EQ(splash.z_m(), 0.0);
+  EXPECT_EQ(splash.radius_m(), 2.0);
+  EXPECT_EQ(splash.depth_m(), 0.25);
+  EXPECT_EQ(splash.duration_s(), 0.5);
 
-  const auto wave = std::get<core::BreakingWave>(
-      expectCommand([](v1::Command& c) { c.mutable_breaking_wave()->set_side(v1::SIDE_PLUS_Z); }).action);
-  EXPECT_EQ(wave.side, core::Side::kPlusZ);
+  const v1::Command wave = expectCommand([](v1::Command& c) { c.mutable_breaking_wave()->set_side(v1::SIDE_PLUS_Z); });
+  EXPECT_EQ(wave.breaking_wave().side(), v1::SIDE_PLUS_Z);
 
-  const auto set = std::get<core::SetParameter>(expectCommand([](v1::Command& c) {
-                                                  c.mutable_set_parameter()->set_path("wave.depth_m");
-                                                  c.mutable_set_parameter()->set_value(2.5);
-                                                }).action);
-  EXPECT_EQ(set.path, "wave.depth_m");
-  EXPECT_EQ(set.value, 2.5);
+  const v1::Command set = expectCommand([](v1::Command& c) {
+    c.mutable_set_parameter()->set_path("wave.depth_m");
+    c.mutable_set_parameter()->set_value(2.5);
+  });
+  EXPECT_EQ(set.set_parameter().path(), "wave.depth_m");
+  EXPECT_EQ(set.set_parameter().value(), 2.5);
 
-  EXPECT_TRUE(
-      std::get<core::SetPaused>(expectCommand([](v1::Command& c) { c.mutable_set_paused()->set_paused(true); }).action)
-          .paused);
-  EXPECT_EQ(
-      std::get<core::SetSpeed>(expectCommand([](v1::Command& c) { c.mutable_set_speed()->set_speed(0.5); }).action)
-          .speed,
-      0.5);
+  EXPECT_TRUE(expectCommand([](v1::Command& c) { c.mutable_set_paused()->set_paused(true); }).set_paused().paused());
+  EXPECT_EQ(expectCommand([](v1::Command& c) { c.mutable_set_speed()->set_speed(0.5); }).set_speed().speed(), 0.5);
 }
 
 TEST(ClientMessages, CommandsLeftEmptyTakeTheDefaultsOfCore) {
-  const auto splash = std::get<core::Splash>(expectCommand([](v1::Command& c) { c.mutable_splash(); }).action);
-  EXPECT_EQ(splash.radius_m, core::Splash{}.radius_m);
-  EXPECT_EQ(splash.depth_m, core::Splash{}.depth_m);
-  const auto wave =
-      std::get<core::BreakingWave>(expectCommand([](v1::Command& c) { c.mutable_breaking_wave(); }).action);
-  EXPECT_EQ(wave.side, core::BreakingWave{}.side);
-  EXPECT_EQ(wave.amplitude_m, core::BreakingWave{}.amplitude_m);
+  const v1::Splash splash = expectCommand([](v1::Command& c) { c.mutable_splash(); }).splash();
+  EXPECT_EQ(splash.radius_m(), core::Splash{}.radius_m);
+  EXPECT_EQ(splash.depth_m(), core::Splash{}.depth_m);
+  const v1::BreakingWave wave = expectCommand([](v1::Command& c) { c.mutable_breaking_wave(); }).breaking_wave();
+  EXPECT_EQ(scene::toCore(wave).side, core::BreakingWave{}.side);
+  EXPECT_NE(wave.side(), v1::SIDE_UNSPECIFIED);
+  EXPECT_EQ(wave.amplitude_m(), core::BreakingWave{}.amplitude_m);
 }
 
 TEST(ClientMessages, CommandsOutOfRangeAreRejectedWithTheirFieldAndId) {
@@ -265,7 +270,7 @@ v1::Scene smallPool() {
 
 struct SceneLimit {
   const char* name;
-  core::Action action;
+  v1::Command command;
   const char* field;
   v1::RejectReason reason;
 };
@@ -273,7 +278,7 @@ struct SceneLimit {
 class ForbiddenByTheScene : public testing::TestWithParam<SceneLimit> {};
 
 TEST_P(ForbiddenByTheScene, IsRejectedWithItsField) {
-  const auto rejection = checkAgainstScene(core::Command{{}, 6, GetParam().action}, smallPool());
+  const auto rejection = checkAgainstScene(test::numbered(6, GetParam().command), smallPool());
   ASSERT_TRUE(rejection);
   EXPECT_EQ(rejection->command_id, 6u);
   EXPECT_EQ(rejection->field, GetParam().field);
@@ -282,18 +287,16 @@ TEST_P(ForbiddenByTheScene, IsRejectedWithItsField) {
 }
 
 const SceneLimit kSceneLimits[] = {
-    {"Deep", core::Splash{0, 0, 1, 0.91, 0.2}, "splash.depth_m", v1::REJECT_REASON_OUT_OF_RANGE},
-    {"OutsideX", core::Splash{-2.1, 0, 1, 0.5, 0.2}, "splash.x_m", v1::REJECT_REASON_OUT_OF_RANGE},
-    {"OutsideZ", core::Splash{0, 2.1, 1, 0.5, 0.2}, "splash.z_m", v1::REJECT_REASON_OUT_OF_RANGE},
-    {"Wide", core::Splash{0, 0, 2.1, 0.5, 0.2}, "splash.radius_m", v1::REJECT_REASON_OUT_OF_RANGE},
-    {"High", core::BreakingWave{core::Side::kPlusX, 0.95, 1, 0.5}, "breaking_wave.amplitude_m",
-     v1::REJECT_REASON_OUT_OF_RANGE},
-    {"Long", core::BreakingWave{core::Side::kPlusX, 0.5, 4.5, 0.5}, "breaking_wave.length_m",
-     v1::REJECT_REASON_OUT_OF_RANGE},
-    {"AbsentParameter", core::SetParameter{"foam.lifetime_s", 1}, "foam.lifetime_s", v1::REJECT_REASON_ABSENT_PART},
-    {"UnknownParameter", core::SetParameter{"wave.colour", 1}, "wave.colour", v1::REJECT_REASON_UNKNOWN_PARAMETER},
-    {"RestartParameter", core::SetParameter{"wave.side_m", 8}, "wave.side_m", v1::REJECT_REASON_NEEDS_RESTART},
-    {"ParameterOutOfRange", core::SetParameter{"wave.depth_m", 101}, "wave.depth_m", v1::REJECT_REASON_OUT_OF_RANGE},
+    {"Deep", at(0, 0, splash(0.91, 1)), "splash.depth_m", v1::REJECT_REASON_OUT_OF_RANGE},
+    {"OutsideX", at(-2.1, 0, splash(0.5, 1)), "splash.x_m", v1::REJECT_REASON_OUT_OF_RANGE},
+    {"OutsideZ", at(0, 2.1, splash(0.5, 1)), "splash.z_m", v1::REJECT_REASON_OUT_OF_RANGE},
+    {"Wide", at(0, 0, splash(0.5, 2.1)), "splash.radius_m", v1::REJECT_REASON_OUT_OF_RANGE},
+    {"High", breakingWave(v1::SIDE_PLUS_X, 0.95, 1), "breaking_wave.amplitude_m", v1::REJECT_REASON_OUT_OF_RANGE},
+    {"Long", breakingWave(v1::SIDE_PLUS_X, 0.5, 4.5), "breaking_wave.length_m", v1::REJECT_REASON_OUT_OF_RANGE},
+    {"AbsentParameter", setParameter("foam.lifetime_s", 1), "foam.lifetime_s", v1::REJECT_REASON_ABSENT_PART},
+    {"UnknownParameter", setParameter("wave.colour", 1), "wave.colour", v1::REJECT_REASON_UNKNOWN_PARAMETER},
+    {"RestartParameter", setParameter("wave.side_m", 8), "wave.side_m", v1::REJECT_REASON_NEEDS_RESTART},
+    {"ParameterOutOfRange", setParameter("wave.depth_m", 101), "wave.depth_m", v1::REJECT_REASON_OUT_OF_RANGE},
 };
 
 INSTANTIATE_TEST_SUITE_P(ClientMessages, ForbiddenByTheScene, testing::ValuesIn(kSceneLimits),
@@ -304,26 +307,26 @@ TEST(ClientMessages, WithoutAWaveTheBoxOfParticlesLimitsEffects) {
   const auto scene =
       scene::parseSceneText("particles { count: 8000 layers_count: 20 box_side_m: 4 box_width_m: 2 }", "box.textproto");
   ASSERT_TRUE(scene);
-  EXPECT_FALSE(checkAgainstScene(core::Command{{}, 2, core::Splash{0, 0, 0.9, 2.5, 0.2}}, *scene));
-  const auto deep = checkAgainstScene(core::Command{{}, 2, core::Splash{0, 0, 0.9, 2.6, 0.2}}, *scene);
+  EXPECT_FALSE(checkAgainstScene(at(0, 0, splash(2.5, 0.9)), *scene));
+  const auto deep = checkAgainstScene(at(0, 0, splash(2.6, 0.9)), *scene);
   ASSERT_TRUE(deep);
   EXPECT_EQ(deep->field, "splash.depth_m");
   EXPECT_THAT(deep->message, HasSubstr("2.8284"));
-  const auto wide = checkAgainstScene(core::Command{{}, 2, core::Splash{0, 0, 1.1, 0.5, 0.2}}, *scene);
+  const auto wide = checkAgainstScene(at(0, 0, splash(0.5, 1.1)), *scene);
   ASSERT_TRUE(wide);
   EXPECT_EQ(wide->field, "splash.radius_m");
 }
 
 TEST(ClientMessages, CommandsThatTheSceneAllowsPass) {
-  const core::Action fine[] = {core::Splash{2, -2, 2, 0.9, 0.2},
-                               core::BreakingWave{core::Side::kMinusZ, 0.9, 4, 0.5},
-                               core::SetParameter{"wave.depth_m", 3},
-                               core::Reset{},
-                               core::SetPaused{true},
-                               core::SetSpeed{2}};
-  for (const core::Action& action : fine) {
-    const auto rejection = checkAgainstScene(core::Command{{}, 2, action}, smallPool());
-    EXPECT_FALSE(rejection) << "action " << action.index() << ": " << rejection->message;
+  const v1::Command fine[] = {at(2, -2, splash(0.9, 2)),
+                              breakingWave(v1::SIDE_MINUS_Z, 0.9, 4),
+                              setParameter("wave.depth_m", 3),
+                              reset(),
+                              setPaused(true),
+                              setSpeed(2)};
+  for (const v1::Command& command : fine) {
+    const auto rejection = checkAgainstScene(command, smallPool());
+    EXPECT_FALSE(rejection) << command.ShortDebugString() << ": " << rejection->message;
   }
 }
 

@@ -124,7 +124,7 @@ TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndGetEveryKindOfResult) {
     const ClientMessage message = parseClientMessage(mutate(valid[random.below(valid.size())], random));
     ASSERT_TRUE(isHarmless(message)) << "case " << i;
     ++answer_counts[message.index()];
-    if (const auto* command = std::get_if<core::Command>(&message)) {
+    if (const auto* command = std::get_if<v1::Command>(&message)) {
       const auto rejection = checkAgainstScene(*command, scene);
       ASSERT_TRUE(!rejection || !rejection->message.empty()) << "case " << i;
     }

@@ -26,7 +26,7 @@ class LevelMeter {
   boost::json::array print(std::FILE* out) const;
 
  private:
-  struct Level {
+  struct LevelCost {
     std::uint64_t frame_count = 0;
     double surface_bytes = 0.0, particle_bytes = 0.0, foam_bytes = 0.0;
     double encode_ms = 0.0;
@@ -40,7 +40,7 @@ class LevelMeter {
   std::uint64_t frame_count_ = 0;
   core::ReducedCounts counts_;
   codec::FrameEncoder encoder_;
-  std::array<Level, core::kLevelCount> levels_;
+  std::array<LevelCost, core::kLevelCount> levels_;
   /// For levels that add to each other: bits of all particles up to a level, and their number.
   std::array<double, core::kLevelCount> part_bits_{};
   std::array<double, core::kLevelCount> part_counts_{};

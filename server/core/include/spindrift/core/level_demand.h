@@ -13,6 +13,6 @@ struct LevelDemand {
   /// At least one session can take the next frame only as a keyframe: it is new, lost a frame, or skips frames.
   bool wants_keyframe = false;
 };
-using LayerDemand = std::array<LevelDemand, kLevelCount>;
+using StreamDemand = std::array<LevelDemand, kLevelCount>;
 
 }  // namespace spindrift::core

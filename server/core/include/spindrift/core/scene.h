@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 
 namespace spindrift::core {
 

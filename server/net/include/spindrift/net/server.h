@@ -16,25 +16,25 @@
 #include <vector>
 
 #include <spindrift/core/bytes.h>
-#include <spindrift/core/command.h>
 #include <spindrift/core/level.h>
 #include <spindrift/core/level_demand.h>
 #include <spindrift/core/result.h>
+#include <spindrift/core/sender.h>
 
 namespace spindrift::net {
 
 using core::SessionId;
 
-/// Data-plane layer; the number indexes the newest-frame slots of an outbox.
-using LayerIndex = std::uint32_t;
-inline constexpr LayerIndex kMaxLayerCount = 16;
+/// A stream of frames: one layer in one packing. The number indexes the newest-frame slots of an outbox.
+using StreamIndex = std::uint32_t;
+inline constexpr StreamIndex kMaxStreamCount = 16;
 
-/// One frame of a layer in the forms that its sessions need; one of the two may be null.
-struct LayerBytes {
+/// One frame of a stream in the forms that its sessions need; one of the two may be null.
+struct FrameBytes {
   core::SharedBytes keyframe;  ///< can be decoded alone
   core::SharedBytes delta;     ///< needs the previous frame of this level
   core::Level level = core::Level::kFull;
-  std::uint32_t reduced_count = 0;  ///< number of levels that downsample the layer; others equal kFull
+  std::uint32_t reduced_count = 0;  ///< number of levels that downsample its layer; others equal kFull
 };
 
 /// Topic of a state message: among waiting messages with the same name only the newest is sent.
@@ -48,9 +48,9 @@ struct StateTopic {
   Scope scope = Scope::kAlone;
 };
 
-/// How a session watches a layer.
+/// How a session watches a stream.
 struct Watch {
-  double max_rate_hz = 0.0;  ///< 0 stops the layer
+  double max_rate_hz = 0.0;  ///< 0 stops the stream
   core::Level level = core::Level::kFull;
   bool adapts = false;  ///< the server may lower the level while the link cannot carry this one
 };
@@ -114,17 +114,17 @@ class Hub {
   /// The same for every session of the room.
   virtual void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) = 0;
 
-  /// Data plane: one write in flight and one newest slot per layer; an unsent older frame in the slot is dropped and
-  /// counted. `room` is the group that the sessions joined. Only sessions that watch `layer` get the frame, at most at
+  /// Data plane: one write in flight and one newest slot per stream; an unsent older frame in the slot is dropped and
+  /// counted. `room` is the group that the sessions joined. Only sessions that watch `stream` get the frame, at most at
   /// their requested rate (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted).
   /// A session that has the previous frame gets the delta if there is one, any other session the keyframe. If the
   /// keyframe is missing, it gets nothing, and demand() reports the need. Each level is published by itself; a session
   /// gets its own level.
-  virtual void publish(const std::string& room, LayerIndex layer, const LayerBytes& frame) = 0;
+  virtual void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
-  /// Returns which levels of the layer are watched now, and in which form, so that unwatched levels are not encoded.
-  /// `reduced_count`: number of levels that downsample the layer; requests for higher levels count as kFull.
-  virtual core::LayerDemand demand(const std::string& room, LayerIndex layer, std::uint32_t reduced_count) const = 0;
+  /// Returns which levels of the stream are watched now, and in which form, so that unwatched levels are not encoded.
+  /// `reduced_count`: number of levels that downsample its layer; requests for higher levels count as kFull.
+  virtual core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count) const = 0;
 
   /// Moves the session into a room. It leaves its previous room; its watches stay, unsent frames are dropped.
   virtual void join(SessionId session, const std::string& room) = 0;
@@ -134,8 +134,8 @@ class Hub {
   /// Number of sessions in all rooms.
   virtual std::size_t sessionCount() const = 0;
 
-  /// Starts, changes or stops a layer for a session.
-  virtual void watch(SessionId session, LayerIndex layer, const Watch& watch) = 0;
+  /// Starts, changes or stops a stream for a session.
+  virtual void watch(SessionId session, StreamIndex stream, const Watch& watch) = 0;
 
   /// Sends all queued control messages, then closes. The socket is closed after close_timeout in any case.
   virtual void close(SessionId session, CloseCode code, std::string reason) = 0;

@@ -12,13 +12,9 @@
 #include <string>
 #include <vector>
 
-#include <spindrift/core/command.h>
+#include <spindrift/rooms/command.h>
 
 namespace spindrift::rooms {
-
-/// Returns whether the command rebuilds or uploads water (reset, scene, parameters, adding and removing boats). Such
-/// commands have a time budget.
-[[nodiscard]] bool isHeavy(const core::Action& action);
 
 /// Many producers on any thread, one consumer on the simulation thread.
 class CommandQueue {
@@ -36,11 +32,11 @@ class CommandQueue {
   explicit CommandQueue(const Bounds& bounds) : bounds_(bounds) {}
 
   /// Queues the command; otherwise returns one line that names the bound that was reached.
-  [[nodiscard]] std::optional<std::string> tryPush(core::Command command, TimePoint now);
+  [[nodiscard]] std::optional<std::string> tryPush(Command command, TimePoint now);
 
   /// Commands that are carried out together, in order of arrival, at least one: one command; or consecutive values of
   /// one sender for the same parameter; or the same reset or scene change from any senders.
-  using Batch = std::vector<core::Command>;
+  using Batch = std::vector<Command>;
 
   /// Kinds of commands that may be taken now in addition to light ones.
   struct Allowed {
@@ -55,8 +51,8 @@ class CommandQueue {
   void hold(const Batch& batch);
   void release(const Batch& batch);
 
-  /// Takes the first commands of lanes, held or not, that equal `action`: they get the same answer.
-  [[nodiscard]] Batch takeEqual(const core::Action& action);
+  /// Takes the first commands of lanes, held or not, that equal `command`: they get the same answer.
+  [[nodiscard]] Batch takeEqual(const v1::Command& command);
   /// Takes heavy commands that have waited for longer than `heavy_wait_max` and do not belong to a held lane.
   [[nodiscard]] Batch takeExpired(TimePoint now);
   /// Takes all commands.
@@ -68,7 +64,7 @@ class CommandQueue {
   /// The lane of a session is its number; each HTTP request has a lane of its own with a larger number.
   using LaneKey = std::uint64_t;
   struct Entry {
-    core::Command command;
+    Command command;
     TimePoint arrived;
   };
   struct Lane {
@@ -79,8 +75,8 @@ class CommandQueue {
 
   static LaneKey keyOf(const core::Sender& sender);
   // Call with the mutex held:
-  core::Command pop(Lane& lane);
-  void takeEqual(const core::Action& action, Batch& out);
+  Command pop(Lane& lane);
+  void takeEqual(const v1::Command& command, Batch& out);
   /// Removes a lane without commands, unless it is held.
   void tidy(LaneKey key);
 

@@ -18,7 +18,7 @@ class FrameOutlet {
 
   /// Returns the demand for the next frame of a stream by the sessions that watch it. `reduced_count`: number of levels
   /// that downsample the layer; the others equal kFull.
-  [[nodiscard]] virtual core::LayerDemand demand(const std::string& room, codec::Stream stream,
+  [[nodiscard]] virtual core::StreamDemand demand(const std::string& room, codec::Stream stream,
                                                  std::uint32_t reduced_count) const = 0;
   /// Sends one level of a frame to every session that watches it.
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,

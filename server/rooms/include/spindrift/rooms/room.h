@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include <spindrift/core/command.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
+#include <spindrift/rooms/command.h>
 #include <spindrift/rooms/command_log.h>
 #include <spindrift/rooms/command_queue.h>
 #include <spindrift/rooms/growth_news.h>
@@ -51,7 +51,8 @@ struct RoomRules {
 
 /// State of a room for other threads: immutable, replaced when it changes.
 struct RoomSnapshot {
-  v1::Scene scene;  ///< with current parameter values
+  v1::Scene scene;                  ///< with current parameter values
+  std::uint64_t scene_version = 0;  ///< Stage::sceneVersion()
   bool paused = false;
   double speed = 1.0;
   v1::BoatList boats;  ///< boats on the water now
@@ -87,7 +88,7 @@ class Room {
   [[nodiscard]] const Roster& roster() const { return roster_; }
   /// The only entry for commands, from sessions and requests: checks the sender's role and the scene, then queues the
   /// command. Otherwise returns the rejection with the command's number; a full queue is BUSY.
-  [[nodiscard]] std::optional<wire::CommandRejection> admit(core::Command command);
+  [[nodiscard]] std::optional<wire::CommandRejection> admit(Command command);
 
   // Simulation thread.
   void start(TimePoint now);
@@ -113,7 +114,7 @@ class Room {
   using Batch = CommandQueue::Batch;
   /// Outcome of a command; sent after all clients have been told the new state.
   struct Answer {
-    core::Command command;
+    Command command;
     Outcome rejected;
     std::uint32_t boat_id = 0;
   };
@@ -138,7 +139,7 @@ class Room {
   };
   /// A parameter change that lays out the particles anew; the room's ticks wait for it.
   struct Change {
-    core::Command command;
+    Command command;
     Values others;
     Stage::Relayout relayout;  ///< without its basis
     std::future<WaterBuilder::Prepared> prepared;
@@ -155,19 +156,26 @@ class Room {
 
   // room_commands.cpp
   void applyCommands(TimePoint now);
+  /// What the server knows about one kind of command: see the table in room_commands.cpp.
+  struct CommandKind;
+  static const CommandKind& kindOf(const v1::Command& command);
+  friend const CommandTraits& traitsOf(const v1::Command& command);
+  friend class Stage;
   /// Carries out a batch of commands together.
   void apply(Batch batch);
-  Outcome apply(const core::Command& command);
+  /// Checks the command against the scene again if the scene changed since the command was admitted.
+  [[nodiscard]] Outcome checkAgain(const Command& command) const;
   /// Applies the command to the stage and writes it to the log.
-  Outcome applyToWater(const core::Command& command);
-  void recordCommand(const core::Command& command);
-  Outcome reset(const core::Command& command);
-  Outcome spawnBoat(const core::Command& command);
-  Outcome controlBoat(const core::Command& command, std::uint32_t boat_id);
-  Outcome removeBoat(const core::Command& command, std::uint32_t boat_id);
-  Outcome takeBoat(const core::Sender& sender, std::uint32_t boat_id);
-  Outcome setPaused(bool paused);
-  Outcome advance(const core::Step& step);
+  Outcome applyToWater(const Command& command);
+  void recordCommand(const Command& command);
+  Outcome reset(const Command& command);
+  Outcome spawnBoat(const Command& command);
+  Outcome controlBoat(const Command& command);
+  Outcome removeBoat(const Command& command);
+  Outcome takeBoat(const Command& command);
+  Outcome setPaused(const Command& command);
+  Outcome setSpeed(const Command& command);
+  Outcome advance(const Command& command);
   /// Stores the outcome of each command.
   void answer(Batch batch, const Outcome& outcome);
   /// Tells all clients the changes, then the senders the outcomes of their commands.
@@ -184,11 +192,12 @@ class Room {
   void announceRecovery(TimePoint now);
 
   // room_change.cpp
+  void setParameters(Batch values);
   void applyNewest(Values values);
   /// Answers all commands of `values`: untried ones are acknowledged as superseded, tried ones get their outcomes.
   void conclude(Values values);
   /// Starts the change and returns true if the value lays out the particles anew.
-  bool beginChange(const core::Command& command, Values& others);
+  bool beginChange(const Command& command, Values& others);
   /// Adopts the new particles if their layout is finished.
   void finishChange();
   /// Gives every command of the change, and of values that were put off, this rejection where it has no outcome yet.
@@ -198,8 +207,8 @@ class Room {
   /// Continues with values that were put off; returns false if there are none.
   bool resumeValues();
   /// Returns why the scene, or the time of a tick, does not allow the value.
-  [[nodiscard]] Outcome refuseChange(const core::Command& command, const core::SetParameter& change) const;
-  void parameterChanged(const core::SetParameter& change);
+  [[nodiscard]] Outcome refuseChange(const Command& command) const;
+  void parameterChanged(const v1::SetParameter& change);
 
   // room_scene.cpp
   void beginScene(Batch batch);
@@ -239,7 +248,8 @@ class Room {
   std::unique_ptr<CommandLogWriter> log_;  ///< null: no log
   CommandQueue commands_;
   WorkBudget heavy_budget_;
-  std::vector<Answer> answers_;  ///< since the last announce()
+  std::vector<Answer> answers_;    ///< since the last announce()
+  std::uint32_t new_boat_id_ = 0;  ///< boat id that the command being carried out added; 0: none
   News news_;
   std::optional<WaterBuild> build_;
   std::optional<Change> change_;

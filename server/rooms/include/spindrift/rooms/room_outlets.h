@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <string>
 
-#include <spindrift/core/command.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/level.h>
+#include <spindrift/rooms/command.h>
 #include <spindrift/v1/wire.pb.h>
 #include <spindrift/wire/client_message.h>
 
@@ -46,9 +46,9 @@ class RoomOutlets {
   virtual void closed(const Room& room) = 0;
 
   /// `boat_id`: the new boat for SpawnBoat, otherwise 0.
-  virtual void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
+  virtual void commandApplied(const Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
   /// The rejection contains the command's number.
-  virtual void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) = 0;
+  virtual void commandRejected(const Command& command, const wire::CommandRejection& rejection) = 0;
 
   /// A frame with the levels that watched() returned. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/sender.h>
 #include <spindrift/v1/wire.pb.h>
 
 namespace spindrift::rooms {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 #include <spindrift/core/result.h>
 #include <spindrift/rooms/tick_cost.h>
 #include <spindrift/rooms/water.h>
@@ -31,27 +31,37 @@ class Stage {
   /// `water` is bound to the calling thread; its scene is checked and has its defaults.
   explicit Stage(std::unique_ptr<Water> water);
 
-  /// Returns whether the action changes the water and belongs to apply(). The room handles time, scenes and ownership.
-  static bool takes(const core::Action& action);
-  /// Applies an action between two ticks; a rejected one changes nothing.
-  Outcome apply(const core::Action& action);
+  /// Returns whether the command changes the water and belongs to apply(). The room handles time, scenes and ownership.
+  static bool takes(const v1::Command& command);
+  /// Applies a command that wire::checkCommand() accepted, between two ticks; a rejected one changes nothing.
+  Outcome apply(const v1::Command& command);
+
+  // One per kind of command that changes the water, called by apply(); see the table in room_commands.cpp.
+  using Handler = Outcome (Stage::*)(const v1::Command& command);
+  Outcome splash(const v1::Command& command);
+  Outcome breakingWave(const v1::Command& command);
+  Outcome setParameter(const v1::Command& command);
+  Outcome reset(const v1::Command& command);
+  Outcome spawnBoat(const v1::Command& command);
+  Outcome controlBoat(const v1::Command& command);
+  Outcome removeBoat(const v1::Command& command);
 
   /// A parameter change that lays out the particles anew, which is slow enough to need another thread.
   struct Relayout {
-    core::SetParameter change;
+    v1::SetParameter change;
     v1::Scene changed;
     core::Scene wanted;  ///< input of sim::prepareScene(), from `changed`
     sim::SceneBasis basis;
   };
-  /// Returns such a change with copies of its inputs; nullopt if apply() handles the action. Then run
+  /// Returns such a change with copies of its inputs; nullopt if apply() handles the value. Then run
   /// sim::prepareScene() with `wanted` and `basis` on any thread and call adopt(), with no tick in between. apply()
   /// does the same in one call.
-  [[nodiscard]] std::optional<Relayout> relayout(const core::Action& action);
+  [[nodiscard]] std::optional<Relayout> relayout(const v1::SetParameter& change);
   Outcome adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared);
   /// Returns the work per tick, now or with another value of a parameter; nullopt if the value is not allowed, for
   /// which apply() gives the reason.
   [[nodiscard]] TickWork work() const;
-  [[nodiscard]] std::optional<TickWork> workWith(const core::SetParameter& change) const;
+  [[nodiscard]] std::optional<TickWork> workWith(const v1::SetParameter& change) const;
   /// Duration of a tick measured when the water was built [ms].
   [[nodiscard]] double warmTick_ms() const { return water_->warmTick_ms(); }
   /// Replaces the water by another one, which is bound from now on; returns the old one for destruction. The room's
@@ -69,6 +79,8 @@ class Stage {
   [[nodiscard]] std::optional<std::string> failure() { return water_->failure(); }
 
   [[nodiscard]] const v1::Scene& scene() const { return water_->scene(); }  ///< with current parameter values
+  /// Grows with every change of scene(). Never 0.
+  [[nodiscard]] std::uint64_t sceneVersion() const { return scene_version_; }
   [[nodiscard]] sim::WaterSim& water() { return water_->sim(); }
   [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
   [[nodiscard]] const gpu::DeviceInfo& device() const { return water_->context().device(); }
@@ -84,15 +96,19 @@ class Stage {
   [[nodiscard]] v1::BoatList boats() const;
 
  private:
+  /// Returns the handler of a command; null if it does not change the water.
+  static Handler handlerOf(const v1::Command& command);
   Outcome startEffect(const core::Effect& effect);
-  Outcome setParameter(const core::SetParameter& change);
-  Outcome spawnBoat(const core::SpawnBoat& spawn);
-  Outcome controlBoat(const core::ControlBoat& control);
-  Outcome removeBoat(const core::RemoveBoat& remove);
+
+  void setScene(v1::Scene scene) {
+    water_->scene() = std::move(scene);
+    ++scene_version_;
+  }
 
   std::unique_ptr<Water> water_;
   std::uint64_t tick_shift_ = 0;  ///< room tick minus simulation tick, modulo 2^64
   std::uint64_t state_id_ = 1;
+  std::uint64_t scene_version_ = 1;
   std::uint32_t spawned_boat_id_ = 0;
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <spindrift/core/scene.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::rooms {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 #include <spindrift/scene/fields.h>
 #include <spindrift/v1/scene.pb.h>
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include <spindrift/core/command.h>
 #include <spindrift/core/result.h>
+#include <spindrift/core/sender.h>
 
 namespace spindrift::service {
 

@@ -60,17 +60,17 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   [[nodiscard]] rooms::WatchedLayers watched(const rooms::Room& room, const core::ReducedCounts& counts) const override;
   [[nodiscard]] std::size_t sessionCount(const rooms::Room& room) const override;
   [[nodiscard]] std::size_t sessionCount() const override;
-  void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
-  void commandRejected(const core::Command& command, const wire::CommandRejection& rejection) override;
+  void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
+  void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
 
   // FrameOutlet interface
-  [[nodiscard]] core::LayerDemand demand(const std::string& room, codec::Stream stream,
-                                         std::uint32_t reduced_count) const override;
+  [[nodiscard]] core::StreamDemand demand(const std::string& room, codec::Stream stream,
+                                          std::uint32_t reduced_count) const override;
   void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
                std::uint32_t reduced_count) override;
 
  private:
-  struct Session {
+  struct SessionState {
     std::shared_ptr<rooms::Room> room;
     std::shared_ptr<const rooms::RoomSnapshot> greeted;  ///< the state sent in the last greeting
     core::TokenBucket commands;
@@ -83,9 +83,9 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   [[nodiscard]] rooms::SimulationThread& simulation() const { return *rooms_; }
   /// Sends a greeting with the room's present state and stores that state.
   void greet(net::SessionId session, const rooms::Room& room);
-  void hello(net::SessionId session, const Session& state, const wire::Hello& hello);
-  void subscribe(net::SessionId session, const Session& state, const wire::Subscribe& subscribe);
-  void command(net::SessionId session, const Session& state, core::Command command);
+  void hello(net::SessionId session, const SessionState& state, const wire::Hello& hello);
+  void subscribe(net::SessionId session, const SessionState& state, const wire::Subscribe& subscribe);
+  void command(net::SessionId session, const SessionState& state, v1::Command message);
   /// Takes a token of the session's command rate; returns false if there is none.
   bool takeCommand(net::SessionId session);
   void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
@@ -99,7 +99,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   RestApi rest_;
   net::Hub* hub_ = nullptr;  ///< set before any session exists
   std::mutex mutex_;
-  std::map<net::SessionId, Session> sessions_;
+  std::map<net::SessionId, SessionState> sessions_;
 };
 
 }  // namespace spindrift::service

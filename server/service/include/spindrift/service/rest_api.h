@@ -35,8 +35,8 @@ class RestApi {
   void answer(const net::HttpRequest& request, net::HttpResponder respond);
 
   /// Reports the outcome of a request's command, by its request_id.
-  void commandApplied(const core::Command& command, std::uint64_t tick, std::uint32_t boat_id);
-  void commandRejected(const core::Command& command, const wire::CommandRejection& rejection);
+  void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
+  void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
 
  private:
   struct Call {

@@ -7,8 +7,8 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/sim/derive.h>
 #include <spindrift/sim/state_copy.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

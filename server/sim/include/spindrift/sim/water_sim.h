@@ -9,17 +9,17 @@
 #include <span>
 #include <vector>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
 #include <spindrift/sim/boat_record.h>
-#include <spindrift/sim/derive.h>
 #include <spindrift/sim/health.h>
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/state_copy.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

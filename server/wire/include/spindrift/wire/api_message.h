@@ -7,7 +7,6 @@
 
 #include <google/protobuf/message.h>
 
-#include <spindrift/core/command.h>
 #include <spindrift/core/result.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/client_message.h>
@@ -20,7 +19,7 @@ std::string toJson(const google::protobuf::Message& message);
 
 /// Parses one Command, with names as in the proto files or in lowerCamelCase, and checks it like one from a session.
 /// Returns Malformed for text that is no such object or has unknown fields.
-std::variant<core::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json);
+std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json);
 
 /// Error: kInvalidInput with one line. Does not check whether the name is free or the scene exists.
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json);

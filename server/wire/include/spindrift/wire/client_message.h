@@ -8,8 +8,8 @@
 #include <variant>
 
 #include <spindrift/core/bytes.h>
-#include <spindrift/core/command.h>
 #include <spindrift/core/level.h>
+#include <spindrift/core/sender.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/v1/wire.pb.h>
 
@@ -61,26 +61,25 @@ struct Malformed {
   std::string message;  ///< one line for the user
 };
 
-using ClientMessage = std::variant<Hello, Subscribe, core::Command, Ping, CommandRejection, Malformed>;
+using ClientMessage = std::variant<Hello, Subscribe, v1::Command, Ping, CommandRejection, Malformed>;
 
 /// Parses and checks one client message. Numbers in the result are finite and in range, fields left out have their
-/// defaults, and the sender is empty, because only the caller knows the session.
+/// defaults.
 ClientMessage parseClientMessage(core::ByteView bytes);
 
-/// Checks a command from any source, as parseClientMessage() does.
-std::variant<core::Command, CommandRejection> checkCommand(const v1::Command& command);
+/// Checks a command from any source, as parseClientMessage() does. Returns it with defaults in the fields left out and
+/// without unknown fields.
+std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command);
 
-/// Converts a command to its message; the inverse of checkCommand().
-v1::Command toWire(const core::Command& command);
 v1::Role toWire(core::Role role);
 v1::Reject toWire(const CommandRejection& rejection);
 
 /// Returns nullopt if this server supports the client's version, otherwise one line for a Refusal.
 std::optional<std::string> checkVersion(const Hello& hello);
 
-/// Checks a valid command against the scene: absent parts, splashes deeper or wider than the water or outside of it,
-/// crests too high or too long, parameters unknown, restart-only or out of range, boats too big, outside of the water
-/// or in an obstacle. nullopt = allowed. `scene` has its defaults filled in.
-std::optional<CommandRejection> checkAgainstScene(const core::Command& command, const v1::Scene& scene);
+/// Checks a command that checkCommand() accepted against the scene: absent parts, splashes deeper or wider than the
+/// water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range, boats too
+/// big, outside of the water or in an obstacle. nullopt = allowed. `scene` has its defaults filled in.
+std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, const v1::Scene& scene);
 
 }  // namespace spindrift::wire

@@ -6,9 +6,9 @@
 
 #include <shared/event_uniforms.h>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 #include <spindrift/core/result.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

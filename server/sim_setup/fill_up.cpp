@@ -1,9 +1,10 @@
-#include "fill_up.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <shared/fixed_point.h>
+
+#include <spindrift/sim_setup/fill_up.h>
 
 namespace spindrift::sim {
 

@@ -9,22 +9,22 @@
 
 namespace spindrift::service {
 
-static_assert(codec::kStreamCount <= net::kMaxLayerCount);
+static_assert(codec::kStreamCount <= net::kMaxStreamCount);
 
-inline net::LayerIndex layerIndex(codec::Stream stream) {
-  return static_cast<net::LayerIndex>(codec::indexOf(stream));
+inline net::StreamIndex streamIndex(codec::Stream stream) {
+  return static_cast<net::StreamIndex>(codec::indexOf(stream));
 }
 
 /// FrameOutlet::demand(), forwarded to a hub.
-inline core::LayerDemand demandOf(const net::Hub& hub, const std::string& room, codec::Stream stream,
-                                  std::uint32_t reduced_count) {
-  return hub.demand(room, layerIndex(stream), reduced_count);
+inline core::StreamDemand demandOf(const net::Hub& hub, const std::string& room, codec::Stream stream,
+                                   std::uint32_t reduced_count) {
+  return hub.demand(room, streamIndex(stream), reduced_count);
 }
 
 /// FrameOutlet::publish(), forwarded to a hub.
 inline void publishTo(net::Hub& hub, const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                       core::Level level, std::uint32_t reduced_count) {
-  hub.publish(room, layerIndex(stream),
+  hub.publish(room, streamIndex(stream),
               {.keyframe = frame.keyframe, .delta = frame.delta, .level = level, .reduced_count = reduced_count});
 }
 

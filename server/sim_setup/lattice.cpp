@@ -1,8 +1,9 @@
-#include "lattice.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <spindrift/sim_setup/lattice.h>
 
 namespace spindrift::sim {
 namespace {

@@ -1,9 +1,10 @@
-#include "basin.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <spindrift/sim_setup/basin.h>
 
 namespace spindrift::sim {
 namespace {

@@ -1,13 +1,11 @@
-#include "scene_parts.h"
+#include "shader_defines.h"
 
 #include <string>
 
-#include "particle_buffers.h"
+#include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
 namespace {
-
-using core::WaveBoundary;
 
 /// Number of a kernel set in shaders/particles/kernels.glsl.
 int kernelSetNumber(core::KernelSet set) {
@@ -23,69 +21,6 @@ int kernelSetNumber(core::KernelSet set) {
 }
 
 }  // namespace
-
-bool isPeriodicX(const core::WaveScene& wave) {
-  return wave.boundary_minus_x == WaveBoundary::kPeriodic;
-}
-bool isPeriodicZ(const core::WaveScene& wave) {
-  return wave.boundary_minus_z == WaveBoundary::kPeriodic;
-}
-
-bool isOpen(const core::Scene& scene) {
-  const core::WaveScene& w = *scene.wave;
-  for (const WaveBoundary side : {w.boundary_minus_x, w.boundary_plus_x, w.boundary_minus_z, w.boundary_plus_z}) {
-    if (side == WaveBoundary::kAbsorb) return true;
-  }
-  return false;
-}
-
-bool isTwoWay(const core::Scene& scene) {
-  return scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
-}
-bool hasSurfaceFoam(const core::Scene& scene) {
-  return scene.wave && scene.foam && scene.foam->surface;
-}
-bool hasPressureHead(const core::Scene& scene) {
-  return scene.wave && (scene.boats || isTwoWay(scene));
-}
-bool hasBreakers(const core::Scene& scene) {
-  return scene.wave && (isTwoWay(scene) || hasSurfaceFoam(scene) || scene.wave->steepening_ratio > 0);
-}
-bool isSampled(const core::Scene& scene) {
-  return scene.wave && (scene.coupling || scene.boats || hasBreakers(scene));
-}
-
-bool isVaried(const core::Scene& scene) {
-  const core::WaveScene& w = *scene.wave;
-  const bool has_walls = !isPeriodicX(w) || !isPeriodicZ(w);
-  return isOpen(scene) || !scene.obstacles.empty() || !scene.beaches.empty() ||
-         (has_walls && w.stencil == core::Stencil::kNinePoint);
-}
-
-bool countsNeighbours(const core::Scene& scene) {
-  return scene.particles && scene.foam && scene.foam->neighbours_count > 0;
-}
-
-bool storesFoamSource(const core::Scene& scene) {
-  return countsNeighbours(scene) && scene.particles->solver == core::PressureSolver::kWeaklyCompressible;
-}
-
-int followNumber(const core::Scene& scene) {
-  if (!scene.coupling || isTwoWay(scene)) return 0;
-  switch (scene.coupling->patch_follow) {
-    case core::PatchFollow::kEvent:
-      return 1;
-    case core::PatchFollow::kBoat:
-      return 2;
-    case core::PatchFollow::kNothing:
-      break;
-  }
-  return 0;
-}
-
-bool asksForOtherCount(const core::Scene& before, const core::Scene& after) {
-  return before.particles && after.particles && before.particles->count != after.particles->count;
-}
 
 gpu::Defines shaderDefines(const core::Scene& scene) {
   const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };

@@ -5,12 +5,11 @@
 #include <fmt/format.h>
 #include <shared/fixed_point.h>
 
-#include <spindrift/sim/derive.h>
-
-#include "lattice.h"
-#include "particle_layout.h"
-#include "scene_parts.h"
-#include "spray.h"
+#include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/lattice.h>
+#include <spindrift/sim_setup/particle_layout.h>
+#include <spindrift/sim_setup/scene_parts.h>
+#include <spindrift/sim_setup/spray.h>
 
 namespace spindrift::sim {
 namespace {

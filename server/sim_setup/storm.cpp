@@ -1,11 +1,11 @@
-#include "storm.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <shared/event_uniforms.h>
 
-#include "random.h"
+#include <spindrift/sim_setup/random.h>
+#include <spindrift/sim_setup/storm.h>
 
 namespace spindrift::sim {
 namespace {

@@ -1,10 +1,11 @@
-#include "effects.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
+
+#include <spindrift/sim_setup/effects.h>
 
 namespace spindrift::sim {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <spindrift/core/command.h>
+#include <spindrift/core/effect.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/sim/derive.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 

@@ -1,7 +1,8 @@
-#include "spray.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include <spindrift/sim_setup/spray.h>
 
 namespace spindrift::sim {
 namespace {

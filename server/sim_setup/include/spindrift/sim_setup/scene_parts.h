@@ -1,8 +1,7 @@
-// The parts that a scene has, and the defines that specialise its shaders: only present parts are compiled.
+// The parts that a scene has.
 #pragma once
 
 #include <spindrift/core/scene.h>
-#include <spindrift/gpu/program.h>
 
 namespace spindrift::sim {
 
@@ -32,7 +31,5 @@ int followNumber(const core::Scene& scene);
 
 /// Returns whether a change of a scene with particles changes their number.
 bool asksForOtherCount(const core::Scene& before, const core::Scene& after);
-
-gpu::Defines shaderDefines(const core::Scene& scene);
 
 }  // namespace spindrift::sim

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include <spindrift/core/scene.h>
-#include <spindrift/sim/derive.h>
-
-#include "scene_parts.h"
+#include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
 

@@ -1,12 +1,12 @@
-#include "particle_layout.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "lattice.h"
-#include "scene_parts.h"
+#include <spindrift/sim_setup/lattice.h>
+#include <spindrift/sim_setup/particle_layout.h>
+#include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
 namespace {

@@ -1,0 +1,18 @@
+#include "commands.h"
+
+namespace spindrift::cli {
+
+void addDevice(CLI::App& command, std::string& device) {
+  command.add_option("--device", device, "auto, software, or a device number from `info`")->capture_default_str();
+}
+
+void addFidelity(CLI::App& command, std::string& fidelity) {
+  command.add_option("--fidelity", fidelity, "How finely scenes are simulated, whatever they say themselves")
+      ->check(CLI::IsMember({"draft", "balanced", "fine", "reference"}));
+}
+
+void addJson(CLI::App& command, std::string& file) {
+  command.add_option("--json", file, "Write JSON to this file, - = standard output");
+}
+
+}  // namespace spindrift::cli

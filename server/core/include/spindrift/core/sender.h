@@ -1,0 +1,30 @@
+// The sender of a command and its permissions.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace spindrift::core {
+
+/// Permissions of a sender; each role includes the ones before.
+enum class Role { kViewer, kPlayer, kOperator };
+
+/// "viewer", "player", "operator".
+std::string_view roleName(Role role);
+/// Returns nullopt for a name that is not a role.
+std::optional<Role> parseRole(std::string_view name);
+
+/// Identifies one connection for the life of the process; never 0, never reused.
+using SessionId = std::uint64_t;
+
+/// The sender of a command: a session or an HTTP request. Exactly one id is not 0, unless the room itself is the
+/// sender.
+struct Sender {
+  SessionId session_id = 0;
+  std::uint64_t request_id = 0;
+  std::uint32_t person_id = 0;  ///< the session's person in its room; 0: none
+  Role role = Role::kOperator;
+};
+
+}  // namespace spindrift::core

@@ -1,0 +1,103 @@
+// Commands with the values that tests vary; the other fields are left out.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <spindrift/v1/wire.pb.h>
+
+namespace spindrift::test {
+
+inline v1::Command splash(double depth_m = 0.5, double radius_m = 1.5) {
+  v1::Command command;
+  command.mutable_splash()->set_depth_m(depth_m);
+  command.mutable_splash()->set_radius_m(radius_m);
+  return command;
+}
+
+inline v1::Command setParameter(const std::string& path, double value) {
+  v1::Command command;
+  command.mutable_set_parameter()->set_path(path);
+  command.mutable_set_parameter()->set_value(value);
+  return command;
+}
+
+inline v1::Command setPaused(bool paused) {
+  v1::Command command;
+  command.mutable_set_paused()->set_paused(paused);
+  return command;
+}
+
+inline v1::Command setSpeed(double speed) {
+  v1::Command command;
+  command.mutable_set_speed()->set_speed(speed);
+  return command;
+}
+
+inline v1::Command reset() {
+  v1::Command command;
+  command.mutable_reset();
+  return command;
+}
+
+inline v1::Command spawnBoat(double x_m, double z_m) {
+  v1::Command command;
+  command.mutable_spawn_boat()->mutable_boat()->set_x_m(x_m);
+  command.mutable_spawn_boat()->mutable_boat()->set_z_m(z_m);
+  return command;
+}
+
+inline v1::Command controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {
+  v1::Command command;
+  command.mutable_control_boat()->set_boat_id(boat_id);
+  command.mutable_control_boat()->set_throttle_ratio(throttle_ratio);
+  command.mutable_control_boat()->set_rudder_ratio(rudder_ratio);
+  return command;
+}
+
+inline v1::Command takeBoat(std::uint32_t boat_id) {
+  v1::Command command;
+  command.mutable_take_boat()->set_boat_id(boat_id);
+  return command;
+}
+
+inline v1::Command removeBoat(std::uint32_t boat_id) {
+  v1::Command command;
+  command.mutable_remove_boat()->set_boat_id(boat_id);
+  return command;
+}
+
+inline v1::Command step(std::uint32_t tick_count) {
+  v1::Command command;
+  command.mutable_step()->set_tick_count(tick_count);
+  return command;
+}
+
+inline v1::Command changeScene(const std::string& name) {
+  v1::Command command;
+  command.mutable_change_scene()->set_name(name);
+  return command;
+}
+
+inline v1::Command breakingWave(v1::Side side, double amplitude_m, double length_m) {
+  v1::Command command;
+  command.mutable_breaking_wave()->set_side(side);
+  command.mutable_breaking_wave()->set_amplitude_m(amplitude_m);
+  command.mutable_breaking_wave()->set_length_m(length_m);
+  return command;
+}
+
+/// The command with a number.
+inline v1::Command numbered(std::uint64_t command_id, v1::Command command) {
+  command.set_command_id(command_id);
+  return command;
+}
+
+/// The splash with a place.
+inline v1::Command at(double x_m, double z_m, v1::Command command) {
+  command.mutable_splash()->set_x_m(x_m);
+  command.mutable_splash()->set_z_m(z_m);
+  return command;
+}
+
+}  // namespace spindrift::test
