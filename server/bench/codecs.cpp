@@ -67,10 +67,10 @@ v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
 class CodecMeter {
  public:
   core::Result<void> add(const core::FrameView& frame) {
-    if (frame.surface) {
+    if (frame.at(core::Level::kFull).surface) {
       if (auto done = addSurface(frame); !done) return done;
     }
-    if (frame.particles && frame.particles->count > 0) {
+    if (const auto& particles = frame.at(core::Level::kFull).particles; particles && particles->count > 0) {
       if (auto done = addParticles(frame); !done) return done;
     }
     return {};
@@ -87,7 +87,7 @@ class CodecMeter {
 
  private:
   core::Result<void> addSurface(const core::FrameView& frame) {
-    const core::SurfaceView& view = *frame.surface;
+    const core::SurfaceView& view = *frame.at(core::Level::kFull).surface;
     const std::size_t samples = 2 * view.words.size();
     auto begin = Clock::now();
     const core::SharedBytes plain = encoder_.encode(v1::LAYER_SURFACE, frame);
@@ -102,11 +102,11 @@ class CodecMeter {
     // The delta is encoded as in a room; the keyframe by a separate encoder, so that the times stay apart.
     const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
     begin = Clock::now();
-    const codec::EncodedFrame encoded = encoder_.encode(packed, frame, false);
+    const codec::EncodedFrame encoded = encoder_.encode(packed, frame, core::Level::kFull, false);
     const double encode_ms = sinceMs(begin);
     codec::FrameEncoder fresh;
     begin = Clock::now();
-    const codec::EncodedFrame whole = fresh.encode(packed, frame, true);
+    const codec::EncodedFrame whole = fresh.encode(packed, frame, core::Level::kFull, true);
     surface_whole_.encode_ms += sinceMs(begin);
     surface_whole_.add(whole.keyframe->size(), samples);
     const v1::LayerFrame message = frameOf(encoded.delta ? encoded.delta : encoded.keyframe);
@@ -126,7 +126,7 @@ class CodecMeter {
   }
 
   core::Result<void> addParticles(const core::FrameView& frame) {
-    const core::ParticleView& view = *frame.particles;
+    const core::ParticleView& view = *frame.at(core::Level::kFull).particles;
     auto begin = Clock::now();
     const core::SharedBytes plain = encoder_.encode(v1::LAYER_PARTICLES, frame);
     particles_plain_.encode_ms += sinceMs(begin);
@@ -138,7 +138,8 @@ class CodecMeter {
     particles_zstd_.add(zstd(view.words), view.count, 0.0);
 
     begin = Clock::now();
-    const codec::EncodedFrame encoded = encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, frame, true);
+    const codec::EncodedFrame encoded =
+        encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, frame, core::Level::kFull, true);
     particles_.encode_ms += sinceMs(begin);
     const v1::LayerFrame message = frameOf(encoded.keyframe);
     begin = Clock::now();
@@ -168,18 +169,20 @@ class CodecMeter {
   /// Positions only, because other codecs for points code nothing else.
   void addPlaces(const core::FrameView& frame, const v1::ParticlesByCell& header,
                  const std::vector<float>& position_m) {
-    const std::size_t count = frame.particles->count;
+    core::ParticleView particles = *frame.at(core::Level::kFull).particles;
+    const std::size_t count = particles.count;
     const double quantum_m = header.cell_m() / (1 << header.offset_bits());
-    std::vector<std::uint32_t> words(frame.particles->words.begin(), frame.particles->words.end());
+    std::vector<std::uint32_t> words(particles.words.begin(), particles.words.end());
     for (std::size_t i = 0; i < words.size(); i += 3) {
       words[i + 1] &= 0xffffu;
       words[i + 2] = 0;
     }
+    particles.words = words;
     core::FrameView places = frame;
-    places.particles->words = words;
+    places.at(core::Level::kFull).particles = particles;
     auto begin = Clock::now();
     const core::SharedBytes packed =
-        places_encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, places, true).keyframe;
+        places_encoder_.encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, places, core::Level::kFull, true).keyframe;
     places_.encode_ms += sinceMs(begin);
     const v1::LayerFrame message = frameOf(packed);
     begin = Clock::now();

@@ -14,8 +14,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Words = std::array<std::uint32_t, 3>;
 
-/// Budget of each reduced level, from proto/README.md [Mbit/s].
-constexpr std::array<double, core::kReducedLevelCount> kBudgets_mbitps{4.0, 24.0, 95.0};
+/// Budget of each level, from proto/README.md [Mbit/s]; 0: no limit.
+constexpr std::array<double, core::kLevelCount> kBudgets_mbitps{4.0, 24.0, 95.0, 0.0};
 
 std::vector<Words> particlesOf(const core::ParticleView& particles) {
   std::vector<Words> out(particles.count);
@@ -36,8 +36,8 @@ sim::FrameRequest LevelMeter::request(const core::Scene& scene) {
   const sim::LayerRequest layers{.surface = scene.wave.has_value(),
                                  .particles = scene.particles.has_value(),
                                  .foam = scene.foam.has_value() && scene.foam->surface};
-  sim::FrameRequest out{.surface = layers.surface, .particles = layers.particles, .foam = layers.foam};
-  out.reduced.fill(layers);
+  sim::FrameRequest out;
+  out.levels.fill(layers);
   return out;
 }
 
@@ -46,19 +46,18 @@ void LevelMeter::add(const core::FrameView& frame) {
   const std::uint32_t level_count = std::max(counts_.planes, counts_.particles);
   std::map<std::pair<v1::Layer, core::Level>, double> encoded_bytes;  // a level that downsamples nothing is not encoded
   for (const core::Level level : core::kLevels) {
-    const bool is_full = level == core::Level::kFull;
-    if (!is_full && (indexOf(level) >= level_count || frame_count_ % core::frameStride(level, frame_rate_hz_) != 0))
-      continue;
+    if (!isSent(level, level_count) || frame_count_ % core::frameStride(level, frame_rate_hz_) != 0) continue;
     LevelCost& row = levels_[indexOf(level)];
     const auto begin = Clock::now();
     const auto bytes = [&](v1::Layer layer) {
       const core::Level effective = core::effectiveLevel(level, codec::reducedCountOf(layer, counts_));
-      const core::FrameView view = core::frameAt(frame, effective);
+      const core::LevelView& view = frame.at(effective);
       if (layer == v1::LAYER_SURFACE && view.surface) row.resolution_count = view.surface->resolution_count;
       if (layer == v1::LAYER_PARTICLES && view.particles) row.particle_sum += view.particles->count;
       const auto [known, is_new] = encoded_bytes.try_emplace({layer, effective}, 0.0);
       if (is_new) {
-        known->second = static_cast<double>(bytesOf(encoder_.encode({layer, v1::PACKING_PACKED}, view, false)));
+        known->second =
+            static_cast<double>(bytesOf(encoder_.encode({layer, v1::PACKING_PACKED}, frame, effective, false)));
       }
       return known->second;
     };
@@ -71,7 +70,7 @@ void LevelMeter::add(const core::FrameView& frame) {
     row.particle_bytes += particle_bytes;
     row.foam_bytes += foam_bytes;
   }
-  if (frame.particles && counts_.particles > 0 && frame_count_ % 10 == 0) addParts(frame);
+  if (frame.at(core::Level::kFull).particles && counts_.particles > 0 && frame_count_ % 10 == 0) addParts(frame);
   ++frame_count_;
 }
 
@@ -81,18 +80,18 @@ void LevelMeter::addParts(const core::FrameView& frame) {
   std::vector<Words> before;
   double bits = 0.0;
   for (const core::Level level : core::kLevels) {
-    if (level != core::Level::kFull && indexOf(level) >= counts_.particles) continue;
-    const core::FrameView view = core::frameAt(frame, level);
-    if (!view.particles) return;
-    const std::vector<Words> now = particlesOf(*view.particles);
+    if (!isSent(level, counts_.particles)) continue;
+    if (!frame.at(level).particles) return;
+    const std::vector<Words> now = particlesOf(*frame.at(level).particles);
     std::vector<Words> added;
     std::ranges::set_difference(now, before, std::back_inserter(added));
+    core::ParticleView particles = *frame.at(core::Level::kFull).particles;
+    particles.count = static_cast<std::uint32_t>(added.size());
+    particles.words = std::span(added.data()->data(), 3 * added.size());
     core::FrameView part;
-    part.particles = *frame.particles;
-    part.particles->count = static_cast<std::uint32_t>(added.size());
-    part.particles->words = std::span(added.data()->data(), 3 * added.size());
-    bits += 8.0 * static_cast<double>(
-                      bytesOf(codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, part, true)));
+    part.at(core::Level::kFull).particles = particles;
+    bits += 8.0 * static_cast<double>(bytesOf(codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED},
+                                                                           part, core::Level::kFull, true)));
     part_bits_[indexOf(level)] += bits;
     part_counts_[indexOf(level)] += static_cast<double>(now.size());
     before = now;
@@ -119,9 +118,9 @@ boost::json::array LevelMeter::print(std::FILE* out) const {
     const double particle_count = row.particle_sum / frames;
     const double bits = row.particle_sum > 0 ? 8 * row.particle_bytes / row.particle_sum : 0.0;
     const double part_bits = part_counts_[k] > 0 ? part_bits_[k] / part_counts_[k] : 0.0;
-    // The scene's full level may fit the budget of a reduced level.
+    // The budget of the lowest level whose limits the row keeps: kFull of a small scene fits one of a reduced level.
     double budget_mbitps = 0.0;
-    for (std::size_t b = core::kReducedLevelCount; b-- > 0;) {
+    for (std::size_t b = core::kLevelCount; b-- > 0;) {
       const core::LevelBudget& budget = core::kLevelBudgets[b];
       if (row.resolution_count <= budget.surface_resolution_count && particle_count <= budget.particle_count)
         budget_mbitps = kBudgets_mbitps[b];

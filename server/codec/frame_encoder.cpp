@@ -16,34 +16,34 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "packed words are sent as they lie in memory");
 
-/// A keyframe with the words as its payload.
-EncodedFrame plain(const core::FrameView& frame, v1::Layer layer, const v1::LayerFrame& codec,
+/// Returns a keyframe with the words as its payload.
+EncodedFrame plain(const core::FrameView& frame, v1::Layer layer, core::Level level, const v1::LayerFrame& codec,
                    std::span<const std::uint32_t> words) {
   const auto* payload = reinterpret_cast<const std::uint8_t*>(words.data());
-  return {.keyframe = serializeFrame(frame, layer, std::nullopt, codec, {payload, words.size_bytes()}),
+  return {.keyframe = serializeFrame(frame, layer, level, std::nullopt, codec, {payload, words.size_bytes()}),
           .delta = nullptr};
 }
 
 class SurfaceFixed16Codec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool) override {
-    if (!frame.surface) return {};
-    const core::SurfaceView& surface = *frame.surface;
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
+    if (!frame.at(level).surface) return {};
+    const core::SurfaceView& surface = *frame.at(level).surface;
     assert(surface.words.size() * 2 == std::size_t{surface.resolution_count} * surface.resolution_count);
     v1::LayerFrame codec;
     v1::SurfaceFixed16& header = *codec.mutable_surface_fixed16();
     header.set_resolution_count(surface.resolution_count);
     header.set_side_m(surface.side_m);
     header.set_quantum_m(surface.quantum_m);
-    return plain(frame, v1::LAYER_SURFACE, codec, surface.words);
+    return plain(frame, v1::LAYER_SURFACE, level, codec, surface.words);
   }
 };
 
 class ParticlesFixed12Codec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool) override {
-    if (!frame.particles) return {};
-    const core::ParticleView& particles = *frame.particles;
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
+    if (!frame.at(level).particles) return {};
+    const core::ParticleView& particles = *frame.at(level).particles;
     assert(particles.words.size() == std::size_t{3} * particles.count);
     v1::LayerFrame codec;
     v1::ParticlesFixed12& header = *codec.mutable_particles_fixed12();
@@ -56,37 +56,39 @@ class ParticlesFixed12Codec final : public LayerCodec {
     header.set_max_z_m(particles.max_m[2]);
     header.set_max_speed_mps(particles.max_speed_mps);
     header.set_radius_m(particles.radius_m);
-    return plain(frame, v1::LAYER_PARTICLES, codec, particles.words);
+    return plain(frame, v1::LAYER_PARTICLES, level, codec, particles.words);
   }
 };
 
 class FoamFixed8Codec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool) override {
-    if (!frame.foam) return {};
-    const core::FoamView& foam = *frame.foam;
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
+    if (!frame.at(level).foam) return {};
+    const core::FoamView& foam = *frame.at(level).foam;
     assert(foam.words.size() * 4 == std::size_t{foam.resolution_count} * foam.resolution_count);
     v1::LayerFrame codec;
     codec.mutable_foam_fixed8()->set_resolution_count(foam.resolution_count);
     codec.mutable_foam_fixed8()->set_side_m(foam.side_m);
-    return plain(frame, v1::LAYER_FOAM, codec, foam.words);
+    return plain(frame, v1::LAYER_FOAM, level, codec, foam.words);
   }
 };
 
 class BodiesFixed28Codec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool) override {
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
     if (!frame.bodies) return {};
     assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
     v1::LayerFrame codec;
     codec.mutable_bodies_fixed28()->set_count(frame.bodies->count);
-    return plain(frame, v1::LAYER_BODIES, codec, frame.bodies->words);
+    return plain(frame, v1::LAYER_BODIES, level, codec, frame.bodies->words);
   }
 };
 
 class DiagnosticsCodec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool) override { return {serializeDiagnostics(frame), nullptr}; }
+  EncodedFrame encode(const core::FrameView& frame, core::Level, bool) override {
+    return {serializeDiagnostics(frame), nullptr};
+  }
 };
 
 /// Returns null for a stream that does not exist.
@@ -113,11 +115,12 @@ std::unique_ptr<LayerCodec> makeCodec(Stream stream) {
 FrameEncoder::FrameEncoder() = default;
 FrameEncoder::~FrameEncoder() = default;
 
-EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, bool wants_keyframe) {
-  std::unique_ptr<LayerCodec>& codec = codecs_.at(indexOf(stream))[core::indexOf(frame.level)];
+EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, core::Level level, bool wants_keyframe) {
+  if (!hasLevels(stream.layer) && level != core::Level::kFull) return {};
+  std::unique_ptr<LayerCodec>& codec = codecs_.at(indexOf(stream))[core::indexOf(level)];
   if (!codec) codec = makeCodec(stream);
   if (!codec) return {};
-  return codec->encode(frame, wants_keyframe);
+  return codec->encode(frame, level, wants_keyframe);
 }
 
 }  // namespace spindrift::codec

@@ -35,8 +35,9 @@ std::uint8_t* appendMessage(const google::protobuf::MessageLite& message, std::u
 
 // The payload is written by hand so that it is copied exactly once. Serialized parts of a message may be concatenated;
 // here all fields except server_time_s and state_id are in the order of their numbers.
-core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, std::optional<std::uint64_t> base_tick,
-                                 const v1::LayerFrame& codec, core::ByteView payload) {
+core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, core::Level level,
+                                 std::optional<std::uint64_t> base_tick, const v1::LayerFrame& codec,
+                                 core::ByteView payload) {
   v1::LayerFrame head;
   head.set_layer(layer);
   head.set_tick(frame.tick);
@@ -45,12 +46,12 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   head.set_base_tick(base_tick.value_or(0));
   head.set_server_time_s(frame.asked_s);
   head.set_state_id(frame.state_id);
-  v1::LayerFrame level;
-  level.set_level(toWire(frame.level));
+  v1::LayerFrame tail;
+  tail.set_level(toWire(level));
 
   const auto payload_size = static_cast<std::uint32_t>(payload.size());
-  const std::size_t before_payload = head.ByteSizeLong() + kCrcFieldBytes + level.ByteSizeLong() +
-                                     codec.ByteSizeLong() + 1 + CodedOutputStream::VarintSize32(payload_size);
+  const std::size_t before_payload = head.ByteSizeLong() + kCrcFieldBytes + tail.ByteSizeLong() + codec.ByteSizeLong() +
+                                     1 + CodedOutputStream::VarintSize32(payload_size);
   const auto frame_size = static_cast<std::uint32_t>(before_payload + payload_size);
   const std::size_t prefix_size = 1 + CodedOutputStream::VarintSize32(frame_size) + before_payload;
 
@@ -68,7 +69,7 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   at = appendMessage(head, at);
   *at++ = static_cast<std::uint8_t>(kCrcTag);
   at = CodedOutputStream::WriteLittleEndian32ToArray(crc, at);
-  at = appendMessage(level, at);
+  at = appendMessage(tail, at);
   at = appendMessage(codec, at);
   *at++ = static_cast<std::uint8_t>(kPayloadTag);
   at = CodedOutputStream::WriteVarint32ToArray(payload_size, at);

@@ -10,10 +10,12 @@
 
 namespace spindrift::codec {
 
-/// `codec` holds only the codec's member. Without `base_tick` the frame is a keyframe. The payload is copied exactly
+/// Serializes one layer of the frame at one level. Tick, times and state id come from `frame`, the codec's header from
+/// `codec`, which has no other field set. Without `base_tick` the message is a keyframe. The payload is copied exactly
 /// once.
-core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, std::optional<std::uint64_t> base_tick,
-                                 const v1::LayerFrame& codec, core::ByteView payload);
+core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, core::Level level,
+                                 std::optional<std::uint64_t> base_tick, const v1::LayerFrame& codec,
+                                 core::ByteView payload);
 
 /// Serializes the frame's diagnostics; null if there are none. Values pass unchanged, including non-finite ones,
 /// because clients must see them.

@@ -13,8 +13,10 @@ namespace spindrift::codec {
 class LayerCodec {
  public:
   virtual ~LayerCodec() = default;
-  /// Keeps no reference to the frame's memory. Without `wants_keyframe` the keyframe is omitted if there is a delta.
-  virtual EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) = 0;
+  /// Encodes the codec's layer of the frame at one level, the same one in every call. Returns null messages if the
+  /// frame lacks it. Keeps no reference to the frame's memory. Without `wants_keyframe` the keyframe is omitted if
+  /// there is a delta.
+  virtual EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe) = 0;
 };
 
 /// SurfacePredicted.

@@ -52,9 +52,9 @@ Grid gridOf(const core::ParticleView& particles) {
 
 class ParticlesByCellCodec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool) override {
-    if (!frame.particles) return {};
-    const core::ParticleView& particles = *frame.particles;
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
+    if (!frame.at(level).particles) return {};
+    const core::ParticleView& particles = *frame.at(level).particles;
     const Grid grid = gridOf(particles);
     const double velocity_quantum_mps = std::max(2 * grid.quantum_m() / kAdvance_s, particles.max_speed_mps / 127);
     v1::LayerFrame codec;
@@ -80,7 +80,7 @@ class ParticlesByCellCodec final : public LayerCodec {
     cells_.encode(particles.words, scale, grid.cells, residuals_);
     payload_.clear();
     residuals_.finish(payload_);
-    return {serializeFrame(frame, v1::LAYER_PARTICLES, std::nullopt, codec, payload_), nullptr};
+    return {serializeFrame(frame, v1::LAYER_PARTICLES, level, std::nullopt, codec, payload_), nullptr};
   }
 
  private:

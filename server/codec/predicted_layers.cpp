@@ -20,7 +20,8 @@ namespace {
 class PlaneMessages {
  public:
   template <typename Header>
-  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, bool wants_keyframe, Header header_of) {
+  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, core::Level level, bool wants_keyframe,
+                      Header header_of) {
     const PlaneChainEncoder::Forms forms = chain_.encode(wants_keyframe);
     const auto message = [&](const std::optional<PlaneChainEncoder::Form>& form,
                              std::optional<std::uint64_t> base_tick) -> core::SharedBytes {
@@ -30,7 +31,7 @@ class PlaneMessages {
       header.mutable_weights()->Add(form->weights.of.begin(), form->weights.of.end());
       if (!base_tick)
         header.mutable_earlier_weights()->Add(form->earlier_weights.of.begin(), form->earlier_weights.of.end());
-      return serializeFrame(frame, layer, base_tick, codec, form->payload);
+      return serializeFrame(frame, layer, level, base_tick, codec, form->payload);
     };
     EncodedFrame out{.keyframe = message(forms.keyframe, std::nullopt), .delta = message(forms.delta, tick_)};
     tick_ = frame.tick;
@@ -47,16 +48,16 @@ class PlaneMessages {
 
 class SurfacePredictedCodec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) override {
-    if (!frame.surface) return {};
-    const core::SurfaceView& surface = *frame.surface;
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe) override {
+    if (!frame.at(level).surface) return {};
+    const core::SurfaceView& surface = *frame.at(level).surface;
     if (side_m_ != surface.side_m || quantum_m_ != surface.quantum_m) messages_.restart();
     side_m_ = surface.side_m;
     quantum_m_ = surface.quantum_m;
     messages_.plane().resize(surface.resolution_count);
     messages_.plane().assign(
         std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), 2 * surface.words.size()));
-    return messages_.encode(frame, v1::LAYER_SURFACE, wants_keyframe,
+    return messages_.encode(frame, v1::LAYER_SURFACE, level, wants_keyframe,
                             [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
                               v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
                               header.set_resolution_count(surface.resolution_count);
@@ -74,20 +75,21 @@ class SurfacePredictedCodec final : public LayerCodec {
 
 class FoamPredictedCodec final : public LayerCodec {
  public:
-  EncodedFrame encode(const core::FrameView& frame, bool wants_keyframe) override {
-    if (!frame.foam) return {};
-    const core::FoamView& foam = *frame.foam;
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe) override {
+    if (!frame.at(level).foam) return {};
+    const core::FoamView& foam = *frame.at(level).foam;
     if (side_m_ != foam.side_m) messages_.restart();
     side_m_ = foam.side_m;
     messages_.plane().resize(foam.resolution_count);
     messages_.plane().assign(
         std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.words.size_bytes()));
-    return messages_.encode(frame, v1::LAYER_FOAM, wants_keyframe, [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
-      v1::FoamPredicted& header = *codec.mutable_foam_predicted();
-      header.set_resolution_count(foam.resolution_count);
-      header.set_side_m(foam.side_m);
-      return header;
-    });
+    return messages_.encode(frame, v1::LAYER_FOAM, level, wants_keyframe,
+                            [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
+                              v1::FoamPredicted& header = *codec.mutable_foam_predicted();
+                              header.set_resolution_count(foam.resolution_count);
+                              header.set_side_m(foam.side_m);
+                              return header;
+                            });
   }
 
  private:

@@ -52,8 +52,7 @@ bool LevelLadder::stepDown(Clock::time_point now, std::uint32_t reduced_count) {
 
 bool LevelLadder::stepUp(Clock::time_point now, std::uint32_t reduced_count) {
   if (level_ == core::Level::kFull) return false;
-  const std::size_t next = indexOf(level_) + 1;
-  level_ = next < reduced_count ? levelAt(next) : core::Level::kFull;
+  level_ = core::effectiveLevel(levelAt(indexOf(level_) + 1), reduced_count);
   clean_since_ = now;
   raised_ = now;
   return true;

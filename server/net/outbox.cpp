@@ -100,8 +100,8 @@ void Outbox::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
   if (!watch) return;
   slot.watch = watch;
   slot.gate = RateGate(watch->max_rate_hz);
-  for (std::size_t k = 0; k < slot.level_gates.size(); ++k)
-    slot.level_gates[k] = RateGate(core::kLevelBudgets[k].rate_hz);
+  for (const core::Level level : core::kLevels)
+    slot.level_gates[indexOf(level)] = RateGate(core::budgetOf(level).rate_hz);
 }
 
 std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {

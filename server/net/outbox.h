@@ -104,15 +104,16 @@ class Outbox {
   bool takeWake();
   /// Returns the level of the slot's watch as of now; the slot must have a watch.
   core::Level levelOf(const Slot& slot) const;
-  /// Returns whether the rate of the watch lets the next frame through, and the rate of a reduced level served as
-  /// kFull.
+  /// Returns whether the next frame passes the rate limit of the watch and, where `effective` differs from `wanted`,
+  /// that of `wanted`.
   static bool isOpen(const Slot& slot, core::Level wanted, core::Level effective, Clock::time_point now);
 
   struct Slot {
     std::optional<Watch> watch;  ///< empty = not watched
     RateGate gate;
-    /// Reduced levels are encoded at their own rate. Where a reduced level equals kFull, this gate limits the rate.
-    std::array<RateGate, core::kReducedLevelCount> level_gates;
+    /// By core::Level: limits the rate of a session that watches a level but gets kFull, because the level does not
+    /// downsample the layer.
+    std::array<RateGate, core::kLevelCount> level_gates;
     core::SharedBytes frame;
     core::Level level = core::Level::kFull;  ///< of the newest frame taken
     std::uint32_t reduced_count = 0;         ///< of the newest frame

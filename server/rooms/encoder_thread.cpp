@@ -79,17 +79,14 @@ void EncoderThread::loop() {
 EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
                                            codec::FrameEncoder& encoder) {
   Costs spent{};
-  std::array<core::FrameView, core::kReducedLevelCount> reduced;
-  for (std::size_t k = 0; k < reduced.size(); ++k) reduced[k] = core::frameAt(frame, core::kLevels[k]);
   for (const codec::Stream stream : codec::allStreams()) {
     const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
     const core::StreamDemand demand = outlet_.demand(room, stream, reduced_count);
     for (const core::Level level : core::kLevels) {
-      const core::FrameView& view = level == core::Level::kFull ? frame : reduced[core::indexOf(level)];
       const core::LevelDemand& wanted = demand[core::indexOf(level)];
       if (wanted.watcher_count == 0) continue;
       const auto begin = std::chrono::steady_clock::now();
-      const codec::EncodedFrame encoded = encoder.encode(stream, view, wanted.wants_keyframe);
+      const codec::EncodedFrame encoded = encoder.encode(stream, frame, level, wanted.wants_keyframe);
       StreamCost& cost = spent[codec::indexOf(stream)][core::indexOf(level)];
       cost.encode_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       if (!encoded.keyframe && !encoded.delta) continue;

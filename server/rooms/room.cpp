@@ -240,21 +240,15 @@ void Room::requestFrame(TimePoint now) {
   const v1::Scene& scene = stage_->scene();
   const WatchedLayers watched = outlets_.watched(*this, stage_->water().reducedCounts());
   wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
-  const auto due = [&](bool has_it, WatchedLayers::Levels levels) {
-    for (const core::Level level : core::kLevels) levels[core::indexOf(level)] &= has_it && isDue(level);
-    return levels;
-  };
-  const auto surface = due(scene.has_wave(), watched.surface);
-  const auto particles = due(scene.has_particles(), watched.particles);
-  const auto foam = due(scene.foam().surface(), watched.foam);
-  sim::FrameRequest request{.surface = surface.back(),
-                            .particles = particles.back(),
-                            .foam = foam.back(),
-                            .bodies = scene.has_boats() && watched.bodies,
-                            .asked_s = core::monotonic_s(now),
-                            .state_id = stage_->stateId()};
-  for (std::size_t level = 0; level < request.reduced.size(); ++level)
-    request.reduced[level] = {.surface = surface[level], .particles = particles[level], .foam = foam[level]};
+  sim::FrameRequest request{
+      .bodies = scene.has_boats() && watched.bodies, .asked_s = core::monotonic_s(now), .state_id = stage_->stateId()};
+  for (const core::Level level : core::kLevels) {
+    if (!isDue(level)) continue;
+    const std::size_t k = core::indexOf(level);
+    request.levels[k] = {.surface = scene.has_wave() && watched.surface[k],
+                         .particles = scene.has_particles() && watched.particles[k],
+                         .foam = scene.foam().surface() && watched.foam[k]};
+  }
   ++frame_count_;
   if (request.isEmpty()) return;
   if (!stage_->water().requestFrame(request)) {

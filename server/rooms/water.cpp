@@ -35,9 +35,9 @@ double warmUp(gpu::Context& context, sim::WaterSim& sim) {
     tick_ms =
         std::min(tick_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
-  sim::FrameRequest every{.surface = true, .particles = true, .foam = true, .bodies = true};
-  every.reduced.fill({.surface = true, .particles = true, .foam = true});
-  (void)sim.requestFrame(every);
+  sim::FrameRequest request{.bodies = true};
+  request.levels.fill({.surface = true, .particles = true, .foam = true});
+  (void)sim.requestFrame(request);
   context.finish();
   (void)sim.takeFrames();
   (void)sim.takePassCosts();

@@ -296,10 +296,10 @@ rooms::WatchedLayers Gateway::watched(const rooms::Room& room, const core::Reduc
         note(out.foam);
         break;
       case v1::LAYER_BODIES:
-        out.bodies |= is_watched(of_levels.back());
+        out.bodies |= is_watched(of_levels[core::indexOf(core::Level::kFull)]);
         break;
       case v1::LAYER_DIAGNOSTICS:
-        out.diagnostics |= is_watched(of_levels.back());
+        out.diagnostics |= is_watched(of_levels[core::indexOf(core::Level::kFull)]);
         break;
       default:
         break;

@@ -58,12 +58,12 @@ core::Result<void> FramePacker::resize(const Derived& derived) {
   // The slot has room for all levels at once.
   std::size_t words = pack_bodies_ ? kBodyWords : 0;
   for (const core::Level level : core::kLevels) {
-    const bool is_full = level == core::Level::kFull;
-    if (is_full || indexOf(level) < reduced_counts.planes) {
+    if (isSent(level, reduced_counts.planes)) {
       words += surfaceWords(surfaceResolution(level)) + (has_foam_ ? foamWords(foamResolution(level)) : 0);
     }
-    if (particles > 0 && (is_full || indexOf(level) < reduced_counts.particles))
-      words += particleWords(is_full ? particles : core::kLevelBudgets[indexOf(level)].particle_count);
+    if (particles > 0 && isSent(level, reduced_counts.particles)) {
+      words += particleWords(std::min(particles, core::budgetOf(level).particle_count));
+    }
   }
   gpu::Buffer packed;
   std::unique_ptr<gpu::ReadbackRing> ring;
@@ -82,8 +82,7 @@ core::Result<void> FramePacker::resize(const Derived& derived) {
 }
 
 std::uint32_t FramePacker::surfaceResolution(core::Level level) const {
-  if (level == core::Level::kFull) return resolution_;
-  return std::min(resolution_, core::kLevelBudgets[indexOf(level)].surface_resolution_count);
+  return std::min(resolution_, core::budgetOf(level).surface_resolution_count);
 }
 
 std::uint32_t FramePacker::foamResolution(core::Level level) const {
@@ -91,8 +90,7 @@ std::uint32_t FramePacker::foamResolution(core::Level level) const {
 }
 
 std::uint32_t FramePacker::particleBudget(core::Level level) const {
-  if (level == core::Level::kFull) return particles_;
-  return std::min(particles_, core::kLevelBudgets[indexOf(level)].particle_count);
+  return std::min(particles_, core::budgetOf(level).particle_count);
 }
 
 bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, const FrameRequest& request) {
@@ -129,9 +127,7 @@ FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest
                                            std::size_t& at) {
   Places places;
   const auto take = [&at](std::size_t words) { return std::exchange(at, at + words); };
-  // A level that would not reduce anything is not packed: clients get the full one.
-  const bool has_planes = level == core::Level::kFull || indexOf(level) < reduced_counts_.planes;
-  const bool has_particles = level == core::Level::kFull || indexOf(level) < reduced_counts_.particles;
+  const bool has_planes = isSent(level, reduced_counts_.planes);
   if (parts.wave && wanted.surface && has_planes) {
     const std::size_t words = surfaceWords(surfaceResolution(level));
     places.surface = take(words);
@@ -144,7 +140,7 @@ FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest
     parts.foam->field().bindTexel(FOAM_FIELD);
     packPlane(pack_foam_, *places.foam, foamResolution(level), words);
   }
-  if (parts.particles && wanted.particles && has_particles) {
+  if (parts.particles && wanted.particles && isSent(level, reduced_counts_.particles)) {
     places.particles = take(particleWords(particleBudget(level)));
     packed_.clearRange(0, *places.particles * 4, kParticleHeaderWords * 4);
     parts.population->bind();
@@ -182,17 +178,10 @@ std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const D
     const auto words = slot->words();
     for (const core::Level level : core::kLevels) {
       const Places& places = pending.places[indexOf(level)];
-      core::ReducedView view;
+      core::LevelView& view = frame.at(level);
       if (places.surface) view.surface = surfaceView(words.subspan(*places.surface), level, scene, derived);
       if (places.particles) view.particles = particleView(words.subspan(*places.particles), level, scene, derived);
       if (places.foam) view.foam = foamView(words.subspan(*places.foam), level, derived);
-      if (level != core::Level::kFull) {
-        frame.reduced[indexOf(level)] = view;
-        continue;
-      }
-      frame.surface = view.surface;
-      frame.particles = view.particles;
-      frame.foam = view.foam;
     }
     if (pending.bodies) {
       frame.bodies = core::BodiesView{.count = pending.boat_count,

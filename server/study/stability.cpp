@@ -10,9 +10,10 @@ namespace spindrift::study {
 namespace {
 
 bool isFinite(const core::FrameView& frame) {
-  if (!frame.particles) return true;
+  const auto& particles = frame.at(core::Level::kFull).particles;
+  if (!particles) return true;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(frame.particles->min_m[axis]) || !std::isfinite(frame.particles->max_m[axis])) return false;
+    if (!std::isfinite(particles->min_m[axis]) || !std::isfinite(particles->max_m[axis])) return false;
   }
   return true;
 }
@@ -52,7 +53,7 @@ core::Result<StabilityPoint> runPoint(gpu::Context& ctx, const Sweep& sweep, dou
     ctx.finish();
     const double tick_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     out.slowest_step_s = std::max(out.slowest_step_s, tick_s / std::max(water.derived().substeps_count, 1u));
-    (void)water.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+    (void)water.requestFrame(sim::FrameRequest::allLayers());
     for (const core::FrameView& frame : water.takeFrames())
       out.are_frames_finite = out.are_frames_finite && isFinite(frame);
     return {};

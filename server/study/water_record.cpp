@@ -270,7 +270,7 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
     sample_ticks.push_back(water.tick());
     out.samples.push_back(sampleOf(water));
     if (!options.frame_bytes) continue;
-    (void)water.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+    (void)water.requestFrame(sim::FrameRequest::allLayers());
     ctx.finish();
     for (const core::FrameView& frame : water.takeFrames()) {
       frame_bytes += static_cast<double>(options.frame_bytes(frame));

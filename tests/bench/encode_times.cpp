@@ -37,10 +37,11 @@ struct RecordedFrame {
   [[nodiscard]] core::FrameView view(std::uint64_t tick) const {
     core::FrameView out;
     out.tick = tick;
-    out.surface = surface;
-    out.surface->words = surface_words;
-    out.particles = particles;
-    out.particles->words = particle_words;
+    core::LevelView& full = out.at(core::Level::kFull);
+    full.surface = surface;
+    full.surface->words = surface_words;
+    full.particles = particles;
+    full.particles->words = particle_words;
     return out;
   }
 };
@@ -60,14 +61,15 @@ int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
     (*sim)->step();
     if ((*sim)->time_s() + 1e-9 < next_s) continue;
     next_s += 1.0 / scene.stream.frame_rate_hz;
-    (void)(*sim)->requestFrame({.surface = true, .particles = true});
+    (void)(*sim)->requestFrame(sim::FrameRequest::full({.surface = true, .particles = true}));
     (*ctx)->finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) {
-      const auto surface = std::as_bytes(frame.surface->words), particles = std::as_bytes(frame.particles->words);
-      if (std::fwrite(&*frame.surface, sizeof *frame.surface, 1, out) != 1 ||
-          std::fwrite(&*frame.particles, sizeof *frame.particles, 1, out) != 1 ||
-          std::fwrite(surface.data(), 1, surface.size(), out) != surface.size() ||
-          std::fwrite(particles.data(), 1, particles.size(), out) != particles.size())
+      const core::SurfaceView& surface = *frame.at(core::Level::kFull).surface;
+      const core::ParticleView& particles = *frame.at(core::Level::kFull).particles;
+      if (std::fwrite(&surface, sizeof surface, 1, out) != 1 ||
+          std::fwrite(&particles, sizeof particles, 1, out) != 1 ||
+          std::fwrite(surface.words.data(), 4, surface.words.size(), out) != surface.words.size() ||
+          std::fwrite(particles.words.data(), 4, particles.words.size(), out) != particles.words.size())
         return failWith("cannot write");
       ++count;
     }
@@ -114,7 +116,8 @@ int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
       const core::FrameView view = frames[i].view(i + 1);
       for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
         const double begin_ms = threadCpu_ms();
-        const codec::EncodedFrame encoded = encoder.encode({kLayers[layer], v1::PACKING_PACKED}, view, false);
+        const codec::EncodedFrame encoded =
+            encoder.encode({kLayers[layer], v1::PACKING_PACKED}, view, core::Level::kFull, false);
         const double ms = threadCpu_ms() - begin_ms;
         const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
         if (round == 0) {

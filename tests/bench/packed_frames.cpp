@@ -36,11 +36,12 @@ int record(const char* scene_file, std::size_t frame_count, std::FILE* out) {
     (*sim)->step();
     if ((*sim)->time_s() + 1e-9 < next_s) continue;
     next_s += 1.0 / scene.stream.frame_rate_hz;
-    (void)(*sim)->requestFrame({.surface = scene.wave.has_value(), .particles = scene.particles.has_value()});
+    (void)(*sim)->requestFrame(sim::FrameRequest::full({.surface = true, .particles = true}));
     (*ctx)->finish();
     for (const core::FrameView& frame : (*sim)->takeFrames()) {
       for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES}) {
-        const codec::EncodedFrame encoded = encoder.encode({layer, v1::PACKING_PACKED}, frame, false);
+        const codec::EncodedFrame encoded =
+            encoder.encode({layer, v1::PACKING_PACKED}, frame, core::Level::kFull, false);
         const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
         if (bytes && !write(bytes, out)) return failWith({core::ErrorCode::kUnavailable, "cannot write"});
       }

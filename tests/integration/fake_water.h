@@ -49,10 +49,10 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
   core::FrameView frame;
   frame.tick = tick;
   frame.time_s = static_cast<double>(tick) / 60;
-  frame.surface = core::SurfaceView{kFakeResolutionCount, 8.0, kFakeQuantum_m, slot->surface};
-  frame.foam = core::FoamView{kFakeResolutionCount, 8.0, slot->foam};
+  frame.at(core::Level::kFull).surface = core::SurfaceView{kFakeResolutionCount, 8.0, kFakeQuantum_m, slot->surface};
+  frame.at(core::Level::kFull).foam = core::FoamView{kFakeResolutionCount, 8.0, slot->foam};
   frame.reduced_counts.planes = 1;
-  core::ReducedView& coarse = frame.reduced[core::indexOf(core::Level::kCoarse)];
+  core::LevelView& coarse = frame.at(core::Level::kCoarse);
   coarse.surface = core::SurfaceView{kFakeCoarseCount, 8.0, kFakeQuantum_m, slot->coarse};
   coarse.foam =
       core::FoamView{kFakeCoarseCount, 8.0, std::span(slot->foam).first(kFakeCoarseCount * kFakeCoarseCount / 4)};
@@ -63,7 +63,7 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
   particles.max_speed_mps = 8.0;
   particles.radius_m = 0.0625;
   particles.words = slot->particles;
-  frame.particles = particles;
+  frame.at(core::Level::kFull).particles = particles;
   frame.diagnostics.emplace();
   frame.lease = slot;
   return frame;

@@ -68,7 +68,7 @@ class ServerTest : public testing::Test {
   /// Frames of a stream encoded so far, of all levels and rooms.
   std::uint64_t encodedFrameCount(codec::Stream stream) const {
     std::uint64_t count = 0;
-    const auto costs = encoder().costs();
+    const rooms::EncoderThread::Costs costs = encoder().costs();
     for (const auto& level : costs[codec::indexOf(stream)]) count += level.frame_count;
     return count;
   }

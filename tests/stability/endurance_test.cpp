@@ -26,8 +26,9 @@ bool allFinite(const std::vector<float>& values) {
 /// frame can be wrong. `max_m` is the largest elevation: it grows when commands raise gravity or depth repeatedly while
 /// the water is high, as 10,000 commands do (they add energy; the watchdog's bound is 64 m).
 void expectSane(const core::FrameView& frame, const v1::Scene& scene, double& max_m) {
-  ASSERT_TRUE(frame.surface && frame.particles && frame.foam && frame.bodies);
-  const core::SurfaceView& surface = *frame.surface;
+  const core::LevelView& full = frame.at(core::Level::kFull);
+  ASSERT_TRUE(full.surface && full.particles && full.foam && frame.bodies);
+  const core::SurfaceView& surface = *full.surface;
   ASSERT_EQ(surface.words.size(), std::size_t{surface.resolution_count} * surface.resolution_count / 2);
   ASSERT_EQ(surface.resolution_count, scene.wave().resolution_count());
   int largest = 0;
@@ -36,7 +37,7 @@ void expectSane(const core::FrameView& frame, const v1::Scene& scene, double& ma
       largest = std::max(largest, std::abs(int{half}));
   }
   max_m = std::max(max_m, largest * surface.quantum_m);
-  const core::ParticleView& particles = *frame.particles;
+  const core::ParticleView& particles = *full.particles;
   ASSERT_LE(particles.count, scene.particles().count());
   ASSERT_EQ(particles.words.size(), std::size_t{particles.count} * 3);
   for (int axis = 0; axis < 3; ++axis) {
@@ -44,7 +45,7 @@ void expectSane(const core::FrameView& frame, const v1::Scene& scene, double& ma
     ASSERT_LT(particles.min_m[axis], particles.max_m[axis]);
   }
   for (std::size_t i = 2; i < particles.words.size(); i += 3) ASSERT_EQ(particles.words[i] >> 24, 0u);
-  ASSERT_EQ(frame.foam->words.size() * 4, std::size_t{frame.foam->resolution_count} * frame.foam->resolution_count);
+  ASSERT_EQ(full.foam->words.size() * 4, std::size_t{full.foam->resolution_count} * full.foam->resolution_count);
   ASSERT_LE(frame.bodies->count, scene.boats().capacity_count());
 }
 
@@ -108,7 +109,7 @@ TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarborWithTheWorkOfAFres
     for (; sent < static_cast<int>(static_cast<std::int64_t>(commands) * (tick + 1) / ticks); ++sent)
       accepted += crowd.send(water) ? 1 : 0;
     water.step();
-    (void)water.requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+    (void)water.requestFrame(sim::FrameRequest::allLayers());
     for (const core::FrameView& frame : water.takeFrames())
       ASSERT_NO_FATAL_FAILURE(expectSane(frame, scene, max_elevation_m));
     ASSERT_EQ(water.health().volume_error_units, 0) << "tick " << tick;

@@ -47,7 +47,7 @@ TEST(Soak, DefaultSceneStaysHealthyAndGrowsNeitherInEnergyNorInMemory) {
   std::uint64_t frames = 0;
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
     water.step();
-    if (tick % 2 == 0) (void)water.requestFrame({.surface = true, .particles = true});
+    if (tick % 2 == 0) (void)water.requestFrame(sim::FrameRequest::full({.surface = true, .particles = true}));
     frames += water.takeFrames().size();
     if (tick == settled) memory_at_start = residentBytes();
     if (tick > settled) energy_j.push_back(water.health().kinetic_energy_j + water.health().wave_energy_j);

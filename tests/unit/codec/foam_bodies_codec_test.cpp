@@ -35,7 +35,7 @@ v1::LayerFrame foamFrame() {
   core::FrameView view;
   view.tick = 60;
   view.time_s = 1.0;
-  view.foam = core::FoamView{4, 16.0, words};
+  view.at(core::Level::kFull).foam = core::FoamView{4, 16.0, words};
   return encoded(v1::LAYER_FOAM, view);
 }
 

@@ -29,7 +29,7 @@ struct TestFrame {
     particle_words = {0xFFFF'0000u, 0x817F'8000u, 0x00FF'0740u, 0x0000'FFFFu, 0x0000'0000u, 0x0000'FF00u};
     view.tick = 600;
     view.time_s = 10.0;
-    view.surface = core::SurfaceView{8, 16.0, 0.001, surface_words};
+    view.at(core::Level::kFull).surface = core::SurfaceView{8, 16.0, 0.001, surface_words};
     core::ParticleView particles;
     particles.count = 2;
     for (int axis = 0; axis < 3; ++axis) {
@@ -39,7 +39,7 @@ struct TestFrame {
     particles.max_speed_mps = 9.0;
     particles.radius_m = 0.05;
     particles.words = particle_words;
-    view.particles = particles;
+    view.at(core::Level::kFull).particles = particles;
     core::DiagnosticsView diagnostics;
     diagnostics.step_ms = 6.5;
     diagnostics.passes = {{"grid", 1.5}, {"sph", 5.0}};
@@ -137,8 +137,8 @@ TEST(FrameEncoding, WritesTheBytesThatProtobufWouldWrite) {
 
 TEST(FrameEncoding, HandlesAFrameWithoutParticles) {
   TestFrame test;
-  test.view.particles->count = 0;
-  test.view.particles->words = {};
+  test.view.at(core::Level::kFull).particles->count = 0;
+  test.view.at(core::Level::kFull).particles->words = {};
   const auto samples = decodeParticles(frameOf(FrameEncoder().encode(v1::LAYER_PARTICLES, test.view)));
   ASSERT_TRUE(samples) << samples.error().message;
   EXPECT_EQ(samples->count, 0u);
@@ -148,7 +148,7 @@ TEST(FrameEncoding, HandlesAFrameWithoutParticles) {
 TEST(FrameEncoding, HandlesAFrameOfTheLargestScene) {
   TestFrame test;
   test.surface_words.assign(1024 * 1024 / 2, 0x1234'5678u);
-  test.view.surface = core::SurfaceView{1024, 16.0, 0.001, test.surface_words};
+  test.view.at(core::Level::kFull).surface = core::SurfaceView{1024, 16.0, 0.001, test.surface_words};
   const auto samples = decodeSurface(frameOf(FrameEncoder().encode(v1::LAYER_SURFACE, test.view)));
   ASSERT_TRUE(samples) << samples.error().message;
   EXPECT_EQ(samples->elevation_m.size(), 1024u * 1024u);
@@ -192,24 +192,36 @@ TEST(FrameEncoding, EachLevelIsEncodedSeparatelyWithItsLevel) {
     core::FrameView frame = test.view;
     frame.tick = tick;
     frame.reduced_counts.planes = 1;
-    frame.reduced[0].surface = core::SurfaceView{8, 2.0, 0.001, small};
-    const EncodedFrame full = encoder.encode(kPacked, core::frameAt(frame, core::Level::kFull), tick == 1);
+    frame.at(core::Level::kCoarse).surface = core::SurfaceView{8, 2.0, 0.001, small};
+    const EncodedFrame full = encoder.encode(kPacked, frame, core::Level::kFull, tick == 1);
     ASSERT_TRUE(full.keyframe || full.delta);
     const v1::LayerFrame sent = frameOf(tick == 1 ? full.keyframe : full.delta);
     EXPECT_EQ(sent.level(), v1::LEVEL_FULL);
     const auto samples = full_reader.decode(sent);
     ASSERT_TRUE(samples) << samples.error().message;
-    EXPECT_EQ(samples->resolution_count, test.view.surface->resolution_count);
+    EXPECT_EQ(samples->resolution_count, test.view.at(core::Level::kFull).surface->resolution_count);
     if (tick % 3 == 2) continue;  // sometimes the frame has a coarse level
-    const EncodedFrame coarse = encoder.encode(kPacked, core::frameAt(frame, core::Level::kCoarse), tick == 1);
+    const EncodedFrame coarse = encoder.encode(kPacked, frame, core::Level::kCoarse, tick == 1);
     const v1::LayerFrame sent_coarse = frameOf(tick == 1 ? coarse.keyframe : coarse.delta);
     EXPECT_EQ(sent_coarse.level(), v1::LEVEL_COARSE);
     const auto coarse_samples = coarse_reader.decode(sent_coarse);
     ASSERT_TRUE(coarse_samples) << coarse_samples.error().message;
     EXPECT_EQ(coarse_samples->resolution_count, 8u);
   }
-  EXPECT_FALSE(encoder.encode(kPacked, core::frameAt(test.view, core::Level::kMedium), true).keyframe)
-      << "not in the frame";
+  EXPECT_FALSE(encoder.encode(kPacked, test.view, core::Level::kMedium, true).keyframe) << "not in the frame";
+}
+
+TEST(FrameEncoding, LayersWithoutLevelsAreEncodedAtTheFullLevelOnly) {
+  TestFrame test;
+  const std::vector<std::uint32_t> boat(7);
+  test.view.bodies = core::BodiesView{1, boat};
+  FrameEncoder encoder;
+  for (const v1::Layer layer : {v1::LAYER_BODIES, v1::LAYER_DIAGNOSTICS}) {
+    for (const core::Level level : core::kLevels) {
+      EXPECT_EQ(encoder.encode({layer}, test.view, level, true).keyframe != nullptr, level == core::Level::kFull)
+          << v1::Layer_Name(layer) << " at " << nameOf(level);
+    }
+  }
 }
 
 using Damage = void (*)(v1::LayerFrame&);

@@ -77,8 +77,9 @@ TEST(OutsideReader, ReadsPlanesOfEverySizeOfResidual) {
       }
       core::FrameView view;
       view.tick = 10 + step;
-      view.surface = core::SurfaceView{n, 8.0, 0.0009765625, words};
-      const EncodedFrame encoded = encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, false);
+      view.at(core::Level::kFull).surface = core::SurfaceView{n, 8.0, 0.0009765625, words};
+      const EncodedFrame encoded =
+          encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, false);
       const core::Bytes& bytes = encoded.delta ? *encoded.delta : *encoded.keyframe;
       const auto samples = decoder.decode(frameOf(bytes));
       ASSERT_TRUE(samples) << samples.error().message;
@@ -123,8 +124,9 @@ TEST(OutsideReader, ReadsParticlesInCellsOfEverySize) {
     particles.words = words;
     core::FrameView view;
     view.tick = 7;
-    view.particles = particles;
-    const core::Bytes bytes = *FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).keyframe;
+    view.at(core::Level::kFull).particles = particles;
+    const core::Bytes bytes =
+        *FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, core::Level::kFull, true).keyframe;
     const v1::LayerFrame frame = frameOf(bytes);
     seen_offset_bits[frame.particles_by_cell().offset_bits()] = true;
     const auto samples = decodePackedParticles(frame);
@@ -141,8 +143,9 @@ TEST(OutsideReader, ReportsDifferentValues) {
   Cases cases;
   const std::vector<std::uint32_t> words(2 * 2 / 2);
   core::FrameView view;
-  view.surface = core::SurfaceView{2, 8.0, 0.0009765625, words};
-  const core::Bytes bytes = *FrameEncoder().encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, true).keyframe;
+  view.at(core::Level::kFull).surface = core::SurfaceView{2, 8.0, 0.0009765625, words};
+  const core::Bytes bytes =
+      *FrameEncoder().encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, true).keyframe;
   (void)cases.add(bytes, "", "\"elevation_m\": [0, 0, 0, 0.001]");
   EXPECT_EQ(cases.readOutside(), 1);
 }

@@ -277,8 +277,9 @@ TEST(SurfacePredicted, TakesAtMost2Point3BitsPerSampleOfWavesEveryOtherTick) {
     const std::vector<std::uint32_t> words = water.words();
     core::FrameView view;
     view.tick = tick;
-    view.surface = core::SurfaceView{kSide, 16.0, 0.001, words};
-    const EncodedFrame encoded = encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, false);
+    view.at(core::Level::kFull).surface = core::SurfaceView{kSide, 16.0, 0.001, words};
+    const EncodedFrame encoded =
+        encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, false);
     if (encoded.delta) {
       bytes += encoded.delta->size();
       ++frame_count;

@@ -46,7 +46,7 @@ struct Cloud {
     core::FrameView frame;
     frame.tick = 7;
     frame.time_s = 1.5;
-    frame.particles = view;
+    frame.at(core::Level::kFull).particles = view;
     return frame;
   }
 };
@@ -74,7 +74,7 @@ v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
 }
 
 v1::LayerFrame packed(const Cloud& cloud) {
-  const EncodedFrame encoded = FrameEncoder().encode(kPacked, cloud.frame(), false);
+  const EncodedFrame encoded = FrameEncoder().encode(kPacked, cloud.frame(), core::Level::kFull, false);
   EXPECT_EQ(encoded.delta, nullptr);
   return frameOf(encoded.keyframe);
 }

@@ -33,7 +33,7 @@ struct Surface {
     core::FrameView view;
     view.tick = tick;
     view.time_s = static_cast<double>(tick) / 60.0;
-    view.surface = core::SurfaceView{n, 16.0, 0.001, words};
+    view.at(core::Level::kFull).surface = core::SurfaceView{n, 16.0, 0.001, words};
     return view;
   }
 };
@@ -70,7 +70,7 @@ TEST(SurfacePredicted, IsThePlainSurfaceToTheBitFrameAfterFrame) {
     PackedSurfaceDecoder decoder;
     for (std::uint64_t tick = 10; tick < 30; tick += 2) {
       const Surface surface = waves(n, tick);
-      const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), tick == 10);
+      const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), core::Level::kFull, tick == 10);
       ASSERT_EQ(encoded.keyframe != nullptr, tick == 10);
       ASSERT_EQ(encoded.delta != nullptr, tick != 10);
       const v1::LayerFrame frame = frameOf(encoded.keyframe ? encoded.keyframe : encoded.delta);
@@ -96,7 +96,7 @@ TEST(SurfacePredicted, RoundTripsAnythingThatFitsInto16Bits) {
   PackedSurfaceDecoder decoder;
   std::uint64_t tick = 0;
   for (const Surface& surface : {Surface(32, wild), Surface(32, ends), Surface(32, spike), Surface(32, wild)}) {
-    const EncodedFrame encoded = encoder.encode(kPacked, surface.view(++tick), false);
+    const EncodedFrame encoded = encoder.encode(kPacked, surface.view(++tick), core::Level::kFull, false);
     const auto samples = decoder.decode(frameOf(tick == 1 ? encoded.keyframe : encoded.delta));
     ASSERT_TRUE(samples) << samples.error().message;
     EXPECT_EQ(samples->elevation_m, plainOf(surface)) << "surface " << tick;
@@ -108,7 +108,7 @@ TEST(SurfacePredicted, TakesAFractionOfThePlainBytes) {
   std::size_t packed_bytes = 0, whole_bytes = 0, plain_bytes = 0;
   for (std::uint64_t tick = 10; tick < 60; tick += 2) {
     const Surface surface = waves(128, tick);
-    const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), true);
+    const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), core::Level::kFull, true);
     whole_bytes += encoded.keyframe->size();
     if (encoded.delta) {
       packed_bytes += encoded.delta->size();
@@ -118,9 +118,9 @@ TEST(SurfacePredicted, TakesAFractionOfThePlainBytes) {
   EXPECT_LT(8 * packed_bytes, plain_bytes) << "2 bits a sample are left over by rounding";
   EXPECT_LT(2 * whole_bytes, plain_bytes) << "two frames in each";
   const Surface still(128, [](std::uint32_t, std::uint32_t) { return 0; });
-  (void)encoder.encode(kPacked, still.view(100), false);
-  (void)encoder.encode(kPacked, still.view(102), false);
-  EXPECT_LT(encoder.encode(kPacked, still.view(104), false).delta->size(), 150u) << "nothing moves";
+  (void)encoder.encode(kPacked, still.view(100), core::Level::kFull, false);
+  (void)encoder.encode(kPacked, still.view(102), core::Level::kFull, false);
+  EXPECT_LT(encoder.encode(kPacked, still.view(104), core::Level::kFull, false).delta->size(), 150u) << "nothing moves";
 }
 
 TEST(SurfacePredicted, AKeyframeLetsALateReaderDecodeTheDeltasAfterIt) {
@@ -128,7 +128,8 @@ TEST(SurfacePredicted, AKeyframeLetsALateReaderDecodeTheDeltasAfterIt) {
   PackedSurfaceDecoder early, late;
   for (std::uint64_t tick = 10; tick < 40; tick += 2) {
     const Surface surface = waves(48, tick);
-    const EncodedFrame encoded = encoder.encode(kPacked, surface.view(tick), tick == 10 || tick == 20);
+    const EncodedFrame encoded =
+        encoder.encode(kPacked, surface.view(tick), core::Level::kFull, tick == 10 || tick == 20);
     ASSERT_TRUE(early.decode(frameOf(tick == 10 ? encoded.keyframe : encoded.delta)));
     if (tick < 20) continue;
     const auto samples = late.decode(frameOf(tick == 20 ? encoded.keyframe : encoded.delta));
@@ -139,9 +140,9 @@ TEST(SurfacePredicted, AKeyframeLetsALateReaderDecodeTheDeltasAfterIt) {
 
 TEST(SurfacePredicted, BeginsAgainWhenTheGridChanges) {
   FrameEncoder encoder;
-  EXPECT_TRUE(encoder.encode(kPacked, waves(32, 1).view(1), false).keyframe);
-  EXPECT_FALSE(encoder.encode(kPacked, waves(32, 3).view(3), false).keyframe);
-  const EncodedFrame other = encoder.encode(kPacked, waves(48, 5).view(5), false);
+  EXPECT_TRUE(encoder.encode(kPacked, waves(32, 1).view(1), core::Level::kFull, false).keyframe);
+  EXPECT_FALSE(encoder.encode(kPacked, waves(32, 3).view(3), core::Level::kFull, false).keyframe);
+  const EncodedFrame other = encoder.encode(kPacked, waves(48, 5).view(5), core::Level::kFull, false);
   EXPECT_TRUE(other.keyframe);
   EXPECT_FALSE(other.delta);
 }
@@ -151,7 +152,7 @@ TEST(SurfacePredicted, ReportsAMissingBaseUntilAKeyframeComes) {
   PackedSurfaceDecoder decoder;
   std::vector<EncodedFrame> encoded;
   for (std::uint64_t tick = 1; tick < 6; ++tick)
-    encoded.push_back(encoder.encode(kPacked, waves(32, tick).view(tick), true));
+    encoded.push_back(encoder.encode(kPacked, waves(32, tick).view(tick), core::Level::kFull, true));
   const auto expectMissing = [&](const core::SharedBytes& bytes) {
     const auto samples = decoder.decode(frameOf(bytes));
     ASSERT_FALSE(samples);
@@ -177,8 +178,9 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
       words[i] = tick == 5 ? static_cast<std::uint32_t>(random()) : 0xFFF0'A050u >> tick;
     core::FrameView view;
     view.tick = tick;
-    view.foam = core::FoamView{32, 16.0, words};
-    const EncodedFrame encoded = encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, tick == 1);
+    view.at(core::Level::kFull).foam = core::FoamView{32, 16.0, words};
+    const EncodedFrame encoded =
+        encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, core::Level::kFull, tick == 1);
     const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
     packed_bytes += bytes->size();
     const auto packed = decoder.decode(frameOf(bytes));
@@ -192,15 +194,16 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
   PackedFoamDecoder late;
   core::FrameView view;
   const std::vector<std::uint32_t> words(32 * 32 / 4, 0u);
-  view.foam = core::FoamView{32, 16.0, words};
-  const auto missing = late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false).delta));
+  view.at(core::Level::kFull).foam = core::FoamView{32, 16.0, words};
+  const auto missing =
+      late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, core::Level::kFull, false).delta));
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, core::ErrorCode::kUnavailable);
 }
 
 TEST(SurfacePredicted, RefusesDamagedFrames) {
   FrameEncoder encoder;
-  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), true).keyframe);
+  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), core::Level::kFull, true).keyframe);
   struct Case {
     const char* name;
     void (*damage)(v1::LayerFrame&);
@@ -242,7 +245,7 @@ TEST(SurfacePredicted, RefusesDamagedFrames) {
 
 TEST(SurfacePredicted, ReadsAnyBytesWithoutHarm) {
   FrameEncoder encoder;
-  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), true).keyframe);
+  const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), core::Level::kFull, true).keyframe);
   std::mt19937 random(7);
   int accepted_count = 0;
   for (int k = 0; k < 3000; ++k) {

@@ -30,7 +30,8 @@ std::vector<core::Bytes> encoded(const Frames& frames, v1::Layer layer) {
   FrameEncoder encoder;
   std::vector<core::Bytes> out;
   for (const core::FrameView& view : frames.views) {
-    const EncodedFrame frame = encoder.encode({layer, v1::PACKING_PACKED}, view, view.tick % 3 == 0);
+    const EncodedFrame frame =
+        encoder.encode({layer, v1::PACKING_PACKED}, view, core::Level::kFull, view.tick % 3 == 0);
     for (const core::SharedBytes& bytes : {frame.keyframe, frame.delta}) out.push_back(bytes ? *bytes : core::Bytes());
   }
   return out;
@@ -63,7 +64,7 @@ Frames surfaces(std::uint32_t n, double amplitude, int noise) {
   for (std::uint64_t tick = 1; tick <= 5; ++tick) {
     auto& view = out.views.emplace_back();
     view.tick = tick;
-    view.surface = core::SurfaceView{n, 16.0, 0.001, out.words[tick - 1]};
+    view.at(core::Level::kFull).surface = core::SurfaceView{n, 16.0, 0.001, out.words[tick - 1]};
   }
   return out;
 }
@@ -86,12 +87,13 @@ Frames clouds(std::initializer_list<std::uint32_t> counts, double side_m, std::u
   for (std::size_t k = 0; k < out.words.size(); ++k) {
     auto& view = out.views.emplace_back();
     view.tick = k + 1;
-    view.particles = core::ParticleView{.count = static_cast<std::uint32_t>(out.words[k].size() / 3),
-                                        .min_m = {0, 0, 0},
-                                        .max_m = {side_m, side_m / 2, side_m},
-                                        .max_speed_mps = 8.0,
-                                        .radius_m = 0.05,
-                                        .words = out.words[k]};
+    view.at(core::Level::kFull).particles =
+        core::ParticleView{.count = static_cast<std::uint32_t>(out.words[k].size() / 3),
+                           .min_m = {0, 0, 0},
+                           .max_m = {side_m, side_m / 2, side_m},
+                           .max_speed_mps = 8.0,
+                           .radius_m = 0.05,
+                           .words = out.words[k]};
   }
   return out;
 }

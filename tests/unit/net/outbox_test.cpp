@@ -239,7 +239,7 @@ TEST(Outbox, AReducedLevelThatEqualsFullKeepsItsRate) {
     outbox.offerFrame(1, levelFrame(core::Level::kFull, 0), now);
     taken_count += kind(outbox) == Outbox::Kind::kFrame ? 1 : 0;
   }
-  EXPECT_NEAR(taken_count, 2 * core::kLevelBudgets[0].rate_hz, 5);
+  EXPECT_NEAR(taken_count, 2 * core::budgetOf(core::Level::kCoarse).rate_hz, 5);
 }
 
 /// Offers 30 frames per second of the outbox's present level; the writer takes one of `taken_of`.

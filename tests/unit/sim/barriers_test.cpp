@@ -24,10 +24,7 @@ class Barriers : public OnDevice, public ::testing::WithParamInterface<core::Pre
       if (tick == 70) sim.reset();
       sim.step();
       if (tick % 2 == 0) {
-        (void)sim.requestFrame({.surface = scene.wave.has_value(),
-                                .particles = true,
-                                .foam = scene.foam && scene.foam->surface,
-                                .bodies = scene.boats.has_value()});
+        (void)sim.requestFrame(FrameRequest::allLayers());
       }
       (void)sim.takeFrames();
     }

@@ -159,11 +159,11 @@ TEST_F(BoatsOnDevice, LeavesAWakeOfFoamThatFades) {
   WaterSim& sim = make(scene);
   for (int i = 0; i < 150; ++i) sim.step();
   const auto white = [&] {
-    EXPECT_TRUE(sim.requestFrame({.foam = true}));
+    EXPECT_TRUE(sim.requestFrame(FrameRequest::full({.foam = true})));
     ctx_->finish();
     const auto frames = sim.takeFrames();
     double sum = 0;
-    for (const std::uint32_t word : frames.at(0).foam->words) {
+    for (const std::uint32_t word : frames.at(0).at(core::Level::kFull).foam->words) {
       for (int byte = 0; byte < 4; ++byte) sum += word >> (8 * byte) & 0xffu;
     }
     return sum;

@@ -90,7 +90,7 @@ TEST_F(DeviceLag, LostFramesAreNotInFlight) {
   EXPECT_EQ(sim.framesInFlight(), 0u);
   for (int i = 0; i < 2; ++i) {
     sim.step();
-    ASSERT_TRUE(sim.requestFrame({.surface = true, .particles = true}));
+    ASSERT_TRUE(sim.requestFrame(FrameRequest::full({.surface = true, .particles = true})));
   }
   EXPECT_TRUE(sim.takeFrames().empty());
   EXPECT_EQ(sim.framesInFlight(), 2u);
@@ -99,7 +99,7 @@ TEST_F(DeviceLag, LostFramesAreNotInFlight) {
   EXPECT_EQ(sim.framesInFlight(), 0u) << "another number of particles discards the frames of the old one";
   ctx_->fenceDelay().set(0);
   sim.step();
-  ASSERT_TRUE(sim.requestFrame({.particles = true}));
+  ASSERT_TRUE(sim.requestFrame(FrameRequest::full({.particles = true})));
   ctx_->finish();
   EXPECT_EQ(sim.takeFrames().size(), 1u);
   EXPECT_EQ(sim.framesInFlight(), 0u);

@@ -1,4 +1,4 @@
-// Reduced levels of a frame: planes with fewer samples, a subset of the particles.
+// Levels of detail of a frame: planes with fewer samples, subsets of the particles.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,8 +25,8 @@ class Levels : public OnDevice {
 };
 
 FrameRequest everyLevel() {
-  FrameRequest request{.surface = true, .particles = true};
-  for (LayerRequest& reduced : request.reduced) reduced = {.surface = true, .particles = true};
+  FrameRequest request;
+  request.levels.fill({.surface = true, .particles = true});
   return request;
 }
 
@@ -94,15 +94,16 @@ TEST_F(Levels, AReducedSurfaceSampleIsTheMeanOfItsArea) {
   const core::FrameView view = frame(sim, everyLevel());
   ASSERT_EQ(view.reduced_counts.planes, 1u);
   ASSERT_EQ(view.reduced_counts.particles, 0u);
-  ASSERT_TRUE(view.surface);
-  EXPECT_EQ(view.surface->resolution_count, kN);
-  const core::ReducedView& coarse = view.reduced[indexOf(Level::kCoarse)];
+  const core::LevelView& full = view.at(Level::kFull);
+  ASSERT_TRUE(full.surface);
+  EXPECT_EQ(full.surface->resolution_count, kN);
+  const core::LevelView& coarse = view.at(Level::kCoarse);
   ASSERT_TRUE(coarse.surface);
   EXPECT_FALSE(coarse.particles);
-  EXPECT_FALSE(view.reduced[indexOf(Level::kMedium)].surface) << "it would leave nothing out";
+  EXPECT_FALSE(view.at(Level::kMedium).surface) << "the scene is smaller than the level";
   const std::size_t m = coarse.surface->resolution_count;
   ASSERT_EQ(m, 128u);
-  EXPECT_EQ(coarse.surface->side_m, view.surface->side_m);
+  EXPECT_EQ(coarse.surface->side_m, full.surface->side_m);
   const std::vector<int> reduced = samplesOf(*coarse.surface);
   ASSERT_EQ(reduced.size(), m * m);
 
@@ -123,12 +124,13 @@ TEST_F(Levels, AReducedFoamSampleIsTheMeanOfItsArea) {
   WaterSim& sim = make(scene);
   ASSERT_TRUE(sim.start(core::Splash{0.5, 0.5, 1.0, 1.0, 0.1}));
   for (int tick = 0; tick < 30; ++tick) sim.step();
-  FrameRequest request{.foam = true};
-  request.reduced[indexOf(Level::kCoarse)].foam = true;
+  FrameRequest request;
+  request.at(Level::kFull).foam = request.at(Level::kCoarse).foam = true;
   const core::FrameView view = frame(sim, request);
-  const auto& reduced = view.reduced[indexOf(Level::kCoarse)].foam;
-  ASSERT_TRUE(view.foam && reduced);
-  ASSERT_EQ(view.foam->resolution_count, 96u);
+  const auto& full = view.at(Level::kFull).foam;
+  const auto& reduced = view.at(Level::kCoarse).foam;
+  ASSERT_TRUE(full && reduced);
+  ASSERT_EQ(full->resolution_count, 96u);
   ASSERT_EQ(reduced->resolution_count, 64u);
   const auto bytesOf = [](const core::FoamView& foam) {
     const auto bytes = std::as_bytes(foam.words);
@@ -136,7 +138,7 @@ TEST_F(Levels, AReducedFoamSampleIsTheMeanOfItsArea) {
     for (const std::byte byte : bytes) out.push_back(std::to_integer<int>(byte));
     return out;
   };
-  const std::vector<double> expected = means(bytesOf(*view.foam), 96, 64);
+  const std::vector<double> expected = means(bytesOf(*full), 96, 64);
   const std::vector<double> got = bytesOf(*reduced);
   ASSERT_EQ(got.size(), expected.size());
   EXPECT_GT(*std::ranges::max_element(got), 50.0) << "there is foam";
@@ -149,8 +151,11 @@ TEST_F(Levels, AFullSurfaceIsTheSameBesideReducedOnes) {
   scene.wave->resolution_count = 192;
   WaterSim& sim = make(scene);
   ripple(sim, 192);
-  const std::vector<int> beside = samplesOf(*frame(sim, everyLevel()).surface);
-  const std::vector<int> alone = samplesOf(*frame(sim, {.surface = true}).surface);
+  const auto samples = [&](const FrameRequest& request) {
+    return samplesOf(*frame(sim, request).at(Level::kFull).surface);
+  };
+  const std::vector<int> beside = samples(everyLevel());
+  const std::vector<int> alone = samples(FrameRequest::full({.surface = true}));
   EXPECT_EQ(beside, alone);
 }
 
@@ -159,14 +164,12 @@ TEST_F(Levels, UnwatchedLevelsAreNotPacked) {
   scene.wave->resolution_count = 192;
   WaterSim& sim = make(scene);
   FrameRequest request;
-  request.reduced[indexOf(Level::kCoarse)].surface = true;
+  request.at(Level::kCoarse).surface = true;
   const core::FrameView view = frame(sim, request);
-  EXPECT_FALSE(view.surface || view.particles || view.foam || view.bodies);
-  EXPECT_TRUE(view.reduced[indexOf(Level::kCoarse)].surface);
-  const core::FrameView coarse = core::frameAt(view, Level::kCoarse);
-  EXPECT_EQ(coarse.level, Level::kCoarse);
-  ASSERT_TRUE(coarse.surface);
-  EXPECT_EQ(coarse.surface->resolution_count, 128u);
+  const core::LevelView& full = view.at(Level::kFull);
+  EXPECT_FALSE(full.surface || full.particles || full.foam || view.bodies);
+  ASSERT_TRUE(view.at(Level::kCoarse).surface);
+  EXPECT_EQ(view.at(Level::kCoarse).surface->resolution_count, 128u);
   EXPECT_FALSE(sim.requestFrame({})) << "nothing was asked for";
 }
 
@@ -175,19 +178,20 @@ TEST_F(Levels, ALowerLevelHasASubsetOfTheParticlesTheSameInEveryFrame) {
   scene.wave->side_m = 40.0;
   WaterSim& sim = make(scene);
   const core::FrameView view = frame(sim, everyLevel());
-  ASSERT_TRUE(view.particles);
-  ASSERT_GT(view.particles->count, 33'000u);
+  const auto& full = view.at(Level::kFull).particles;
+  ASSERT_TRUE(full);
+  ASSERT_GT(full->count, 33'000u);
   ASSERT_EQ(view.reduced_counts.particles, 2u);
-  const std::set<Words> all = particlesOf(*view.particles);
+  const std::set<Words> all = particlesOf(*full);
   std::set<Words> within = all;
   for (const Level level : {Level::kMedium, Level::kCoarse}) {
-    const auto& part = view.reduced[indexOf(level)].particles;
+    const auto& part = view.at(level).particles;
     ASSERT_TRUE(part);
-    const std::uint32_t budget = core::kLevelBudgets[indexOf(level)].particle_count;
+    const std::uint32_t budget = core::budgetOf(level).particle_count;
     EXPECT_LE(part->count, budget);
     EXPECT_GT(part->count, budget * 9 / 10);
     // The drawn volume stays the same.
-    EXPECT_NEAR(std::pow(part->radius_m / view.particles->radius_m, 3) * part->count, view.particles->count, 1.0);
+    EXPECT_NEAR(std::pow(part->radius_m / full->radius_m, 3) * part->count, full->count, 1.0);
     const std::set<Words> words = particlesOf(*part);
     EXPECT_EQ(words.size(), part->count) << "each of them once";
     EXPECT_TRUE(std::ranges::includes(within, words)) << "level " << indexOf(level);
@@ -197,10 +201,11 @@ TEST_F(Levels, ALowerLevelHasASubsetOfTheParticlesTheSameInEveryFrame) {
   // Full frames are in the order of the state, which has the ids.
   const auto idsOf = [&](const core::FrameView& of) {
     const std::vector<float> position = sim.copyState().position;
-    std::set<Words> chosen = particlesOf(*of.reduced[indexOf(Level::kCoarse)].particles);
+    const std::set<Words> chosen = particlesOf(*of.at(Level::kCoarse).particles);
+    const core::ParticleView& particles = *of.at(Level::kFull).particles;
     std::set<float> ids;
-    for (std::size_t i = 0; i < of.particles->count; ++i) {
-      if (chosen.contains({of.particles->words[3 * i], of.particles->words[3 * i + 1], of.particles->words[3 * i + 2]}))
+    for (std::size_t i = 0; i < particles.count; ++i) {
+      if (chosen.contains({particles.words[3 * i], particles.words[3 * i + 1], particles.words[3 * i + 2]}))
         ids.insert(position[4 * i + 3]);
     }
     return ids;

@@ -66,10 +66,10 @@ TEST_F(Patch, FramesOfAMovingPatchHaveTheCoordinatesOfTheWater) {
   WaterSim& sim = make(patchScene(core::PatchFollow::kEvent));
   ASSERT_TRUE(sim.start(core::Splash{5.0, -4.0, 1.0, 0.5, 0.2}));
   for (int i = 0; i < 10; ++i) sim.step();
-  ASSERT_TRUE(sim.requestFrame({.particles = true}));
+  ASSERT_TRUE(sim.requestFrame(FrameRequest::full({.particles = true})));
   ctx_->finish();
   const auto frames = sim.takeFrames();
-  const core::ParticleView& p = *frames.at(0).particles;
+  const core::ParticleView& p = *frames.at(0).at(core::Level::kFull).particles;
   const StateCopy state = sim.copyState();
   for (std::size_t i = 0; i < p.count; ++i) {
     const double x = p.min_m[0] + (p.words[3 * i] & 0xffff) / 65535.0 * (p.max_m[0] - p.min_m[0]);

@@ -178,22 +178,24 @@ TEST_F(TwoWay, AFullPoolEmitsNothingAndLosesNoWater) {
 TEST_F(TwoWay, FramesHaveTheLiveParticles) {
   WaterSim& sim = make(twoWayScene());
   const auto frame = [&] {
-    EXPECT_TRUE(sim.requestFrame({.surface = true, .particles = true, .foam = true}));
+    EXPECT_TRUE(sim.requestFrame(FrameRequest::full({.surface = true, .particles = true, .foam = true})));
     ctx_->finish();
     auto frames = sim.takeFrames();
     return std::move(frames.at(0));
   };
-  EXPECT_EQ(frame().particles->count, 0u);
+  EXPECT_EQ(frame().at(core::Level::kFull).particles->count, 0u);
   ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 1.5, 0.9, 0.15}));
   for (int i = 0; i < 40; ++i) sim.step();
   const core::FrameView view = frame();
-  EXPECT_EQ(view.particles->count, sim.copyState().pool[POOL_LIVE]);
-  EXPECT_GT(view.particles->count, 10u);
-  EXPECT_EQ(view.particles->words.size(), 3u * view.particles->count);
-  ASSERT_TRUE(view.foam);
-  EXPECT_EQ(view.foam->resolution_count, 32u);
+  const core::ParticleView& particles = *view.at(core::Level::kFull).particles;
+  EXPECT_EQ(particles.count, sim.copyState().pool[POOL_LIVE]);
+  EXPECT_GT(particles.count, 10u);
+  EXPECT_EQ(particles.words.size(), 3u * particles.count);
+  const auto& foam = view.at(core::Level::kFull).foam;
+  ASSERT_TRUE(foam);
+  EXPECT_EQ(foam->resolution_count, 32u);
   std::uint32_t white = 0;
-  for (const std::uint32_t word : view.foam->words) {
+  for (const std::uint32_t word : foam->words) {
     for (int byte = 0; byte < 4; ++byte) white = std::max(white, word >> (8 * byte) & 0xffu);
   }
   EXPECT_GT(white, 100u) << "breaking water leaves foam";
@@ -207,11 +209,11 @@ TEST_F(TwoWay, FoamFadesByItsLifetime) {
   WaterSim& sim = make(scene);
   ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 1.5, 0.9, 0.15}));
   const auto white = [&] {
-    EXPECT_TRUE(sim.requestFrame({.foam = true}));
+    EXPECT_TRUE(sim.requestFrame(FrameRequest::full({.foam = true})));
     ctx_->finish();
     const auto frames = sim.takeFrames();
     double sum = 0;
-    for (const std::uint32_t word : frames.at(0).foam->words) {
+    for (const std::uint32_t word : frames.at(0).at(core::Level::kFull).foam->words) {
       for (int byte = 0; byte < 4; ++byte) sum += word >> (8 * byte) & 0xffu;
     }
     return sum;

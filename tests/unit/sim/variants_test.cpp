@@ -234,12 +234,12 @@ TEST_F(Variants, AnotherNumberOfParticlesKeepsWaterAndMotion) {
     EXPECT_LE(later, 3 * energy + 0.5 * mass_0 * 0.3 * 0.3);
     EXPECT_LE(faster, 2 * speed + 1.5);
     const auto view = [&] {
-      EXPECT_TRUE(sim.requestFrame({.surface = true, .particles = true}));
+      EXPECT_TRUE(sim.requestFrame(FrameRequest::full({.surface = true, .particles = true})));
       ctx_->finish();
       return sim.takeFrames();
     }();
     ASSERT_EQ(view.size(), 1u);
-    EXPECT_EQ(view.front().particles->words.size(), 3u * l.count);
+    EXPECT_EQ(view.front().at(core::Level::kFull).particles->words.size(), 3u * l.count);
   }
   EXPECT_EQ(ctx_->ledger().programs_made_count, programs) << "nothing was compiled again";
   EXPECT_EQ(sim.recoveredCount(), 0u);
@@ -290,7 +290,7 @@ TEST_F(Variants, EveryMixOfPartsRuns) {
         ASSERT_TRUE((*sim)->start(core::Splash{0.0, 0.0, 1.0, 0.5, 0.1}));
         for (int i = 0; i < 20; ++i) {
           (*sim)->step();
-          (void)(*sim)->requestFrame({.surface = true, .particles = true, .foam = true, .bodies = true});
+          (void)(*sim)->requestFrame(FrameRequest::allLayers());
           (void)(*sim)->takeFrames();
         }
         EXPECT_TRUE(isFinite((*sim)->copyState()));

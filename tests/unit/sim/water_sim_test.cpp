@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 
 class Water : public OnDevice {
  protected:
-  core::FrameView frame(WaterSim& sim, FrameRequest request = {.surface = true, .particles = true}) {
-    EXPECT_TRUE(sim.requestFrame(request));
+  core::FrameView frame(WaterSim& sim) {
+    EXPECT_TRUE(sim.requestFrame(FrameRequest::full({.surface = true, .particles = true})));
     ctx_->finish();
     auto frames = sim.takeFrames();
     EXPECT_EQ(frames.size(), 1u);
@@ -110,7 +110,7 @@ TEST_F(Water, SteppingAllocatesNothing) {
   const gpu::Ledger before = ctx_->ledger();
   for (int i = 0; i < 80; ++i) {
     sim.step();
-    (void)sim.requestFrame({.surface = true, .particles = true});
+    (void)sim.requestFrame(FrameRequest::full({.surface = true, .particles = true}));
     (void)sim.takeFrames();
   }
   EXPECT_EQ(ctx_->ledger().buffers_made_count, before.buffers_made_count);
@@ -123,15 +123,16 @@ TEST_F(Water, FramesHoldTheStateToHalfAQuantum) {
   for (int i = 0; i < 20; ++i) sim.step();
   const StateCopy state = sim.copyState();
   const core::FrameView view = frame(sim);
-  ASSERT_TRUE(view.surface && view.particles);
+  const auto& [surface, particles, foam] = view.at(core::Level::kFull);
+  ASSERT_TRUE(surface && particles);
   EXPECT_EQ(view.tick, 20u);
-  const auto n = view.surface->resolution_count;
-  ASSERT_EQ(view.surface->words.size(), n * n / 2);
+  const auto n = surface->resolution_count;
+  ASSERT_EQ(surface->words.size(), n * n / 2);
   for (std::size_t i = 0; i < std::size_t{n} * n; ++i) {
-    const auto value = static_cast<std::int16_t>(view.surface->words[i / 2] >> (16 * (i % 2)));
-    ASSERT_NEAR(value * view.surface->quantum_m, state.elevation_m[i], 0.5 * view.surface->quantum_m * 1.001);
+    const auto value = static_cast<std::int16_t>(surface->words[i / 2] >> (16 * (i % 2)));
+    ASSERT_NEAR(value * surface->quantum_m, state.elevation_m[i], 0.5 * surface->quantum_m * 1.001);
   }
-  const core::ParticleView& p = *view.particles;
+  const core::ParticleView& p = *particles;
   ASSERT_EQ(p.words.size(), 3u * p.count);
   for (std::size_t i = 0; i < p.count; ++i) {
     const std::uint32_t* w = &p.words[3 * i];
@@ -153,9 +154,9 @@ TEST_F(Water, DropsFramesWhileAllSlotsAreRead) {
   WaterSim& sim = make(smallScene());
   std::vector<core::FrameView> held;
   for (int i = 0; i < 4; ++i) held.push_back(frame(sim));
-  EXPECT_FALSE(sim.requestFrame({.surface = true}));
+  EXPECT_FALSE(sim.requestFrame(FrameRequest::full({.surface = true})));
   held.clear();
-  EXPECT_TRUE(sim.requestFrame({.surface = true}));
+  EXPECT_TRUE(sim.requestFrame(FrameRequest::full({.surface = true})));
 }
 
 TEST_F(Water, ASplashEmitsParticlesAndMakesFoam) {
@@ -225,7 +226,7 @@ TEST_F(Water, GoesBackToTheLastGoodCheckpointWhenAValueIsNotFinite) {
   sim.setState(broken);
   sim.step();
   const core::FrameView at_once = frame(sim);  // integers, so no client receives the NaN
-  ASSERT_TRUE(at_once.surface);
+  ASSERT_TRUE(at_once.at(core::Level::kFull).surface);
   for (int i = 0; i < 60; ++i) sim.step();
   EXPECT_GE(sim.recoveredCount(), 1u);
   EXPECT_GE(sim.nonfiniteCount(), 1u);

@@ -98,8 +98,9 @@ std::vector<GoldenCase> goldenPackedFoam() {
     core::FrameView view;
     view.tick = 100 + 2 * step;
     view.time_s = 20.5;
-    view.foam = core::FoamView{12, 8.0, words};
-    const codec::EncodedFrame encoded = encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, false);
+    view.at(core::Level::kFull).foam = core::FoamView{12, 8.0, words};
+    const codec::EncodedFrame encoded =
+        encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, core::Level::kFull, false);
     const core::Bytes& bytes = encoded.keyframe ? *encoded.keyframe : *encoded.delta;
     const v1::LayerFrame frame = codec::parseServerMessage(bytes)->frame();
     const std::string follows = step > 0 ? cases.back().file : "";
@@ -128,9 +129,9 @@ std::vector<GoldenCase> goldenPackedParticles() {
   core::FrameView view;
   view.tick = 1234;
   view.time_s = 20.5;
-  view.particles = particles;
+  view.at(core::Level::kFull).particles = particles;
   const core::Bytes bytes =
-      *codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, true).keyframe;
+      *codec::FrameEncoder().encode({v1::LAYER_PARTICLES, v1::PACKING_PACKED}, view, core::Level::kFull, true).keyframe;
   const auto samples = *codec::decodePackedParticles(codec::parseServerMessage(bytes)->frame());
   const std::string json =
       "\"kind\": \"frame\", \"layer\": \"LAYER_PARTICLES\", \"packing\": \"PACKING_PACKED\", "
@@ -161,8 +162,9 @@ std::vector<GoldenCase> goldenPackedSurfaces() {
     core::FrameView view;
     view.tick = 100 + 2 * static_cast<std::uint64_t>(step);
     view.time_s = 20.5;
-    view.surface = core::SurfaceView{kSide, 8.0, 0.0009765625, words};
-    const codec::EncodedFrame encoded = encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, false);
+    view.at(core::Level::kFull).surface = core::SurfaceView{kSide, 8.0, 0.0009765625, words};
+    const codec::EncodedFrame encoded =
+        encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, false);
     const core::Bytes& bytes = encoded.keyframe ? *encoded.keyframe : *encoded.delta;
     const v1::LayerFrame frame = codec::parseServerMessage(bytes)->frame();
     const std::string follows = step > 0 ? cases.back().file : "";

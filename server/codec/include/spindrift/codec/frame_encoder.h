@@ -26,11 +26,13 @@ class FrameEncoder {
   FrameEncoder();
   ~FrameEncoder();
 
-  /// Encodes a frame of one level (core::frameAt). Returns null messages if it lacks the layer.
-  EncodedFrame encode(Stream stream, const core::FrameView& frame, bool wants_keyframe);
-  /// Encodes the plain form.
+  /// Encodes one level of the frame. Returns null messages if the frame lacks the layer at this level. Layers without
+  /// levels are encoded at core::Level::kFull only. Without `wants_keyframe` the keyframe is omitted if there is a
+  /// delta.
+  EncodedFrame encode(Stream stream, const core::FrameView& frame, core::Level level, bool wants_keyframe);
+  /// Encodes the plain form at core::Level::kFull.
   core::SharedBytes encode(v1::Layer layer, const core::FrameView& frame) {
-    return encode({layer}, frame, true).keyframe;
+    return encode({layer}, frame, core::Level::kFull, true).keyframe;
   }
 
  private:

@@ -23,7 +23,7 @@ struct SurfaceView {
   std::span<const std::uint32_t> words;  ///< n*n/2 words
 };
 
-/// Particles in the simulation's cell order (in a reduced level: in any order), three little-endian words each:
+/// Particles in the simulation's cell order (below Level::kFull: in any order), three little-endian words each:
 ///   word 0: x u16 | z u16 << 16                   position = min + (u16/65535) * (max - min), per axis
 ///   word 1: y u16 | velocity x i8 << 16 | velocity y i8 << 24
 ///   word 2: velocity z i8 | tint u8 << 8 | foam u8 << 16 | 0 << 24
@@ -79,34 +79,30 @@ struct DiagnosticsView {
   std::vector<PassTime> passes;
 };
 
-/// One reduced level of a frame: surface and foam with fewer samples, each the mean of the samples it covers, and a
-/// subset of the particles, drawn larger. Whether a particle is in a subset depends on the particle alone. Each subset
-/// contains that of the next coarser level.
-struct ReducedView {
+/// The layers of a frame that have levels of detail, at one level. Below Level::kFull the surface and the foam have
+/// fewer samples, each the mean of the samples that it covers, and the particles are a subset, drawn larger. Whether a
+/// particle is in a subset depends on the particle alone. Each subset contains that of the next coarser level.
+struct LevelView {
   std::optional<SurfaceView> surface;
   std::optional<ParticleView> particles;
   std::optional<FoamView> foam;
 };
 
-/// One frame of one room. The spans are valid while a copy of `lease` exists; the last copy releases the readback slot.
+/// One frame of one room. Each layer may be absent. The spans are valid while a copy of `lease` exists; the last copy
+/// releases the readback slot.
 struct FrameView {
   std::uint64_t tick = 0;
-  double time_s = 0.0;         ///< simulation time
-  double asked_s = 0.0;        ///< time when the frame was requested, on the server's monotonic clock
-  std::uint64_t state_id = 0;  ///< number of the room's state that the frame shows; 0: unknown
-  Level level = Level::kFull;
-  std::optional<SurfaceView> surface;
-  std::optional<ParticleView> particles;
-  std::optional<FoamView> foam;
+  double time_s = 0.0;                        ///< simulation time
+  double asked_s = 0.0;                       ///< time when the frame was requested, on the server's monotonic clock
+  std::uint64_t state_id = 0;                 ///< number of the room's state that the frame shows; 0: unknown
+  std::array<LevelView, kLevelCount> levels;  ///< indexed by Level; see at()
   std::optional<BodiesView> bodies;
   std::optional<DiagnosticsView> diagnostics;
-  std::array<ReducedView, kReducedLevelCount> reduced;  ///< by Level
-  ReducedCounts reduced_counts;                         ///< of the scene, even if this frame has no levels
+  ReducedCounts reduced_counts;  ///< of the scene, whatever this frame contains
   std::shared_ptr<const void> lease;
-};
 
-/// Returns the frame at one level. A reduced level replaces the full surface, foam and particles; it has no bodies and
-/// no diagnostics, which are sent with kFull only.
-FrameView frameAt(const FrameView& frame, Level level);
+  [[nodiscard]] const LevelView& at(Level level) const { return levels[indexOf(level)]; }
+  [[nodiscard]] LevelView& at(Level level) { return levels[indexOf(level)]; }
+};
 
 }  // namespace spindrift::core

@@ -23,7 +23,7 @@
 
 namespace spindrift::sim {
 
-/// Layers with levels of detail that one level of a frame should hold.
+/// The layers that one level of a frame should contain.
 struct LayerRequest {
   bool surface = false;
   bool particles = false;
@@ -32,23 +32,30 @@ struct LayerRequest {
   [[nodiscard]] bool isEmpty() const { return !surface && !particles && !foam; }
 };
 
-/// Layers that a frame should hold.
+/// What a frame should contain. Layers that the scene lacks, and levels that would not downsample a layer, are left
+/// out.
 struct FrameRequest {
-  bool surface = false;
-  bool particles = false;
-  bool foam = false;
+  std::array<LayerRequest, core::kLevelCount> levels{};  ///< indexed by core::Level; see at()
   bool bodies = false;
-  std::array<LayerRequest, core::kReducedLevelCount> reduced{};  ///< in addition to the full layers; by Level
-  double asked_s = 0.0;                                          ///< on the caller's clock; returned with the frame
-  std::uint64_t state_id = 0;                                    ///< the caller's; returned with the frame
+  double asked_s = 0.0;        ///< on the caller's clock; returned with the frame
+  std::uint64_t state_id = 0;  ///< the caller's; returned with the frame
 
-  [[nodiscard]] bool isEmpty() const {
-    return !surface && !particles && !foam && !bodies && std::ranges::all_of(reduced, &LayerRequest::isEmpty);
+  /// Requests layers at core::Level::kFull only.
+  [[nodiscard]] static FrameRequest full(const LayerRequest& layers) {
+    FrameRequest out;
+    out.at(core::Level::kFull) = layers;
+    return out;
   }
-  [[nodiscard]] LayerRequest at(core::Level level) const {
-    if (level == core::Level::kFull) return {surface, particles, foam};
-    return reduced[indexOf(level)];
+  /// Requests every layer; those with levels at core::Level::kFull only.
+  [[nodiscard]] static FrameRequest allLayers() {
+    FrameRequest out = full({.surface = true, .particles = true, .foam = true});
+    out.bodies = true;
+    return out;
   }
+
+  [[nodiscard]] bool isEmpty() const { return !bodies && std::ranges::all_of(levels, &LayerRequest::isEmpty); }
+  [[nodiscard]] const LayerRequest& at(core::Level level) const { return levels[indexOf(level)]; }
+  [[nodiscard]] LayerRequest& at(core::Level level) { return levels[indexOf(level)]; }
 };
 
 /// Call all functions on the thread that owns the context; ownership may move between two calls (Context::release() and
