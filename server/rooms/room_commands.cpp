@@ -132,10 +132,9 @@ void Room::abandonCommands() {
 void Room::apply(Batch batch) {
   const CommandKind& kind = kindOf(batch.front().message);
   if (kind.begin) return (this->*kind.begin)(std::move(batch));
-  new_boat_id_ = 0;
   Outcome outcome = checkAgain(batch.front());
   if (!outcome) outcome = kind.in_room ? (this->*kind.in_room)(batch.front()) : applyToWater(batch.front());
-  answer(std::move(batch), outcome);
+  answer(std::move(batch), outcome, std::exchange(new_boat_id_, 0));
 }
 
 Room::Outcome Room::checkAgain(const Command& command) const {
@@ -143,8 +142,8 @@ Room::Outcome Room::checkAgain(const Command& command) const {
   return wire::checkAgainstScene(command.message, stage_->scene());
 }
 
-void Room::answer(Batch batch, const Outcome& outcome) {
-  for (Command& command : batch) answers_.push_back({std::move(command), outcome, outcome ? 0 : new_boat_id_});
+void Room::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
+  for (Command& command : batch) answers_.push_back({std::move(command), outcome, boat_id});
 }
 
 Room::Outcome Room::applyToWater(const Command& command) {

@@ -44,6 +44,25 @@ TEST_F(Scenes, AreListedInTheGreeting) {
   EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "impossible", "pond", "quay"));
 }
 
+TEST_F(Scenes, OnlyTheAnswerToASpawnNamesABoat) {
+  ScriptedClient one = client();
+  ASSERT_TRUE(changeTo(one, "quay"));
+  EXPECT_NE(one.ask(spawnBoat(0, 0)).ack().boat_id(), 0u);
+  for (const v1::Command& command : {setSpeed(2.0), removeBoat(1), setParameter("wave.damping_per_s", 0.1)}) {
+    const v1::ServerMessage answer = one.ask(command);
+    ASSERT_TRUE(answer.has_ack()) << answer.ShortDebugString();
+    EXPECT_EQ(answer.ack().boat_id(), 0u) << command.ShortDebugString();
+  }
+  EXPECT_NE(one.ask(spawnBoat(0, 4)).ack().boat_id(), 0u);
+  v1::ServerMessage changed = one.ask(changeScene("pond"));
+  while (changed.has_reject() && changed.reject().reason() == v1::REJECT_REASON_BUSY) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // scenes change at most once per second
+    changed = one.ask(changeScene("pond"));
+  }
+  ASSERT_TRUE(changed.has_ack()) << changed.ShortDebugString();
+  EXPECT_EQ(changed.ack().boat_id(), 0u);
+}
+
 TEST_F(Scenes, ChangeForAllClientsOfTheRoomWithAGreetingAndGrowingTicks) {
   ScriptedClient one = client();
   ScriptedClient two = client();

@@ -176,8 +176,8 @@ class Room {
   Outcome setPaused(const Command& command);
   Outcome setSpeed(const Command& command);
   Outcome advance(const Command& command);
-  /// Stores the outcome of each command.
-  void answer(Batch batch, const Outcome& outcome);
+  /// Stores the outcome of each command; `boat_id`: the boat that they added, 0: none.
+  void answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id = 0);
   /// Tells all clients the changes, then the senders the outcomes of their commands.
   void announce();
   /// Tells the senders the outcomes of their commands.
