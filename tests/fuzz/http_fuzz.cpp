@@ -123,7 +123,7 @@ bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Applicat
       net::isOriginAllowed(field(boost::beast::http::field::origin), field(boost::beast::http::field::host), true, {});
   must(is_heard || !field(boost::beast::http::field::origin).empty(), "programs are heard");
   const auto routed = net::routeRequest(net::headOf(request), site.files);
-  if (const auto* target = std::get_if<net::Target>(&routed)) {
+  if (const auto* target = std::get_if<net::RequestTarget>(&routed)) {
     must(target->path.starts_with('/'), "the application sees absolute paths");
     must(net::bodyOf(request).size() <= kBodyMaxBytes, "the body keeps its bound");
     checkReply(net::applicationReply(target->path, std::nullopt));
