@@ -148,6 +148,18 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
   return take(done);
 }
 
+std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::wait(std::chrono::nanoseconds limit) {
+  assert(ctx_.isOwnedHere());
+  ctx_.collectRetired();
+  const auto end = std::chrono::steady_clock::now() + limit;
+  std::size_t done = 0;
+  while (done < in_flight_.size() &&
+         in_flight_[done].fence.wait(end - std::chrono::steady_clock::now()) != Fence::Status::kPending) {
+    ++done;
+  }
+  return take(done);
+}
+
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::take(std::size_t count) {
   std::vector<std::shared_ptr<const Slot>> out;
   for (std::size_t i = 0; i < count; ++i) {

@@ -149,33 +149,30 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
 }
 
 /// Adds to TRANSFER and, for crests, to FLOW; advance() has bound both.
-void Wave::displace(const shared::EventUniforms& events) {
+void Wave::displace(shared::EventUniforms events) {
   const bool any = events.splash_count + events.crest_count > 0;
   if (!any && !had_events_) return;
   had_events_ = any;
+  // Number of cells along each side of the square that the largest splash can reach.
+  float radius_m = 0.0f;
+  for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
+  const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
+  // wave/splash.comp has two ways; the one with fewer invocations is faster.
+  const bool every_cell = std::uint64_t{across} * across * events.splash_count > std::uint64_t{n_} * n_;
+  events.every_cell = every_cell;
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   if (events.splash_count > 0) {
-    displaceBySplashes(events);
+    if (every_cell) {
+      splash_.dispatch(n_, n_);
+    } else {
+      splash_.dispatch(across, across, events.splash_count);
+    }
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
   if (events.crest_count > 0) {
     crest_.dispatch(n_, n_);
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
-  }
-}
-
-/// Chooses the way of wave/splash.comp that needs fewer invocations.
-void Wave::displaceBySplashes(const shared::EventUniforms& events) {
-  float radius_m = 0.0f;
-  for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
-  const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
-  const bool every_cell = std::uint64_t{across} * across * events.splash_count > std::uint64_t{n_} * n_;
-  splash_.setUniform("every_cell", std::uint32_t{every_cell});
-  if (every_cell) {
-    splash_.dispatch(n_, n_);
-  } else {
-    splash_.dispatch(across, across, events.splash_count);
   }
 }
 

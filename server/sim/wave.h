@@ -64,8 +64,7 @@ class Wave {
 
  private:
   Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count), cell_m_(layout.cell_m) {}
-  void displace(const shared::EventUniforms& events);
-  void displaceBySplashes(const shared::EventUniforms& events);
+  void displace(shared::EventUniforms events);
   void limit();
 
   gpu::Context& ctx_;

@@ -39,7 +39,8 @@ struct EventUniforms {
   EventUniform crests[MAX_CRESTS];
   uint splash_count;
   uint crest_count;
-  uint padding[2];
+  uint every_cell;  // as in the block below
+  uint padding;
 };
 static_assert(sizeof(EventUniform) == 64 && sizeof(EventUniforms) == 64 * (MAX_SPLASHES + MAX_CRESTS) + 16);
 }  // namespace spindrift::shared
@@ -49,6 +50,7 @@ layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {
   EventUniform crests[MAX_CRESTS];
   uint splash_count;
   uint crest_count;
+  uint every_cell;  // wave/splash.comp: 1 = one invocation per cell of the domain, 0 = one per splash and cell of its square
 };
 #endif
 

@@ -11,8 +11,6 @@
 
 layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
 
-uniform uint every_cell;
-
 /// Turns a place in the square of a splash into its cell. Returns false outside the square and outside the domain.
 bool findCell(EventUniform e, int n, inout ivec2 cell) {
   const float cell_m = sim.wave_cell_m;

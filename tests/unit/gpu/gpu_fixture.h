@@ -23,13 +23,6 @@ inline core::Result<DeviceChoice> testDevice() {
   return parseDeviceChoice(wanted ? wanted : "software");
 }
 
-/// Waits for the device, then returns all slots of the ring that were in flight. A minute is far above what a copy of
-/// some bytes takes.
-inline std::vector<std::shared_ptr<const ReadbackRing::Slot>> waitForSlots(Context& ctx, ReadbackRing& ring) {
-  (void)Fence::insert(ctx).wait(std::chrono::minutes(1));
-  return ring.poll();
-}
-
 class GpuTest : public testing::Test {
  protected:
   void SetUp() override {

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <numeric>
 #include <thread>
 
@@ -38,7 +39,7 @@ TEST_F(ReadbackRingTest, ReturnsCopiesInOrderOfSubmission) {
     source->upload(numbers(37, 100 * tag));
     send(**ring, *source, 4 * 37, tag);
   }
-  const auto leases = waitForSlots(*ctx, **ring);
+  const auto leases = (*ring)->wait(std::chrono::minutes(1));
   ASSERT_EQ(leases.size(), 3u);
   for (std::uint32_t tag = 1; tag <= 3; ++tag) {
     const Lease& lease = leases[tag - 1];
@@ -67,7 +68,7 @@ TEST_F(ReadbackRingTest, GathersSeveralCopiesAndSeesShaderWrites) {
     ASSERT_TRUE(slot->copyFrom(*counts, 0, 8, 0));
     slot->submit(5);
   }
-  const auto leases = waitForSlots(*ctx, **ring);
+  const auto leases = (*ring)->wait(std::chrono::minutes(1));
   ASSERT_EQ(leases.size(), 1u);
   const auto words = leases[0]->words();
   ASSERT_EQ(words.size(), kCount + 1);
@@ -83,7 +84,7 @@ TEST_F(ReadbackRingTest, RefusesWhenEverySlotIsInUseAndCountsIt) {
   send(**ring, *source, 64, 1);
   send(**ring, *source, 64, 2);
   EXPECT_FALSE((*ring)->begin());
-  auto leases = waitForSlots(*ctx, **ring);
+  auto leases = (*ring)->wait(std::chrono::minutes(1));
   ASSERT_EQ(leases.size(), 2u);
   EXPECT_FALSE((*ring)->begin()) << "slots that are being read are not free";
   EXPECT_EQ((*ring)->refusedCount(), 2u);
@@ -99,12 +100,12 @@ TEST_F(ReadbackRingTest, KeepsAHeldSlotUntouchedWhileOthersAreReused) {
   ASSERT_TRUE(ring && source);
   source->upload(numbers(16, 1000));
   send(**ring, *source, 64, 0);
-  auto held = waitForSlots(*ctx, **ring);
+  auto held = (*ring)->wait(std::chrono::minutes(1));
   ASSERT_EQ(held.size(), 1u);
   for (std::uint32_t i = 1; i <= 10; ++i) {
     source->upload(numbers(16, i));
     send(**ring, *source, 64, i);
-    const auto leases = waitForSlots(*ctx, **ring);
+    const auto leases = (*ring)->wait(std::chrono::minutes(1));
     ASSERT_EQ(leases.size(), 1u);
     EXPECT_EQ(leases[0]->words()[0], i);
   }
@@ -119,7 +120,7 @@ TEST_F(ReadbackRingTest, IsFreedByTheLastReferenceOnAnotherThread) {
   send(**ring, *source, 64, 1);
   std::uint32_t sum = 0;
   {
-    auto leases = waitForSlots(*ctx, **ring);
+    auto leases = (*ring)->wait(std::chrono::minutes(1));
     ASSERT_EQ(leases.size(), 1u);
     std::thread reader([lease = std::move(leases[0]), &sum]() mutable {
       const Lease copy = lease;
@@ -143,7 +144,7 @@ TEST_F(ReadbackRingTest, ARecordingThatIsDroppedFreesItsSlot) {
     EXPECT_EQ((*ring)->usedCount(), 1u);
   }
   EXPECT_EQ((*ring)->usedCount(), 0u);
-  EXPECT_TRUE(waitForSlots(*ctx, **ring).empty());
+  EXPECT_TRUE((*ring)->wait(std::chrono::minutes(1)).empty());
 }
 
 TEST_F(ReadbackRingTest, RefusesCopiesThatDoNotFit) {
@@ -169,7 +170,7 @@ TEST_F(ReadbackRingTest, AViewOutlivesItsRing) {
     auto ring = ReadbackRing::create(*ctx, "frames", 64, 2);
     ASSERT_TRUE(ring);
     send(**ring, *source, 64, 1);
-    leases = waitForSlots(*ctx, **ring);
+    leases = (*ring)->wait(std::chrono::minutes(1));
     ASSERT_EQ(leases.size(), 1u);
     send(**ring, *source, 64, 2);  // still in flight when the ring is destroyed
   }

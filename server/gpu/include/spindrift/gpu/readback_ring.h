@@ -81,6 +81,9 @@ class ReadbackRing {
   /// Returns slots whose fence has been passed, in the order of submit(). Never waits. Slots that were in flight when
   /// the device was lost become free, are counted in lostCount() and are not returned.
   [[nodiscard]] std::vector<std::shared_ptr<const Slot>> poll();
+  /// As poll(), but first waits at most `limit` for all slots in flight. On an asynchronous driver a fence may not be
+  /// seen as passed at once, even when a later one is.
+  [[nodiscard]] std::vector<std::shared_ptr<const Slot>> wait(std::chrono::nanoseconds limit);
 
   /// Number of slots that are not free.
   [[nodiscard]] std::size_t usedCount() const;
