@@ -47,7 +47,7 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, Room
       clock_(stage_->water().derived().tick_s),
       boats_(stage_->boats()) {
   recovery_news_.restart(stage_->water().recoveredCount());
-  tick_cost_.restart(stage_->warmTick_ms());
+  tick_cost_.restart(stage_->warmTick_ms(), stage_->work());
   publishSnapshot();
   publishVitals({});
 }

@@ -107,10 +107,11 @@ Room::Outcome Room::refuseChange(const Command& command) const {
   const v1::SetParameter& change = command.message.set_parameter();
   const auto wanted = stage_->workWith(change);
   if (!wanted) return {};
-  return refuseSlow(command.sender, change.path(), tick_cost_.predict_ms(stage_->work(), *wanted), kTickMax_ms);
+  return refuseSlow(command.sender, change.path(), tick_cost_.predict_ms(*wanted), kTickMax_ms);
 }
 
 void Room::parameterChanged(const v1::SetParameter& change) {
+  tick_cost_.workChanged(stage_->work());
   next_frame_s_ = 0.0;  // the frame rate may have changed; by the old rate the next frame could be up to a second away
   news_.parameters[change.path()] = change.value();
 }

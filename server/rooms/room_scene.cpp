@@ -64,7 +64,7 @@ void Room::replaceWater(std::unique_ptr<Water> water) {
 
 Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                double max_ms) const {
-  const double now_ms = tick_cost_.predict_ms({}, {});
+  const double now_ms = tick_cost_.tick_ms();
   const std::size_t own_count = sender.session_id != 0 ? 1 : 0;
   if (session_count_ <= own_count || tick_ms <= std::max(max_ms, now_ms)) return {};
   return rejection(
@@ -131,7 +131,7 @@ void Room::restartScene() {
   step_count_ = 0;
   last_passes_.clear();
   slow_since_ = {};
-  tick_cost_.restart(stage_->warmTick_ms());
+  tick_cost_.restart(stage_->warmTick_ms(), stage_->work());
   recovery_news_.restart(stage_->water().recoveredCount());
   logged_recovery_count_ = stage_->water().recoveredCount();
   boats_ = stage_->boats();

@@ -5,8 +5,13 @@
 namespace spindrift::rooms {
 namespace {
 
+/// 0 if neither has this part.
 double ratio(double wanted, double now) {
-  return now > 0.0 ? wanted / now : 1.0;
+  return now > 0.0 ? wanted / now : wanted > 0.0 ? 1.0 : 0.0;
+}
+
+bool isAtMost(const TickWork& a, const TickWork& b) {
+  return a.particle_step_count <= b.particle_step_count && a.wave_step_count <= b.wave_step_count;
 }
 
 }  // namespace
@@ -25,14 +30,33 @@ TickWork workOf(const core::Scene& scene, const sim::Derived& derived) {
   return out;
 }
 
+void TickCost::restart(double tick_ms, const TickWork& now) {
+  tick_ms_ = most_ms_ = tick_ms;
+  work_ = most_work_ = now;
+}
+
 void TickCost::note(double tick_ms) {
   constexpr double kNewShare = 0.1;
   tick_ms_ = tick_ms_ == 0.0 ? tick_ms : (1.0 - kNewShare) * tick_ms_ + kNewShare * tick_ms;
+  if (!isAtMost(most_work_, work_)) return;
+  most_work_ = work_;
+  most_ms_ = tick_ms_;
 }
 
-double TickCost::predict_ms(const TickWork& now, const TickWork& wanted) const {
-  return tick_ms_ * std::max({1.0, ratio(wanted.particle_step_count, now.particle_step_count),
-                              ratio(wanted.wave_step_count, now.wave_step_count)});
+void TickCost::workChanged(const TickWork& now) {
+  tick_ms_ = scaled_ms(now);
+  work_ = now;
+}
+
+double TickCost::predict_ms(const TickWork& wanted) const {
+  return std::max(tick_ms_, scaled_ms(wanted));
+}
+
+double TickCost::scaled_ms(const TickWork& wanted) const {
+  const double share = std::max(ratio(wanted.particle_step_count, work_.particle_step_count),
+                                ratio(wanted.wave_step_count, work_.wave_step_count));
+  const double scaled_ms = share > 0.0 ? tick_ms_ * share : tick_ms_;
+  return isAtMost(wanted, most_work_) ? std::min(scaled_ms, most_ms_) : scaled_ms;
 }
 
 }  // namespace spindrift::rooms

@@ -20,18 +20,31 @@ struct TickWork {
 };
 [[nodiscard]] TickWork workOf(const core::Scene& scene, const sim::Derived& derived);
 
-/// A running mean of tick durations.
+/// Estimates the duration of a tick: a running mean while the work stays the same, scaled with the work when it changes.
 class TickCost {
  public:
+  /// Starts for new water with the work `now`, whose ticks took this long when it was built.
+  void restart(double tick_ms, const TickWork& now);
   /// Adds the duration of a tick.
   void note(double tick_ms);
-  /// Starts again for new water, whose ticks took this long when it was built.
-  void restart(double tick_ms) { tick_ms_ = tick_ms; }
-  /// Returns an upper estimate for a tick with the work `wanted`, from measured ticks with the work `now` [ms].
-  [[nodiscard]] double predict_ms(const TickWork& now, const TickWork& wanted) const;
+  /// The work of the next ticks. Without this, a second change before the mean has followed the first would be
+  /// predicted from ticks that cost less.
+  void workChanged(const TickWork& now);
+
+  /// Duration of a tick with the present work [ms].
+  [[nodiscard]] double tick_ms() const { return tick_ms_; }
+  /// Returns an upper estimate for a tick with the work `wanted`, at least tick_ms() [ms].
+  [[nodiscard]] double predict_ms(const TickWork& wanted) const;
 
  private:
+  [[nodiscard]] double scaled_ms(const TickWork& wanted) const;
+
   double tick_ms_ = 0.0;
+  TickWork work_;
+  /// The largest work measured so far. Less work costs no more than this, however little a scaled estimate knows about
+  /// the share of a tick that does not grow with the work.
+  double most_ms_ = 0.0;
+  TickWork most_work_;
 };
 
 }  // namespace spindrift::rooms
