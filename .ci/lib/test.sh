@@ -60,8 +60,10 @@ test_zink() {
 
 # The programs of the part `memory`: unit tests that need no device, under clang's address and undefined-behaviour
 # sanitizers, in the tree of the fuzz targets, whose libraries are built with them already. Tests on a device stay out: the
-# shaders that the rasteriser compiles are not instrumented, and it is slow under the sanitizers.
-readonly memory_programs=(core_test codec_test scene_test wire_test)
+# shaders that the rasteriser compiles are not instrumented, and it is slow under the sanitizers. Without a named part only
+# the first ones run (label memory): clang takes minutes for the files of net and gpu.
+readonly memory_programs=(core_test codec_test scene_test wire_test sim_setup_test)
+readonly memory_programs_when_named=(net_test rooms_test service_test gpu_text_test)
 
 # write_skipped FILE NAME REASON: writes a report of one skipped test and prints the reason.
 write_skipped() {
@@ -111,8 +113,9 @@ Builds everything and runs every test, or the parts named: unit, integration, ac
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents), fuzz (parsers and decoders under hostile input, some
-seconds each), memory (unit tests without a device under the address and undefined-behaviour sanitizers), threads
-(network and encoder under the thread sanitizer). The last three have presets of their own.
+seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those of core, codec, scene, wire
+and sim_setup, or all of them when the part is named), threads (network and encoder under the thread sanitizer). The last
+three have presets of their own.
 Only when named: tidy (clang-tidy over every C++ file, a test per file).
 -R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only their programs.
 The last line is `N passed, N failed, N skipped`; exit code 1 when anything failed. Reports: build/reports/*.xml, logs:
@@ -132,7 +135,11 @@ TEXT
     esac
   done
   [[ -z "$test_regex" ]] || ((${#parts[@]} > 0)) || parts=(native)
-  ((${#parts[@]} > 0)) || parts=(native zink web wire browser tools fuzz memory threads)
+  local memory_label=unit
+  if ((${#parts[@]} == 0)); then
+    parts=(native zink web wire browser tools fuzz memory threads)
+    memory_label=memory
+  fi
   for part in "${parts[@]}"; do
     case "$part" in
       native | unit | integration | accuracy | stability | gpu | zink | web | wire | browser | tools | fuzz | memory | threads | tidy) ;;
@@ -148,7 +155,7 @@ TEXT
       native) test_native native "$preset" ;;
       zink) test_zink ;;
       fuzz) test_native fuzz fuzz fuzz ;;
-      memory) test_native memory fuzz memory ;;
+      memory) test_native memory fuzz "$memory_label" ;;
       tidy) test_tidy ;;
       threads) test_native threads tsan threads ;;
       web) test_web ;;
@@ -164,7 +171,9 @@ TEXT
 
 build_memory_tests() {
   need_packages server fuzz
-  build_server fuzz "${memory_programs[@]}"
+  local programs=("${memory_programs[@]}")
+  [[ "$memory_label" == memory ]] || programs+=("${memory_programs_when_named[@]}")
+  build_server fuzz "${programs[@]}"
 }
 
 # Installs and builds everything that the parts need.

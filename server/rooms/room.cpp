@@ -245,9 +245,10 @@ void Room::requestFrame(TimePoint now) {
   for (const core::Level level : core::kLevels) {
     if (!isDue(level)) continue;
     const std::size_t k = core::indexOf(level);
-    request.levels[k] = {.surface = scene.has_wave() && watched.surface[k],
-                         .particles = scene.has_particles() && watched.particles[k],
-                         .foam = scene.foam().surface() && watched.foam[k]};
+    const sim::LayerRequest& layers = watched.levels[k];
+    request.levels[k] = {.surface = scene.has_wave() && layers.surface,
+                         .particles = scene.has_particles() && layers.particles,
+                         .foam = scene.foam().surface() && layers.foam};
   }
   ++frame_count_;
   if (request.isEmpty()) return;

@@ -282,18 +282,18 @@ rooms::WatchedLayers Gateway::watched(const rooms::Room& room, const core::Reduc
   for (const codec::Stream& stream : codec::allStreams()) {
     const auto of_levels = demand(room.name(), stream, codec::reducedCountOf(stream.layer, counts));
     const auto is_watched = [](const core::LevelDemand& level) { return level.watcher_count > 0; };
-    const auto note = [&](rooms::WatchedLayers::Levels& levels) {
-      for (std::size_t level = 0; level < levels.size(); ++level) levels[level] |= is_watched(of_levels[level]);
+    const auto note = [&](bool sim::LayerRequest::* layer) {
+      for (std::size_t k = 0; k < core::kLevelCount; ++k) out.levels[k].*layer |= is_watched(of_levels[k]);
     };
     switch (stream.layer) {
       case v1::LAYER_SURFACE:
-        note(out.surface);
+        note(&sim::LayerRequest::surface);
         break;
       case v1::LAYER_PARTICLES:
-        note(out.particles);
+        note(&sim::LayerRequest::particles);
         break;
       case v1::LAYER_FOAM:
-        note(out.foam);
+        note(&sim::LayerRequest::foam);
         break;
       case v1::LAYER_BODIES:
         out.bodies |= is_watched(of_levels[core::indexOf(core::Level::kFull)]);

@@ -39,7 +39,7 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   void frameReady(const rooms::Room&, core::FrameView) override { ++frame_count; }
   rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&) const override {
     rooms::WatchedLayers out{.bodies = true, .diagnostics = true};
-    out.surface.back() = out.particles.back() = out.foam.back() = true;
+    out.levels.back() = {.surface = true, .particles = true, .foam = true};
     return out;
   }
   std::size_t sessionCount(const rooms::Room&) const override { return 1; }

@@ -1,4 +1,4 @@
-// A software device for the simulation's tests, and starting scenes.
+// A software device for the simulation's tests.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,8 @@
 
 #include <spindrift/gpu/context.h>
 #include <spindrift/sim/water_sim.h>
+
+#include "small_scene.h"
 
 namespace spindrift::sim {
 
@@ -35,21 +37,5 @@ class OnDevice : public ::testing::Test {
   std::unique_ptr<gpu::Context> ctx_;
   std::unique_ptr<WaterSim> sim_;
 };
-
-/// A small scene with every part: 32^2 wave of 8 m, about `count` particles in 3 layers.
-inline core::Scene smallScene(std::uint32_t count = 600) {
-  core::Scene scene;
-  scene.name = "test";
-  scene.wave.emplace();
-  scene.wave->resolution_count = 32;
-  scene.wave->side_m = 8.0;
-  scene.particles.emplace();
-  scene.particles->count = count;
-  scene.particles->viscosity_pas = 100.0;
-  scene.particles->headroom_m = 3.0;
-  scene.coupling.emplace();
-  scene.foam.emplace();
-  return scene;
-}
 
 }  // namespace spindrift::sim

@@ -9,6 +9,7 @@
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/level.h>
 #include <spindrift/rooms/command.h>
+#include <spindrift/sim/water_sim.h>
 #include <spindrift/v1/wire.pb.h>
 #include <spindrift/wire/client_message.h>
 
@@ -16,12 +17,9 @@ namespace spindrift::rooms {
 
 class Room;
 
-/// The watched levels of each layer, in any packing.
+/// The layers that sessions watch, in any packing.
 struct WatchedLayers {
-  using Levels = std::array<bool, core::kLevelCount>;  ///< by core::indexOf()
-  Levels surface{};
-  Levels particles{};
-  Levels foam{};
+  std::array<sim::LayerRequest, core::kLevelCount> levels{};  ///< by core::indexOf()
   bool bodies = false;
   bool diagnostics = false;
 };

@@ -9,7 +9,7 @@
 #include <spindrift/sim_setup/lattice.h>
 #include <spindrift/sim_setup/particle_layout.h>
 
-#include "sim_fixture.h"
+#include "small_scene.h"
 
 namespace spindrift::sim {
 namespace {

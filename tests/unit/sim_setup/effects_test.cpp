@@ -3,7 +3,7 @@
 
 #include <spindrift/sim_setup/effects.h>
 
-#include "sim_fixture.h"
+#include "small_scene.h"
 
 namespace spindrift::sim {
 namespace {
