@@ -153,7 +153,7 @@ std::int32_t Program::location(std::string_view name) {
   if (found < 0 && findShader(path_)->text.find(name) == std::string_view::npos) {
     spdlog::error("{} has no uniform \"{}\"", path_, name);
     ctx_->countError();
-    assert(!"uniform name that the shader does not contain");
+    assert(false && "uniform name that the shader does not contain");
   }
   locations.emplace(key, found);
   return found;

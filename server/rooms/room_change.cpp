@@ -1,7 +1,6 @@
 // Parameter changes of a room. Most take effect at once. A change of the number of particles is prepared on another
 // thread while the room's ticks wait, so that other rooms and this room's frames and answers continue.
 #include <iterator>
-#include <ranges>
 #include <utility>
 
 #include <spindrift/rooms/room.h>
@@ -56,7 +55,8 @@ bool Room::resumeValues() {
 
 void Room::conclude(Values values) {
   answer(std::move(values.untried), {});
-  std::ranges::move(values.tried | std::views::reverse, std::back_inserter(answers_));
+  answers_.insert(answers_.end(), std::make_move_iterator(values.tried.rbegin()),
+                  std::make_move_iterator(values.tried.rend()));
 }
 
 bool Room::beginChange(const Command& command, Values& others) {
