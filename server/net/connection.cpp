@@ -142,8 +142,9 @@ asio::awaitable<void> Connection::run() {
     if (refusal) {
       context_.counters.refused(Refused::kRequest);
       co_await sendLast(fitted(parser.get(), *std::move(refusal)), false);
+      co_return;
     }
-    if (error || refusal) co_return;
+    if (error) co_return;
     if (auto reply = refuseAny(parser.get())) {
       co_await sendLast(fitted(parser.get(), *std::move(reply)), parser.get().method() == http::verb::head);
       co_return;

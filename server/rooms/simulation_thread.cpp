@@ -95,7 +95,7 @@ double SimulationThread::sinceLastRound_s() const {
 
 // Opening and closing
 
-void SimulationThread::openRoom(RoomSetup setup, Done done) {
+void SimulationThread::openRoom(RoomSetup setup, const Done& done) {
   auto shared = std::make_shared<RoomSetup>(std::move(setup));
   carryOut(
       [this, shared, done](bool runs) {
@@ -105,7 +105,7 @@ void SimulationThread::openRoom(RoomSetup setup, Done done) {
       done);
 }
 
-void SimulationThread::closeRoom(std::string name, std::function<void(const Room&)> before, Done done) {
+void SimulationThread::closeRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
   carryOut(
       [this, name = std::move(name), before = std::move(before), done](bool runs) {
         done(runs ? close(name, before) : Error{ErrorCode::kUnavailable, "the server shuts down"});

@@ -14,7 +14,7 @@ core::Error shutDown() {
 
 }  // namespace
 
-WaterBuilder::WaterBuilder(gpu::DeviceChoice device, std::function<void()> done)
+WaterBuilder::WaterBuilder(gpu::DeviceChoice device, const std::function<void()>& done)
     : device_(std::move(device)), builds_(kBuildNiceness, done), changes_(0, done) {}
 
 std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {

@@ -55,7 +55,7 @@ struct FieldTarget {
 /// Returns nullopt if no scene has a parameter with this path.
 std::optional<FieldTarget> findTarget(const v1::Scene& scene, std::string_view path) {
   FieldTarget target{&scene, nullptr, {}};
-  const Descriptor* type = scene.GetDescriptor();
+  const Descriptor* type = v1::Scene::GetDescriptor();
   for (std::string_view rest = path;;) {
     const std::size_t dot = rest.find('.');
     const FieldDescriptor* field = type->FindFieldByName(std::string(rest.substr(0, dot)));

@@ -118,7 +118,8 @@ bool blankSimpleLine(std::string& text, int line) {
   }
   const std::size_t end = std::min(text.find('\n', begin), text.size());
   const std::string_view content(text.data() + begin, end - begin);
-  const bool simple = content.find(':') != std::string_view::npos && content.find_first_of("{}<>[]") == content.npos;
+  const bool simple =
+      content.find(':') != std::string_view::npos && content.find_first_of("{}<>[]") == std::string_view::npos;
   if (!simple) return false;
   std::fill(text.begin() + static_cast<std::ptrdiff_t>(begin), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
   return true;

@@ -42,7 +42,7 @@ class ScriptClient {
   void connect();
   void disconnect(bool vanish);
   void send(const v1::ClientMessage& message);
-  void subscribe(const v1::Subscribe& subscribe);
+  void subscribe(const v1::Subscribe& wanted);
   /// Subscribes with plain packing, unless already subscribed.
   void needLayer(v1::Layer layer);
   /// Sends the command with a new number and returns the number.

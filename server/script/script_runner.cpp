@@ -116,7 +116,7 @@ class Runner {
       client.connect();
       return connected(client);
     }
-    if (const Outcome there = connected(client); !there.passed) return there;
+    if (Outcome there = connected(client); !there.passed) return there;
     switch (step.what_case()) {
       case v1::ScriptStep::kCommand:
         return command(step.command(), client);
@@ -278,7 +278,7 @@ class Runner {
   Outcome expectEvent(const v1::ExpectEvent& step, ScriptClient& client) {
     // Counts events since the previous step of this kind for this client: they may arrive before this step begins.
     std::uint64_t& used_count = used_events_[{client.name(), step.kind()}];
-    const Outcome out = await(
+    Outcome out = await(
         client, patience_s(step), [&] { return client.eventCount(step.kind()) > used_count; },
         [&] { return v1::RoomEventKind_Name(step.kind()); });
     if (out.passed) ++used_count;

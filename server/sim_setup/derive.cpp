@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <shared/fixed_point.h>
@@ -17,7 +16,6 @@ namespace {
 using core::Boundary;
 using core::Error;
 using core::ErrorCode;
-using std::numbers::pi;
 
 /// Share of a support radius that sound plus water may cross in a step. The usual value is 0.4 of half of it (Monaghan
 /// 1992), with a large margin: a splashed box stays stable to 1.0 with every kernel set (`spindrift study --suite

@@ -113,7 +113,7 @@ core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, d
   if (!along_x || !along_z || side_x_m == side_z_m) return shorter_m / cells;
   // Two periodic sides of different length: the coarsest cells that tile both and widen the support by at most a fifth.
   const double ratio = std::max(side_x_m, side_z_m) / shorter_m;
-  for (double k = cells; k >= 3 && shorter_m / k <= 1.2 * wanted_m; --k) {
+  for (int k = static_cast<int>(cells); k >= 3 && shorter_m / k <= 1.2 * wanted_m; --k) {
     if (std::abs(k * ratio - std::round(k * ratio)) < 1e-6) return shorter_m / k;
   }
   return invalid(

@@ -18,8 +18,8 @@ namespace spindrift::study {
 namespace {
 
 struct Point {
-  double T;
-  double Z;
+  double time;    ///< T of the paper
+  double length;  ///< Z of the paper
 };
 
 constexpr std::array<Point, 15> kWide = {{{0.832, 1.217},
@@ -186,7 +186,7 @@ core::Result<Collapse> collapse(gpu::Context& ctx, const core::Scene& scene) {
   const sim::ParticleLayout& l = *water.derived().particles;
   const double a_m = 1.0;
   Collapse out{{{0.0, 1.0}}, {{0.0, 1.0}}, {{0.0, 2.0}}};
-  while (out.front.back().T < kLastT + 0.1) {
+  while (out.front.back().time < kLastT + 0.1) {
     if (auto done = tick(water); !done) return done.error();
     const sim::StateCopy state = water.copyState();
     std::vector<float> x_m;
@@ -204,10 +204,10 @@ core::Result<Collapse> collapse(gpu::Context& ctx, const core::Scene& scene) {
 }
 
 double at(const std::vector<Point>& series, double T) {
-  const auto next = std::ranges::lower_bound(series, T, {}, &Point::T);
-  if (next == series.begin()) return next->Z;
+  const auto next = std::ranges::lower_bound(series, T, {}, &Point::time);
+  if (next == series.begin()) return next->length;
   const auto before = next - 1;
-  return std::lerp(before->Z, next->Z, (T - before->T) / (next->T - before->T));
+  return std::lerp(before->length, next->length, (T - before->time) / (next->time - before->time));
 }
 
 void compare(const std::vector<Point>& computed, const auto& measured, const std::string& name,
@@ -216,8 +216,8 @@ void compare(const std::vector<Point>& computed, const auto& measured, const std
   double worst = 0.0;
   int count = 0;
   for (const Point& point : measured) {
-    if (point.T < kFirstT || point.T > kLastT) continue;
-    const double error = at(computed, point.T) / point.Z - 1;
+    if (point.time < kFirstT || point.time > kLastT) continue;
+    const double error = at(computed, point.time) / point.length - 1;
     squares += error * error;
     worst = std::max(worst, std::abs(error));
     ++count;
@@ -238,8 +238,8 @@ void describe(const Collapse& computed, const std::string& name, std::vector<Row
   double squares = 0.0;
   int count = 0;
   for (const Point& point : kWide) {
-    if (point.T < kFirstT || point.T > kLastT) continue;
-    squares += std::pow(at(computed.tongue, point.T) / point.Z - 1, 2);
+    if (point.time < kFirstT || point.time > kLastT) continue;
+    squares += std::pow(at(computed.tongue, point.time) / point.length - 1, 2);
     ++count;
   }
   rows.push_back({name + ", a = 2.25 in: leading edge of the tongue, root mean square", "%",
@@ -255,7 +255,7 @@ void describe(const Collapse& computed, const std::string& name, std::vector<Row
 Figure::Curve curveOf(const std::string& name, const auto& series) {
   Figure::Curve curve{name, {}};
   for (const Point& point : series) {
-    if (point.T <= kLastT + 0.5) curve.points.emplace_back(point.T, point.Z);
+    if (point.time <= kLastT + 0.5) curve.points.emplace_back(point.time, point.length);
   }
   return curve;
 }

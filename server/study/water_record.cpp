@@ -194,13 +194,13 @@ struct FieldDifference {
       reference_squares += reference[i] * reference[i];
       largest = std::max(largest, std::abs(d));
     }
-    count += reference.size();
+    count_ += reference.size();
   }
   [[nodiscard]] double rmsRatio() const { return std::sqrt(squares / reference_squares); }
-  [[nodiscard]] double maxRatio() const { return largest / std::sqrt(reference_squares / static_cast<double>(count)); }
+  [[nodiscard]] double maxRatio() const { return largest / std::sqrt(reference_squares / static_cast<double>(count_)); }
 
  private:
-  std::size_t count = 0;
+  std::size_t count_ = 0;
 };
 
 constexpr int kTimedRuns = 3;
@@ -350,6 +350,7 @@ RecordErrors compare(const WaterRecord& run, const WaterRecord& reference, const
 
 std::vector<bool> paretoFront(const std::vector<CostAndError>& points, const CostAndError& chance) {
   std::vector<bool> front;
+  front.reserve(points.size());
   for (const CostAndError& p : points) {
     front.push_back(std::ranges::none_of(points, [&](const CostAndError& q) {
       return q.cost <= p.cost && q.error <= p.error &&

@@ -269,6 +269,7 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
   const Floor floor{scene, d, surface};
   std::vector<Vec3> out(x.size());
   std::vector<double> p;
+  p.reserve(rho.size());
   for (const double rho_i : rho) p.push_back(pressure(scene, d, rho_i));
   for (std::size_t i = 0; i < x.size(); ++i) {
     Vec3 a = {0, -scene.gravity_mps2, 0};

@@ -117,7 +117,10 @@ namespace {
 class HumpRings {
  public:
   HumpRings(double width_m, double travelled_m, double reach_m) : step_m_(width_m / 40) {
-    for (double r_m = 0; r_m < reach_m + 2 * step_m_; r_m += step_m_) {
+    const auto count = static_cast<std::size_t>(std::ceil(reach_m / step_m_)) + 2;
+    eta_.reserve(count);
+    for (std::size_t k_r = 0; k_r < count; ++k_r) {
+      const double r_m = static_cast<double>(k_r) * step_m_;
       double sum = 0.0;
       constexpr int kPoints = 600;
       const double dk = 12.0 / width_m / kPoints;
@@ -159,8 +162,9 @@ core::Result<double> humpError(gpu::Context& ctx, Stencil stencil, double couran
   double squares = 0.0;
   double reference = 0.0;
   for (std::size_t i = 0; i < eta_m.size(); ++i) {
+    const std::size_t row = i / 96;
     const double exact_m =
-        0.1 * rings.at(radius((static_cast<double>(i % 96) + 0.5) * 0.25, (static_cast<double>(i / 96) + 0.5) * 0.25));
+        0.1 * rings.at(radius((static_cast<double>(i % 96) + 0.5) * 0.25, (static_cast<double>(row) + 0.5) * 0.25));
     squares += (eta_m[i] - exact_m) * (eta_m[i] - exact_m);
     reference += exact_m * exact_m;
   }
@@ -228,7 +232,7 @@ Outcome dampedMode(gpu::Context& ctx, bool quick) {
     const auto series = amplitudes(**water, mode, quick ? 150 : 400);
     if (!series) return series.error();
     rows.push_back({fmt::format("decay of a mode at kappa = {} 1/s", kappa), "1/s",
-                    fitRecurrence(*series, false).decay_per_s((*water)->derived().wave->dt_s), kappa / 2,
+                    fitRecurrence(*series, false).decayRate_ps((*water)->derived().wave->dt_s), kappa / 2,
                     Tolerance::kRelative, 0.01, "eta_tt + kappa eta_t = c^2 lap eta: kappa/2"});
   }
   return CaseResult{std::move(rows), {}};

@@ -64,7 +64,7 @@ double Recurrence::omega_radps(double dt_s) const {
   return std::acos(std::clamp(b / (2 * std::sqrt(r)), -1.0, 1.0)) / dt_s;
 }
 
-double Recurrence::decay_per_s(double dt_s) const {
+double Recurrence::decayRate_ps(double dt_s) const {
   return -0.5 * std::log(r) / dt_s;
 }
 

@@ -27,7 +27,7 @@ struct Recurrence {
   double r = 1.0;
   /// Frequency omega [rad/s] and decay [1/s] of exp(-decay t) cos(omega t).
   [[nodiscard]] double omega_radps(double dt_s) const;
-  [[nodiscard]] double decay_per_s(double dt_s) const;
+  [[nodiscard]] double decayRate_ps(double dt_s) const;
 };
 Recurrence fitRecurrence(const std::vector<double>& series, bool undamped);
 

@@ -71,9 +71,8 @@ std::string toJson(const google::protobuf::Message& message) {
 std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json) {
   v1::Command command;
   if (std::string why = readJson(json, command); !why.empty()) return Malformed{std::move(why)};
-  return std::visit(
-      [](auto&& checked) -> std::variant<v1::Command, CommandRejection, Malformed> { return std::move(checked); },
-      checkCommand(std::move(command)));
+  return std::visit([](auto checked) -> std::variant<v1::Command, CommandRejection, Malformed> { return checked; },
+                    checkCommand(std::move(command)));
 }
 
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {

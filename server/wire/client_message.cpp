@@ -110,7 +110,7 @@ ClientMessage parseChecked(core::ByteView bytes) {
     case v1::ClientMessage::kSubscribe:
       return parseSubscribe(message.subscribe());
     case v1::ClientMessage::kCommand:
-      return std::visit([](auto&& checked) -> ClientMessage { return std::move(checked); },
+      return std::visit([](auto checked) -> ClientMessage { return checked; },
                         checkCommand(std::move(*message.mutable_command())));
     case v1::ClientMessage::kPing:
       if (!std::isfinite(message.ping().client_time_s())) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -160,14 +161,14 @@ int main(int argc, char** argv) {
                  "       encode_times measure FILE ROUNDS [plain]   (plain: without AVX2)\n");
     return 2;
   }
-  std::FILE* file = std::fopen(records ? argv[4] : argv[2], records ? "wb" : "rb");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+      std::fopen(records ? argv[4] : argv[2], records ? "wb" : "rb"), &std::fclose);
   if (file == nullptr) return failWith("cannot open that file");
   if (records) {
-    const int code = record(argv[2], static_cast<std::size_t>(std::atoi(argv[3])), file);
-    return std::fclose(file) == 0 ? code : 1;
+    const int code = record(argv[2], static_cast<std::size_t>(std::atoi(argv[3])), file.get());
+    return std::fflush(file.get()) == 0 ? code : 1;
   }
   if (argc == 5) codec::useVectors(false);
-  const std::vector<RecordedFrame> frames = read(file);
-  (void)std::fclose(file);
+  const std::vector<RecordedFrame> frames = read(file.get());
   return measure(frames, static_cast<std::size_t>(std::atoi(argv[3])));
 }

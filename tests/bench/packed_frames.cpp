@@ -2,6 +2,7 @@
 // length (u32, little endian); surface and particles in turn, the first surface a keyframe.
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/gpu/context.h>
@@ -58,11 +59,11 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: packed_frames SCENE.textproto FRAMES OUT\n");
     return 2;
   }
-  std::FILE* out = std::fopen(argv[3], "wb");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(argv[3], "wb"), &std::fclose);
   if (out == nullptr) {
     std::fprintf(stderr, "cannot write %s\n", argv[3]);
     return 2;
   }
-  const int code = record(argv[1], static_cast<std::size_t>(std::atoi(argv[2])), out);
-  return std::fclose(out) == 0 ? code : 1;
+  const int code = record(argv[1], static_cast<std::size_t>(std::atoi(argv[2])), out.get());
+  return std::fflush(out.get()) == 0 ? code : 1;
 }

@@ -2,7 +2,6 @@
 // packed planes keep their state from one to the next. The mutator of this target changes payloads inside valid
 // messages: lengths and checksums would stop almost every random change before the decoder.
 #include <algorithm>
-#include <cstring>
 #include <random>
 #include <string>
 #include <string_view>
@@ -124,6 +123,6 @@ std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::s
   std::string joined = messages.front();
   for (std::size_t i = 1; i < messages.size(); ++i) joined.append(fuzz::kMark).append(messages[i]);
   if (joined.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
-  std::memcpy(data, joined.data(), joined.size());
+  std::ranges::copy(joined, data);
   return joined.size();
 }

@@ -9,7 +9,6 @@ namespace spindrift::test {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 using testing::StartsWith;
 
 class Usage : public ProgramTest {};

@@ -6,7 +6,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr const char* kLagoon = R"(
   wave { resolution_count: 32 side_m: 16 depth_m: 2 }
@@ -87,7 +86,7 @@ TEST_F(People, GetAWelcomeWithTheirRoleAndAreListedForOthers) {
 
 TEST_F(People, WithoutAVisibleNameAreNamedAsGuests) {
   ScriptedClient ada = player("\u202EAda\u202C  ");
-  ScriptedClient blank = player(" \u3000\u2066 \u200D");
+  ScriptedClient blank = player(" \u3000\u2066 \u200D");  // NOLINT(misc-misleading-bidirectional): what is tested
   const v1::People people = peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 2; });
   EXPECT_THAT(namesOf(people), ElementsAre("Ada", "guest 2"));
 }

@@ -44,10 +44,10 @@ class SimulationThread {
   using Done = std::function<void(core::Result<void>)>;
   /// Opens a room after its water was built, while the other rooms run. Errors: kInvalidInput for a name that is taken,
   /// kUnavailable when the number of rooms or of waiting changes is at its limit, otherwise those of the scene.
-  void openRoom(RoomSetup setup, Done done);
+  void openRoom(RoomSetup setup, const Done& done);
   /// Closes a room; `before` is called first, on this thread, while the room still exists. Error: kInvalidInput for an
   /// unknown name or the default room.
-  void closeRoom(std::string name, std::function<void(const Room&)> before, Done done);
+  void closeRoom(std::string name, std::function<void(const Room&)> before, const Done& done);
 
   /// Settings shared by all rooms.
   [[nodiscard]] const RoomRules& rules() const { return rules_; }

@@ -22,7 +22,7 @@ class WaterBuilder {
   using Prepared = core::Result<sim::PreparedScene>;
 
   /// `done` is called after each piece of work, on a thread of the builder.
-  explicit WaterBuilder(gpu::DeviceChoice device, std::function<void()> done = {});
+  explicit WaterBuilder(gpu::DeviceChoice device, const std::function<void()>& done = {});
   /// Ends after the current work; waiting builds and changes end with kUnavailable.
   ~WaterBuilder() = default;
   WaterBuilder(const WaterBuilder&) = delete;

@@ -38,7 +38,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   /// network calls the gateway, though their threads may have ended.
   void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
 
-  void serverStarts(net::Hub& hub) override;
+  void serverStarts(net::Hub& served) override;
   core::Result<void> acceptSession(const std::string& room) override;
   void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override;

@@ -43,11 +43,11 @@ core::SharedBytes reject(const CommandRejection& rejection);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
 core::SharedBytes roomState(bool paused, double speed);
 core::SharedBytes boatList(const v1::BoatList& boats);
-core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view message);
+core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view text);
 core::SharedBytes welcome(const v1::Welcome& welcome);
 core::SharedBytes people(const v1::People& people);
 core::SharedBytes levelChanged(core::Level level);
 core::SharedBytes pong(double client_time_s, double server_time_s);
-core::SharedBytes refusal(std::string_view message);
+core::SharedBytes refusal(std::string_view text);
 
 }  // namespace spindrift::wire
