@@ -8,7 +8,6 @@
 namespace spindrift::test {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 class Rooms : public ServerTest {

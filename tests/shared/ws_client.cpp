@@ -77,7 +77,7 @@ struct WsClient::Impl {
 WsClient::WsClient() : impl_(std::make_unique<Impl>()) {}
 WsClient::WsClient(WsClient&& other) noexcept = default;
 WsClient& WsClient::operator=(WsClient&& other) noexcept = default;
-WsClient::~WsClient() {
+WsClient::~WsClient() {  // NOLINT(bugprone-exception-escape)
   if (impl_) vanish();
 }
 

@@ -47,7 +47,7 @@ std::vector<std::string> sceneNames(Which which) {
 }
 
 /// Both ends of a parameter's range, `between` values between them, and values that a scene adds for a path.
-std::vector<double> valuesOf(const v1::ParameterDescription& parameter, int between, std::vector<double> more) {
+std::vector<double> valuesOf(const v1::ParameterDescription& parameter, int between, const std::vector<double>& more) {
   std::vector<double> values = {parameter.min(), parameter.max()};
   // Ranges over several decades are divided by ratio, others evenly.
   const bool by_ratio = parameter.min() > 0 && parameter.max() > 30 * parameter.min();

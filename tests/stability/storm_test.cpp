@@ -58,7 +58,11 @@ class Storm : public Endurance {
     double commands = 0.0;
     for (const sim::BoatRecord& boat : water.boats()) EXPECT_TRUE(water.controlBoat(boat.boat_id, 1.0, 0.4));
     for (int tick = 0; tick < ticks; ++tick) {
-      for (commands += commands_per_tick; commands >= 1.0; commands -= 1.0) crowd.send(water);
+      commands += commands_per_tick;
+      while (commands >= 1.0) {
+        crowd.send(water);
+        commands -= 1.0;
+      }
       water.step();
       EXPECT_EQ(water.health().volume_error_units, 0) << "tick " << tick;
       if (tick % 3 == 0) out.add(extremesOf(water));

@@ -23,7 +23,7 @@ class Cases {
  public:
   /// `follows`: the file of the previous frame, or empty.
   std::string add(const core::Bytes& message, const std::string& follows, const std::string& values) {
-    const std::string file = std::to_string(count_++) + ".bin";
+    std::string file = std::to_string(count_++) + ".bin";
     folder_.write(file, std::string(message.begin(), message.end()));
     json_ += (json_.empty() ? "[\n" : ",\n") + std::string("{\"file\": \"") + file +
              "\", \"verdict\": \"ok\", \"kind\": \"frame\", \"follows\": \"" + follows + "\", " + values + "}";

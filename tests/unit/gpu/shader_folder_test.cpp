@@ -15,7 +15,6 @@
 namespace spindrift::gpu {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 

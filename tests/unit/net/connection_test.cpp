@@ -9,7 +9,6 @@
 namespace spindrift::net {
 namespace {
 
-using test::eventually;
 using test::HttpAnswer;
 using test::httpExchange;
 using test::httpRequest;

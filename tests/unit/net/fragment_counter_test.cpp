@@ -8,7 +8,6 @@ namespace spindrift::net {
 namespace {
 
 using test::bytesOf;
-using test::Frame;
 using test::Opcode;
 
 core::ByteView view(const std::string& bytes) {
