@@ -49,7 +49,7 @@ struct CommandLogTest : testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   fs::path withBytes(const std::string& bytes) const {
-    const fs::path file = folder.path() / "other.spinrec";
+    fs::path file = folder.path() / "other.spinrec";
     std::ofstream(file, std::ios::binary) << bytes;
     return file;
   }

@@ -48,7 +48,7 @@ TEST(CommandTraits, EveryCommandOfTheWireHasItsOwn) {
   const google::protobuf::OneofDescriptor& actions = *v1::Command::descriptor()->FindOneofByName("action");
   for (int i = 0; i < actions.field_count(); ++i) {
     v1::Command command;
-    (void)command.GetReflection()->MutableMessage(&command, actions.field(i));
+    (void)v1::Command::GetReflection()->MutableMessage(&command, actions.field(i));
     const auto& name = actions.field(i)->name();
     const bool is_play = name.find("boat") != std::string::npos || name == "splash" || name == "breaking_wave";
     EXPECT_EQ(traitsOf(command).role, is_play ? core::Role::kPlayer : core::Role::kOperator) << name;
