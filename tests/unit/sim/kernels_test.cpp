@@ -39,7 +39,8 @@ TEST(Kernels, IntegrateToOneOverTheirSupport) {
 
 TEST(Kernels, ArePositiveInsideAndZeroOutside) {
   for (const KernelSet set : kSets) {
-    for (double r = 0.0; r < 0.99; r += 0.01) {
+    for (int percent = 0; percent < 99; ++percent) {
+      const double r = 0.01 * percent;
       EXPECT_GT(densityKernel(set, r, 1.0), 0.0);
       EXPECT_GE(pressureSlope(set, r, 1.0), 0.0);
     }
@@ -50,7 +51,8 @@ TEST(Kernels, ArePositiveInsideAndZeroOutside) {
 
 TEST(Kernels, SlopesAreTheNegativeDerivative) {
   const double H = 0.7;
-  for (double r = 0.01; r < 0.69; r += 0.01) {
+  for (int percent = 1; percent < 69; ++percent) {
+    const double r = 0.01 * percent;
     const double e = 1e-6;
     for (const KernelSet set : {KernelSet::kCubicSpline, KernelSet::kWendlandC2}) {
       const double derivative = (densityKernel(set, r + e, H) - densityKernel(set, r - e, H)) / (2 * e);
@@ -123,7 +125,8 @@ TEST_F(KernelsOnDevice, UniformOffsetsAreThoseOfTheDriver) {
       {"breaking_loss_per_s", offsetof(SimUniforms, breaking_loss_per_s)},
       {"surface_quantum_m", offsetof(SimUniforms, surface_quantum_m)},
   };
-  for (const auto& [member, offset] : members) {
+  for (const auto& [name, offset] : members) {
+    const std::string member = name;
     // Drivers name members of a block with an instance name "SimUniforms.member".
     const auto found = std::ranges::find_if(offsets, [&](const auto& entry) {
       return entry.first == member || entry.first.ends_with(std::string(".") + member);

@@ -277,7 +277,7 @@ TEST_F(Variants, EveryMixOfPartsRuns) {
         if (ground == Ground::kRockAndBeach) {
           scene.wave->setBoundaries(core::WaveBoundary::kReflect);
           scene.wave->steepening_ratio = 0.5;
-          scene.obstacles.push_back(core::Rock{.x_m = 2.0, .z_m = 2.0, .radius_m = 0.8, .height_m = 0.5});
+          scene.obstacles.emplace_back(core::Rock{.x_m = 2.0, .z_m = 2.0, .radius_m = 0.8, .height_m = 0.5});
           scene.beaches.push_back({.side = core::Side::kMinusX, .width_m = 2.0, .shore_depth_m = 0.0});
         }
         if (has_boats) scene.boats.emplace().boats.emplace_back();

@@ -20,8 +20,6 @@
 namespace spindrift::sim {
 namespace {
 
-using std::numbers::pi;
-
 core::Scene waveScene(std::uint32_t n = 48) {
   core::Scene scene;
   scene.name = "wave";

@@ -90,6 +90,7 @@ TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedWithALineOfText) {
 TEST(Text, NamesLoseCharactersThatReverseOrHideText) {
   const auto clean = [](const std::string& text) { return core::cleanName(text, kPersonNameMaxBytes); };
   // Right-to-left override, isolates, marks, Arabic letter mark, zero width space, line separator, byte order mark.
+  // NOLINTNEXTLINE(misc-misleading-bidirectional): what is tested
   for (const char* hidden : {"\u202E", "\u202A", "\u2066", "\u2069", "\u200E", "\u200F", "\u061C", "\u200B", "\u2028",
                              "\u2029", "\uFEFF", "\u2060", "\u0085", "\x1b", "\x7f"}) {
     EXPECT_EQ(clean(std::string("A") + hidden + "da"), "Ada") << hidden;

@@ -54,7 +54,7 @@ std::vector<v1::Command> everyCommand() {
   for (int i = 0; i < actions.field_count(); ++i) {
     v1::Command& command = out.emplace_back();
     command.set_command_id(9);
-    fill(*command.GetReflection()->MutableMessage(&command, actions.field(i)));
+    fill(*v1::Command::GetReflection()->MutableMessage(&command, actions.field(i)));
   }
   return out;
 }
