@@ -36,6 +36,10 @@ core::Stencil toCore(v1::Stencil stencil) {
   return stencil == v1::STENCIL_NINE_POINT ? core::Stencil::kNinePoint : core::Stencil::kFivePoint;
 }
 
+core::Dispersion toCore(v1::Dispersion dispersion) {
+  return dispersion == v1::DISPERSION_AIRY ? core::Dispersion::kAiry : core::Dispersion::kNone;
+}
+
 core::Side toCore(v1::Side side) {
   switch (side) {
     case v1::SIDE_MINUS_X:
@@ -90,6 +94,7 @@ core::WaveScene toCore(const v1::WaveScene& in) {
   out.depth_m = in.depth_m();
   out.damping_per_s = in.damping_per_s();
   out.stencil = toCore(in.stencil());
+  out.dispersion = toCore(in.dispersion());
   out.boundary_minus_x = toCore(in.boundary_minus_x());
   out.boundary_plus_x = toCore(in.boundary_plus_x());
   out.boundary_minus_z = toCore(in.boundary_minus_z());

@@ -60,6 +60,11 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
   if (create.error()) return *create.error();
+  if (disperses(scene)) {
+    auto dispersed = DispersedSlope::create(ctx, layout, layOutBasin(scene, layout), defines);
+    if (!dispersed) return dispersed.error();
+    wave->dispersed_slope_ = *std::move(dispersed);
+  }
   // Rows are one group high. Momentum sets the first word if transfers have to be limited; continuity clears it.
   wave->limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.resolution_count, 1});
   wave->uploadBasin(scene, layout);
@@ -82,8 +87,10 @@ void Wave::clearPressure() {
 }
 
 void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
-  if (!is_varied_) return;
+  if (!is_varied_ && !dispersed_slope_) return;
   const Basin basin = layOutBasin(scene, layout);
+  if (dispersed_slope_) dispersed_slope_->upload(layout, basin);
+  if (!is_varied_) return;
   basin_.upload(basin.conductance_m);
   bed_.upload(basin.bed);
   if (!has_terrain_) return;
@@ -129,7 +136,9 @@ void Wave::bindBasin() const {
 }
 
 void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events) {
+  if (dispersed_slope_) dispersed_slope_->compute(elevation_, has_head_ ? &pressure_head_ : nullptr);
   bindBasin();
+  if (dispersed_slope_) dispersed_slope_->texels().bindTexel(DISPERSED);
   elevation_.bindTexel(ELEVATION);
   if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
   if (breaking) breaking->bindTexel(BREAKING);

@@ -13,6 +13,8 @@
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim_setup/derive.h>
 
+#include "dispersed_slope.h"
+
 namespace spindrift::sim {
 
 class Wave {
@@ -82,6 +84,7 @@ class Wave {
   gpu::Buffer limit_args_;        ///< groups of the two passes of the limit; 0 in most steps
   gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;
+  std::unique_ptr<DispersedSlope> dispersed_slope_;  ///< null in scenes without dispersion
   gpu::Buffer event_uniforms_;
   gpu::Program splash_, crest_, momentum_, find_share_, limit_, continuity_, sample_surface_;
 };

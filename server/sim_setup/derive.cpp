@@ -5,6 +5,7 @@
 #include <shared/fixed_point.h>
 
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/dispersion.h>
 #include <spindrift/sim_setup/lattice.h>
 #include <spindrift/sim_setup/particle_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
@@ -78,6 +79,14 @@ void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, st
 core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   const core::WaveScene& w = *scene.wave;
   WaveLayout out;
+  if (disperses(scene)) {
+    if (w.stencil == core::Stencil::kNinePoint)
+      return invalid("wave.dispersion: DISPERSION_AIRY needs STENCIL_FIVE_POINT; remove wave.stencil");
+    if (!canDisperse(w.resolution_count))
+      return invalid(fmt::format(
+          "wave.resolution_count: {} cells cannot be halved to {} or fewer, as DISPERSION_AIRY needs: use {} or {}",
+          w.resolution_count, kBottomSideMax, w.resolution_count / 32 * 32, (w.resolution_count / 32 + 1) * 32));
+  }
   out.resolution_count = w.resolution_count;
   out.side_m = w.side_m;
   out.cell_m = w.side_m / w.resolution_count;
@@ -86,11 +95,26 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
 }
 
 /// Holds in sponges and with any damping, too, because losses are centred in the step (shaders/wave/continuity.comp).
-double waveMaxStep(const core::WaveScene& wave, const WaveLayout& layout) {
+double waveMaxStep(const core::Scene& scene, const WaveLayout& layout) {
+  const core::WaveScene& wave = *scene.wave;
+  if (disperses(scene)) {
+    // A crest's factor on the slope (see below) may act on all of the waves.
+    return dispersedMaxStep(scene.gravity_mps2, wave.depth_m, layout.cell_m) / std::sqrt(1.0 + wave.steepening_ratio);
+  }
   const double limit = wave.stencil == core::Stencil::kNinePoint ? kNinePointCourant : kFivePointCourant;
   // Crests of a steepening wave are faster: shaders/wave/momentum.comp bounds d (1 + 3 s eta/d) by d (1 + s).
   const double fastest_mps = layout.speed_mps * std::sqrt(1.0 + wave.steepening_ratio);
   return fastest_mps > 0 ? kWaveSafety * limit * layout.cell_m / fastest_mps : 1e9;
+}
+
+/// The rule of waveMaxStep(), for people.
+std::string waveRule(const core::Scene& scene) {
+  const bool steepens = scene.wave->steepening_ratio > 0;
+  if (disperses(scene))
+    return std::string("wave step with dispersion, 1.8 / (highest frequency of the grid") +
+           (steepens ? ", times sqrt(1 + steepening))" : ")");
+  const std::string limit = scene.wave->stencil == core::Stencil::kNinePoint ? "0.849" : "0.693";
+  return "wave CFL, " + limit + " dx / " + (steepens ? "(c sqrt(1 + steepening))" : "c");
 }
 
 std::uint32_t stepsFor(double interval_s, double max_dt_s) {
@@ -117,6 +141,7 @@ std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
              std::uint64_t{d.particles->cell_count} * 8 + 12;
   }
   if (d.wave) bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * waveCellBytes(scene);
+  if (disperses(scene)) bytes += dispersionBytes(d.wave->resolution_count);
   return bytes;
 }
 
@@ -278,10 +303,9 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
                     rule.field, d.substeps_count, kMaxSubstepsCount, rule.name, rule.max_dt_s * 1e3));
   }
   if (d.wave) {
-    const double max_dt_s = waveMaxStep(*scene.wave, *d.wave);
-    const std::string limit = scene.wave->stencil == core::Stencil::kNinePoint ? "0.849" : "0.693";
-    const std::string speed = scene.wave->steepening_ratio > 0 ? "(c sqrt(1 + steepening))" : "c";
-    d.rules.push_back({"wave CFL, " + limit + " dx / " + speed, "wave.depth_m", max_dt_s});
+    const double max_dt_s = waveMaxStep(scene, *d.wave);
+    const std::string rule = waveRule(scene);
+    d.rules.push_back({rule, "wave.depth_m", max_dt_s});
     std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
     const std::uint32_t needed_count = stepsFor(d.tick_s, max_dt_s);
     const std::uint32_t fixed_count = scene.wave->fixed_substeps_count;
@@ -290,8 +314,7 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
           fmt::format("wave.fixed_substeps_count: {} steps of {:.4g} ms are above the bound of {:.4g} ms ({}): use at "
                       "least {}, 0 to "
                       "let the rule choose, or set allow_unstable",
-                      fixed_count, d.tick_s / fixed_count * 1e3, max_dt_s * 1e3,
-                      "wave CFL, " + limit + " dx / " + speed, needed_count));
+                      fixed_count, d.tick_s / fixed_count * 1e3, max_dt_s * 1e3, rule, needed_count));
     }
     d.wave->substeps_count = fixed_count != 0 ? fixed_count : needed_count;
     d.wave->dt_s = d.tick_s / d.wave->substeps_count;

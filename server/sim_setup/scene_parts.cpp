@@ -11,6 +11,10 @@ bool isPeriodicZ(const core::WaveScene& wave) {
   return wave.boundary_minus_z == WaveBoundary::kPeriodic;
 }
 
+bool disperses(const core::Scene& scene) {
+  return scene.wave && scene.wave->dispersion == core::Dispersion::kAiry;
+}
+
 bool isOpen(const core::Scene& scene) {
   const core::WaveScene& w = *scene.wave;
   for (const WaveBoundary side : {w.boundary_minus_x, w.boundary_plus_x, w.boundary_minus_z, w.boundary_plus_z}) {

@@ -16,6 +16,11 @@
 #define SCAN_GROUP 256
 #define SCAN_ITEMS 16
 #define SCAN_BLOCK (SCAN_GROUP * SCAN_ITEMS)
+// Cells along z that an invocation of the dispersion's sweeps passes over.
+#define DISPERSION_STRIP 32
+// The dispersion's small grids, in one group.
+#define DISPERSION_BOTTOM_GROUP 256
+#define DISPERSION_BOTTOM_SIDE_MAX 32
 // Groups along x that every OpenGL 4.5 device can dispatch at once. Passes over more cells loop.
 #define MAX_GROUPS 65535
 // Diagnostics: every invocation sums a strided share of about REDUCE_ITEMS items by itself and writes one partial result; the

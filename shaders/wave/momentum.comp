@@ -11,6 +11,7 @@
 // elevations between two cells is used: the force is then the difference of a potential, and energy is conserved for
 // elevations beyond the bounds, too. Breaking water loses its flow at the rate intensity * 2 sqrt(g/d).
 // Invariant: a level surface without flow does not change in any bit; closed faces carry nothing.
+// DISPERSE: F grad(eta + head) of the dispersion takes the place of d grad(eta + head).
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "wave/transfer.glsl"
@@ -21,6 +22,9 @@ layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 #if HEAD
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
+#endif
+#if DISPERSE
+layout(binding = DISPERSED) uniform samplerBuffer dispersed;
 #endif
 #if BREAKERS
 layout(binding = BREAKING) uniform samplerBuffer breaking;
@@ -93,12 +97,19 @@ void main() {
   const int i_d = right + next_row;
   const int eta_d = elevationAt(i_d);
   const int there_d = eta_d + headAt(i_d);
+#endif
+
+#if DISPERSE
+  Flow conductance_m = asFlow(texelFetch(dispersed, i));  // the slope is in it
+  const Flow slope = Flow(1.0);
+#else
+  Flow conductance_m = conductanceOf(cell, n);
+#if STENCIL == 9
   const Flow slope = vec4(there_x - here, there_z - here, there_d - here, there_z - there_x);
 #else
   const Flow slope = vec2(there_x - here, there_z - here);
 #endif
-
-  Flow conductance_m = conductanceOf(cell, n);
+#endif
 #if STEEPEN
 #if STENCIL == 9
   conductance_m *= vec4(steepFactor(here, there_x), steepFactor(here, there_z), steepFactor(here, there_d), steepFactor(there_x, there_z));

@@ -277,6 +277,35 @@ TEST(Derive, AnotherCountKeepsTheVolumeOfTheWater) {
   EXPECT_EQ(layout.columns_x_count, first->particles->columns_x_count);
 }
 
+TEST(Derive, RefusesDispersionWhereItsGridsDoNotFit) {
+  core::Scene scene = smallScene();
+  scene.wave->dispersion = core::Dispersion::kAiry;
+  ASSERT_TRUE(derive(scene));
+  scene.wave->stencil = core::Stencil::kNinePoint;
+  EXPECT_THAT(derive(scene).error().message, HasSubstr("STENCIL_FIVE_POINT"));
+  scene.wave->stencil = core::Stencil::kFivePoint;
+  scene.wave->resolution_count = 528;  // 33 * 16
+  EXPECT_THAT(derive(scene).error().message, HasSubstr("use 512 or 544"));
+  scene.wave->resolution_count = 544;
+  EXPECT_TRUE(derive(scene));
+}
+
+TEST(Derive, GivesDispersedWavesLongerSteps) {
+  core::Scene scene = smallScene();
+  scene.particles.reset();
+  scene.coupling.reset();
+  scene.foam.reset();
+  scene.wave->resolution_count = 256;
+  scene.wave->side_m = 25.6;
+  scene.wave->depth_m = 4.0;
+  const auto plain = derive(scene);
+  scene.wave->dispersion = core::Dispersion::kAiry;
+  const auto dispersed = derive(scene);
+  ASSERT_TRUE(plain) << plain.error().message;
+  ASSERT_TRUE(dispersed) << dispersed.error().message;
+  EXPECT_GE(plain->wave->substeps_count, 2 * dispersed->wave->substeps_count);
+}
+
 TEST(Derive, GivesTheNinePointStencilALargerStep) {
   core::Scene scene = smallScene();
   scene.particles.reset();

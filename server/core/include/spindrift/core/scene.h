@@ -23,6 +23,9 @@ enum class WaveBoundary { kPeriodic, kReflect, kAbsorb };
 /// 5-point or isotropic 9-point Laplacian of the wave equation.
 enum class Stencil { kFivePoint, kNinePoint };
 
+/// kNone: all waves travel at sqrt(g d). kAiry: omega^2 = g k tanh(k d).
+enum class Dispersion { kNone, kAiry };
+
 /// Kernels for density and pressure. kMuller (poly6 and spiky) is that of the thesis: its pressure is not the gradient
 /// of its density. The others use one kernel for both, so that pressure neither adds nor removes energy.
 enum class KernelSet { kMuller, kCubicSpline, kWendlandC2 };
@@ -58,6 +61,7 @@ struct WaveScene {
       Default::steepening_ratio;  ///< 0: linear waves; 1: speed follows the local water depth (shallow water)
   std::uint32_t fixed_substeps_count =
       Default::fixed_substeps_count;  ///< 0 = derive() chooses; otherwise this many wave steps per tick, checked
+  Dispersion dispersion = Dispersion::kNone;
 
   bool operator==(const WaveScene&) const = default;
 };

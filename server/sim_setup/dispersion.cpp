@@ -1,0 +1,321 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include <spindrift/sim_setup/dispersion.h>
+
+namespace spindrift::sim {
+namespace {
+
+using Four = std::array<double, 4>;
+
+/// The V-cycle ends at the grid where the largest b (d / cell)^2 is below this: there the sweeps alone solve the
+/// equation.
+constexpr double kCoarsestStiffness = 0.12;
+constexpr std::uint32_t kCoarsestSideCount = 4;
+
+/// Fitted coefficients by depth in cells, a factor of sqrt(2) apart. Printed by tests/tools/fit_dispersion.cpp.
+struct FittedPoles {
+  double depth_cells;
+  Poles poles;
+};
+constexpr FittedPoles kFitted[] = {
+#include "dispersion_poles.inc"
+};
+
+/// A grid while it is laid out, in doubles. `open`: open share of the x and z face; `resistance`: mean of 1/d over it
+/// [1/m]; `wet`: wet share of the cell; `reach`: mean of b_j d over it [m].
+struct Grid {
+  int n = 0;
+  std::vector<std::array<double, 2>> open;
+  std::vector<std::array<double, 2>> resistance_pm;
+  std::vector<double> wet;
+  std::vector<std::array<double, kPoleCount>> reach_m;
+
+  explicit Grid(int side_count) : n(side_count) {
+    const auto cells = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    open.resize(cells);
+    resistance_pm.resize(cells);
+    wet.resize(cells);
+    reach_m.resize(cells);
+  }
+  [[nodiscard]] std::size_t at(int x, int z) const { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); }
+};
+
+/// The four cells of a block: (0, 0), (1, 0), (0, 1), (1, 1). Its inner faces lead from one of them to another.
+struct InnerFace {
+  int from, to, axis;
+};
+constexpr InnerFace kInnerFaces[] = {{0, 1, 0}, {2, 3, 0}, {0, 2, 1}, {1, 3, 1}};
+
+std::array<std::size_t, 4> blockOf(const Grid& fine, int x, int z) {
+  return {fine.at(2 * x, 2 * z), fine.at(2 * x + 1, 2 * z), fine.at(2 * x, 2 * z + 1), fine.at(2 * x + 1, 2 * z + 1)};
+}
+
+/// Marks, in each block, the cells of the largest part that is connected inside the block: a wall can divide a block,
+/// and a coarse cell can stand for one side of it only.
+std::vector<bool> findMembers(const Grid& fine) {
+  std::vector<bool> is_member(fine.wet.size(), false);
+  for (int z = 0; z < fine.n / 2; ++z) {
+    for (int x = 0; x < fine.n / 2; ++x) {
+      const auto block = blockOf(fine, x, z);
+      std::array<int, 4> part{0, 1, 2, 3};
+      for (int round = 0; round < 3; ++round) {
+        for (const InnerFace& face : kInnerFaces) {
+          if (fine.open[block[face.from]][face.axis] <= 0.0) continue;
+          part[face.from] = part[face.to] = std::min(part[face.from], part[face.to]);
+        }
+      }
+      std::array<double, 4> size{};
+      for (int k = 0; k < 4; ++k) size[part[k]] += fine.wet[block[k]];
+      const auto largest = static_cast<int>(std::ranges::max_element(size) - size.begin());
+      for (int k = 0; k < 4; ++k) is_member[block[k]] = part[k] == largest && fine.wet[block[k]] > 0.0;
+    }
+  }
+  return is_member;
+}
+
+/// The two fine faces that a coarse face toward +x (axis 0) or +z covers, and the cells behind them.
+struct Covered {
+  std::array<std::size_t, 2> face;
+  std::array<std::size_t, 2> behind;
+};
+Covered coveredBy(const Grid& fine, int x, int z, int axis) {
+  if (axis == 0) {
+    return {{fine.at(2 * x + 1, 2 * z), fine.at(2 * x + 1, 2 * z + 1)},
+            {fine.at(2 * x + 2, 2 * z), fine.at(2 * x + 2, 2 * z + 1)}};
+  }
+  return {{fine.at(2 * x, 2 * z + 1), fine.at(2 * x + 1, 2 * z + 1)},
+          {fine.at(2 * x, 2 * z + 2), fine.at(2 * x + 1, 2 * z + 2)}};
+}
+
+/// Flux through the inner faces of a block for a net inflow of each cell: the one of least energy. The flux is the
+/// difference of a potential, found by Gauss-Seidel iteration over at most four cells.
+std::array<double, 4> innerFlux(const std::array<double, 4>& open, const std::array<double, 4>& inflow) {
+  constexpr int kRounds = 200;
+  std::array<double, 4> potential{};
+  for (int round = 0; round < kRounds; ++round) {
+    for (int k = 0; k < 4; ++k) {
+      double sum = -inflow[k];
+      double weight = 0.0;
+      for (int e = 0; e < 4; ++e) {
+        const auto [from, to, axis] = kInnerFaces[e];
+        if (from != k && to != k) continue;
+        weight += open[e];
+        sum += open[e] * potential[from == k ? to : from];
+      }
+      if (weight > 0.0) potential[k] = sum / weight;
+    }
+  }
+  std::array<double, 4> flux{};
+  for (int e = 0; e < 4; ++e) flux[e] = open[e] * (potential[kInnerFaces[e].from] - potential[kInnerFaces[e].to]);
+  return flux;
+}
+
+/// Fills `level` with the weights of the fine faces in the coarse ones and returns the coarse grid. A coarse flux
+/// passes the open part of its face evenly; inside the block it goes where every cell gains the same height.
+Grid coarsen(const Grid& fine, DispersionLevel& level) {
+  const std::vector<bool> is_member = findMembers(fine);
+  Grid coarse(fine.n / 2);
+  level.from_coarse_x.assign(fine.wet.size(), Four{});
+  level.from_coarse_z.assign(fine.wet.size(), Four{});
+  const auto weightsOf = [&](int axis) -> std::vector<Four>& {
+    return axis == 0 ? level.from_coarse_x : level.from_coarse_z;
+  };
+  for (int z = 0; z < coarse.n; ++z) {
+    for (int x = 0; x < coarse.n; ++x) {
+      const std::size_t i = coarse.at(x, z);
+      for (const std::size_t cell : blockOf(fine, x, z)) {
+        if (!is_member[cell]) continue;
+        coarse.wet[i] += fine.wet[cell] / 4;
+        for (std::size_t j = 0; j < kPoleCount; ++j) coarse.reach_m[i][j] += fine.wet[cell] * fine.reach_m[cell][j] / 4;
+      }
+      if (coarse.wet[i] > 0.0) {
+        for (double& reach_m : coarse.reach_m[i]) reach_m /= coarse.wet[i];
+      }
+      for (int axis = 0; axis < 2; ++axis) {
+        const Covered covered = coveredBy(fine, x, z, axis);
+        double open = 0.0;
+        double resistance = 0.0;
+        for (int k = 0; k < 2; ++k) {
+          const std::size_t face = covered.face[k];
+          if (!is_member[face] || !is_member[covered.behind[k]]) continue;
+          open += fine.open[face][axis];
+          resistance += fine.open[face][axis] * fine.resistance_pm[face][axis];
+        }
+        if (open <= 0.0) continue;
+        coarse.open[i][axis] = open / 2;
+        coarse.resistance_pm[i][axis] = resistance / open;
+        for (int k = 0; k < 2; ++k) {
+          const std::size_t face = covered.face[k];
+          if (is_member[face] && is_member[covered.behind[k]])
+            weightsOf(axis)[face][axis == 0 ? 0 : 2] = fine.open[face][axis] / coarse.open[i][axis];
+        }
+      }
+    }
+  }
+  // The faces around a block and the direction in which a flux through them leaves it.
+  struct Side {
+    int x, z, axis;
+    double outward;
+  };
+  constexpr Side kSides[] = {{0, 0, 0, 1.0}, {-1, 0, 0, -1.0}, {0, 0, 1, 1.0}, {0, -1, 1, -1.0}};
+  for (int z = 0; z < coarse.n; ++z) {
+    for (int x = 0; x < coarse.n; ++x) {
+      const auto block = blockOf(fine, x, z);
+      const double wet = 4 * coarse.wet[coarse.at(x, z)];
+      if (wet <= 0.0) continue;
+      std::array<double, 4> open{};
+      for (int e = 0; e < 4; ++e) {
+        const auto [from, to, axis] = kInnerFaces[e];
+        if (is_member[block[from]] && is_member[block[to]]) open[e] = fine.open[block[from]][axis];
+      }
+      for (int side = 0; side < 4; ++side) {
+        const auto& [dx, dz, axis, outward] = kSides[side];
+        if (coarse.open[coarse.at(x + dx, z + dz)][axis] <= 0.0) continue;
+        // Outflow of each cell through this side for a unit of coarse flux, and what it lacks to lose as much per area
+        // as the others.
+        std::array<double, 4> out{};
+        double total = 0.0;
+        for (int k = 0; k < 2; ++k) {
+          const Covered covered = coveredBy(fine, x + dx, z + dz, axis);
+          const std::size_t cell = outward > 0 ? covered.face[k] : covered.behind[k];
+          const double share = weightsOf(axis)[covered.face[k]][axis == 0 ? 0 : 2];
+          out[static_cast<std::size_t>(std::ranges::find(block, cell) - block.begin())] += outward * share;
+          total += outward * share;
+        }
+        std::array<double, 4> inflow{};
+        for (int k = 0; k < 4; ++k) {
+          if (is_member[block[k]]) inflow[k] = out[k] - total * fine.wet[block[k]] / wet;
+        }
+        const std::array<double, 4> flux = innerFlux(open, inflow);
+        for (int e = 0; e < 4; ++e) weightsOf(kInnerFaces[e].axis)[block[kInnerFaces[e].from]][side] = flux[e];
+      }
+    }
+  }
+  return coarse;
+}
+
+std::vector<Four> stiffnessOf(const Grid& grid, double cell_m) {
+  std::vector<Four> out(grid.wet.size(), Four{});
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (int axis = 0; axis < 2; ++axis) {
+      if (grid.open[i][axis] > 0.0) out[i][axis] = grid.resistance_pm[i][axis] / grid.open[i][axis];
+    }
+    for (std::size_t j = 0; j < kPoleCount; ++j) {
+      if (grid.wet[i] > 0.0) out[i][2 + j] = grid.reach_m[i][j] / (grid.wet[i] * cell_m * cell_m);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Poles polesAt(double depth_cells) {
+  const std::span fitted(kFitted);
+  if (depth_cells <= fitted.front().depth_cells) return fitted.front().poles;
+  if (depth_cells >= fitted.back().depth_cells) return fitted.back().poles;
+  const auto above =
+      std::ranges::find_if(fitted, [&](const FittedPoles& row) { return row.depth_cells > depth_cells; });
+  const FittedPoles& high = *above;
+  const FittedPoles& low = *(above - 1);
+  const double share = std::log(depth_cells / low.depth_cells) / std::log(high.depth_cells / low.depth_cells);
+  Poles out;
+  for (std::size_t j = 0; j < kPoleCount; ++j) {
+    out.b[j] = std::exp(std::lerp(std::log(low.poles.b[j]), std::log(high.poles.b[j]), share));
+    out.c[j] = std::lerp(low.poles.c[j], high.poles.c[j], share);
+  }
+  return out;
+}
+
+bool canDisperse(std::uint32_t resolution_count) {
+  while (resolution_count > kBottomSideMax && resolution_count % 2 == 0) resolution_count /= 2;
+  return resolution_count <= kBottomSideMax;
+}
+
+std::uint64_t dispersionBytes(std::uint32_t resolution_count) {
+  constexpr std::uint64_t kTables = 4 * 16;
+  constexpr std::uint64_t kTexel = 16;
+  const auto cells = [](std::uint32_t n) { return std::uint64_t{n} * n; };
+  std::uint32_t n = resolution_count;
+  // Tables, faces and faces before; the strengths; the result.
+  std::uint64_t bytes = cells(n) * (kTables + 2 * kTexel + kTexel + 8);
+  for (n /= 2; n > kBottomSideMax; n /= 2) bytes += cells(n) * (kTables + 3 * kTexel);
+  bytes += cells(n) * 2 * kTexel;
+  for (; n >= kCoarsestSideCount; n /= 2) {
+    bytes += cells(n) * kTables;
+    if (n % 2 != 0) break;
+  }
+  return bytes;
+}
+
+double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m) {
+  constexpr double kMargin = 0.9;
+  constexpr double kShortest = 8.0;  // largest eigenvalue of the 5-point Laplacian, in cells
+  const double depth_cells = depth_m / cell_m;
+  const Poles poles = polesAt(depth_cells);
+  double share = 0.0;
+  for (std::size_t j = 0; j < kPoleCount; ++j)
+    share += poles.c[j] / (1.0 + poles.b[j] * depth_cells * depth_cells * kShortest);
+  return kMargin * 2.0 * cell_m / std::sqrt(gravity_mps2 * depth_m * kShortest * share);
+}
+
+Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
+                            const std::function<Poles(double depth_cells)>& poles_of) {
+  Dispersion out;
+  Grid grid(static_cast<int>(layout.resolution_count));
+  out.root_c.resize(grid.wet.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < grid.wet.size(); ++i) {
+    const double depth_m = basin.depth_m[i];
+    out.is_uneven = out.is_uneven || depth_m <= 0.0;
+    if (depth_m <= 0.0) continue;
+    grid.wet[i] = 1.0;
+    const Poles poles = poles_of(depth_m / layout.cell_m);
+    for (std::size_t j = 0; j < kPoleCount; ++j) grid.reach_m[i][j] = poles.b[j] * depth_m;
+    largest = std::max(largest, poles.b[0] * std::pow(depth_m / layout.cell_m, 2));
+    for (int axis = 0; axis < 2; ++axis) {
+      const double face_m = basin.conductance_m[i][axis];
+      if (face_m <= 0.0) continue;
+      grid.open[i][axis] = 1.0;
+      grid.resistance_pm[i][axis] = 1.0 / face_m;
+      const Poles at_face = poles_of(face_m / layout.cell_m);
+      for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j]);
+    }
+  }
+  double cell_m = layout.cell_m;
+  while (true) {
+    DispersionLevel level;
+    level.side_count = static_cast<std::uint32_t>(grid.n);
+    level.stiffness = stiffnessOf(grid, cell_m);
+    const bool is_solved_by_sweeps = largest < kCoarsestStiffness && level.side_count <= kBottomSideMax;
+    const bool is_coarsest = !out.levels.empty() && (is_solved_by_sweeps || level.side_count <= kCoarsestSideCount ||
+                                                     level.side_count % 2 != 0);
+    if (!is_coarsest) grid = coarsen(grid, level);
+    out.levels.push_back(std::move(level));
+    if (is_coarsest) return out;
+    cell_m *= 2;
+    largest /= 4;
+  }
+}
+
+std::vector<Four> sweepWeights(const DispersionLevel& level) {
+  std::vector<Four> out(level.stiffness.size(), Four{});
+  const int n = static_cast<int>(level.side_count);
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const Four& here = level.stiffness[level.index(x, z)];
+      const std::array there{level.stiffness[level.index(x + 1, z)], level.stiffness[level.index(x, z + 1)]};
+      for (int axis = 0; axis < 2; ++axis) {
+        if (here[axis] <= 0.0) continue;
+        for (std::size_t j = 0; j < kPoleCount; ++j) {
+          out[level.index(x, z)][2 * axis + j] = kSweepWeight / (here[axis] + here[2 + j] + there[axis][2 + j]);
+        }
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,138 @@
+// The small grids of the V-cycle, from DISPERSION_BOTTOM_SIDE_MAX cells per side or fewer down to the coarsest and back, in one work group: one
+// dispatch for each pass over them would cost more than the passes.
+// Reads DISPERSION_RIGHT of the largest of them, and of all of them, one behind the other, DISPERSION_STIFFNESS,
+// DISPERSION_SWEEP, DISPERSION_FROM_X, DISPERSION_FROM_Z. Writes DISPERSION_FACES of the largest.
+// Equations: those of start.comp, restrict.comp, correct.comp and sweep.comp; in the coarsest grid sweeps alone.
+#include "shared/bindings.h"
+#include "shared/groups.h"
+
+layout(local_size_x = DISPERSION_BOTTOM_GROUP) in;
+
+layout(binding = DISPERSION_STIFFNESS) uniform samplerBuffer stiffness;
+layout(binding = DISPERSION_SWEEP) uniform samplerBuffer sweep_weight;
+layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
+layout(binding = DISPERSION_FROM_X) uniform samplerBuffer from_x;
+layout(binding = DISPERSION_FROM_Z) uniform samplerBuffer from_z;
+layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec4 faces[]; };
+
+#define MAX_CELLS (DISPERSION_BOTTOM_SIDE_MAX * DISPERSION_BOTTOM_SIDE_MAX)
+#define ITEMS (MAX_CELLS / DISPERSION_BOTTOM_GROUP)
+#define COARSEST_SWEEPS 4
+
+uniform uint grid_count;
+
+/// Of all grids, one behind the other: the faces; the right sides of all but the largest.
+shared vec4 phi[MAX_CELLS + MAX_CELLS / 3 + 1];
+shared vec4 right_of_smaller[MAX_CELLS / 3 + 1];
+
+int around(int i, int n) { return i < 0 ? i + n : (i >= n ? i - n : i); }
+
+vec4 rightAt(int first, int i) { return first == 0 ? texelFetch(right_side, i) : right_of_smaller[first - textureSize(right_side) + i]; }
+
+vec2 pressedAt(int first, int n, int x, int z) {
+  x = around(x, n);
+  z = around(z, n);
+  const int i = first + x + n * z;
+  const vec4 own = phi[i];
+  return texelFetch(stiffness, i).zw * (own.xy - phi[first + around(x - 1, n) + n * z].xy + own.zw - phi[first + x + n * around(z - 1, n)].zw);
+}
+
+vec4 leftAt(int first, int n, int x, int z) {
+  const int i = x + n * z;
+  const vec2 here = pressedAt(first, n, x, z);
+  return rightAt(first, i) - texelFetch(stiffness, first + i).xxyy * phi[first + i] +
+         vec4(pressedAt(first, n, x + 1, z) - here, pressedAt(first, n, x, z + 1) - here);
+}
+
+void sweep(int first, int n) {
+  vec4 swept[ITEMS];
+  barrier();
+  for (int k = 0; k < ITEMS; ++k) {
+    const int i = int(gl_LocalInvocationIndex) + k * DISPERSION_BOTTOM_GROUP;
+    if (i < n * n) swept[k] = phi[first + i] + texelFetch(sweep_weight, first + i) * leftAt(first, n, i % n, i / n);
+  }
+  barrier();
+  for (int k = 0; k < ITEMS; ++k) {
+    const int i = int(gl_LocalInvocationIndex) + k * DISPERSION_BOTTOM_GROUP;
+    if (i < n * n) phi[first + i] = swept[k];
+  }
+}
+
+/// What the inner faces of a block have left for its coarse face `side` (0 E, 1 W, 2 N, 3 S).
+vec2 innerShare(int first, int n, int x, int z, int side) {
+  x = around(x, n);
+  z = around(z, n);
+  const int i = first + x + n * z;
+  const vec4 corner = leftAt(first, n, x, z);
+  return texelFetch(from_x, i)[side] * corner.xy + texelFetch(from_x, i + n)[side] * leftAt(first, n, x, z + 1).xy +
+         texelFetch(from_z, i)[side] * corner.zw + texelFetch(from_z, i + 1)[side] * leftAt(first, n, x + 1, z).zw;
+}
+
+void restrictToCoarse(int first, int n) {
+  const int coarse_n = n / 2;
+  const int coarse_right = first + n * n - textureSize(right_side);
+  barrier();
+  for (int k = int(gl_LocalInvocationIndex); k < coarse_n * coarse_n; k += DISPERSION_BOTTOM_GROUP) {
+    const int x = 2 * (k % coarse_n);
+    const int z = 2 * (k / coarse_n);
+    const int i = first + x + n * z;
+    const vec4 both = leftAt(first, n, x + 1, z + 1);
+    const vec2 sum_x = texelFetch(from_x, i + 1).x * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n + 1).x * both.xy +
+                       innerShare(first, n, x, z, 0) + innerShare(first, n, x + 2, z, 1);
+    const vec2 sum_z = texelFetch(from_z, i + n).z * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n + 1).z * both.zw +
+                       innerShare(first, n, x, z, 2) + innerShare(first, n, x, z + 2, 3);
+    right_of_smaller[coarse_right + k] = 0.25 * vec4(sum_x, sum_z);
+  }
+}
+
+void correct(int first, int n) {
+  const int coarse = first + n * n;
+  const int coarse_n = n / 2;
+  barrier();
+  for (int i = int(gl_LocalInvocationIndex); i < n * n; i += DISPERSION_BOTTOM_GROUP) {
+    const int x = (i % n) / 2;
+    const int z = (i / n) / 2;
+    const vec4 here = phi[coarse + x + coarse_n * z];
+    const vec2 west = phi[coarse + around(x - 1, coarse_n) + coarse_n * z].xy;
+    const vec2 south = phi[coarse + x + coarse_n * around(z - 1, coarse_n)].zw;
+    const vec4 wx = texelFetch(from_x, first + i);
+    const vec4 wz = texelFetch(from_z, first + i);
+    phi[first + i] += vec4(wx.x * here.xy + wx.y * west + wx.z * here.zw + wx.w * south,
+                           wz.x * here.xy + wz.y * west + wz.z * here.zw + wz.w * south);
+  }
+}
+
+/// phi = w r
+void start(int first, int n) {
+  barrier();
+  for (int i = int(gl_LocalInvocationIndex); i < n * n; i += DISPERSION_BOTTOM_GROUP)
+    phi[first + i] = texelFetch(sweep_weight, first + i) * rightAt(first, i);
+}
+
+// Each step down or up is one turn of the same loop, and its bounds are no constants: otherwise the compiler repeats all of
+// the above for each grid.
+void main() {
+  const int grids = int(grid_count);
+  int first = 0;
+  int n = int(sqrt(float(textureSize(right_side))) + 0.5);
+  for (int turn = 0; turn < 2 * grids - 1; ++turn) {
+    const bool descends = turn < grids;
+    const bool is_coarsest = turn == grids - 1;
+    if (descends) {
+      start(first, n);
+    } else {
+      n *= 2;
+      first -= n * n;
+      correct(first, n);
+    }
+    const int sweeps = is_coarsest ? COARSEST_SWEEPS : (descends ? 1 : 2);
+    for (int k = 0; k < sweeps; ++k) sweep(first, n);
+    if (descends && !is_coarsest) {
+      restrictToCoarse(first, n);
+      first += n * n;
+      n /= 2;
+    }
+  }
+  barrier();
+  for (int i = int(gl_LocalInvocationIndex); i < textureSize(right_side); i += DISPERSION_BOTTOM_GROUP) faces[i] = phi[i];
+}

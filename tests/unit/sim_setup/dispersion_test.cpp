@@ -1,0 +1,140 @@
+// The dispersion's operator in double precision: its symmetry, its walls, and the phase speeds that follow from it.
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/sim_setup/dispersion.h>
+
+#include "dispersion_reference.h"
+
+namespace spindrift::sim {
+namespace {
+
+core::Scene sea(std::uint32_t n, double cell_m, double depth_m, core::WaveBoundary sides) {
+  core::Scene scene;
+  scene.wave.emplace();
+  scene.wave->resolution_count = n;
+  scene.wave->side_m = n * cell_m;
+  scene.wave->depth_m = depth_m;
+  scene.wave->dispersion = core::Dispersion::kAiry;
+  scene.wave->setBoundaries(sides);
+  return scene;
+}
+
+struct Laid {
+  explicit Laid(const core::Scene& scene)
+      : wave(*derive(scene)->wave), basin(layOutBasin(scene, wave)), operator_f(layOutDispersion(wave, basin)) {}
+
+  /// -div F grad(level), in cells.
+  [[nodiscard]] std::vector<double> pull(const std::vector<double>& level) const {
+    const auto faces = operator_f.apply(level);
+    const DispersionLevel& grid = operator_f.dispersion().levels.front();
+    std::vector<double> out(level.size());
+    const int n = static_cast<int>(grid.side_count);
+    for (int z = 0; z < n; ++z) {
+      for (int x = 0; x < n; ++x) {
+        out[grid.index(x, z)] = faces[grid.index(x - 1, z)][0] - faces[grid.index(x, z)][0] +
+                                faces[grid.index(x, z - 1)][1] - faces[grid.index(x, z)][1];
+      }
+    }
+    return out;
+  }
+
+  WaveLayout wave;
+  Basin basin;
+  DispersionReference operator_f;
+};
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+std::vector<double> noise(std::size_t count, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> level(-1.0, 1.0);
+  std::vector<double> out(count);
+  for (double& v : out) v = level(random);
+  return out;
+}
+
+core::Scene harborLike() {
+  core::Scene scene = sea(96, 0.125, 1.2, core::WaveBoundary::kReflect);
+  scene.obstacles.emplace_back(core::Rock{.x_m = 2.1, .z_m = -1.3, .radius_m = 0.9});
+  scene.obstacles.emplace_back(
+      core::Breakwater{.x_m = -1.0, .z_m = 2.0, .length_m = 5.0, .width_m = 0.2, .heading_deg = 30});
+  scene.beaches.push_back({.side = core::Side::kPlusX, .width_m = 4.0, .shore_depth_m = 0.0});
+  return scene;
+}
+
+/// Phase speed of a plane wave with (mx, mz) periods in the domain over that of the closed form.
+double speedRatio(const Laid& laid, int mx, int mz, double gravity_mps2) {
+  const DispersionLevel& grid = laid.operator_f.dispersion().levels.front();
+  const int n = static_cast<int>(grid.side_count);
+  std::vector<double> level(grid.stiffness.size());
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) level[grid.index(x, z)] = std::cos(2 * std::numbers::pi * (mx * x + mz * z) / n + 0.3);
+  }
+  const double cell_m = laid.wave.cell_m;
+  const double square = gravity_mps2 * dot(level, laid.pull(level)) / dot(level, level) / (cell_m * cell_m);
+  const double depth_m = laid.basin.depth_m.front();
+  const double k_pm = 2 * std::numbers::pi * std::hypot(mx, mz) / (n * cell_m);
+  const double dt_s = laid.wave.dt_s;
+  const double omega = 2 / dt_s * std::asin(0.5 * dt_s * std::sqrt(square));
+  return omega / std::sqrt(gravity_mps2 * k_pm * std::tanh(k_pm * depth_m));
+}
+
+TEST(Dispersion, IsSymmetricAndPositiveOverAnyBedAndBesideAnyWall) {
+  const Laid laid(harborLike());
+  for (std::uint32_t seed = 1; seed < 4; ++seed) {
+    const auto a = noise(laid.basin.depth_m.size(), seed);
+    const auto b = noise(laid.basin.depth_m.size(), seed + 100);
+    EXPECT_NEAR(dot(a, laid.pull(b)) / dot(b, laid.pull(a)), 1.0, 1e-12);
+    EXPECT_GT(dot(a, laid.pull(a)), 0.0);
+  }
+}
+
+TEST(Dispersion, LeavesALevelSurfaceAloneOnEachSideOfAWall) {
+  core::Scene scene = sea(64, 0.125, 1.2, core::WaveBoundary::kReflect);
+  scene.obstacles.emplace_back(core::Breakwater{.x_m = 0.3, .length_m = 100, .width_m = 0.125, .heading_deg = 90});
+  const Laid laid(scene);
+  std::vector<double> level(laid.basin.depth_m.size());
+  const DispersionLevel& grid = laid.operator_f.dispersion().levels.front();
+  for (int z = 0; z < 64; ++z) {
+    for (int x = 0; x < 64; ++x) level[grid.index(x, z)] = x < 34 ? 0.05 : -0.02;
+  }
+  for (const double pull : laid.pull(level)) EXPECT_EQ(pull, 0.0);
+  // A wave on one side moves nothing on the other.
+  level.assign(level.size(), 0.0);
+  level[grid.index(30, 30)] = 1.0;
+  const auto pull = laid.pull(level);
+  for (int z = 0; z < 64; ++z) {
+    for (int x = 36; x < 64; ++x) EXPECT_EQ(pull[grid.index(x, z)], 0.0);
+  }
+}
+
+TEST(Dispersion, HasThePhaseSpeedsOfAiryWaves) {
+  for (const double depth_cells : {3.0, 7.2, 16.0}) {
+    const core::Scene scene = sea(128, 0.125, depth_cells * 0.125, core::WaveBoundary::kPeriodic);
+    const Laid laid(scene);
+    double off_8 = 0.0;
+    double off_4 = 0.0;
+    for (int m = 1; m <= 32; ++m) {
+      for (const auto& [mx, mz] : {std::pair{m, 0}, std::pair{m, m}, std::pair{m, m / 2}}) {
+        const double cells = 128 / std::hypot(mx, mz);
+        const double kd = 2 * std::numbers::pi / cells * depth_cells;
+        if (cells < 4.0 || kd > 10.0) continue;
+        const double off = std::abs(speedRatio(laid, mx, mz, scene.gravity_mps2) - 1);
+        (cells >= 8.0 ? off_8 : off_4) = std::max(cells >= 8.0 ? off_8 : off_4, off);
+      }
+    }
+    EXPECT_LE(off_8, 0.01) << depth_cells;
+    EXPECT_LE(off_4, 0.025) << depth_cells;
+  }
+}
+
+}  // namespace
+}  // namespace spindrift::sim
