@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/rooms/replay.h>
-#include <spindrift/rooms/stage.h>
+#include <spindrift/rooms/room_water.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/client_message.h>
 
@@ -13,7 +13,7 @@ namespace {
 using core::Error;
 using core::ErrorCode;
 
-core::Result<void> carryOut(Stage& stage, const v1::Record& record) {
+core::Result<void> carryOut(RoomWater& water, const v1::Record& record) {
   const auto failed = [&](const std::string& why) {
     return Error{ErrorCode::kCheckFailed,
                  fmt::format("tick {}: a command of the log is not carried out now: {}", record.tick(), why)};
@@ -23,8 +23,8 @@ core::Result<void> carryOut(Stage& stage, const v1::Record& record) {
     return failed(rejected->field + " " + rejected->message);
   }
   const auto& command = std::get<v1::Command>(checked);
-  if (!Stage::takes(command)) return failed("it is of a kind that no log holds");
-  if (auto rejected = stage.apply(command)) return failed(rejected->field + " " + rejected->message);
+  if (!RoomWater::takes(command)) return failed("it is of a kind that no log holds");
+  if (auto rejected = water.apply(command)) return failed(rejected->field + " " + rejected->message);
   return {};
 }
 
@@ -37,39 +37,39 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
   scene::fillDefaults(start);
   auto water = Water::create(device, std::move(start));
   if (!water) return water.error();
-  Stage stage(*std::move(water));
+  RoomWater room_water(*std::move(water));
 
   ReplayOutcome out;
-  out.device_difference = deviceDifference(log.header(), stage.device());
+  out.device_difference = deviceDifference(log.header(), room_water.device());
   std::uint64_t last_equal_tick = 0;
   while (const auto record = log.next()) {
-    while (stage.tick() < record->tick() && !record->has_scene()) {
-      stage.step();
-      if (const auto& error = stage.water().deviceError()) return *error;
-      if (progress && stage.tick() % kProgressInterval_ticks == 0) progress(stage.tick());
+    while (room_water.tick() < record->tick() && !record->has_scene()) {
+      room_water.step();
+      if (const auto& error = room_water.sim().deviceError()) return *error;
+      if (progress && room_water.tick() % kProgressInterval_ticks == 0) progress(room_water.tick());
     }
     out.tick_count = record->tick();
     switch (record->what_case()) {
       case v1::Record::kCommand:
-        if (auto done = carryOut(stage, *record); !done) return done.error();
+        if (auto done = carryOut(room_water, *record); !done) return done.error();
         ++out.command_count;
         break;
       case v1::Record::kScene: {
         // The record was written after the change, which takes one tick.
-        while (stage.tick() + 1 < record->tick()) {
-          stage.step();
-          if (const auto& error = stage.water().deviceError()) return *error;
+        while (room_water.tick() + 1 < record->tick()) {
+          room_water.step();
+          if (const auto& error = room_water.sim().deviceError()) return *error;
         }
         v1::Scene scene = record->scene();
         scene::fillDefaults(scene);
         auto next = Water::create(device, std::move(scene));
         if (!next) return next.error();
-        stage.replaceWater(*std::move(next)).reset();
-        stage.bind();  // the old water's destructor left no context current
+        room_water.replaceWater(*std::move(next)).reset();
+        room_water.bind();  // the old water's destructor left no context current
         break;
       }
       case v1::Record::kStateHash: {
-        const std::uint64_t found = stage.water().stateHash();
+        const std::uint64_t found = room_water.sim().stateHash();
         ++out.hash_count;
         if (found != record->state_hash()) {
           out.difference = {record->tick(), last_equal_tick, record->state_hash(), found};

@@ -35,40 +35,41 @@ constexpr auto kSlowWarningInterval = 60s;
 }  // namespace
 
 Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
-           std::unique_ptr<Stage> stage, std::unique_ptr<CommandLogWriter> log)
+           std::unique_ptr<RoomWater> room_water, std::unique_ptr<CommandLogWriter> log)
     : name_(std::move(name)),
       rules_(rules),
       builder_(builder),
       outlets_(outlets),
-      stage_(std::move(stage)),
+      water_(std::move(room_water)),
       log_(std::move(log)),
       heavy_budget_(kHeavyShare, kHeavyBurst),
       roster_(rules.grace),
-      clock_(stage_->water().derived().tick_s),
-      boats_(stage_->boats()) {
-  recovery_news_.restart(stage_->water().recoveredCount());
-  tick_cost_.restart(stage_->warmTick_ms(), stage_->work());
+      clock_(water_->sim().derived().tick_s),
+      boats_(water_->boats()) {
+  recovery_news_.restart(water_->sim().recoveredCount());
+  tick_cost_.restart(water_->warmTick_ms(), water_->work());
   publishSnapshot();
   publishVitals({});
 }
 
 core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
                                                  WaterBuilder& builder, RoomOutlets& outlets) {
-  auto stage = std::make_unique<Stage>(std::move(water));
+  auto room_water = std::make_unique<RoomWater>(std::move(water));
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty()) {
     v1::RecordHeader header;
     header.set_server(std::string(core::nameAndVersion()));
-    describeDevice(header, stage->device());
+    describeDevice(header, room_water->device());
     header.set_room(name);
-    *header.mutable_scene() = stage->scene();
+    *header.mutable_scene() = room_water->scene();
     header.set_hash_interval_ticks(rules.hash_interval_ticks);
     auto opened = CommandLogWriter::create(rules.record_folder, header);
     if (!opened) return opened.error();
     log = *std::move(opened);
     spdlog::info("room {}: recorded to {}", name, log->file().string());
   }
-  return std::shared_ptr<Room>(new Room(std::move(name), rules, builder, outlets, std::move(stage), std::move(log)));
+  return std::shared_ptr<Room>(
+      new Room(std::move(name), rules, builder, outlets, std::move(room_water), std::move(log)));
 }
 
 bool isRoomName(const std::string& name) {
@@ -83,7 +84,7 @@ std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
 
 void Room::publishSnapshot() {
   auto fresh = std::make_shared<const RoomSnapshot>(
-      RoomSnapshot{stage_->scene(), stage_->sceneVersion(), paused_, clock_.speed(), boats_});
+      RoomSnapshot{water_->scene(), water_->sceneVersion(), paused_, clock_.speed(), boats_});
   const std::lock_guard lock(snapshot_mutex_);
   snapshot_ = std::move(fresh);
 }
@@ -97,7 +98,7 @@ void Room::publishVitals(TimePoint now) {
   next_vitals_ = now + kVitalsInterval;
   auto fresh = std::make_shared<RoomVitals>();
   fresh->tick = tick();
-  fresh->time_s = stage_->water().time_s();
+  fresh->time_s = water_->sim().time_s();
   fresh->asleep = asleep_;
   fresh->lost = is_lost_;
   fresh->waiting_command_count = static_cast<std::uint32_t>(commands_.size());
@@ -131,12 +132,12 @@ Room::TimePoint Room::due(TimePoint now) const {
   if (is_lost_ || change_) return now + 10ms;
   if (pending_tick_count_ > 0) return now;
   const TimePoint next = paused_ || asleep_ ? now + 10ms : clock_.due();
-  return stage_->water().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
+  return water_->sim().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
 }
 
 void Room::run(TimePoint now) {
-  stage_->bind();
-  stage_->reloadChangedShaders();
+  water_->bind();
+  water_->reloadChangedShaders();
   session_count_ = outlets_.sessionCount();
   adoptWater(now);
   if (isLost(now)) {
@@ -165,7 +166,7 @@ void Room::run(TimePoint now) {
 }
 
 void Room::watchOverSleep(TimePoint now) {
-  if (stage_->scene().unwatched() != v1::UNWATCHED_SLEEP || outlets_.sessionCount(*this) > 0) {
+  if (water_->scene().unwatched() != v1::UNWATCHED_SLEEP || outlets_.sessionCount(*this) > 0) {
     last_watched_ = now;
     if (!asleep_) return;
     asleep_ = false;
@@ -178,7 +179,7 @@ void Room::watchOverSleep(TimePoint now) {
 
 void Room::step(TimePoint now) {
   const TimePoint end = timedStep();
-  run_s_ += stage_->water().derived().tick_s;
+  run_s_ += water_->sim().derived().tick_s;
   unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
   last_run_ = end;
   clock_.ticked(end);
@@ -197,14 +198,14 @@ void Room::advancePaused(TimePoint now) {
 
 Room::TimePoint Room::timedStep() {
   const auto begin = std::chrono::steady_clock::now();
-  stage_->step();
+  water_->step();
   const auto end = std::chrono::steady_clock::now();
   const double step_ms = duration<double, std::milli>(end - begin).count();
   tick_cost_.note(step_ms);
   step_ms_sum_ += step_ms;
   ++step_count_;
   if (log_ && !log_->ended()) {
-    if (const std::uint64_t count = stage_->water().recoveredCount(); count != logged_recovery_count_) {
+    if (const std::uint64_t count = water_->sim().recoveredCount(); count != logged_recovery_count_) {
       logged_recovery_count_ = count;
       v1::Record recovered;
       recovered.set_recovered(true);
@@ -212,7 +213,7 @@ Room::TimePoint Room::timedStep() {
     }
     if (tick() % log_->hashInterval_ticks() == 0) {
       v1::Record hash;
-      hash.set_state_hash(stage_->water().stateHash());
+      hash.set_state_hash(water_->sim().stateHash());
       record(std::move(hash));
     }
   }
@@ -222,26 +223,26 @@ Room::TimePoint Room::timedStep() {
 // Frames
 
 bool Room::isFrameDue(TimePoint now) const {
-  if (stage_->water().time_s() + 1e-9 >= next_frame_s_) return true;
-  const duration<double> interval(1.0 / stage_->scene().stream().frame_rate_hz());
+  if (water_->sim().time_s() + 1e-9 >= next_frame_s_) return true;
+  const duration<double> interval(1.0 / water_->scene().stream().frame_rate_hz());
   return now - last_frame_ >= std::max<duration<double>>(interval, kSlowFrameInterval);
 }
 
 bool Room::isDue(core::Level level) const {
-  return paused_ || frame_count_ % core::frameStride(level, stage_->scene().stream().frame_rate_hz()) == 0;
+  return paused_ || frame_count_ % core::frameStride(level, water_->scene().stream().frame_rate_hz()) == 0;
 }
 
 void Room::requestFrame(TimePoint now) {
   const double interval_s =
-      clock_.speed() / stage_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
-  if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, stage_->water().time_s());
+      clock_.speed() / water_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
+  if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, water_->sim().time_s());
   next_idle_frame_ = now + kPausedFrameInterval;
   last_frame_ = now;
-  const v1::Scene& scene = stage_->scene();
-  const WatchedLayers watched = outlets_.watched(*this, stage_->water().reducedCounts());
+  const v1::Scene& scene = water_->scene();
+  const WatchedLayers watched = outlets_.watched(*this, water_->sim().reducedCounts());
   wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
   sim::FrameRequest request{
-      .bodies = scene.has_boats() && watched.bodies, .asked_s = core::monotonic_s(now), .state_id = stage_->stateId()};
+      .bodies = scene.has_boats() && watched.bodies, .asked_s = core::monotonic_s(now), .state_id = water_->stateId()};
   for (const core::Level level : core::kLevels) {
     if (!isDue(level)) continue;
     const std::size_t k = core::indexOf(level);
@@ -252,25 +253,25 @@ void Room::requestFrame(TimePoint now) {
   }
   ++frame_count_;
   if (request.isEmpty()) return;
-  if (!stage_->water().requestFrame(request)) {
+  if (!water_->sim().requestFrame(request)) {
     ++dropped_frames_;
     next_idle_frame_ = now + kDroppedFrameRetry;
   }
 }
 
 void Room::handOverFrames() {
-  for (core::FrameView& frame : stage_->water().takeFrames()) {
-    frame.tick = stage_->tickOf(frame.tick);
+  for (core::FrameView& frame : water_->sim().takeFrames()) {
+    frame.tick = water_->tickOf(frame.tick);
     if (wants_diagnostics_) frame.diagnostics = diagnostics();
     wants_diagnostics_ = false;
     outlets_.frameReady(*this, std::move(frame));
   }
-  if (wants_diagnostics_ && stage_->water().framesInFlight() == 0) {
+  if (wants_diagnostics_ && water_->sim().framesInFlight() == 0) {
     wants_diagnostics_ = false;
     core::FrameView frame;
     frame.tick = tick();
-    frame.time_s = stage_->water().time_s();
-    frame.state_id = stage_->stateId();
+    frame.time_s = water_->sim().time_s();
+    frame.state_id = water_->stateId();
     frame.diagnostics = diagnostics();
     outlets_.frameReady(*this, std::move(frame));
   }
@@ -278,7 +279,7 @@ void Room::handOverFrames() {
 
 core::DiagnosticsView Room::diagnostics() {
   if (step_count_ > 0) last_step_ms_ = step_ms_sum_ / step_count_;
-  sim::WaterSim& water = stage_->water();
+  sim::WaterSim& water = water_->sim();
   const sim::Health& h = water.health();
   const sim::Derived& d = water.derived();
   core::DiagnosticsView out;

@@ -60,7 +60,7 @@ void Room::conclude(Values values) {
 }
 
 bool Room::beginChange(const Command& command, Values& others) {
-  auto relayout = stage_->relayout(command.message.set_parameter());
+  auto relayout = water_->relayout(command.message.set_parameter());
   if (!relayout) return false;
   auto prepared = builder_.prepare(relayout->wanted, std::exchange(relayout->basis, {}));
   commands_.hold({command});
@@ -74,7 +74,7 @@ void Room::finishChange() {
   Change change = *std::move(change_);
   change_.reset();
   commands_.release({change.command});
-  Outcome outcome = stage_->adopt(std::move(change.relayout), change.prepared.get());
+  Outcome outcome = water_->adopt(std::move(change.relayout), change.prepared.get());
   heavy_budget_.spend(std::chrono::steady_clock::now() - change.begin);
   const bool is_taken = !outcome;
   if (is_taken) {
@@ -105,13 +105,13 @@ void Room::abandonChanges(const wire::CommandRejection& rejection) {
 Room::Outcome Room::refuseChange(const Command& command) const {
   if (auto rejected = checkAgain(command)) return rejected;
   const v1::SetParameter& change = command.message.set_parameter();
-  const auto wanted = stage_->workWith(change);
+  const auto wanted = water_->workWith(change);
   if (!wanted) return {};
   return refuseSlow(command.sender, change.path(), tick_cost_.predict_ms(*wanted), kTickMax_ms);
 }
 
 void Room::parameterChanged(const v1::SetParameter& change) {
-  tick_cost_.workChanged(stage_->work());
+  tick_cost_.workChanged(water_->work());
   next_frame_s_ = 0.0;  // the frame rate may have changed; by the old rate the next frame could be up to a second away
   news_.parameters[change.path()] = change.value();
 }

@@ -40,7 +40,7 @@ struct Room::CommandKind {
   v1::Command::ActionCase action;
   CommandTraits traits;
   /// Changes the water. Such commands are written to the log and replayed.
-  Stage::Handler on_water;
+  RoomWater::Handler on_water;
   /// Carries the command out; null: on_water is all.
   Outcome (Room::*in_room)(const Command& command);
   /// Begins a batch whose commands are answered later; takes the place of in_room.
@@ -54,15 +54,15 @@ const Room::CommandKind& Room::kindOf(const v1::Command& command) {
   constexpr bool kLight = false, kHeavy = true;
   constexpr bool kShared = true;
   static constexpr CommandKind kKinds[] = {
-      {C::kSplash, {kPlayer, kLight}, &Stage::splash, nullptr, nullptr},
-      {C::kBreakingWave, {kPlayer, kLight}, &Stage::breakingWave, nullptr, nullptr},
-      {C::kSetParameter, {kOperator, kHeavy}, &Stage::setParameter, nullptr, &Room::setParameters},
-      {C::kReset, {kOperator, kHeavy, kShared}, &Stage::reset, &Room::reset, nullptr},
+      {C::kSplash, {kPlayer, kLight}, &RoomWater::splash, nullptr, nullptr},
+      {C::kBreakingWave, {kPlayer, kLight}, &RoomWater::breakingWave, nullptr, nullptr},
+      {C::kSetParameter, {kOperator, kHeavy}, &RoomWater::setParameter, nullptr, &Room::setParameters},
+      {C::kReset, {kOperator, kHeavy, kShared}, &RoomWater::reset, &Room::reset, nullptr},
       {C::kSetPaused, {kOperator, kLight}, nullptr, &Room::setPaused, nullptr},
       {C::kSetSpeed, {kOperator, kLight}, nullptr, &Room::setSpeed, nullptr},
-      {C::kSpawnBoat, {kPlayer, kHeavy}, &Stage::spawnBoat, &Room::spawnBoat, nullptr},
-      {C::kControlBoat, {kPlayer, kLight}, &Stage::controlBoat, &Room::controlBoat, nullptr},
-      {C::kRemoveBoat, {kPlayer, kHeavy}, &Stage::removeBoat, &Room::removeBoat, nullptr},
+      {C::kSpawnBoat, {kPlayer, kHeavy}, &RoomWater::spawnBoat, &Room::spawnBoat, nullptr},
+      {C::kControlBoat, {kPlayer, kLight}, &RoomWater::controlBoat, &Room::controlBoat, nullptr},
+      {C::kRemoveBoat, {kPlayer, kHeavy}, &RoomWater::removeBoat, &Room::removeBoat, nullptr},
       {C::kStep, {kOperator, kLight}, nullptr, &Room::advance, nullptr},
       {C::kChangeScene, {kOperator, kHeavy, kShared}, nullptr, nullptr, &Room::beginScene},
       {C::kTakeBoat, {kPlayer, kLight}, nullptr, &Room::takeBoat, nullptr},
@@ -76,7 +76,7 @@ const CommandTraits& traitsOf(const v1::Command& command) {
   return Room::kindOf(command).traits;
 }
 
-Stage::Handler Stage::handlerOf(const v1::Command& command) {
+RoomWater::Handler RoomWater::handlerOf(const v1::Command& command) {
   return Room::kindOf(command).on_water;
 }
 
@@ -138,8 +138,8 @@ void Room::apply(Batch batch) {
 }
 
 Room::Outcome Room::checkAgain(const Command& command) const {
-  if (command.scene_version == stage_->sceneVersion()) return {};
-  return wire::checkAgainstScene(command.message, stage_->scene());
+  if (command.scene_version == water_->sceneVersion()) return {};
+  return wire::checkAgainstScene(command.message, water_->scene());
 }
 
 void Room::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
@@ -147,7 +147,7 @@ void Room::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
 }
 
 Room::Outcome Room::applyToWater(const Command& command) {
-  if (auto rejected = stage_->apply(command.message)) return rejected;
+  if (auto rejected = water_->apply(command.message)) return rejected;
   recordCommand(command);
   return {};
 }
@@ -193,7 +193,7 @@ Room::Outcome Room::spawnBoat(const Command& command) {
   }
   if (auto rejected = applyToWater(command)) return rejected;
   boatsChanged();
-  new_boat_id_ = stage_->spawnedBoatId();
+  new_boat_id_ = water_->spawnedBoatId();
   roster_.give(new_boat_id_, sender.person_id);
   return {};
 }
@@ -243,13 +243,13 @@ Room::Outcome Room::takeBoat(const Command& command) {
 }
 
 bool Room::isOnTheWater(std::uint32_t boat_id) const {
-  return std::ranges::any_of(stage_->water().boats(),
+  return std::ranges::any_of(water_->sim().boats(),
                              [boat_id](const sim::BoatRecord& boat) { return boat.boat_id == boat_id; });
 }
 
 void Room::boatsChanged() {
   std::set<std::uint32_t> boat_ids;
-  for (const sim::BoatRecord& boat : stage_->water().boats()) boat_ids.insert(boat.boat_id);
+  for (const sim::BoatRecord& boat : water_->sim().boats()) boat_ids.insert(boat.boat_id);
   roster_.keepOnly(boat_ids);
   news_.boats = true;
 }
@@ -310,14 +310,14 @@ void Room::deliverAnswers() {
 
 void Room::announceBoats() {
   const std::string before = boats_.SerializeAsString();
-  boats_ = stage_->boats();
+  boats_ = water_->boats();
   if (boats_.SerializeAsString() == before) return;
   publishSnapshot();
   outlets_.boatsChanged(*this, boats_);
 }
 
 void Room::announceRecovery(TimePoint now) {
-  const std::uint64_t count = stage_->water().recoveredCount();
+  const std::uint64_t count = water_->sim().recoveredCount();
   if (!recovery_news_.tell(count, now)) return;
   outlets_.hasRecovered(*this,
                         fmt::format("the watchdog put the water back to its last good state ({} times so far)", count));

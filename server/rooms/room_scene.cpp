@@ -57,7 +57,7 @@ void Room::adoptWater(TimePoint now) {
 }
 
 void Room::replaceWater(std::unique_ptr<Water> water) {
-  builder_.dispose(stage_->replaceWater(std::move(water)));
+  builder_.dispose(water_->replaceWater(std::move(water)));
   is_lost_ = false;
   restartScene();
 }
@@ -78,15 +78,15 @@ Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& fi
 
 bool Room::isLost(TimePoint now) {
   if (!is_lost_) {
-    const auto failure = stage_->failure();
+    const auto failure = water_->failure();
     if (!failure) return false;
-    spdlog::error("room {}: {}; scene {} is rebuilt from its start", name_, *failure, stage_->scene().name());
+    spdlog::error("room {}: {}; scene {} is rebuilt from its start", name_, *failure, water_->scene().name());
     is_lost_ = true;
     rebuild_pause_ = 1s;
     next_rebuild_ = now;
     publishLoss();
   }
-  if (!build_ && now >= next_rebuild_) build_.emplace(WaterBuild{{}, builder_.build(stage_->scene())});
+  if (!build_ && now >= next_rebuild_) build_.emplace(WaterBuild{{}, builder_.build(water_->scene())});
   const auto failed =
       rejection(v1::REJECT_REASON_BUSY, "", "the device failed and the room's water is being built anew: try again");
   abandonChanges(failed);
@@ -106,17 +106,17 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   replaceWater(*std::move(water));
   news_.rebuilt = true;
   publishVitals(now);
-  spdlog::warn("room {}: runs again from the start of scene {}", name_, stage_->scene().name());
+  spdlog::warn("room {}: runs again from the start of scene {}", name_, water_->scene().name());
 }
 
 void Room::restartScene() {
   if (log_) {
     v1::Record line;
-    *line.mutable_scene() = stage_->scene();
+    *line.mutable_scene() = water_->scene();
     record(std::move(line));
   }
   const double speed = clock_.speed();
-  clock_ = RealTimeClock(stage_->water().derived().tick_s);
+  clock_ = RealTimeClock(water_->sim().derived().tick_s);
   clock_.setSpeed(speed);
   const auto ready = std::chrono::steady_clock::now();
   clock_.restart(ready);
@@ -131,14 +131,14 @@ void Room::restartScene() {
   step_count_ = 0;
   last_passes_.clear();
   slow_since_ = {};
-  tick_cost_.restart(stage_->warmTick_ms(), stage_->work());
-  recovery_news_.restart(stage_->water().recoveredCount());
-  logged_recovery_count_ = stage_->water().recoveredCount();
-  boats_ = stage_->boats();
+  tick_cost_.restart(water_->warmTick_ms(), water_->work());
+  recovery_news_.restart(water_->sim().recoveredCount());
+  logged_recovery_count_ = water_->sim().recoveredCount();
+  boats_ = water_->boats();
   news_ = {};            // the greeting contains all of it
   roster_.keepOnly({});  // the boats of the new scene have no owner yet, whatever their ids
   publishSnapshot();
-  spdlog::info("room {}: scene {}", name_, stage_->scene().name());
+  spdlog::info("room {}: scene {}", name_, water_->scene().name());
   outlets_.sceneChanged(*this);
 }
 

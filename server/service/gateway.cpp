@@ -282,7 +282,7 @@ rooms::WatchedLayers Gateway::watched(const rooms::Room& room, const core::Reduc
   for (const codec::Stream& stream : codec::allStreams()) {
     const auto of_levels = demand(room.name(), stream, codec::reducedCountOf(stream.layer, counts));
     const auto is_watched = [](const core::LevelDemand& level) { return level.watcher_count > 0; };
-    const auto note = [&](bool sim::LayerRequest::* layer) {
+    const auto note = [&](bool sim::LayerRequest::*layer) {
       for (std::size_t k = 0; k < core::kLevelCount; ++k) out.levels[k].*layer |= is_watched(of_levels[k]);
     };
     switch (stream.layer) {

@@ -79,7 +79,6 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   }
   create(out->bottom_, Program::create(ctx, "dispersion/bottom.comp"));
   if (create.error()) return *create.error();
-  out->bottom_.setUniform("grid_count", static_cast<std::uint32_t>(dispersion.levels.size() - bottom));
   out->upload(layout, basin);
   return out;
 }

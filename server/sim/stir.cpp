@@ -18,7 +18,7 @@ core::Result<std::unique_ptr<Stir>> Stir::create(gpu::Context& ctx, const gpu::D
   return out;
 }
 
-EffectStage Stir::stage(const core::Scene& scene, const Derived& derived) {
+EffectDomain Stir::domain(const core::Scene& scene, const Derived& derived) {
   const ParticleLayout& l = *derived.particles;
   return {.side_x_m = l.max_m[0] - l.min_m[0],
           .side_z_m = l.max_m[2] - l.min_m[2],

@@ -23,8 +23,8 @@ class Stir {
   /// Adds the effects of one tick to positions and velocities; does nothing without an active effect.
   void apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population);
 
-  /// The stage of effects in a scene without a wave: the particles' box, and long waves on its resting depth.
-  static EffectStage stage(const core::Scene& scene, const Derived& derived);
+  /// The domain of effects in a scene without a wave: the particles' box, and long waves on its resting depth.
+  static EffectDomain domain(const core::Scene& scene, const Derived& derived);
 
  private:
   explicit Stir(gpu::Context& ctx) : ctx_(ctx) {}

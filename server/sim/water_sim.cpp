@@ -52,7 +52,7 @@ void WaterSim::advanceWave() {
 void WaterSim::stirParticles() {
   if (!parts_->stir || parts_->effects.idle()) return;
   const auto timer = timers_.scope("stir");
-  parts_->stir->apply(parts_->effects.advance(time_s() + derived_.tick_s, Stir::stage(scene_, derived_)),
+  parts_->stir->apply(parts_->effects.advance(time_s() + derived_.tick_s, Stir::domain(scene_, derived_)),
                       *parts_->particles, parts_->population(derived_));
 }
 

@@ -35,14 +35,14 @@ constexpr double kCrownFall = 1.1;
 /// A splash smaller than this many wave cells is a drop; it has no crown.
 constexpr double kCrownRadius_cells = 4.0;
 
-shared::EventUniform uniformOf(const core::Splash& splash, double gain, double strength, const EffectStage& stage) {
+shared::EventUniform uniformOf(const core::Splash& splash, double gain, double strength, const EffectDomain& domain) {
   shared::EventUniform u{};
   u.gain_m = static_cast<float>(-splash.depth_m * gain);
   u.x_m = static_cast<float>(splash.x_m);
   u.z_m = static_cast<float>(splash.z_m);
   u.radius_m = static_cast<float>(splash.radius_m);
   u.depth_m = static_cast<float>(splash.depth_m);
-  if (splash.radius_m > kCrownRadius_cells * stage.cell_m)
+  if (splash.radius_m > kCrownRadius_cells * domain.cell_m)
     u.speed_mps = static_cast<float>(strength * std::sqrt(2 * kCrownFall * kStandardGravity_mps2 * splash.depth_m));
   return u;
 }
@@ -65,11 +65,11 @@ std::pair<double, double> directionOf(const core::BreakingWave& wave) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, double age_s, const EffectStage& stage) {
+shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, double age_s, const EffectDomain& domain) {
   shared::EventUniform u{};
   const double width_m = wave.length_m / kWidthOfHalfHeight;
   const bool breaking = wave.shape == core::WaveShape::kBreaking;
-  const double front_m = std::max((breaking ? kBreakingFrontShare : 1.0) * width_m, 1.5 * stage.cell_m);
+  const double front_m = std::max((breaking ? kBreakingFrontShare : 1.0) * width_m, 1.5 * domain.cell_m);
   const double back_m = std::max(2 * width_m - front_m, front_m);
   const auto [dx, dz] = directionOf(wave);
   u.gain_m = static_cast<float>(wave.amplitude_m * gain);
@@ -78,21 +78,23 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
   u.front_m = static_cast<float>(front_m);
   u.back_m = static_cast<float>(back_m);
   const bool group = wave.side == core::Side::kDirection;
-  u.lateral_m = group ? static_cast<float>(kGroupLateralShare * std::min(stage.side_x_m, stage.side_z_m)) : 0.0f;
+  u.lateral_m = group ? static_cast<float>(kGroupLateralShare * std::min(domain.side_x_m, domain.side_z_m)) : 0.0f;
   // A group also needs room for the trough behind it.
   const double inset_m = kCrestInset * (group ? 1.5 * (front_m + back_m) : back_m);
   // A group may travel in any direction: it starts at a distance from the centre that fits into the shorter side.
-  const double side_m = group ? std::min(stage.side_x_m, stage.side_z_m) : dx != 0.0 ? stage.side_x_m : stage.side_z_m;
+  const double side_m = group       ? std::min(domain.side_x_m, domain.side_z_m)
+                        : dx != 0.0 ? domain.side_x_m
+                                    : domain.side_z_m;
   u.half_side_m = static_cast<float>(0.5 * side_m);
-  u.offset_m = static_cast<float>(-side_m / 2 + std::min(inset_m, 0.4 * side_m) + stage.speed_mps * age_s);
-  u.half_step_m = static_cast<float>(0.5 * stage.speed_mps * stage.dt_s);
-  u.speed_mps = static_cast<float>(stage.speed_mps);
+  u.offset_m = static_cast<float>(-side_m / 2 + std::min(inset_m, 0.4 * side_m) + domain.speed_mps * age_s);
+  u.half_step_m = static_cast<float>(0.5 * domain.speed_mps * domain.dt_s);
+  u.speed_mps = static_cast<float>(domain.speed_mps);
   return u;
 }
 
 }  // namespace
 
-EffectStage stageOf(const WaveLayout& wave) {
+EffectDomain stageOf(const WaveLayout& wave) {
   return {wave.side_m, wave.side_m, wave.cell_m, wave.speed_mps, wave.dt_s};
 }
 
@@ -116,22 +118,22 @@ core::Result<void> Effects::start(const core::Effect& effect, double time_s, std
   return {};
 }
 
-shared::EventUniforms Effects::advance(double time_s, const EffectStage& stage) {
+shared::EventUniforms Effects::advance(double time_s, const EffectDomain& domain) {
   shared::EventUniforms out{};
   for (const Active& a : active_) {
     const double age_s = time_s - a.start_s;
     // The displacement of this step belongs to an interval of time; an error of half a step would cost the leapfrog its
     // second order. A crest also sets the flow of half a step before, so its interval is centred on this time. A splash
     // sets no flow, and the coming step acts on it for a whole step, so its interval ends at this time.
-    const double ahead_s = isSplash(a.effect) ? 0.0 : stage.dt_s / 2;
+    const double ahead_s = isSplash(a.effect) ? 0.0 : domain.dt_s / 2;
     const double gain =
-        pulse((age_s + ahead_s) / duration(a.effect)) - pulse((age_s + ahead_s - stage.dt_s) / duration(a.effect));
+        pulse((age_s + ahead_s) / duration(a.effect)) - pulse((age_s + ahead_s - domain.dt_s) / duration(a.effect));
     if (gain <= 0.0) continue;
     if (const auto* splash = std::get_if<core::Splash>(&a.effect))
       out.splashes[out.splash_count++] =
-          uniformOf(*splash, gain, gain * duration(a.effect) / (1.5 * stage.dt_s), stage);
+          uniformOf(*splash, gain, gain * duration(a.effect) / (1.5 * domain.dt_s), domain);
     else
-      out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, stage);
+      out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, domain);
   }
   std::erase_if(active_, [&](const Active& a) { return time_s >= a.start_s + duration(a.effect); });
   return out;

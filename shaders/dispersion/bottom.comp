@@ -19,8 +19,6 @@ layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec
 #define ITEMS (MAX_CELLS / DISPERSION_BOTTOM_GROUP)
 #define COARSEST_SWEEPS 4
 
-uniform uint grid_count;
-
 /// Of all grids, one behind the other: the faces; the right sides of all but the largest.
 shared vec4 phi[MAX_CELLS + MAX_CELLS / 3 + 1];
 shared vec4 right_of_smaller[MAX_CELLS / 3 + 1];
@@ -112,9 +110,10 @@ void start(int first, int n) {
 // Each step down or up is one turn of the same loop, and its bounds are no constants: otherwise the compiler repeats all of
 // the above for each grid.
 void main() {
-  const int grids = int(grid_count);
   int first = 0;
   int n = int(sqrt(float(textureSize(right_side))) + 0.5);
+  int grids = 0;
+  for (int cells = 0; cells < textureSize(stiffness); cells += (n >> grids) * (n >> grids), ++grids) {}
   for (int turn = 0; turn < 2 * grids - 1; ++turn) {
     const bool descends = turn < grids;
     const bool is_coarsest = turn == grids - 1;

@@ -11,7 +11,7 @@ namespace spindrift::rooms {
 struct Command {
   core::Sender sender{};
   v1::Command message{};  ///< accepted by wire::checkCommand()
-  /// Stage::sceneVersion() of the scene that the message was checked against; 0: none.
+  /// RoomWater::sceneVersion() of the scene that the message was checked against; 0: none.
   std::uint64_t scene_version = 0;
 
   [[nodiscard]] std::uint64_t id() const { return message.command_id(); }

@@ -21,9 +21,9 @@
 #include <spindrift/rooms/growth_news.h>
 #include <spindrift/rooms/real_time_clock.h>
 #include <spindrift/rooms/room_outlets.h>
+#include <spindrift/rooms/room_water.h>
 #include <spindrift/rooms/roster.h>
 #include <spindrift/rooms/scene_catalog.h>
-#include <spindrift/rooms/stage.h>
 #include <spindrift/rooms/tick_cost.h>
 #include <spindrift/rooms/water_builder.h>
 #include <spindrift/rooms/work_budget.h>
@@ -52,7 +52,7 @@ struct RoomRules {
 /// State of a room for other threads: immutable, replaced when it changes.
 struct RoomSnapshot {
   v1::Scene scene;                  ///< with current parameter values
-  std::uint64_t scene_version = 0;  ///< Stage::sceneVersion()
+  std::uint64_t scene_version = 0;  ///< RoomWater::sceneVersion()
   bool paused = false;
   double speed = 1.0;
   v1::BoatList boats;  ///< boats on the water now
@@ -99,18 +99,18 @@ class Room {
   void run(TimePoint now);
 
   /// For the summary at the end.
-  [[nodiscard]] const sim::WaterSim& water() const { return stage_->water(); }
+  [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
   /// Ticks since the room started, across scene changes: never decreases.
-  [[nodiscard]] std::uint64_t tick() const { return stage_->tick(); }
+  [[nodiscard]] std::uint64_t tick() const { return water_->tick(); }
   /// Rejects the commands that still wait.
   void abandonCommands();
   /// Ends the simulation; only the any-thread functions may be called afterwards.
-  void releaseDevice() { stage_.reset(); }
+  void releaseDevice() { water_.reset(); }
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
   [[nodiscard]] std::uint64_t droppedFrameCount() const { return dropped_frames_; }
 
  private:
-  using Outcome = Stage::Outcome;
+  using Outcome = RoomWater::Outcome;
   using Batch = CommandQueue::Batch;
   /// Outcome of a command; sent after all clients have been told the new state.
   struct Answer {
@@ -141,13 +141,13 @@ class Room {
   struct Change {
     Command command;
     Values others;
-    Stage::Relayout relayout;  ///< without its basis
+    RoomWater::Relayout relayout;  ///< without its basis
     std::future<WaterBuilder::Prepared> prepared;
     TimePoint begin;
   };
 
   Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
-       std::unique_ptr<Stage> stage, std::unique_ptr<CommandLogWriter> log);
+       std::unique_ptr<RoomWater> room_water, std::unique_ptr<CommandLogWriter> log);
 
   void step(TimePoint now);
   void watchOverSleep(TimePoint now);
@@ -160,12 +160,12 @@ class Room {
   struct CommandKind;
   static const CommandKind& kindOf(const v1::Command& command);
   friend const CommandTraits& traitsOf(const v1::Command& command);
-  friend class Stage;
+  friend class RoomWater;
   /// Carries out a batch of commands together.
   void apply(Batch batch);
   /// Checks the command against the scene again if the scene changed since the command was admitted.
   [[nodiscard]] Outcome checkAgain(const Command& command) const;
-  /// Applies the command to the stage and writes it to the log.
+  /// Applies the command to the water and writes it to the log.
   Outcome applyToWater(const Command& command);
   void recordCommand(const Command& command);
   Outcome reset(const Command& command);
@@ -244,7 +244,7 @@ class Room {
   const RoomRules& rules_;
   WaterBuilder& builder_;
   RoomOutlets& outlets_;
-  std::unique_ptr<Stage> stage_;
+  std::unique_ptr<RoomWater> water_;
   std::unique_ptr<CommandLogWriter> log_;  ///< null: no log
   CommandQueue commands_;
   WorkBudget heavy_budget_;

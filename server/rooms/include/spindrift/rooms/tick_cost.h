@@ -20,7 +20,8 @@ struct TickWork {
 };
 [[nodiscard]] TickWork workOf(const core::Scene& scene, const sim::Derived& derived);
 
-/// Estimates the duration of a tick: a running mean while the work stays the same, scaled with the work when it changes.
+/// Estimates the duration of a tick: a running mean while the work stays the same, scaled with the work when it
+/// changes.
 class TickCost {
  public:
   /// Starts for new water with the work `now`, whose ticks took this long when it was built.

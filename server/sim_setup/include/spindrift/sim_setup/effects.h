@@ -17,14 +17,14 @@ namespace spindrift::sim {
 double pulse(double phase);
 
 /// The water that effects act on: a rectangle centred on the origin.
-struct EffectStage {
+struct EffectDomain {
   double side_x_m = 0.0;
   double side_z_m = 0.0;
   double cell_m = 0.0;     ///< smallest length that it resolves
   double speed_mps = 0.0;  ///< of long waves, sqrt(g d)
   double dt_s = 0.0;       ///< between two calls of advance()
 };
-EffectStage stageOf(const WaveLayout& wave);
+EffectDomain stageOf(const WaveLayout& wave);
 
 /// The active effects: at most MAX_SPLASHES splashes and MAX_CRESTS crests.
 class Effects {
@@ -34,7 +34,7 @@ class Effects {
   core::Result<void> start(const core::Effect& effect, double time_s, std::size_t spare = 0);
 
   /// Returns what the active effects add at time_s, after a step of dt_s, and removes those that have ended.
-  shared::EventUniforms advance(double time_s, const EffectStage& stage);
+  shared::EventUniforms advance(double time_s, const EffectDomain& domain);
 
   [[nodiscard]] bool idle() const { return active_.empty(); }
   void clear() { active_.clear(); }

@@ -1,7 +1,7 @@
 #include <cassert>
 #include <utility>
 
-#include <spindrift/rooms/stage.h>
+#include <spindrift/rooms/room_water.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
@@ -36,63 +36,63 @@ std::string firstLine(const std::string& text) {
   return end == std::string::npos ? text : text.substr(0, end) + " (and more)";
 }
 
-Stage::Stage(std::unique_ptr<Water> water) : water_(std::move(water)), tick_shift_(0 - water_->sim().tick()) {}
+RoomWater::RoomWater(std::unique_ptr<Water> water) : water_(std::move(water)), tick_shift_(0 - water_->sim().tick()) {}
 
-bool Stage::takes(const v1::Command& command) {
+bool RoomWater::takes(const v1::Command& command) {
   return handlerOf(command) != nullptr;
 }
 
-Stage::Outcome Stage::apply(const v1::Command& command) {
+RoomWater::Outcome RoomWater::apply(const v1::Command& command) {
   assert(takes(command));
   Outcome outcome = (this->*handlerOf(command))(command);
   if (!outcome) ++state_id_;
   return outcome;
 }
 
-Stage::Outcome Stage::splash(const v1::Command& command) {
+RoomWater::Outcome RoomWater::splash(const v1::Command& command) {
   return startEffect(scene::toCore(command.splash()));
 }
 
-Stage::Outcome Stage::breakingWave(const v1::Command& command) {
+RoomWater::Outcome RoomWater::breakingWave(const v1::Command& command) {
   return startEffect(scene::toCore(command.breaking_wave()));
 }
 
-Stage::Outcome Stage::reset(const v1::Command& /*command*/) {
-  water().reset();
+RoomWater::Outcome RoomWater::reset(const v1::Command& /*command*/) {
+  sim().reset();
   return {};
 }
 
-Stage::Outcome Stage::startEffect(const core::Effect& effect) {
-  const auto started = water().start(effect);
+RoomWater::Outcome RoomWater::startEffect(const core::Effect& effect) {
+  const auto started = sim().start(effect);
   if (started) return {};
   const bool busy = started.error().code == core::ErrorCode::kUnavailable;
   return rejection(busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "", started.error().message);
 }
 
-Stage::Outcome Stage::setParameter(const v1::Command& command) {
+RoomWater::Outcome RoomWater::setParameter(const v1::Command& command) {
   const v1::SetParameter& change = command.set_parameter();
   v1::Scene changed = scene();
   if (auto error = scene::setParameter(changed, change.path(), change.value())) {
     return rejection(error->reason, error->field, error->message);
   }
   const core::Scene wanted = scene::toCore(changed);
-  if (auto applied = water().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());
+  if (auto applied = sim().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());
   setScene(std::move(changed));
   return {};
 }
 
-std::optional<Stage::Relayout> Stage::relayout(const v1::SetParameter& change) {
+std::optional<RoomWater::Relayout> RoomWater::relayout(const v1::SetParameter& change) {
   v1::Scene changed = scene();
   if (scene::setParameter(changed, change.path(), change.value())) return std::nullopt;
   core::Scene wanted = scene::toCore(changed);
-  if (!water().relaysParticles(wanted)) return std::nullopt;
-  sim::SceneBasis basis = water().sceneBasis(wanted);
+  if (!sim().relaysParticles(wanted)) return std::nullopt;
+  sim::SceneBasis basis = sim().sceneBasis(wanted);
   return Relayout{change, std::move(changed), std::move(wanted), std::move(basis)};
 }
 
-Stage::Outcome Stage::adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared) {
+RoomWater::Outcome RoomWater::adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared) {
   if (!prepared) return whyNot(relayout.change, relayout.wanted, prepared.error());
-  if (auto adopted = water().adopt(*std::move(prepared)); !adopted) {
+  if (auto adopted = sim().adopt(*std::move(prepared)); !adopted) {
     return whyNot(relayout.change, relayout.wanted, adopted.error());
   }
   setScene(std::move(relayout.changed));
@@ -100,11 +100,11 @@ Stage::Outcome Stage::adopt(Relayout relayout, core::Result<sim::PreparedScene> 
   return {};
 }
 
-TickWork Stage::work() const {
-  return workOf(water().scene(), water().derived());
+TickWork RoomWater::work() const {
+  return workOf(sim().scene(), sim().derived());
 }
 
-std::optional<TickWork> Stage::workWith(const v1::SetParameter& change) const {
+std::optional<TickWork> RoomWater::workWith(const v1::SetParameter& change) const {
   v1::Scene changed = scene();
   if (scene::setParameter(changed, change.path(), change.value())) return std::nullopt;
   const core::Scene wanted = scene::toCore(changed);
@@ -112,8 +112,8 @@ std::optional<TickWork> Stage::workWith(const v1::SetParameter& change) const {
   return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
 }
 
-Stage::Outcome Stage::spawnBoat(const v1::Command& command) {
-  const auto boat_id = water().spawnBoat(scene::toCore(command.spawn_boat().boat()));
+RoomWater::Outcome RoomWater::spawnBoat(const v1::Command& command) {
+  const auto boat_id = sim().spawnBoat(scene::toCore(command.spawn_boat().boat()));
   if (!boat_id) {
     const bool full = boat_id.error().code == core::ErrorCode::kUnavailable;
     return rejection(full ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "spawn_boat",
@@ -123,20 +123,20 @@ Stage::Outcome Stage::spawnBoat(const v1::Command& command) {
   return {};
 }
 
-Stage::Outcome Stage::controlBoat(const v1::Command& command) {
+RoomWater::Outcome RoomWater::controlBoat(const v1::Command& command) {
   const v1::ControlBoat& control = command.control_boat();
-  const auto done = water().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio());
+  const auto done = sim().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio());
   if (done) return {};
   return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "control_boat.boat_id", done.error().message);
 }
 
-Stage::Outcome Stage::removeBoat(const v1::Command& command) {
-  const auto done = water().removeBoat(command.remove_boat().boat_id());
+RoomWater::Outcome RoomWater::removeBoat(const v1::Command& command) {
+  const auto done = sim().removeBoat(command.remove_boat().boat_id());
   if (done) return {};
   return rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "remove_boat.boat_id", done.error().message);
 }
 
-std::unique_ptr<Water> Stage::replaceWater(std::unique_ptr<Water> water) {
+std::unique_ptr<Water> RoomWater::replaceWater(std::unique_ptr<Water> water) {
   const std::uint64_t first_tick = tick() + 1;
   const std::uint32_t first_boat_id = water_->sim().nextBoatId();
   std::swap(water_, water);
@@ -148,9 +148,9 @@ std::unique_ptr<Water> Stage::replaceWater(std::unique_ptr<Water> water) {
   return water;
 }
 
-v1::BoatList Stage::boats() const {
+v1::BoatList RoomWater::boats() const {
   v1::BoatList out;
-  for (const sim::BoatRecord& boat : water().boats()) {
+  for (const sim::BoatRecord& boat : sim().boats()) {
     v1::BoatInfo& info = *out.add_boats();
     info.set_boat_id(boat.boat_id);
     info.set_length_m(boat.length_m);

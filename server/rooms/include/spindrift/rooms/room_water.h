@@ -23,13 +23,13 @@ wire::CommandRejection rejection(v1::RejectReason reason, std::string field, std
 std::string firstLine(const std::string& text);
 
 /// Lives on the thread that has bound its water.
-class Stage {
+class RoomWater {
  public:
   /// nullopt: applied.
   using Outcome = std::optional<wire::CommandRejection>;
 
   /// `water` is bound to the calling thread; its scene is checked and has its defaults.
-  explicit Stage(std::unique_ptr<Water> water);
+  explicit RoomWater(std::unique_ptr<Water> water);
 
   /// Returns whether the command changes the water and belongs to apply(). The room handles time, scenes and ownership.
   static bool takes(const v1::Command& command);
@@ -37,7 +37,7 @@ class Stage {
   Outcome apply(const v1::Command& command);
 
   // One per kind of command that changes the water, called by apply(); see the table in room_commands.cpp.
-  using Handler = Outcome (Stage::*)(const v1::Command& command);
+  using Handler = Outcome (RoomWater::*)(const v1::Command& command);
   Outcome splash(const v1::Command& command);
   Outcome breakingWave(const v1::Command& command);
   Outcome setParameter(const v1::Command& command);
@@ -67,12 +67,12 @@ class Stage {
   /// Replaces the water by another one, which is bound from now on; returns the old one for destruction. The room's
   /// tick continues: the new water starts at a tick later than any frame of the old one, and its boats get unused ids.
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);
-  /// Makes this stage's GL context current. Call it first whenever another context may be current.
+  /// Makes its GL context current. Call it first whenever another context may be current.
   void bind() { water_->bind(); }
   /// gpu::Context::reloadChangedShaders().
   void reloadChangedShaders() { water_->context().reloadChangedShaders(); }
   void step() {
-    water().step();
+    sim().step();
     ++state_id_;
   }
   /// Water::failure().
@@ -81,11 +81,11 @@ class Stage {
   [[nodiscard]] const v1::Scene& scene() const { return water_->scene(); }  ///< with current parameter values
   /// Grows with every change of scene(). Never 0.
   [[nodiscard]] std::uint64_t sceneVersion() const { return scene_version_; }
-  [[nodiscard]] sim::WaterSim& water() { return water_->sim(); }
-  [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
+  [[nodiscard]] sim::WaterSim& sim() { return water_->sim(); }
+  [[nodiscard]] const sim::WaterSim& sim() const { return water_->sim(); }
   [[nodiscard]] const gpu::DeviceInfo& device() const { return water_->context().device(); }
   /// Ticks since the room started, across scene changes: never decreases.
-  [[nodiscard]] std::uint64_t tick() const { return tickOf(water().tick()); }
+  [[nodiscard]] std::uint64_t tick() const { return tickOf(sim().tick()); }
   /// Converts a tick of the simulation to one of the room.
   [[nodiscard]] std::uint64_t tickOf(std::uint64_t sim_tick) const { return sim_tick + tick_shift_; }
   /// Number of the present state; it grows with every tick and every change by apply() and replaceWater(). Never 0.
