@@ -75,7 +75,7 @@ TEST_F(PackedFrames, ALateClientStartsWithAKeyframeAndOthersKeepTheirDeltas) {
   watch(early);
   codec::PackedSurfaceDecoder early_decoder, late_decoder;
   const auto readOne = [](ScriptedClient& one, codec::PackedSurfaceDecoder& decoder) {
-    const auto frame = one.nextFrame(v1::LAYER_SURFACE);
+    auto frame = one.nextFrame(v1::LAYER_SURFACE);
     EXPECT_TRUE(frame);
     if (frame) {
       const auto surface = decoder.decode(*frame);
