@@ -1,8 +1,6 @@
 #include "dispersed_slope.h"
 
-#include <algorithm>
 #include <array>
-#include <span>
 #include <string>
 
 #include <shared/bindings.h>
@@ -25,7 +23,7 @@ void append(Texels& out, const std::vector<Four>& values) {
 /// Index of the first grid of the bottom: the first one, after the finest, that one work group holds.
 std::size_t bottomOf(const Dispersion& dispersion) {
   std::size_t k = 1;
-  while (dispersion.levels[k].side_count > DISPERSION_BOTTOM_SIDE_MAX) ++k;
+  while (dispersion.levels[k].side_count > kBottomSideMax) ++k;
   return k;
 }
 
@@ -79,12 +77,15 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   }
   create(out->bottom_, Program::create(ctx, "dispersion/bottom.comp"));
   if (create.error()) return *create.error();
-  out->upload(layout, basin);
+  out->upload(dispersion);
   return out;
 }
 
 void DispersedSlope::upload(const WaveLayout& layout, const Basin& basin) {
-  const Dispersion dispersion = layOutDispersion(layout, basin);
+  upload(layOutDispersion(layout, basin));
+}
+
+void DispersedSlope::upload(const Dispersion& dispersion) {
   for (std::size_t k = 0; k < grids_.size(); ++k) {
     const std::size_t end = k + 1 < grids_.size() ? k + 1 : dispersion.levels.size();
     Texels stiffness, sweep, from_x, from_z;

@@ -35,6 +35,7 @@ class DispersedSlope {
   };
 
   explicit DispersedSlope(gpu::Context& ctx) : ctx_(ctx) {}
+  void upload(const Dispersion& dispersion);
   void bindTables(const Grid& grid, bool is_finest);
   void descend(std::size_t level);
   void solveBottom();

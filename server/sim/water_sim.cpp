@@ -44,7 +44,7 @@ void WaterSim::advanceWave() {
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
     const double end_s = time_s() + (k + 1) * derived_.wave->dt_s;
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr,
-                          parts_->effects.advance(end_s, stageOf(*derived_.wave)));
+                          parts_->effects.advance(end_s, domainOf(*derived_.wave)));
   }
   parts_->wave->clearPressure();  // hulls and falling particles set it again for the next tick
 }

@@ -1,6 +1,7 @@
 // The wave equation on the device: integer elevations, the flow through the faces between cells, and the surface for
-// particles and boats. A step is momentum, then continuity. Eliminating the flow gives the thesis's leapfrog on three
-// elevation levels (3.4, 3.6.3), with the same dispersion relation, and the volume is conserved to the last unit.
+// particles and boats. A step is momentum, then continuity. Without dispersion, eliminating the flow gives the thesis's
+// leapfrog on three elevation levels (3.4, 3.6.3), with the same dispersion relation, and the volume is conserved to
+// the last unit.
 #pragma once
 
 #include <memory>

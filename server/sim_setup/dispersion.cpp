@@ -96,6 +96,7 @@ std::array<double, 4> innerFlux(const std::array<double, 4>& open, const std::ar
   constexpr int kRounds = 200;
   std::array<double, 4> potential{};
   for (int round = 0; round < kRounds; ++round) {
+    double largest_change = 0.0;
     for (int k = 0; k < 4; ++k) {
       double sum = -inflow[k];
       double weight = 0.0;
@@ -105,8 +106,11 @@ std::array<double, 4> innerFlux(const std::array<double, 4>& open, const std::ar
         weight += open[e];
         sum += open[e] * potential[from == k ? to : from];
       }
-      if (weight > 0.0) potential[k] = sum / weight;
+      if (weight <= 0.0) continue;
+      largest_change = std::max(largest_change, std::abs(sum / weight - potential[k]));
+      potential[k] = sum / weight;
     }
+    if (largest_change < 1e-15) break;
   }
   std::array<double, 4> flux{};
   for (int e = 0; e < 4; ++e) flux[e] = open[e] * (potential[kInnerFaces[e].from] - potential[kInnerFaces[e].to]);
@@ -171,6 +175,7 @@ Grid coarsen(const Grid& fine, DispersionLevel& level) {
         const auto [from, to, axis] = kInnerFaces[e];
         if (is_member[block[from]] && is_member[block[to]]) open[e] = fine.open[block[from]][axis];
       }
+      const bool is_open_block = wet == 4.0 && open == std::array{1.0, 1.0, 1.0, 1.0};
       for (int side = 0; side < 4; ++side) {
         const auto& [dx, dz, axis, outward] = kSides[side];
         if (coarse.open[coarse.at(x + dx, z + dz)][axis] <= 0.0) continue;
@@ -189,7 +194,9 @@ Grid coarsen(const Grid& fine, DispersionLevel& level) {
         for (int k = 0; k < 4; ++k) {
           if (is_member[block[k]]) inflow[k] = out[k] - total * fine.wet[block[k]] / wet;
         }
-        const std::array<double, 4> flux = innerFlux(open, inflow);
+        // In an open block, half of the coarse flux passes each inner face of its axis.
+        const std::array<double, 4> flux =
+            is_open_block ? (axis == 0 ? Four{0.5, 0.5, 0.0, 0.0} : Four{0.0, 0.0, 0.5, 0.5}) : innerFlux(open, inflow);
         for (int e = 0; e < 4; ++e) weightsOf(kInnerFaces[e].axis)[block[kInnerFaces[e].from]][side] = flux[e];
       }
     }

@@ -94,7 +94,7 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
 
 }  // namespace
 
-EffectDomain stageOf(const WaveLayout& wave) {
+EffectDomain domainOf(const WaveLayout& wave) {
   return {wave.side_m, wave.side_m, wave.cell_m, wave.speed_mps, wave.dt_s};
 }
 

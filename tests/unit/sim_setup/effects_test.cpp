@@ -30,7 +30,7 @@ TEST(Effects, SharesOfAPulseSumToItsAmplitude) {
     double sum = 0;
     int steps = 0;
     for (double t = 1.0; !effects.idle() && steps < 1000; t += wave.dt_s, ++steps) {
-      const auto u = effects.advance(t, stageOf(wave));
+      const auto u = effects.advance(t, domainOf(wave));
       for (std::uint32_t k = 0; k < u.splash_count; ++k) sum += u.splashes[k].gain_m;
     }
     EXPECT_NEAR(sum, -0.5, 1e-6);
@@ -51,10 +51,10 @@ TEST(Effects, ACrestStartsAtItsSideAndTravelsInwards) {
   const WaveLayout wave = layout();
   Effects effects;
   ASSERT_TRUE(effects.start(core::BreakingWave{core::Side::kPlusX, 0.5, 1.0, 1.0}, 0.0));
-  const auto first = effects.advance(0.0, stageOf(wave)).crests[0];
+  const auto first = effects.advance(0.0, domainOf(wave)).crests[0];
   EXPECT_EQ(first.direction_x, -1.0f) << "from +x it travels towards -x";
   EXPECT_LT(first.offset_m, 0.0f);
-  const auto later = effects.advance(0.5, stageOf(wave)).crests[0];
+  const auto later = effects.advance(0.5, domainOf(wave)).crests[0];
   EXPECT_NEAR(later.offset_m - first.offset_m, 0.5 * wave.speed_mps, 1e-5);
 }
 

@@ -13,6 +13,8 @@
 #include <functional>
 #include <vector>
 
+#include <shared/groups.h>
+
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/derive.h>
 
@@ -27,9 +29,9 @@ struct Poles {
   std::array<double, kPoleCount> c{};
 };
 
-/// Returns the coefficients for water of this depth in cells, fitted to the phase speeds that the V-cycle has (tests/
-/// tools/fit_dispersion.cpp): within 1 % for waves of 8 cells and longer and 2.5 % for 4 cells, for depths up to 16
-/// cells and kd up to 10.
+/// Returns the coefficients for water of this depth in cells, fitted to the phase speeds that the V-cycle has (tool
+/// tests/tools/fit_dispersion.cpp): within 1 % for waves of 8 cells and longer and 2.5 % for 4 cells, for depths up to
+/// 16 cells and kd up to 10.
 [[nodiscard]] Poles polesAt(double depth_cells);
 
 /// One grid of the V-cycle: n x n cells, x fastest. Each cell owns the faces toward +x and +z. A face variable is the
@@ -63,7 +65,7 @@ inline constexpr double kSweepWeight = 0.5;
 inline constexpr int kSweepCount = 2;
 inline constexpr int kCoarsestSweepCount = 5;
 /// Grids with at most this many cells per side are solved in one work group; coarsening goes at least that far.
-inline constexpr std::uint32_t kBottomSideMax = 32;
+inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
 
 /// Returns whether a wave of so many cells per side can be halved down to the grids of the bottom.
 [[nodiscard]] bool canDisperse(std::uint32_t resolution_count);

@@ -24,7 +24,7 @@ struct EffectDomain {
   double speed_mps = 0.0;  ///< of long waves, sqrt(g d)
   double dt_s = 0.0;       ///< between two calls of advance()
 };
-EffectDomain stageOf(const WaveLayout& wave);
+EffectDomain domainOf(const WaveLayout& wave);
 
 /// The active effects: at most MAX_SPLASHES splashes and MAX_CRESTS crests.
 class Effects {
