@@ -20,16 +20,12 @@ void append(Texels& out, const std::vector<Four>& values) {
         {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])});
 }
 
-/// Index of the first grid of the bottom: the first one, after the finest, that one work group holds.
+/// Index of the first grid of the bottom, which one work group solves: it takes fewer dispatches, but a group has one
+/// core. Not the finest grid.
 std::size_t bottomOf(const Dispersion& dispersion) {
   std::size_t k = 1;
-  while (dispersion.levels[k].side_count > kBottomSideMax) ++k;
+  while (k + 1 < dispersion.levels.size() && dispersion.levels[k].side_count > DISPERSION_BOTTOM_SIDE) ++k;
   return k;
-}
-
-/// Invocations along z of a sweep.
-std::uint32_t stripsOf(std::uint32_t side_count) {
-  return (side_count + DISPERSION_STRIP - 1) / DISPERSION_STRIP;
 }
 
 }  // namespace
@@ -52,15 +48,14 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
     Grid& grid = out->grids_.emplace_back();
     grid.side_count = dispersion.levels[k].side_count;
     create(grid.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", table_cells, kFour));
-    create(grid.sweep, TexelBuffer::create(ctx, "dispersion sweep weights", table_cells, kFour));
     create(grid.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", table_cells, kFour));
     create(grid.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", table_cells, kFour));
-    create(grid.faces, TexelBuffer::create(ctx, "dispersion faces", cells, kFour, gpu::BufferContent::kScratch));
-    if (k > 0)
+    if (k > 0) {
       create(grid.right, TexelBuffer::create(ctx, "dispersion right side", cells, kFour, gpu::BufferContent::kScratch));
-    if (k < bottom)
-      create(grid.before,
-             TexelBuffer::create(ctx, "dispersion faces before", cells, kFour, gpu::BufferContent::kScratch));
+      create(grid.faces, TexelBuffer::create(ctx, "dispersion faces", cells, kFour, gpu::BufferContent::kScratch));
+    }
+    if (k == bottom)
+      create(out->bottom_weights_, TexelBuffer::create(ctx, "dispersion sweep weights", table_cells, kFour));
   }
   const std::size_t cells = dispersion.root_c.size();
   create(out->root_c_, TexelBuffer::create(ctx, "dispersion strengths", cells, kFour));
@@ -69,11 +64,10 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   for (std::size_t finest = 0; finest < 2; ++finest) {
     gpu::Defines of_grid = defines;
     of_grid.emplace_back("FINEST", std::to_string(finest));
+    of_grid.emplace_back("FLAT", dispersion.is_flat ? "1" : "0");
     of_grid.emplace_back("UNEVEN", dispersion.is_uneven ? "1" : "0");
-    create(out->start_[finest], Program::create(ctx, "dispersion/start.comp", of_grid));
-    create(out->restrict_[finest], Program::create(ctx, "dispersion/restrict.comp", of_grid));
-    create(out->correct_[finest], Program::create(ctx, "dispersion/correct.comp", of_grid));
-    create(out->sweep_[finest], Program::create(ctx, "dispersion/sweep.comp", of_grid));
+    create(out->descend_[finest], Program::create(ctx, "dispersion/descend.comp", of_grid));
+    create(out->ascend_[finest], Program::create(ctx, "dispersion/ascend.comp", of_grid));
   }
   create(out->bottom_, Program::create(ctx, "dispersion/bottom.comp"));
   if (create.error()) return *create.error();
@@ -88,17 +82,17 @@ void DispersedSlope::upload(const WaveLayout& layout, const Basin& basin) {
 void DispersedSlope::upload(const Dispersion& dispersion) {
   for (std::size_t k = 0; k < grids_.size(); ++k) {
     const std::size_t end = k + 1 < grids_.size() ? k + 1 : dispersion.levels.size();
-    Texels stiffness, sweep, from_x, from_z;
+    Texels stiffness, weights, from_x, from_z;
     for (std::size_t level = k; level < end; ++level) {
       append(stiffness, dispersion.levels[level].stiffness);
-      append(sweep, sweepWeights(dispersion.levels[level]));
+      append(weights, sweepWeights(dispersion.levels[level]));
       append(from_x, dispersion.levels[level].from_coarse_x);
       append(from_z, dispersion.levels[level].from_coarse_z);
     }
     from_x.resize(stiffness.size());  // the coarsest grid has no weights
     from_z.resize(stiffness.size());
     grids_[k].stiffness.upload(stiffness);
-    grids_[k].sweep.upload(sweep);
+    if (k + 1 == grids_.size()) bottom_weights_.upload(weights);
     grids_[k].from_x.upload(from_x);
     grids_[k].from_z.upload(from_z);
   }
@@ -119,51 +113,42 @@ void DispersedSlope::compute(const gpu::TexelBuffer& elevation, const gpu::Texel
 
 void DispersedSlope::bindTables(const Grid& grid, bool is_finest) {
   grid.stiffness.bindTexel(DISPERSION_STIFFNESS);
-  grid.sweep.bindTexel(DISPERSION_SWEEP);
   grid.from_x.bindTexel(DISPERSION_FROM_X);
   grid.from_z.bindTexel(DISPERSION_FROM_Z);
   if (!is_finest) grid.right.bindTexel(DISPERSION_RIGHT);
 }
 
 void DispersedSlope::descend(std::size_t level) {
-  Grid& grid = grids_[level];
+  const Grid& grid = grids_[level];
   const bool is_finest = level == 0;
-  const std::uint32_t n = grid.side_count;
   bindTables(grid, is_finest);
-  grid.faces.bindStorage(DISPERSION_FACES);
-  start_[is_finest].dispatch(n, stripsOf(n));
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
-
-  grid.faces.bindTexel(DISPERSION_FACES);
   grids_[level + 1].right.bindStorage(DISPERSION_COARSE_RIGHT);
-  restrict_[is_finest].dispatch(n / 2, n / 2);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  dispatch(descend_[is_finest], grid);
 }
 
 void DispersedSlope::solveBottom() {
   bindTables(grids_.back(), false);
+  bottom_weights_.bindTexel(DISPERSION_SWEEP);
   grids_.back().faces.bindStorage(DISPERSION_FACES);
   bottom_.dispatchGroups(1);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
 void DispersedSlope::ascend(std::size_t level) {
-  Grid& grid = grids_[level];
+  const Grid& grid = grids_[level];
   const bool is_finest = level == 0;
-  const std::uint32_t n = grid.side_count;
   bindTables(grid, is_finest);
-  grid.faces.bindTexel(DISPERSION_BEFORE);
   grids_[level + 1].faces.bindTexel(DISPERSION_COARSE);
-  grid.before.bindStorage(DISPERSION_FACES);
-  correct_[is_finest].dispatch(n, stripsOf(n));
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
-
-  grid.before.bindTexel(DISPERSION_BEFORE);
   if (is_finest)
     dispersed_.bindStorage(DISPERSED);
   else
     grid.faces.bindStorage(DISPERSION_FACES);
-  sweep_[is_finest].dispatch(n, stripsOf(n));
+  dispatch(ascend_[is_finest], grid);
+}
+
+void DispersedSlope::dispatch(gpu::Program& pass, const Grid& grid) {
+  const auto over = [&](std::uint32_t count) { return (grid.side_count + count - 1) / count; };
+  pass.dispatch(over(DISPERSION_COLUMNS), over(DISPERSION_STRIP));
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

@@ -29,9 +29,9 @@ class DispersedSlope {
   /// The buffers of one grid with its own dispatches, or of the grids at the bottom, one behind the other.
   struct Grid {
     std::uint32_t side_count = 0;
-    gpu::TexelBuffer stiffness, sweep, from_x, from_z;
-    gpu::TexelBuffer right;          ///< except on the finest grid
-    gpu::TexelBuffer faces, before;  ///< `before`: except at the bottom
+    gpu::TexelBuffer stiffness;
+    gpu::TexelBuffer from_x, from_z;
+    gpu::TexelBuffer right, faces;  ///< except on the finest grid
   };
 
   explicit DispersedSlope(gpu::Context& ctx) : ctx_(ctx) {}
@@ -40,12 +40,14 @@ class DispersedSlope {
   void descend(std::size_t level);
   void solveBottom();
   void ascend(std::size_t level);
+  void dispatch(gpu::Program& pass, const Grid& grid);
 
   gpu::Context& ctx_;
-  std::vector<Grid> grids_;  ///< finest first; the last one is the bottom
+  std::vector<Grid> grids_;          ///< finest first; the last one is the bottom
+  gpu::TexelBuffer bottom_weights_;  ///< of the sweeps at the bottom
   gpu::TexelBuffer root_c_, dispersed_;
   /// By whether the grid is the finest.
-  gpu::Program start_[2], restrict_[2], correct_[2], sweep_[2];
+  gpu::Program descend_[2], ascend_[2];
   gpu::Program bottom_;
 };
 

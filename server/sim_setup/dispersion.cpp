@@ -291,6 +291,8 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
       for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j]);
     }
   }
+  out.is_flat =
+      !out.is_uneven && std::ranges::all_of(basin.depth_m, [&](float d_m) { return d_m == basin.depth_m[0]; });
   double cell_m = layout.cell_m;
   while (true) {
     DispersionLevel level;

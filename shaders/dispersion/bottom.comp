@@ -1,8 +1,8 @@
-// The small grids of the V-cycle, from DISPERSION_BOTTOM_SIDE_MAX cells per side or fewer down to the coarsest and back, in one work group: one
-// dispatch for each pass over them would cost more than the passes.
+// The small grids of the V-cycle, down to the coarsest and back, in one work group: one dispatch for each pass over them would
+// cost more than the passes.
 // Reads DISPERSION_RIGHT of the largest of them, and of all of them, one behind the other, DISPERSION_STIFFNESS,
 // DISPERSION_SWEEP, DISPERSION_FROM_X, DISPERSION_FROM_Z. Writes DISPERSION_FACES of the largest.
-// Equations: those of start.comp, restrict.comp, correct.comp and sweep.comp; in the coarsest grid sweeps alone.
+// Equations: those of descend.comp and ascend.comp; in the coarsest grid sweeps alone.
 #include "shared/bindings.h"
 #include "shared/groups.h"
 
@@ -15,51 +15,51 @@ layout(binding = DISPERSION_FROM_X) uniform samplerBuffer from_x;
 layout(binding = DISPERSION_FROM_Z) uniform samplerBuffer from_z;
 layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec4 faces[]; };
 
+/// A grid of DISPERSION_BOTTOM_SIDE_MAX cells per side, which is then the coarsest, or all from DISPERSION_BOTTOM_SIDE down.
 #define MAX_CELLS (DISPERSION_BOTTOM_SIDE_MAX * DISPERSION_BOTTOM_SIDE_MAX)
-#define ITEMS (MAX_CELLS / DISPERSION_BOTTOM_GROUP)
+#define MAX_SMALLER_CELLS (DISPERSION_BOTTOM_SIDE * DISPERSION_BOTTOM_SIDE / 3 + 1)
 #define COARSEST_SWEEPS 4
 
-/// Of all grids, one behind the other: the faces; the right sides of all but the largest.
-shared vec4 phi[MAX_CELLS + MAX_CELLS / 3 + 1];
-shared vec4 right_of_smaller[MAX_CELLS / 3 + 1];
+/// Of all grids, one behind the other: the faces; the right sides of all but the largest. e div phi of one grid.
+shared vec4 phi[MAX_CELLS];
+shared vec4 right_of_smaller[MAX_SMALLER_CELLS];
+shared vec2 pressed[MAX_CELLS];
 
-int around(int i, int n) { return i < 0 ? i + n : (i >= n ? i - n : i); }
+#define FOR_EACH(i, count) for (int i = int(gl_LocalInvocationIndex); i < count; i += DISPERSION_BOTTOM_GROUP)
+
+int after(int x, int n) { return x + 1 == n ? 0 : x + 1; }
+int before(int x, int n) { return x == 0 ? n - 1 : x - 1; }
 
 vec4 rightAt(int first, int i) { return first == 0 ? texelFetch(right_side, i) : right_of_smaller[first - textureSize(right_side) + i]; }
 
-vec2 pressedAt(int first, int n, int x, int z) {
-  x = around(x, n);
-  z = around(z, n);
-  const int i = first + x + n * z;
-  const vec4 own = phi[i];
-  return texelFetch(stiffness, i).zw * (own.xy - phi[first + around(x - 1, n) + n * z].xy + own.zw - phi[first + x + n * around(z - 1, n)].zw);
+/// pressed = e div phi. Other invocations may read it after a barrier.
+void press(int first, int n) {
+  barrier();
+  FOR_EACH(i, n * n) {
+    const int x = i % n;
+    const int z = i / n;
+    const vec4 own = phi[first + i];
+    pressed[i] = texelFetch(stiffness, first + i).zw *
+                 (own.xy - phi[first + before(x, n) + n * z].xy + own.zw - phi[first + x + n * before(z, n)].zw);
+  }
+  barrier();
 }
 
+/// r - K phi at the faces of a cell, after press().
 vec4 leftAt(int first, int n, int x, int z) {
   const int i = x + n * z;
-  const vec2 here = pressedAt(first, n, x, z);
+  const vec2 here = pressed[i];
   return rightAt(first, i) - texelFetch(stiffness, first + i).xxyy * phi[first + i] +
-         vec4(pressedAt(first, n, x + 1, z) - here, pressedAt(first, n, x, z + 1) - here);
+         vec4(pressed[after(x, n) + n * z] - here, pressed[x + n * after(z, n)] - here);
 }
 
 void sweep(int first, int n) {
-  vec4 swept[ITEMS];
-  barrier();
-  for (int k = 0; k < ITEMS; ++k) {
-    const int i = int(gl_LocalInvocationIndex) + k * DISPERSION_BOTTOM_GROUP;
-    if (i < n * n) swept[k] = phi[first + i] + texelFetch(sweep_weight, first + i) * leftAt(first, n, i % n, i / n);
-  }
-  barrier();
-  for (int k = 0; k < ITEMS; ++k) {
-    const int i = int(gl_LocalInvocationIndex) + k * DISPERSION_BOTTOM_GROUP;
-    if (i < n * n) phi[first + i] = swept[k];
-  }
+  press(first, n);
+  FOR_EACH(i, n * n) phi[first + i] += texelFetch(sweep_weight, first + i) * leftAt(first, n, i % n, i / n);
 }
 
 /// What the inner faces of a block have left for its coarse face `side` (0 E, 1 W, 2 N, 3 S).
 vec2 innerShare(int first, int n, int x, int z, int side) {
-  x = around(x, n);
-  z = around(z, n);
   const int i = first + x + n * z;
   const vec4 corner = leftAt(first, n, x, z);
   return texelFetch(from_x, i)[side] * corner.xy + texelFetch(from_x, i + n)[side] * leftAt(first, n, x, z + 1).xy +
@@ -69,16 +69,16 @@ vec2 innerShare(int first, int n, int x, int z, int side) {
 void restrictToCoarse(int first, int n) {
   const int coarse_n = n / 2;
   const int coarse_right = first + n * n - textureSize(right_side);
-  barrier();
-  for (int k = int(gl_LocalInvocationIndex); k < coarse_n * coarse_n; k += DISPERSION_BOTTOM_GROUP) {
+  press(first, n);
+  FOR_EACH(k, coarse_n * coarse_n) {
     const int x = 2 * (k % coarse_n);
     const int z = 2 * (k / coarse_n);
     const int i = first + x + n * z;
     const vec4 both = leftAt(first, n, x + 1, z + 1);
     const vec2 sum_x = texelFetch(from_x, i + 1).x * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n + 1).x * both.xy +
-                       innerShare(first, n, x, z, 0) + innerShare(first, n, x + 2, z, 1);
+                       innerShare(first, n, x, z, 0) + innerShare(first, n, after(x + 1, n), z, 1);
     const vec2 sum_z = texelFetch(from_z, i + n).z * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n + 1).z * both.zw +
-                       innerShare(first, n, x, z, 2) + innerShare(first, n, x, z + 2, 3);
+                       innerShare(first, n, x, z, 2) + innerShare(first, n, x, after(z + 1, n), 3);
     right_of_smaller[coarse_right + k] = 0.25 * vec4(sum_x, sum_z);
   }
 }
@@ -87,12 +87,12 @@ void correct(int first, int n) {
   const int coarse = first + n * n;
   const int coarse_n = n / 2;
   barrier();
-  for (int i = int(gl_LocalInvocationIndex); i < n * n; i += DISPERSION_BOTTOM_GROUP) {
+  FOR_EACH(i, n * n) {
     const int x = (i % n) / 2;
     const int z = (i / n) / 2;
     const vec4 here = phi[coarse + x + coarse_n * z];
-    const vec2 west = phi[coarse + around(x - 1, coarse_n) + coarse_n * z].xy;
-    const vec2 south = phi[coarse + x + coarse_n * around(z - 1, coarse_n)].zw;
+    const vec2 west = phi[coarse + before(x, coarse_n) + coarse_n * z].xy;
+    const vec2 south = phi[coarse + x + coarse_n * before(z, coarse_n)].zw;
     const vec4 wx = texelFetch(from_x, first + i);
     const vec4 wz = texelFetch(from_z, first + i);
     phi[first + i] += vec4(wx.x * here.xy + wx.y * west + wx.z * here.zw + wx.w * south,
@@ -103,8 +103,7 @@ void correct(int first, int n) {
 /// phi = w r
 void start(int first, int n) {
   barrier();
-  for (int i = int(gl_LocalInvocationIndex); i < n * n; i += DISPERSION_BOTTOM_GROUP)
-    phi[first + i] = texelFetch(sweep_weight, first + i) * rightAt(first, i);
+  FOR_EACH(i, n * n) phi[first + i] = texelFetch(sweep_weight, first + i) * rightAt(first, i);
 }
 
 // Each step down or up is one turn of the same loop, and its bounds are no constants: otherwise the compiler repeats all of
@@ -133,5 +132,5 @@ void main() {
     }
   }
   barrier();
-  for (int i = int(gl_LocalInvocationIndex); i < textureSize(right_side); i += DISPERSION_BOTTOM_GROUP) faces[i] = phi[i];
+  FOR_EACH(i, textureSize(right_side)) faces[i] = phi[i];
 }

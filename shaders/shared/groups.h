@@ -16,10 +16,16 @@
 #define SCAN_GROUP 256
 #define SCAN_ITEMS 16
 #define SCAN_BLOCK (SCAN_GROUP * SCAN_ITEMS)
-// Cells along z that an invocation of the dispersion's sweeps passes over.
+// An invocation of the dispersion's passes owns so many columns, and rows of them; both even.
+#define DISPERSION_COLUMNS 4
 #define DISPERSION_STRIP 32
-// The dispersion's small grids, in one group.
-#define DISPERSION_BOTTOM_GROUP 256
+#define DISPERSION_GROUP 16
+// Weight of the damped Jacobi sweeps. With more than 1/2 the shortest waves would get a negative F, and grow.
+#define DISPERSION_SWEEP_WEIGHT 0.5
+// The dispersion's small grids, in one group: from this many cells per side down, or from the coarsest grid, which has at
+// most DISPERSION_BOTTOM_SIDE_MAX.
+#define DISPERSION_BOTTOM_GROUP 64
+#define DISPERSION_BOTTOM_SIDE 16
 #define DISPERSION_BOTTOM_SIDE_MAX 32
 // Groups along x that every OpenGL 4.5 device can dispatch at once. Passes over more cells loop.
 #define MAX_GROUPS 65535

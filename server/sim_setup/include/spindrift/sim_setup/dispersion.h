@@ -56,11 +56,12 @@ struct DispersionLevel {
 struct Dispersion {
   std::vector<DispersionLevel> levels;        ///< finest first, at least two
   std::vector<std::array<double, 4>> root_c;  ///< sqrt(c_j) on the finest faces; 0 where closed
+  bool is_flat = false;                       ///< all cells have the same depth, and only faces at sides are closed
   bool is_uneven = false;  ///< dry cells inside: the weights between grids differ from block to block
 };
 
-/// Weight of the damped Jacobi sweeps. With more than 1/2 the shortest waves would get a negative F, and grow.
-inline constexpr double kSweepWeight = 0.5;
+/// Weight of the damped Jacobi sweeps.
+inline constexpr double kSweepWeight = DISPERSION_SWEEP_WEIGHT;
 /// Sweeps before and after the coarser grid, and in the coarsest one.
 inline constexpr int kSweepCount = 2;
 inline constexpr int kCoarsestSweepCount = 5;

@@ -1,0 +1,90 @@
+// On the way up the V-cycle: the two sweeps of descend.comp again, the correction of the coarser grid, two sweeps.
+// Reads DISPERSION_STIFFNESS and the right side of this grid: ELEVATION with DISPERSION_ROOT_C (FINEST), or DISPERSION_RIGHT;
+// DISPERSION_COARSE; the weights DISPERSION_FROM_X, DISPERSION_FROM_Z where obstacles make them uneven. Writes
+// DISPERSION_FACES; on the finest grid DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope
+// [m * units].
+// Equation: phi_3 = phi_2 + P coarse, with the weights P of strip.glsl; then phi += w (r - K phi) twice; F grad(eta) = sum_j
+// sqrt(c_j) phi_j.
+#include "dispersion/strip.glsl"
+
+layout(local_size_x = DISPERSION_GROUP) in;
+
+layout(binding = DISPERSION_COARSE) uniform samplerBuffer coarse;
+#if FINEST
+layout(std430, binding = DISPERSED) restrict writeonly buffer Dispersed { vec2 dispersed[]; };
+#else
+layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec4 faces_after[]; };
+#endif
+
+/// Columns of the neighbours on the left.
+const int kBefore = 3;
+
+/// Adds P coarse to row z. Blocks begin at the odd columns of the row, because first_x - kBefore is odd.
+void correct(int z, int block_column[WIDTH / 2 + 1], inout vec4 faces[WIDTH]) {
+  const int half_n = side_count / 2;
+  const int row = half_n * (z / 2);
+  const int row_before = half_n * wrapped(z / 2 - 1, half_n);
+  vec4 here[WIDTH / 2 + 1];
+  vec2 south[WIDTH / 2 + 1];
+  for (int k = 0; k <= WIDTH / 2; ++k) {
+    here[k] = texelFetch(coarse, block_column[k] + row);
+    south[k] = texelFetch(coarse, block_column[k] + row_before).zw;
+  }
+  for (int c = 1; c < WIDTH - 1; ++c) {
+    const int k = (c + 1) / 2;
+    const Weights w = weightsAt(c, c % 2 == 0, z);
+    faces[c] += vec4(w.x.x * here[k].xy + w.x.y * here[k - 1].xy + w.x.z * here[k].zw + w.x.w * south[k],
+                     w.z.x * here[k].xy + w.z.y * here[k - 1].xy + w.z.z * here[k].zw + w.z.w * south[k]);
+  }
+}
+
+void main() {
+  const int first_x = int(gl_GlobalInvocationID.x) * DISPERSION_COLUMNS;
+  const int first_z = int(gl_GlobalInvocationID.y) * DISPERSION_STRIP;
+  // Three sweeps, each of which needs a row before.
+  const int begin_z = first_z - 3;
+  begin(first_x - kBefore, begin_z);
+  const int n = side_count;
+  if (first_x >= n || first_z >= n) return;
+  const int end_z = min(first_z + DISPERSION_STRIP, n);
+  int block_column[WIDTH / 2 + 1];
+  for (int k = 0; k <= WIDTH / 2; ++k) block_column[k] = wrapped(first_x / 2 - 2 + k, n / 2);
+  Row rows[4];
+  Swept first_sweep;
+  Swept second_sweep;
+  Swept third_sweep;
+  rows[0] = rows[1] = rows[2] = fetchRow(wrapped(begin_z, n));
+  start(rows[0], first_sweep.faces);
+  for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = vec2(0.0);
+  third_sweep = second_sweep = first_sweep;
+  for (int z = begin_z + 1; z < end_z + 3; ++z) {
+    rows[3] = rows[2];
+    rows[2] = rows[1];
+    rows[1] = rows[0];
+    rows[0] = fetchRow(wrapped(z, n));
+    vec4 faces[WIDTH];
+    vec4 swept[WIDTH];
+    start(rows[0], faces);
+    sweepRow(0, first_sweep, rows[1], rows[0], faces, swept);
+    correct(wrapped(z - 1, n), block_column, swept);
+    sweepRow(1, second_sweep, rows[2], rows[1], swept, faces);
+    sweepRow(2, third_sweep, rows[3], rows[2], faces, swept);
+    const int done = z - 3;
+    if (done < first_z) continue;
+    for (int k = 0; k < DISPERSION_COLUMNS; ++k) {
+      const int c = kBefore + k;
+      const int i = first_x + k + n * done;
+      if (first_x + k >= n) continue;
+#if FINEST
+#if FLAT
+      const vec4 shares = flat_root_c * swept[c];
+#else
+      const vec4 shares = texelFetch(root_c, i) * swept[c];
+#endif
+      dispersed[i] = vec2(shares.x + shares.y, shares.z + shares.w);
+#else
+      faces_after[i] = swept[c];
+#endif
+    }
+  }
+}

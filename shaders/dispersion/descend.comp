@@ -1,0 +1,65 @@
+// On the way down the V-cycle: two sweeps from zero; what is left goes to the next coarser grid.
+// Reads DISPERSION_STIFFNESS and the right side of this grid: ELEVATION with DISPERSION_ROOT_C (FINEST), or DISPERSION_RIGHT;
+// the weights DISPERSION_FROM_X, DISPERSION_FROM_Z where obstacles make them uneven. Writes DISPERSION_COARSE_RIGHT.
+// Equation: phi_1 = w r, phi_2 = phi_1 + w (r - K phi_1), r_coarse = P^T (r - K phi_2)/4, with the weights P of strip.glsl.
+#include "dispersion/strip.glsl"
+
+layout(local_size_x = DISPERSION_GROUP) in;
+
+layout(std430, binding = DISPERSION_COARSE_RIGHT) restrict writeonly buffer CoarseRight { vec4 coarse_right[]; };
+
+/// Columns of the neighbours on the left.
+const int kBefore = 2;
+const int kBlocks = DISPERSION_COLUMNS / 2;
+
+void main() {
+  const int first_x = int(gl_GlobalInvocationID.x) * DISPERSION_COLUMNS;
+  const int first_z = int(gl_GlobalInvocationID.y) * DISPERSION_STRIP;
+  // Two sweeps, and the row before the first.
+  const int begin_z = first_z - 2;
+  begin(first_x - kBefore, begin_z);
+  const int n = side_count;
+  if (first_x >= n || first_z >= n) return;
+  const int end_z = min(first_z + DISPERSION_STRIP, n);
+  Row rows[3];
+  Swept first_sweep;
+  Swept second_sweep;
+  rows[0] = rows[1] = fetchRow(wrapped(begin_z, n));
+  start(rows[0], first_sweep.faces);
+  for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = vec2(0.0);
+  second_sweep = first_sweep;
+  // Sums over the faces of a row of blocks, one more than the own ones: for their coarse faces (E, N) and (W, S). The coarse
+  // faces N of the row of blocks before wait for S of this one.
+  vec4 own_side[kBlocks + 1];
+  vec4 other_side[kBlocks + 1];
+  vec4 waiting[kBlocks];
+  for (int z = begin_z + 1; z <= end_z + 3; ++z) {
+    rows[2] = rows[1];
+    rows[1] = rows[0];
+    rows[0] = fetchRow(wrapped(z, n));
+    vec4 faces[WIDTH];
+    vec4 swept[WIDTH];
+    vec4 left[WIDTH];
+    start(rows[0], faces);
+    sweepRow(0, first_sweep, rows[1], rows[0], faces, swept);
+    takeRow(1, second_sweep, rows[2], rows[1], swept, left);
+    const int done = z - 2;  // the row of `left`
+    if (done < first_z) continue;
+    for (int k = 0; k <= kBlocks; ++k) {
+      if (done % 2 == 0) own_side[k] = other_side[k] = vec4(0.0);
+      for (int odd = 0; odd < 2; ++odd) {
+        const int c = kBefore + 2 * k + odd;
+        const Weights w = weightsAt(c, odd == 1, wrapped(done, n));
+        own_side[k] += vec4(w.x.x * left[c].xy + w.z.x * left[c].zw, w.x.z * left[c].xy + w.z.z * left[c].zw);
+        other_side[k] += vec4(w.x.y * left[c].xy + w.z.y * left[c].zw, w.x.w * left[c].xy + w.z.w * left[c].zw);
+      }
+    }
+    if (done % 2 == 0) continue;
+    for (int k = 0; k < kBlocks; ++k) {
+      const int block = first_x / 2 + k;
+      if (done > first_z + 1 && block < n / 2)
+        coarse_right[block + n / 2 * (done / 2 - 1)] = 0.25 * (waiting[k] + vec4(0.0, 0.0, other_side[k].zw));
+      waiting[k] = own_side[k] + vec4(other_side[k + 1].xy, 0.0, 0.0);
+    }
+  }
+}

@@ -1,0 +1,207 @@
+// Sweeps over the faces of one grid of the dispersion's V-cycle (sim_setup/dispersion.h). A texel holds the x face and the z
+// face of a cell, two poles each: (x_0, x_1, z_0, z_1) [m * elevation units]. Closed faces hold 0, so that indices may wrap
+// around every side.
+//   K phi = m phi - grad(e div phi), with differences between cells as grad and div
+//   sweep: phi += w (r - K phi), w = DISPERSION_SWEEP_WEIGHT over the diagonal of K
+// An invocation owns DISPERSION_COLUMNS columns of DISPERSION_STRIP rows and passes over them row by row. It does several
+// sweeps at once, each a row behind the one before it, and computes the neighbours that they need itself: that costs less
+// than fetching them.
+// FINEST: 1 for the grid of the wave, whose right side r is the slope of the surface.
+// UNEVEN: 1 if obstacles make the weights between the grids uneven.
+// FLAT: 1 if all cells have the same depth: m and e are the same in all cells, and only faces at sides are closed.
+#ifndef SPINDRIFT_DISPERSION_STRIP
+#define SPINDRIFT_DISPERSION_STRIP
+
+#include "shared/bindings.h"
+#include "shared/groups.h"
+#include "wave/wave_cell.glsl"
+
+// m_x, m_z, e_0, e_1 [1/m]; 0 where closed or dry.
+layout(binding = DISPERSION_STIFFNESS) uniform samplerBuffer stiffness;
+
+#if FINEST
+layout(binding = ELEVATION) uniform isamplerBuffer elevation;
+#if HEAD
+layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
+#endif
+layout(binding = DISPERSION_ROOT_C) uniform samplerBuffer root_c;
+#else
+layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
+#endif
+
+#if UNEVEN
+layout(binding = DISPERSION_FROM_X) uniform samplerBuffer from_x;
+layout(binding = DISPERSION_FROM_Z) uniform samplerBuffer from_z;
+#endif
+
+/// Columns of a row that an invocation computes with: its own and three on each side, one for each sweep.
+#define WIDTH (DISPERSION_COLUMNS + 6)
+
+/// A row of cells: the right side and the coefficients of K.
+struct Row {
+  vec4 right[WIDTH];
+  vec4 weight[WIDTH];
+#if !FLAT
+  vec4 stiff[WIDTH];
+#endif
+};
+
+/// The last row that a sweep has taken: its faces before the sweep, and e div phi of its cells.
+struct Swept {
+  vec4 faces[WIDTH];
+  vec2 pressed[WIDTH];
+};
+
+int side_count;       // cells per side of this grid
+int column[WIDTH];    // x of the columns
+#if FLAT
+vec4 flat_stiffness;
+float open_x[WIDTH];  // 0 where the x face is at a closed side
+#if FINEST
+vec4 flat_root_c;
+#endif
+#else
+vec4 stiffness_ahead[WIDTH + 1];  // of the next row
+#endif
+#if FINEST
+int level_ahead[WIDTH + 1];  // of the next row [units]
+
+int levelAt(int i) {
+#if HEAD
+  return texelFetch(elevation, i).x + texelFetch(pressure_head, i).x;
+#else
+  return texelFetch(elevation, i).x;
+#endif
+}
+#endif
+
+vec4 stiffnessOf(Row row, int c) {
+#if FLAT
+  return flat_stiffness;
+#else
+  return row.stiff[c];
+#endif
+}
+
+/// Fetches what is needed of row z before fetchRow(z).
+void fetchAhead(int z) {
+  const int row = side_count * z;
+  const int beyond = wrapped(column[WIDTH - 1] + 1, side_count);
+#if FINEST
+  for (int c = 0; c < WIDTH; ++c) level_ahead[c] = levelAt(column[c] + row);
+  level_ahead[WIDTH] = levelAt(beyond + row);
+#endif
+#if !FLAT
+  for (int c = 0; c < WIDTH; ++c) stiffness_ahead[c] = texelFetch(stiffness, column[c] + row);
+  stiffness_ahead[WIDTH] = texelFetch(stiffness, beyond + row);
+#endif
+}
+
+/// Sets the columns, the first of which may be outside, and fetches what the first row needs.
+void begin(int first_column, int first_row) {
+#if FINEST
+  side_count = int(sim.wave_n);
+#else
+  side_count = int(sqrt(float(textureSize(right_side))) + 0.5);
+#endif
+  for (int c = 0; c < WIDTH; ++c) column[c] = wrapped(first_column + c, side_count);
+#if FLAT
+  flat_stiffness = texelFetch(stiffness, 0);
+  for (int c = 0; c < WIDTH; ++c) {
+#if WAVE_PERIODIC_X
+    open_x[c] = 1.0;
+#else
+    open_x[c] = column[c] == side_count - 1 ? 0.0 : 1.0;
+#endif
+  }
+#if FINEST
+  flat_root_c = texelFetch(root_c, 0);
+#endif
+#endif
+  fetchAhead(wrapped(first_row, side_count));
+}
+
+/// The row z, inside the grid; rows are fetched in order.
+Row fetchRow(int z) {
+  Row row;
+  const int first = side_count * z;
+#if FINEST
+  int level[WIDTH + 1] = level_ahead;
+#endif
+#if !FLAT
+  vec4 here[WIDTH + 1] = stiffness_ahead;
+#endif
+  fetchAhead(wrapped(z + 1, side_count));
+  for (int c = 0; c < WIDTH; ++c) {
+#if FINEST
+    const vec2 slope = vec2(level[c + 1] - level[c], level_ahead[c] - level[c]);
+#if FLAT
+    row.right[c] = flat_root_c * slope.xxyy;
+#else
+    row.right[c] = texelFetch(root_c, column[c] + first) * slope.xxyy;
+#endif
+#else
+    row.right[c] = texelFetch(right_side, column[c] + first);
+#endif
+#if FLAT
+#if WAVE_PERIODIC_Z
+    const float open_z = 1.0;
+#else
+    const float open_z = z == side_count - 1 ? 0.0 : 1.0;
+#endif
+    const vec4 weight = DISPERSION_SWEEP_WEIGHT / (flat_stiffness.xxyy + 2.0 * flat_stiffness.zwzw);
+    row.weight[c] = weight * vec2(open_x[c], open_z).xxyy;
+#else
+    const vec4 diagonal = here[c].xxyy + here[c].zwzw + vec4(here[c + 1].zw, stiffness_ahead[c].zw);
+    row.weight[c] = mix(vec4(0.0), DISPERSION_SWEEP_WEIGHT / diagonal, greaterThan(here[c].xxyy, vec4(0.0)));
+    row.stiff[c] = here[c];
+#endif
+  }
+  return row;
+}
+
+/// Weights of the faces of a cell in the four faces E, W, N, S of its block of the next coarser grid. A coarse flux passes the
+/// open part of its face evenly; inside the block it goes where every cell gains the same height, without obstacles half each
+/// to both inner faces of its axis.
+struct Weights {
+  vec4 x;
+  vec4 z;
+};
+
+Weights weightsAt(int c, bool is_odd_x, int z) {
+#if UNEVEN
+  const int i = column[c] + side_count * z;
+  return Weights(texelFetch(from_x, i), texelFetch(from_z, i));
+#else
+  return Weights(is_odd_x ? vec4(1.0, 0.0, 0.0, 0.0) : vec4(0.5, 0.5, 0.0, 0.0),
+                 z % 2 == 1 ? vec4(0.0, 0.0, 1.0, 0.0) : vec4(0.0, 0.0, 0.5, 0.5));
+#endif
+}
+
+/// First sweep from zero.
+void start(Row row, out vec4 faces[WIDTH]) {
+  for (int c = 0; c < WIDTH; ++c) faces[c] = row.weight[c] * row.right[c];
+}
+
+/// What the faces of the last row have left, r - K phi, in columns margin + 1 to WIDTH - margin - 2; takes the faces of the
+/// row after it, known in columns margin to WIDTH - margin - 1, as the last row.
+void takeRow(int margin, inout Swept last, Row last_row, Row row, vec4 faces[WIDTH], out vec4 left[WIDTH]) {
+  vec2 pressed[WIDTH];
+  for (int c = margin + 1; c < WIDTH - margin; ++c)
+    pressed[c] = stiffnessOf(row, c).zw * (faces[c].xy - faces[c - 1].xy + faces[c].zw - last.faces[c].zw);
+  for (int c = margin + 1; c < WIDTH - margin - 1; ++c)
+    left[c] = last_row.right[c] - stiffnessOf(last_row, c).xxyy * last.faces[c] +
+              vec4(last.pressed[c + 1] - last.pressed[c], pressed[c] - last.pressed[c]);
+  last.faces = faces;
+  last.pressed = pressed;
+}
+
+/// The same, and sweeps the last row.
+void sweepRow(int margin, inout Swept last, Row last_row, Row row, vec4 faces[WIDTH], out vec4 swept[WIDTH]) {
+  const vec4 before[WIDTH] = last.faces;
+  vec4 left[WIDTH];
+  takeRow(margin, last, last_row, row, faces, left);
+  for (int c = margin + 1; c < WIDTH - margin - 1; ++c) swept[c] = before[c] + last_row.weight[c] * left[c];
+}
+
+#endif
