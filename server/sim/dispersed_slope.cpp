@@ -1,10 +1,14 @@
 #include "dispersed_slope.h"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 
 #include <shared/bindings.h>
 #include <shared/groups.h>
+
+#include <spindrift/sim_setup/half.h>
 
 #include "create_all.h"
 
@@ -12,19 +16,31 @@ namespace spindrift::sim {
 namespace {
 
 using Four = std::array<double, 4>;
-using Texels = std::vector<std::array<float, 4>>;
+using Floats = std::array<float, 4>;
+using Words = std::array<std::uint32_t, 4>;
 
-void append(Texels& out, const std::vector<Four>& values) {
-  for (const Four& v : values)
-    out.push_back(
-        {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])});
+constexpr auto kFloats = gpu::TexelFormat::kRGBA32F;
+constexpr auto kWords = gpu::TexelFormat::kRGBA32UI;
+
+Floats floatsOf(const Four& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])};
 }
 
-/// Index of the first grid of the bottom, which one work group solves: it takes fewer dispatches, but a group has one
-/// core. Not the finest grid.
+/// One texel per cell: the halves of both tables. The second may be empty.
+std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four>& second) {
+  std::vector<Words> out(first.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Four& a = first[i];
+    const Four b = second.empty() ? Four{} : second[i];
+    out[i] = {packHalves(a[0], a[1]), packHalves(a[2], a[3]), packHalves(b[0], b[1]), packHalves(b[2], b[3])};
+  }
+  return out;
+}
+
+/// Index of the first grid of the bottom. One work group takes fewer dispatches for it, but has only one core.
 std::size_t bottomOf(const Dispersion& dispersion) {
   std::size_t k = 1;
-  while (k + 1 < dispersion.levels.size() && dispersion.levels[k].side_count > DISPERSION_BOTTOM_SIDE) ++k;
+  while (k + 1 < dispersion.levels.size() && dispersion.levels[k].side_count > kBottomSide) ++k;
   return k;
 }
 
@@ -34,42 +50,43 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
                                                                      const Basin& basin, const gpu::Defines& defines) {
   using gpu::Program;
   using gpu::TexelBuffer;
-  using gpu::TexelFormat;
-  constexpr auto kFour = TexelFormat::kRGBA32F;
+  constexpr auto kScratch = gpu::BufferContent::kScratch;
   const Dispersion dispersion = layOutDispersion(layout, basin);
   const std::size_t bottom = bottomOf(dispersion);
   auto out = std::unique_ptr<DispersedSlope>(new DispersedSlope(ctx));
   Creation create;
   for (std::size_t k = 0; k <= bottom; ++k) {
     const std::size_t cells = dispersion.levels[k].stiffness.size();
-    std::size_t table_cells = cells;
-    for (std::size_t below = k + 1; k == bottom && below < dispersion.levels.size(); ++below)
-      table_cells += dispersion.levels[below].stiffness.size();
     Grid& grid = out->grids_.emplace_back();
     grid.side_count = dispersion.levels[k].side_count;
-    create(grid.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", table_cells, kFour));
-    create(grid.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", table_cells, kFour));
-    create(grid.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", table_cells, kFour));
     if (k > 0) {
-      create(grid.right, TexelBuffer::create(ctx, "dispersion right side", cells, kFour, gpu::BufferContent::kScratch));
-      create(grid.faces, TexelBuffer::create(ctx, "dispersion faces", cells, kFour, gpu::BufferContent::kScratch));
+      create(grid.right, TexelBuffer::create(ctx, "dispersion right side", cells, kFloats, kScratch));
+      create(grid.faces, TexelBuffer::create(ctx, "dispersion faces", cells, kFloats, kScratch));
     }
-    if (k == bottom)
-      create(out->bottom_weights_, TexelBuffer::create(ctx, "dispersion sweep weights", table_cells, kFour));
+    if (k == bottom) break;
+    if (dispersion.is_flat) {
+      create(grid.coefficients, TexelBuffer::create(ctx, "dispersion coefficients", 2, kFloats));
+    } else {
+      create(grid.coefficients, TexelBuffer::create(ctx, "dispersion coefficients", cells, kWords));
+      create(grid.weights, TexelBuffer::create(ctx, "dispersion weights", cells, kWords));
+    }
   }
-  const std::size_t cells = dispersion.root_c.size();
-  create(out->root_c_, TexelBuffer::create(ctx, "dispersion strengths", cells, kFour));
+  Bottom& tables = out->bottom_;
+  const std::size_t bottom_cells = bottomCellsAtMost(dispersion.levels[bottom].side_count);
+  create(tables.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", bottom_cells + 1, kFloats));
+  create(tables.sweep, TexelBuffer::create(ctx, "dispersion sweep weights", bottom_cells, kFloats));
+  create(tables.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", bottom_cells, kFloats));
+  create(tables.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", bottom_cells, kFloats));
   create(out->dispersed_,
-         TexelBuffer::create(ctx, "dispersed slope", cells, TexelFormat::kRG32F, gpu::BufferContent::kScratch));
+         TexelBuffer::create(ctx, "dispersed slope", dispersion.root_c.size(), gpu::TexelFormat::kRG32F, kScratch));
   for (std::size_t finest = 0; finest < 2; ++finest) {
     gpu::Defines of_grid = defines;
     of_grid.emplace_back("FINEST", std::to_string(finest));
     of_grid.emplace_back("FLAT", dispersion.is_flat ? "1" : "0");
-    of_grid.emplace_back("UNEVEN", dispersion.is_uneven ? "1" : "0");
     create(out->descend_[finest], Program::create(ctx, "dispersion/descend.comp", of_grid));
     create(out->ascend_[finest], Program::create(ctx, "dispersion/ascend.comp", of_grid));
   }
-  create(out->bottom_, Program::create(ctx, "dispersion/bottom.comp"));
+  create(tables.solve, Program::create(ctx, "dispersion/bottom.comp"));
   if (create.error()) return *create.error();
   out->upload(dispersion);
   return out;
@@ -80,70 +97,74 @@ void DispersedSlope::upload(const WaveLayout& layout, const Basin& basin) {
 }
 
 void DispersedSlope::upload(const Dispersion& dispersion) {
-  for (std::size_t k = 0; k < grids_.size(); ++k) {
-    const std::size_t end = k + 1 < grids_.size() ? k + 1 : dispersion.levels.size();
-    Texels stiffness, weights, from_x, from_z;
-    for (std::size_t level = k; level < end; ++level) {
-      append(stiffness, dispersion.levels[level].stiffness);
-      append(weights, sweepWeights(dispersion.levels[level]));
-      append(from_x, dispersion.levels[level].from_coarse_x);
-      append(from_z, dispersion.levels[level].from_coarse_z);
+  const std::size_t bottom = grids_.size() - 1;
+  for (std::size_t k = 0; k < bottom; ++k) {
+    const DispersionLevel& level = dispersion.levels[k];
+    if (dispersion.is_flat) {
+      // The first cell is wet and its faces are open.
+      grids_[k].coefficients.upload(std::array{floatsOf(level.stiffness[0]), floatsOf(dispersion.root_c[0])});
+    } else {
+      grids_[k].coefficients.upload(packed(level.stiffness, k == 0 ? dispersion.root_c : std::vector<Four>{}));
+      grids_[k].weights.upload(packed(level.from_coarse_x, level.from_coarse_z));
     }
-    from_x.resize(stiffness.size());  // the coarsest grid has no weights
-    from_z.resize(stiffness.size());
-    grids_[k].stiffness.upload(stiffness);
-    if (k + 1 == grids_.size()) bottom_weights_.upload(weights);
-    grids_[k].from_x.upload(from_x);
-    grids_[k].from_z.upload(from_z);
   }
-  Texels root_c;
-  append(root_c, dispersion.root_c);
-  root_c_.upload(root_c);
+  std::vector<Floats> stiffness, sweep, from_x, from_z;
+  for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) {
+    const DispersionLevel& level = dispersion.levels[k];
+    std::ranges::transform(level.stiffness, std::back_inserter(stiffness), floatsOf);
+    std::ranges::transform(sweepWeights(level), std::back_inserter(sweep), floatsOf);
+    std::ranges::transform(level.from_coarse_x, std::back_inserter(from_x), floatsOf);  // none in the coarsest grid
+    std::ranges::transform(level.from_coarse_z, std::back_inserter(from_z), floatsOf);
+  }
+  stiffness.resize(bottom_.stiffness.sizeBytes() / sizeof(Floats));
+  stiffness.back()[0] = static_cast<float>(dispersion.levels.size() - bottom);
+  bottom_.stiffness.upload(stiffness);
+  bottom_.sweep.upload(sweep);
+  if (!from_x.empty()) bottom_.from_x.upload(from_x);
+  if (!from_z.empty()) bottom_.from_z.upload(from_z);
 }
 
 void DispersedSlope::compute(const gpu::TexelBuffer& elevation, const gpu::TexelBuffer* pressure_head) {
   elevation.bindTexel(ELEVATION);
   if (pressure_head) pressure_head->bindTexel(PRESSURE_HEAD);
-  root_c_.bindTexel(DISPERSION_ROOT_C);
   const std::size_t bottom = grids_.size() - 1;
   for (std::size_t level = 0; level < bottom; ++level) descend(level);
   solveBottom();
   for (std::size_t level = bottom; level-- > 0;) ascend(level);
 }
 
-void DispersedSlope::bindTables(const Grid& grid, bool is_finest) {
-  grid.stiffness.bindTexel(DISPERSION_STIFFNESS);
-  grid.from_x.bindTexel(DISPERSION_FROM_X);
-  grid.from_z.bindTexel(DISPERSION_FROM_Z);
-  if (!is_finest) grid.right.bindTexel(DISPERSION_RIGHT);
+void DispersedSlope::bindTables(std::size_t level) {
+  const Grid& grid = grids_[level];
+  grid.coefficients.bindTexel(DISPERSION_COEFFICIENTS);
+  if (grid.weights) grid.weights.bindTexel(DISPERSION_WEIGHTS);
+  if (level > 0) grid.right.bindTexel(DISPERSION_RIGHT);
 }
 
 void DispersedSlope::descend(std::size_t level) {
-  const Grid& grid = grids_[level];
-  const bool is_finest = level == 0;
-  bindTables(grid, is_finest);
+  bindTables(level);
   grids_[level + 1].right.bindStorage(DISPERSION_COARSE_RIGHT);
-  dispatch(descend_[is_finest], grid);
+  dispatch(descend_[level == 0], grids_[level]);
 }
 
 void DispersedSlope::solveBottom() {
-  bindTables(grids_.back(), false);
-  bottom_weights_.bindTexel(DISPERSION_SWEEP);
+  bottom_.stiffness.bindTexel(DISPERSION_STIFFNESS);
+  bottom_.sweep.bindTexel(DISPERSION_SWEEP);
+  bottom_.from_x.bindTexel(DISPERSION_FROM_X);
+  bottom_.from_z.bindTexel(DISPERSION_FROM_Z);
+  grids_.back().right.bindTexel(DISPERSION_RIGHT);
   grids_.back().faces.bindStorage(DISPERSION_FACES);
-  bottom_.dispatchGroups(1);
+  bottom_.solve.dispatchGroups(1);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
 void DispersedSlope::ascend(std::size_t level) {
-  const Grid& grid = grids_[level];
-  const bool is_finest = level == 0;
-  bindTables(grid, is_finest);
+  bindTables(level);
   grids_[level + 1].faces.bindTexel(DISPERSION_COARSE);
-  if (is_finest)
+  if (level == 0)
     dispersed_.bindStorage(DISPERSED);
   else
-    grid.faces.bindStorage(DISPERSION_FACES);
-  dispatch(ascend_[is_finest], grid);
+    grids_[level].faces.bindStorage(DISPERSION_FACES);
+  dispatch(ascend_[level == 0], grids_[level]);
 }
 
 void DispersedSlope::dispatch(gpu::Program& pass, const Grid& grid) {

@@ -26,29 +26,31 @@ class DispersedSlope {
   [[nodiscard]] const gpu::TexelBuffer& texels() const { return dispersed_; }
 
  private:
-  /// The buffers of one grid with its own dispatches, or of the grids at the bottom, one behind the other.
   struct Grid {
     std::uint32_t side_count = 0;
-    gpu::TexelBuffer stiffness;
-    gpu::TexelBuffer from_x, from_z;
-    gpu::TexelBuffer right, faces;  ///< except on the finest grid
+    gpu::TexelBuffer coefficients, weights;  ///< none in the last grid; no weights in a flat basin
+    gpu::TexelBuffer right, faces;           ///< except on the finest grid
+  };
+
+  /// The grids that one work group solves: their tables, one behind the other.
+  struct Bottom {
+    gpu::TexelBuffer stiffness, sweep, from_x, from_z;
+    gpu::Program solve;
   };
 
   explicit DispersedSlope(gpu::Context& ctx) : ctx_(ctx) {}
   void upload(const Dispersion& dispersion);
-  void bindTables(const Grid& grid, bool is_finest);
+  void bindTables(std::size_t level);
   void descend(std::size_t level);
   void solveBottom();
   void ascend(std::size_t level);
   void dispatch(gpu::Program& pass, const Grid& grid);
 
   gpu::Context& ctx_;
-  std::vector<Grid> grids_;          ///< finest first; the last one is the bottom
-  gpu::TexelBuffer bottom_weights_;  ///< of the sweeps at the bottom
-  gpu::TexelBuffer root_c_, dispersed_;
-  /// By whether the grid is the finest.
-  gpu::Program descend_[2], ascend_[2];
-  gpu::Program bottom_;
+  std::vector<Grid> grids_;  ///< finest first; the last one is the first of the bottom
+  Bottom bottom_;
+  gpu::TexelBuffer dispersed_;
+  gpu::Program descend_[2], ascend_[2];  ///< by whether the grid is the finest
 };
 
 }  // namespace spindrift::sim

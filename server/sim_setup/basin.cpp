@@ -87,6 +87,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); };
 
   Basin out;
+  out.is_flat = scene.obstacles.empty() && scene.beaches.empty();
   out.depth_m.resize(cells);
   out.conductance_m.resize(cells);
   out.bed.resize(cells);

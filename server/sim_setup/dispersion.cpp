@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <spindrift/sim_setup/dispersion.h>
+#include <spindrift/sim_setup/half.h>
 
 namespace spindrift::sim {
 namespace {
@@ -204,14 +205,18 @@ Grid coarsen(const Grid& fine, DispersionLevel& level) {
   return coarse;
 }
 
-std::vector<Four> stiffnessOf(const Grid& grid, double cell_m) {
+void roundToHalves(std::vector<Four>& values) {
+  for (Four& four : values) std::ranges::transform(four, four.begin(), roundToHalf);
+}
+
+std::vector<Four> stiffnessOf(const Grid& grid, double cell_m, double largest_depth_m) {
   std::vector<Four> out(grid.wet.size(), Four{});
   for (std::size_t i = 0; i < out.size(); ++i) {
     for (int axis = 0; axis < 2; ++axis) {
-      if (grid.open[i][axis] > 0.0) out[i][axis] = grid.resistance_pm[i][axis] / grid.open[i][axis];
+      if (grid.open[i][axis] > 0.0) out[i][axis] = largest_depth_m * grid.resistance_pm[i][axis] / grid.open[i][axis];
     }
     for (std::size_t j = 0; j < kPoleCount; ++j) {
-      if (grid.wet[i] > 0.0) out[i][2 + j] = grid.reach_m[i][j] / (grid.wet[i] * cell_m * cell_m);
+      if (grid.wet[i] > 0.0) out[i][2 + j] = largest_depth_m * grid.reach_m[i][j] / (grid.wet[i] * cell_m * cell_m);
     }
   }
   return out;
@@ -241,18 +246,26 @@ bool canDisperse(std::uint32_t resolution_count) {
   return resolution_count <= kBottomSideMax;
 }
 
+std::size_t bottomCellsAtMost(std::uint32_t side_count) {
+  std::size_t cells = std::size_t{side_count} * side_count;
+  while (side_count > kCoarsestSideCount && side_count % 2 == 0) {
+    side_count /= 2;
+    cells += std::size_t{side_count} * side_count;
+  }
+  return cells;
+}
+
 std::uint64_t dispersionBytes(std::uint32_t resolution_count) {
-  constexpr std::uint64_t kTables = 4 * 16;
-  constexpr std::uint64_t kTexel = 16;
+  constexpr std::uint64_t kCoefficients = 16;
+  constexpr std::uint64_t kWeights = 16;
+  constexpr std::uint64_t kFaces = 2 * 16;  // and their right side
+  constexpr std::uint64_t kBottom = 4 * 16;
   const auto cells = [](std::uint32_t n) { return std::uint64_t{n} * n; };
   std::uint32_t n = resolution_count;
-  // Tables, faces and faces before; the strengths; the result.
-  std::uint64_t bytes = cells(n) * (kTables + 2 * kTexel + kTexel + 8);
-  for (n /= 2; n > kBottomSideMax; n /= 2) bytes += cells(n) * (kTables + 3 * kTexel);
-  bytes += cells(n) * 2 * kTexel;
-  for (; n >= kCoarsestSideCount; n /= 2) {
-    bytes += cells(n) * kTables;
-    if (n % 2 != 0) break;
+  std::uint64_t bytes = cells(n) * (kCoefficients + kWeights + 8);
+  while (n > kCoarsestSideCount && n % 2 == 0) {
+    n /= 2;
+    bytes += cells(n) * (kCoefficients + kWeights + kFaces + (n <= kBottomSideMax ? kBottom : 0));
   }
   return bytes;
 }
@@ -271,12 +284,13 @@ double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m) {
 Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
                             const std::function<Poles(double depth_cells)>& poles_of) {
   Dispersion out;
+  out.is_flat = basin.is_flat;
   Grid grid(static_cast<int>(layout.resolution_count));
   out.root_c.resize(grid.wet.size());
   double largest = 0.0;
+  const double largest_depth_m = std::max(0.0, static_cast<double>(*std::ranges::max_element(basin.depth_m)));
   for (std::size_t i = 0; i < grid.wet.size(); ++i) {
     const double depth_m = basin.depth_m[i];
-    out.is_uneven = out.is_uneven || depth_m <= 0.0;
     if (depth_m <= 0.0) continue;
     grid.wet[i] = 1.0;
     const Poles poles = poles_of(depth_m / layout.cell_m);
@@ -288,20 +302,23 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
       grid.open[i][axis] = 1.0;
       grid.resistance_pm[i][axis] = 1.0 / face_m;
       const Poles at_face = poles_of(face_m / layout.cell_m);
-      for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j]);
+      for (std::size_t j = 0; j < kPoleCount; ++j)
+        out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j] * largest_depth_m);
     }
   }
-  out.is_flat =
-      !out.is_uneven && std::ranges::all_of(basin.depth_m, [&](float d_m) { return d_m == basin.depth_m[0]; });
+  if (!out.is_flat) roundToHalves(out.root_c);
   double cell_m = layout.cell_m;
   while (true) {
     DispersionLevel level;
     level.side_count = static_cast<std::uint32_t>(grid.n);
-    level.stiffness = stiffnessOf(grid, cell_m);
-    const bool is_solved_by_sweeps = largest < kCoarsestStiffness && level.side_count <= kBottomSideMax;
+    level.stiffness = stiffnessOf(grid, cell_m, largest_depth_m);
+    const bool is_solved_by_sweeps = largest < kCoarsestStiffness && level.side_count <= kBottomSide;
     const bool is_coarsest = !out.levels.empty() && (is_solved_by_sweeps || level.side_count <= kCoarsestSideCount ||
                                                      level.side_count % 2 != 0);
     if (!is_coarsest) grid = coarsen(grid, level);
+    if (!out.is_flat) {
+      for (auto* table : {&level.stiffness, &level.from_coarse_x, &level.from_coarse_z}) roundToHalves(*table);
+    }
     out.levels.push_back(std::move(level));
     if (is_coarsest) return out;
     cell_m *= 2;

@@ -1,8 +1,7 @@
 // On the way up the V-cycle: the two sweeps of descend.comp again, the correction of the coarser grid, two sweeps.
-// Reads DISPERSION_STIFFNESS and the right side of this grid: ELEVATION with DISPERSION_ROOT_C (FINEST), or DISPERSION_RIGHT;
-// DISPERSION_COARSE; the weights DISPERSION_FROM_X, DISPERSION_FROM_Z where obstacles make them uneven. Writes
-// DISPERSION_FACES; on the finest grid DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope
-// [m * units].
+// Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, otherwise
+// DISPERSION_RIGHT), DISPERSION_COARSE, DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_FACES; on the finest grid
+// DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope [m * units].
 // Equation: phi_3 = phi_2 + P coarse, with the weights P of strip.glsl; then phi += w (r - K phi) twice; F grad(eta) = sum_j
 // sqrt(c_j) phi_j.
 #include "dispersion/strip.glsl"
@@ -79,7 +78,7 @@ void main() {
 #if FLAT
       const vec4 shares = flat_root_c * swept[c];
 #else
-      const vec4 shares = texelFetch(root_c, i) * swept[c];
+      const vec4 shares = halves(texelFetch(coefficients, i).zw) * swept[c];
 #endif
       dispersed[i] = vec2(shares.x + shares.y, shares.z + shares.w);
 #else

@@ -8,6 +8,7 @@
 
 layout(local_size_x = DISPERSION_BOTTOM_GROUP) in;
 
+// The last texel holds the number of grids.
 layout(binding = DISPERSION_STIFFNESS) uniform samplerBuffer stiffness;
 layout(binding = DISPERSION_SWEEP) uniform samplerBuffer sweep_weight;
 layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
@@ -111,8 +112,7 @@ void start(int first, int n) {
 void main() {
   int first = 0;
   int n = int(sqrt(float(textureSize(right_side))) + 0.5);
-  int grids = 0;
-  for (int cells = 0; cells < textureSize(stiffness); cells += (n >> grids) * (n >> grids), ++grids) {}
+  const int grids = int(texelFetch(stiffness, textureSize(stiffness) - 1).x);
   for (int turn = 0; turn < 2 * grids - 1; ++turn) {
     const bool descends = turn < grids;
     const bool is_coarsest = turn == grids - 1;

@@ -1,5 +1,5 @@
 // Sweeps over the faces of one grid of the dispersion's V-cycle (sim_setup/dispersion.h). A texel holds the x face and the z
-// face of a cell, two poles each: (x_0, x_1, z_0, z_1) [m * elevation units]. Closed faces hold 0, so that indices may wrap
+// face of a cell, two poles each: (x_0, x_1, z_0, z_1). Closed faces hold 0, so that indices may wrap
 // around every side.
 //   K phi = m phi - grad(e div phi), with differences between cells as grad and div
 //   sweep: phi += w (r - K phi), w = DISPERSION_SWEEP_WEIGHT over the diagonal of K
@@ -7,8 +7,7 @@
 // sweeps at once, each a row behind the one before it, and computes the neighbours that they need itself: that costs less
 // than fetching them.
 // FINEST: 1 for the grid of the wave, whose right side r is the slope of the surface.
-// UNEVEN: 1 if obstacles make the weights between the grids uneven.
-// FLAT: 1 if all cells have the same depth: m and e are the same in all cells, and only faces at sides are closed.
+// FLAT: 1 if there are no obstacles or beaches: m, e and c are the same in all cells, and only faces at sides are closed.
 #ifndef SPINDRIFT_DISPERSION_STRIP
 #define SPINDRIFT_DISPERSION_STRIP
 
@@ -16,22 +15,28 @@
 #include "shared/groups.h"
 #include "wave/wave_cell.glsl"
 
-// m_x, m_z, e_0, e_1 [1/m]; 0 where closed or dry.
-layout(binding = DISPERSION_STIFFNESS) uniform samplerBuffer stiffness;
+// Tables of sim_setup/dispersion.h: m_x, m_z, e_0, e_1 of a cell, and on the finest grid the square roots of c_j at its
+// faces, x face first; all over the largest depth.
+#if FLAT
+// The first, and the second if FINEST.
+layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;
+#else
+// Two halves in each number.
+layout(binding = DISPERSION_COEFFICIENTS) uniform usamplerBuffer coefficients;
+#endif
 
 #if FINEST
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 #if HEAD
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
 #endif
-layout(binding = DISPERSION_ROOT_C) uniform samplerBuffer root_c;
 #else
 layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
 #endif
 
-#if UNEVEN
-layout(binding = DISPERSION_FROM_X) uniform samplerBuffer from_x;
-layout(binding = DISPERSION_FROM_Z) uniform samplerBuffer from_z;
+#if !FLAT
+// Weights of the x face and the z face in the faces E, W, N, S of the coarser grid, two halves in each number.
+layout(binding = DISPERSION_WEIGHTS) uniform usamplerBuffer weights;
 #endif
 
 /// Columns of a row that an invocation computes with: its own and three on each side, one for each sweep.
@@ -61,7 +66,7 @@ float open_x[WIDTH];  // 0 where the x face is at a closed side
 vec4 flat_root_c;
 #endif
 #else
-vec4 stiffness_ahead[WIDTH + 1];  // of the next row
+uvec4 coefficients_ahead[WIDTH + 1];  // of the next row
 #endif
 #if FINEST
 int level_ahead[WIDTH + 1];  // of the next row [units]
@@ -74,6 +79,14 @@ int levelAt(int i) {
 #endif
 }
 #endif
+
+/// Two halves, without infinities: the same bits as a float, 112 exponents lower. (unpackHalf2x16 is slow on llvmpipe.)
+vec2 unpacked(uint word) {
+  const uvec2 bits = uvec2(word << 16u, word);
+  return uintBitsToFloat((bits & 0x80000000u) | ((bits >> 3u) & 0x0fffe000u)) * 5.1922968585348276e33;
+}
+
+vec4 halves(uvec2 words) { return vec4(unpacked(words.x), unpacked(words.y)); }
 
 vec4 stiffnessOf(Row row, int c) {
 #if FLAT
@@ -92,8 +105,8 @@ void fetchAhead(int z) {
   level_ahead[WIDTH] = levelAt(beyond + row);
 #endif
 #if !FLAT
-  for (int c = 0; c < WIDTH; ++c) stiffness_ahead[c] = texelFetch(stiffness, column[c] + row);
-  stiffness_ahead[WIDTH] = texelFetch(stiffness, beyond + row);
+  for (int c = 0; c < WIDTH; ++c) coefficients_ahead[c] = texelFetch(coefficients, column[c] + row);
+  coefficients_ahead[WIDTH] = texelFetch(coefficients, beyond + row);
 #endif
 }
 
@@ -106,7 +119,7 @@ void begin(int first_column, int first_row) {
 #endif
   for (int c = 0; c < WIDTH; ++c) column[c] = wrapped(first_column + c, side_count);
 #if FLAT
-  flat_stiffness = texelFetch(stiffness, 0);
+  flat_stiffness = texelFetch(coefficients, 0);
   for (int c = 0; c < WIDTH; ++c) {
 #if WAVE_PERIODIC_X
     open_x[c] = 1.0;
@@ -115,7 +128,7 @@ void begin(int first_column, int first_row) {
 #endif
   }
 #if FINEST
-  flat_root_c = texelFetch(root_c, 0);
+  flat_root_c = texelFetch(coefficients, 1);
 #endif
 #endif
   fetchAhead(wrapped(first_row, side_count));
@@ -129,7 +142,7 @@ Row fetchRow(int z) {
   int level[WIDTH + 1] = level_ahead;
 #endif
 #if !FLAT
-  vec4 here[WIDTH + 1] = stiffness_ahead;
+  uvec4 here[WIDTH + 1] = coefficients_ahead;
 #endif
   fetchAhead(wrapped(z + 1, side_count));
   for (int c = 0; c < WIDTH; ++c) {
@@ -138,7 +151,7 @@ Row fetchRow(int z) {
 #if FLAT
     row.right[c] = flat_root_c * slope.xxyy;
 #else
-    row.right[c] = texelFetch(root_c, column[c] + first) * slope.xxyy;
+    row.right[c] = halves(here[c].zw) * slope.xxyy;
 #endif
 #else
     row.right[c] = texelFetch(right_side, column[c] + first);
@@ -152,9 +165,10 @@ Row fetchRow(int z) {
     const vec4 weight = DISPERSION_SWEEP_WEIGHT / (flat_stiffness.xxyy + 2.0 * flat_stiffness.zwzw);
     row.weight[c] = weight * vec2(open_x[c], open_z).xxyy;
 #else
-    const vec4 diagonal = here[c].xxyy + here[c].zwzw + vec4(here[c + 1].zw, stiffness_ahead[c].zw);
-    row.weight[c] = mix(vec4(0.0), DISPERSION_SWEEP_WEIGHT / diagonal, greaterThan(here[c].xxyy, vec4(0.0)));
-    row.stiff[c] = here[c];
+    const vec4 stiff = halves(here[c].xy);
+    const vec4 diagonal = stiff.xxyy + stiff.zwzw + vec4(unpacked(here[c + 1].y), unpacked(coefficients_ahead[c].y));
+    row.weight[c] = mix(vec4(0.0), DISPERSION_SWEEP_WEIGHT / diagonal, greaterThan(stiff.xxyy, vec4(0.0)));
+    row.stiff[c] = stiff;
 #endif
   }
   return row;
@@ -169,9 +183,9 @@ struct Weights {
 };
 
 Weights weightsAt(int c, bool is_odd_x, int z) {
-#if UNEVEN
-  const int i = column[c] + side_count * z;
-  return Weights(texelFetch(from_x, i), texelFetch(from_z, i));
+#if !FLAT
+  const uvec4 words = texelFetch(weights, column[c] + side_count * z);
+  return Weights(halves(words.xy), halves(words.zw));
 #else
   return Weights(is_odd_x ? vec4(1.0, 0.0, 0.0, 0.0) : vec4(0.5, 0.5, 0.0, 0.0),
                  z % 2 == 1 ? vec4(0.0, 0.0, 1.0, 0.0) : vec4(0.0, 0.0, 0.5, 0.5));

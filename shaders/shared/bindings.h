@@ -41,17 +41,18 @@
 #define TRANSFER 7
 #define GIVEN_SHARE 8
 #define LIMIT_ARGS 9
-// Dispersion, the grids of its V-cycle; dispersion/grid_faces.glsl. The numbers are those of particles and grid; only its
-// own passes use these buffers. What they compute for wave/momentum.comp is DISPERSED (binding shared with SURFACE; no pass
-// has both): F grad(eta) at the faces that a cell owns [m * units per cell].
+// Dispersion, the grids of its V-cycle; dispersion/strip.glsl, dispersion/bottom.comp. The numbers are those of particles
+// and grid; only its own passes use these buffers. What they compute for wave/momentum.comp is DISPERSED (binding shared with
+// SURFACE; no pass has both): F grad(eta) at the faces that a cell owns [m * units per cell].
 #define DISPERSION_FACES 0
-#define DISPERSION_BEFORE 1
 #define DISPERSION_COARSE 2
 #define DISPERSION_RIGHT 3
 #define DISPERSION_COARSE_RIGHT 4
-#define DISPERSION_STIFFNESS 5
-#define DISPERSION_SWEEP 6
-#define DISPERSION_ROOT_C 10
+#define DISPERSION_COEFFICIENTS 5
+#define DISPERSION_WEIGHTS 6
+// Tables of the grids at the bottom.
+#define DISPERSION_STIFFNESS 1
+#define DISPERSION_SWEEP 10
 #define DISPERSION_FROM_X 11
 #define DISPERSION_FROM_Z 18
 #define DISPERSED 15

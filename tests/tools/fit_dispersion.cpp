@@ -162,7 +162,7 @@ class Fitting {
         }
       }
     }
-    for (const double s : sum) wave.share.push_back(s / (plain * depth_m));
+    for (const double s : sum) wave.share.push_back(s / (plain * std::sqrt(depth_m)));
   }
 
   [[nodiscard]] double shareOf(const Wave& wave, const Fit& fit) const {

@@ -13,6 +13,7 @@ namespace spindrift::sim {
 
 /// n x n cells, x fastest.
 struct Basin {
+  bool is_flat = false;        ///< no obstacles or beaches, whatever the parameters: one depth, only sides are closed
   std::vector<float> depth_m;  ///< still depth at cell centres; 0 inside obstacles and on dry beaches
   /// Conductance [m] of the faces that a cell owns, in the order of shaders/wave/wave_faces.glsl: toward +x, toward +z,
   /// and the two diagonals of the 9-point stencil. It is the depth at the face (harmonic mean, so 0 beside a dry cell)

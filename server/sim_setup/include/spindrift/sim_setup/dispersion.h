@@ -39,8 +39,8 @@ struct Poles {
 /// face of pole 0 and 1.
 struct DispersionLevel {
   std::uint32_t side_count = 0;
-  /// 1/d of the x face and of the z face, over their open share [1/m]; b_0 d and b_1 d of the cell, over its wet share
-  /// and the squared cell size of this grid [1/m]. 0 where closed or dry.
+  /// 1/d of the x face and of the z face, over their open share; b_0 d and b_1 d of the cell, over its wet share and
+  /// the squared cell size of this grid; all times the largest depth of the basin. 0 where closed or dry.
   std::vector<std::array<double, 4>> stiffness;
   /// Weights of the x and the z face in the coarser grid's faces E, W, N, S of the same block. Empty in the coarsest
   /// grid.
@@ -53,11 +53,12 @@ struct DispersionLevel {
   }
 };
 
+/// All numbers fit in 16 bits (roundToHalf()), except where the basin is flat.
 struct Dispersion {
-  std::vector<DispersionLevel> levels;        ///< finest first, at least two
-  std::vector<std::array<double, 4>> root_c;  ///< sqrt(c_j) on the finest faces; 0 where closed
-  bool is_flat = false;                       ///< all cells have the same depth, and only faces at sides are closed
-  bool is_uneven = false;  ///< dry cells inside: the weights between grids differ from block to block
+  /// Finest first, at least two. The resolution alone decides how many there are down to the bottom's first one.
+  std::vector<DispersionLevel> levels;
+  std::vector<std::array<double, 4>> root_c;  ///< sqrt(c_j * largest depth [m]) on the finest faces; 0 where closed
+  bool is_flat = false;                       ///< as in Basin
 };
 
 /// Weight of the damped Jacobi sweeps.
@@ -65,11 +66,16 @@ inline constexpr double kSweepWeight = DISPERSION_SWEEP_WEIGHT;
 /// Sweeps before and after the coarser grid, and in the coarsest one.
 inline constexpr int kSweepCount = 2;
 inline constexpr int kCoarsestSweepCount = 5;
-/// Grids with at most this many cells per side are solved in one work group; coarsening goes at least that far.
+/// One work group solves the grids from kBottomSide cells per side down, or the coarsest grid alone if it has more, up
+/// to kBottomSideMax.
+inline constexpr std::uint32_t kBottomSide = DISPERSION_BOTTOM_SIDE;
 inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
 
 /// Returns whether a wave of so many cells per side can be halved down to the grids of the bottom.
 [[nodiscard]] bool canDisperse(std::uint32_t resolution_count);
+
+/// Cells of all grids at the bottom, at most, for a first one of so many cells per side.
+[[nodiscard]] std::size_t bottomCellsAtMost(std::uint32_t side_count);
 
 /// Bytes of its buffers on the device, at most.
 [[nodiscard]] std::uint64_t dispersionBytes(std::uint32_t resolution_count);
@@ -82,7 +88,7 @@ inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
 [[nodiscard]] Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
                                           const std::function<Poles(double depth_cells)>& poles = polesAt);
 
-/// kSweepWeight over the diagonal of the operator for each face of a grid [m]; 0 where closed.
+/// kSweepWeight over the diagonal of the operator for each face of a grid, over the largest depth; 0 where closed.
 [[nodiscard]] std::vector<std::array<double, 4>> sweepWeights(const DispersionLevel& level);
 
 }  // namespace spindrift::sim
