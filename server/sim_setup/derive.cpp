@@ -91,6 +91,7 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   out.side_m = w.side_m;
   out.cell_m = w.side_m / w.resolution_count;
   out.speed_mps = std::sqrt(scene.gravity_mps2 * w.depth_m);
+  if (disperses(scene)) out.dispersing_depth_m = w.depth_m;
   return out;
 }
 

@@ -65,12 +65,22 @@ std::pair<double, double> directionOf(const core::BreakingWave& wave) {
   return {std::cos(angle), std::sin(angle)};
 }
 
+/// Speed of a crest sech^2(s/width). The flow under a crest is its elevation times one speed. Where waves disperse,
+/// each length has its own, and what does not fit runs backward as a second wave: least energy does with the speed at
+/// the crest's mean square wave number, sqrt(0.8)/width.
+double crestSpeed(double width_m, const EffectDomain& domain) {
+  if (domain.dispersing_depth_m <= 0.0) return domain.speed_mps;
+  const double kd = std::sqrt(0.8) / width_m * domain.dispersing_depth_m;
+  return domain.speed_mps * std::sqrt(std::tanh(kd) / kd);
+}
+
 shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, double age_s, const EffectDomain& domain) {
   shared::EventUniform u{};
   const double width_m = wave.length_m / kWidthOfHalfHeight;
   const bool breaking = wave.shape == core::WaveShape::kBreaking;
   const double front_m = std::max((breaking ? kBreakingFrontShare : 1.0) * width_m, 1.5 * domain.cell_m);
   const double back_m = std::max(2 * width_m - front_m, front_m);
+  const double speed_mps = crestSpeed(0.5 * (front_m + back_m), domain);
   const auto [dx, dz] = directionOf(wave);
   u.gain_m = static_cast<float>(wave.amplitude_m * gain);
   u.direction_x = static_cast<float>(dx);
@@ -86,16 +96,16 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
                         : dx != 0.0 ? domain.side_x_m
                                     : domain.side_z_m;
   u.half_side_m = static_cast<float>(0.5 * side_m);
-  u.offset_m = static_cast<float>(-side_m / 2 + std::min(inset_m, 0.4 * side_m) + domain.speed_mps * age_s);
-  u.half_step_m = static_cast<float>(0.5 * domain.speed_mps * domain.dt_s);
-  u.speed_mps = static_cast<float>(domain.speed_mps);
+  u.offset_m = static_cast<float>(-side_m / 2 + std::min(inset_m, 0.4 * side_m) + speed_mps * age_s);
+  u.half_step_m = static_cast<float>(0.5 * speed_mps * domain.dt_s);
+  u.speed_mps = static_cast<float>(speed_mps);
   return u;
 }
 
 }  // namespace
 
 EffectDomain domainOf(const WaveLayout& wave) {
-  return {wave.side_m, wave.side_m, wave.cell_m, wave.speed_mps, wave.dt_s};
+  return {wave.side_m, wave.side_m, wave.cell_m, wave.speed_mps, wave.dt_s, wave.dispersing_depth_m};
 }
 
 double pulse(double phase) {

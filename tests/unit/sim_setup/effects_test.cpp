@@ -1,3 +1,4 @@
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +46,22 @@ TEST(Effects, RefuseMoreThanTheirBound) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::ErrorCode::kUnavailable);
   EXPECT_TRUE(effects.start(core::BreakingWave{}, 0)) << "waves have their own places";
+}
+
+TEST(Effects, AShortCrestIsAsSlowAsTheWavesThatItConsistsOf) {
+  EffectDomain domain{.side_x_m = 40, .side_z_m = 40, .cell_m = 0.1, .speed_mps = std::sqrt(9.81 * 2), .dt_s = 0.01};
+  const auto speed = [&](double length_m) {
+    Effects effects;
+    core::BreakingWave wave{core::Side::kMinusX, 0.3, length_m, 1.0};
+    wave.shape = core::WaveShape::kSwell;
+    EXPECT_TRUE(effects.start(wave, 0.0));
+    return effects.advance(0.0, domain).crests[0].speed_mps;
+  };
+  EXPECT_FLOAT_EQ(speed(1.0), static_cast<float>(domain.speed_mps)) << "without dispersion";
+  domain.dispersing_depth_m = 2.0;
+  // Full width at half height 1.763 w; k = 0.894/w, so 1.577 rad/m for 1 m and tanh(3.15)/3.15 = 0.3162.
+  EXPECT_NEAR(speed(1.0) / domain.speed_mps, std::sqrt(0.3162), 0.002);
+  EXPECT_NEAR(speed(60.0) / domain.speed_mps, 1.0, 1e-3) << "long waves do not disperse";
 }
 
 TEST(Effects, ACrestStartsAtItsSideAndTravelsInwards) {

@@ -54,6 +54,7 @@ struct WaveLayout {
   double side_m = 0.0;
   double cell_m = 0.0;
   double speed_mps = 0.0;            ///< sqrt(g d)
+  double dispersing_depth_m = 0.0;   ///< d if waves disperse, otherwise 0
   std::uint32_t substeps_count = 1;  ///< wave steps per tick
   double dt_s = 0.0;                 ///< of a wave step
   double courant = 0.0;              ///< c dt / dx

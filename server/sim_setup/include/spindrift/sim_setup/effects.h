@@ -20,9 +20,10 @@ double pulse(double phase);
 struct EffectDomain {
   double side_x_m = 0.0;
   double side_z_m = 0.0;
-  double cell_m = 0.0;     ///< smallest length that it resolves
-  double speed_mps = 0.0;  ///< of long waves, sqrt(g d)
-  double dt_s = 0.0;       ///< between two calls of advance()
+  double cell_m = 0.0;              ///< smallest length that it resolves
+  double speed_mps = 0.0;           ///< of long waves, sqrt(g d)
+  double dt_s = 0.0;                ///< between two calls of advance()
+  double dispersing_depth_m = 0.0;  ///< d if shorter waves are slower, otherwise 0
 };
 EffectDomain domainOf(const WaveLayout& wave);
 
