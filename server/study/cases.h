@@ -15,6 +15,24 @@ Outcome roundHump(gpu::Context& ctx, bool quick);
 Outcome waveEnergy(gpu::Context& ctx, bool quick);
 Outcome dampedMode(gpu::Context& ctx, bool quick);
 
+// dispersed_wave_cases.cpp
+Outcome airyPhaseSpeed(gpu::Context& ctx, bool quick);
+Outcome wavePacket(gpu::Context& ctx, bool quick);
+Outcome airyRings(gpu::Context& ctx, bool quick);
+
+// dispersed_basin_cases.cpp
+Outcome basinModes(gpu::Context& ctx, bool quick);
+Outcome dispersedStillWater(gpu::Context& ctx, bool quick);
+Outcome thinWalls(gpu::Context& ctx, bool quick);
+Outcome dispersedEnergy(gpu::Context& ctx, bool quick);
+
+// shoaling_and_gap_cases.cpp
+Outcome shoaling(gpu::Context& ctx, bool quick);
+Outcome diffraction(gpu::Context& ctx, bool quick);
+
+// wake_cases.cpp
+Outcome kelvinWake(gpu::Context& ctx, bool quick);
+
 // slope_and_side_cases.cpp
 Outcome reflection(gpu::Context& ctx, bool quick);
 Outcome greensLaw(gpu::Context& ctx, bool quick);

@@ -23,6 +23,23 @@ core::Scene waveScene(std::uint32_t resolution_count, double side_m, double dept
   return scene;
 }
 
+core::Scene dispersiveScene(std::uint32_t resolution_count, double cell_m, double depth_m, core::WaveBoundary sides,
+                            double tick_rate_hz) {
+  core::Scene scene;
+  scene.name = "dispersive wave";
+  scene.tick_rate_hz = tick_rate_hz;
+  scene.wave.emplace();
+  core::WaveScene& wave = *scene.wave;
+  wave.resolution_count = resolution_count;
+  wave.side_m = resolution_count * cell_m;
+  wave.depth_m = depth_m;
+  wave.damping_per_s = 0.0;
+  wave.fixed_substeps_count = 1;
+  wave.dispersion = core::Dispersion::kAiry;
+  wave.setBoundaries(sides);
+  return scene;
+}
+
 void setSurface(sim::WaterSim& water, const std::function<double(double, double)>& eta_m) {
   sim::StateCopy state = water.copyState();
   const sim::WaveLayout wave = *water.derived().wave;

@@ -12,6 +12,10 @@ namespace spindrift::study {
 core::Scene waveScene(std::uint32_t resolution_count, double side_m, double depth_m, double courant,
                       core::Stencil stencil, core::WaveBoundary sides);
 
+/// A square of linear, undamped water whose waves disperse, with one wave step per tick.
+core::Scene dispersiveScene(std::uint32_t resolution_count, double cell_m, double depth_m, core::WaveBoundary sides,
+                            double tick_rate_hz = 60.0);
+
 /// Sets the surface to eta(x, z) [m], x and z counted from the corner, without flow: the state half a step after a
 /// moment of rest.
 void setSurface(sim::WaterSim& water, const std::function<double(double x_m, double z_m)>& eta_m);

@@ -1,0 +1,58 @@
+#include "boat_track.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <shared/boats.h>
+
+#include "ticks.h"
+
+namespace spindrift::study {
+
+HullState hullOf(const sim::StateCopy& state, double side_m) {
+  const auto& boat = state.boats;
+  return {.x_m = boat[0] + side_m / 2,
+          .z_m = boat[2] + side_m / 2,
+          .heading_rad = boat[3],
+          .age_s = boat[6],
+          .length_m = boat[16],
+          .beam_m = boat[17],
+          .draught_m = boat[19],
+          .aloft = boat[21]};
+}
+
+std::vector<double> hullHead(const HullState& hull, std::size_t n, double side_m) {
+  const double cell_m = side_m / static_cast<double>(n);
+  const double half_length_m = std::max(0.5 * hull.length_m, 1.5 * cell_m);
+  const double half_beam_m = std::max(0.5 * hull.beam_m, 1.5 * cell_m);
+  // The integral of exp(-a^4) over all a is 2 * 0.9064: with it the displaced volume is length x beam x draught.
+  const double share = 0.25 * hull.length_m * hull.beam_m / (half_length_m * half_beam_m) / (0.9064 * 0.9064);
+  const double height_m =
+      hull.draught_m * share * std::min(hull.age_s / double{BOAT_SETTLING_S}, 1.0) * (1.0 - hull.aloft);
+  const double c = std::cos(hull.heading_rad);
+  const double s = std::sin(hull.heading_rad);
+  std::vector<double> out(n * n);
+  for (std::size_t z = 0; z < n; ++z) {
+    const double dz_m = std::remainder((static_cast<double>(z) + 0.5) * cell_m - hull.z_m, side_m);
+    for (std::size_t x = 0; x < n; ++x) {
+      const double dx_m = std::remainder((static_cast<double>(x) + 0.5) * cell_m - hull.x_m, side_m);
+      const double along = (dx_m * c + dz_m * s) / half_length_m;
+      const double across = (dz_m * c - dx_m * s) / half_beam_m;
+      if (std::max(std::abs(along), std::abs(across)) > double{HULL_REACH}) continue;
+      out[x + n * z] = height_m * std::exp(-std::pow(along, 4) - std::pow(across, 4));
+    }
+  }
+  return out;
+}
+
+core::Result<sim::StateCopy> tickAtSpeed(sim::WaterSim& water, double speed_mps) {
+  if (auto done = tick(water); !done) return done.error();
+  sim::StateCopy state = water.copyState();
+  sim::StateCopy held = state;
+  held.boats[8] = static_cast<float>(speed_mps);
+  held.boats[9] = held.boats[11] = 0.0F;
+  water.setState(held);
+  return state;
+}
+
+}  // namespace spindrift::study
