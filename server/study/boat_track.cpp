@@ -49,8 +49,12 @@ core::Result<sim::StateCopy> tickAtSpeed(sim::WaterSim& water, double speed_mps)
   if (auto done = tick(water); !done) return done.error();
   sim::StateCopy state = water.copyState();
   sim::StateCopy held = state;
+  // Below the surface, so that the hull never leaves the water and its pressure is steady.
+  held.boats[1] = -2 * held.boats[18];
+  held.boats[4] = held.boats[5] = 0.0F;  // pitch, roll
   held.boats[8] = static_cast<float>(speed_mps);
-  held.boats[9] = held.boats[11] = 0.0F;
+  held.boats[9] = held.boats[10] = held.boats[11] = 0.0F;  // to starboard, up, yaw
+  held.boats[12] = held.boats[13] = 0.0F;                  // pitch and roll rates
   water.setState(held);
   return state;
 }

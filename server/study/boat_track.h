@@ -25,8 +25,8 @@ struct HullState {
 /// shape as on the device: that is the load of which the waves are compared.
 [[nodiscard]] std::vector<double> hullHead(const HullState& hull, std::size_t n, double side_m);
 
-/// Runs one tick and then sets the speed of the first boat along +x, whatever drives and resists it. Returns the state
-/// after the tick. Errors: those of the device.
+/// Runs one tick and then sets the first boat's speed along +x and holds it upright and submerged, whatever drives,
+/// resists and lifts it. Returns the state after the tick. Errors: those of the device.
 [[nodiscard]] core::Result<sim::StateCopy> tickAtSpeed(sim::WaterSim& water, double speed_mps);
 
 }  // namespace spindrift::study

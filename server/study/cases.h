@@ -32,6 +32,7 @@ Outcome diffraction(gpu::Context& ctx, bool quick);
 
 // wake_cases.cpp
 Outcome kelvinWake(gpu::Context& ctx, bool quick);
+Outcome shallowWake(gpu::Context& ctx, bool quick);
 
 // slope_and_side_cases.cpp
 Outcome reflection(gpu::Context& ctx, bool quick);

@@ -52,9 +52,22 @@ class Chart:
     bound: tuple[float, str] | None = None  # a vertical line: place and text
 
 
+@dataclasses.dataclass
+class FieldChart:
+    """Fields on the same cells side by side: (name, rows of values) each."""
+
+    name: str
+    title: str
+    unit: str
+    corners: tuple[float, float, float, float]  # x from, x to, z from, z to [m]
+    panels: list[tuple[str, list[list[float]]]]
+
+
 def accuracy_charts(results):
     """One chart for each figure of each case: measured points of others, lines of the simulation."""
     for case in results["cases"]:
+        for field in case.get("fields", []):
+            yield field_chart(field)
         for figure in case["figures"]:
             series = []
             experiments = 0
@@ -68,6 +81,17 @@ def accuracy_charts(results):
             logarithmic = figure["is_logarithmic"]
             name = f"accuracy_{figure['name']}"
             yield Chart(name, figure["title"], figure["x_label"], figure["y_label"], series, logarithmic, logarithmic)
+
+
+def field_chart(field):
+    columns, cell, step = field["columns_count"], field["cell_m"], field["step"]
+    panels = []
+    for panel in field["panels"]:
+        values = [value * step for value in panel["steps"]]
+        panels.append((panel["name"], [values[i : i + columns] for i in range(0, len(values), columns)]))
+    x, z = field["first_x_m"], field["first_z_m"]
+    corners = (x, x + columns * cell, z, z + len(panels[0][1]) * cell)
+    return FieldChart(f"accuracy_{field['name']}", field["title"], field["unit"], corners, panels)
 
 
 def line_of(name, points, others):
@@ -229,6 +253,25 @@ def write_chart(chart, folder):
     pyplot.close(figure)
 
 
+def write_field_chart(chart, folder):
+    from matplotlib import pyplot
+
+    figure, all_axes = pyplot.subplots(1, len(chart.panels), figsize=(10, 4.2), dpi=72, layout="constrained", sharey=True)
+    figure.suptitle(chart.title)
+    # The waves under a hull are several times as high as those behind it.
+    largest = 0.5 * max(abs(value) for _, rows in chart.panels for row in rows for value in row)
+    for axes, (name, rows) in zip(all_axes, chart.panels):
+        image = axes.imshow(rows, origin="lower", extent=chart.corners, cmap="RdBu_r", vmin=-largest, vmax=largest,
+                            interpolation="bicubic")
+        axes.set_title(name)
+        axes.set_xlabel("x [m]")
+        axes.grid(False)
+    all_axes[0].set_ylabel("z [m]")
+    figure.colorbar(image, ax=list(all_axes), label=f"elevation [{chart.unit}]", extend="both", shrink=0.8)
+    figure.savefig(folder / f"{chart.name}.svg", metadata={"Date": None, "Creator": None})
+    pyplot.close(figure)
+
+
 def is_drawable(chart, point):
     """Infinite values, and zero on a logarithmic axis, have no place."""
     is_finite = math.isfinite(point.x) and math.isfinite(point.y)
@@ -308,7 +351,8 @@ def main():
         load_matplotlib()
     for chart in charts:
         if not arguments.list:
-            write_chart(chart, arguments.folder)
+            write = write_field_chart if isinstance(chart, FieldChart) else write_chart
+            write(chart, arguments.folder)
         print(f"{chart.name}.svg")
 
 

@@ -66,7 +66,7 @@ Outcome shoaling(gpu::Context& ctx, bool quick) {
   constexpr double kAmplitude_m = 0.01;
   std::vector<Row> rows;
   for (const ShoalingRun& each :
-       {ShoalingRun{1.5, 256, 0.25, 20.0}, ShoalingRun{3.0, 256, 0.375, 16.0, true}, ShoalingRun{3.0, 384, 0.25, 20.0},
+       {ShoalingRun{1.5, 320, 0.2, 20.0}, ShoalingRun{3.0, 256, 0.375, 16.0, true}, ShoalingRun{3.0, 384, 0.25, 20.0},
         ShoalingRun{4.5, 384, 0.375, 16.0}, ShoalingRun{6.0, 384, 0.5, 12.0}}) {
     if (quick != each.is_quick) continue;
     const std::size_t n = each.resolution_count;

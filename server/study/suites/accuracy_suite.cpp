@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include <boost/json.hpp>
 #include <fmt/format.h>
@@ -112,17 +113,62 @@ study::Figure figureFrom(const boost::json::object& json) {
   return figure;
 }
 
+/// Values as whole numbers of a step, 1/500 of the largest: finer than colours show, and short.
+boost::json::object toJson(const study::FieldFigure& figure) {
+  double largest = 0.0;
+  for (const auto& panel : figure.panels) {
+    for (const double value : panel.values) largest = std::max(largest, std::abs(value));
+  }
+  const double step = largest > 0 ? largest / 500 : 1.0;
+  boost::json::array panels;
+  for (const auto& panel : figure.panels) {
+    boost::json::array steps;
+    for (const double value : panel.values) steps.push_back(std::lround(value / step));
+    panels.push_back({{"name", panel.name}, {"steps", std::move(steps)}});
+  }
+  return {{"name", figure.name},           {"title", figure.title},
+          {"unit", figure.unit},           {"columns_count", figure.columns_count},
+          {"cell_m", figure.cell_m},       {"first_x_m", figure.first_x_m},
+          {"first_z_m", figure.first_z_m}, {"step", step},
+          {"panels", std::move(panels)}};
+}
+
+study::FieldFigure fieldsFrom(const boost::json::object& json) {
+  study::FieldFigure figure;
+  figure.name = json.at("name").as_string();
+  figure.title = json.at("title").as_string();
+  figure.unit = json.at("unit").as_string();
+  figure.columns_count = json.at("columns_count").to_number<std::size_t>();
+  figure.cell_m = json.at("cell_m").to_number<double>();
+  figure.first_x_m = json.at("first_x_m").to_number<double>();
+  figure.first_z_m = json.at("first_z_m").to_number<double>();
+  const double step = json.at("step").to_number<double>();
+  for (const auto& value : json.at("panels").as_array()) {
+    const auto& object = value.as_object();
+    study::FieldFigure::Panel panel{std::string(object.at("name").as_string()), {}};
+    for (const auto& steps : object.at("steps").as_array()) panel.values.push_back(steps.to_number<double>() * step);
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
 boost::json::object toJson(const study::CaseResult& result) {
-  boost::json::array rows, figures;
+  boost::json::array rows, figures, fields;
   for (const Row& row : result.rows) rows.push_back(toJson(row));
   for (const study::Figure& figure : result.figures) figures.push_back(toJson(figure));
-  return {{"rows", std::move(rows)}, {"figures", std::move(figures)}};
+  for (const study::FieldFigure& figure : result.fields) fields.push_back(toJson(figure));
+  boost::json::object out{{"rows", std::move(rows)}, {"figures", std::move(figures)}};
+  if (!fields.empty()) out["fields"] = std::move(fields);
+  return out;
 }
 
 study::CaseResult resultFrom(const boost::json::object& json) {
   study::CaseResult result;
   for (const auto& row : json.at("rows").as_array()) result.rows.push_back(fromJson(row.as_object()));
   for (const auto& figure : json.at("figures").as_array()) result.figures.push_back(figureFrom(figure.as_object()));
+  if (const auto* fields = json.if_contains("fields")) {
+    for (const auto& figure : fields->as_array()) result.fields.push_back(fieldsFrom(figure.as_object()));
+  }
   return result;
 }
 

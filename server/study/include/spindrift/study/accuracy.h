@@ -15,6 +15,7 @@ namespace spindrift::study {
 struct CaseResult {
   std::vector<Row> rows;
   std::vector<Figure> figures;
+  std::vector<FieldFigure> fields = {};
 };
 
 struct Case {
