@@ -65,7 +65,8 @@ core::Result<std::unique_ptr<Boats>> Boats::create(gpu::Context& ctx, const core
          gpu::TexelBuffer::create(ctx, "boats", std::size_t{MAX_BOATS} * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F));
   create(out->control_uniforms_,
          gpu::Buffer::create(ctx, "boat controls", sizeof(shared::BoatControls), gpu::BufferUse::kUpdatable));
-  create(out->move_, gpu::Program::create(ctx, "bodies/move.comp", defines));
+  create(out->drift_, gpu::Program::create(ctx, "bodies/drift.comp", defines));
+  create(out->kick_, gpu::Program::create(ctx, "bodies/kick.comp", defines));
   if (scene.wave) create(out->press_, gpu::Program::create(ctx, "bodies/press.comp", defines));
   if (create.error()) return *create.error();
   return out;
@@ -170,7 +171,9 @@ void Boats::move(const Wave* wave) {
   }
   bind();
   state_.bindStorage(BOATS);
-  move_.dispatchGroups(1);
+  drift_.dispatchGroups(1);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  kick_.dispatchGroups(controls_.place_count);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

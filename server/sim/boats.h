@@ -73,7 +73,7 @@ class Boats {
   shared::BoatControls controls_{};
   gpu::TexelBuffer state_;
   gpu::Buffer control_uniforms_;
-  gpu::Program move_, press_;
+  gpu::Program drift_, kick_, press_;
 };
 
 }  // namespace spindrift::sim

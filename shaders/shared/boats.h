@@ -6,6 +6,9 @@
 //   3  pitch rate, roll rate [rad/s], throttle, rudder [-1..1]
 //   4  length, beam, height, draught at rest [m]
 //   5  full speed [m/s], aloft [0..1] (0: the water carries the boat, 1: it is in the air), 0, 0
+//   6  mean velocity of the water under the hull as last sampled: x, z, up [m/s]; acceleration ahead by the water's
+//      pressure on the hull [m/s^2]
+// Places are those at the end of the tick, speeds and rates those half a tick later (bodies/kick.comp).
 #ifndef SPINDRIFT_SHARED_BOATS_H
 #define SPINDRIFT_SHARED_BOATS_H
 
@@ -13,7 +16,7 @@
 #include "shared/dual.h"
 
 #define MAX_BOATS 16
-#define BOAT_TEXELS 6
+#define BOAT_TEXELS 7
 // A new boat reaches its full pressure on the water only after this time, so that it makes no splash.
 #define BOAT_SETTLING_S 1.0f
 // The pressure of a hull, exp(-a^4 - b^4) in half lengths and half beams, is cut off at this many of them.

@@ -83,7 +83,7 @@ TEST_F(SharedBlocks, EventUniformsHaveTheLayoutOfTheDriver) {
 TEST_F(SharedBlocks, BoatControlsHaveTheLayoutOfTheDriver) {
   core::Scene scene = smallScene();
   scene.boats.emplace();
-  const gpu::BlockLayout boats = block("bodies/move.comp", "BoatControls", scene);
+  const gpu::BlockLayout boats = block("bodies/kick.comp", "BoatControls", scene);
   EXPECT_EQ(boats.binding, static_cast<std::uint32_t>(BOAT_CONTROLS));
   EXPECT_EQ(boats.size_bytes, sizeof(shared::BoatControls));
   EXPECT_EQ(offsetOf(boats, "boat_control[0]"), 0u);

@@ -45,7 +45,7 @@ struct Boat {
   double beam_m = Default::beam_m;
   double height_m = Default::height_m;            ///< keel to deck
   double density_ratio = Default::density_ratio;  ///< boat density over water density
-  double max_speed_mps = Default::max_speed_mps;  ///< at full throttle in calm water
+  double max_speed_mps = Default::max_speed_mps;  ///< at full throttle, without wave-making resistance
   double throttle_ratio = Default::throttle_ratio;
   double rudder_ratio = Default::rudder_ratio;
 };
