@@ -46,6 +46,7 @@ const std::vector<Case>& accuracyCases() {
         {"taylor-green", "Decay of vortices in a box without sides", taylorGreen},
         {"floating-body", "Draught of a boat at rest", floatingBody},
         {"mach-wedge", "Wake of a boat faster than the waves", machWedge},
+        {"boat-resistance", "Wave-making resistance of a boat over its speed", boatResistance},
     };
     for (Case& each : all) each = unlessLost(std::move(each));
     return all;

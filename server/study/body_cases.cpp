@@ -1,5 +1,7 @@
-// Boats: draught and wake.
+// Boats: draught, wake and wave-making resistance.
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 #include <shared/boats.h>
@@ -7,8 +9,88 @@
 #include "cases.h"
 #include "ticks.h"
 #include "wave_modes.h"
+#include "wave_resistance.h"
 
 namespace spindrift::study {
+namespace {
+
+/// A boat that drives straight on through a periodic basin, its speed and resistance when both are steady.
+struct SteadyRun {
+  double speed_mps;
+  double resistance;  ///< over the boat's weight
+};
+
+/// Basin of `cells`^2 cells of 15 cm with damping, in which wakes fade before they come round.
+core::Scene towingBasin(std::uint32_t cells, double depth_m, core::Dispersion dispersion) {
+  core::Scene scene;
+  scene.name = "towing basin";
+  scene.wave.emplace();
+  scene.wave->resolution_count = cells;
+  scene.wave->side_m = 0.15 * cells;
+  scene.wave->depth_m = depth_m;
+  scene.wave->damping_per_s = 0.5;
+  scene.wave->dispersion = dispersion;
+  scene.wave->setBoundaries(core::WaveBoundary::kPeriodic);
+  scene.boats.emplace();
+  return scene;
+}
+
+/// Runs `boat` with a thrust that linear theory says it needs for about `speed_mps`.
+core::Result<SteadyRun> steadyRun(gpu::Context& ctx, core::Scene scene, core::Boat boat, double speed_mps,
+                                  double expected_resistance) {
+  constexpr double kDragPerLength = 0.35;  // bodies/kick.comp
+  const double g = scene.gravity_mps2;
+  boat.x_m = -scene.wave->side_m / 4;
+  boat.throttle_ratio = 1.0;
+  boat.max_speed_mps = std::sqrt(speed_mps * speed_mps + expected_resistance * g * boat.length_m / kDragPerLength);
+  scene.boats->boats = {boat};
+  auto made = sim::WaterSim::create(ctx, scene);
+  if (!made) return made.error();
+  sim::WaterSim& water = **made;
+  sim::StateCopy state = water.copyState();
+  state.boats[8] = static_cast<float>(speed_mps);
+  water.setState(state);
+  if (auto done = runTo(water, 16.0, [] {}); !done) return done.error();
+  SteadyRun out{};
+  constexpr int kSamples = 40;
+  for (int k = 0; k < kSamples; ++k) {
+    if (auto done = run(water, 7); !done) return done.error();
+    const auto boats = water.copyState().boats;
+    out.speed_mps += double{boats[8]} / kSamples;
+    out.resistance -= double{boats[27]} / g / kSamples;
+  }
+  return out;
+}
+
+/// Adds a row per speed, given as U/sqrt(g L), and what was measured.
+core::Result<void> addResistance(gpu::Context& ctx, double depth_m, core::Dispersion dispersion,
+                                 const std::vector<double>& froude_numbers, std::vector<Row>& rows,
+                                 std::vector<SteadyRun>& runs) {
+  const core::Boat boat{.length_m = 2.4, .beam_m = 0.9, .height_m = 0.6, .density_ratio = 0.25};
+  const core::Scene scene = towingBasin(128, depth_m, dispersion);
+  const core::WaveScene& wave = *scene.wave;
+  const sim::HullPressure hull = sim::hullPressure(boat, wave.side_m / wave.resolution_count);
+  const LinearWater water{scene.gravity_mps2, depth_m, dispersion == core::Dispersion::kAiry};
+  const double hull_mps = std::sqrt(water.gravity_mps2 * boat.length_m);
+  for (const double number : froude_numbers) {
+    const double wanted_mps = number * hull_mps;
+    const auto steady = steadyRun(ctx, scene, boat, wanted_mps,
+                                  basinResistance(hull, water, wanted_mps, wave.side_m, wave.damping_per_s));
+    if (!steady) return steady.error();
+    runs.push_back(*steady);
+    rows.push_back({fmt::format("{} m deep, {}: resistance at U = {:.3f} sqrt(g L), {:.2f} sqrt(g d)", depth_m,
+                                water.disperses ? "Airy" : "no dispersion", steady->speed_mps / hull_mps,
+                                steady->speed_mps / std::sqrt(water.gravity_mps2 * depth_m)),
+                    "of weight", steady->resistance,
+                    basinResistance(hull, water, steady->speed_mps, wave.side_m, wave.damping_per_s),
+                    Tolerance::kAbsolute, 0.004,
+                    fmt::format("linear theory in the same basin; without sides and damping {:.4f}",
+                                openWaterResistance(hull, water, steady->speed_mps))});
+  }
+  return {};
+}
+
+}  // namespace
 
 Outcome floatingBody(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
@@ -65,13 +147,35 @@ Outcome machWedge(gpu::Context& ctx, bool /*quick*/) {
     return static_cast<double>(best) * cell_m;
   };
   const double c_mps = water.derived().wave->speed_mps;
-  return CaseResult{
-      std::vector<Row>{{fmt::format("half angle of the wedge at {:.2f} c", forward_mps / c_mps), "rad",
-                        std::atan((arm_m(9.0) - arm_m(5.0)) / 4.0), std::asin(c_mps / forward_mps),
-                        Tolerance::kAbsolute, 0.12,
-                        "arcsin(c/U): the wave equation has no dispersion, so no Kelvin wake; tolerance: one cell in "
-                        "each of the two places"}},
-      {}};
+  return CaseResult{std::vector<Row>{{fmt::format("half angle of the wedge at {:.2f} c", forward_mps / c_mps), "rad",
+                                      std::atan((arm_m(9.0) - arm_m(5.0)) / 4.0), std::asin(c_mps / forward_mps),
+                                      Tolerance::kAbsolute, 0.12,
+                                      "arcsin(c/U): without dispersion there is no Kelvin wake; tolerance: one cell in "
+                                      "each of the two places"}},
+                    {}};
+}
+
+Outcome boatResistance(gpu::Context& ctx, bool quick) {
+  using core::Dispersion;
+  std::vector<Row> rows;
+  std::vector<SteadyRun> runs;
+  if (quick) {
+    if (auto done = addResistance(ctx, 2.4, Dispersion::kAiry, {0.4, 0.55}, rows, runs); !done) return done.error();
+    if (auto done = addResistance(ctx, 0.5, Dispersion::kAiry, {0.7}, rows, runs); !done) return done.error();
+    return CaseResult{std::move(rows), {}};
+  }
+  const std::vector<double> slow = {0.25, 0.3, 0.35, 0.4, 0.45, 0.5};
+  const std::vector<double> fast = {0.55, 0.6, 0.65, 0.7, 0.8, 0.9, 1.0};
+  if (auto done = addResistance(ctx, 2.4, Dispersion::kAiry, slow, rows, runs); !done) return done.error();
+  if (auto done = addResistance(ctx, 4.8, Dispersion::kAiry, fast, rows, runs); !done) return done.error();
+  const auto hump =
+      std::ranges::max_element(runs, {}, [](const SteadyRun& r) { return r.resistance / (r.speed_mps * r.speed_mps); });
+  rows.push_back({"hump: largest resistance over U^2 at U/sqrt(g L)", "", hump->speed_mps / std::sqrt(9.81 * 2.4), 0.55,
+                  Tolerance::kAbsolute, 0.051, "the same of linear theory, in steps of 0.05"});
+  const std::vector<double> shallow = {0.3, 0.4, 0.45, 0.5, 0.6, 0.8};
+  if (auto done = addResistance(ctx, 0.5, Dispersion::kAiry, shallow, rows, runs); !done) return done.error();
+  if (auto done = addResistance(ctx, 0.5, Dispersion::kNone, {0.6, 0.8}, rows, runs); !done) return done.error();
+  return CaseResult{std::move(rows), {}};
 }
 
 }  // namespace spindrift::study

@@ -54,5 +54,6 @@ Outcome taylorGreen(gpu::Context& ctx, bool quick);
 // body_cases.cpp
 Outcome floatingBody(gpu::Context& ctx, bool quick);
 Outcome machWedge(gpu::Context& ctx, bool quick);
+Outcome boatResistance(gpu::Context& ctx, bool quick);
 
 }  // namespace spindrift::study
