@@ -11,6 +11,8 @@
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/scene_parts.h>
+#include <spindrift/sim_setup/sea_state.h>
 
 #include "commands.h"
 
@@ -78,6 +80,24 @@ void printBoats(const core::BoatsScene& boats) {
   }
 }
 
+void printStorm(const core::Scene& scene, const sim::Derived& derived) {
+  fmt::print("  storm      {:.3g}\n", scene.storm->level_ratio);
+  if (!sim::hasWindSea(scene)) return;
+  const sim::SeaState sea = sim::seaState(scene, *derived.wave);
+  const auto enter = std::ranges::count_if(sea.waves, [](const sim::PlaneWave& wave) { return wave.sides != 0; });
+  if (enter == 0) {
+    fmt::print("  sea        calm: {}\n", sea.waves.empty() ? "no wind, or only waves that the grid does not resolve"
+                                                            : "the wind comes from closed sides");
+    return;
+  }
+  fmt::print(
+      "  sea        wind of {:.3g} m/s over {:.4g} m: significant height {:.3g} m, peak at {:.3g} s and {:.3g} m; {} "
+      "of "
+      "{} waves come in\n",
+      sea.wind_speed_mps, scene.storm->fetch_m, sea.significant_height_m, sea.peak_period_s, sea.peak_length_m, enter,
+      sea.waves.size());
+}
+
 void print(const std::string& file, const v1::Scene& scene, const core::Scene& in, const sim::Derived& d) {
   fmt::print("{}: fine\n  scene      {} ({}), {}\n  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", file,
              scene.name(), scene.title(), scene::fidelityName(scene.fidelity()), d.tick_s * 1e3, d.substeps_count,
@@ -100,7 +120,7 @@ void print(const std::string& file, const v1::Scene& scene, const core::Scene& i
     printParticles(in);
   }
   if (in.boats) printBoats(*in.boats);
-  if (in.storm) fmt::print("  storm      {:.3g}\n", in.storm->level_ratio);
+  if (in.storm) printStorm(in, d);
   for (const sim::StepRule& rule : d.rules)
     fmt::print("  rule       step <= {:.3f} ms: {} ({})\n", rule.max_dt_s * 1e3, rule.name, rule.field);
   fmt::print("  memory     {:.2f} MB on the device\n", static_cast<double>(d.device_bytes) / 1e6);

@@ -186,6 +186,8 @@ core::StormScene toCore(const v1::StormScene& in) {
   out.drop_depth_m = in.drop_depth_m();
   out.wave_height_m = in.wave_height_m();
   out.wind_direction_deg = in.wind_direction_deg();
+  out.wind_speed_mps = in.wind_speed_mps();
+  out.fetch_m = in.fetch_m();
   return out;
 }
 

@@ -44,9 +44,16 @@ void WaterSim::advanceWave() {
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
     const double end_s = time_s() + (k + 1) * derived_.wave->dt_s;
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr,
-                          parts_->effects.advance(end_s, domainOf(*derived_.wave)));
+                          parts_->effects.advance(end_s, domainOf(*derived_.wave)), advanceSea(k));
   }
   parts_->wave->clearPressure();  // hulls and falling particles set it again for the next tick
+}
+
+const gpu::TexelBuffer* WaterSim::advanceSea(std::uint32_t substep) {
+  if (!parts_->wind_sea) return nullptr;
+  parts_->wave->bindBasin();
+  const double begin_s = runTick() * derived_.tick_s + substep * derived_.wave->dt_s;
+  return parts_->wind_sea->advance(begin_s, derived_.wave->dt_s);
 }
 
 void WaterSim::stirParticles() {
@@ -188,6 +195,7 @@ core::Result<void> WaterSim::build() {
     else
       create(parts_->sph, Sph::create(ctx_, defines));
   }
+  if (hasWindSea(scene_)) create(parts_->wind_sea, WindSea::create(ctx_, scene_, *derived_.wave, defines));
   if (hasBreakers(scene_)) create(parts_->breakers, Breakers::create(ctx_, *derived_.wave, defines));
   if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, *derived_.particles, defines));
   if (scene_.boats) create(parts_->boats, Boats::create(ctx_, scene_, derived_.uniforms.wave_cell_m, defines));

@@ -24,6 +24,7 @@
 #include "surface_foam.h"
 #include "ticks_in_flight.h"
 #include "wave.h"
+#include "wind_sea.h"
 
 namespace spindrift::sim {
 
@@ -49,6 +50,7 @@ struct WaterSim::Parts {
   std::unique_ptr<PositionBased> position_based;
   std::unique_ptr<Wave> wave;
   Effects effects;
+  std::unique_ptr<WindSea> wind_sea;  ///< in scenes with a storm whose waves come in at the sides
   std::unique_ptr<Breakers> breakers;
   std::unique_ptr<ParticlePool> pool;
   std::unique_ptr<Boats> boats;

@@ -72,6 +72,7 @@ const std::vector<float>& WaterSim::Parts::startOf(const core::Scene& scene, con
 
 void WaterSim::uploadStartingState() {
   if (parts_->wave) parts_->wave->clear();
+  if (parts_->wind_sea) parts_->wind_sea->clear();
   if (parts_->breakers) parts_->breakers->clear();
   if (parts_->foam) parts_->foam->clear();
   if (parts_->boats) parts_->boats->reset(scene_);

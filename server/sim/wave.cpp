@@ -48,10 +48,15 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
          gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms), gpu::BufferUse::kUpdatable));
   create(wave->splash_, Program::create(ctx, "wave/splash.comp", defines));
   create(wave->crest_, Program::create(ctx, "wave/crest.comp", defines));
-  create(wave->momentum_, Program::create(ctx, "wave/momentum.comp", defines));
   create(wave->find_share_, Program::create(ctx, "wave/given_share.comp", defines));
   create(wave->limit_, Program::create(ctx, "wave/limit.comp", defines));
-  create(wave->continuity_, Program::create(ctx, "wave/continuity.comp", defines));
+  for (const bool sea : {false, true}) {
+    if (sea && !hasWindSea(scene)) continue;
+    gpu::Defines of_sea = defines;
+    of_sea.emplace_back("SEA", sea ? "1" : "0");
+    create(wave->momentum_[sea], Program::create(ctx, "wave/momentum.comp", of_sea));
+    create(wave->continuity_[sea], Program::create(ctx, "wave/continuity.comp", of_sea));
+  }
   if (sampled) {
     create(wave->surface_,
            TexelBuffer::create(ctx, "surface", cells, TexelFormat::kRGBA32F, gpu::BufferContent::kScratch));
@@ -135,7 +140,9 @@ void Wave::bindBasin() const {
   bed_.bindTexel(BED);
 }
 
-void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events) {
+void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events,
+                   const gpu::TexelBuffer* incident_sea) {
+  const bool sea = incident_sea != nullptr;
   if (dispersed_slope_) dispersed_slope_->compute(elevation_, has_head_ ? &pressure_head_ : nullptr);
   bindBasin();
   if (dispersed_slope_) dispersed_slope_->texels().bindTexel(DISPERSED);
@@ -145,7 +152,8 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   flow_.bindStorage(FLOW);
   transfer_.bindStorage(TRANSFER);
   limit_args_.bindStorage(LIMIT_ARGS);
-  momentum_.dispatch(n_, n_);
+  if (sea) incident_sea->bindTexel(INCIDENT_SEA);
+  momentum_[sea].dispatch(n_, n_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   displace(events);
   limit();
@@ -153,7 +161,8 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   transfer_.bindTexel(TRANSFER);
   elevation_.bindStorage(ELEVATION);
   if (has_outflow_) outflow_.bindStorage(OUTFLOW);
-  continuity_.dispatch(n_, n_);
+  if (sea) incident_sea->bindTexel(INCIDENT_SEA);  // other passes use its unit
+  continuity_[sea].dispatch(n_, n_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

@@ -42,8 +42,10 @@ class Wave {
   void fillUpToBed(const core::Scene& scene, const WaveLayout& layout);
 
   /// Advances one wave step: the flow driven by the slope plus this step's share of the active effects, limited to the
-  /// water that cells hold. `breaking` may be null; empty `events` mean that no effect is active.
-  void advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events);
+  /// water that cells hold. `breaking` may be null; empty `events` mean that no effect is active. `incident_sea`: what
+  /// comes in through absorbing sides (wind_sea.h), null when nothing does.
+  void advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events,
+               const gpu::TexelBuffer* incident_sea);
   /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
 
@@ -87,7 +89,8 @@ class Wave {
   gpu::TexelBuffer surface_, surface_flow_;
   std::unique_ptr<DispersedSlope> dispersed_slope_;  ///< null in scenes without dispersion
   gpu::Buffer event_uniforms_;
-  gpu::Program splash_, crest_, momentum_, find_share_, limit_, continuity_, sample_surface_;
+  gpu::Program splash_, crest_, find_share_, limit_, sample_surface_;
+  gpu::Program momentum_[2], continuity_[2];  ///< by whether a sea comes in; the second only in scenes with a wind sea
 };
 
 }  // namespace spindrift::sim

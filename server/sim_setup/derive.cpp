@@ -9,6 +9,7 @@
 #include <spindrift/sim_setup/lattice.h>
 #include <spindrift/sim_setup/particle_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
+#include <spindrift/sim_setup/sea_state.h>
 #include <spindrift/sim_setup/spray.h>
 
 namespace spindrift::sim {
@@ -143,6 +144,7 @@ std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   }
   if (d.wave) bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * waveCellBytes(scene);
   if (disperses(scene)) bytes += dispersionBytes(d.wave->resolution_count);
+  if (hasWindSea(scene)) bytes += windSeaBytes(d.wave->resolution_count);
   return bytes;
 }
 

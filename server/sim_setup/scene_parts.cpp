@@ -23,6 +23,10 @@ bool isOpen(const core::Scene& scene) {
   return false;
 }
 
+bool hasWindSea(const core::Scene& scene) {
+  return scene.storm && disperses(scene) && isOpen(scene);
+}
+
 bool isTwoWay(const core::Scene& scene) {
   return scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
 }

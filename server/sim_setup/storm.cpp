@@ -5,6 +5,7 @@
 #include <shared/event_uniforms.h>
 
 #include <spindrift/sim_setup/random.h>
+#include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/storm.h>
 
 namespace spindrift::sim {
@@ -14,7 +15,7 @@ namespace {
 constexpr double kDropRadius_cells = 2.5;
 constexpr double kDropDuration_s = 0.08;
 constexpr double kDropDepthShare = 0.1;  ///< of the water's depth, at most
-/// Wind waves at full storm: mean interval of the groups, their length, and the spread of their direction about the
+/// Gusts at full storm: mean interval of the groups, their length, and the spread of their direction about the
 /// wind.
 constexpr double kGroupInterval_s = 1.6;
 constexpr double kGroupLengthShare = 0.09;  ///< of the side of the water
@@ -45,7 +46,7 @@ std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayou
     out.emplace_back(drop);
   }
 
-  if (random.unit() < storm.level_ratio * tick_s / kGroupInterval_s) {
+  if (!hasWindSea(scene) && random.unit() < storm.level_ratio * tick_s / kGroupInterval_s) {
     core::BreakingWave gust;
     gust.side = core::Side::kDirection;
     gust.shape = core::WaveShape::kSwell;

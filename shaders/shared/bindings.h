@@ -6,6 +6,7 @@
 // Uniform buffers.
 #define SIM_UNIFORMS 0
 #define EVENT_UNIFORMS 1
+#define SEA_UNIFORMS 3
 
 // Particles: position.xyz [m] + id, velocity.xyz [m/s] + foam [0..1].
 #define POSITION 0
@@ -56,6 +57,12 @@
 #define DISPERSION_FROM_X 11
 #define DISPERSION_FROM_Z 18
 #define DISPERSED 15
+// The wind sea that comes in at absorbing sides; wave/incident_sea.comp. The numbers are those of particles and grid; only
+// passes of the wave use these buffers.
+#define SEA_BLOCKS 0
+#define SEA_COLUMNS 1
+#define SEA_ROWS 2
+#define INCIDENT_SEA 10
 // Pressure on the surface (hulls, falling particles), as a height of water [units].
 #define PRESSURE_HEAD 21
 // Breaking: seconds since a cell began to break, intensity 0..1; and the same one substep ago.

@@ -8,6 +8,7 @@
 // and B the losses of flow and elevation over half a step and m the mean of the flow before and after, |eta|^2 - |G
 // eta|^2/4 + |m|^2 + |A m|^2 never grows, and |G| < 2 is the Courant bound. (Applied after the step, the loss
 // exp(-sigma dt) lowered the bound by the factor sqrt((1 + exp(-sigma dt))/2).)
+// SEA: sigma acts on eta - eta_in, eta_in being the sea that comes in.
 // Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit; no cell loses more than it holds.
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
@@ -19,6 +20,9 @@ layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[];
 layout(std430, binding = LIMIT_ARGS) restrict writeonly buffer LimitArgs { uint limit_args[]; };
 #if OPEN
 layout(std430, binding = OUTFLOW) restrict buffer Outflow { uvec2 outflow[]; };
+#endif
+#if SEA
+#include "wave/incident_sea.glsl"
 #endif
 
 void main() {
@@ -42,7 +46,12 @@ void main() {
 #if OPEN
   const vec4 ground = texelFetch(bed, i);
   const float b = 0.5 * ground.y * sim.wave_dt_s;
-  const float wanted = clamp(round((2.0 * float(elevation[i]) + float(gain)) * (b / (1.0 + b))), -float(ELEVATION_MAX_UNITS), float(ELEVATION_MAX_UNITS));
+#if SEA
+  const float excess = 2.0 * (float(elevation[i]) - incidentElevation(i)) + float(gain);
+#else
+  const float excess = 2.0 * float(elevation[i]) + float(gain);
+#endif
+  const float wanted = clamp(round(excess * (b / (1.0 + b))), -float(ELEVATION_MAX_UNITS), float(ELEVATION_MAX_UNITS));
   // If more than half of the elevation is lost in a step, water above the still level would be taken below the bed. The
   // float's last bit may be 128 units, so compare as floats and subtract integers.
   const uint held = heldUnits(elevation[i] + gain, ground.z);

@@ -11,6 +11,7 @@
 // elevations between two cells is used: the force is then the difference of a potential, and energy is conserved for
 // elevations beyond the bounds, too. Breaking water loses its flow at the rate intensity * 2 sqrt(g/d).
 // Invariant: a level surface without flow does not change in any bit; closed faces carry nothing.
+// SEA: in the layers of absorbing sides sigma acts on q - q_in, q_in being the flow of the sea that comes in.
 // DISPERSE: F grad(eta + head) of the dispersion takes the place of d grad(eta + head).
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
@@ -28,6 +29,9 @@ layout(binding = DISPERSED) uniform samplerBuffer dispersed;
 #endif
 #if BREAKERS
 layout(binding = BREAKING) uniform samplerBuffer breaking;
+#endif
+#if SEA
+#include "wave/incident_sea.glsl"
 #endif
 layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
 layout(std430, binding = TRANSFER) restrict writeonly buffer Transfer { Units transfer[]; };
@@ -125,7 +129,12 @@ void main() {
 #else
   const float a = 0.5 * sim.wave_dt_s * sim.wave_damping_per_s;
 #endif
-  const Flow flow = ((1.0 - a) * flow_m2ps[i] - sim.wave_pull * conductance_m * slope) / (1.0 + a);
+  Flow driven = (1.0 - a) * flow_m2ps[i] - sim.wave_pull * conductance_m * slope;
+#if SEA
+  const vec2 sponge_per_s = 0.5 * (texelFetch(bed, i).y + vec2(texelFetch(bed, i_x).y, texelFetch(bed, i_z).y));
+  driven += sim.wave_dt_s * sponge_per_s * incidentFlow(i);
+#endif
+  const Flow flow = driven / (1.0 + a);
   flow_m2ps[i] = flow;
 
   Units moved;

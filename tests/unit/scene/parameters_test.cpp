@@ -96,7 +96,9 @@ TEST(Parameters, DescribeOnlyTheLiveOnesOfThePartsPresent) {
                                           "storm.drops_per_m2_s",
                                           "storm.drop_depth_m",
                                           "storm.wave_height_m",
-                                          "storm.wind_direction_deg"}));
+                                          "storm.wind_direction_deg",
+                                          "storm.wind_speed_mps",
+                                          "storm.fetch_m"}));
   EXPECT_FALSE(all.contains("wave.resolution_count")) << "needs a restart";
   EXPECT_FALSE(all.contains("seed"));
 

@@ -122,7 +122,8 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
       "beaches { side: SIDE_MINUS_Z width_m: 2 shore_depth_m: 0.5 }\n"
       "boats { capacity_count: 3 boats { x_m: -2 z_m: 2 heading_deg: 90 length_m: 1.5 beam_m: 0.5 height_m: 0.4\n"
       "        density_ratio: 0.5 max_speed_mps: 3 throttle_ratio: 0.25 rudder_ratio: -0.5 } }\n"
-      "storm { level_ratio: 0.5 drops_per_m2_s: 0.25 drop_depth_m: 0.125 wave_height_m: 0.2 wind_direction_deg: 30 }\n"
+      "storm { level_ratio: 0.5 drops_per_m2_s: 0.25 drop_depth_m: 0.125 wave_height_m: 0.2 wind_direction_deg: 30 "
+      "wind_speed_mps: 12.5 fetch_m: 500 }\n"
       "stream { frame_rate_hz: 20 surface_quantum_m: 0.002 }\n"
       "events { at_s: 2 every_s: 5 effect { breaking_wave { side: SIDE_MINUS_Z amplitude_m: 0.2 length_m: 1\n"
       "         duration_s: 0.4 shape: WAVE_SHAPE_SWELL } } }\n"
@@ -220,6 +221,8 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
   EXPECT_EQ(out.storm->drop_depth_m, 0.125);
   EXPECT_EQ(out.storm->wave_height_m, 0.2);
   EXPECT_EQ(out.storm->wind_direction_deg, 30.0);
+  EXPECT_EQ(out.storm->wind_speed_mps, 12.5);
+  EXPECT_EQ(out.storm->fetch_m, 500.0);
   EXPECT_EQ(out.stream.frame_rate_hz, 20.0);
   EXPECT_EQ(out.stream.surface_quantum_m, 0.002);
   ASSERT_EQ(out.events.size(), 2u);

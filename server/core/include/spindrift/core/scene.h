@@ -185,6 +185,8 @@ struct StormScene {
   double drop_depth_m = Default::drop_depth_m;
   double wave_height_m = Default::wave_height_m;
   double wind_direction_deg = Default::wind_direction_deg;
+  double wind_speed_mps = Default::wind_speed_mps;  ///< at level 1
+  double fetch_m = Default::fetch_m;                ///< length of the water that the wind has crossed
 };
 
 /// Settings of the frames sent to clients.

@@ -13,6 +13,7 @@
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
 #include <spindrift/sim/boat_record.h>
@@ -158,6 +159,8 @@ class WaterSim {
   void uploadBasin();
   void startEvents();
   void advanceWave();
+  /// The sea that comes in during a wave step; null when none does.
+  const gpu::TexelBuffer* advanceSea(std::uint32_t substep);
   void stirParticles();
   void sampleSurface();
   void breakWaves();

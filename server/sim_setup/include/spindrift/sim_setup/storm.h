@@ -1,5 +1,5 @@
-// Rain and wind as effects: which drops fall and which wind waves start during a tick. A pure function of scene, seed
-// and tick, so that a storm repeats with the run.
+// Rain and gusts as effects: which drops fall and which crests start during a tick. A pure function of scene, seed
+// and tick, so that a storm repeats with the run. Scenes with a wind sea (sea_state.h) have no gusts.
 #pragma once
 
 #include <cstdint>

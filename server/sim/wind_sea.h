@@ -1,0 +1,57 @@
+// The wind sea on the device: what comes in through absorbing sides, in the layers of those sides. A sea that changes
+// fades into the next one. The state is a function of the changes and their times, so that a run repeats.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <shared/sea_uniforms.h>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+#include <spindrift/gpu/buffer.h>
+#include <spindrift/gpu/program.h>
+#include <spindrift/sim_setup/sea_state.h>
+
+namespace spindrift::sim {
+
+class WindSea {
+ public:
+  /// Errors: those of the buffers and the program. Precondition: hasWindSea(scene).
+  static core::Result<std::unique_ptr<WindSea>> create(gpu::Context& ctx, const core::Scene& scene,
+                                                       const WaveLayout& layout, const gpu::Defines& defines);
+
+  /// Calm water; the sea of the last fadeTo() then fades in.
+  void clear();
+  /// The sea to fade to: from the next step on, or after a fade in progress.
+  void fadeTo(SeaState sea);
+
+  /// Returns the sea during the step of dt_s that begins at begin_s, n x n texels (wave/incident_sea.comp); null while
+  /// calm. BASIN and BED must be bound.
+  const gpu::TexelBuffer* advance(double begin_s, double dt_s);
+
+ private:
+  WindSea(gpu::Context& ctx, const WaveLayout& layout)
+      : ctx_(ctx), n_(layout.resolution_count), side_m_(layout.side_m), cell_m_(layout.cell_m) {}
+  void uploadTables();
+  shared::SeaUniforms uniformsAt(double begin_s, double dt_s, double faded_ratio) const;
+
+  gpu::Context& ctx_;
+  std::uint32_t n_;
+  double side_m_;
+  double cell_m_;
+  SeaState shown_;   ///< the sea, and while fading the one before
+  SeaState next_;    ///< while fading
+  SeaState wanted_;  ///< of the last fadeTo()
+  std::optional<double> fade_begin_s_;
+  std::uint64_t step_count_ = 0;
+  std::uint32_t block_count_ = 0;
+  gpu::TexelBuffer blocks_, columns_, rows_;
+  gpu::TexelBuffer incident_;  ///< n x n; 0 outside the layers
+  gpu::Buffer uniforms_;
+  gpu::Program compute_;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,73 @@
+// The sea that wind raises, as a sum of plane waves: spectrum, directions and heights follow from wind speed and fetch.
+// Pure functions of the scene; docs/wind_sea.md has the formulas and their sources.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <spindrift/core/scene.h>
+#include <spindrift/sim_setup/derive.h>
+
+namespace spindrift::sim {
+
+/// Plane waves of a sea. Each carries the same share of its energy.
+inline constexpr int kSeaWaveCount = 32;
+/// The shortest of them in cells: the model's phase speeds are within 1 % from this length on (docs/dispersion.md).
+inline constexpr double kShortestWave_cells = 8.0;
+
+/// Sides of the water as bits, for PlaneWave::sides and SEA_BLOCKS.
+inline constexpr std::uint32_t kMinusXBit = 1;
+inline constexpr std::uint32_t kPlusXBit = 2;
+inline constexpr std::uint32_t kMinusZBit = 4;
+inline constexpr std::uint32_t kPlusZBit = 8;
+
+/// amplitude cos(kx x + kz z - omega t + phase), x and z from the centre of the water.
+struct PlaneWave {
+  double amplitude_m = 0.0;
+  double omega_radps = 0.0;
+  double kx_radpm = 0.0;
+  double kz_radpm = 0.0;
+  double phase_rad = 0.0;
+  double decay_pm = 0.0;    ///< the scene's damping lowers the amplitude by this share per metre along its way
+  std::uint32_t sides = 0;  ///< absorbing sides in whose layers it is present; 0: it comes from a closed side
+  bool operator==(const PlaneWave&) const = default;
+};
+
+/// A wind sea. Without waves: calm.
+struct SeaState {
+  double wind_speed_mps = 0.0;        ///< at the scene's storm level
+  double significant_height_m = 0.0;  ///< four standard deviations of the elevation that the waves below add up to
+  double peak_period_s = 0.0;
+  double peak_length_m = 0.0;
+  std::vector<PlaneWave> waves;
+  bool operator==(const SeaState&) const = default;
+};
+
+/// Returns k > 0 with omega^2 = g k tanh(k d). [rad/m] Precondition: all arguments are positive.
+[[nodiscard]] double waveNumber(double omega_radps, double gravity_mps2, double depth_m);
+/// Returns omega. [rad/s]
+[[nodiscard]] double waveFrequency(double k_radpm, double gravity_mps2, double depth_m);
+
+/// JONSWAP spectrum for a wind speed and a fetch (Hasselmann et al. 1973), reduced in shallow water as in the TMA
+/// spectrum (Bouws et al. 1985).
+struct WindSeaSpectrum {
+  double gravity_mps2 = 9.81;
+  double depth_m = 0.0;
+  double alpha = 0.0;
+  double peak_radps = 0.0;
+
+  /// Precondition: all arguments are positive. Beyond the fetch of a fully developed sea (Pierson & Moskowitz 1964) a
+  /// longer one changes nothing.
+  static WindSeaSpectrum of(double wind_speed_mps, double fetch_m, double gravity_mps2, double depth_m);
+  /// Variance of the elevation per unit of frequency. [m^2 s]
+  [[nodiscard]] double density(double omega_radps) const;
+};
+
+/// Returns the sea of the scene's storm: as much of the spectrum as the grid resolves and the water holds. Calm without
+/// a storm, at level 0, and in scenes whose wind waves are gusts (hasWindSea() in scene_parts.h).
+[[nodiscard]] SeaState seaState(const core::Scene& scene, const WaveLayout& layout);
+
+/// Bytes of its buffers on the device, at most.
+[[nodiscard]] std::uint64_t windSeaBytes(std::uint32_t resolution_count);
+
+}  // namespace spindrift::sim

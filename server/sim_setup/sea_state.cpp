@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <shared/sea_uniforms.h>
+
+#include <spindrift/sim_setup/random.h>
+#include <spindrift/sim_setup/scene_parts.h>
+#include <spindrift/sim_setup/sea_state.h>
+
+namespace spindrift::sim {
+namespace {
+
+using std::numbers::pi;
+
+/// Longest wave, as a share of the water's side.
+constexpr double kLongestWaveShare = 0.5;
+/// Significant height over depth, at most. Waves of the sea break beyond it.
+constexpr double kLargestHeightShare = 0.5;
+/// Directions are spread like cos^(2s)(angle/2) about the wind. s of waves at the peak of a young sea (Mitsuyasu et al.
+/// 1975).
+constexpr double kSpreadExponent = 10.0;
+/// JONSWAP: peak enhancement, and width of the peak below and above it.
+constexpr double kPeakEnhancement = 3.3;
+constexpr double kWidthBelow = 0.07;
+constexpr double kWidthAbove = 0.09;
+/// Dimensionless fetch g F/U^2 at which the peak reaches the frequency of a fully developed sea, 0.88 g/U.
+constexpr double kDevelopedFetch = 15625.0;
+constexpr double kSmallestVariance_m2 = 1e-12;
+
+/// A density over an interval, for its integral and its quantiles.
+class Distribution {
+ public:
+  Distribution(double from, double to, const std::function<double(double)>& density) : from_(from) {
+    constexpr int kSteps = 4000;
+    step_ = (to - from) / kSteps;
+    sums_.push_back(0.0);
+    for (int k = 0; k < kSteps; ++k) sums_.push_back(sums_.back() + density(from + (k + 0.5) * step_) * step_);
+  }
+  [[nodiscard]] double integral() const { return sums_.back(); }
+  /// Returns the place below which a share of the integral lies. Precondition: the integral is positive.
+  [[nodiscard]] double quantile(double share) const {
+    const double wanted = std::clamp(share, 0.0, 1.0) * integral();
+    const auto above = std::ranges::upper_bound(sums_, wanted);
+    if (above == sums_.end()) return from_ + static_cast<double>(sums_.size() - 1) * step_;
+    const auto k = above - sums_.begin() - 1;
+    const double low = sums_[static_cast<std::size_t>(k)];
+    return from_ + (static_cast<double>(k) + (wanted - low) / (*above - low)) * step_;
+  }
+
+ private:
+  double from_;
+  double step_ = 0.0;
+  std::vector<double> sums_;
+};
+
+/// Sides of the water by what waves do there. Periodic sides are in neither set.
+struct Sides {
+  std::uint32_t absorbing = 0;
+  std::uint32_t closed = 0;
+
+  explicit Sides(const core::WaveScene& wave) {
+    add(wave.boundary_minus_x, kMinusXBit);
+    add(wave.boundary_plus_x, kPlusXBit);
+    add(wave.boundary_minus_z, kMinusZBit);
+    add(wave.boundary_plus_z, kPlusZBit);
+  }
+
+  /// Returns the sides in whose layers a wave of this direction is present. It enters at the sides that it comes from.
+  /// If all of those are open it fills the whole water, so the layers of the other sides let it pass, too.
+  [[nodiscard]] std::uint32_t of(double direction_x, double direction_z) const {
+    std::uint32_t from = 0;
+    if (direction_x != 0.0) from |= direction_x > 0 ? kMinusXBit : kPlusXBit;
+    if (direction_z != 0.0) from |= direction_z > 0 ? kMinusZBit : kPlusZBit;
+    if ((from & absorbing) == 0) return 0;
+    return (from & closed) == 0 ? absorbing : from & absorbing;
+  }
+
+ private:
+  void add(core::WaveBoundary boundary, std::uint32_t bit) {
+    if (boundary == core::WaveBoundary::kAbsorb) absorbing |= bit;
+    if (boundary == core::WaveBoundary::kReflect) closed |= bit;
+  }
+};
+
+/// Returns the numbers below kSeaWaveCount in the order of the multiples of the golden ratio (modulo 1, from `begin`):
+/// numbers that follow each other are far apart, and every part of the order has small and large ones.
+std::vector<int> mixedOrder(double begin) {
+  std::vector<double> multiples;
+  for (int n = 0; n < kSeaWaveCount; ++n) multiples.push_back(std::fmod(begin + n / std::numbers::phi, 1.0));
+  std::vector<int> out;
+  for (const double each : multiples)
+    out.push_back(static_cast<int>(std::ranges::count_if(multiples, [&](double other) { return other < each; })));
+  return out;
+}
+
+double groupSpeed(double k_radpm, double gravity_mps2, double depth_m) {
+  const double kd = k_radpm * depth_m;
+  const double ratio = kd > 300 ? 0.0 : 2 * kd / std::sinh(2 * kd);
+  return 0.5 * waveFrequency(k_radpm, gravity_mps2, depth_m) / k_radpm * (1 + ratio);
+}
+
+}  // namespace
+
+double waveFrequency(double k_radpm, double gravity_mps2, double depth_m) {
+  return std::sqrt(gravity_mps2 * k_radpm * std::tanh(k_radpm * depth_m));
+}
+
+double waveNumber(double omega_radps, double gravity_mps2, double depth_m) {
+  // Newton's method for x tanh x = y, x = k d. From above the root it falls onto it, because the function is convex.
+  const double y = omega_radps * omega_radps * depth_m / gravity_mps2;
+  double x = std::sqrt(y) * std::max(1.0, std::sqrt(y)) + 1e-12;
+  for (int k = 0; k < 60; ++k) {
+    const double t = std::tanh(x);
+    const double next = x - (x * t - y) / (t + x * (1 - t * t));
+    const bool is_done = std::abs(next - x) <= 1e-14 * x;
+    x = next;
+    if (is_done) break;
+  }
+  return x / depth_m;
+}
+
+WindSeaSpectrum WindSeaSpectrum::of(double wind_speed_mps, double fetch_m, double gravity_mps2, double depth_m) {
+  const double square = wind_speed_mps * wind_speed_mps;
+  const double fetch = std::min(gravity_mps2 * fetch_m / square, kDevelopedFetch);
+  WindSeaSpectrum out;
+  out.gravity_mps2 = gravity_mps2;
+  out.depth_m = depth_m;
+  out.alpha = 0.076 * std::pow(fetch, -0.22);
+  out.peak_radps = 22.0 * gravity_mps2 / wind_speed_mps * std::cbrt(1.0 / fetch);
+  return out;
+}
+
+double WindSeaSpectrum::density(double omega_radps) const {
+  const double ratio = omega_radps / peak_radps;
+  const double width = ratio <= 1 ? kWidthBelow : kWidthAbove;
+  const double peak = std::pow(kPeakEnhancement, std::exp(-0.5 * std::pow((ratio - 1) / width, 2)));
+  const double deep =
+      alpha * gravity_mps2 * gravity_mps2 * std::pow(omega_radps, -5) * std::exp(-1.25 * std::pow(ratio, -4)) * peak;
+  const double kd = waveNumber(omega_radps, gravity_mps2, depth_m) * depth_m;
+  const double t = std::tanh(kd);
+  return deep * t * t / (kd > 300 ? 1.0 : 1 + 2 * kd / std::sinh(2 * kd));
+}
+
+std::uint64_t windSeaBytes(std::uint32_t resolution_count) {
+  const std::uint64_t n = resolution_count;
+  const std::uint64_t tables = MAX_SEA_WAVES * 8 * (n + n / SEA_STRIP);
+  const std::uint64_t blocks = 16 * (n / SEA_BLOCK) * (n / SEA_BLOCK);
+  return n * n * 16 + tables + blocks + sizeof(shared::SeaUniforms);
+}
+
+SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
+  SeaState out;
+  if (!hasWindSea(scene)) return out;
+  const core::StormScene& storm = *scene.storm;
+  const core::WaveScene& wave = *scene.wave;
+  const double g = scene.gravity_mps2;
+  const double d = wave.depth_m;
+  out.wind_speed_mps = storm.level_ratio * storm.wind_speed_mps;
+  if (out.wind_speed_mps <= 0 || g <= 0) return out;
+  const auto spectrum = WindSeaSpectrum::of(out.wind_speed_mps, storm.fetch_m, g, d);
+  out.peak_period_s = 2 * pi / spectrum.peak_radps;
+  out.peak_length_m = 2 * pi / waveNumber(spectrum.peak_radps, g, d);
+  const double lowest = waveFrequency(2 * pi / (kLongestWaveShare * layout.side_m), g, d);
+  const double highest = waveFrequency(2 * pi / (kShortestWave_cells * layout.cell_m), g, d);
+  const Distribution energy(lowest, highest, [&](double omega) { return spectrum.density(omega); });
+  const double cap_m = storm.level_ratio * std::min(storm.wave_height_m, kLargestHeightShare * d);
+  const double variance_m2 = std::min(energy.integral(), cap_m * cap_m / 16);
+  if (!(variance_m2 > kSmallestVariance_m2)) return out;
+  out.significant_height_m = 4 * std::sqrt(variance_m2);
+
+  const Distribution spread(-pi / 2, pi / 2,
+                            [](double angle) { return std::pow(std::cos(angle / 2), 2 * kSpreadExponent); });
+  const Sides sides(wave);
+  SplitMix64 random(scene.seed * 0x9fb21c651e98df25ull + 1);
+  const std::vector<int> place = mixedOrder(random.unit());
+  for (int n = 0; n < kSeaWaveCount; ++n) {
+    PlaneWave each;
+    each.amplitude_m = std::sqrt(2 * variance_m2 / kSeaWaveCount);
+    each.omega_radps = energy.quantile((n + random.unit()) / kSeaWaveCount);
+    const double share = (place[static_cast<std::size_t>(n)] + 0.5) / kSeaWaveCount;
+    const double angle = storm.wind_direction_deg * pi / 180 + spread.quantile(share);
+    double k = waveNumber(each.omega_radps, g, d);
+    each.kx_radpm = k * std::cos(angle);
+    each.kz_radpm = k * std::sin(angle);
+    // A whole number of waves between periodic sides.
+    const double whole = 2 * pi / layout.side_m;
+    if (isPeriodicX(wave)) each.kx_radpm = whole * std::round(each.kx_radpm / whole);
+    if (isPeriodicZ(wave)) each.kz_radpm = whole * std::round(each.kz_radpm / whole);
+    k = std::hypot(each.kx_radpm, each.kz_radpm);
+    each.phase_rad = 2 * pi * random.unit();
+    if (k <= 0) continue;
+    each.omega_radps = waveFrequency(k, g, d);
+    each.decay_pm = 0.5 * wave.damping_per_s / groupSpeed(k, g, d);
+    each.sides = sides.of(each.kx_radpm, each.kz_radpm);
+    out.waves.push_back(each);
+  }
+  return out;
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,52 @@
+// The sea that comes in from outside, in the layers of absorbing sides.
+// Reads SeaUniforms, SEA_BLOCKS, SEA_COLUMNS, SEA_ROWS, BASIN, BED. Writes INCIDENT_SEA [n x n: elevation in units, flow
+// toward +x and +z in m^2/s] in a share of the blocks of those layers; each block is valid for several steps.
+// Equation: the sum of A cos(kx x + kz z - omega t + phase) over the plane waves of the sea (docs/wind_sea.md), as the real
+// part of strength(t) * column(x) * row(z). A strip of rows is summed at a time: its first row is read, and each
+// further row is one rotation.
+// Invariant: closed faces carry nothing, and nothing comes in over a bed that rises.
+#include "shared/groups.h"
+#include "shared/sea_uniforms.h"
+#include "wave/water_column.glsl"
+
+layout(local_size_x = SEA_BLOCK, local_size_y = SEA_GROUP_BLOCKS) in;
+
+layout(binding = SEA_BLOCKS) uniform usamplerBuffer sea_blocks;    // first column, first row, sides, 0
+layout(binding = SEA_COLUMNS) uniform samplerBuffer sea_columns;   // per wave and column of cells
+layout(binding = SEA_ROWS) uniform samplerBuffer sea_rows;         // per wave and strip of cells, for its first row
+layout(std430, binding = INCIDENT_SEA) restrict writeonly buffer IncidentSea { vec4 incident[]; };
+
+/// Share of the sea over a bed of this depth: the waves belong to the scene's full depth.
+float seaShare(float depth_m) { return clamp((depth_m / sim.wave_depth_m - 0.6) / 0.3, 0.0, 1.0); }
+
+void main() {
+  const uint place = sea_first_block + sea_block_stride * gl_GlobalInvocationID.y;
+  if (place >= sea_block_count) return;
+  const uvec4 block = texelFetch(sea_blocks, int(place));
+  const int n = int(sim.wave_n);
+  const int x = int(block.x + gl_LocalInvocationID.x);
+  const int first_strip = int(block.y) / SEA_STRIP;
+  for (int strip = first_strip; strip < first_strip + SEA_BLOCK / SEA_STRIP; ++strip) {
+    vec3 sums[SEA_STRIP];
+    for (int k = 0; k < SEA_STRIP; ++k) sums[k] = vec3(0.0);
+    for (uint w = 0u; w < sea_wave_count; ++w) {
+      const SeaWaveUniform each = sea_waves[w];
+      if ((each.sides & block.z) == 0u) continue;
+      const vec2 column = texelFetch(sea_columns, int(w) * n + x).xy;
+      vec2 row = texelFetch(sea_rows, int(w) * (n / SEA_STRIP) + strip).xy;
+      const vec3 strength_re = vec3(each.elevation_re, each.flow_x_re, each.flow_z_re);
+      const vec3 strength_im = vec3(each.elevation_im, each.flow_x_im, each.flow_z_im);
+      const vec3 re = strength_re * column.x - strength_im * column.y;
+      const vec3 im = strength_re * column.y + strength_im * column.x;
+      for (int k = 0; k < SEA_STRIP; ++k) {
+        sums[k] += re * row.x - im * row.y;
+        row = vec2(row.x * each.next_re - row.y * each.next_im, row.x * each.next_im + row.y * each.next_re);
+      }
+    }
+    for (int k = 0; k < SEA_STRIP; ++k) {
+      const int i = x + n * (SEA_STRIP * strip + k);
+      const vec2 open = vec2(greaterThan(texelFetch(basin, i).xy, vec2(0.0)));
+      incident[i] = vec4(seaShare(stillDepth(i)) * sums[k] * vec3(1.0, open), 0.0);
+    }
+  }
+}
