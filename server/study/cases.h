@@ -38,6 +38,9 @@ Outcome shallowWake(gpu::Context& ctx, bool quick);
 Outcome reflection(gpu::Context& ctx, bool quick);
 Outcome greensLaw(gpu::Context& ctx, bool quick);
 
+// sea_cases.cpp
+Outcome windSea(gpu::Context& ctx, bool quick);
+
 // one_step.cpp
 Outcome oneStep(gpu::Context& ctx, bool quick);
 

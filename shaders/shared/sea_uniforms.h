@@ -21,13 +21,13 @@ namespace spindrift::shared {
 struct SeaWaveUniform {
   float elevation_re;  // [units], in the middle of the step
   float elevation_im;
-  float flow_x_re;     // [m^2/s], at the face toward +x, at the begin of the step
+  float flow_x_re;  // [m^2/s], at the face toward +x, at the begin of the step
   float flow_x_im;
-  float flow_z_re;     // the same toward +z
+  float flow_z_re;  // the same toward +z
   float flow_z_im;
-  float next_re;       // factor from one row of cells to the next
+  float next_re;  // factor from one row of cells to the next
   float next_im;
-  uint sides;          // absorbing sides in whose layers the wave is present (sim_setup/sea_state.h)
+  uint sides;  // absorbing sides in whose layers the wave is present (sim_setup/sea_state.h)
   uint unused_0;
   uint unused_1;
   uint unused_2;
@@ -46,7 +46,7 @@ static_assert(sizeof(SeaWaveUniform) == 48 && sizeof(SeaUniforms) == 48 * MAX_SE
 layout(std140, binding = SEA_UNIFORMS) uniform SeaUniforms {
   SeaWaveUniform sea_waves[MAX_SEA_WAVES];
   uint sea_wave_count;
-  uint sea_first_block;   // this dispatch computes the blocks first, first + stride, ... below the count
+  uint sea_first_block;  // this dispatch computes the blocks first, first + stride, ... below the count
   uint sea_block_stride;
   uint sea_block_count;
 };

@@ -1,0 +1,256 @@
+// The wind sea that comes in at absorbing sides: the pass that computes it, and what it does to the water.
+#include "wind_sea.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <shared/bindings.h>
+#include <shared/fixed_point.h>
+
+#include <spindrift/sim_setup/basin.h>
+
+#include "shader_defines.h"
+#include "sim_fixture.h"
+
+namespace spindrift::sim {
+namespace {
+
+core::Scene openSea(std::uint32_t n = 64) {
+  core::Scene scene;
+  scene.wave.emplace();
+  scene.wave->resolution_count = n;
+  scene.wave->side_m = 20.0;
+  scene.wave->depth_m = 2.0;
+  scene.wave->damping_per_s = 0.0;
+  scene.wave->sponge_width_m = 3.0;
+  scene.wave->dispersion = core::Dispersion::kAiry;
+  scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+  scene.storm.emplace();
+  scene.storm->level_ratio = 1.0;
+  scene.storm->drops_per_m2_s = 0.0;
+  scene.storm->wave_height_m = 0.4;
+  return scene;
+}
+
+class WindSeaOnDevice : public OnDevice {
+ protected:
+  /// Root mean square elevation over the cells that `counts` selects by their place, over `ticks`.
+  template <typename Counts>
+  double roughness(WaterSim& sim, int ticks, const Counts& counts) {
+    const WaveLayout& layout = *sim.derived().wave;
+    const std::uint32_t n = layout.resolution_count;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (int k = 0; k < ticks; ++k) {
+      sim.step();
+      if (k % 10 != 0) continue;
+      const auto eta_m = sim.copyState().elevation_m;
+      for (std::uint32_t i = 0; i < n * n; ++i) {
+        const double x_m = (i % n + 0.5) * layout.cell_m - layout.side_m / 2;
+        const double z_m = (i / n + 0.5) * layout.cell_m - layout.side_m / 2;
+        if (!counts(x_m, z_m)) continue;
+        sum += eta_m[i] * eta_m[i];
+        ++count;
+      }
+    }
+    return std::sqrt(sum / static_cast<double>(count));
+  }
+};
+
+TEST_F(WindSeaOnDevice, AgreesWithTheSumOfItsWavesInDoublePrecision) {
+  core::Scene scene = openSea(96);
+  scene.wave->damping_per_s = 0.4;
+  const Derived derived = *derive(scene);
+  const WaveLayout& layout = *derived.wave;
+  const SeaState sea = seaState(scene, layout);
+  ASSERT_FALSE(sea.waves.empty());
+  auto made = WindSea::create(*ctx_, scene, layout, shaderDefines(scene));
+  ASSERT_TRUE(made) << made.error().message;
+  auto uniforms = gpu::Buffer::create(*ctx_, "uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable);
+  uniforms->uploadValue(derived.uniforms);
+  uniforms->bindUniform(SIM_UNIFORMS);
+  const Basin basin = layOutBasin(scene, layout);
+  auto conductance = gpu::TexelBuffer::create(*ctx_, "basin", basin.conductance_m.size(), gpu::TexelFormat::kRGBA32F);
+  auto bed = gpu::TexelBuffer::create(*ctx_, "bed", basin.bed.size(), gpu::TexelFormat::kRGBA32F);
+  conductance->upload(basin.conductance_m);
+  bed->upload(basin.bed);
+  conductance->bindTexel(BASIN);
+  bed->bindTexel(BED);
+  (*made)->fadeTo(sea);
+  const int n = static_cast<int>(layout.resolution_count);
+  const double dt_s = layout.dt_s;
+  const std::size_t values = static_cast<std::size_t>(n) * n * 4;
+  const auto steps = static_cast<int>(std::ceil(10.0 / dt_s));
+  const gpu::TexelBuffer* incident = nullptr;
+  for (int k = 0; k < steps; ++k) incident = (*made)->advance(k * dt_s, dt_s);
+  ASSERT_NE(incident, nullptr);
+  const auto got = incident->downloadVector<float>(values);
+  const double now_s = (steps - 1) * dt_s;
+  double worst = 0.0;
+  double square = 0.0;
+  int count = 0;
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const std::size_t i = static_cast<std::size_t>(x) + static_cast<std::size_t>(n) * z;
+      if (basin.bed[i][1] <= 0.0F) continue;
+      // Each block was computed for some time within the last steps: the nearest one must fit.
+      const double x_m = (x + 0.5) * layout.cell_m - 10.0;
+      const double z_m = (z + 0.5) * layout.cell_m - 10.0;
+      double nearest = 1e9;
+      double level_m = 0.0;
+      for (int shift = -16; shift <= 16; ++shift) {
+        const double t_s = now_s + 0.5 * shift * dt_s;
+        double eta_m = 0.0;
+        for (const PlaneWave& wave : sea.waves) {
+          const double k = std::hypot(wave.kx_radpm, wave.kz_radpm);
+          const double way_m = (wave.kx_radpm * x_m + wave.kz_radpm * z_m) / k +
+                               10.0 * (std::abs(wave.kx_radpm) + std::abs(wave.kz_radpm)) / k;
+          eta_m += wave.amplitude_m * std::exp(-wave.decay_pm * way_m) *
+                   std::cos(wave.kx_radpm * x_m + wave.kz_radpm * z_m - wave.omega_radps * t_s + wave.phase_rad);
+        }
+        if (shift == 0) level_m = eta_m;
+        nearest = std::min(nearest, std::abs(got[4 * i] * ELEVATION_UNIT_M - eta_m));
+      }
+      worst = std::max(worst, nearest);
+      square += level_m * level_m;
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 0);
+  EXPECT_LE(worst, 0.05 * std::sqrt(square / count));
+  for (std::size_t i = 0; i < basin.bed.size(); ++i) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      if (basin.conductance_m[i][axis] > 0) continue;
+      EXPECT_EQ(got[4 * i + 1 + axis], 0.0F) << "nothing passes a closed face";
+    }
+  }
+}
+
+TEST_F(WindSeaOnDevice, CalmWaterStaysStillToTheUnit) {
+  core::Scene scene = openSea();
+  scene.storm->level_ratio = 0.0;
+  WaterSim& sim = make(scene);
+  const std::uint64_t before = sim.stateHash();
+  for (int k = 0; k < 120; ++k) sim.step();
+  EXPECT_EQ(sim.stateHash(), before);
+}
+
+TEST_F(WindSeaOnDevice, WindFromAWallRaisesNoWaves) {
+  core::Scene scene = openSea();
+  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  scene.wave->boundary_plus_x = core::WaveBoundary::kAbsorb;
+  scene.storm->wind_direction_deg = 0.0;
+  WaterSim& sim = make(scene);
+  const std::uint64_t before = sim.stateHash();
+  for (int k = 0; k < 120; ++k) sim.step();
+  EXPECT_EQ(sim.stateHash(), before) << "the waves would come from the closed side";
+}
+
+TEST_F(WindSeaOnDevice, FillsOpenWaterAndLeavesIt) {
+  core::Scene scene = openSea();
+  WaterSim& sim = make(scene);
+  const double target_m = seaState(scene, *sim.derived().wave).significant_height_m;
+  ASSERT_GT(target_m, 0.2);
+  const auto middle = [](double x_m, double z_m) { return std::abs(x_m) < 5 && std::abs(z_m) < 5; };
+  for (int k = 0; k < 25 * 60; ++k) sim.step();
+  EXPECT_NEAR(4 * roughness(sim, 25 * 60, middle), target_m, 0.2 * target_m);
+  EXPECT_EQ(sim.health().surface_units + sim.health().outflow_units, 0);
+  scene.storm->level_ratio = 0.0;
+  ASSERT_TRUE(sim.setScene(scene));
+  for (int k = 0; k < 40 * 60; ++k) sim.step();
+  EXPECT_LT(sim.health().max_elevation_m, 0.02 * target_m) << "40 s after the wind";
+  EXPECT_EQ(sim.health().surface_units + sim.health().outflow_units, 0);
+  EXPECT_EQ(sim.recoveredCount(), 0u);
+}
+
+TEST_F(WindSeaOnDevice, LeavesAShadowBehindAWall) {
+  core::Scene scene = openSea(96);
+  scene.storm->wind_direction_deg = 0.0;
+  scene.obstacles = {core::Breakwater{0.0, 0.0, 12.0, 0.6, 90.0, 0.5}};
+  WaterSim& sim = make(scene);
+  for (int k = 0; k < 20 * 60; ++k) sim.step();
+  const auto shadow = [](double x_m, double z_m) { return x_m > 1.0 && x_m < 4.0 && std::abs(z_m) < 2; };
+  const auto before = [](double x_m, double z_m) { return x_m < -1.0 && x_m > -4.0 && std::abs(z_m) < 2; };
+  const double in_shadow_m = roughness(sim, 600, shadow);
+  const double in_front_m = roughness(sim, 600, before);
+  EXPECT_GT(in_shadow_m, 0.0) << "waves bend around the ends";
+  EXPECT_LT(in_shadow_m, 0.4 * in_front_m);
+}
+
+TEST_F(WindSeaOnDevice, RepeatsWithChangesOnTheWay) {
+  const auto run = [&] {
+    core::Scene scene = openSea();
+    WaterSim& sim = make(scene);
+    std::vector<std::uint64_t> hashes;
+    for (int k = 0; k < 400; ++k) {
+      if (k == 50 || k == 60 || k == 300) {
+        scene.storm->level_ratio = k == 60 ? 0.3 : 0.8;
+        scene.storm->wind_direction_deg = k;
+        EXPECT_TRUE(sim.setScene(scene));
+      }
+      if (k == 350) sim.reset();
+      sim.step();
+      if (k % 50 == 49) hashes.push_back(sim.stateHash());
+    }
+    return hashes;
+  };
+  const auto first = run();
+  EXPECT_EQ(run(), first);
+  EXPECT_NE(first[2], first[3]) << "nothing moved";
+}
+
+TEST_F(WindSeaOnDevice, ChangesWithoutAJump) {
+  core::Scene scene = openSea();
+  WaterSim& sim = make(scene);
+  std::vector<double> before;
+  double usual_m = 0.0;
+  double after_change_m = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    if (k == 1200) {
+      scene.storm->level_ratio = 0.2;
+      scene.storm->wind_direction_deg = 90.0;
+      ASSERT_TRUE(sim.setScene(scene));
+    }
+    sim.step();
+    const auto eta_m = sim.copyState().elevation_m;
+    double change_m = 0.0;
+    for (std::size_t i = 0; i < before.size(); ++i) change_m = std::max(change_m, std::abs(eta_m[i] - before[i]));
+    (k < 1200 ? usual_m : after_change_m) = std::max(k < 1200 ? usual_m : after_change_m, change_m);
+    before = eta_m;
+  }
+  EXPECT_GT(usual_m, 0.0);
+  EXPECT_LE(after_change_m, 1.3 * usual_m) << "largest change of an elevation per tick";
+}
+
+TEST_F(WindSeaOnDevice, StaysBoundedForEveryWindAndWater) {
+  struct Case {
+    std::uint32_t n;
+    double side_m, depth_m, sponge_m, wind_mps, fetch_m;
+  };
+  for (const Case& each : {Case{32, 1000.0, 100.0, 200.0, 60.0, 1e6}, Case{32, 1000.0, 0.5, 100.0, 60.0, 10.0},
+                           Case{32, 20.0, 0.05, 3.0, 60.0, 1e6}, Case{32, 1.0, 1.0, 0.1, 60.0, 1e6},
+                           Case{64, 20.0, 5.0, 0.2, 60.0, 1e5}}) {
+    core::Scene scene = openSea(each.n);
+    scene.wave->side_m = each.side_m;
+    scene.wave->depth_m = each.depth_m;
+    scene.wave->sponge_width_m = each.sponge_m;
+    scene.wave->steepening_ratio = 0.5;
+    scene.storm->wind_speed_mps = each.wind_mps;
+    scene.storm->fetch_m = each.fetch_m;
+    scene.storm->wave_height_m = 10.0;
+    WaterSim& sim = make(scene);
+    for (int k = 0; k < 600; ++k) {
+      sim.step();
+      ASSERT_EQ(sim.health().nonfinite_count, 0u);
+      ASSERT_EQ(sim.health().surface_units + sim.health().outflow_units, 0) << each.side_m << " m, " << each.depth_m;
+    }
+    EXPECT_EQ(sim.recoveredCount(), 0u) << each.side_m << " m, " << each.depth_m;
+    EXPECT_LE(sim.health().max_elevation_m, std::min(10.0, 2 * each.depth_m)) << each.side_m << " m, " << each.depth_m;
+  }
+}
+
+}  // namespace
+}  // namespace spindrift::sim
