@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/sim_setup/dispersion.h>
 #include <spindrift/study/trade.h>
 
 #include "particle_choices.h"
@@ -37,6 +38,16 @@ core::Scene withFinerParticles(core::Scene scene, double scale) {
 core::Scene withResolution(core::Scene scene, double scale) {
   const double cells = std::round(scene.wave->resolution_count * scale / 16) * 16;
   scene.wave->resolution_count = std::min(static_cast<std::uint32_t>(cells), kMaxResolution);
+  // Dispersion needs a number of cells that can be halved often enough; the largest one can.
+  while (scene.wave->dispersion != core::Dispersion::kNone && !sim::canDisperse(scene.wave->resolution_count))
+    scene.wave->resolution_count += 16;
+  return scene;
+}
+
+core::Scene waveAlone(core::Scene scene) {
+  scene.particles.reset();
+  scene.coupling.reset();
+  if (scene.foam && !scene.foam->surface) scene.foam.reset();
   return scene;
 }
 
@@ -94,11 +105,7 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
     }
   }
   if (scene.coupling) {
-    add("coupling", "wave alone", changed([](core::Scene& s) {
-          s.particles.reset();
-          s.coupling.reset();
-          if (s.foam && !s.foam->surface) s.foam.reset();
-        }));
+    add("coupling", "wave alone", waveAlone(scene));
     // As a band on the wave, or as two-way spray: each replaces the other with the same water.
     add("coupling", isTwoWay(scene) ? "one-way" : "two-way", changed([&](core::Scene& s) {
           s.coupling->mode = isTwoWay(s) ? core::CouplingMode::kOneWay : core::CouplingMode::kTwoWay;
@@ -119,6 +126,18 @@ core::Scene finerThan(const core::Scene& reference) {
   if (scene.wave) scene = withResolution(scene, 4.0 / 3);
   if (scene.particles) scene = withFinerParticles(scene, 1.25);
   return scene;
+}
+
+std::vector<TradeChoice> withAndWithoutDispersion(const std::vector<TradeChoice>& levels) {
+  std::vector<TradeChoice> out;
+  for (const core::Dispersion dispersion : {core::Dispersion::kAiry, core::Dispersion::kNone}) {
+    for (const TradeChoice& level : levels) {
+      core::Scene scene = waveAlone(level.scene);
+      scene.wave->dispersion = dispersion;
+      out.push_back({dispersion == core::Dispersion::kAiry ? level.knob : "no dispersion", level.setting, scene});
+    }
+  }
+  return out;
 }
 
 std::vector<TradeChoice> costSweep() {

@@ -34,6 +34,8 @@ constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.1},
 constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
                                     v1::FIDELITY_REFERENCE};
 constexpr const char* kLevelKnob = "fidelity";
+/// Scenes that disperse, run at each level as the wave alone, with dispersion and without.
+constexpr TradeScene kDispersiveScenes[] = {{"splash", 3.0, 0.0}, {"boat_wake", 4.0, 0.0}};
 /// Each shipped effect as it is, with the wave alone, and with particles alone (thesis, section 3.8.1).
 constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
 
@@ -62,16 +64,21 @@ core::Result<core::Scene> loadLevel(const std::string& name, v1::Fidelity level)
   return scene::toCore(*scene);
 }
 
-/// Returns the levels first, then BALANCED with one change each.
-core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool quick) {
+core::Result<std::vector<TradeChoice>> levelsOf(const TradeScene& scene) {
   std::vector<TradeChoice> choices;
   for (const v1::Fidelity level : kLevels) {
     auto loaded = loadLevel(scene.name, level);
     if (!loaded) return loaded.error();
     choices.push_back({kLevelKnob, scene::fidelityName(level), *std::move(loaded)});
   }
-  if (quick) return choices;
-  for (TradeChoice& knob : study::singleKnobs(choices[1].scene)) choices.push_back(std::move(knob));
+  return choices;
+}
+
+/// Returns the levels first, then BALANCED with one change each.
+core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool quick) {
+  auto choices = levelsOf(scene);
+  if (!choices || quick) return choices;
+  for (TradeChoice& knob : study::singleKnobs((*choices)[1].scene)) choices->push_back(std::move(knob));
   return choices;
 }
 
@@ -122,43 +129,16 @@ class TradeRuns {
       choices->resize(3);
     else
       finest_scene = study::finerThan(finest_scene);
-    const study::RecordOptions record{
-        .seconds = secondsOf(scene, options_.quick), .sample_interval_s = 0.1, .frame_bytes = frameBytes()};
-    std::vector<TradeRow> rows;
-    std::optional<WaterRecord> finest_run;
-    for (std::size_t i = 0; i < choices->size(); ++i) {
-      const TradeChoice& choice = (*choices)[i];
-      const std::string key =
-          journalKey("trade", fmt::format("{}/{}/{}", scene.name, choice.knob, choice.setting), options_, ctx_);
-      if (const auto known = journal_.find(key)) {
-        rows.push_back(rowFromJson(known->as_object()));
-        continue;
-      }
-      if (!finest_run) {
-        showProgress(fmt::format("{}: the run to judge by", scene.name));
-        auto finest = study::record(ctx_, finest_scene, record);
-        if (!finest) return core::Error{finest.error().code, std::string(scene.name) + ": " + finest.error().message};
-        finest_run = *std::move(finest);
-      }
-      showProgress(fmt::format("{}: [{}/{}] {} {}", scene.name, i + 1, choices->size(), choice.knob, choice.setting));
-      auto made = study::record(ctx_, choice.scene, record);
-      TradeRow row;
-      if (made) {
-        row = rowOf(choice, *made);
-        row.errors = study::compare(*made, *finest_run, choice.scene);
-      } else if (made.error().code == core::ErrorCode::kInvalidInput) {
-        row.knob = choice.knob;
-        row.setting = choice.setting;
-        row.refused = made.error().message;
-      } else {
-        return made.error();
-      }
-      if (auto kept = journal_.add(key, toJson(row)); !kept) return kept.error();
-      rows.push_back(std::move(row));
-    }
-    showProgress("");
-    markFront(rows);
-    return rows;
+    return compare(scene.name, secondsOf(scene, options_.quick), *choices, finest_scene);
+  }
+
+  /// The wave alone at each level, with dispersion and without; compared with a finer run with dispersion.
+  core::Result<std::vector<TradeRow>> dispersion(const TradeScene& scene) {
+    auto levels = levelsOf(scene);
+    if (!levels) return levels.error();
+    const std::vector<TradeChoice> choices = study::withAndWithoutDispersion(*levels);
+    return compare(std::string(scene.name) + ", wave alone", scene.seconds, choices,
+                   study::finerThan(choices[levels->size() - 1].scene));
   }
 
   /// Costs of scenes, without comparing their results.
@@ -183,6 +163,47 @@ class TradeRuns {
   }
 
  private:
+  core::Result<std::vector<TradeRow>> compare(const std::string& name, double seconds,
+                                              const std::vector<TradeChoice>& choices,
+                                              const core::Scene& finest_scene) {
+    const study::RecordOptions record{.seconds = seconds, .sample_interval_s = 0.1, .frame_bytes = frameBytes()};
+    std::vector<TradeRow> rows;
+    std::optional<WaterRecord> finest_run;
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      const TradeChoice& choice = choices[i];
+      const std::string key =
+          journalKey("trade", fmt::format("{}/{}/{}", name, choice.knob, choice.setting), options_, ctx_);
+      if (const auto known = journal_.find(key)) {
+        rows.push_back(rowFromJson(known->as_object()));
+        continue;
+      }
+      if (!finest_run) {
+        showProgress(fmt::format("{}: the run to judge by", name));
+        auto finest = study::record(ctx_, finest_scene, record);
+        if (!finest) return core::Error{finest.error().code, name + ": " + finest.error().message};
+        finest_run = *std::move(finest);
+      }
+      showProgress(fmt::format("{}: [{}/{}] {} {}", name, i + 1, choices.size(), choice.knob, choice.setting));
+      auto made = study::record(ctx_, choice.scene, record);
+      TradeRow row;
+      if (made) {
+        row = rowOf(choice, *made);
+        row.errors = study::compare(*made, *finest_run, choice.scene);
+      } else if (made.error().code == core::ErrorCode::kInvalidInput) {
+        row.knob = choice.knob;
+        row.setting = choice.setting;
+        row.refused = made.error().message;
+      } else {
+        return made.error();
+      }
+      if (auto kept = journal_.add(key, toJson(row)); !kept) return kept.error();
+      rows.push_back(std::move(row));
+    }
+    showProgress("");
+    markFront(rows);
+    return rows;
+  }
+
   gpu::Context& ctx_;
   const SuiteOptions& options_;
   StudyJournal& journal_;
@@ -297,6 +318,21 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
     result.json["over_all_scenes"] = std::move(json_means);
   }
 
+  boost::json::array json_dispersion;
+  for (const TradeScene& scene : kDispersiveScenes) {
+    if (options.quick || !(options.only.empty() || options.only == "dispersion")) continue;
+    found = true;
+    fmt::print(out, "{}, the wave alone with dispersion and without, {} s, against a finer run with dispersion\n",
+               scene.name, scene.seconds);
+    std::fflush(out);
+    auto rows = runs.dispersion(scene);
+    if (!rows) return core::Error{rows.error().code, std::string(scene.name) + ": " + rows.error().message};
+    printTradeHeader(out);
+    for (const TradeRow& row : *rows) print(out, row, (*rows)[1]);
+    json_dispersion.push_back({{"scene", scene.name}, {"rows", toJson(*rows)}});
+  }
+  if (!json_dispersion.empty()) result.json["dispersion"] = std::move(json_dispersion);
+
   if (!options.quick && (options.only.empty() || options.only == "cost")) {
     found = true;
     fmt::print(out, "cost of particles, waves and both, and of the effects in each form\n");
@@ -320,7 +356,7 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
   if (!found) {
     return core::Error{core::ErrorCode::kInvalidInput,
                        "--case: there is no '" + options.only + "'" + (options.quick ? " in the quick form" : "") +
-                           "; choose one of splash, breaking_wave, boat_wake, thesis, dam_break, cost"};
+                           "; choose one of splash, breaking_wave, boat_wake, thesis, dam_break, dispersion, cost"};
   }
   return result;
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <spindrift/sim_setup/derive.h>
 #include <spindrift/study/trade.h>
 #include <spindrift/study/water_record.h>
 
@@ -91,6 +92,31 @@ TEST(SingleKnobs, ChangeOneThingEach) {
       ++changes;
     }
     EXPECT_EQ(changes, 1) << choice.knob << " " << choice.setting;
+  }
+}
+
+TEST(DispersionChoices, AreTheWaveAloneOfEachLevelWithAndWithoutIt) {
+  core::Scene scene = waveOnly();
+  scene.wave->dispersion = core::Dispersion::kAiry;
+  scene.particles.emplace();
+  scene.coupling.emplace();
+  const auto choices = withAndWithoutDispersion({{"fidelity", "draft", scene}, {"fidelity", "balanced", scene}});
+  ASSERT_EQ(choices.size(), 4u);
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    EXPECT_FALSE(choices[i].scene.particles);
+    EXPECT_EQ(choices[i].scene.wave->dispersion, i < 2 ? core::Dispersion::kAiry : core::Dispersion::kNone);
+    EXPECT_EQ(choices[i].knob, i < 2 ? "fidelity" : "no dispersion");
+    EXPECT_EQ(choices[i].setting, i % 2 == 0 ? "draft" : "balanced");
+  }
+}
+
+TEST(FinerScenes, CanDisperse) {
+  for (const std::uint32_t cells : {192u, 480u, 640u, 960u}) {
+    core::Scene scene = waveOnly();
+    scene.wave->dispersion = core::Dispersion::kAiry;
+    scene.wave->resolution_count = cells;
+    const auto derived = sim::derive(finerThan(scene));
+    EXPECT_TRUE(derived) << cells << ": " << derived.error().message;
   }
 }
 

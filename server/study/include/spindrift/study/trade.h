@@ -21,6 +21,9 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene);
 /// Returns a scene to compare others with: finer in every direction than `reference`, the finest level.
 core::Scene finerThan(const core::Scene& reference);
 
+/// Returns the wave alone of each fidelity level with dispersion, and then without it, under the knob "no dispersion".
+std::vector<TradeChoice> withAndWithoutDispersion(const std::vector<TradeChoice>& levels);
+
 /// Particles alone, the wave alone, and both (thesis, tables 3.7 to 3.10): 8,192 to 65,536 particles, 64 to 1,024 cells
 /// per side.
 std::vector<TradeChoice> costSweep();
