@@ -110,6 +110,7 @@ Outcome airyPhaseSpeed(gpu::Context& ctx, bool quick) {
         const double cells = 2 * pi / (k_radpm * kCell_m);
         const double kd = k_radpm * exact.depth_m;
         if (kd > kMostKd || cells < 3.99) continue;
+        if (n != depth.resolution_count && cells <= 2.0 * depth.resolution_count) continue;  // measured already
         const double expected = exact.omega_radps(k_radpm);
         auto omega = frequencyOf(**water, wave, expected);
         if (!omega) return omega.error();

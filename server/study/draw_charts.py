@@ -262,7 +262,7 @@ def write_field_chart(chart, folder):
     largest = 0.5 * max(abs(value) for _, rows in chart.panels for row in rows for value in row)
     for axes, (name, rows) in zip(all_axes, chart.panels):
         image = axes.imshow(rows, origin="lower", extent=chart.corners, cmap="RdBu_r", vmin=-largest, vmax=largest,
-                            interpolation="bicubic")
+                            interpolation="none")  # the viewer enlarges the cells
         axes.set_title(name)
         axes.set_xlabel("x [m]")
         axes.grid(False)

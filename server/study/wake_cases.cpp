@@ -24,9 +24,8 @@ struct Passage {
   double depth_m;
   double cell_m;
   double length_m, beam_m;
-  double start_m, distance_m;  ///< from the side at -x
-  double most_height_percent = 2.0;
-  double least_correlation = 0.97;
+  double start_m, distance_m;        ///< from the side at -x
+  double most_height_percent = 2.0;  ///< error of the height; more where the group speed is off (README.md, Accuracy)
 };
 
 constexpr std::uint32_t kSide = 256;
@@ -200,7 +199,7 @@ Outcome kelvinWake(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   std::vector<FieldFigure> fields;
   for (const Passage& passage :
-       {Passage{1.5, 2.0, 0.125, 1.0, 0.5, 6.0, 20.0, 5.0, 0.96}, Passage{2.2, 2.0, 0.125, 2.0, 0.8, 6.0, 20.0, 4.0},
+       {Passage{1.5, 2.0, 0.125, 1.0, 0.8, 6.0, 20.0}, Passage{2.2, 2.0, 0.125, 2.0, 0.8, 6.0, 20.0, 4.0},
         Passage{3.0, 2.0, 0.17, 3.2, 1.2, 6.0, 31.0}}) {
     if (quick && passage.speed_mps != 2.2) continue;
     auto wake = sail(ctx, passage);
@@ -218,8 +217,7 @@ Outcome kelvinWake(gpu::Context& ctx, bool quick) {
     rows.push_back({name + "the same, of steady waves", "m", measured.length_m, length_m, Tolerance::kNone, 0.0,
                     "U^2 = (g/k) tanh(k d)"});
     rows.push_back({name + "correlation of the surfaces, 0.5 to 14 m behind", "",
-                    correlation(*wake, behind(*wake, 0.5, 14.0)), passage.least_correlation, Tolerance::kAtLeast, 0.0,
-                    kSameLoad});
+                    correlation(*wake, behind(*wake, 0.5, 14.0)), 0.97, Tolerance::kAtLeast, 0.0, kSameLoad});
     const auto angle = [&](std::span<const double> surface_m) {
       return ridgeAngle_deg(*wake, surface_m, 1.5 * length_m, std::min(4.5 * length_m, 16.0), length_m);
     };
