@@ -1,9 +1,8 @@
 #include "exact_linear_waves.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <math.h>  // j0
 
 #include "fourier.h"
 
@@ -85,8 +84,7 @@ double AiryRings::at(double r_m) const {
          eta_[i + 1] * (t + 1) * t * (t - 2) / 2 + eta_[i + 2] * (t + 1) * t * (t - 1) / 6;
 }
 
-LinearSea::LinearSea(const AiryWater& water, std::size_t n, double side_m)
-    : n_(n), cell_m_(side_m / static_cast<double>(n)) {
+LinearSea::LinearSea(const AiryWater& water, std::size_t n, double side_m) : n_(n) {
   const double unit_radpm = 2 * std::numbers::pi / side_m;
   for (std::size_t x = 0; x <= n / 2; ++x) {
     for (std::size_t z = 0; z < n; ++z) {

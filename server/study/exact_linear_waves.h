@@ -63,7 +63,6 @@ class LinearSea {
   [[nodiscard]] std::vector<Complex> spectrumOf(std::span<const double> field) const;
 
   std::size_t n_;
-  double cell_m_;
   /// Modes in columns of equal kx, kx from 0 to n/2, kz fastest.
   std::vector<double> omega_radps_;
   std::vector<Complex> elevation_m_, rate_mps_, head_m_;
