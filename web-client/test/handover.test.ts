@@ -87,24 +87,32 @@ describe("the page's ring of frames", () => {
     const { ring } = noted(4);
     expect(ring.around(1)).toBeUndefined();
     frames(ring, 1, 2, 4);
-    expect(ring.around(0.5)).toEqual({ from: at(1), to: at(1), mix: 0 });
-    expect(ring.around(1)).toEqual({ from: at(1), to: at(2), mix: 0 });
-    expect(ring.around(2.5)).toEqual({ from: at(2), to: at(4), mix: 0.25 });
-    expect(ring.around(9)).toEqual({ from: at(4), to: at(4), mix: 0 });
+    expect(ring.around(0.5)).toMatchObject({ from: at(1), to: at(1), mix: 0 });
+    expect(ring.around(1)).toMatchObject({ from: at(1), to: at(2), mix: 0 });
+    expect(ring.around(2.5)).toMatchObject({ from: at(2), to: at(4), mix: 0.25 });
+    expect(ring.around(9)).toMatchObject({ from: at(4), to: at(4), mix: 0 });
+  });
+
+  it("finds the neighbours of those frames, as far as there are any", () => {
+    const { ring } = noted(4);
+    frames(ring, 1, 2, 4, 5);
+    expect(ring.around(3)).toEqual({ before: at(1), from: at(2), to: at(4), after: at(5), mix: 0.5 });
+    expect(ring.around(1.5)).toEqual({ before: undefined, from: at(1), to: at(2), after: at(4), mix: 0.5 });
+    expect(ring.around(4.5)).toEqual({ before: at(2), from: at(4), to: at(5), after: undefined, mix: 0.5 });
   });
 
   it("starts again when simulation time goes back", () => {
     const { released, ring } = noted(4);
     frames(ring, 7, 8, 0.1);
     expect(released).toEqual([at(7), at(8)]);
-    expect(ring.around(8)).toEqual({ from: at(0.1), to: at(0.1), mix: 0 });
+    expect(ring.around(8)).toMatchObject({ from: at(0.1), to: at(0.1), mix: 0 });
   });
 
   it("replaces the newest frame with a repeated frame of a paused room", () => {
     const { released, ring } = noted(4);
     for (const frame of [at(1, 10n), at(2, 20n), at(2, 20n)]) ring.push(frame);
     expect(released).toEqual([at(2, 20n)]);
-    expect(ring.around(1.5)).toEqual({ from: at(1, 10n), to: at(2, 20n), mix: 0.5 });
+    expect(ring.around(1.5)).toMatchObject({ from: at(1, 10n), to: at(2, 20n), mix: 0.5 });
   });
 
   it("starts again when a paused room was changed, with or without numbered states", () => {
@@ -112,7 +120,7 @@ describe("the page's ring of frames", () => {
       const { released, ring } = noted(4);
       for (const frame of [at(1, before && 10n), at(2, before), at(2, after)]) ring.push(frame);
       expect(released).toHaveLength(2);
-      expect(ring.around(1.5)).toEqual({ from: at(2, after), to: at(2, after), mix: 0 });
+      expect(ring.around(1.5)).toMatchObject({ from: at(2, after), to: at(2, after), mix: 0 });
     }
   });
 });

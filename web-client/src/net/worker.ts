@@ -6,8 +6,8 @@ import { Connection, type ConnectionWorld, type SocketLike } from "./connection"
 import { FrameHandover } from "./handover";
 import type { ConnectionEvent, Frame, Identity, PageEvent, WorkerRequest } from "./messages";
 
-/** The page's ring holds four; one more may be on its way. */
-const kMaxFramesUnderWay = 5;
+/** The page's ring holds five; one more may be on its way. */
+const kMaxFramesUnderWay = 6;
 
 function post(event: PageEvent, transfer: Transferable[] = []): void {
   self.postMessage(event, { transfer });

@@ -3,6 +3,7 @@ import {
   ClampToEdgeWrapping,
   DataTexture,
   HalfFloatType,
+  IntType,
   LinearFilter,
   NearestFilter,
   RedIntegerFormat,
@@ -10,22 +11,38 @@ import {
   RGBAFormat,
   ShortType,
   Vector2,
+  Vector3,
+  Vector4,
   WebGLRenderTarget,
   type Texture,
   type WebGLRenderer,
 } from "three";
 
 import type { SurfaceFrame } from "../net/messages";
+import { kCurvature, kSlope, kSmooth } from "./field_kernels";
+import type { Between } from "./frame_ring";
 import { FrameTextures } from "./frame_textures";
 import { FullscreenPass } from "./fullscreen";
 import { makeMaterial } from "./shaders";
+import { timeWeights, type FrameTimes } from "./time_weights";
+
+/** The elevation between frames is kept in fractions of the quantum: 15 bits and these 8 fill the 24 of a float. */
+const kUnitsPerQuantum = 256;
+/** Frames that a picture is interpolated from. */
+const kFrameCount = 4;
 
 export class FieldPass {
   /** Elevation (m), slope x, slope z, curvature (1/m); u along x and v along z, the water's square is 0..1. */
   readonly texture: Texture;
   private readonly target: WebGLRenderTarget;
+  private readonly elevation: WebGLRenderTarget;
   private readonly frames: FrameTextures<SurfaceFrame>;
-  private readonly pass: FullscreenPass;
+  private readonly interpolate: FullscreenPass;
+  private readonly derive: FullscreenPass;
+  // Of the picture drawn last; kept, because every picture would make new ones.
+  private readonly times: FrameTimes = { beforeS: undefined, fromS: 0, toS: 0, afterS: undefined };
+  private readonly weights: [number, number, number, number] = [0, 1, 0, 0];
+  private readonly drawn: SurfaceFrame[] = [];
 
   /** `resolutionCount`: samples per side of the first surface. The texture has as many texels, at most `fieldCountMax` per side. */
   constructor(
@@ -46,61 +63,107 @@ export class FieldPass {
       depthBuffer: false,
     });
     this.texture = this.target.texture;
-    this.frames = new FrameTextures<SurfaceFrame>(resolutionCount, makeTexture);
-    const [from, to] = this.frames.textures;
-    this.pass = new FullscreenPass(
+    this.elevation = new WebGLRenderTarget(resolutionCount, resolutionCount, {
+      format: RedIntegerFormat,
+      type: IntType,
+      internalFormat: "R32I",
+      minFilter: NearestFilter,
+      magFilter: NearestFilter,
+      depthBuffer: false,
+    });
+    this.frames = new FrameTextures<SurfaceFrame>(resolutionCount, kFrameCount, makeTexture);
+    const { blank } = this.frames;
+    const state = { depthTest: false, depthWrite: false };
+    this.interpolate = new FullscreenPass(
+      makeMaterial(
+        "elevation",
+        {
+          u_before: { value: blank },
+          u_from: { value: blank },
+          u_to: { value: blank },
+          u_after: { value: blank },
+          u_weights: { value: new Vector4(0, 0, 0, 0) },
+        },
+        state,
+      ),
+    );
+    this.derive = new FullscreenPass(
       makeMaterial(
         "field",
         {
-          u_from: { value: from },
-          u_to: { value: to },
-          u_quantum_m: { value: new Vector2(1, 1) },
-          u_mix: { value: 0 },
+          u_elevation: { value: this.elevation.texture },
+          u_unit_m: { value: 0 },
           u_cell_m: { value: 1 },
           u_cells_per_texel: { value: 1 },
           u_periodic: { value: new Vector2(Number(periodicX), Number(periodicZ)) },
+          u_smooth: { value: new Vector3(...kSmooth) },
+          u_slope: { value: new Vector3(...kSlope) },
+          u_curvature: { value: new Vector3(...kCurvature) },
         },
-        { depthTest: false, depthWrite: false },
+        state,
       ),
     );
     this.scale();
   }
 
-  /** Draws the field `mix` of the way from one frame to the other. */
-  render(renderer: WebGLRenderer, from: SurfaceFrame, to: SurfaceFrame, mix: number): void {
+  /** Draws the field at a time between two frames; their neighbours give the curve between them. */
+  render(renderer: WebGLRenderer, between: Readonly<Between<SurfaceFrame>>): void {
+    const { to, mix } = between;
     // The level of detail changed: frames of two sizes cannot be interpolated.
-    if (from.resolutionCount !== to.resolutionCount) from = to;
+    const isLike = (frame: SurfaceFrame | undefined): frame is SurfaceFrame => frame?.resolutionCount === to.resolutionCount;
+    const from = isLike(between.from) ? between.from : to;
+    const before = from !== to && isLike(between.before) ? between.before : from;
+    const after = from !== to && isLike(between.after) ? between.after : to;
     if (to.resolutionCount !== this.frames.resolutionCount) this.resize(to.resolutionCount);
-    const uniforms = this.pass.material.uniforms;
-    uniforms["u_from"]!.value = this.frames.textureOf(from, to);
-    uniforms["u_to"]!.value = this.frames.textureOf(to, from);
-    (uniforms["u_quantum_m"]!.value as Vector2).set(from.quantumM, to.quantumM);
-    uniforms["u_mix"]!.value = mix;
-    this.pass.render(renderer, this.target);
+
+    const { times, weights, drawn } = this;
+    times.beforeS = before === from ? undefined : before.timeS;
+    times.fromS = from.timeS;
+    times.toS = to.timeS;
+    times.afterS = after === to ? undefined : after.timeS;
+    timeWeights(times, mix, weights);
+    const unitM = to.quantumM / kUnitsPerQuantum;
+    const uniforms = this.interpolate.material.uniforms;
+    drawn[0] = before;
+    drawn[1] = from;
+    drawn[2] = to;
+    drawn[3] = after;
+    uniforms["u_before"]!.value = this.frames.textureOf(before, drawn);
+    uniforms["u_from"]!.value = this.frames.textureOf(from, drawn);
+    uniforms["u_to"]!.value = this.frames.textureOf(to, drawn);
+    uniforms["u_after"]!.value = this.frames.textureOf(after, drawn);
+    const scaled = (k: 0 | 1 | 2 | 3): number => (weights[k] * drawn[k]!.quantumM) / unitM;
+    (uniforms["u_weights"]!.value as Vector4).set(scaled(0), scaled(1), scaled(2), scaled(3));
+    this.interpolate.render(renderer, this.elevation);
+    this.derive.material.uniforms["u_unit_m"]!.value = unitM;
+    this.derive.render(renderer, this.target);
   }
 
   /** Draws water at rest, until the first frame comes. */
   renderStill(renderer: WebGLRenderer): void {
-    const uniforms = this.pass.material.uniforms;
-    (uniforms["u_quantum_m"]!.value as Vector2).set(0, 0);
-    this.pass.render(renderer, this.target);
+    (this.interpolate.material.uniforms["u_weights"]!.value as Vector4).set(0, 0, 0, 0);
+    this.interpolate.render(renderer, this.elevation);
+    this.derive.render(renderer, this.target);
   }
 
   dispose(): void {
     this.target.dispose();
-    this.pass.dispose();
+    this.elevation.dispose();
+    this.interpolate.dispose();
+    this.derive.dispose();
     this.frames.dispose();
   }
 
   private resize(resolutionCount: number): void {
     this.frames.resize(resolutionCount);
+    this.elevation.setSize(resolutionCount, resolutionCount);
     const fieldCount = Math.min(resolutionCount, this.fieldCountMax);
     this.target.setSize(fieldCount, fieldCount);
     this.scale();
   }
 
   private scale(): void {
-    const uniforms = this.pass.material.uniforms;
+    const uniforms = this.derive.material.uniforms;
     uniforms["u_cell_m"]!.value = this.sideM / this.frames.resolutionCount;
     uniforms["u_cells_per_texel"]!.value = this.frames.resolutionCount / this.target.width;
   }

@@ -11,17 +11,18 @@ export class FoamField {
   private readonly frames: FrameTextures<FoamFrame>;
 
   constructor(periodicX: boolean, periodicZ: boolean) {
-    this.frames = new FrameTextures<FoamFrame>(2, (n) => makeTexture(n, periodicX, periodicZ));
-    const [from, to] = this.frames.textures;
-    this.uniforms = { u_foam_from: { value: from }, u_foam_to: { value: to }, u_foam_mix: { value: 0 } };
+    this.frames = new FrameTextures<FoamFrame>(2, 2, (n) => makeTexture(n, periodicX, periodicZ));
+    const { blank } = this.frames;
+    this.uniforms = { u_foam_from: { value: blank }, u_foam_to: { value: blank }, u_foam_mix: { value: 0 } };
   }
 
   /** Shows the foam `mix` of the way from one frame to the other. */
   show(from: FoamFrame, to: FoamFrame, mix: number): void {
     if (from.resolutionCount !== to.resolutionCount) from = to;
     if (from.resolutionCount !== this.frames.resolutionCount) this.frames.resize(from.resolutionCount);
-    this.uniforms["u_foam_from"]!.value = this.frames.textureOf(from, to);
-    this.uniforms["u_foam_to"]!.value = this.frames.textureOf(to, from);
+    const drawn = [from, to];
+    this.uniforms["u_foam_from"]!.value = this.frames.textureOf(from, drawn);
+    this.uniforms["u_foam_to"]!.value = this.frames.textureOf(to, drawn);
     this.uniforms["u_foam_mix"]!.value = mix;
   }
 

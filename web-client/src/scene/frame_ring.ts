@@ -1,8 +1,11 @@
 // The last few frames of a layer, oldest first. Owns their buffers until it returns them through `release`.
 
-interface Between<T> {
+/** The frames before and after a time, their other neighbours (undefined: none), and the position of the time between them, 0..1. */
+export interface Between<T> {
+  before: T | undefined;
   from: T;
   to: T;
+  after: T | undefined;
   mix: number;
 }
 
@@ -42,8 +45,8 @@ export class FrameRing<T extends { timeS: number; stateId: bigint }> {
   }
 
   /**
-   * Returns the frames before and after `timeS` and its position between them, 0..1; the same frame twice at the ends. The next
-   * call overwrites the result: this runs for every layer of every picture.
+   * Returns the frames around `timeS`; the same frame as `from` and `to` at the ends. The next call overwrites the result: this runs
+   * for every layer of every picture.
    */
   around(timeS: number): Readonly<Between<T>> | undefined {
     const { frames } = this;
@@ -53,10 +56,12 @@ export class FrameRing<T extends { timeS: number; stateId: bigint }> {
     const to = frames[Math.min(after, frames.length - 1)]!;
     const from = after === 0 ? to : frames[after - 1]!;
     const mix = from === to ? 0 : (timeS - from.timeS) / (to.timeS - from.timeS);
-    if (!this.between) return (this.between = { from, to, mix });
-    this.between.from = from;
-    this.between.to = to;
-    this.between.mix = mix;
-    return this.between;
+    const between = (this.between ??= { before: undefined, from, to, after: undefined, mix });
+    between.before = frames[after - 2];
+    between.from = from;
+    between.to = to;
+    between.after = frames[after + 1];
+    between.mix = mix;
+    return between;
   }
 }

@@ -1,4 +1,4 @@
-// Two textures for the frames on either side of the time shown. A frame is uploaded once, however often it is drawn.
+// Textures for the frames around the time shown. A frame is uploaded once, however often it is drawn.
 import type { DataTexture } from "three";
 
 interface Slot<F> {
@@ -12,31 +12,33 @@ interface PlaneFrame {
 }
 
 export class FrameTextures<F extends PlaneFrame> {
-  private slots: [Slot<F>, Slot<F>];
+  private slots: Slot<F>[];
 
+  /** `count`: frames that are drawn at the same time. */
   constructor(
     public resolutionCount: number,
+    private readonly count: number,
     private readonly make: (resolutionCount: number) => DataTexture,
   ) {
-    this.slots = [this.makeSlot(), this.makeSlot()];
+    this.slots = this.makeSlots();
   }
 
-  /** The two textures before any frame is uploaded. */
-  get textures(): [DataTexture, DataTexture] {
-    return [this.slots[0].texture, this.slots[1].texture];
+  /** A texture before any frame is uploaded. */
+  get blank(): DataTexture {
+    return this.slots[0]!.texture;
   }
 
   resize(resolutionCount: number): void {
     this.dispose();
     this.resolutionCount = resolutionCount;
-    this.slots = [this.makeSlot(), this.makeSlot()];
+    this.slots = this.makeSlots();
   }
 
-  /** Returns the texture that holds `frame`. If none does, uploads into the slot that does not hold `other`. */
-  textureOf(frame: F, other: F): DataTexture {
+  /** Returns the texture that holds `frame`. If none does, uploads into a slot that holds none of `drawn`, at most `count` frames. */
+  textureOf(frame: F, drawn: readonly (F | undefined)[]): DataTexture {
     const held = this.slots.find((slot) => slot.frame === frame);
     if (held) return held.texture;
-    const slot = this.slots[0].frame !== other ? this.slots[0] : this.slots[1];
+    const slot = this.slots.find(({ frame: old }) => old === undefined || !drawn.includes(old))!;
     // A copy: the frame's buffer returns to the worker when the ring drops the frame, and the texture may be uploaded again after a
     // lost context.
     const { buffer, byteOffset, byteLength } = slot.texture.image.data as Uint8Array;
@@ -50,7 +52,7 @@ export class FrameTextures<F extends PlaneFrame> {
     for (const slot of this.slots) slot.texture.dispose();
   }
 
-  private makeSlot(): Slot<F> {
-    return { texture: this.make(this.resolutionCount), frame: undefined };
+  private makeSlots(): Slot<F>[] {
+    return Array.from({ length: this.count }, () => ({ texture: this.make(this.resolutionCount), frame: undefined }));
   }
 }

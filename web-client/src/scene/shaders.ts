@@ -3,6 +3,7 @@ import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters 
 
 import bed from "./shaders/bed.glsl?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
+import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import groundFrag from "./shaders/ground.frag?raw";
@@ -23,6 +24,7 @@ import waterFrag from "./shaders/water.frag?raw";
 import waterVert from "./shaders/water.vert?raw";
 
 const kPrograms = {
+  elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
   ground: [groundVert, groundFrag],
   particle: [particleVert, particleFrag],

@@ -36,7 +36,8 @@ import { Sky } from "./sky";
 import { bedOf, groundExtent, type Bed } from "./terrain";
 import { WaterBody } from "./water_body";
 
-const kRingCount = 4;
+/** The four frames around the time shown, and one that came early. */
+const kRingCount = 5;
 /** Particles are extrapolated for at most this many frame intervals. */
 const kMaxAdvanceIntervals = 1.5;
 /** Room for waves above the water in a view, as a share of its side. */
@@ -217,7 +218,7 @@ export class WaterScene {
 
   private advanceTo(shownS: number): void {
     const surfaces = this.surfaces.around(shownS);
-    if (surfaces) this.field?.render(this.renderer, surfaces.from, surfaces.to, surfaces.mix);
+    if (surfaces) this.field?.render(this.renderer, surfaces);
     const foam = this.foam && this.foamFrames.around(shownS);
     if (foam) this.foam!.show(foam.from, foam.to, foam.mix);
     const bodies = this.boats && this.bodyStates.around(shownS);
