@@ -8,7 +8,10 @@ namespace spindrift::codec {
 
 PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
   const bool is_first = before_.resolution() != next_.resolution();
-  if (is_first) before_ = earlier_ = next_;
+  if (is_first) {
+    before_ = earlier_ = next_;
+    guess_.reset();
+  }
   Forms out;
   if (!is_first) out.delta = delta();
   if (is_first || wants_keyframe) out.keyframe = keyframe();
@@ -20,7 +23,8 @@ PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
 PlaneChainEncoder::Form PlaneChainEncoder::delta() {
   Form out;
   const SurfaceHistory history{&before_, &earlier_};
-  out.weights = fitWeights(next_, history);
+  out.weights = fitWeights(next_, history, guess_ ? &*guess_ : nullptr);
+  guess_ = out.weights;
   encodePlane(next_, history, out.weights, residuals_);
   residuals_.finish(out.payload);
   return out;
@@ -28,10 +32,10 @@ PlaneChainEncoder::Form PlaneChainEncoder::delta() {
 
 PlaneChainEncoder::Form PlaneChainEncoder::keyframe() {
   Form out;
-  out.weights = fitWeights(next_, {});
+  out.weights = fitWeights(next_, {}, nullptr);
   encodePlane(next_, {}, out.weights, residuals_);
   const SurfaceHistory history{&next_, nullptr};
-  out.earlier_weights = fitWeights(before_, history);
+  out.earlier_weights = fitWeights(before_, history, nullptr);
   encodePlane(before_, history, out.earlier_weights, residuals_);
   residuals_.finish(out.payload);
   return out;

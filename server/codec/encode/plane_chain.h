@@ -34,6 +34,7 @@ class PlaneChainEncoder {
 
   SurfacePlane next_, before_, earlier_;
   ResidualEncoder residuals_;
+  std::optional<SurfaceWeights> guess_;  ///< weights of the newest delta
 };
 
 }  // namespace spindrift::codec

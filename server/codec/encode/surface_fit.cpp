@@ -85,6 +85,23 @@ void putTerms(const SurfacePlane& plane, const SurfaceHistory& history, std::ptr
   for (std::array<float, kRun>& term : out) std::fill(term.begin() + count, term.end(), 0.0f);
 }
 
+/// Divides a run by the root mean square of what `guess` leaves of its samples.
+void weigh(const SurfaceWeights& guess, std::ptrdiff_t count, Run& run) {
+  /// Square of a residual that is as cheap as none [quanta^2].
+  constexpr float kFree = 0.3f;
+  std::array<float, kRun> rest = run[kWanted];
+  for (std::size_t k = 0; k < kCount; ++k) {
+    const float weight = static_cast<float>(guess.of[k]) / (1 << kWeightBits);
+    for (std::size_t i = 0; i < kRun; ++i) rest[i] -= weight * run[k][i];
+  }
+  float squares = 0.0f;
+  for (const float r : rest) squares += r * r;  // terms and samples beyond the plane are 0
+  const float scale = 1.0f / std::sqrt(squares / static_cast<float>(count) + kFree);
+  for (std::array<float, kRun>& term : run) {
+    for (float& value : term) value *= scale;
+  }
+}
+
 void addProducts(const Run& run, RowSums& sums) {
   for (std::size_t k = 0; k < kCount; ++k) {
     for (std::size_t l = k; l <= kWanted; ++l) {
@@ -99,8 +116,9 @@ void addProducts(const Run& run, RowSums& sums) {
 
 }  // namespace
 
-SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history) {
+SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights* guess) {
   const std::size_t n = plane.resolution();
+  if (n < kGuessedResolution) guess = nullptr;
   const std::size_t row_stride = std::max<std::size_t>(n / kRows, 1);
   const std::size_t run_stride = std::max(n / kRunsPerRow, kRun);
   std::array<std::array<double, kCount>, kCount> products{};
@@ -111,6 +129,7 @@ SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& histo
     // Start at another column in each row, so that the samples do not all fall on one regular pattern.
     for (std::size_t x = 1 + line * 37 % (run_stride - kRun + 1); x < n; x += run_stride) {
       putTerms(plane, history, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(z), run);
+      if (guess != nullptr) weigh(*guess, static_cast<std::ptrdiff_t>(std::min(kRun, n - x)), run);
       addProducts(run, sums);
     }
     const auto sumOf = [&sums](std::size_t k, std::size_t l) {

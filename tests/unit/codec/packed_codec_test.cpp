@@ -195,6 +195,26 @@ core::Bytes payloadOf(const SurfacePlane& plane, const SurfaceHistory& history, 
   return bytes;
 }
 
+TEST(Prediction, FitsTheCalmWaterBesideABreakerOnceItKnowsWhereThatIs) {
+  constexpr std::size_t kSide = 128;
+  Random random(6);
+  // Two waves that travel, and a breaker in a corner that no frame predicts.
+  const auto frame = [&](double t) {
+    return planeOf(kSide, [&](std::size_t x, std::size_t z) {
+      const auto along = static_cast<double>(x), across = static_cast<double>(z);
+      const double waves = 60 * std::sin(0.3 * along - 0.5 * t) + 40 * std::sin(0.4 * (along + across) - 0.9 * t);
+      const double breaker = x < 32 && z < 32 ? static_cast<double>(random() % 1200) - 600 : 0.0;
+      return std::lround(waves + breaker);
+    });
+  };
+  const SurfacePlane first = frame(0), second = frame(1), third = frame(2), fourth = frame(3);
+  const SurfaceWeights guess = fitWeights(third, {&second, &first}, nullptr);
+  const SurfaceHistory history{&third, &second};
+  const std::size_t plain = payloadOf(fourth, history, fitWeights(fourth, history, nullptr), nullptr, {}).size();
+  const std::size_t weighted = payloadOf(fourth, history, fitWeights(fourth, history, &guess), nullptr, {}).size();
+  EXPECT_LT(weighted, 0.8 * static_cast<double>(plain)) << "of " << plain << " bytes";
+}
+
 void expectSame(const PlaneRow& read, const SurfacePlane& plane, const std::string& which) {
   ASSERT_TRUE(read.hasRow()) << which;
   for (std::size_t z = 0; z < plane.resolution(); ++z) {
