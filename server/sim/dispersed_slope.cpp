@@ -72,8 +72,9 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
     }
   }
   Bottom& tables = out->bottom_;
-  const std::size_t bottom_cells = bottomCellsAtMost(dispersion.levels[bottom].side_count);
-  create(tables.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", bottom_cells + 1, kFloats));
+  std::size_t bottom_cells = 0;
+  for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) bottom_cells += dispersion.levels[k].stiffness.size();
+  create(tables.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", bottom_cells, kFloats));
   create(tables.sweep, TexelBuffer::create(ctx, "dispersion sweep weights", bottom_cells, kFloats));
   create(tables.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", bottom_cells, kFloats));
   create(tables.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", bottom_cells, kFloats));
@@ -116,8 +117,6 @@ void DispersedSlope::upload(const Dispersion& dispersion) {
     std::ranges::transform(level.from_coarse_x, std::back_inserter(from_x), floatsOf);  // none in the coarsest grid
     std::ranges::transform(level.from_coarse_z, std::back_inserter(from_z), floatsOf);
   }
-  stiffness.resize(bottom_.stiffness.sizeBytes() / sizeof(Floats));
-  stiffness.back()[0] = static_cast<float>(dispersion.levels.size() - bottom);
   bottom_.stiffness.upload(stiffness);
   bottom_.sweep.upload(sweep);
   if (!from_x.empty()) bottom_.from_x.upload(from_x);

@@ -11,9 +11,6 @@ namespace {
 
 using Four = std::array<double, 4>;
 
-/// The V-cycle ends at the grid where the largest b (d / cell)^2 is below this: there the sweeps alone solve the
-/// equation.
-constexpr double kCoarsestStiffness = 0.12;
 constexpr std::uint32_t kCoarsestSideCount = 4;
 
 /// Fitted coefficients by depth in cells, a factor of sqrt(2) apart. Printed by tests/tools/fit_dispersion.cpp.
@@ -209,20 +206,24 @@ void roundToHalves(std::vector<Four>& values) {
   for (Four& four : values) std::ranges::transform(four, four.begin(), roundToHalf);
 }
 
-std::vector<Four> stiffnessOf(const Grid& grid, double cell_m, double largest_depth_m) {
+std::vector<Four> stiffnessOf(const Grid& grid, double cell_m, double scene_depth_m) {
   std::vector<Four> out(grid.wet.size(), Four{});
   for (std::size_t i = 0; i < out.size(); ++i) {
     for (int axis = 0; axis < 2; ++axis) {
-      if (grid.open[i][axis] > 0.0) out[i][axis] = largest_depth_m * grid.resistance_pm[i][axis] / grid.open[i][axis];
+      if (grid.open[i][axis] > 0.0) out[i][axis] = scene_depth_m * grid.resistance_pm[i][axis] / grid.open[i][axis];
     }
     for (std::size_t j = 0; j < kPoleCount; ++j) {
-      if (grid.wet[i] > 0.0) out[i][2 + j] = largest_depth_m * grid.reach_m[i][j] / (grid.wet[i] * cell_m * cell_m);
+      if (grid.wet[i] > 0.0) out[i][2 + j] = scene_depth_m * grid.reach_m[i][j] / (grid.wet[i] * cell_m * cell_m);
     }
   }
   return out;
 }
 
 }  // namespace
+
+double shareAtOnce(double depth_cells) {
+  return std::min(DISPERSION_DEPTH_SHARE, DISPERSION_CELL_SHARE / depth_cells);
+}
 
 Poles polesAt(double depth_cells) {
   const std::span fitted(kFitted);
@@ -246,15 +247,6 @@ bool canDisperse(std::uint32_t resolution_count) {
   return resolution_count <= kBottomSideMax;
 }
 
-std::size_t bottomCellsAtMost(std::uint32_t side_count) {
-  std::size_t cells = std::size_t{side_count} * side_count;
-  while (side_count > kCoarsestSideCount && side_count % 2 == 0) {
-    side_count /= 2;
-    cells += std::size_t{side_count} * side_count;
-  }
-  return cells;
-}
-
 std::uint64_t dispersionBytes(std::uint32_t resolution_count) {
   constexpr std::uint64_t kCoefficients = 16;
   constexpr std::uint64_t kWeights = 16;
@@ -275,7 +267,7 @@ double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m) {
   constexpr double kShortest = 8.0;  // largest eigenvalue of the 5-point Laplacian, in cells
   const double depth_cells = depth_m / cell_m;
   const Poles poles = polesAt(depth_cells);
-  double share = 0.0;
+  double share = shareAtOnce(depth_cells);
   for (std::size_t j = 0; j < kPoleCount; ++j)
     share += poles.c[j] / (1.0 + poles.b[j] * depth_cells * depth_cells * kShortest);
   return kMargin * 2.0 * cell_m / std::sqrt(gravity_mps2 * depth_m * kShortest * share);
@@ -285,17 +277,16 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
                             const std::function<Poles(double depth_cells)>& poles_of) {
   Dispersion out;
   out.is_flat = basin.is_flat;
+  out.depth_m = layout.dispersing_depth_m;
+  out.cell_m = layout.cell_m;
   Grid grid(static_cast<int>(layout.resolution_count));
   out.root_c.resize(grid.wet.size());
-  double largest = 0.0;
-  const double largest_depth_m = std::max(0.0, static_cast<double>(*std::ranges::max_element(basin.depth_m)));
   for (std::size_t i = 0; i < grid.wet.size(); ++i) {
     const double depth_m = basin.depth_m[i];
     if (depth_m <= 0.0) continue;
     grid.wet[i] = 1.0;
     const Poles poles = poles_of(depth_m / layout.cell_m);
     for (std::size_t j = 0; j < kPoleCount; ++j) grid.reach_m[i][j] = poles.b[j] * depth_m;
-    largest = std::max(largest, poles.b[0] * std::pow(depth_m / layout.cell_m, 2));
     for (int axis = 0; axis < 2; ++axis) {
       const double face_m = basin.conductance_m[i][axis];
       if (face_m <= 0.0) continue;
@@ -303,7 +294,7 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
       grid.resistance_pm[i][axis] = 1.0 / face_m;
       const Poles at_face = poles_of(face_m / layout.cell_m);
       for (std::size_t j = 0; j < kPoleCount; ++j)
-        out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j] * largest_depth_m);
+        out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j] * out.depth_m);
     }
   }
   if (!out.is_flat) roundToHalves(out.root_c);
@@ -311,10 +302,9 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
   while (true) {
     DispersionLevel level;
     level.side_count = static_cast<std::uint32_t>(grid.n);
-    level.stiffness = stiffnessOf(grid, cell_m, largest_depth_m);
-    const bool is_solved_by_sweeps = largest < kCoarsestStiffness && level.side_count <= kBottomSide;
-    const bool is_coarsest = !out.levels.empty() && (is_solved_by_sweeps || level.side_count <= kCoarsestSideCount ||
-                                                     level.side_count % 2 != 0);
+    level.stiffness = stiffnessOf(grid, cell_m, out.depth_m);
+    const bool is_coarsest =
+        !out.levels.empty() && (level.side_count <= kCoarsestSideCount || level.side_count % 2 != 0);
     if (!is_coarsest) grid = coarsen(grid, level);
     if (!out.is_flat) {
       for (auto* table : {&level.stiffness, &level.from_coarse_x, &level.from_coarse_z}) roundToHalves(*table);
@@ -322,7 +312,6 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
     out.levels.push_back(std::move(level));
     if (is_coarsest) return out;
     cell_m *= 2;
-    largest /= 4;
   }
 }
 

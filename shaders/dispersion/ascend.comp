@@ -2,8 +2,8 @@
 // Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, otherwise
 // DISPERSION_RIGHT), DISPERSION_COARSE, DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_FACES; on the finest grid
 // DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope [m * units].
-// Equation: phi_3 = phi_2 + P coarse, with the weights P of strip.glsl; then phi += w (r - K phi) twice; F grad(eta) = sum_j
-// sqrt(c_j) phi_j.
+// Equation: phi_3 = phi_2 + P coarse, with the weights P of strip.glsl; then phi += w (r - K phi) twice; F grad(eta) = a
+// grad(eta) + sum_j sqrt(c_j) phi_j.
 #include "dispersion/strip.glsl"
 
 layout(local_size_x = DISPERSION_GROUP) in;
@@ -76,11 +76,15 @@ void main() {
       if (first_x + k >= n) continue;
 #if FINEST
 #if FLAT
-      const vec4 shares = flat_root_c * swept[c];
+      const vec4 root_c = flat_root_c;
 #else
-      const vec4 shares = halves(texelFetch(coefficients, i).zw) * swept[c];
+      const vec4 root_c = halves(texelFetch(coefficients, i).zw);
 #endif
-      dispersed[i] = vec2(shares.x + shares.y, shares.z + shares.w);
+      const vec4 shares = root_c * swept[c];
+      const bvec2 is_open = greaterThan(rows[3].weight[c].xz, vec2(0.0));
+      const vec2 slope = rows[3].right[c].xz / root_c.xz;
+      const vec2 at_once = min(DISPERSION_DEPTH_SHARE * sim.wave_depth_m / stiffnessOf(rows[3], c).xy, vec2(DISPERSION_CELL_SHARE * sim.wave_cell_m));
+      dispersed[i] = mix(vec2(0.0), at_once * slope + vec2(shares.x + shares.y, shares.z + shares.w), is_open);
 #else
       faces_after[i] = swept[c];
 #endif

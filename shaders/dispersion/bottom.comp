@@ -8,7 +8,6 @@
 
 layout(local_size_x = DISPERSION_BOTTOM_GROUP) in;
 
-// The last texel holds the number of grids.
 layout(binding = DISPERSION_STIFFNESS) uniform samplerBuffer stiffness;
 layout(binding = DISPERSION_SWEEP) uniform samplerBuffer sweep_weight;
 layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
@@ -19,7 +18,6 @@ layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec
 /// A grid of DISPERSION_BOTTOM_SIDE_MAX cells per side, which is then the coarsest, or all from DISPERSION_BOTTOM_SIDE down.
 #define MAX_CELLS (DISPERSION_BOTTOM_SIDE_MAX * DISPERSION_BOTTOM_SIDE_MAX)
 #define MAX_SMALLER_CELLS (DISPERSION_BOTTOM_SIDE * DISPERSION_BOTTOM_SIDE / 3 + 1)
-#define COARSEST_SWEEPS 4
 
 /// Of all grids, one behind the other: the faces; the right sides of all but the largest. e div phi of one grid.
 shared vec4 phi[MAX_CELLS];
@@ -112,7 +110,8 @@ void start(int first, int n) {
 void main() {
   int first = 0;
   int n = int(sqrt(float(textureSize(right_side))) + 0.5);
-  const int grids = int(texelFetch(stiffness, textureSize(stiffness) - 1).x);
+  int grids = 0;
+  for (int cells = 0; cells < textureSize(stiffness); cells += (n >> grids) * (n >> grids), ++grids) {}
   for (int turn = 0; turn < 2 * grids - 1; ++turn) {
     const bool descends = turn < grids;
     const bool is_coarsest = turn == grids - 1;
@@ -123,7 +122,7 @@ void main() {
       first -= n * n;
       correct(first, n);
     }
-    const int sweeps = is_coarsest ? COARSEST_SWEEPS : (descends ? 1 : 2);
+    const int sweeps = is_coarsest ? DISPERSION_COARSEST_SWEEPS - 1 : (descends ? 1 : 2);
     for (int k = 0; k < sweeps; ++k) sweep(first, n);
     if (descends && !is_coarsest) {
       restrictToCoarse(first, n);

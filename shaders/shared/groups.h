@@ -20,6 +20,9 @@
 #define DISPERSION_COLUMNS 4
 #define DISPERSION_STRIP 32
 #define DISPERSION_GROUP 16
+// Part of F that acts at once, for the shortest waves: so much of the depth, and at most so much of a cell.
+#define DISPERSION_DEPTH_SHARE 0.02
+#define DISPERSION_CELL_SHARE 0.4
 // Weight of the damped Jacobi sweeps. With more than 1/2 the shortest waves would get a negative F, and grow.
 #define DISPERSION_SWEEP_WEIGHT 0.5
 // The dispersion's small grids, in one group: from this many cells per side down, or from the coarsest grid, which has at
@@ -27,6 +30,8 @@
 #define DISPERSION_BOTTOM_GROUP 64
 #define DISPERSION_BOTTOM_SIDE 16
 #define DISPERSION_BOTTOM_SIDE_MAX 32
+// Sweeps that solve the coarsest grid.
+#define DISPERSION_COARSEST_SWEEPS 12
 // Groups along x that every OpenGL 4.5 device can dispatch at once. Passes over more cells loop.
 #define MAX_GROUPS 65535
 // Diagnostics: every invocation sums a strided share of about REDUCE_ITEMS items by itself and writes one partial result; the

@@ -24,12 +24,19 @@ class DispersionReference {
   [[nodiscard]] std::vector<std::array<double, 2>> apply(const std::vector<double>& level) const {
     const Faces phi = poles(level);
     std::vector<std::array<double, 2>> out(level.size());
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    const DispersionLevel& finest = dispersion_.levels.front();
+    forEach(finest, [&](int x, int z, std::size_t i) {
+      const double slope[2] = {level[finest.index(x + 1, z)] - level[i], level[finest.index(x, z + 1)] - level[i]};
       for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double stiffness = finest.stiffness[i][axis];
+        if (stiffness > 0.0) {
+          const double depth_m = dispersion_.depth_m / stiffness;
+          out[i][axis] = shareAtOnce(depth_m / dispersion_.cell_m) * depth_m * slope[axis];
+        }
         for (std::size_t j = 0; j < kPoleCount; ++j)
           out[i][axis] += dispersion_.root_c[i][2 * axis + j] * phi[i][2 * axis + j];
       }
-    }
+    });
     return out;
   }
 

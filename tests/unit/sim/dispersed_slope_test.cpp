@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -19,16 +20,21 @@ namespace {
 
 class DispersedSlopeOnDevice : public OnDevice {
  protected:
-  /// Largest difference from the reference over the root mean square, for a random level.
-  double largestDifference(const core::Scene& scene, bool has_head) {
+  /// Largest difference from the reference over the root mean square, for a random level. `first_depth_m`: the depth
+  /// with which the buffers are made, if another one.
+  double largestDifference(const core::Scene& scene, bool has_head, std::optional<double> first_depth_m = {}) {
     const WaveLayout layout = *derive(scene)->wave;
     const Basin basin = layOutBasin(scene, layout);
+    core::Scene first = scene;
+    first.wave->depth_m = first_depth_m.value_or(scene.wave->depth_m);
+    const WaveLayout first_layout = *derive(first)->wave;
     gpu::Defines defines = shaderDefines(scene);
     for (auto& [name, value] : defines) {
       if (name == "HEAD") value = has_head ? "1" : "0";
     }
-    auto made = DispersedSlope::create(*ctx_, layout, basin, defines);
+    auto made = DispersedSlope::create(*ctx_, first_layout, layOutBasin(first, first_layout), defines);
     EXPECT_TRUE(made) << made.error().message;
+    if (first_depth_m) (*made)->upload(layout, basin);
     auto uniforms = gpu::Buffer::create(*ctx_, "uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable);
     uniforms->uploadValue(derive(scene)->uniforms);
     uniforms->bindUniform(SIM_UNIFORMS);
@@ -88,6 +94,17 @@ TEST_F(DispersedSlopeOnDevice, AgreesWithTheReferenceBesideWallsRocksAndBeaches)
   scene.obstacles.emplace_back(
       core::Breakwater{.x_m = -1.0, .z_m = 2.0, .length_m = 5.0, .width_m = 0.2, .heading_deg = 30});
   EXPECT_LE(largestDifference(scene, true), 2e-5);
+}
+
+TEST_F(DispersedSlopeOnDevice, AgreesWithTheReferenceAfterTheDepthChanged) {
+  for (const double depth_m : {0.1, 1.2, 50.0})
+    for (const double first_depth_m : {0.1, 1.2, 50.0}) {
+      if (depth_m == first_depth_m) continue;
+      EXPECT_LE(largestDifference(sea(96, depth_m), false, first_depth_m), 2e-5) << first_depth_m << " to " << depth_m;
+    }
+  core::Scene shore = sea(96, 5.0);
+  shore.beaches.push_back({.side = core::Side::kPlusX, .width_m = 4.0, .shore_depth_m = 0.05});
+  EXPECT_LE(largestDifference(shore, false, 0.5), 2e-5) << "cells at the shore are dry where the water is deep";
 }
 
 TEST_F(DispersedSlopeOnDevice, ALevelSurfaceStaysStillToTheUnit) {

@@ -1,7 +1,7 @@
 // Dispersion of the wave: an operator F on the faces that takes the place of the face depth in the momentum step, so
 // that waves follow omega^2 = g k tanh(k d). Pure functions of the basin; docs/dispersion.md derives them.
 //
-//   q_t = -g F grad(eta),   F = sum_j sqrt(c_j) (1/d - grad (b_j d) div)^-1 sqrt(c_j)
+//   q_t = -g F grad(eta),   F = a + sum_j sqrt(c_j) (1/d - grad (b_j d) div)^-1 sqrt(c_j)
 //
 // Every factor is symmetric and positive, so the leapfrog conserves energy over any bed and beside any wall, and a wave
 // that runs into shallow water keeps its energy flux. The inverse is one V(2,2) cycle of a multigrid method from zero.
@@ -23,6 +23,9 @@ namespace spindrift::sim {
 /// Rational terms of F. Two fit in one texel of a cell: (x face, z face) times two.
 inline constexpr std::size_t kPoleCount = 2;
 
+/// Returns a/d: what is left of F for the shortest waves. It is the limit of a term with b = 0, and costs no solution.
+[[nodiscard]] double shareAtOnce(double depth_cells);
+
 /// Coefficients at one depth: b_j and c_j of the formula above.
 struct Poles {
   std::array<double, kPoleCount> b{};
@@ -40,7 +43,7 @@ struct Poles {
 struct DispersionLevel {
   std::uint32_t side_count = 0;
   /// 1/d of the x face and of the z face, over their open share; b_0 d and b_1 d of the cell, over its wet share and
-  /// the squared cell size of this grid; all times the largest depth of the basin. 0 where closed or dry.
+  /// the squared cell size of this grid; all times the scene's depth. 0 where closed or dry.
   std::vector<std::array<double, 4>> stiffness;
   /// Weights of the x and the z face in the coarser grid's faces E, W, N, S of the same block. Empty in the coarsest
   /// grid.
@@ -55,9 +58,11 @@ struct DispersionLevel {
 
 /// All numbers fit in 16 bits (roundToHalf()), except where the basin is flat.
 struct Dispersion {
-  /// Finest first, at least two. The resolution alone decides how many there are down to the bottom's first one.
+  double depth_m = 0.0;  ///< the scene's
+  double cell_m = 0.0;
+  /// Finest first, at least two. The resolution alone decides how many.
   std::vector<DispersionLevel> levels;
-  std::vector<std::array<double, 4>> root_c;  ///< sqrt(c_j * largest depth [m]) on the finest faces; 0 where closed
+  std::vector<std::array<double, 4>> root_c;  ///< sqrt(c_j * scene's depth [m]) on the finest faces; 0 where closed
   bool is_flat = false;                       ///< as in Basin
 };
 
@@ -65,7 +70,7 @@ struct Dispersion {
 inline constexpr double kSweepWeight = DISPERSION_SWEEP_WEIGHT;
 /// Sweeps before and after the coarser grid, and in the coarsest one.
 inline constexpr int kSweepCount = 2;
-inline constexpr int kCoarsestSweepCount = 5;
+inline constexpr int kCoarsestSweepCount = DISPERSION_COARSEST_SWEEPS;
 /// One work group solves the grids from kBottomSide cells per side down, or the coarsest grid alone if it has more, up
 /// to kBottomSideMax.
 inline constexpr std::uint32_t kBottomSide = DISPERSION_BOTTOM_SIDE;
@@ -73,9 +78,6 @@ inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
 
 /// Returns whether a wave of so many cells per side can be halved down to the grids of the bottom.
 [[nodiscard]] bool canDisperse(std::uint32_t resolution_count);
-
-/// Cells of all grids at the bottom, at most, for a first one of so many cells per side.
-[[nodiscard]] std::size_t bottomCellsAtMost(std::uint32_t side_count);
 
 /// Bytes of its buffers on the device, at most.
 [[nodiscard]] std::uint64_t dispersionBytes(std::uint32_t resolution_count);
@@ -88,7 +90,7 @@ inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
 [[nodiscard]] Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
                                           const std::function<Poles(double depth_cells)>& poles = polesAt);
 
-/// kSweepWeight over the diagonal of the operator for each face of a grid, over the largest depth; 0 where closed.
+/// kSweepWeight over the diagonal of the operator for each face of a grid, over the scene's depth; 0 where closed.
 [[nodiscard]] std::vector<std::array<double, 4>> sweepWeights(const DispersionLevel& level);
 
 }  // namespace spindrift::sim
