@@ -48,7 +48,8 @@ void printWave(const core::Scene& scene) {
   const bool absorbs = std::ranges::any_of(
       std::array{wave.boundary_minus_x, wave.boundary_plus_x, wave.boundary_minus_z, wave.boundary_plus_z},
       [](core::WaveBoundary b) { return b == core::WaveBoundary::kAbsorb; });
-  if (absorbs) fmt::print(", sponge of {:.3g} m", wave.sponge_width_m);
+  if (absorbs)
+    fmt::print(", {} of {:.3g} m", sim::hasMatchedLayer(scene) ? "matched layer" : "sponge", wave.sponge_width_m);
   fmt::print("\n");
   if (wave.steepening_ratio > 0) fmt::print("  steepening {:.3g}\n", wave.steepening_ratio);
   if (!scene.obstacles.empty()) fmt::print("  obstacles  {}\n", scene.obstacles.size());

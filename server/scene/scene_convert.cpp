@@ -36,6 +36,17 @@ core::Stencil toCore(v1::Stencil stencil) {
   return stencil == v1::STENCIL_NINE_POINT ? core::Stencil::kNinePoint : core::Stencil::kFivePoint;
 }
 
+core::Absorption toCore(v1::Absorption absorption) {
+  switch (absorption) {
+    case v1::ABSORPTION_SPONGE:
+      return core::Absorption::kSponge;
+    case v1::ABSORPTION_PML:
+      return core::Absorption::kPml;
+    default:
+      return core::Absorption::kByDispersion;
+  }
+}
+
 core::Dispersion toCore(v1::Dispersion dispersion) {
   return dispersion == v1::DISPERSION_AIRY ? core::Dispersion::kAiry : core::Dispersion::kNone;
 }
@@ -95,6 +106,7 @@ core::WaveScene toCore(const v1::WaveScene& in) {
   out.damping_per_s = in.damping_per_s();
   out.stencil = toCore(in.stencil());
   out.dispersion = toCore(in.dispersion());
+  out.absorption = toCore(in.absorption());
   out.boundary_minus_x = toCore(in.boundary_minus_x());
   out.boundary_plus_x = toCore(in.boundary_plus_x());
   out.boundary_minus_z = toCore(in.boundary_minus_z());
@@ -257,6 +269,11 @@ core::Boat toCore(const v1::Boat& boat) {
 void fillDefaults(v1::Scene& scene) {
   scene.mutable_stream();
   if (scene.seed() == 0) scene.set_seed(core::Scene{}.seed);
+  // The only enum whose default depends on another field.
+  if (scene.has_wave() && scene.wave().absorption() == v1::ABSORPTION_UNSPECIFIED) {
+    scene.mutable_wave()->set_absorption(scene.wave().dispersion() == v1::DISPERSION_AIRY ? v1::ABSORPTION_PML
+                                                                                          : v1::ABSORPTION_SPONGE);
+  }
   fillMessageDefaults(scene);
 }
 

@@ -46,6 +46,7 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"WAVE_PERIODIC_Z", flag(scene.wave && isPeriodicZ(*scene.wave))},
           {"VARIED", flag(scene.wave && isVaried(scene))},
           {"OPEN", flag(scene.wave && isOpen(scene))},
+          {"MATCHED", flag(hasMatchedLayer(scene))},
           {"DISPERSE", flag(disperses(scene))},
           {"HEAD", flag(hasPressureHead(scene))},
           {"BREAKERS", flag(hasBreakers(scene))},

@@ -158,6 +158,8 @@ StateCopy WaterSim::copyState() {
     const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
     out.elevation_m = copyElevation();
     out.flow_m2ps = parts_->wave->flow().downloadVector<float>(n * parts_->wave->flowComponents());
+    if (auto* elevation_x = parts_->wave->elevationX())
+      out.elevation_x_units = elevation_x->downloadVector<std::int32_t>(n);
   }
   return out;
 }
@@ -174,6 +176,7 @@ void WaterSim::setState(const StateCopy& state) {
       units.push_back(static_cast<std::int32_t>(std::lround(eta_m * double{ELEVATION_UNITS_PER_M})));
     parts_->wave->elevation().upload(units);
     parts_->wave->flow().upload(state.flow_m2ps);
+    if (auto* elevation_x = parts_->wave->elevationX()) elevation_x->upload(state.elevation_x_units);
   }
 }
 
@@ -189,6 +192,7 @@ std::uint64_t WaterSim::stateHash() {
   add(std::as_bytes(std::span(state.flow_m2ps)));
   add(std::as_bytes(std::span(state.boats)));
   add(std::as_bytes(std::span(state.pool)));
+  add(std::as_bytes(std::span(state.elevation_x_units)));
   return hash;
 }
 

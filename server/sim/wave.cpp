@@ -36,6 +36,9 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->bed_, TexelBuffer::create(ctx, "bed", cells, TexelFormat::kRGBA32F));
   }
   if (wave->has_outflow_) create(wave->outflow_, TexelBuffer::create(ctx, "outflow", cells, TexelFormat::kRG32UI));
+  wave->has_matched_layer_ = hasMatchedLayer(scene);
+  if (wave->has_matched_layer_)
+    create(wave->elevation_x_, TexelBuffer::create(ctx, "elevation from x faces", cells, TexelFormat::kR32I));
   wave->has_head_ = hasPressureHead(scene);
   wave->has_terrain_ = sampled && isVaried(scene);
   if (wave->has_head_)
@@ -80,6 +83,7 @@ void Wave::clear() {
   elevation_.clear();
   flow_.clear();
   if (has_outflow_) outflow_.clear();
+  if (has_matched_layer_) elevation_x_.clear();
   clearPressure();
 }
 
@@ -161,6 +165,7 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   transfer_.bindTexel(TRANSFER);
   elevation_.bindStorage(ELEVATION);
   if (has_outflow_) outflow_.bindStorage(OUTFLOW);
+  if (has_matched_layer_) elevation_x_.bindStorage(ELEVATION_X);
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);  // other passes use its unit
   continuity_[sea].dispatch(n_, n_);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);

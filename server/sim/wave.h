@@ -54,6 +54,9 @@ class Wave {
   [[nodiscard]] gpu::TexelBuffer* outflow() {
     return has_outflow_ ? &outflow_ : nullptr;
   }  ///< n x n [units: low 24 bits, the rest]
+  /// n x n [units]: the part of the elevation that came through x faces, inside a matched layer (wave/continuity.comp);
+  /// null in scenes without one. 0 outside the layer.
+  [[nodiscard]] gpu::TexelBuffer* elevationX() { return has_matched_layer_ ? &elevation_x_ : nullptr; }
   /// 2, or 4 with the 9-point stencil.
   [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
   /// Binds SURFACE and SURFACE_FLOW for lookups. Only in scenes whose surface is sampled.
@@ -78,10 +81,11 @@ class Wave {
   std::size_t flow_components_ = 2;
   bool is_varied_ = false;
   bool has_outflow_ = false;
+  bool has_matched_layer_ = false;
   bool had_events_ = false;
   bool has_head_ = false;
   bool has_terrain_ = false;
-  gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_;
+  gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_, elevation_x_;
   gpu::TexelBuffer transfer_;     ///< n x n x 2 (9-point: 4) [units]
   gpu::TexelBuffer given_share_;  ///< n x n; written in steps that limit transfers
   gpu::Buffer limit_args_;        ///< groups of the two passes of the limit; 0 in most steps

@@ -22,6 +22,23 @@ constexpr double kFadeShare = 0.4;
 constexpr double kSpongeReturn = 2e-3;
 constexpr double kSpongePower = 3.0;
 
+/// Profile of the perfectly matched layer: sigma = sigma_max inside^1.5, with exp(-2 integral(sigma)/c) = 1e-6 for
+/// waves of normal incidence that are twice as long as the layer is wide. A matched layer may be much stronger than a
+/// sponge, because its slope reflects little; a lower power makes the slope even, which dispersed waves need
+/// (docs/absorption.md).
+constexpr double kMatchedReturn = 1e-6;
+constexpr double kMatchedPower = 1.5;
+/// Share of the loss rate that acts along the layer, too. A matched layer amplifies waves that decay along its normal,
+/// such as the tails of waves that a bed traps; this share makes up for it. Over an uneven bed it must be larger.
+constexpr double kAlongShareFlat = 0.003;
+constexpr double kAlongShareUneven = 0.03;
+
+/// Loss rates along x and along z. [1/s]
+struct AxisLoss {
+  double x_per_s = 0.0;
+  double z_per_s = 0.0;
+};
+
 /// Distance from a place to a side. [m]
 double distanceTo(core::Side side, double half_m, double x_m, double z_m) {
   switch (side) {
@@ -52,6 +69,34 @@ double distance(const core::Breakwater& wall, double x_m, double z_m) {
 /// Depth of the face between two cells: the harmonic mean, as for two half cells in series. 0 when either is dry.
 double faceDepth(double a_m, double b_m) {
   return a_m > 0 && b_m > 0 ? 2 * a_m * b_m / (a_m + b_m) : 0.0;
+}
+
+/// How far inside the layer of a side a place is: 0 at its edge, 1 at the side, negative outside.
+double insideLayer(const core::WaveScene& w, core::Side side, double x_m, double z_m) {
+  return 1 - distanceTo(side, w.side_m / 2, x_m, z_m) / w.sponge_width_m;
+}
+
+/// Largest loss rate of a matched layer. [1/s]
+double matchedLossMax(const core::Scene& scene, const WaveLayout& layout) {
+  const double width_m = scene.wave->sponge_width_m;
+  double speed_mps = layout.speed_mps;
+  if (disperses(scene)) {
+    const double k_radpm = std::numbers::pi / width_m;
+    speed_mps = std::sqrt(scene.gravity_mps2 / k_radpm * std::tanh(k_radpm * scene.wave->depth_m));
+  }
+  return (kMatchedPower + 1) * speed_mps * std::log(1 / kMatchedReturn) / (2 * width_m);
+}
+
+AxisLoss matchedLoss(const core::WaveScene& w, double sigma_max_per_s, double along_share, double x_m, double z_m) {
+  const auto sigma = [&](core::Side side, WaveBoundary boundary) {
+    const double inside = boundary == WaveBoundary::kAbsorb ? insideLayer(w, side, x_m, z_m) : 0.0;
+    return inside > 0 ? sigma_max_per_s * std::pow(inside, kMatchedPower) : 0.0;
+  };
+  const double x_per_s =
+      std::max(sigma(core::Side::kMinusX, w.boundary_minus_x), sigma(core::Side::kPlusX, w.boundary_plus_x));
+  const double z_per_s =
+      std::max(sigma(core::Side::kMinusZ, w.boundary_minus_z), sigma(core::Side::kPlusZ, w.boundary_plus_z));
+  return {std::max(x_per_s, along_share * z_per_s), std::max(z_per_s, along_share * x_per_s)};
 }
 
 double heightOf(const core::Obstacle& obstacle) {
@@ -97,6 +142,9 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
                                                        {core::Side::kPlusX, w.boundary_plus_x},
                                                        {core::Side::kMinusZ, w.boundary_minus_z},
                                                        {core::Side::kPlusZ, w.boundary_plus_z}};
+  const bool is_matched = hasMatchedLayer(scene);
+  const double matched_max = matchedLossMax(scene, layout);
+  const double along_share = scene.obstacles.empty() && scene.beaches.empty() ? kAlongShareFlat : kAlongShareUneven;
   for (int z = 0; z < n; ++z) {
     for (int x = 0; x < n; ++x) {
       const std::size_t i = index(x, z);
@@ -115,6 +163,12 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
         if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
         const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
         if (shallow > 0) fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
+      }
+      if (is_matched) {
+        const AxisLoss loss = matchedLoss(w, matched_max, along_share, place(x), place(z));
+        out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), out.depth_m[i],
+                      static_cast<float>(loss.z_per_s)};
+        continue;
       }
       out.bed[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma), out.depth_m[i], 0.0f};
     }

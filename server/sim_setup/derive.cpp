@@ -88,6 +88,9 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
           "wave.resolution_count: {} cells cannot be halved to {} or fewer, as DISPERSION_AIRY needs: use {} or {}",
           w.resolution_count, kBottomSideMax, w.resolution_count / 32 * 32, (w.resolution_count / 32 + 1) * 32));
   }
+  if (hasMatchedLayer(scene) && w.stencil == core::Stencil::kNinePoint)
+    return invalid(
+        "wave.absorption: ABSORPTION_PML needs STENCIL_FIVE_POINT; remove wave.stencil or choose ABSORPTION_SPONGE");
   out.resolution_count = w.resolution_count;
   out.side_m = w.side_m;
   out.cell_m = w.side_m / w.resolution_count;
@@ -129,6 +132,7 @@ std::uint64_t waveCellBytes(const core::Scene& scene) {
   std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
   if (isVaried(scene)) bytes += 16 + 16;
   if (isOpen(scene)) bytes += 8;
+  if (hasMatchedLayer(scene)) bytes += 4;
   if (isSampled(scene)) bytes += 24 + (isVaried(scene) ? 20 : 0);
   if (hasPressureHead(scene)) bytes += 4;
   if (hasBreakers(scene)) bytes += 32;

@@ -23,6 +23,12 @@ bool isOpen(const core::Scene& scene) {
   return false;
 }
 
+bool hasMatchedLayer(const core::Scene& scene) {
+  if (!scene.wave || !isOpen(scene)) return false;
+  const core::Absorption absorption = scene.wave->absorption;
+  return absorption == core::Absorption::kPml || (absorption == core::Absorption::kByDispersion && disperses(scene));
+}
+
 bool hasWindSea(const core::Scene& scene) {
   return scene.storm && disperses(scene) && isOpen(scene);
 }

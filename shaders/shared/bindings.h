@@ -29,8 +29,8 @@
 #define BLOCK_TOTAL 11
 
 // Wave, n x n cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance
-// of those faces [m]; loss rates of flow and of elevation in sponges and on beaches [1/s] with the still depth of the
-// cell [m]; water that left through absorbing sides [units: low 24 bits, the rest].
+// of those faces [m]; loss rates in absorbing layers and on beaches [1/s] with the still depth of the cell [m]
+// (sim_setup/basin.h); water that left through absorbing sides [units: low 24 bits, the rest].
 #define FLOW 12
 #define ELEVATION 13
 #define BASIN 14
@@ -42,6 +42,9 @@
 #define TRANSFER 7
 #define GIVEN_SHARE 8
 #define LIMIT_ARGS 9
+// Share of ELEVATION that moved through x faces, in matched layers [units] (binding shared with SURFACE_FLOW; no pass has
+// both).
+#define ELEVATION_X 16
 // Dispersion, the grids of its V-cycle; dispersion/strip.glsl, dispersion/bottom.comp. The numbers are those of particles
 // and grid; only its own passes use these buffers. What they compute for wave/momentum.comp is DISPERSED (binding shared with
 // SURFACE; no pass has both): F grad(eta) at the faces that a cell owns [m * units per cell].

@@ -11,6 +11,7 @@
 // elevations between two cells is used: the force is then the difference of a potential, and energy is conserved for
 // elevations beyond the bounds, too. Breaking water loses its flow at the rate intensity * 2 sqrt(g/d).
 // Invariant: a level surface without flow does not change in any bit; closed faces carry nothing.
+// MATCHED: sigma is that of the matched layer, with one rate for the flow along x and one for the flow along z.
 // SEA: in the layers of absorbing sides sigma acts on q - q_in, q_in being the flow of the sea that comes in.
 // DISPERSE: F grad(eta + head) of the dispersion takes the place of d grad(eta + head).
 #include "shared/fixed_point.h"
@@ -58,6 +59,14 @@ float lossAt(int i) {
 #endif
   return loss_per_s;
 }
+
+#if MATCHED
+/// Loss rates of the flow along x and along z in the matched layer, in addition. [1/s]
+vec2 layerLossAt(int i) { return texelFetch(bed, i).yw; }
+#elif SEA
+/// The same in a sponge; lossAt() has them, too.
+vec2 layerLossAt(int i) { return texelFetch(bed, i).yy; }
+#endif
 
 #if STEEPEN
 /// Integral from 0 to `level` of 1 + growth_pu level between its bounds. [units]
@@ -124,15 +133,17 @@ void main() {
 
 #if VARIED || BREAKERS
   const float own_loss_per_s = lossAt(i);
-  const Flow loss_per_s = 0.5 * (own_loss_per_s + asFlow(vec4(lossAt(i_x), lossAt(i_z), own_loss_per_s, own_loss_per_s)));
+  Flow loss_per_s = 0.5 * (own_loss_per_s + asFlow(vec4(lossAt(i_x), lossAt(i_z), own_loss_per_s, own_loss_per_s)));
+#if MATCHED
+  loss_per_s += 0.5 * (layerLossAt(i) + vec2(layerLossAt(i_x).x, layerLossAt(i_z).y));
+#endif
   const Flow a = 0.5 * sim.wave_dt_s * (sim.wave_damping_per_s + loss_per_s);
 #else
   const float a = 0.5 * sim.wave_dt_s * sim.wave_damping_per_s;
 #endif
   Flow driven = (1.0 - a) * flow_m2ps[i] - sim.wave_pull * conductance_m * slope;
 #if SEA
-  const vec2 sponge_per_s = 0.5 * (texelFetch(bed, i).y + vec2(texelFetch(bed, i_x).y, texelFetch(bed, i_z).y));
-  driven += sim.wave_dt_s * sponge_per_s * incidentFlow(i);
+  driven += sim.wave_dt_s * 0.5 * (layerLossAt(i) + vec2(layerLossAt(i_x).x, layerLossAt(i_z).y)) * incidentFlow(i);
 #endif
   const Flow flow = driven / (1.0 + a);
   flow_m2ps[i] = flow;

@@ -81,6 +81,16 @@ TEST(SceneDefaults, LeaveAbsentPartsAbsent) {
   EXPECT_FALSE(core_scene.wave || core_scene.particles || core_scene.coupling || core_scene.foam);
 }
 
+TEST(SceneDefaults, ChooseMatchedLayersForWavesThatDisperse) {
+  v1::Scene scene;
+  scene.mutable_wave();
+  EXPECT_EQ(toCore(scene).wave->absorption, core::Absorption::kSponge);
+  scene.mutable_wave()->set_dispersion(v1::DISPERSION_AIRY);
+  EXPECT_EQ(toCore(scene).wave->absorption, core::Absorption::kPml);
+  scene.mutable_wave()->set_absorption(v1::ABSORPTION_SPONGE);
+  EXPECT_EQ(toCore(scene).wave->absorption, core::Absorption::kSponge);
+}
+
 TEST(SceneDefaults, FillOnlyWhatWasLeftOutAndTwiceIsTheSame) {
   v1::Scene scene = sceneWithEveryPart();
   scene.set_seed(7);
@@ -105,7 +115,7 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
       "wave { resolution_count: 64 side_m: 8 depth_m: 2 damping_per_s: 0.3 stencil: STENCIL_NINE_POINT\n"
       "       boundary_minus_x: WAVE_BOUNDARY_REFLECT boundary_plus_x: WAVE_BOUNDARY_ABSORB\n"
       "       boundary_minus_z: WAVE_BOUNDARY_ABSORB boundary_plus_z: WAVE_BOUNDARY_REFLECT\n"
-      "       sponge_width_m: 1.5 steepening_ratio: 0.5 fixed_substeps_count: 7 }\n"
+      "       sponge_width_m: 1.5 steepening_ratio: 0.5 fixed_substeps_count: 7 absorption: ABSORPTION_SPONGE }\n"
       "particles { count: 100 layers_count: 2 patch_shift_x_m: 0.5 patch_shift_z_m: -0.5 patch_scale: 0.25\n"
       "            box_side_m: 3 headroom_m: 4 support_ratio: 2.5 rest_density_kgpm3: 900 sound_speed_mps: 20\n"
       "            max_speed_mps: 5 viscosity_pas: 1 jitter_ratio: 0.01 boundary_x: BOUNDARY_WALL\n"
@@ -149,6 +159,7 @@ TEST(SceneDefaults, DoNotHideWhatAFileSays) {
   EXPECT_EQ(out.wave->sponge_width_m, 1.5);
   EXPECT_EQ(out.wave->steepening_ratio, 0.5);
   EXPECT_EQ(out.wave->fixed_substeps_count, 7u);
+  EXPECT_EQ(out.wave->absorption, core::Absorption::kSponge);
   EXPECT_EQ(out.particles->count, 100u);
   EXPECT_EQ(out.particles->layers_count, 2.0);
   EXPECT_EQ(out.particles->patch_shift_x_m, 0.5);

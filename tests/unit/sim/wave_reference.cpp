@@ -1,6 +1,7 @@
 #include "wave_reference.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -62,8 +63,20 @@ class Faces {
 
 }  // namespace
 
-void referenceFlowStep(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed,
-                       ReferenceWater& water) {
+ReferenceBed::ReferenceBed(const core::Scene& scene, const Basin& basin) {
+  for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {
+    const bool is_matched = hasMatchedLayer(scene);
+    depth_m.push_back(basin.depth_m[i]);
+    flow_loss_per_s.push_back(basin.bed[i][0]);
+    elevation_loss_per_s.push_back(is_matched ? 0.0 : basin.bed[i][1]);
+    if (!is_matched) continue;
+    layer_x_per_s.push_back(basin.bed[i][1]);
+    layer_z_per_s.push_back(basin.bed[i][3]);
+  }
+}
+
+void referenceFlowStep(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed, ReferenceWater& water,
+                       const DispersionReference* dispersion) {
   const Faces faces(scene, derived, bed);
   const int n = static_cast<int>(derived.wave->resolution_count);
   const double dt_s = derived.wave->dt_s;
@@ -78,14 +91,23 @@ void referenceFlowStep(const core::Scene& scene, const Derived& derived, const R
       }
     }
   };
+  const bool is_matched = !bed.layer_x_per_s.empty();
+  if (is_matched) water.elevation_x_m.resize(water.elevation_m.size());
+  std::vector<std::array<double, 2>> dispersed;
+  if (dispersion) dispersed = dispersion->apply(water.elevation_m);
   std::vector<double> leaving_m(water.elevation_m.size(), 0.0);
   forEachFace([&](const Face& face, double& flow_m2ps, int x, int z, std::size_t k) {
     // Diagonals have the loss rate of the cell that owns them.
     const double own_per_s = bed.flow_loss_per_s[static_cast<std::size_t>(x + n * z)];
-    const double loss_per_s = k < 2 ? 0.5 * (own_per_s + bed.flow_loss_per_s[face.to]) : own_per_s;
+    double loss_per_s = k < 2 ? 0.5 * (own_per_s + bed.flow_loss_per_s[face.to]) : own_per_s;
+    if (is_matched) {
+      const std::vector<double>& layer = k == 0 ? bed.layer_x_per_s : bed.layer_z_per_s;
+      loss_per_s += 0.5 * (layer[face.from] + layer[face.to]);
+    }
     const double a = 0.5 * dt_s * (scene.wave->damping_per_s + loss_per_s);
     const double slope = water.elevation_m[face.to] - water.elevation_m[face.from];
-    flow_m2ps = ((1 - a) * flow_m2ps - scene.gravity_mps2 * dt_per_dx * face.conductance_m * slope) / (1 + a);
+    const double pull_m2 = dispersion ? dispersed[face.from][k] : face.conductance_m * slope;
+    flow_m2ps = ((1 - a) * flow_m2ps - scene.gravity_mps2 * dt_per_dx * pull_m2) / (1 + a);
     leaving_m[flow_m2ps > 0 ? face.from : face.to] += std::abs(flow_m2ps) * dt_per_dx;
   });
   std::vector<double> share(water.elevation_m.size(), 1.0);
@@ -97,15 +119,29 @@ void referenceFlowStep(const core::Scene& scene, const Derived& derived, const R
     ++water.limited_count;
   }
   std::vector<double> gain_m(water.elevation_m.size(), 0.0);
-  forEachFace([&](const Face& face, double& flow_m2ps, int, int, std::size_t) {
+  std::vector<double> gain_x_m(water.elevation_m.size(), 0.0);
+  forEachFace([&](const Face& face, double& flow_m2ps, int, int, std::size_t k) {
     flow_m2ps *= share[flow_m2ps > 0 ? face.from : face.to];
     gain_m[face.from] -= flow_m2ps * dt_per_dx;
     gain_m[face.to] += flow_m2ps * dt_per_dx;
+    if (k != 0) return;
+    gain_x_m[face.from] -= flow_m2ps * dt_per_dx;
+    gain_x_m[face.to] += flow_m2ps * dt_per_dx;
   });
+  const auto lossOf = [&](double level_m, double gained_m, double rate_per_s) {
+    const double b = 0.5 * dt_s * rate_per_s;
+    return (2 * level_m + gained_m) * b / (1 + b);
+  };
   for (std::size_t i = 0; i < gain_m.size(); ++i) {
-    const double b = 0.5 * dt_s * bed.elevation_loss_per_s[i];
     const double held_m = std::max(water.elevation_m[i] + gain_m[i] + bed.depth_m[i], 0.0);
-    const double lost_m = std::min((2 * water.elevation_m[i] + gain_m[i]) * b / (1 + b), held_m);
+    double wanted_m = lossOf(water.elevation_m[i], gain_m[i], bed.elevation_loss_per_s[i]);
+    if (is_matched && bed.layer_x_per_s[i] + bed.layer_z_per_s[i] > 0) {
+      const double x_m = water.elevation_x_m[i];
+      const double wanted_x_m = lossOf(x_m, gain_x_m[i], bed.layer_x_per_s[i]);
+      wanted_m = wanted_x_m + lossOf(water.elevation_m[i] - x_m, gain_m[i] - gain_x_m[i], bed.layer_z_per_s[i]);
+      water.elevation_x_m[i] += gain_x_m[i] - (wanted_x_m - 0.5 * std::max(wanted_m - held_m, 0.0));
+    }
+    const double lost_m = std::min(wanted_m, held_m);
     water.elevation_m[i] += gain_m[i] - lost_m;
     water.lost_m += lost_m;
   }

@@ -266,12 +266,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsR
     WaterSim& sim = make(scene);
     ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
     const Basin basin = layOutBasin(scene, *sim.derived().wave);
-    ReferenceBed bed;
-    for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {
-      bed.depth_m.push_back(basin.depth_m[i]);
-      bed.flow_loss_per_s.push_back(basin.bed[i][0]);
-      bed.elevation_loss_per_s.push_back(basin.bed[i][1]);
-    }
+    const ReferenceBed bed(scene, basin);
     // Columns from empty to twice the depth, and flows that some of them cannot supply.
     std::mt19937 random(3);
     const auto unit = [&] { return std::generate_canonical<double, 53>(random); };
@@ -285,7 +280,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepOverAnyBedInSpongesAndWhereCellsR
             basin.conductance_m[i][k] > 0 ? static_cast<float>((unit() - 0.5) * 10.0 * basin.depth_m[i]) : 0.0f;
     }
     sim.setState(state);
-    ReferenceWater water{state.elevation_m, {state.flow_m2ps.begin(), state.flow_m2ps.end()}};
+    ReferenceWater water{state.elevation_m, {state.flow_m2ps.begin(), state.flow_m2ps.end()}, {}};
     for (int step = 0; step < 3; ++step) {
       SCOPED_TRACE(step);
       sim.step();

@@ -26,6 +26,9 @@ enum class Stencil { kFivePoint, kNinePoint };
 /// kNone: all waves travel at sqrt(g d). kAiry: omega^2 = g k tanh(k d).
 enum class Dispersion { kNone, kAiry };
 
+/// What the layer along absorbing sides is. kByDispersion: kPml if the wave disperses, otherwise kSponge.
+enum class Absorption { kByDispersion, kSponge, kPml };
+
 /// Kernels for density and pressure. kMuller (poly6 and spiky) is that of the thesis: its pressure is not the gradient
 /// of its density. The others use one kernel for both, so that pressure neither adds nor removes energy.
 enum class KernelSet { kMuller, kCubicSpline, kWendlandC2 };
@@ -62,6 +65,7 @@ struct WaveScene {
   std::uint32_t fixed_substeps_count =
       Default::fixed_substeps_count;  ///< 0 = derive() chooses; otherwise this many wave steps per tick, checked
   Dispersion dispersion = Dispersion::kNone;
+  Absorption absorption = Absorption::kByDispersion;
 
   bool operator==(const WaveScene&) const = default;
 };

@@ -19,8 +19,10 @@ struct Basin {
   /// and the two diagonals of the 9-point stencil. It is the depth at the face (harmonic mean, so 0 beside a dry cell)
   /// times the stencil's weight; 0 across reflecting and absorbing sides.
   std::vector<std::array<float, 4>> conductance_m;
-  /// Input of a wave step for each cell: rates at which flow and elevation are lost [1/s] (equal in a sponge; flow
-  /// alone where a beach runs dry), still depth [m] as in depth_m, 0.
+  /// Input of a wave step for each cell, with the still depth [m] as in depth_m in third place. With sponges: rates at
+  /// which flow and elevation are lost [1/s] (equal in a sponge; flow alone where a beach runs dry), depth, 0. With
+  /// matched layers: rate at which flow is lost where a beach runs dry, loss rate of flow and elevation along x, depth,
+  /// loss rate along z.
   std::vector<std::array<float, 4>> bed;
 };
 

@@ -12,6 +12,9 @@ bool isVaried(const core::Scene& scene);
 bool disperses(const core::Scene& scene);
 /// Returns whether water can leave: a side absorbs.
 bool isOpen(const core::Scene& scene);
+/// Returns whether absorbing sides have a perfectly matched layer, not a sponge.
+bool hasMatchedLayer(const core::Scene& scene);
+
 /// Returns whether the wind waves of a storm come in through absorbing sides (sea_state.h); in other scenes with a
 /// storm they are gusts (storm.h).
 bool hasWindSea(const core::Scene& scene);
