@@ -167,8 +167,12 @@ shared::SeaUniforms WindSea::uniformsAt(double begin_s, double dt_s, double fade
       const Complex flow = strength * (2 / dt_s * std::sin(half) / (sx * sx + sz * sz));
       const Complex flow_x = flow * std::polar(sx, 0.5 * wave.kx_radpm * cell_m_);
       const Complex flow_z = flow * std::polar(sz, 0.5 * wave.kz_radpm * cell_m_);
-      const double share_z = wave.kz_radpm / std::hypot(wave.kx_radpm, wave.kz_radpm);
-      const Complex next = std::polar(std::exp(-wave.decay_pm * share_z * cell_m_), wave.kz_radpm * cell_m_);
+      const double k = std::hypot(wave.kx_radpm, wave.kz_radpm);
+      const auto step = [&](double k_axis, double cells) {
+        return std::polar(std::exp(-wave.decay_pm * k_axis / k * cells * cell_m_), k_axis * cells * cell_m_);
+      };
+      const Complex next = step(wave.kz_radpm, 1.0);
+      const Complex before = step(wave.kx_radpm, -1.0);
       const auto f = [](double v) { return static_cast<float>(v); };
       out.waves[out.wave_count++] = {.elevation_re = f(elevation.real()),
                                      .elevation_im = f(elevation.imag()),
@@ -178,10 +182,10 @@ shared::SeaUniforms WindSea::uniformsAt(double begin_s, double dt_s, double fade
                                      .flow_z_im = f(flow_z.imag()),
                                      .next_re = f(next.real()),
                                      .next_im = f(next.imag()),
+                                     .before_re = f(before.real()),
+                                     .before_im = f(before.imag()),
                                      .sides = wave.sides,
-                                     .unused_0 = 0,
-                                     .unused_1 = 0,
-                                     .unused_2 = 0};
+                                     .unused = 0};
     }
   }
   out.first_block = static_cast<std::uint32_t>(step_count_ % held_steps);

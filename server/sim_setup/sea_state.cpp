@@ -3,8 +3,6 @@
 #include <functional>
 #include <numbers>
 
-#include <shared/sea_uniforms.h>
-
 #include <spindrift/sim_setup/random.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>

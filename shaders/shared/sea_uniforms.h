@@ -14,6 +14,12 @@
 // Blocks of one work group.
 #define SEA_GROUP_BLOCKS 4
 
+// Sides of the water as bits.
+#define SEA_MINUS_X 1u
+#define SEA_PLUS_X 2u
+#define SEA_MINUS_Z 4u
+#define SEA_PLUS_Z 8u
+
 #ifdef __cplusplus
 namespace spindrift::shared {
 #endif
@@ -27,10 +33,10 @@ struct SeaWaveUniform {
   float flow_z_im;
   float next_re;  // factor from one row of cells to the next
   float next_im;
+  float before_re;  // factor from one column of cells to the one before
+  float before_im;
   uint sides;  // absorbing sides in whose layers the wave is present (sim_setup/sea_state.h)
-  uint unused_0;
-  uint unused_1;
-  uint unused_2;
+  uint unused;
 };
 #ifdef __cplusplus
 struct SeaUniforms {

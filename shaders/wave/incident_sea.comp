@@ -4,6 +4,8 @@
 // Equation: the sum of A cos(kx x + kz z - omega t + phase) over the plane waves of the sea (docs/wind_sea.md), as the real
 // part of strength(t) * column(x) * row(z). A strip of rows is summed at a time: its first row is read, and each
 // further row is one rotation.
+// The faces at the edge of the water are closed. What the sea would move through them is added to the elevation that a cell at
+// the edge relaxes to, so that it enters the cell: inflow/(sigma dx).
 // Invariant: closed faces carry nothing, and nothing comes in over a bed that rises.
 #include "shared/groups.h"
 #include "shared/sea_uniforms.h"
@@ -25,10 +27,15 @@ void main() {
   const uvec4 block = texelFetch(sea_blocks, int(place));
   const int n = int(sim.wave_n);
   const int x = int(block.x + gl_LocalInvocationID.x);
+  const bool at_begin = block.x == 0u || block.y == 0u;
   const int first_strip = int(block.y) / SEA_STRIP;
   for (int strip = first_strip; strip < first_strip + SEA_BLOCK / SEA_STRIP; ++strip) {
     vec3 sums[SEA_STRIP];
-    for (int k = 0; k < SEA_STRIP; ++k) sums[k] = vec3(0.0);
+    vec2 before[SEA_STRIP];  // flow through the faces toward -x and -z, in blocks at those edges
+    for (int k = 0; k < SEA_STRIP; ++k) {
+      sums[k] = vec3(0.0);
+      before[k] = vec2(0.0);
+    }
     for (uint w = 0u; w < sea_wave_count; ++w) {
       const SeaWaveUniform each = sea_waves[w];
       if ((each.sides & block.z) == 0u) continue;
@@ -40,13 +47,28 @@ void main() {
       const vec3 im = strength_re * column.y + strength_im * column.x;
       for (int k = 0; k < SEA_STRIP; ++k) {
         sums[k] += re * row.x - im * row.y;
+        if (at_begin) {
+          const vec2 factor = vec2(each.before_re, each.before_im);
+          const vec2 flow_x = vec2(re.y * factor.x - im.y * factor.y, re.y * factor.y + im.y * factor.x);
+          const vec2 row_before = vec2(row.x * each.next_re + row.y * each.next_im, row.y * each.next_re - row.x * each.next_im);
+          const float growth = each.next_re * each.next_re + each.next_im * each.next_im;
+          before[k] += vec2(flow_x.x * row.x - flow_x.y * row.y, (re.z * row_before.x - im.z * row_before.y) / growth);
+        }
         row = vec2(row.x * each.next_re - row.y * each.next_im, row.x * each.next_im + row.y * each.next_re);
       }
     }
     for (int k = 0; k < SEA_STRIP; ++k) {
-      const int i = x + n * (SEA_STRIP * strip + k);
+      const int z = SEA_STRIP * strip + k;
+      const int i = x + n * z;
+      float inflow_m2ps = 0.0;
+      if (x == 0 && (block.z & SEA_MINUS_X) != 0u) inflow_m2ps += before[k].x;
+      if (z == 0 && (block.z & SEA_MINUS_Z) != 0u) inflow_m2ps += before[k].y;
+      if (x == n - 1 && (block.z & SEA_PLUS_X) != 0u) inflow_m2ps -= sums[k].y;
+      if (z == n - 1 && (block.z & SEA_PLUS_Z) != 0u) inflow_m2ps -= sums[k].z;
+      const vec4 ground = texelFetch(bed, i);
+      if (inflow_m2ps != 0.0) sums[k].x += inflow_m2ps * ELEVATION_UNITS_PER_M / (ground.y * sim.wave_cell_m);
       const vec2 open = vec2(greaterThan(texelFetch(basin, i).xy, vec2(0.0)));
-      incident[i] = vec4(seaShare(stillDepth(i)) * sums[k] * vec3(1.0, open), 0.0);
+      incident[i] = vec4(seaShare(ground.z) * sums[k] * vec3(1.0, open), 0.0);
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <shared/bindings.h>
 #include <shared/boats.h>
 #include <shared/event_uniforms.h>
+#include <shared/sea_uniforms.h>
 #include <shared/sim_uniforms.h>
 
 #include "shader_defines.h"
@@ -88,6 +89,20 @@ TEST_F(SharedBlocks, BoatControlsHaveTheLayoutOfTheDriver) {
   EXPECT_EQ(boats.size_bytes, sizeof(shared::BoatControls));
   EXPECT_EQ(offsetOf(boats, "boat_control[0]"), 0u);
   EXPECT_EQ(offsetOf(boats, "boat_place_count"), offsetof(shared::BoatControls, place_count));
+}
+
+TEST_F(SharedBlocks, SeaUniformsHaveTheLayoutOfTheDriver) {
+  core::Scene scene = smallScene();
+  scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+  const gpu::BlockLayout sea = block("wave/incident_sea.comp", "SeaUniforms", scene);
+  EXPECT_EQ(sea.binding, static_cast<std::uint32_t>(SEA_UNIFORMS));
+  EXPECT_EQ(sea.size_bytes, sizeof(shared::SeaUniforms));
+  EXPECT_EQ(offsetOf(sea, "sea_wave_count"), offsetof(shared::SeaUniforms, wave_count));
+  EXPECT_EQ(offsetOf(sea, "sea_block_count"), offsetof(shared::SeaUniforms, block_count));
+  const auto names = members("sea_uniforms.h", "struct SeaWaveUniform");
+  ASSERT_EQ(names.size(), sizeof(shared::SeaWaveUniform) / 4);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    EXPECT_EQ(offsetOf(sea, "sea_waves[0]." + names[k]), 4 * k) << names[k];
 }
 
 TEST_F(SharedBlocks, TheFollowerWritesTheFirstMembersOfTheSimUniforms) {

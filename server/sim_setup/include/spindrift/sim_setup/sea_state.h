@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <shared/sea_uniforms.h>
+
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
 
@@ -16,10 +18,10 @@ inline constexpr int kSeaWaveCount = 32;
 inline constexpr double kShortestWave_cells = 8.0;
 
 /// Sides of the water as bits, for PlaneWave::sides and SEA_BLOCKS.
-inline constexpr std::uint32_t kMinusXBit = 1;
-inline constexpr std::uint32_t kPlusXBit = 2;
-inline constexpr std::uint32_t kMinusZBit = 4;
-inline constexpr std::uint32_t kPlusZBit = 8;
+inline constexpr std::uint32_t kMinusXBit = SEA_MINUS_X;
+inline constexpr std::uint32_t kPlusXBit = SEA_PLUS_X;
+inline constexpr std::uint32_t kMinusZBit = SEA_MINUS_Z;
+inline constexpr std::uint32_t kPlusZBit = SEA_PLUS_Z;
 
 /// amplitude cos(kx x + kz z - omega t + phase), x and z from the centre of the water.
 struct PlaneWave {
