@@ -131,7 +131,7 @@ Outcome dispersedStillWater(gpu::Context& ctx, bool quick) {
 }
 
 Outcome thinWalls(gpu::Context& ctx, bool quick) {
-  const double seconds = quick ? 6.0 : 30.0;
+  const double seconds = quick ? 3.0 : 30.0;
   std::vector<Row> rows;
   for (const auto& [depth_m, cell_m] : {std::pair{1.2, 1.0 / 6}, std::pair{4.0, 0.1}}) {
     for (const bool is_diagonal : {false, true}) {

@@ -219,7 +219,8 @@ TEST(WavePacket, IsHighestAtItsMiddleAndTravelsAtItsGroupSpeed) {
   EXPECT_NEAR(packet.groupSpeed_mps() / water.groupSpeed_mps(pi), 1.0, 0.01);
   EXPECT_NEAR(packet.flowAt_mps(0.0, 0.0) / water.phaseSpeed_mps(pi), 1.0, 0.01) << "q = c eta";
   double middle = 0.0, weight = 0.0;
-  for (double x_m = -40; x_m < 80; x_m += 0.05) {
+  for (int i = 0; i < 2400; ++i) {
+    const double x_m = -40 + 0.05 * i;
     middle += x_m * std::pow(packet.elevationAt(x_m, 20.0), 2);
     weight += std::pow(packet.elevationAt(x_m, 20.0), 2);
   }
