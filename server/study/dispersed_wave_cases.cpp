@@ -83,6 +83,28 @@ core::Result<double> frequencyOf(sim::WaterSim& water, const StandingWave& wave,
   return fitRecurrence(*series, true).omega_radps(layout.dt_s);
 }
 
+constexpr std::uint32_t kSplitSide = 64;
+
+/// Difference in frequency [%] between the two standing waves of a length along the axis, with crests on the edges of
+/// the V-cycle's blocks and a quarter of a wave away: on water without sides they should be one.
+core::Result<double> splitBy(gpu::Context& ctx, double depth_cells, int wave_count) {
+  auto made =
+      sim::WaterSim::create(ctx, dispersiveScene(kSplitSide, kCell_m, depth_cells * kCell_m, WaveBoundary::kPeriodic));
+  if (!made) return made.error();
+  sim::WaterSim& water = **made;
+  std::array<double, 2> omega_radps{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto mode = [&](double x, double) {
+      return std::cos(2 * pi * wave_count * x / (kSplitSide * kCell_m) + 0.5 * pi * static_cast<double>(k));
+    };
+    setSurface(water, [&](double x, double z) { return 0.01 * mode(x, z); });
+    const auto series = amplitudes(water, mode, 40);
+    if (!series) return series.error();
+    omega_radps[k] = fitRecurrence(*series, true).omega_radps(water.derived().wave->dt_s);
+  }
+  return 100 * std::abs(omega_radps[1] / omega_radps[0] - 1);
+}
+
 }  // namespace
 
 Outcome airyPhaseSpeed(gpu::Context& ctx, bool quick) {
@@ -133,6 +155,15 @@ Outcome airyPhaseSpeed(gpu::Context& ctx, bool quick) {
       }
     }
     figure.curves.push_back(std::move(curve));
+  }
+  for (const double depth_cells : {3.0, 8.0}) {
+    for (const int wave_count : {8, 6, 4}) {
+      auto split = splitBy(ctx, depth_cells, wave_count);
+      if (!split) return split.error();
+      rows.push_back({fmt::format("{} cells deep, {:.1f} cells a wave, crests on edges of blocks or not: difference",
+                                  depth_cells, static_cast<double>(kSplitSide) / wave_count),
+                      "%", *split, 1.0, Tolerance::kAtMost, 0.0, "one frequency"});
+    }
   }
   return CaseResult{std::move(rows), {std::move(figure)}};
 }
