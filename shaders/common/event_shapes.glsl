@@ -36,13 +36,30 @@ vec2 crestEnds(EventUniform e) {
               crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m));
 }
 
-/// Displacement of a crest at a position, along its direction. `ends`: crestEnds(). A crest across the whole domain takes its
-/// water evenly from all of it and moves none across the sides; a crest of finite width takes it from a trough behind.
+/// Of the water that a crest across the whole domain takes, the share that comes from places up to s along its direction,
+/// and its derivative. It takes it evenly from the whole domain. Where waves disperse, it takes it from the water between the
+/// crest and the side that it comes from: obstacles ahead would dam up what flows past them, and short waves are slow.
+vec2 takenShare(EventUniform e, float s) {
+#if DISPERSE
+  const float length_m = e.offset_m + e.half_side_m;
+  const float kRise = 0.3;  // of the length, from the crest: there it takes less
+  const float u = clamp((e.offset_m - s) / length_m, 0.0, 1.0);
+  const float t = min(u / kRise, 1.0);
+  const float whole = 1.0 - 0.5 * kRise;
+  const float ahead = (kRise * t * t * t * (1.0 - 0.5 * t) + max(u - kRise, 0.0)) / whole;
+  return vec2(1.0 - ahead, t * t * (3.0 - 2.0 * t) / (whole * length_m));
+#else
+  return vec2((s + e.half_side_m) / (2.0 * e.half_side_m), 1.0 / (2.0 * e.half_side_m));
+#endif
+}
+
+/// Displacement of a crest at a position, along its direction. `ends`: crestEnds(). A crest across the whole domain moves no
+/// water across the sides; a crest of finite width takes its water from a trough behind.
 float crestDisplacement(EventUniform e, vec2 place_m, vec2 ends) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestIntegral(s - e.offset_m, e.front_m, e.back_m);
-  if (e.lateral_m == 0.0) return own - mix(ends.x, ends.y, (s + e.half_side_m) / (2.0 * e.half_side_m));
+  if (e.lateral_m == 0.0) return own - mix(ends.x, ends.y, takenShare(e, s).x);
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;
   const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;
@@ -54,7 +71,11 @@ float crestElevation(EventUniform e, vec2 place_m, vec2 ends) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestShape(s - e.offset_m, e.front_m, e.back_m);
+#if DISPERSE
+  if (e.lateral_m == 0.0) return own - (ends.y - ends.x) * takenShare(e, s).y;
+#else
   if (e.lateral_m == 0.0) return own - (ends.y - ends.x) / (2.0 * e.half_side_m);
+#endif
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;
   const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;
