@@ -19,7 +19,8 @@ namespace spindrift::sim {
 
 class WindSea {
  public:
-  /// Errors: those of the buffers and the program. Precondition: hasWindSea(scene).
+  /// Errors: those of the buffers and the program. Precondition: hasWindSea(scene), and the resolution is a multiple of
+  /// SEA_BLOCK, as in every scene file.
   static core::Result<std::unique_ptr<WindSea>> create(gpu::Context& ctx, const core::Scene& scene,
                                                        const WaveLayout& layout, const gpu::Defines& defines);
 

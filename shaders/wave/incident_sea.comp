@@ -21,40 +21,50 @@ layout(std430, binding = INCIDENT_SEA) restrict writeonly buffer IncidentSea { v
 /// Share of the sea over a bed of this depth: the waves belong to the scene's full depth.
 float seaShare(float depth_m) { return clamp((depth_m / sim.wave_depth_m - 0.6) / 0.3, 0.0, 1.0); }
 
+vec2 product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
+
 void main() {
   const uint place = sea_first_block + sea_block_stride * gl_GlobalInvocationID.y;
   if (place >= sea_block_count) return;
   const uvec4 block = texelFetch(sea_blocks, int(place));
   const int n = int(sim.wave_n);
   const int x = int(block.x + gl_LocalInvocationID.x);
-  const bool at_begin = block.x == 0u || block.y == 0u;
   const int first_strip = int(block.y) / SEA_STRIP;
   for (int strip = first_strip; strip < first_strip + SEA_BLOCK / SEA_STRIP; ++strip) {
     vec3 sums[SEA_STRIP];
-    vec2 before[SEA_STRIP];  // flow through the faces toward -x and -z, in blocks at those edges
+    vec2 before[SEA_STRIP];  // flow through the faces toward -x and -z, at those edges only
     for (int k = 0; k < SEA_STRIP; ++k) {
       sums[k] = vec3(0.0);
       before[k] = vec2(0.0);
     }
+    const bool at_begin = (x == 0 && (block.z & SEA_MINUS_X) != 0u) || (strip == 0 && (block.z & SEA_MINUS_Z) != 0u);
+    const uint edge_wave_count = at_begin ? sea_wave_count : 0u;
     for (uint w = 0u; w < sea_wave_count; ++w) {
       const SeaWaveUniform each = sea_waves[w];
       if ((each.sides & block.z) == 0u) continue;
       const vec2 column = texelFetch(sea_columns, int(w) * n + x).xy;
       vec2 row = texelFetch(sea_rows, int(w) * (n / SEA_STRIP) + strip).xy;
+      const vec2 next = vec2(each.next_re, each.next_im);
       const vec3 strength_re = vec3(each.elevation_re, each.flow_x_re, each.flow_z_re);
       const vec3 strength_im = vec3(each.elevation_im, each.flow_x_im, each.flow_z_im);
       const vec3 re = strength_re * column.x - strength_im * column.y;
       const vec3 im = strength_re * column.y + strength_im * column.x;
       for (int k = 0; k < SEA_STRIP; ++k) {
         sums[k] += re * row.x - im * row.y;
-        if (at_begin) {
-          const vec2 factor = vec2(each.before_re, each.before_im);
-          const vec2 flow_x = vec2(re.y * factor.x - im.y * factor.y, re.y * factor.y + im.y * factor.x);
-          const vec2 row_before = vec2(row.x * each.next_re + row.y * each.next_im, row.y * each.next_re - row.x * each.next_im);
-          const float growth = each.next_re * each.next_re + each.next_im * each.next_im;
-          before[k] += vec2(flow_x.x * row.x - flow_x.y * row.y, (re.z * row_before.x - im.z * row_before.y) / growth);
-        }
-        row = vec2(row.x * each.next_re - row.y * each.next_im, row.x * each.next_im + row.y * each.next_re);
+        row = product(row, next);
+      }
+    }
+    for (uint w = 0u; w < edge_wave_count; ++w) {
+      const SeaWaveUniform each = sea_waves[w];
+      if ((each.sides & block.z) == 0u) continue;
+      const vec2 column = texelFetch(sea_columns, int(w) * n + x).xy;
+      const vec2 next = vec2(each.next_re, each.next_im);
+      vec2 row = texelFetch(sea_rows, int(w) * (n / SEA_STRIP) + strip).xy;
+      const vec2 flow_x = product(vec2(each.flow_x_re, each.flow_x_im), product(column, vec2(each.before_re, each.before_im)));
+      const vec2 flow_z = product(vec2(each.flow_z_re, each.flow_z_im), product(column, vec2(next.x, -next.y))) / dot(next, next);
+      for (int k = 0; k < SEA_STRIP; ++k) {
+        before[k] += vec2(product(flow_x, row).x, product(flow_z, row).x);
+        row = product(row, next);
       }
     }
     for (int k = 0; k < SEA_STRIP; ++k) {
