@@ -185,7 +185,7 @@ shared::SeaUniforms WindSea::uniformsAt(double begin_s, double dt_s, double fade
                                      .before_re = f(before.real()),
                                      .before_im = f(before.imag()),
                                      .sides = wave.sides,
-                                     .unused = 0};
+                                     .share_of_x = f(sx * sx / (sx * sx + sz * sz))};
     }
   }
   out.first_block = static_cast<std::uint32_t>(step_count_ % held_steps);

@@ -36,7 +36,7 @@ struct SeaWaveUniform {
   float before_re;  // factor from one column of cells to the one before
   float before_im;
   uint sides;  // absorbing sides in whose layers the wave is present (sim_setup/sea_state.h)
-  uint unused;
+  float share_of_x;  // of the elevation: the part that the flow along x makes, kx^2/k^2
 };
 #ifdef __cplusplus
 struct SeaUniforms {

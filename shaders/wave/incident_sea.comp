@@ -1,11 +1,11 @@
 // The sea that comes in from outside, in the layers of absorbing sides.
-// Reads SeaUniforms, SEA_BLOCKS, SEA_COLUMNS, SEA_ROWS, BASIN, BED. Writes INCIDENT_SEA [n x n: elevation in units, flow
-// toward +x and +z in m^2/s] in a share of the blocks of those layers; each block is valid for several steps.
+// Reads SeaUniforms, SEA_BLOCKS, SEA_COLUMNS, SEA_ROWS, BASIN, BED. Writes INCIDENT_SEA [n x n: part of x in the
+// elevation, flow toward +x and +z, part of z in the elevation; units and m^2/s] in a share of the blocks of those layers; each block is valid for several steps.
 // Equation: the sum of A cos(kx x + kz z - omega t + phase) over the plane waves of the sea (docs/wind_sea.md), as the real
 // part of strength(t) * column(x) * row(z). A strip of rows is summed at a time: its first row is read, and each
 // further row is one rotation.
 // The faces at the edge of the water are closed. What the sea would move through them is added to the elevation that a cell at
-// the edge relaxes to, so that it enters the cell: inflow/(sigma dx).
+// the edge relaxes to, so that it enters the cell: inflow/(sigma dx), in the part of the face's axis.
 // Invariant: closed faces carry nothing, and nothing comes in over a bed that rises.
 #include "shared/groups.h"
 #include "shared/sea_uniforms.h"
@@ -31,10 +31,10 @@ void main() {
   const int x = int(block.x + gl_LocalInvocationID.x);
   const int first_strip = int(block.y) / SEA_STRIP;
   for (int strip = first_strip; strip < first_strip + SEA_BLOCK / SEA_STRIP; ++strip) {
-    vec3 sums[SEA_STRIP];
+    vec4 sums[SEA_STRIP];    // elevation, flow toward +x and +z, part of x in the elevation
     vec2 before[SEA_STRIP];  // flow through the faces toward -x and -z, at those edges only
     for (int k = 0; k < SEA_STRIP; ++k) {
-      sums[k] = vec3(0.0);
+      sums[k] = vec4(0.0);
       before[k] = vec2(0.0);
     }
     const bool at_begin = (x == 0 && (block.z & SEA_MINUS_X) != 0u) || (strip == 0 && (block.z & SEA_MINUS_Z) != 0u);
@@ -45,10 +45,10 @@ void main() {
       const vec2 column = texelFetch(sea_columns, int(w) * n + x).xy;
       vec2 row = texelFetch(sea_rows, int(w) * (n / SEA_STRIP) + strip).xy;
       const vec2 next = vec2(each.next_re, each.next_im);
-      const vec3 strength_re = vec3(each.elevation_re, each.flow_x_re, each.flow_z_re);
-      const vec3 strength_im = vec3(each.elevation_im, each.flow_x_im, each.flow_z_im);
-      const vec3 re = strength_re * column.x - strength_im * column.y;
-      const vec3 im = strength_re * column.y + strength_im * column.x;
+      const vec4 strength_re = vec4(each.elevation_re, each.flow_x_re, each.flow_z_re, each.share_of_x * each.elevation_re);
+      const vec4 strength_im = vec4(each.elevation_im, each.flow_x_im, each.flow_z_im, each.share_of_x * each.elevation_im);
+      const vec4 re = strength_re * column.x - strength_im * column.y;
+      const vec4 im = strength_re * column.y + strength_im * column.x;
       for (int k = 0; k < SEA_STRIP; ++k) {
         sums[k] += re * row.x - im * row.y;
         row = product(row, next);
@@ -70,15 +70,22 @@ void main() {
     for (int k = 0; k < SEA_STRIP; ++k) {
       const int z = SEA_STRIP * strip + k;
       const int i = x + n * z;
-      float inflow_m2ps = 0.0;
-      if (x == 0 && (block.z & SEA_MINUS_X) != 0u) inflow_m2ps += before[k].x;
-      if (z == 0 && (block.z & SEA_MINUS_Z) != 0u) inflow_m2ps += before[k].y;
-      if (x == n - 1 && (block.z & SEA_PLUS_X) != 0u) inflow_m2ps -= sums[k].y;
-      if (z == n - 1 && (block.z & SEA_PLUS_Z) != 0u) inflow_m2ps -= sums[k].z;
+      vec2 inflow_m2ps = vec2(0.0);
+      if (x == 0 && (block.z & SEA_MINUS_X) != 0u) inflow_m2ps.x += before[k].x;
+      if (z == 0 && (block.z & SEA_MINUS_Z) != 0u) inflow_m2ps.y += before[k].y;
+      if (x == n - 1 && (block.z & SEA_PLUS_X) != 0u) inflow_m2ps.x -= sums[k].y;
+      if (z == n - 1 && (block.z & SEA_PLUS_Z) != 0u) inflow_m2ps.y -= sums[k].z;
       const vec4 ground = texelFetch(bed, i);
-      if (inflow_m2ps != 0.0) sums[k].x += inflow_m2ps * ELEVATION_UNITS_PER_M / (ground.y * sim.wave_cell_m);
+#if MATCHED
+      const vec2 loss_per_s = ground.yw;
+#else
+      const vec2 loss_per_s = ground.yy;
+#endif
+      vec2 parts = vec2(sums[k].w, sums[k].x - sums[k].w);
+      if (inflow_m2ps.x != 0.0) parts.x += inflow_m2ps.x * ELEVATION_UNITS_PER_M / (loss_per_s.x * sim.wave_cell_m);
+      if (inflow_m2ps.y != 0.0) parts.y += inflow_m2ps.y * ELEVATION_UNITS_PER_M / (loss_per_s.y * sim.wave_cell_m);
       const vec2 open = vec2(greaterThan(texelFetch(basin, i).xy, vec2(0.0)));
-      incident[i] = vec4(seaShare(ground.z) * sums[k] * vec3(1.0, open), 0.0);
+      incident[i] = seaShare(ground.z) * vec4(parts.x, open * sums[k].yz, parts.y);
     }
   }
 }

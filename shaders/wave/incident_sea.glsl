@@ -5,8 +5,9 @@
 
 layout(binding = INCIDENT_SEA) uniform samplerBuffer incident_sea;
 
-/// Elevation that the layer keeps up at a cell. [units]
-float incidentElevation(int i) { return texelFetch(incident_sea, i).x; }
+/// Elevation that the layer keeps up at a cell: the parts of water that moves along x and along z, whose sum counts in a
+/// sponge. [units]
+vec2 incidentElevation(int i) { return texelFetch(incident_sea, i).xw; }
 
 /// Flow that the layer keeps up at the faces toward +x and +z. [m^2/s]
 vec2 incidentFlow(int i) { return texelFetch(incident_sea, i).yz; }
