@@ -1,8 +1,9 @@
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <shared/effects.h>
 
 #include <spindrift/sim_setup/basin.h>
 
@@ -123,6 +124,33 @@ double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
   return nearest_m;
 }
 
+namespace {
+
+/// Shares of the displacement of effects (Basin::conductance_m), from the number of faces to the next closed one.
+void layOutEffectShares(const WaveLayout& layout, Basin& basin) {
+  const auto n = static_cast<int>(layout.resolution_count);
+  const auto cellOf = [&](std::size_t axis, int line, int k) {
+    const int along = (k + n) % n;
+    return static_cast<std::size_t>(axis == 0 ? along + n * line : line + n * along);
+  };
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    for (int line = 0; line < n; ++line) {
+      // Twice around the axis, which may be periodic: the last closed face counts for the first cells.
+      for (const int step : {1, -1}) {
+        int open_count = EFFECT_TAPER_CELLS;
+        for (int k = 0; k < 2 * n; ++k) {
+          std::array<float, 4>& face = basin.conductance_m[cellOf(axis, line, (step * k) % n)];
+          open_count = face[axis] > 0.0F ? std::min(open_count + 1, EFFECT_TAPER_CELLS) : 0;
+          const float share = static_cast<float>(open_count) / static_cast<float>(EFFECT_TAPER_CELLS);
+          face[2 + axis] = step == 1 ? share : std::min(face[2 + axis], share);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const core::WaveScene& w = *scene.wave;
   const auto n = static_cast<int>(layout.resolution_count);
@@ -204,6 +232,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       }
     }
   }
+  if (disperses(scene)) layOutEffectShares(layout, out);
   if (!nine) return out;
   for (int z = 0; z < n; ++z) {
     for (int x = 0; x < n; ++x) {

@@ -104,7 +104,9 @@ double waveMaxStep(const core::Scene& scene, const WaveLayout& layout) {
   const core::WaveScene& wave = *scene.wave;
   if (disperses(scene)) {
     // A crest's factor on the slope (see below) may act on all of the waves.
-    return dispersedMaxStep(scene.gravity_mps2, wave.depth_m, layout.cell_m) / std::sqrt(1.0 + wave.steepening_ratio);
+    double deepest_m = wave.depth_m;
+    for (const core::Beach& beach : scene.beaches) deepest_m = std::max(deepest_m, beach.shore_depth_m);
+    return dispersedMaxStep(scene.gravity_mps2, deepest_m, layout.cell_m) / std::sqrt(1.0 + wave.steepening_ratio);
   }
   const double limit = wave.stencil == core::Stencil::kNinePoint ? kNinePointCourant : kFivePointCourant;
   // Crests of a steepening wave are faster: shaders/wave/momentum.comp bounds d (1 + 3 s eta/d) by d (1 + s).

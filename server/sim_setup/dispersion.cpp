@@ -265,12 +265,18 @@ std::uint64_t dispersionBytes(std::uint32_t resolution_count) {
 double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m) {
   constexpr double kMargin = 0.9;
   constexpr double kShortest = 8.0;  // largest eigenvalue of the 5-point Laplacian, in cells
-  const double depth_cells = depth_m / cell_m;
-  const Poles poles = polesAt(depth_cells);
-  double share = shareAtOnce(depth_cells);
-  for (std::size_t j = 0; j < kPoleCount; ++j)
-    share += poles.c[j] / (1.0 + poles.b[j] * depth_cells * depth_cells * kShortest);
-  return kMargin * 2.0 * cell_m / std::sqrt(gravity_mps2 * depth_m * kShortest * share);
+  // Of all depths up to this one: in deeper water the shortest waves can be slower.
+  double highest_cells = 0.0;
+  double depth_cells = depth_m / cell_m;
+  do {
+    const Poles poles = polesAt(depth_cells);
+    double share = shareAtOnce(depth_cells);
+    for (std::size_t j = 0; j < kPoleCount; ++j)
+      share += poles.c[j] / (1.0 + poles.b[j] * depth_cells * depth_cells * kShortest);
+    highest_cells = std::max(highest_cells, depth_cells * share);
+    depth_cells *= 0.9;
+  } while (depth_cells > 0.1);
+  return kMargin * 2.0 * cell_m / std::sqrt(gravity_mps2 * highest_cells * cell_m * kShortest);
 }
 
 Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
@@ -293,8 +299,7 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
       grid.open[i][axis] = 1.0;
       grid.resistance_pm[i][axis] = 1.0 / face_m;
       const Poles at_face = poles_of(face_m / layout.cell_m);
-      for (std::size_t j = 0; j < kPoleCount; ++j)
-        out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j] * out.depth_m);
+      for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j] * out.depth_m);
     }
   }
   if (!out.is_flat) roundToHalves(out.root_c);

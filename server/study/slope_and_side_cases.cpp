@@ -133,8 +133,8 @@ core::Result<double> reflectedByMatchedLayer(gpu::Context& ctx, const Incidence&
   return largest / before;
 }
 
-/// Largest permitted reflection of a matched layer [%]: the target, except where it is missed. There the multigrid
-/// cycle of the dispersion, which does not treat all cells alike, reflects short waves in any layer of this width; the
+/// Largest permitted reflection of a matched layer [%]: the target, except where it is missed: short dispersed waves
+/// come back from any layer of this width that was tried. There the
 /// bound is 1.1 times the measured value.
 double largestMatched_percent(double angle_deg, bool is_short_and_disperses) {
   if (angle_deg < 20) return is_short_and_disperses ? 1.2 : 0.5;

@@ -28,13 +28,18 @@ void main() {
   const int i = cell.x + n * cell.y;
   const vec2 p = waveCellCentre(cell);
   const Flow open = conductanceOf(cell, n);
+#if DISPERSE
+  const vec2 share = effectShareOf(cell, n);
+#else
+  const vec2 share = vec2(1.0);
+#endif
   ivec2 moved = ivec2(0);
   Flow flow = Flow(0.0);
   for (uint k = 0u; k < crest_count; ++k) {
     EventUniform e = crests[k];
     const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-    moved += ivec2(transferUnits(-e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0), ends[k].xy), units),
-                   transferUnits(-e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m), ends[k].xy), units));
+    moved += ivec2(transferUnits(-share.x * e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0), ends[k].xy), units),
+                   transferUnits(-share.y * e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m), ends[k].xy), units));
     e.offset_m -= e.half_step_m;
     const vec2 d = vec2(e.direction_x, e.direction_z);
     const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0), ends[k].zw);

@@ -47,6 +47,11 @@ void main() {
     return;
   }
   const vec2 p = waveCellCentre(cell);
+#if DISPERSE
+  const vec2 share = effectShareOf(cell, n);
+#else
+  const vec2 share = vec2(1.0);
+#endif
   ivec2 moved = ivec2(0);
   for (uint k = first; k < end; ++k) {
     const EventUniform e = splashes[k];
@@ -54,8 +59,8 @@ void main() {
     const vec2 centre = vec2(e.x_m, e.z_m);
     const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
     const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
-    moved += ivec2(transferUnits(-splashDisplacement(at_x, e.radius_m).x, units),
-                   transferUnits(-splashDisplacement(at_z, e.radius_m).y, units));
+    moved += ivec2(transferUnits(-share.x * splashDisplacement(at_x, e.radius_m).x, units),
+                   transferUnits(-share.y * splashDisplacement(at_z, e.radius_m).y, units));
   }
   if (moved == ivec2(0)) return;
   const Flow open = conductanceOf(cell, n);

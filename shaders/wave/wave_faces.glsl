@@ -6,6 +6,7 @@
 #ifndef SPINDRIFT_WAVE_FACES
 #define SPINDRIFT_WAVE_FACES
 
+#include "shared/effects.h"
 #include "wave/wave_cell.glsl"
 
 #if STENCIL == 9
@@ -40,5 +41,25 @@ Flow conductanceOf(ivec2 cell, int n) {
   return sim.wave_depth_m * FLOW_WEIGHTS * asFlow(vec4(open_x, open_z, open_x * open_z, open_x * open_z));
 #endif
 }
+
+#if DISPERSE
+/// Share of an effect's displacement that passes the faces that a cell owns: it falls to 0 over EFFECT_TAPER_CELLS before a
+/// closed face along the axis. Otherwise the water that a wall holds back would stand in the cells beside it, and where short
+/// waves are slow it would stay there.
+vec2 effectShareOf(ivec2 cell, int n) {
+#if VARIED
+  return texelFetch(basin, cell.x + n * cell.y).zw;
+#else
+  vec2 share = vec2(1.0);
+#if !WAVE_PERIODIC_X
+  share.x = min(float(min(cell.x + 1, n - 1 - cell.x)) / float(EFFECT_TAPER_CELLS), 1.0);
+#endif
+#if !WAVE_PERIODIC_Z
+  share.y = min(float(min(cell.y + 1, n - 1 - cell.y)) / float(EFFECT_TAPER_CELLS), 1.0);
+#endif
+  return share;
+#endif
+}
+#endif
 
 #endif

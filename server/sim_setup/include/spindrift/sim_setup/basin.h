@@ -17,7 +17,9 @@ struct Basin {
   std::vector<float> depth_m;  ///< still depth at cell centres; 0 inside obstacles and on dry beaches
   /// Conductance [m] of the faces that a cell owns, in the order of shaders/wave/wave_faces.glsl: toward +x, toward +z,
   /// and the two diagonals of the 9-point stencil. It is the depth at the face (harmonic mean, so 0 beside a dry cell)
-  /// times the stencil's weight; 0 across reflecting and absorbing sides.
+  /// times the stencil's weight; 0 across reflecting and absorbing sides. Where waves disperse, which have no
+  /// diagonals, the last two are the shares of an effect's displacement that pass the faces toward +x and +z
+  /// (shaders/wave/wave_faces.glsl).
   std::vector<std::array<float, 4>> conductance_m;
   /// Input of a wave step for each cell, with the still depth [m] as in depth_m in third place. With sponges: rates at
   /// which flow and elevation are lost [1/s] (equal in a sponge; flow alone where a beach runs dry), depth, 0. With
