@@ -98,10 +98,10 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   core::Scene boats = wave_only;
   boats.boats.emplace();
   const Cost empty_harbor = cost(boats);
-  EXPECT_EQ(empty_harbor.programs, wave.programs + 4) << "surface sampling, move, press, packing";
+  EXPECT_EQ(empty_harbor.programs, wave.programs + 5) << "surface sampling, drift, kick, press, packing";
   EXPECT_EQ(empty_harbor.dispatches, wave.dispatches + 1) << "no boat, no pass over boats";
   boats.boats->boats = {core::Boat{}};
-  EXPECT_EQ(cost(boats).dispatches, empty_harbor.dispatches + 2);
+  EXPECT_EQ(cost(boats).dispatches, empty_harbor.dispatches + 3) << "drift, press, kick";
 }
 
 TEST_F(Water, SteppingAllocatesNothing) {

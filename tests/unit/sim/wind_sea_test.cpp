@@ -112,7 +112,7 @@ TEST_F(WindSeaOnDevice, AgreesWithTheSumOfItsWavesInDoublePrecision) {
                    std::cos(wave.kx_radpm * x_m + wave.kz_radpm * z_m - wave.omega_radps * t_s + wave.phase_rad);
         }
         if (shift == 0) level_m = eta_m;
-        nearest = std::min(nearest, std::abs(got[4 * i] * ELEVATION_UNIT_M - eta_m));
+        nearest = std::min(nearest, std::abs((got[4 * i] + got[4 * i + 3]) * ELEVATION_UNIT_M - eta_m));
       }
       worst = std::max(worst, nearest);
       square += level_m * level_m;
