@@ -37,7 +37,7 @@ Outcome basinModes(gpu::Context& ctx, bool quick) {
     double most_around_percent, most_percent;
   };
   std::vector<Row> rows;
-  for (const Water& each : {Water{1.2, 1.0 / 6, 2.2, 1.0}, Water{4.0, 0.1, 12.0, 4.0}}) {
+  for (const Water& each : {Water{1.2, 1.0 / 6, 2.0, 1.0}, Water{4.0, 0.1, 8.0, 4.0}}) {
     core::Scene scene = dispersiveScene(96, each.cell_m, each.depth_m, WaveBoundary::kReflect);
     scene.obstacles = {thinWall(*scene.wave, 48, 30, 48, 69), thinWall(*scene.wave, 48, 69, 79, 69)};
     auto water = sim::WaterSim::create(ctx, scene);

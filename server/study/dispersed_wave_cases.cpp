@@ -28,18 +28,17 @@ constexpr double kMostKd = 10.0;
 constexpr const char* kAirySource = "omega^2 = g k tanh(k d)";
 
 /// Water of one depth, and the side of the square [cells]: deep water needs a wide one, because the coarsest grid of
-/// the V-cycle has at least 4 x 4 cells. The bounds that the coefficients miss are as measured (README.md, Accuracy).
+/// the V-cycle has at least 4 x 4 cells. The bound that the coefficients miss is as measured (README.md, Accuracy).
 struct AiryDepth {
   double depth_cells;
   std::uint32_t resolution_count;
-  double most_from_8_percent;
-  double most_longer_percent;
+  double most_longer_percent;  ///< for waves longer than those that the coefficients were fitted to
 };
 constexpr AiryDepth kAiryDepths[] = {
-    {3.0, 64, kMostFrom8Cells_percent, 1.1},
-    {7.2, 64, kMostFrom8Cells_percent, 1.0},
-    {16.0, 128, kMostFrom8Cells_percent, 1.2},
-    {40.0, 256, 1.5, 6.0},
+    {3.0, 64, 1.0},
+    {7.2, 64, 1.0},
+    {16.0, 128, 1.0},
+    {40.0, 256, 1.1},
 };
 constexpr std::uint32_t kLongSide = 384;  ///< of the full form, for longer waves
 
@@ -145,7 +144,7 @@ Outcome airyPhaseSpeed(gpu::Context& ctx, bool quick) {
     }
     for (const bool is_diagonal : {false, true}) {
       const char* lengths[] = {"4 to 8 cells", "8 to 128 cells", "more than 128 cells"};
-      const double bounds[] = {kMostFrom4Cells_percent, depth.most_from_8_percent, depth.most_longer_percent};
+      const double bounds[] = {kMostFrom4Cells_percent, kMostFrom8Cells_percent, depth.most_longer_percent};
       for (std::size_t k = 0; k < 3; ++k) {
         const double error_percent = most[is_diagonal ? 1 : 0][k];
         if (error_percent == 0.0) continue;  // none with kd up to 10 in this water

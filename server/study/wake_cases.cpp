@@ -200,7 +200,7 @@ Outcome kelvinWake(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   std::vector<FieldFigure> fields;
   for (const Passage& passage :
-       {Passage{1.5, 2.0, 0.125, 1.0, 0.8, 6.0, 20.0}, Passage{2.2, 2.0, 0.125, 2.0, 0.8, 6.0, 20.0, 4.0},
+       {Passage{1.5, 2.0, 0.125, 1.0, 0.8, 6.0, 20.0, 4.0}, Passage{2.2, 2.0, 0.125, 2.0, 0.8, 6.0, 20.0, 4.0},
         Passage{3.0, 2.0, 0.17, 3.2, 1.2, 6.0, 31.0}}) {
     if (quick && passage.speed_mps != 2.2) continue;
     Passage sailed = passage;

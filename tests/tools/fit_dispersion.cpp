@@ -4,8 +4,8 @@
 //   waves of
 //     4 to 128 cells along an axis, a diagonal and between;
 //   - c follows from weighted least squares, repeated with weights that make the largest error smallest;
-//   - b is sought by the method of Nelder and Mead, from the solution for the depth before; there the error of the group
-//   speed
+//   - b is sought by the method of Nelder and Mead, from the solution for the depth before; there the error of the
+//   group speed
 //     counts too, because ripples of the phase speed are larger in its derivative, and wakes depend on that.
 // Neighbouring depths have similar coefficients (kStay), so that a wave over a slope meets no jump.
 #include <algorithm>
@@ -63,7 +63,8 @@ struct Fit {
 
 class Fitting {
  public:
-  Fitting(double depth_cells, const Fit* before) : before_(before), n_(depth_cells > kDeep_cells ? kDeepSide : kSide), at_once_(sim::shareAtOnce(depth_cells)) {
+  Fitting(double depth_cells, const Fit* before)
+      : before_(before), n_(depth_cells > kDeep_cells ? kDeepSide : kSide), at_once_(sim::shareAtOnce(depth_cells)) {
     core::Scene scene;
     scene.wave.emplace();
     scene.wave->resolution_count = static_cast<std::uint32_t>(n_);
@@ -143,8 +144,8 @@ class Fitting {
     wave.cells = n_ / std::hypot(mx, mz);
     if (wave.cells < 3.999) return;
     const double k = 2 * std::numbers::pi / wave.cells;
-    const double laplacian = 4 * (std::pow(std::sin(std::numbers::pi * mx / n_), 2) +
-                                  std::pow(std::sin(std::numbers::pi * mz / n_), 2));
+    const double laplacian =
+        4 * (std::pow(std::sin(std::numbers::pi * mx / n_), 2) + std::pow(std::sin(std::numbers::pi * mz / n_), 2));
     wave.laplacian = laplacian;
     wave.kd = k * depth_cells;
     wave.weight = (wave.cells >= 7.99 ? 1.0 : 0.38) * (wave.kd <= 10.3 ? 1.0 : 0.12);
@@ -241,8 +242,8 @@ class Fitting {
         largest = std::max(largest, error[i]);
       }
       const Fit now{.log_b = log_b, .c = c, .cost = 0.0};
-      const double cost = std::max(largest, groupError(now) / kGroupTolerance) + penalty + std::max(0.0, -c[0]) +
-                          std::max(0.0, -c[1]);
+      const double cost =
+          std::max(largest, groupError(now) / kGroupTolerance) + penalty + std::max(0.0, -c[0]) + std::max(0.0, -c[1]);
       if (cost < fit.cost) {
         fit.c = c;
         fit.cost = cost;
@@ -263,13 +264,15 @@ class Fitting {
 
 int main() {
   std::vector<std::pair<double, Fit>> fits;
-  for (double depth_cells = 64 / std::numbers::sqrt2; depth_cells > 0.7; depth_cells /= std::sqrt(std::numbers::sqrt2)) {
+  for (double depth_cells = 64 / std::numbers::sqrt2; depth_cells > 0.7;
+       depth_cells /= std::sqrt(std::numbers::sqrt2)) {
     const Fitting fitting(depth_cells, fits.empty() ? nullptr : &fits.back().second);
     const Fit fit = fitting.best(fits.empty() ? Two{std::log(0.25), std::log(0.003)} : fits.back().second.log_b);
     const auto [long_off, short_off, long_deep_off, short_deep_off, group_off] = fitting.errors(fit);
-    std::fprintf(stderr,
-                 "%7.4f cells deep: %.2f %% at 8 cells and more, %.2f %% at 4; beyond kd 10 %.2f, %.2f %%; group %.2f %%\n",
-                 depth_cells, long_off, short_off, long_deep_off, short_deep_off, group_off);
+    std::fprintf(
+        stderr,
+        "%7.4f cells deep: %.2f %% at 8 cells and more, %.2f %% at 4; beyond kd 10 %.2f, %.2f %%; group %.2f %%\n",
+        depth_cells, long_off, short_off, long_deep_off, short_deep_off, group_off);
     fits.emplace_back(depth_cells, fit);
   }
   for (auto row = fits.rbegin(); row != fits.rend(); ++row) {

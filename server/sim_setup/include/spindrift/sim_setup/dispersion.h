@@ -82,8 +82,8 @@ inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
 /// Bytes of its buffers on the device, at most.
 [[nodiscard]] std::uint64_t dispersionBytes(std::uint32_t resolution_count);
 
-/// Largest stable step [s]: 2 over the highest frequency of the grid, with the dispersion's coefficients at any depth up to
-/// depth_m, with a margin.
+/// Largest stable step [s]: 2 over the highest frequency of the grid, with the dispersion's coefficients at any depth
+/// up to depth_m, with a margin.
 [[nodiscard]] double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m);
 
 /// Lays out the grids for a basin with the 5-point stencil. Precondition: canDisperse(). `poles`: other coefficients,
