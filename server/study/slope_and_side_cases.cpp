@@ -137,7 +137,8 @@ core::Result<double> reflectedByMatchedLayer(gpu::Context& ctx, const Incidence&
 /// come back from any layer of this width that was tried. There the
 /// bound is 1.1 times the measured value.
 double largestMatched_percent(double angle_deg, bool is_short_and_disperses) {
-  if (angle_deg < 20) return is_short_and_disperses ? 1.2 : 0.5;
+  if (angle_deg < 40 && is_short_and_disperses) return 1.2;
+  if (angle_deg < 20) return 0.5;
   if (angle_deg < 50) return 1.0;
   return angle_deg < 70 ? 3.0 : 15.0;
 }
