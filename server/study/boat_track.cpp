@@ -5,6 +5,8 @@
 
 #include <shared/boats.h>
 
+#include <spindrift/sim_setup/hull_pressure.h>
+
 #include "ticks.h"
 
 namespace spindrift::study {
@@ -23,12 +25,9 @@ HullState hullOf(const sim::StateCopy& state, double side_m) {
 
 std::vector<double> hullHead(const HullState& hull, std::size_t n, double side_m) {
   const double cell_m = side_m / static_cast<double>(n);
-  const double half_length_m = std::max(0.5 * hull.length_m, 1.5 * cell_m);
-  const double half_beam_m = std::max(0.5 * hull.beam_m, 1.5 * cell_m);
-  // The integral of exp(-a^4) over all a is 2 * 0.9064: with it the displaced volume is length x beam x draught.
-  const double share = 0.25 * hull.length_m * hull.beam_m / (half_length_m * half_beam_m) / (0.9064 * 0.9064);
-  const double height_m =
-      hull.draught_m * share * std::min(hull.age_s / double{BOAT_SETTLING_S}, 1.0) * (1.0 - hull.aloft);
+  const sim::HullPressure settled = sim::hullPressure(
+      {.length_m = hull.length_m, .beam_m = hull.beam_m, .height_m = hull.draught_m, .density_ratio = 1.0}, cell_m);
+  const double share = std::min(hull.age_s / double{BOAT_SETTLING_S}, 1.0) * (1.0 - hull.aloft);
   const double c = std::cos(hull.heading_rad);
   const double s = std::sin(hull.heading_rad);
   std::vector<double> out(n * n);
@@ -36,10 +35,7 @@ std::vector<double> hullHead(const HullState& hull, std::size_t n, double side_m
     const double dz_m = std::remainder((static_cast<double>(z) + 0.5) * cell_m - hull.z_m, side_m);
     for (std::size_t x = 0; x < n; ++x) {
       const double dx_m = std::remainder((static_cast<double>(x) + 0.5) * cell_m - hull.x_m, side_m);
-      const double along = (dx_m * c + dz_m * s) / half_length_m;
-      const double across = (dz_m * c - dx_m * s) / half_beam_m;
-      if (std::max(std::abs(along), std::abs(across)) > double{HULL_REACH}) continue;
-      out[x + n * z] = height_m * std::exp(-std::pow(along, 4) - std::pow(across, 4));
+      out[x + n * z] = share * settled.head_m(dx_m * c + dz_m * s, dz_m * c - dx_m * s);
     }
   }
   return out;

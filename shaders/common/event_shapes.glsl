@@ -36,20 +36,34 @@ vec2 crestEnds(EventUniform e) {
               crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m));
 }
 
-/// Of the water that a crest across the whole domain takes, the share that comes from places up to s along its direction,
-/// and its derivative. It takes it evenly from the whole domain. Where waves disperse, it takes it from the water between the
-/// crest and the side that it comes from: obstacles ahead would dam up what flows past them, and short waves are slow.
-vec2 takenShare(EventUniform e, float s) {
+// A crest across the whole domain takes its water evenly from all of it. Where waves disperse, it takes it from between itself
+// and the side that it comes from, and little beside the crest: obstacles ahead would dam up what flows past them, and short
+// waves are slow.
 #if DISPERSE
-  const float length_m = e.offset_m + e.half_side_m;
-  const float kRise = 0.3;  // of the length, from the crest: there it takes less
-  const float u = clamp((e.offset_m - s) / length_m, 0.0, 1.0);
-  const float t = min(u / kRise, 1.0);
-  const float whole = 1.0 - 0.5 * kRise;
-  const float ahead = (kRise * t * t * t * (1.0 - 0.5 * t) + max(u - kRise, 0.0)) / whole;
-  return vec2(1.0 - ahead, t * t * (3.0 - 2.0 * t) / (whole * length_m));
+#define RISE_SHARE 0.3  // of that way, from the crest on
+
+/// Place on the way from the crest (0) to the side behind it (1).
+float behindCrest(EventUniform e, float s) { return clamp((e.offset_m - s) / (e.offset_m + e.half_side_m), 0.0, 1.0); }
+#endif
+
+/// Share of that water that comes from places up to s along the crest's direction.
+float takenShare(EventUniform e, float s) {
+#if DISPERSE
+  const float u = behindCrest(e, s);
+  const float t = min(u / RISE_SHARE, 1.0);
+  return 1.0 - (RISE_SHARE * t * t * t * (1.0 - 0.5 * t) + max(u - RISE_SHARE, 0.0)) / (1.0 - 0.5 * RISE_SHARE);
 #else
-  return vec2((s + e.half_side_m) / (2.0 * e.half_side_m), 1.0 / (2.0 * e.half_side_m));
+  return (s + e.half_side_m) / (2.0 * e.half_side_m);
+#endif
+}
+
+/// What the surface falls by at s, for a crest of this volume (per width) [m].
+float takenElevation(EventUniform e, float s, float volume_m) {
+#if DISPERSE
+  const float t = min(behindCrest(e, s) / RISE_SHARE, 1.0);
+  return volume_m * t * t * (3.0 - 2.0 * t) / ((1.0 - 0.5 * RISE_SHARE) * (e.offset_m + e.half_side_m));
+#else
+  return volume_m / (2.0 * e.half_side_m);
 #endif
 }
 
@@ -59,7 +73,7 @@ float crestDisplacement(EventUniform e, vec2 place_m, vec2 ends) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestIntegral(s - e.offset_m, e.front_m, e.back_m);
-  if (e.lateral_m == 0.0) return own - mix(ends.x, ends.y, takenShare(e, s).x);
+  if (e.lateral_m == 0.0) return own - mix(ends.x, ends.y, takenShare(e, s));
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;
   const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;
@@ -71,11 +85,7 @@ float crestElevation(EventUniform e, vec2 place_m, vec2 ends) {
   const vec2 d = vec2(e.direction_x, e.direction_z);
   const float s = dot(place_m - vec2(e.x_m, e.z_m), d);
   const float own = crestShape(s - e.offset_m, e.front_m, e.back_m);
-#if DISPERSE
-  if (e.lateral_m == 0.0) return own - (ends.y - ends.x) * takenShare(e, s).y;
-#else
-  if (e.lateral_m == 0.0) return own - (ends.y - ends.x) / (2.0 * e.half_side_m);
-#endif
+  if (e.lateral_m == 0.0) return own - takenElevation(e, s, ends.y - ends.x);
   const float trough_m = e.front_m + e.back_m;
   const float behind = s - e.offset_m + 1.5 * trough_m;
   const float l = dot(place_m - vec2(e.x_m, e.z_m), vec2(-d.y, d.x)) / e.lateral_m;

@@ -15,8 +15,8 @@
 #include "shared/groups.h"
 #include "wave/wave_cell.glsl"
 
-// Tables of sim_setup/dispersion.h: m_x, m_z, e_0, e_1 of a cell, and on the finest grid the square roots of c_j at its
-// faces, x face first; all over the largest depth.
+// Tables of sim_setup/dispersion.h: m_x, m_z, e_0, e_1 of a cell, times the scene's depth, and on the finest grid the square
+// roots of c_j times that depth at its faces, x face first.
 #if FLAT
 // The first, and the second if FINEST.
 layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;

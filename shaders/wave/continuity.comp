@@ -1,8 +1,9 @@
 // Second half of a wave step: water moves through the faces, in whole units.
 // Reads TRANSFER [n x n, units], BED. Updates ELEVATION [n x n, units] and, in basins with an absorbing side, OUTFLOW
 // (units that have left through this cell since the start: low 24 bits, the rest). Lowers LIMIT_ARGS for the next step.
-// Equation: eta_t = -div q - sigma eta. sigma is not 0 only in a sponge, where the flow has the same loss rate, so that
-// plane waves enter it without reflection. Like the flow's loss, the loss is centred in the step, b = sigma dt/2:
+// Equation: eta_t = -div q - sigma eta. sigma is not 0 only in the layers of absorbing sides. In a sponge the flow has the
+// same rate, so that plane waves along its normal enter it without reflection. Like the flow's loss, the loss is centred in
+// the step, b = sigma dt/2:
 //   eta+ = ((1 - b) eta + gain)/(1 + b), so lost = (2 eta + gain) b/(1 + b)
 // The step then has the stability bound of water without losses, however large they are: with G the scaled gradient, A
 // and B the losses of flow and elevation over half a step and m the mean of the flow before and after, |eta|^2 - |G

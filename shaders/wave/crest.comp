@@ -28,11 +28,7 @@ void main() {
   const int i = cell.x + n * cell.y;
   const vec2 p = waveCellCentre(cell);
   const Flow open = conductanceOf(cell, n);
-#if DISPERSE
   const vec2 share = effectShareOf(cell, n);
-#else
-  const vec2 share = vec2(1.0);
-#endif
   ivec2 moved = ivec2(0);
   Flow flow = Flow(0.0);
   for (uint k = 0u; k < crest_count; ++k) {

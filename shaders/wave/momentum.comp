@@ -10,10 +10,10 @@
 // (Whitham 1974, 13.10), so that crests overtake troughs. The growth is bounded. The mean of the factor over the
 // elevations between two cells is used: the force is then the difference of a potential, and energy is conserved for
 // elevations beyond the bounds, too. Breaking water loses its flow at the rate intensity * 2 sqrt(g/d).
-// Invariant: a level surface without flow does not change in any bit; closed faces carry nothing.
 // MATCHED: sigma is that of the matched layer, with one rate for the flow along x and one for the flow along z.
 // SEA: in the layers of absorbing sides sigma acts on q - q_in, q_in being the flow of the sea that comes in.
 // DISPERSE: F grad(eta + head) of the dispersion takes the place of d grad(eta + head).
+// Invariant: a level surface without flow does not change in any bit; closed faces carry nothing.
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
 #include "wave/transfer.glsl"

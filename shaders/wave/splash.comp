@@ -47,11 +47,7 @@ void main() {
     return;
   }
   const vec2 p = waveCellCentre(cell);
-#if DISPERSE
   const vec2 share = effectShareOf(cell, n);
-#else
-  const vec2 share = vec2(1.0);
-#endif
   ivec2 moved = ivec2(0);
   for (uint k = first; k < end; ++k) {
     const EventUniform e = splashes[k];

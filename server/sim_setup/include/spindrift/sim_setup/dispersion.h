@@ -33,8 +33,8 @@ struct Poles {
 };
 
 /// Returns the coefficients for water of this depth in cells, fitted to the phase speeds that the V-cycle has (tool
-/// tests/tools/fit_dispersion.cpp): within 1 % for waves of 8 cells and longer and 2.5 % for 4 cells, for depths up to
-/// 16 cells and kd up to 10.
+/// tests/tools/fit_dispersion.cpp): within 1 % for waves of 8 cells and longer and 2.5 % for 4 cells, for depths of 1
+/// to 45 cells and kd up to 10.
 [[nodiscard]] Poles polesAt(double depth_cells);
 
 /// One grid of the V-cycle: n x n cells, x fastest. Each cell owns the faces toward +x and +z. A face variable is the
