@@ -28,14 +28,17 @@ void main() {
   const int i = cell.x + n * cell.y;
   const vec2 p = waveCellCentre(cell);
   const Flow open = conductanceOf(cell, n);
-  const vec2 share = effectShareOf(cell, n);
+  const ivec2 next = nextCells(cell, n);
+  const vec4 shares = effectShares(cell, next, n);
   ivec2 moved = ivec2(0);
   Flow flow = Flow(0.0);
   for (uint k = 0u; k < crest_count; ++k) {
     EventUniform e = crests[k];
     const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-    moved += ivec2(transferUnits(-share.x * e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0), ends[k].xy), units),
-                   transferUnits(-share.y * e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m), ends[k].xy), units));
+    const vec2 displaced_m2 = passing(-vec2(e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0), ends[k].xy),
+                                            e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m), ends[k].xy)),
+                                      shares);
+    moved += ivec2(transferUnits(displaced_m2.x, units), transferUnits(displaced_m2.y, units));
     e.offset_m -= e.half_step_m;
     const vec2 d = vec2(e.direction_x, e.direction_z);
     const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0), ends[k].zw);
@@ -43,7 +46,10 @@ void main() {
     const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m), ends[k].zw);
     flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d.x * at_x, d.y * at_z, (d.x + d.y) * at_corner, (d.y - d.x) * at_corner));
   }
-  if (open.x > 0.0) addTransfer(i, wrapped(cell.x + 1, n) + n * cell.y, 0u, moved.x);
-  if (open.y > 0.0) addTransfer(i, cell.x + n * wrapped(cell.y + 1, n), 1u, moved.y);
+  if (open.x > 0.0) addTransfer(i, next.x, 0u, moved.x);
+  if (open.y > 0.0) addTransfer(i, next.y, 1u, moved.y);
+#if DISPERSE
+  flow = passing(flow, shares);
+#endif
   flow_m2ps[i] += flow * Flow(greaterThan(open, Flow(0.0)));
 }

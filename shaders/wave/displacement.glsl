@@ -9,6 +9,34 @@ layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(std430, binding = TRANSFER) restrict buffer Transfer { int transfer[]; };
 layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
 
+/// The cells toward +x and +z of cell i.
+ivec2 nextCells(ivec2 cell, int n) {
+  return ivec2(wrapped(cell.x + 1, n) + n * cell.y, cell.x + n * wrapped(cell.y + 1, n));
+}
+
+#if DISPERSE
+/// 1 up to where the surface stands once the depth high, 0 from twice the depth on: thousands of effects would pile up
+/// water before walls, and where short waves are slow it would stay there.
+float roomAt(int i) {
+  return clamp(2.0 - metres(texelFetch(elevation, i).x) / sim.wave_depth_m, 0.0, 1.0);
+}
+#endif
+
+/// Shares of what effects move through the faces that a cell owns: in xy toward +x and +z, in zw the other way.
+vec4 effectShares(ivec2 cell, ivec2 next, int n) {
+#if DISPERSE
+  const float here = roomAt(cell.x + n * cell.y);
+  return taperOf(cell, n).xyxy * vec4(roomAt(next.x), roomAt(next.y), here, here);
+#else
+  return vec4(1.0);
+#endif
+}
+
+/// What passes of an effect's flow or displacement through the faces toward +x and +z.
+vec2 passing(vec2 v, vec4 shares) {
+  return v * mix(shares.zw, shares.xy, greaterThan(v, vec2(0.0)));
+}
+
 /// Adds to a face of the cell `from`; `face` 0 leads to +x, 1 to +z, and `to` is the cell there. The sum is an integer,
 /// so overlapping effects give the same bits in any order.
 void addTransfer(int from, int to, uint face, int units) {

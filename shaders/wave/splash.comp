@@ -47,7 +47,8 @@ void main() {
     return;
   }
   const vec2 p = waveCellCentre(cell);
-  const vec2 share = effectShareOf(cell, n);
+  const ivec2 next = nextCells(cell, n);
+  const vec4 shares = effectShares(cell, next, n);
   ivec2 moved = ivec2(0);
   for (uint k = first; k < end; ++k) {
     const EventUniform e = splashes[k];
@@ -55,12 +56,13 @@ void main() {
     const vec2 centre = vec2(e.x_m, e.z_m);
     const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
     const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
-    moved += ivec2(transferUnits(-share.x * splashDisplacement(at_x, e.radius_m).x, units),
-                   transferUnits(-share.y * splashDisplacement(at_z, e.radius_m).y, units));
+    const vec2 displaced_m2 =
+        passing(-vec2(splashDisplacement(at_x, e.radius_m).x, splashDisplacement(at_z, e.radius_m).y), shares);
+    moved += ivec2(transferUnits(displaced_m2.x, units), transferUnits(displaced_m2.y, units));
   }
   if (moved == ivec2(0)) return;
   const Flow open = conductanceOf(cell, n);
   const int i = cell.x + n * cell.y;
-  if (open.x > 0.0) addTransfer(i, wrapped(cell.x + 1, n) + n * cell.y, 0u, moved.x);
-  if (open.y > 0.0) addTransfer(i, cell.x + n * wrapped(cell.y + 1, n), 1u, moved.y);
+  if (open.x > 0.0) addTransfer(i, next.x, 0u, moved.x);
+  if (open.y > 0.0) addTransfer(i, next.y, 1u, moved.y);
 }

@@ -42,13 +42,12 @@ Flow conductanceOf(ivec2 cell, int n) {
 #endif
 }
 
-/// Share of an effect's displacement that passes the faces toward +x and +z of a cell. Where waves disperse, it falls to 0 over
-/// EFFECT_TAPER_CELLS before a closed face along the axis: the water that a wall holds back would stand in the cells beside
-/// it, and where short waves are slow it would stay there.
-vec2 effectShareOf(ivec2 cell, int n) {
-#if !DISPERSE
-  return vec2(1.0);
-#elif VARIED
+#if DISPERSE
+/// Share of an effect that passes the faces toward +x and +z of a cell: falls to 0 over EFFECT_TAPER_CELLS before a closed
+/// face along the axis. The water that a wall holds back would stand in the cells beside it, and where short waves are
+/// slow it would stay there.
+vec2 taperOf(ivec2 cell, int n) {
+#if VARIED
   return texelFetch(basin, cell.x + n * cell.y).zw;
 #else
   vec2 share = vec2(1.0);
@@ -61,5 +60,6 @@ vec2 effectShareOf(ivec2 cell, int n) {
   return share;
 #endif
 }
+#endif
 
 #endif

@@ -141,6 +141,40 @@ TEST_F(WaveOnDevice, ManySplashesDisplaceTheSumOfWhatEachDisplacesAlone) {
   }
 }
 
+TEST_F(WaveOnDevice, WhereWavesDisperseEffectsMoveNothingToWhereTheSurfaceStandsTwiceTheDepthHigh) {
+  for (const auto boundary : {core::WaveBoundary::kPeriodic, core::WaveBoundary::kReflect}) {
+    core::Scene scene = waveScene(64);
+    scene.wave->dispersion = core::Dispersion::kAiry;
+    scene.wave->setBoundaries(boundary);
+    // What a splash and a crest change in one step, at a level of so many depths. [units]
+    const auto changed = [&](double level_depths) {
+      WaterSim& sim = make(scene);
+      EXPECT_EQ(sim.derived().wave->substeps_count, 1u);
+      const double level_m = level_depths * scene.wave->depth_m;
+      set(sim, [&](double, double) { return level_m; });
+      const double tick_s = sim.derived().tick_s;
+      EXPECT_TRUE(
+          sim.start(core::Splash{.x_m = 1.0, .z_m = -2.0, .radius_m = 1.0, .depth_m = 0.1, .duration_s = tick_s}));
+      EXPECT_TRUE(sim.start(core::BreakingWave{.side = core::Side::kMinusX, .amplitude_m = 0.1, .duration_s = tick_s}));
+      sim.step();
+      std::vector<std::int64_t> out;
+      for (const double elevation_m : sim.copyState().elevation_m)
+        out.push_back(std::llround((elevation_m - level_m) * ELEVATION_UNITS_PER_M));
+      return out;
+    };
+    const auto sizeOf = [](const std::vector<std::int64_t>& units) {
+      return std::transform_reduce(units.begin(), units.end(), 0.0, std::plus<>(),
+                                   [](std::int64_t u) { return std::abs(static_cast<double>(u)); });
+    };
+    const auto still = changed(0.0);
+    ASSERT_GT(sizeOf(still), 0.01 * ELEVATION_UNITS_PER_M);
+    EXPECT_EQ(changed(0.5), still);
+    EXPECT_NEAR(sizeOf(changed(1.5)) / sizeOf(still), 0.5, 1e-3);
+    EXPECT_EQ(sizeOf(changed(2.0)), 0.0);
+    EXPECT_EQ(sizeOf(changed(3.0)), 0.0);
+  }
+}
+
 TEST_F(WaveOnDevice, RemovedWaterTakesItsMotionAndAddedWaterIsAtRest) {
   core::Scene scene = waveScene(64);
   scene.wave->depth_m = 2.0;
