@@ -26,12 +26,22 @@ Floats floatsOf(const Four& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])};
 }
 
-/// One texel per cell: the halves of both tables. The second may be empty.
+Four padded(const std::array<double, kPoleCount>& v) {
+  return {v[0], v[1], 0.0, 0.0};
+}
+
+std::vector<Four> padded(const std::vector<std::array<double, kPoleCount>>& values) {
+  std::vector<Four> out;
+  for (const auto& v : values) out.push_back(padded(v));
+  return out;
+}
+
+/// One texel per cell: the halves of both tables.
 std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four>& second) {
   std::vector<Words> out(first.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Four& a = first[i];
-    const Four b = second.empty() ? Four{} : second[i];
+    const Four& b = second[i];
     out[i] = {packHalves(a[0], a[1]), packHalves(a[2], a[3]), packHalves(b[0], b[1]), packHalves(b[2], b[3])};
   }
   return out;
@@ -75,6 +85,7 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   std::size_t bottom_cells = 0;
   for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) bottom_cells += dispersion.levels[k].stiffness.size();
   create(tables.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", bottom_cells, kFloats));
+  create(tables.spread, TexelBuffer::create(ctx, "dispersion spread", bottom_cells, gpu::TexelFormat::kRG32F));
   create(tables.sweep, TexelBuffer::create(ctx, "dispersion sweep weights", bottom_cells, kFloats));
   create(tables.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", bottom_cells, kFloats));
   create(tables.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", bottom_cells, kFloats));
@@ -103,21 +114,26 @@ void DispersedSlope::upload(const Dispersion& dispersion) {
     const DispersionLevel& level = dispersion.levels[k];
     if (dispersion.is_flat) {
       // The first cell is wet and its faces are open.
-      grids_[k].coefficients.upload(std::array{floatsOf(level.stiffness[0]), floatsOf(dispersion.root_c[0])});
+      grids_[k].coefficients.upload(
+          std::array{floatsOf(level.stiffness[0]), floatsOf(k == 0 ? dispersion.root_c[0] : padded(level.spread[0]))});
     } else {
-      grids_[k].coefficients.upload(packed(level.stiffness, k == 0 ? dispersion.root_c : std::vector<Four>{}));
+      grids_[k].coefficients.upload(packed(level.stiffness, k == 0 ? dispersion.root_c : padded(level.spread)));
       grids_[k].weights.upload(packed(level.from_coarse_x, level.from_coarse_z));
     }
   }
   std::vector<Floats> stiffness, sweep, from_x, from_z;
+  std::vector<std::array<float, kPoleCount>> spread;
   for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) {
     const DispersionLevel& level = dispersion.levels[k];
     std::ranges::transform(level.stiffness, std::back_inserter(stiffness), floatsOf);
+    for (const auto& [first, second] : level.spread)
+      spread.push_back({static_cast<float>(first), static_cast<float>(second)});
     std::ranges::transform(sweepWeights(level), std::back_inserter(sweep), floatsOf);
     std::ranges::transform(level.from_coarse_x, std::back_inserter(from_x), floatsOf);  // none in the coarsest grid
     std::ranges::transform(level.from_coarse_z, std::back_inserter(from_z), floatsOf);
   }
   bottom_.stiffness.upload(stiffness);
+  bottom_.spread.upload(spread);
   bottom_.sweep.upload(sweep);
   if (!from_x.empty()) bottom_.from_x.upload(from_x);
   if (!from_z.empty()) bottom_.from_z.upload(from_z);
@@ -147,6 +163,7 @@ void DispersedSlope::descend(std::size_t level) {
 
 void DispersedSlope::solveBottom() {
   bottom_.stiffness.bindTexel(DISPERSION_STIFFNESS);
+  bottom_.spread.bindTexel(DISPERSION_SPREAD);
   bottom_.sweep.bindTexel(DISPERSION_SWEEP);
   bottom_.from_x.bindTexel(DISPERSION_FROM_X);
   bottom_.from_z.bindTexel(DISPERSION_FROM_Z);

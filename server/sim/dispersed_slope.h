@@ -34,7 +34,7 @@ class DispersedSlope {
 
   /// The grids that one work group solves: their tables, one behind the other.
   struct Bottom {
-    gpu::TexelBuffer stiffness, sweep, from_x, from_z;
+    gpu::TexelBuffer stiffness, spread, sweep, from_x, from_z;
     gpu::Program solve;
   };
 

@@ -22,21 +22,56 @@ constexpr FittedPoles kFitted[] = {
 #include "dispersion_poles.inc"
 };
 
+/// The fitted coefficients on both sides of a depth, and where it lies between them.
+struct Between {
+  const Poles& low;
+  const Poles& high;
+  double share;
+};
+
+Between between(double depth_cells) {
+  const std::span fitted(kFitted);
+  if (depth_cells <= fitted.front().depth_cells) return {fitted.front().poles, fitted.front().poles, 0.0};
+  if (depth_cells >= fitted.back().depth_cells) return {fitted.back().poles, fitted.back().poles, 0.0};
+  const auto above =
+      std::ranges::find_if(fitted, [&](const FittedPoles& row) { return row.depth_cells > depth_cells; });
+  const FittedPoles& high = *above;
+  const FittedPoles& low = *(above - 1);
+  return {low.poles, high.poles,
+          std::log(depth_cells / low.depth_cells) / std::log(high.depth_cells / low.depth_cells)};
+}
+
+/// b_j on a grid of the V-cycle, the finest being 0.
+std::array<double, kPoleCount> bAt(double depth_cells, std::size_t grid) {
+  const auto& [low, high, share] = between(depth_cells);
+  std::array<double, kPoleCount> out{};
+  for (std::size_t j = 0; j < kPoleCount; ++j)
+    out[j] = low.bOf(grid)[j] * std::pow(high.bOf(grid)[j] / low.bOf(grid)[j], share);
+  return out;
+}
+
+std::array<double, kPoleCount> cAt(double depth_cells) {
+  const auto& [low, high, share] = between(depth_cells);
+  std::array<double, kPoleCount> out{};
+  for (std::size_t j = 0; j < kPoleCount; ++j) out[j] = std::lerp(low.c[j], high.c[j], share);
+  return out;
+}
+
 /// A grid while it is laid out, in doubles. `open`: open share of the x and z face; `resistance`: mean of 1/d over it
-/// [1/m]; `wet`: wet share of the cell; `reach`: mean of b_j d over it [m].
+/// [1/m]; `wet`: wet share of the cell; `depth`: mean over it [m].
 struct Grid {
   int n = 0;
   std::vector<std::array<double, 2>> open;
   std::vector<std::array<double, 2>> resistance_pm;
   std::vector<double> wet;
-  std::vector<std::array<double, kPoleCount>> reach_m;
+  std::vector<double> depth_m;
 
   explicit Grid(int side_count) : n(side_count) {
     const auto cells = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
     open.resize(cells);
     resistance_pm.resize(cells);
     wet.resize(cells);
-    reach_m.resize(cells);
+    depth_m.resize(cells);
   }
   [[nodiscard]] std::size_t at(int x, int z) const { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); }
 };
@@ -131,11 +166,9 @@ Grid coarsen(const Grid& fine, DispersionLevel& level) {
       for (const std::size_t cell : blockOf(fine, x, z)) {
         if (!is_member[cell]) continue;
         coarse.wet[i] += fine.wet[cell] / 4;
-        for (std::size_t j = 0; j < kPoleCount; ++j) coarse.reach_m[i][j] += fine.wet[cell] * fine.reach_m[cell][j] / 4;
+        coarse.depth_m[i] += fine.wet[cell] * fine.depth_m[cell] / 4;
       }
-      if (coarse.wet[i] > 0.0) {
-        for (double& reach_m : coarse.reach_m[i]) reach_m /= coarse.wet[i];
-      }
+      if (coarse.wet[i] > 0.0) coarse.depth_m[i] /= coarse.wet[i];
       for (int axis = 0; axis < 2; ++axis) {
         const Covered covered = coveredBy(fine, x, z, axis);
         double open = 0.0;
@@ -202,18 +235,40 @@ Grid coarsen(const Grid& fine, DispersionLevel& level) {
   return coarse;
 }
 
-void roundToHalves(std::vector<Four>& values) {
-  for (Four& four : values) std::ranges::transform(four, four.begin(), roundToHalf);
+template <std::size_t kCount>
+void roundToHalves(std::vector<std::array<double, kCount>>& texels) {
+  for (auto& texel : texels) std::ranges::transform(texel, texel.begin(), roundToHalf);
 }
 
-std::vector<Four> stiffnessOf(const Grid& grid, double cell_m, double scene_depth_m) {
+/// `k`: number of the grid, 0 for the finest, whose cells have `finest_m`.
+std::vector<Four> stiffnessOf(const Grid& grid, std::size_t k, double finest_m, double scene_depth_m) {
+  const double cell_m = std::ldexp(finest_m, static_cast<int>(k));
   std::vector<Four> out(grid.wet.size(), Four{});
   for (std::size_t i = 0; i < out.size(); ++i) {
     for (int axis = 0; axis < 2; ++axis) {
       if (grid.open[i][axis] > 0.0) out[i][axis] = scene_depth_m * grid.resistance_pm[i][axis] / grid.open[i][axis];
     }
-    for (std::size_t j = 0; j < kPoleCount; ++j) {
-      if (grid.wet[i] > 0.0) out[i][2 + j] = scene_depth_m * grid.reach_m[i][j] / (grid.wet[i] * cell_m * cell_m);
+    if (grid.wet[i] <= 0.0) continue;
+    const auto b = bAt(grid.depth_m[i] / finest_m, k);
+    for (std::size_t j = 0; j < kPoleCount; ++j)
+      out[i][2 + j] = scene_depth_m * b[j] * grid.depth_m[i] / (grid.wet[i] * cell_m * cell_m);
+  }
+  return out;
+}
+
+/// DispersionLevel::spread of grid k, a coarse one.
+std::vector<std::array<double, kPoleCount>> layOutSpread(const DispersionLevel& level, std::size_t k) {
+  std::vector<std::array<double, kPoleCount>> out(level.stiffness.size());
+  const int n = static_cast<int>(level.side_count);
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const Four& here = level.stiffness[level.index(x, z)];
+      double smallest = 0.0;
+      for (const double mass :
+           {here[0], here[1], level.stiffness[level.index(x - 1, z)][0], level.stiffness[level.index(x, z - 1)][1]}) {
+        if (mass > 0.0 && (smallest == 0.0 || mass < smallest)) smallest = mass;
+      }
+      for (std::size_t j = 0; j < kPoleCount; ++j) out[level.index(x, z)][j] = spreadOf(k)[j] * smallest;
     }
   }
   return out;
@@ -226,19 +281,9 @@ double shareAtOnce(double depth_cells) {
 }
 
 Poles polesAt(double depth_cells) {
-  const std::span fitted(kFitted);
-  if (depth_cells <= fitted.front().depth_cells) return fitted.front().poles;
-  if (depth_cells >= fitted.back().depth_cells) return fitted.back().poles;
-  const auto above =
-      std::ranges::find_if(fitted, [&](const FittedPoles& row) { return row.depth_cells > depth_cells; });
-  const FittedPoles& high = *above;
-  const FittedPoles& low = *(above - 1);
-  const double share = std::log(depth_cells / low.depth_cells) / std::log(high.depth_cells / low.depth_cells);
   Poles out;
-  for (std::size_t j = 0; j < kPoleCount; ++j) {
-    out.b[j] = std::exp(std::lerp(std::log(low.poles.b[j]), std::log(high.poles.b[j]), share));
-    out.c[j] = std::lerp(low.poles.c[j], high.poles.c[j], share);
-  }
+  for (std::size_t k = 0; k < kFittedGridCount; ++k) out.b[k] = bAt(depth_cells, k);
+  out.c = cAt(depth_cells);
   return out;
 }
 
@@ -251,7 +296,7 @@ std::uint64_t dispersionBytes(std::uint32_t resolution_count) {
   constexpr std::uint64_t kCoefficients = 16;
   constexpr std::uint64_t kWeights = 16;
   constexpr std::uint64_t kFaces = 2 * 16;  // and their right side
-  constexpr std::uint64_t kBottom = 4 * 16;
+  constexpr std::uint64_t kBottom = 4 * 16 + 8;
   const auto cells = [](std::uint32_t n) { return std::uint64_t{n} * n; };
   std::uint32_t n = resolution_count;
   std::uint64_t bytes = cells(n) * (kCoefficients + kWeights + 8);
@@ -272,15 +317,14 @@ double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m) {
     const Poles poles = polesAt(depth_cells);
     double share = shareAtOnce(depth_cells);
     for (std::size_t j = 0; j < kPoleCount; ++j)
-      share += poles.c[j] / (1.0 + poles.b[j] * depth_cells * depth_cells * kShortest);
+      share += poles.c[j] / (1.0 + poles.b[0][j] * depth_cells * depth_cells * kShortest);
     highest_cells = std::max(highest_cells, depth_cells * share);
     depth_cells *= 0.9;
   } while (depth_cells > 0.1);
   return kMargin * 2.0 * cell_m / std::sqrt(gravity_mps2 * highest_cells * cell_m * kShortest);
 }
 
-Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
-                            const std::function<Poles(double depth_cells)>& poles_of) {
+Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
   Dispersion out;
   out.is_flat = basin.is_flat;
   out.depth_m = layout.dispersing_depth_m;
@@ -291,32 +335,31 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
     const double depth_m = basin.depth_m[i];
     if (depth_m <= 0.0) continue;
     grid.wet[i] = 1.0;
-    const Poles poles = poles_of(depth_m / layout.cell_m);
-    for (std::size_t j = 0; j < kPoleCount; ++j) grid.reach_m[i][j] = poles.b[j] * depth_m;
+    grid.depth_m[i] = depth_m;
     for (int axis = 0; axis < 2; ++axis) {
       const double face_m = basin.conductance_m[i][axis];
       if (face_m <= 0.0) continue;
       grid.open[i][axis] = 1.0;
       grid.resistance_pm[i][axis] = 1.0 / face_m;
-      const Poles at_face = poles_of(face_m / layout.cell_m);
-      for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(at_face.c[j] * out.depth_m);
+      const auto c = cAt(face_m / layout.cell_m);
+      for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(c[j] * out.depth_m);
     }
   }
   if (!out.is_flat) roundToHalves(out.root_c);
-  double cell_m = layout.cell_m;
   while (true) {
     DispersionLevel level;
     level.side_count = static_cast<std::uint32_t>(grid.n);
-    level.stiffness = stiffnessOf(grid, cell_m, out.depth_m);
+    level.stiffness = stiffnessOf(grid, out.levels.size(), layout.cell_m, out.depth_m);
     const bool is_coarsest =
         !out.levels.empty() && (level.side_count <= kCoarsestSideCount || level.side_count % 2 != 0);
     if (!is_coarsest) grid = coarsen(grid, level);
     if (!out.is_flat) {
       for (auto* table : {&level.stiffness, &level.from_coarse_x, &level.from_coarse_z}) roundToHalves(*table);
     }
+    if (!out.levels.empty()) level.spread = layOutSpread(level, out.levels.size());
+    if (!out.is_flat) roundToHalves(level.spread);
     out.levels.push_back(std::move(level));
     if (is_coarsest) return out;
-    cell_m *= 2;
   }
 }
 

@@ -54,7 +54,7 @@ void main() {
   Swept third_sweep;
   rows[0] = rows[1] = rows[2] = fetchRow(wrapped(begin_z, n));
   start(rows[0], first_sweep.faces);
-  for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = vec2(0.0);
+  for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = Pressed(0.0);
   third_sweep = second_sweep = first_sweep;
   for (int z = begin_z + 1; z < end_z + 3; ++z) {
     rows[3] = rows[2];

@@ -1,7 +1,7 @@
 // The small grids of the V-cycle, down to the coarsest and back, in one work group: one dispatch for each pass over them would
 // cost more than the passes.
 // Reads DISPERSION_RIGHT of the largest of them, and of all of them, one behind the other, DISPERSION_STIFFNESS,
-// DISPERSION_SWEEP, DISPERSION_FROM_X, DISPERSION_FROM_Z. Writes DISPERSION_FACES of the largest.
+// DISPERSION_SPREAD, DISPERSION_SWEEP, DISPERSION_FROM_X, DISPERSION_FROM_Z. Writes DISPERSION_FACES of the largest.
 // Equations: those of descend.comp and ascend.comp; in the coarsest grid sweeps alone.
 #include "shared/bindings.h"
 #include "shared/groups.h"
@@ -9,20 +9,23 @@
 layout(local_size_x = DISPERSION_BOTTOM_GROUP) in;
 
 layout(binding = DISPERSION_STIFFNESS) uniform samplerBuffer stiffness;
+layout(binding = DISPERSION_SPREAD) uniform samplerBuffer spread;
 layout(binding = DISPERSION_SWEEP) uniform samplerBuffer sweep_weight;
 layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
 layout(binding = DISPERSION_FROM_X) uniform samplerBuffer from_x;
 layout(binding = DISPERSION_FROM_Z) uniform samplerBuffer from_z;
 layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec4 faces[]; };
 
-/// A grid of DISPERSION_BOTTOM_SIDE_MAX cells per side, which is then the coarsest, or all from DISPERSION_BOTTOM_SIDE down.
-#define MAX_CELLS (DISPERSION_BOTTOM_SIDE_MAX * DISPERSION_BOTTOM_SIDE_MAX)
+/// A grid of less than DISPERSION_BOTTOM_SIDE_MAX cells per side, an odd number that cannot be halved, or all grids from
+/// DISPERSION_BOTTOM_SIDE down.
+#define MAX_CELLS ((DISPERSION_BOTTOM_SIDE_MAX - 1) * (DISPERSION_BOTTOM_SIDE_MAX - 1))
 #define MAX_SMALLER_CELLS (DISPERSION_BOTTOM_SIDE * DISPERSION_BOTTOM_SIDE / 3 + 1)
 
-/// Of all grids, one behind the other: the faces; the right sides of all but the largest. e div phi of one grid.
+/// Of all grids, one behind the other: the faces; the right sides of all but the largest. Of the cells of one grid: e div phi - f D
+/// phi along x and along z.
 shared vec4 phi[MAX_CELLS];
 shared vec4 right_of_smaller[MAX_SMALLER_CELLS];
-shared vec2 pressed[MAX_CELLS];
+shared vec4 pressed[MAX_CELLS];
 
 #define FOR_EACH(i, count) for (int i = int(gl_LocalInvocationIndex); i < count; i += DISPERSION_BOTTOM_GROUP)
 
@@ -31,15 +34,14 @@ int before(int x, int n) { return x == 0 ? n - 1 : x - 1; }
 
 vec4 rightAt(int first, int i) { return first == 0 ? texelFetch(right_side, i) : right_of_smaller[first - textureSize(right_side) + i]; }
 
-/// pressed = e div phi. Other invocations may read it after a barrier.
+/// pressed = e div phi - f D phi. Other invocations may read it after a barrier.
 void press(int first, int n) {
   barrier();
   FOR_EACH(i, n * n) {
     const int x = i % n;
     const int z = i / n;
-    const vec4 own = phi[first + i];
-    pressed[i] = texelFetch(stiffness, first + i).zw *
-                 (own.xy - phi[first + before(x, n) + n * z].xy + own.zw - phi[first + x + n * before(z, n)].zw);
+    const vec4 across = phi[first + i] - vec4(phi[first + before(x, n) + n * z].xy, phi[first + x + n * before(z, n)].zw);
+    pressed[i] = (texelFetch(stiffness, first + i).zw * (across.xy + across.zw)).xyxy - texelFetch(spread, first + i).xyxy * across;
   }
   barrier();
 }
@@ -47,9 +49,9 @@ void press(int first, int n) {
 /// r - K phi at the faces of a cell, after press().
 vec4 leftAt(int first, int n, int x, int z) {
   const int i = x + n * z;
-  const vec2 here = pressed[i];
+  const vec4 here = pressed[i];
   return rightAt(first, i) - texelFetch(stiffness, first + i).xxyy * phi[first + i] +
-         vec4(pressed[after(x, n) + n * z] - here, pressed[x + n * after(z, n)] - here);
+         vec4(pressed[after(x, n) + n * z].xy, pressed[x + n * after(z, n)].zw) - here;
 }
 
 void sweep(int first, int n) {

@@ -26,7 +26,7 @@ void main() {
   Swept second_sweep;
   rows[0] = rows[1] = fetchRow(wrapped(begin_z, n));
   start(rows[0], first_sweep.faces);
-  for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = vec2(0.0);
+  for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = Pressed(0.0);
   second_sweep = first_sweep;
   // Sums over the faces of a row of blocks, one more than the own ones: for their coarse faces (E, N) and (W, S). The coarse
   // faces N of the row of blocks before wait for S of this one.

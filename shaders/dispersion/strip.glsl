@@ -1,7 +1,8 @@
 // Sweeps over the faces of one grid of the dispersion's V-cycle (sim_setup/dispersion.h). A texel holds the x face and the z
 // face of a cell, two poles each: (x_0, x_1, z_0, z_1). Closed faces hold 0, so that indices may wrap
 // around every side.
-//   K phi = m phi - grad(e div phi), with differences between cells as grad and div
+//   K phi = m phi - grad(e div phi), with differences between cells as grad and div; except if FINEST, for the faces along an axis
+//           - grad(e div phi - f D phi), where D takes the difference across a cell along that axis alone
 //   sweep: phi += w (r - K phi), w = DISPERSION_SWEEP_WEIGHT over the diagonal of K
 // An invocation owns DISPERSION_COLUMNS columns of DISPERSION_STRIP rows and passes over them row by row. It does several
 // sweeps at once, each a row behind the one before it, and computes the neighbours that they need itself: that costs less
@@ -15,10 +16,9 @@
 #include "shared/groups.h"
 #include "wave/wave_cell.glsl"
 
-// Tables of sim_setup/dispersion.h: m_x, m_z, e_0, e_1 of a cell, times the scene's depth, and on the finest grid the square
-// roots of c_j times that depth at its faces, x face first.
+// Tables of sim_setup/dispersion.h: m_x, m_z, e_0, e_1 of a cell, times the scene's depth. Then on the finest grid the square
+// roots of c_j times that depth at its faces, x face first, on the others f_0, f_1 of the cell.
 #if FLAT
-// The first, and the second if FINEST.
 layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;
 #else
 // Two halves in each number.
@@ -48,13 +48,27 @@ struct Row {
   vec4 weight[WIDTH];
 #if !FLAT
   vec4 stiff[WIDTH];
+#if !FINEST
+  vec2 spread[WIDTH];
+#endif
 #endif
 };
 
-/// The last row that a sweep has taken: its faces before the sweep, and e div phi of its cells.
+/// e div phi of a cell, for both poles; on coarse grids less f D phi, for the faces along x and along z.
+#if FINEST
+#define Pressed vec2
+#define alongX(p) (p)
+#define alongZ(p) (p)
+#else
+#define Pressed vec4
+#define alongX(p) ((p).xy)
+#define alongZ(p) ((p).zw)
+#endif
+
+/// The last row that a sweep has taken: its faces before the sweep, and what its cells press with.
 struct Swept {
   vec4 faces[WIDTH];
-  vec2 pressed[WIDTH];
+  Pressed pressed[WIDTH];
 };
 
 int side_count;       // cells per side of this grid
@@ -64,6 +78,8 @@ vec4 flat_stiffness;
 float open_x[WIDTH];  // 0 where the x face is at a closed side
 #if FINEST
 vec4 flat_root_c;
+#else
+vec2 flat_spread;
 #endif
 #else
 uvec4 coefficients_ahead[WIDTH + 1];  // of the next row
@@ -95,6 +111,16 @@ vec4 stiffnessOf(Row row, int c) {
   return row.stiff[c];
 #endif
 }
+
+#if !FINEST
+vec2 spreadOf(Row row, int c) {
+#if FLAT
+  return flat_spread;
+#else
+  return row.spread[c];
+#endif
+}
+#endif
 
 /// Fetches what is needed of row z before fetchRow(z).
 void fetchAhead(int z) {
@@ -129,6 +155,8 @@ void begin(int first_column, int first_row) {
   }
 #if FINEST
   flat_root_c = texelFetch(coefficients, 1);
+#else
+  flat_spread = texelFetch(coefficients, 1).xy;
 #endif
 #endif
   fetchAhead(wrapped(first_row, side_count));
@@ -169,6 +197,9 @@ Row fetchRow(int z) {
     const vec4 diagonal = stiff.xxyy + stiff.zwzw + vec4(unpacked(here[c + 1].y), unpacked(coefficients_ahead[c].y));
     row.weight[c] = mix(vec4(0.0), DISPERSION_SWEEP_WEIGHT / diagonal, greaterThan(stiff.xxyy, vec4(0.0)));
     row.stiff[c] = stiff;
+#if !FINEST
+    row.spread[c] = unpacked(here[c].z);
+#endif
 #endif
   }
   return row;
@@ -200,12 +231,18 @@ void start(Row row, out vec4 faces[WIDTH]) {
 /// What the faces of the last row have left, r - K phi, in columns margin + 1 to WIDTH - margin - 2; takes the faces of the
 /// row after it, known in columns margin to WIDTH - margin - 1, as the last row.
 void takeRow(int margin, inout Swept last, Row last_row, Row row, vec4 faces[WIDTH], out vec4 left[WIDTH]) {
-  vec2 pressed[WIDTH];
-  for (int c = margin + 1; c < WIDTH - margin; ++c)
+  Pressed pressed[WIDTH];
+  for (int c = margin + 1; c < WIDTH - margin; ++c) {
+#if FINEST
     pressed[c] = stiffnessOf(row, c).zw * (faces[c].xy - faces[c - 1].xy + faces[c].zw - last.faces[c].zw);
+#else
+    const vec4 across = faces[c] - vec4(faces[c - 1].xy, last.faces[c].zw);
+    pressed[c] = (stiffnessOf(row, c).zw * (across.xy + across.zw)).xyxy - spreadOf(row, c).xyxy * across;
+#endif
+  }
   for (int c = margin + 1; c < WIDTH - margin - 1; ++c)
     left[c] = last_row.right[c] - stiffnessOf(last_row, c).xxyy * last.faces[c] +
-              vec4(last.pressed[c + 1] - last.pressed[c], pressed[c] - last.pressed[c]);
+              vec4(alongX(last.pressed[c + 1] - last.pressed[c]), alongZ(pressed[c] - last.pressed[c]));
   last.faces = faces;
   last.pressed = pressed;
 }

@@ -56,6 +56,7 @@
 #define DISPERSION_WEIGHTS 6
 // Tables of the grids at the bottom.
 #define DISPERSION_STIFFNESS 1
+#define DISPERSION_SPREAD 7
 #define DISPERSION_SWEEP 10
 #define DISPERSION_FROM_X 11
 #define DISPERSION_FROM_Z 18

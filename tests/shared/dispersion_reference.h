@@ -62,19 +62,22 @@ class DispersionReference {
 
   /// r - K phi
   static Faces left(const DispersionLevel& grid, const Faces& right, const Faces& phi) {
-    std::vector<std::array<double, 2>> pressed(phi.size());
+    Faces pressed(phi.size());  // of cells, along x and along z
     forEach(grid, [&](int x, int z, std::size_t i) {
       for (std::size_t j = 0; j < 2; ++j) {
-        pressed[i][j] = grid.stiffness[i][2 + j] *
-                        (phi[i][j] - phi[grid.index(x - 1, z)][j] + phi[i][2 + j] - phi[grid.index(x, z - 1)][2 + j]);
+        const double along_x = phi[i][j] - phi[grid.index(x - 1, z)][j];
+        const double along_z = phi[i][2 + j] - phi[grid.index(x, z - 1)][2 + j];
+        const double spread = grid.spread.empty() ? 0.0 : grid.spread[i][j];
+        pressed[i][j] = grid.stiffness[i][2 + j] * (along_x + along_z) - spread * along_x;
+        pressed[i][2 + j] = grid.stiffness[i][2 + j] * (along_x + along_z) - spread * along_z;
       }
     });
     Faces out(phi.size());
     forEach(grid, [&](int x, int z, std::size_t i) {
       for (std::size_t j = 0; j < 2; ++j) {
         out[i][j] = right[i][j] - grid.stiffness[i][0] * phi[i][j] + pressed[grid.index(x + 1, z)][j] - pressed[i][j];
-        out[i][2 + j] =
-            right[i][2 + j] - grid.stiffness[i][1] * phi[i][2 + j] + pressed[grid.index(x, z + 1)][j] - pressed[i][j];
+        out[i][2 + j] = right[i][2 + j] - grid.stiffness[i][1] * phi[i][2 + j] + pressed[grid.index(x, z + 1)][2 + j] -
+                        pressed[i][2 + j];
       }
     });
     return out;

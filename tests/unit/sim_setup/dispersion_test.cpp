@@ -8,6 +8,7 @@
 #include <spindrift/sim_setup/dispersion.h>
 
 #include "dispersion_reference.h"
+#include "dispersion_symbol.h"
 
 namespace spindrift::sim {
 namespace {
@@ -133,6 +134,110 @@ TEST(Dispersion, HasThePhaseSpeedsOfAiryWaves) {
     }
     EXPECT_LE(off_8, 0.01) << depth_cells;
     EXPECT_LE(off_4, 0.025) << depth_cells;
+  }
+}
+
+/// Depths of the fitted table and between them, and beyond its ends.
+std::vector<double> depthsCells() {
+  std::vector<double> out;
+  for (double depth_cells = 0.4; depth_cells < 80.0; depth_cells *= 1.13) out.push_back(depth_cells);
+  return out;
+}
+
+/// As many grids as 256 cells per side have.
+constexpr std::size_t kGridCount = 7;
+
+TEST(Dispersion, HasTheSymbolOfTheReference) {
+  for (const double depth_cells : {1.3, 7.2, 40.0}) {
+    constexpr int kSide = 64;
+    const Laid laid(sea(kSide, 0.125, depth_cells * 0.125, core::WaveBoundary::kPeriodic));
+    const DispersionSymbol symbol(depth_cells, polesAt(depth_cells), laid.operator_f.dispersion().levels.size());
+    const DispersionLevel& grid = laid.operator_f.dispersion().levels.front();
+    for (const auto& [mx, mz] :
+         {std::pair{1, 0}, std::pair{4, 0}, std::pair{3, 7}, std::pair{8, 8}, std::pair{31, 20}}) {
+      // Both phases: the cycle is not the same at every cell.
+      double product = 0.0;
+      double square = 0.0;
+      for (const double phase : {0.3, 0.3 + std::numbers::pi / 2}) {
+        std::vector<double> level(grid.stiffness.size());
+        for (int z = 0; z < kSide; ++z) {
+          for (int x = 0; x < kSide; ++x)
+            level[grid.index(x, z)] = std::cos(2 * std::numbers::pi * (mx * x + mz * z) / kSide + phase);
+        }
+        product += dot(level, laid.pull(level));
+        square += dot(level, level);
+      }
+      const double kx = 2 * std::numbers::pi * mx / kSide;
+      const double kz = 2 * std::numbers::pi * mz / kSide;
+      const double wanted = symbol.share(kx, kz) * laid.basin.depth_m.front() * DispersionSymbol::laplacian(kx, kz);
+      EXPECT_NEAR(product / square / wanted, 1.0, 1e-6) << depth_cells << ", " << mx << ", " << mz;
+    }
+  }
+}
+
+TEST(Dispersion, HasTheGroupSpeedsOfAiryWavesInEveryDirection) {
+  for (const double depth_cells : depthsCells()) {
+    if (depth_cells < 0.9 || depth_cells > 45.0) continue;
+    const DispersionSymbol symbol(depth_cells, polesAt(depth_cells), kGridCount);
+    const auto frequency = [&](double k, double direction_rad) {
+      const double kx = k * std::cos(direction_rad);
+      const double kz = k * std::sin(direction_rad);
+      return std::sqrt(depth_cells * DispersionSymbol::laplacian(kx, kz) * symbol.share(kx, kz));
+    };
+    const auto airy = [&](double k) { return std::sqrt(k * std::tanh(k * depth_cells)); };
+    constexpr double kStep = 0.03;
+    double along = 0.0;
+    double across = 0.0;
+    for (double cells = 8.3; cells < 128.0; cells *= 1.1) {
+      const double k = 2 * std::numbers::pi / cells;
+      if (k * depth_cells > 10.0 || k * depth_cells < 0.2) continue;
+      const double group = (airy(k * (1 + kStep)) - airy(k)) / (kStep * k);
+      for (double direction_rad = 0.0; direction_rad < 0.8; direction_rad += 0.15) {
+        const double here = frequency(k, direction_rad);
+        along = std::max(along, std::abs((frequency(k * (1 + kStep), direction_rad) - here) / (kStep * k * group) - 1));
+        across = std::max(across, std::abs((frequency(k, direction_rad + kStep) - here) / (kStep * k * group)));
+      }
+    }
+    EXPECT_LE(along, 0.04) << depth_cells;
+    EXPECT_LE(across, 0.035) << depth_cells;
+  }
+}
+
+TEST(Dispersion, KeepsBothStandingWavesOfTheLengthOfABlockNearAirysFrequency) {
+  for (const double depth_cells : depthsCells()) {
+    if (depth_cells < 1.5 || depth_cells > 45.0) continue;
+    const DispersionSymbol symbol(depth_cells, polesAt(depth_cells), kGridCount);
+    for (std::size_t grid = 1; grid < 5; ++grid) {  // waves of 4, 8, 16, 32 cells along an axis
+      const double k = 2 * std::numbers::pi / std::pow(2.0, static_cast<double>(grid + 1));
+      if (k * depth_cells > 10.0) continue;
+      const double mean = std::sqrt(depth_cells * DispersionSymbol::laplacian(k, 0) * symbol.share(k, 0) /
+                                    (k * std::tanh(k * depth_cells)));
+      for (const double sign : {-0.5, 0.5})
+        EXPECT_NEAR(mean * (1 + sign * symbol.split(grid)), 1.0, grid == 1 ? 0.03 : 0.01)
+            << depth_cells << ", " << grid;
+    }
+  }
+}
+
+TEST(Dispersion, IsPositiveAndStableForEveryWave) {
+  constexpr double kCell_m = 0.125;
+  constexpr double kGravity_mps2 = 9.81;
+  for (const double depth_cells : depthsCells()) {
+    const DispersionSymbol symbol(depth_cells, polesAt(depth_cells), kGridCount);
+    const double step_s = dispersedMaxStep(kGravity_mps2, depth_cells * kCell_m, kCell_m);
+    constexpr int kSamples = 48;
+    for (int x = 1; x <= kSamples; ++x) {
+      for (int z = 0; z <= x; ++z) {
+        const double kx = std::numbers::pi * x / kSamples;
+        const double kz = std::numbers::pi * z / kSamples;
+        const double share = symbol.share(kx, kz);
+        ASSERT_GT(share, 0.0) << depth_cells << ", " << kx << ", " << kz;
+        const double omega_radps =
+            std::sqrt(kGravity_mps2 * depth_cells * share * DispersionSymbol::laplacian(kx, kz) / kCell_m);
+        // The leapfrog is stable up to 2; a tenth is left for uneven beds.
+        ASSERT_LE(omega_radps * step_s, 1.8) << depth_cells << ", " << kx << ", " << kz;
+      }
+    }
   }
 }
 

@@ -7,10 +7,10 @@
 // that runs into shallow water keeps its energy flux. The inverse is one V(2,2) cycle of a multigrid method from zero.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include <shared/groups.h>
@@ -26,15 +26,23 @@ inline constexpr std::size_t kPoleCount = 2;
 /// Returns a/d: what is left of F for the shortest waves. It is the limit of a term with b = 0, and costs no solution.
 [[nodiscard]] double shareAtOnce(double depth_cells);
 
-/// Coefficients at one depth: b_j and c_j of the formula above.
+/// Grids with their own b_j; coarser ones have those of the last.
+inline constexpr std::size_t kFittedGridCount = 4;
+
+/// Coefficients at one depth: b_j and c_j of the formula above. The coarser grids of the V-cycle have a b_j of their
+/// own, finest grid first: that shapes the speeds of waves that those grids resolve.
 struct Poles {
-  std::array<double, kPoleCount> b{};
+  std::array<std::array<double, kPoleCount>, kFittedGridCount> b{};
   std::array<double, kPoleCount> c{};
+
+  [[nodiscard]] const std::array<double, kPoleCount>& bOf(std::size_t grid) const {
+    return b[std::min(grid, kFittedGridCount - 1)];
+  }
 };
 
-/// Returns the coefficients for water of this depth in cells, fitted to the phase speeds that the V-cycle has (tool
-/// tests/tools/fit_dispersion.cpp): within 1 % for waves of 8 cells and longer and 2.5 % for 4 cells, for depths of 1
-/// to 45 cells and kd up to 10.
+/// Returns the coefficients for water of this depth in cells, fitted to the phase and group speeds that the V-cycle has
+/// (tool tests/tools/fit_dispersion.cpp): for depths of 1 to 45 cells and kd up to 10, phase speeds within 1 % for
+/// waves of 8 cells and longer and 2.5 % for 4 cells, group speeds within 4 % for waves of 8 cells and longer.
 [[nodiscard]] Poles polesAt(double depth_cells);
 
 /// One grid of the V-cycle: n x n cells, x fastest. Each cell owns the faces toward +x and +z. A face variable is the
@@ -45,6 +53,9 @@ struct DispersionLevel {
   /// 1/d of the x face and of the z face, over their open share; b_0 d and b_1 d of the cell, over its wet share and
   /// the squared cell size of this grid; all times the scene's depth. 0 where closed or dry.
   std::vector<std::array<double, 4>> stiffness;
+  /// f_0 and f_1 of the cell: spreadOf() the grid times the smallest 1/d of its open faces (over their open share),
+  /// times the scene's depth. Empty in the finest grid, which has none.
+  std::vector<std::array<double, kPoleCount>> spread;
   /// Weights of the x and the z face in the coarser grid's faces E, W, N, S of the same block. Empty in the coarsest
   /// grid.
   std::vector<std::array<double, 4>> from_coarse_x;
@@ -66,6 +77,16 @@ struct Dispersion {
   bool is_flat = false;                       ///< as in Basin
 };
 
+/// f_j d of a grid of the V-cycle, 0 being the finest. On coarse grids K phi = phi/d - grad(b_j d div phi - f_j D phi),
+/// where D takes the difference across a cell along the axis of the face alone; fluxes that are linear inside a block
+/// have a mass matrix with f d = 1/8. Chosen so that waves along the axes and along the diagonals are equally fast;
+/// none on grid 2, where it would give waves of 8 cells along an axis two frequencies. Less than 1/4, so K is positive.
+[[nodiscard]] constexpr std::array<double, kPoleCount> spreadOf(std::size_t grid) {
+  if (grid == 1) return {0.12, 0.20};
+  if (grid >= 3) return {0.14, 0.14};
+  return {0.0, 0.0};
+}
+
 /// Weight of the damped Jacobi sweeps.
 inline constexpr double kSweepWeight = DISPERSION_SWEEP_WEIGHT;
 /// Sweeps before and after the coarser grid, and in the coarsest one.
@@ -86,10 +107,8 @@ inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
 /// up to depth_m, with a margin.
 [[nodiscard]] double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m);
 
-/// Lays out the grids for a basin with the 5-point stencil. Precondition: canDisperse(). `poles`: other coefficients,
-/// to fit them.
-[[nodiscard]] Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin,
-                                          const std::function<Poles(double depth_cells)>& poles = polesAt);
+/// Lays out the grids for a basin with the 5-point stencil. Precondition: canDisperse().
+[[nodiscard]] Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin);
 
 /// kSweepWeight over the diagonal of the operator for each face of a grid, over the scene's depth; 0 where closed.
 [[nodiscard]] std::vector<std::array<double, 4>> sweepWeights(const DispersionLevel& level);
