@@ -38,15 +38,15 @@ std::array<int, 4> partsOf(const DispersionGrid& fine, const std::array<std::siz
   return part;
 }
 
-/// Chooses the part that the coarse cell of a block stands for: the largest one, where parts count less whose cells all
-/// have a way out toward -x or -z.
+/// Chooses the part that the coarse cell of a block stands for: the one of most cells, where parts count less whose
+/// cells all have a way out toward -x or -z.
 int mainPartOf(const DispersionGrid& fine, int x, int z, const std::array<std::size_t, 4>& block,
                const std::array<int, 4>& part) {
   constexpr double kWithWayOut = 0.35;
   std::array<double, 4> size{};
   std::array<bool, 4> has_way_out{true, true, true, true};
   for (int k = 0; k < 4; ++k) {
-    size[part[k]] += fine.wet[block[k]];
+    if (fine.wet[block[k]] > 0.0) size[part[k]] += 1.0;
     const auto [west, south] = wayOut(fine, x, z, k);
     if (west <= 0.0 && south <= 0.0) has_way_out[part[k]] = false;
   }
@@ -258,11 +258,12 @@ void fillInside(const DispersionGrid& fine, int x, int z, Coarsened& out) {
       total += outward * share;
     }
     for (std::size_t k = 0; k < inflow.size(); ++k) inflow[k] -= total * fine.wet[area.cells[k]] / area.wet;
-    const std::vector<double> flux = is_open ? std::vector<double>{} : innerFlux(area, inflow);
+    // Through a side that is open, half of the coarse flux passes each inner face of its axis.
+    const bool is_even = is_open && coarse.open[coarse.at(x + dx, z + dz)][axis] == 1.0;
+    const std::vector<double> flux = is_even ? std::vector<double>{} : innerFlux(area, inflow);
     for (std::size_t e = 0; e < area.faces.size(); ++e) {
       const Area::Face& face = area.faces[e];
-      // In an open block, half of the coarse flux passes each inner face of its axis.
-      weightsOf(face.axis)[face.cell][side] = is_open ? (face.axis == axis ? 0.5 : 0.0) : flux[e];
+      weightsOf(face.axis)[face.cell][side] = is_even ? (face.axis == axis ? 0.5 : 0.0) : flux[e];
     }
   }
 }
