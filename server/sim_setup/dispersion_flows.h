@@ -13,8 +13,8 @@ namespace spindrift::sim {
 /// The coarse correction is right for a motion if the coarse grid lets the motion's flux pass at its mean levels. Where
 /// water turns around the end of a wall, most of it passes the nearest cells, and a coarse face with the mean
 /// resistance of its cells lets too little pass. Therefore the slowest motions of the basin are computed on the finest
-/// grid, and the resistances of coarse faces follow from their fluxes and levels by least squares (upscaling of
-/// transmissibilities by global flows: Holden and Nielsen 2000, Comput. Geosci. 4).
+/// grid, and the resistances of coarse faces follow from their fluxes and levels by least squares (as in
+/// Holden and Nielsen 2000, Global upscaling of permeability, Transport in Porous Media 40).
 void fitResistances(std::vector<DispersionGrid>& grids, const std::vector<CellOwners>& owners);
 
 }  // namespace spindrift::sim

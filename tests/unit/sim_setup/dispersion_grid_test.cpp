@@ -57,7 +57,8 @@ TEST(DispersionGrid, StandsForEveryWetCellBesideAStraightWall) {
     for (const Grids* each : {&along_z, &along_x}) {
       for (std::size_t k = 0; k < each->owners.size(); ++k) {
         for (std::size_t i = 0; i < each->owners[k].size(); ++i)
-          EXPECT_EQ(each->owners[k][i].has_value(), each->grids[k].wet[i] > 0.0) << column << ", grid " << k << ", cell " << i;
+          EXPECT_EQ(each->owners[k][i].has_value(), each->grids[k].wet[i] > 0.0)
+              << column << ", grid " << k << ", cell " << i;
       }
     }
   }
@@ -105,7 +106,8 @@ TEST(DispersionGrid, SpreadsACoarseFluxEvenlyOverTheCellsThatACoarseCellStandsFo
       for (std::size_t i = 0; i < gained.size(); ++i) {
         const auto& owner = all.owners[k][i];
         const double share = owner ? fine.wet[i] / (4 * coarse.wet[*owner]) : 0.0;
-        EXPECT_NEAR(gained[i], owner ? share * coarse_gained[*owner] : 0.0, 1e-9) << column << ", grid " << k << ", cell " << i;
+        EXPECT_NEAR(gained[i], owner ? share * coarse_gained[*owner] : 0.0, 1e-9)
+            << column << ", grid " << k << ", cell " << i;
       }
     }
   }
