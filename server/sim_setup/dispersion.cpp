@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include <spindrift/sim_setup/dispersion.h>
 #include <spindrift/sim_setup/half.h>
+
+#include "dispersion_flows.h"
+#include "dispersion_grid.h"
 
 namespace spindrift::sim {
 namespace {
@@ -57,191 +61,13 @@ std::array<double, kPoleCount> cAt(double depth_cells) {
   return out;
 }
 
-/// A grid while it is laid out, in doubles. `open`: open share of the x and z face; `resistance`: mean of 1/d over it
-/// [1/m]; `wet`: wet share of the cell; `depth`: mean over it [m].
-struct Grid {
-  int n = 0;
-  std::vector<std::array<double, 2>> open;
-  std::vector<std::array<double, 2>> resistance_pm;
-  std::vector<double> wet;
-  std::vector<double> depth_m;
-
-  explicit Grid(int side_count) : n(side_count) {
-    const auto cells = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-    open.resize(cells);
-    resistance_pm.resize(cells);
-    wet.resize(cells);
-    depth_m.resize(cells);
-  }
-  [[nodiscard]] std::size_t at(int x, int z) const { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); }
-};
-
-/// The four cells of a block: (0, 0), (1, 0), (0, 1), (1, 1). Its inner faces lead from one of them to another.
-struct InnerFace {
-  int from, to, axis;
-};
-constexpr InnerFace kInnerFaces[] = {{0, 1, 0}, {2, 3, 0}, {0, 2, 1}, {1, 3, 1}};
-
-std::array<std::size_t, 4> blockOf(const Grid& fine, int x, int z) {
-  return {fine.at(2 * x, 2 * z), fine.at(2 * x + 1, 2 * z), fine.at(2 * x, 2 * z + 1), fine.at(2 * x + 1, 2 * z + 1)};
-}
-
-/// Marks, in each block, the cells of the largest part that is connected inside the block: a wall can divide a block,
-/// and a coarse cell can stand for one side of it only.
-std::vector<bool> findMembers(const Grid& fine) {
-  std::vector<bool> is_member(fine.wet.size(), false);
-  for (int z = 0; z < fine.n / 2; ++z) {
-    for (int x = 0; x < fine.n / 2; ++x) {
-      const auto block = blockOf(fine, x, z);
-      std::array<int, 4> part{0, 1, 2, 3};
-      for (int round = 0; round < 3; ++round) {
-        for (const InnerFace& face : kInnerFaces) {
-          if (fine.open[block[face.from]][face.axis] <= 0.0) continue;
-          part[face.from] = part[face.to] = std::min(part[face.from], part[face.to]);
-        }
-      }
-      std::array<double, 4> size{};
-      for (int k = 0; k < 4; ++k) size[part[k]] += fine.wet[block[k]];
-      const auto largest = static_cast<int>(std::ranges::max_element(size) - size.begin());
-      for (int k = 0; k < 4; ++k) is_member[block[k]] = part[k] == largest && fine.wet[block[k]] > 0.0;
-    }
-  }
-  return is_member;
-}
-
-/// The two fine faces that a coarse face toward +x (axis 0) or +z covers, and the cells behind them.
-struct Covered {
-  std::array<std::size_t, 2> face;
-  std::array<std::size_t, 2> behind;
-};
-Covered coveredBy(const Grid& fine, int x, int z, int axis) {
-  if (axis == 0) {
-    return {{fine.at(2 * x + 1, 2 * z), fine.at(2 * x + 1, 2 * z + 1)},
-            {fine.at(2 * x + 2, 2 * z), fine.at(2 * x + 2, 2 * z + 1)}};
-  }
-  return {{fine.at(2 * x, 2 * z + 1), fine.at(2 * x + 1, 2 * z + 1)},
-          {fine.at(2 * x, 2 * z + 2), fine.at(2 * x + 1, 2 * z + 2)}};
-}
-
-/// Flux through the inner faces of a block for a net inflow of each cell: the one of least energy. The flux is the
-/// difference of a potential, found by Gauss-Seidel iteration over at most four cells.
-std::array<double, 4> innerFlux(const std::array<double, 4>& open, const std::array<double, 4>& inflow) {
-  constexpr int kRounds = 200;
-  std::array<double, 4> potential{};
-  for (int round = 0; round < kRounds; ++round) {
-    double largest_change = 0.0;
-    for (int k = 0; k < 4; ++k) {
-      double sum = -inflow[k];
-      double weight = 0.0;
-      for (int e = 0; e < 4; ++e) {
-        const auto [from, to, axis] = kInnerFaces[e];
-        if (from != k && to != k) continue;
-        weight += open[e];
-        sum += open[e] * potential[from == k ? to : from];
-      }
-      if (weight <= 0.0) continue;
-      largest_change = std::max(largest_change, std::abs(sum / weight - potential[k]));
-      potential[k] = sum / weight;
-    }
-    if (largest_change < 1e-15) break;
-  }
-  std::array<double, 4> flux{};
-  for (int e = 0; e < 4; ++e) flux[e] = open[e] * (potential[kInnerFaces[e].from] - potential[kInnerFaces[e].to]);
-  return flux;
-}
-
-/// Fills `level` with the weights of the fine faces in the coarse ones and returns the coarse grid. A coarse flux
-/// passes the open part of its face evenly; inside the block it goes where every cell gains the same height.
-Grid coarsen(const Grid& fine, DispersionLevel& level) {
-  const std::vector<bool> is_member = findMembers(fine);
-  Grid coarse(fine.n / 2);
-  level.from_coarse_x.assign(fine.wet.size(), Four{});
-  level.from_coarse_z.assign(fine.wet.size(), Four{});
-  const auto weightsOf = [&](int axis) -> std::vector<Four>& {
-    return axis == 0 ? level.from_coarse_x : level.from_coarse_z;
-  };
-  for (int z = 0; z < coarse.n; ++z) {
-    for (int x = 0; x < coarse.n; ++x) {
-      const std::size_t i = coarse.at(x, z);
-      for (const std::size_t cell : blockOf(fine, x, z)) {
-        if (!is_member[cell]) continue;
-        coarse.wet[i] += fine.wet[cell] / 4;
-        coarse.depth_m[i] += fine.wet[cell] * fine.depth_m[cell] / 4;
-      }
-      if (coarse.wet[i] > 0.0) coarse.depth_m[i] /= coarse.wet[i];
-      for (int axis = 0; axis < 2; ++axis) {
-        const Covered covered = coveredBy(fine, x, z, axis);
-        double open = 0.0;
-        double resistance = 0.0;
-        for (int k = 0; k < 2; ++k) {
-          const std::size_t face = covered.face[k];
-          if (!is_member[face] || !is_member[covered.behind[k]]) continue;
-          open += fine.open[face][axis];
-          resistance += fine.open[face][axis] * fine.resistance_pm[face][axis];
-        }
-        if (open <= 0.0) continue;
-        coarse.open[i][axis] = open / 2;
-        coarse.resistance_pm[i][axis] = resistance / open;
-        for (int k = 0; k < 2; ++k) {
-          const std::size_t face = covered.face[k];
-          if (is_member[face] && is_member[covered.behind[k]])
-            weightsOf(axis)[face][axis == 0 ? 0 : 2] = fine.open[face][axis] / coarse.open[i][axis];
-        }
-      }
-    }
-  }
-  // The faces around a block and the direction in which a flux through them leaves it.
-  struct Side {
-    int x, z, axis;
-    double outward;
-  };
-  constexpr Side kSides[] = {{0, 0, 0, 1.0}, {-1, 0, 0, -1.0}, {0, 0, 1, 1.0}, {0, -1, 1, -1.0}};
-  for (int z = 0; z < coarse.n; ++z) {
-    for (int x = 0; x < coarse.n; ++x) {
-      const auto block = blockOf(fine, x, z);
-      const double wet = 4 * coarse.wet[coarse.at(x, z)];
-      if (wet <= 0.0) continue;
-      std::array<double, 4> open{};
-      for (int e = 0; e < 4; ++e) {
-        const auto [from, to, axis] = kInnerFaces[e];
-        if (is_member[block[from]] && is_member[block[to]]) open[e] = fine.open[block[from]][axis];
-      }
-      const bool is_open_block = wet == 4.0 && open == std::array{1.0, 1.0, 1.0, 1.0};
-      for (int side = 0; side < 4; ++side) {
-        const auto& [dx, dz, axis, outward] = kSides[side];
-        if (coarse.open[coarse.at(x + dx, z + dz)][axis] <= 0.0) continue;
-        // Outflow of each cell through this side for a unit of coarse flux, and what it lacks to lose as much per area
-        // as the others.
-        std::array<double, 4> out{};
-        double total = 0.0;
-        for (int k = 0; k < 2; ++k) {
-          const Covered covered = coveredBy(fine, x + dx, z + dz, axis);
-          const std::size_t cell = outward > 0 ? covered.face[k] : covered.behind[k];
-          const double share = weightsOf(axis)[covered.face[k]][axis == 0 ? 0 : 2];
-          out[static_cast<std::size_t>(std::ranges::find(block, cell) - block.begin())] += outward * share;
-          total += outward * share;
-        }
-        std::array<double, 4> inflow{};
-        for (int k = 0; k < 4; ++k) {
-          if (is_member[block[k]]) inflow[k] = out[k] - total * fine.wet[block[k]] / wet;
-        }
-        // In an open block, half of the coarse flux passes each inner face of its axis.
-        const std::array<double, 4> flux =
-            is_open_block ? (axis == 0 ? Four{0.5, 0.5, 0.0, 0.0} : Four{0.0, 0.0, 0.5, 0.5}) : innerFlux(open, inflow);
-        for (int e = 0; e < 4; ++e) weightsOf(kInnerFaces[e].axis)[block[kInnerFaces[e].from]][side] = flux[e];
-      }
-    }
-  }
-  return coarse;
-}
-
 template <std::size_t kCount>
 void roundToHalves(std::vector<std::array<double, kCount>>& texels) {
   for (auto& texel : texels) std::ranges::transform(texel, texel.begin(), roundToHalf);
 }
 
 /// `k`: number of the grid, 0 for the finest, whose cells have `finest_m`.
-std::vector<Four> stiffnessOf(const Grid& grid, std::size_t k, double finest_m, double scene_depth_m) {
+std::vector<Four> stiffnessOf(const DispersionGrid& grid, std::size_t k, double finest_m, double scene_depth_m) {
   const double cell_m = std::ldexp(finest_m, static_cast<int>(k));
   std::vector<Four> out(grid.wet.size(), Four{});
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -256,18 +82,19 @@ std::vector<Four> stiffnessOf(const Grid& grid, std::size_t k, double finest_m, 
   return out;
 }
 
-/// DispersionLevel::spread of grid k, a coarse one.
-std::vector<std::array<double, kPoleCount>> layOutSpread(const DispersionLevel& level, std::size_t k) {
+/// DispersionLevel::spread of grid k, a coarse one. In a flat basin, whose only closed faces are its sides, all cells
+/// have the same. In others the cells beside closed faces have none: the fitted resistances there stand for the flow as
+/// it is.
+std::vector<std::array<double, kPoleCount>> layOutSpread(const DispersionLevel& level, std::size_t k, bool is_flat) {
   std::vector<std::array<double, kPoleCount>> out(level.stiffness.size());
   const int n = static_cast<int>(level.side_count);
+  const auto massOf = [&](int x, int z, int axis) {
+    const double mass = level.stiffness[level.index(x, z)][axis];
+    return is_flat && mass == 0.0 ? std::numeric_limits<double>::infinity() : mass;
+  };
   for (int z = 0; z < n; ++z) {
     for (int x = 0; x < n; ++x) {
-      const Four& here = level.stiffness[level.index(x, z)];
-      double smallest = 0.0;
-      for (const double mass :
-           {here[0], here[1], level.stiffness[level.index(x - 1, z)][0], level.stiffness[level.index(x, z - 1)][1]}) {
-        if (mass > 0.0 && (smallest == 0.0 || mass < smallest)) smallest = mass;
-      }
+      const double smallest = std::min({massOf(x, z, 0), massOf(x, z, 1), massOf(x - 1, z, 0), massOf(x, z - 1, 1)});
       for (std::size_t j = 0; j < kPoleCount; ++j) out[level.index(x, z)][j] = spreadOf(k)[j] * smallest;
     }
   }
@@ -329,7 +156,7 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
   out.is_flat = basin.is_flat;
   out.depth_m = layout.dispersing_depth_m;
   out.cell_m = layout.cell_m;
-  Grid grid(static_cast<int>(layout.resolution_count));
+  DispersionGrid grid(static_cast<int>(layout.resolution_count));
   out.root_c.resize(grid.wet.size());
   for (std::size_t i = 0; i < grid.wet.size(); ++i) {
     const double depth_m = basin.depth_m[i];
@@ -346,21 +173,31 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
     }
   }
   if (!out.is_flat) roundToHalves(out.root_c);
+  std::vector<DispersionGrid> grids{std::move(grid)};
+  std::vector<CellOwners> owners;
   while (true) {
-    DispersionLevel level;
-    level.side_count = static_cast<std::uint32_t>(grid.n);
-    level.stiffness = stiffnessOf(grid, out.levels.size(), layout.cell_m, out.depth_m);
-    const bool is_coarsest =
-        !out.levels.empty() && (level.side_count <= kCoarsestSideCount || level.side_count % 2 != 0);
-    if (!is_coarsest) grid = coarsen(grid, level);
+    DispersionLevel& level = out.levels.emplace_back();
+    const auto side_count = static_cast<std::uint32_t>(grids.back().n);
+    level.side_count = side_count;
+    if (out.levels.size() > 1 && (side_count <= kCoarsestSideCount || side_count % 2 != 0)) break;
+    Coarsened coarser = coarsen(grids.back());
+    level.from_coarse_x = std::move(coarser.from_coarse_x);
+    level.from_coarse_z = std::move(coarser.from_coarse_z);
+    owners.push_back(std::move(coarser.owner));
+    grids.push_back(std::move(coarser.grid));
+  }
+  if (!out.is_flat) fitResistances(grids, owners);
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    DispersionLevel& level = out.levels[k];
+    level.stiffness = stiffnessOf(grids[k], k, layout.cell_m, out.depth_m);
     if (!out.is_flat) {
       for (auto* table : {&level.stiffness, &level.from_coarse_x, &level.from_coarse_z}) roundToHalves(*table);
     }
-    if (!out.levels.empty()) level.spread = layOutSpread(level, out.levels.size());
+    if (k == 0) continue;
+    level.spread = layOutSpread(level, k, out.is_flat);
     if (!out.is_flat) roundToHalves(level.spread);
-    out.levels.push_back(std::move(level));
-    if (is_coarsest) return out;
   }
+  return out;
 }
 
 std::vector<Four> sweepWeights(const DispersionLevel& level) {

@@ -67,6 +67,17 @@ vec2 innerShare(int first, int n, int x, int z, int side) {
          texelFetch(from_z, i)[side] * corner.zw + texelFetch(from_z, i + 1)[side] * leftAt(first, n, x + 1, z).zw;
 }
 
+/// The same for the outer faces of the block toward +x and +z, except those that the coarse face covers: they lead to a strip
+/// behind a wall, which belongs to the block.
+vec2 stripShare(int first, int n, int x, int z, int side) {
+  const int i = first + x + n * z;
+  const vec4 both = leftAt(first, n, x + 1, z + 1);
+  vec2 sum = vec2(0.0);
+  if (side != 0) sum += texelFetch(from_x, i + 1)[side] * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n + 1)[side] * both.xy;
+  if (side != 2) sum += texelFetch(from_z, i + n)[side] * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n + 1)[side] * both.zw;
+  return sum;
+}
+
 void restrictToCoarse(int first, int n) {
   const int coarse_n = n / 2;
   const int coarse_right = first + n * n - textureSize(right_side);
@@ -74,12 +85,16 @@ void restrictToCoarse(int first, int n) {
   FOR_EACH(k, coarse_n * coarse_n) {
     const int x = 2 * (k % coarse_n);
     const int z = 2 * (k / coarse_n);
+    const int next_x = after(x + 1, n);
+    const int next_z = after(z + 1, n);
     const int i = first + x + n * z;
     const vec4 both = leftAt(first, n, x + 1, z + 1);
     const vec2 sum_x = texelFetch(from_x, i + 1).x * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n + 1).x * both.xy +
-                       innerShare(first, n, x, z, 0) + innerShare(first, n, after(x + 1, n), z, 1);
+                       innerShare(first, n, x, z, 0) + innerShare(first, n, next_x, z, 1) +
+                       (stripShare(first, n, x, z, 0) + stripShare(first, n, next_x, z, 1));
     const vec2 sum_z = texelFetch(from_z, i + n).z * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n + 1).z * both.zw +
-                       innerShare(first, n, x, z, 2) + innerShare(first, n, x, after(z + 1, n), 3);
+                       innerShare(first, n, x, z, 2) + innerShare(first, n, x, next_z, 3) +
+                       (stripShare(first, n, x, z, 2) + stripShare(first, n, x, next_z, 3));
     right_of_smaller[coarse_right + k] = 0.25 * vec4(sum_x, sum_z);
   }
 }

@@ -96,6 +96,19 @@ TEST_F(DispersedSlopeOnDevice, AgreesWithTheReferenceBesideWallsRocksAndBeaches)
   EXPECT_LE(largestDifference(scene, true), 2e-5);
 }
 
+TEST_F(DispersedSlopeOnDevice, AgreesWithTheReferenceBesideThinWallsThatDivideBlocksOfAllGrids) {
+  for (const std::uint32_t n : {80u, 96u}) {
+    core::Scene scene = sea(n, 1.2);
+    scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+    // From 1/4 to 3/4 of the basin along column and row 55: off the edges of blocks of 2 to 32 cells.
+    const double wall_m = (55.5 - n / 2.0) * 0.125;
+    scene.obstacles.emplace_back(
+        core::Breakwater{.x_m = wall_m, .length_m = 0.0625 * n, .width_m = 0.11, .heading_deg = 90});
+    scene.obstacles.emplace_back(core::Breakwater{.z_m = wall_m, .length_m = 0.0625 * n, .width_m = 0.11});
+    EXPECT_LE(largestDifference(scene, false), 2e-5) << n;
+  }
+}
+
 TEST_F(DispersedSlopeOnDevice, AgreesWithTheReferenceAfterTheDepthChanged) {
   for (const double depth_m : {0.1, 1.2, 50.0})
     for (const double first_depth_m : {0.1, 1.2, 50.0}) {

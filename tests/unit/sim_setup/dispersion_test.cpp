@@ -98,6 +98,24 @@ TEST(Dispersion, IsSymmetricAndPositiveOverAnyBedAndBesideAnyWall) {
   }
 }
 
+TEST(Dispersion, IsSymmetricAndPositiveBesideThinWallsThatDivideBlocksOfAllGrids) {
+  core::Scene scene = sea(96, 0.1, 4.0, core::WaveBoundary::kReflect);
+  for (const int column : {23, 37, 50, 71}) {
+    scene.obstacles.emplace_back(core::Breakwater{.x_m = (column + 0.5) * 0.1 - 4.8,
+                                                  .z_m = 0.02 * column - 1.0,
+                                                  .length_m = 5.0,
+                                                  .width_m = 0.09,
+                                                  .heading_deg = column == 37 ? 80.0 : 90.0});
+  }
+  const Laid laid(scene);
+  for (std::uint32_t seed = 1; seed < 4; ++seed) {
+    const auto a = noise(laid.basin.depth_m.size(), seed);
+    const auto b = noise(laid.basin.depth_m.size(), seed + 100);
+    EXPECT_NEAR(dot(a, laid.pull(b)) / dot(b, laid.pull(a)), 1.0, 1e-11);
+    EXPECT_GT(dot(a, laid.pull(a)), 0.0);
+  }
+}
+
 TEST(Dispersion, LeavesALevelSurfaceAloneOnEachSideOfAWall) {
   core::Scene scene = sea(64, 0.125, 1.2, core::WaveBoundary::kReflect);
   scene.obstacles.emplace_back(core::Breakwater{.x_m = 0.3, .length_m = 100, .width_m = 0.125, .heading_deg = 90});

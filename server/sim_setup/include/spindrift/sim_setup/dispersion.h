@@ -50,11 +50,12 @@ struct Poles {
 /// face of pole 0 and 1.
 struct DispersionLevel {
   std::uint32_t side_count = 0;
-  /// 1/d of the x face and of the z face, over their open share; b_0 d and b_1 d of the cell, over its wet share and
-  /// the squared cell size of this grid; all times the scene's depth. 0 where closed or dry.
+  /// 1/d of the x face and of the z face (of coarse faces beside walls: their resistance), over their open share; b_0 d
+  /// and b_1 d of the cell, over its wet share and the squared cell size of this grid; all times the scene's depth. 0
+  /// where closed or dry.
   std::vector<std::array<double, 4>> stiffness;
-  /// f_0 and f_1 of the cell: spreadOf() the grid times the smallest 1/d of its open faces (over their open share),
-  /// times the scene's depth. Empty in the finest grid, which has none.
+  /// f_0 and f_1 of the cell: spreadOf() the grid times the smallest 1/d of its four faces (over their open share),
+  /// times the scene's depth; beside closed faces 0, in a flat basin as elsewhere. Empty in the finest grid.
   std::vector<std::array<double, kPoleCount>> spread;
   /// Weights of the x and the z face in the coarser grid's faces E, W, N, S of the same block. Empty in the coarsest
   /// grid.

@@ -1,0 +1,50 @@
+// The grids of the dispersion's V-cycle while they are laid out: which cells a coarse cell stands for, and how a coarse
+// flux passes the faces of the finer grid.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <spindrift/sim_setup/dispersion.h>
+
+namespace spindrift::sim {
+
+/// A grid in doubles, n x n cells, x fastest. Each cell owns the faces toward +x and +z.
+struct DispersionGrid {
+  int n = 0;
+  std::vector<std::array<double, 2>> open;           ///< open share of the x and z face; 0 where closed
+  std::vector<std::array<double, 2>> resistance_pm;  ///< mean of 1/d over the open part [1/m]
+  std::vector<double> wet;      ///< wet area over that of a cell; above 1 with a strip of a neighbour
+  std::vector<double> depth_m;  ///< mean over the wet area; 0 where dry
+
+  explicit DispersionGrid(int side_count);
+  [[nodiscard]] std::size_t at(int x, int z) const { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); }
+  [[nodiscard]] std::size_t behind(std::size_t cell, int axis) const {
+    const int x = static_cast<int>(cell) % n;
+    const int z = static_cast<int>(cell) / n;
+    return axis == 0 ? at(x + 1, z) : at(x, z + 1);
+  }
+};
+
+/// Per cell: the cell of the next coarser grid that stands for it. A wall can divide a block of four cells. Then the
+/// block's coarse cell stands for one part, and what the wall cuts off toward -x or -z belongs to the coarse cell
+/// there. None where dry, and for the few parts that lie otherwise.
+using CellOwners = std::vector<std::optional<std::size_t>>;
+
+/// A grid of half as many cells per side.
+struct Coarsened {
+  DispersionGrid grid;
+  CellOwners owner;
+  /// As in DispersionLevel.
+  std::vector<std::array<double, 4>> from_coarse_x;
+  std::vector<std::array<double, 4>> from_coarse_z;
+};
+
+/// Returns the next coarser grid and the weights of the fine faces in the coarse ones. A coarse flux passes the open
+/// part of its face evenly; inside the area of its cell it goes where every fine cell gains the same height.
+/// Precondition: an even number of cells per side.
+[[nodiscard]] Coarsened coarsen(const DispersionGrid& fine);
+
+}  // namespace spindrift::sim
