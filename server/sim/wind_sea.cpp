@@ -94,6 +94,19 @@ void WindSea::fadeTo(SeaState sea) {
   wanted_ = std::move(sea);
 }
 
+CarriedSea WindSea::carried() const {
+  return {
+      .is_settled = !fade_begin_s_ && wanted_.waves == shown_.waves, .shown = shown_, .fade_begin_s = fade_begin_s_};
+}
+
+void WindSea::takeOver(const CarriedSea& carried) {
+  // The grids resolve different waves, so a settled sea is that of this grid. Both have the same spectrum and phases.
+  shown_ = carried.is_settled ? wanted_ : carried.shown;
+  fade_begin_s_ = carried.fade_begin_s;
+  next_ = fade_begin_s_ ? wanted_ : SeaState{};
+  uploadTables();
+}
+
 const gpu::TexelBuffer* WindSea::advance(double begin_s, double dt_s) {
   if (!fade_begin_s_ && wanted_.waves != shown_.waves) {
     next_ = wanted_;
