@@ -95,15 +95,14 @@ void WindSea::fadeTo(SeaState sea) {
 }
 
 CarriedSea WindSea::carried() const {
-  return {
-      .is_settled = !fade_begin_s_ && wanted_.waves == shown_.waves, .shown = shown_, .fade_begin_s = fade_begin_s_};
+  return {.shown = shown_, .next = next_, .fade_begin_s = fade_begin_s_};
 }
 
 void WindSea::takeOver(const CarriedSea& carried) {
-  // The grids resolve different waves, so a settled sea is that of this grid. Both have the same spectrum and phases.
-  shown_ = carried.is_settled ? wanted_ : carried.shown;
+  // Each grid resolves other waves. Those of the other one come in until they have faded into this grid's.
+  shown_ = carried.shown;
+  next_ = carried.next;
   fade_begin_s_ = carried.fade_begin_s;
-  next_ = fade_begin_s_ ? wanted_ : SeaState{};
   uploadTables();
 }
 

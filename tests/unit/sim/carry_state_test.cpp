@@ -377,6 +377,39 @@ TEST_F(TakeOver, AnEffectInProgressAndSprayInTheAirGoOn) {
   EXPECT_EQ(next->health().volume_error_units, 0);
 }
 
+TEST_F(TakeOver, AWindSeaComesInWithoutABreak) {
+  const auto stormy = [](std::uint32_t n) {
+    core::Scene scene = harbor(n);
+    scene.boats.reset();
+    scene.storm.emplace();
+    scene.storm->level_ratio = 0.5;
+    scene.storm->drops_per_m2_s = 0.0;
+    scene.storm->wind_speed_mps = 12.0;
+    scene.storm->wind_direction_deg = 0.0;  // from the open side
+    return scene;
+  };
+  WaterSim& sim = make(stormy(96));
+  for (int k = 0; k < 600; ++k) sim.step();
+  const auto next = another(stormy(144));
+  ASSERT_TRUE(next->takeOver(sim.carriedState()));
+  double off = 0.0, held = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    sim.step();
+    next->step();
+    ASSERT_EQ(next->health().volume_error_units, 0);
+    if (k % 10 != 9) continue;
+    const auto wanted = squares(sim), found = squares(*next);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      off += std::pow(found[i] - wanted[i], 2);
+      held += std::pow(wanted[i], 2);
+    }
+  }
+  RecordProperty("off_percent", static_cast<int>(100 * std::sqrt(off / held)));
+  EXPECT_GT(std::sqrt(held / (6 * 64)), 0.005) << "there is a sea";
+  // The finer grid resolves other waves; those of the coarser one fade into them in four seconds.
+  EXPECT_LT(std::sqrt(off / held), 0.1);
+}
+
 TEST_F(TakeOver, IsTheSameTwiceAndAfterItAResetStartsAtTheBeginning) {
   WaterSim& sim = make(harbor(96));
   for (int k = 0; k < 30; ++k) sim.step();

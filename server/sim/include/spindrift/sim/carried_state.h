@@ -26,10 +26,10 @@ struct CarriedBoats {
   std::uint32_t next_id = 1;
 };
 
-/// A wind sea as it comes in: what is shown, and since when it fades into the scene's sea. Times are the scene's.
+/// A wind sea as it comes in: what is shown, and what it fades into, since when in the scene's time.
 struct CarriedSea {
-  bool is_settled = false;  ///< the scene's own sea is fully there
   SeaState shown;
+  SeaState next;
   std::optional<double> fade_begin_s;
 };
 
