@@ -39,13 +39,15 @@ struct ServeOptions {
   double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
   std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs
   std::uint32_t hash_interval_ticks = 60;
+  bool adapts = false;
 };
 
 using core::Error;
 using core::ErrorCode;
 
-core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::string& scene,
-                                        const std::string& fidelity) {
+/// Lists the scene's file in `catalog`, so that the room can return to it and change its fidelity.
+core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::string& scene, const std::string& fidelity,
+                                        rooms::SceneCatalog& catalog) {
   if (!rooms::isRoomName(name)) {
     return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
   }
@@ -53,19 +55,20 @@ core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::stri
   if (!file) return file.error();
   auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(fidelity));
   if (!loaded) return loaded.error();
+  catalog.add(loaded->name(), *file);
   return rooms::RoomSetup{name, *std::move(loaded)};
 }
 
-core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& options) {
+core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& options, rooms::SceneCatalog& catalog) {
   std::vector<rooms::RoomSetup> rooms;
-  auto first = loadRoom("main", options.scene, options.fidelity);
+  auto first = loadRoom("main", options.scene, options.fidelity, catalog);
   if (!first) return first.error();
   rooms.push_back(*std::move(first));
   for (const std::string& text : options.rooms) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
       return Error{ErrorCode::kInvalidInput, "--room '" + text + "': write NAME=SCENE"};
-    auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1), options.fidelity);
+    auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1), options.fidelity, catalog);
     if (!room) return room.error();
     for (const rooms::RoomSetup& known : rooms) {
       if (known.name == room->name)
@@ -133,7 +136,8 @@ int serve(const ServeOptions& options) {
   StopSignals signals;
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
-  auto rooms = loadRooms(options);
+  rooms::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
+  auto rooms = loadRooms(options, catalog);
   if (!rooms) return fail(rooms.error());
 
   auto access = loadAccess(options);
@@ -145,7 +149,8 @@ int serve(const ServeOptions& options) {
   server_options.device = *device;
   server_options.device.shader_folder = options.shader_folder;
   server_options.rooms = *std::move(rooms);
-  server_options.rules.scenes = rooms::SceneCatalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
+  server_options.rules.scenes = std::move(catalog);
+  server_options.rules.adapts = options.adapts;
   server_options.rules.grace =
       std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(options.grace_s * 1e3));
   server_options.rules.record_folder = options.record_folder;
@@ -193,6 +198,8 @@ ProgramCommand addServe(CLI::App& program) {
                    "Scene of the room 'main': a .textproto file or the name of a shipped scene")
       ->capture_default_str();
   addFidelity(*command, options->fidelity);
+  command->add_flag("--adapt", options->adapts,
+                    "Lower a room's fidelity while this machine cannot keep up, and raise it again when it can");
   command->add_option("--room", options->rooms, "An additional room, NAME=SCENE; may be repeated");
   command->add_option("--address", options->address, "Address to listen on")->capture_default_str();
   command->add_option("--port", options->port, "Port to listen on; 0 = any free one")

@@ -43,7 +43,8 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
   out.device_difference = deviceDifference(log.header(), room_water.device());
   std::uint64_t last_equal_tick = 0;
   while (const auto record = log.next()) {
-    while (room_water.tick() < record->tick() && !record->has_scene()) {
+    const bool changes_water = record->has_scene() || record->has_continued_scene();
+    while (room_water.tick() < record->tick() && !changes_water) {
       room_water.step();
       if (const auto& error = room_water.sim().deviceError()) return *error;
       if (progress && room_water.tick() % kProgressInterval_ticks == 0) progress(room_water.tick());
@@ -54,17 +55,24 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
         if (auto done = carryOut(room_water, *record); !done) return done.error();
         ++out.command_count;
         break;
-      case v1::Record::kScene: {
+      case v1::Record::kScene:
+      case v1::Record::kContinuedScene: {
         // The record was written after the change, which takes one tick.
         while (room_water.tick() + 1 < record->tick()) {
           room_water.step();
           if (const auto& error = room_water.sim().deviceError()) return *error;
         }
-        v1::Scene scene = record->scene();
+        v1::Scene scene = record->has_scene() ? record->scene() : record->continued_scene();
         scene::fillDefaults(scene);
         auto next = Water::create(device, std::move(scene));
         if (!next) return next.error();
-        room_water.replaceWater(*std::move(next)).reset();
+        if (record->has_scene()) {
+          room_water.replaceWater(*std::move(next)).reset();
+        } else {
+          room_water.bind();
+          if (auto done = room_water.continueIn(*next); !done) return done.error();
+          next->reset();
+        }
         room_water.bind();  // the old water's destructor left no context current
         break;
       }

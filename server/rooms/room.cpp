@@ -43,6 +43,7 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, Room
       water_(std::move(room_water)),
       log_(std::move(log)),
       heavy_budget_(kHeavyShare, kHeavyBurst),
+      chosen_fidelity_(water_->scene().fidelity()),
       roster_(rules.grace),
       clock_(water_->sim().derived().tick_s),
       boats_(water_->boats()) {
@@ -135,7 +136,8 @@ Room::TimePoint Room::due(TimePoint now) const {
   return water_->sim().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
 }
 
-void Room::run(TimePoint now) {
+void Room::run(TimePoint now, double thread_load) {
+  thread_load_ = thread_load;
   water_->bind();
   water_->reloadChangedShaders();
   session_count_ = outlets_.sessionCount();
@@ -185,6 +187,7 @@ void Room::step(TimePoint now) {
   clock_.ticked(end);
   if (isFrameDue(end)) requestFrame(end);
   watchRealTime(end);
+  adaptFidelity(end);
 }
 
 void Room::advancePaused(TimePoint now) {
@@ -323,8 +326,8 @@ void Room::watchRealTime(TimePoint now) {
   if (now - slow_since_ < kSlowPatience || now < next_slow_warning_) return;
   next_slow_warning_ = now + kSlowWarningInterval;
   spdlog::warn(
-      "room {}: time runs at {:.2f} of {:.2f} wanted: this machine cannot keep up; use fewer particles, a coarser wave "
-      "or a lower speed",
+      "room {}: time runs at {:.2f} of {:.2f} wanted: this machine cannot keep up; use a lower fidelity (serve --adapt "
+      "does so by itself), fewer particles, or a lower speed",
       name_, factor, clock_.speed());
 }
 

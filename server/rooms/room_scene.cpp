@@ -2,6 +2,7 @@
 // ticks; the senders are answered afterwards.
 #include <spdlog/spdlog.h>
 
+#include <spindrift/core/monotonic.h>
 #include <spindrift/rooms/room.h>
 
 namespace spindrift::rooms {
@@ -16,7 +17,14 @@ constexpr const char* kField = "change_scene.name";
 }  // namespace
 
 void Room::beginScene(Batch batch) {
-  const std::string name = batch.front().message.change_scene().name();
+  const v1::ChangeScene& wanted = batch.front().message.change_scene();
+  const std::string name = wanted.name();
+  const bool names_level = wanted.fidelity() != v1::FIDELITY_UNSPECIFIED;
+  const bool goes_on = names_level && name == water_->scene().name();
+  if (goes_on && wanted.fidelity() == water_->scene().fidelity()) {
+    chosen_fidelity_ = wanted.fidelity();
+    return answer(std::move(batch), {});
+  }
   if (!rules_.scenes.has(name)) {
     return answer(std::move(batch), rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField,
                                               "there is no scene '" + name + "'; the greeting lists what there is"));
@@ -25,13 +33,15 @@ void Room::beginScene(Batch batch) {
     return answer(std::move(batch), rejection(v1::REJECT_REASON_BUSY, kField,
                                               "the scene was changed a moment ago; try again in a second"));
   }
-  auto scene = rules_.scenes.load(name);
+  auto scene = goes_on ? sceneAt(wanted.fidelity())
+                       : rules_.scenes.load(name, names_level ? std::optional(wanted.fidelity()) : std::nullopt);
   if (!scene) {
     return answer(std::move(batch),
                   rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kField, firstLine(scene.error().message)));
   }
   commands_.hold(batch);
-  build_.emplace(WaterBuild{std::move(batch), builder_.build(*std::move(scene))});
+  build_.emplace(
+      WaterBuild{.commands = std::move(batch), .water = builder_.build(*std::move(scene)), .goes_on = goes_on});
 }
 
 void Room::adoptWater(TimePoint now) {
@@ -40,7 +50,8 @@ void Room::adoptWater(TimePoint now) {
   build_.reset();
   commands_.release(build.commands);
   WaterBuilder::Built water = build.water.get();
-  if (build.commands.empty()) return finishRebuild(now, std::move(water));
+  if (build.cause == WaterBuild::Cause::kDeviceFailure) return finishRebuild(now, std::move(water));
+  if (build.cause == WaterBuild::Cause::kAdapting) return adoptAdapted(now, build, std::move(water));
   const Command first = build.commands.front();
   const std::string name = first.message.change_scene().name();
   if (!water) {
@@ -51,7 +62,14 @@ void Room::adoptWater(TimePoint now) {
     builder_.dispose(*std::move(water));
     return answer(std::move(build.commands), slow);
   }
-  replaceWater(*std::move(water));
+  if (!build.goes_on || is_lost_) {
+    replaceWater(*std::move(water));
+  } else if (auto failed = goOnIn(*water, "")) {
+    builder_.dispose(*std::move(water));
+    return answer(std::move(build.commands), failed);
+  }
+  chosen_fidelity_ = water_->scene().fidelity();
+  governor_.changed(core::monotonic_s(now), FidelityGovernor::Step::kNone);
   answer(std::move(build.commands), {});
   answer(commands_.takeEqual(first.message), {});
 }
@@ -59,7 +77,7 @@ void Room::adoptWater(TimePoint now) {
 void Room::replaceWater(std::unique_ptr<Water> water) {
   builder_.dispose(water_->replaceWater(std::move(water)));
   is_lost_ = false;
-  restartScene();
+  restartScene(false);
 }
 
 Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
@@ -86,7 +104,10 @@ bool Room::isLost(TimePoint now) {
     next_rebuild_ = now;
     publishLoss();
   }
-  if (!build_ && now >= next_rebuild_) build_.emplace(WaterBuild{{}, builder_.build(water_->scene())});
+  if (!build_ && now >= next_rebuild_) {
+    build_.emplace(WaterBuild{
+        .commands = {}, .water = builder_.build(water_->scene()), .cause = WaterBuild::Cause::kDeviceFailure});
+  }
   const auto failed =
       rejection(v1::REJECT_REASON_BUSY, "", "the device failed and the room's water is being built anew: try again");
   abandonChanges(failed);
@@ -109,10 +130,10 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   spdlog::warn("room {}: runs again from the start of scene {}", name_, water_->scene().name());
 }
 
-void Room::restartScene() {
+void Room::restartScene(bool goes_on) {
   if (log_) {
     v1::Record line;
-    *line.mutable_scene() = water_->scene();
+    *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
     record(std::move(line));
   }
   const double speed = clock_.speed();
@@ -125,7 +146,7 @@ void Room::restartScene() {
   next_scene_change_ = ready + kSceneChangeInterval;
   next_frame_s_ = 0.0;
   next_idle_frame_ = {};
-  pending_tick_count_ = 0;
+  if (!goes_on) pending_tick_count_ = 0;
   wants_diagnostics_ = false;
   step_ms_sum_ = last_step_ms_ = 0.0;
   step_count_ = 0;
@@ -135,10 +156,10 @@ void Room::restartScene() {
   recovery_news_.restart(water_->sim().recoveredCount());
   logged_recovery_count_ = water_->sim().recoveredCount();
   boats_ = water_->boats();
-  news_ = {};            // the greeting contains all of it
-  roster_.keepOnly({});  // the boats of the new scene have no owner yet, whatever their ids
+  news_ = {};                          // the greeting contains all of it
+  if (!goes_on) roster_.keepOnly({});  // the boats of the new scene have no owner yet, whatever their ids
   publishSnapshot();
-  spdlog::info("room {}: scene {}", name_, water_->scene().name());
+  if (!goes_on) spdlog::info("room {}: scene {}", name_, water_->scene().name());
   outlets_.sceneChanged(*this);
 }
 

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include <spindrift/rooms/room_water.h>
+#include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
@@ -137,15 +138,37 @@ RoomWater::Outcome RoomWater::removeBoat(const v1::Command& command) {
 }
 
 std::unique_ptr<Water> RoomWater::replaceWater(std::unique_ptr<Water> water) {
-  const std::uint64_t first_tick = tick() + 1;
   const std::uint32_t first_boat_id = water_->sim().nextBoatId();
+  exchange(water);
+  water_->sim().numberBoatsFrom(first_boat_id);
+  return water;
+}
+
+core::Result<void> RoomWater::continueIn(std::unique_ptr<Water>& next) {
+  const sim::CarriedState carried = sim().carriedState();
+  if (auto why = failure()) return core::Error{core::ErrorCode::kUnavailable, *why};
+  // Values may have changed since the building began.
+  v1::Scene wanted = next->scene();
+  scene::keepParameters(scene(), wanted);
+  next->bind();
+  auto done = next->sim().setScene(scene::toCore(wanted));
+  if (done) done = next->sim().takeOver(carried);
+  if (!done) {
+    bind();
+    return done;
+  }
+  next->scene() = std::move(wanted);
+  exchange(next);
+  return {};
+}
+
+void RoomWater::exchange(std::unique_ptr<Water>& water) {
+  const std::uint64_t first_tick = tick() + 1;
   std::swap(water_, water);
   water_->bind();
-  water_->sim().numberBoatsFrom(first_boat_id);
   ++state_id_;
   ++scene_version_;
   tick_shift_ = first_tick - water_->sim().tick();
-  return water;
 }
 
 v1::BoatList RoomWater::boats() const {

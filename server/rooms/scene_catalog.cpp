@@ -12,18 +12,25 @@ constexpr const char* kEnding = ".textproto";
 
 }  // namespace
 
-SceneCatalog::SceneCatalog(fs::path folder, std::optional<v1::Fidelity> fidelity)
-    : folder_(std::move(folder)), fidelity_(fidelity) {
-  if (folder_.empty()) return;
+SceneCatalog::SceneCatalog(fs::path folder, std::optional<v1::Fidelity> fidelity) : fidelity_(fidelity) {
+  if (folder.empty()) return;
+  std::map<std::string, fs::path> found;
   std::error_code error;
-  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code ignored;
     const fs::path& file = entry->path();
-    if (file.extension() != kEnding || !fs::is_regular_file(file, ignored)) continue;
-    if (std::string name = file.stem().string(); scene::isSceneName(name)) names_.push_back(std::move(name));
+    if (file.extension() == kEnding && fs::is_regular_file(file, ignored)) found.emplace(file.stem().string(), file);
   }
-  std::ranges::sort(names_);
-  if (names_.size() > kCatalogMaxCount) names_.resize(kCatalogMaxCount);
+  for (const auto& [name, file] : found) add(name, file);
+}
+
+void SceneCatalog::add(const std::string& name, const fs::path& file) {
+  if (!scene::isSceneName(name)) return;
+  if (!has(name)) {
+    if (names_.size() == kCatalogMaxCount) return;
+    names_.insert(std::ranges::upper_bound(names_, name), name);
+  }
+  files_[name] = file;
 }
 
 bool SceneCatalog::has(const std::string& name) const {
@@ -32,7 +39,7 @@ bool SceneCatalog::has(const std::string& name) const {
 
 core::Result<v1::Scene> SceneCatalog::load(const std::string& name, std::optional<v1::Fidelity> fidelity) const {
   if (!has(name)) return core::Error{core::ErrorCode::kUnavailable, "scene '" + name + "' is not listed"};
-  auto scene = scene::loadSceneFile(folder_ / (name + kEnding), fidelity ? fidelity : fidelity_);
+  auto scene = scene::loadSceneFile(files_.at(name), fidelity ? fidelity : fidelity_);
   if (scene) scene->set_name(name);
   return scene;
 }

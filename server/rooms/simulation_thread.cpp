@@ -14,6 +14,27 @@ using core::ErrorCode;
 /// Limit of waiting openings and closings.
 constexpr std::size_t kChangeMaxCount = 16;
 
+/// Share of its time that a thread works, over the last window that is complete.
+class BusyShare {
+ public:
+  using Clock = std::chrono::steady_clock;
+  explicit BusyShare(Clock::time_point now) : begin_(now) {}
+  void waited(Clock::time_point from, Clock::time_point to) {
+    waited_ += to - from;
+    if (to - begin_ < kWindow) return;
+    share_ = 1.0 - std::chrono::duration<double>(waited_) / std::chrono::duration<double>(to - begin_);
+    begin_ = to;
+    waited_ = {};
+  }
+  [[nodiscard]] double value() const { return share_; }
+
+ private:
+  static constexpr std::chrono::seconds kWindow{2};
+  Clock::time_point begin_;
+  Clock::duration waited_{};
+  double share_ = 0.0;
+};
+
 }  // namespace
 
 core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gpu::DeviceChoice& device,
@@ -194,6 +215,7 @@ void SimulationThread::loop() {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [&] { return stopping_ || running_; });
   for (const auto& room : rooms_) room->start(Clock::now());
+  BusyShare busy(Clock::now());
   while (!stopping_) {
     last_round_ = Clock::now();
     const auto changes = std::exchange(changes_, {});
@@ -202,12 +224,14 @@ void SimulationThread::loop() {
     finishOpenings();
     auto due = Clock::now() + std::chrono::milliseconds(100);
     for (const auto& room : rooms_) {
-      room->run(Clock::now());
+      room->run(Clock::now(), busy.value());
     }
     const auto now = Clock::now();
     for (const auto& room : rooms_) due = std::min(due, room->due(now));
     lock.lock();
+    const auto idle_since = Clock::now();
     wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty() || std::exchange(was_built_, false); });
+    busy.waited(idle_since, Clock::now());
   }
   const auto changes = std::exchange(changes_, {});
   lock.unlock();

@@ -19,6 +19,7 @@ Worker::~Worker() {
 }
 
 void Worker::push(Work work) {
+  ++unfinished_count_;
   {
     const std::lock_guard lock(mutex_);
     work_.push_back(std::move(work));
@@ -39,6 +40,7 @@ void Worker::loop() {
     lock.unlock();
     work(runs);
     work = nullptr;
+    --unfinished_count_;
     if (done_) done_();
     lock.lock();
   }

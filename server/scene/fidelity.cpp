@@ -49,6 +49,20 @@ double layersOf(const v1::ParticleScene& particles) {
 
 }  // namespace
 
+std::size_t rankOf(v1::Fidelity fidelity) {
+  return static_cast<std::size_t>(std::ranges::find(kFidelities, scaleOf(fidelity).fidelity) - kFidelities.begin());
+}
+
+std::optional<v1::Fidelity> coarserThan(v1::Fidelity fidelity) {
+  const std::size_t rank = rankOf(fidelity);
+  return rank > 0 ? std::optional(kFidelities[rank - 1]) : std::nullopt;
+}
+
+std::optional<v1::Fidelity> finerThan(v1::Fidelity fidelity) {
+  const std::size_t rank = rankOf(fidelity) + 1;
+  return rank < kFidelities.size() ? std::optional(kFidelities[rank]) : std::nullopt;
+}
+
 std::optional<v1::Fidelity> parseFidelity(std::string_view name) {
   std::string upper = "FIDELITY_";
   for (const char c : name) upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -95,6 +109,34 @@ void applyFidelity(v1::Scene& scene) {
     if (!coupling.has_lattice_count()) coupling.set_lattice_count(level.lattice_count);
   }
   if (!scene.stream().has_surface_quantum_m()) scene.mutable_stream()->set_surface_quantum_m(level.surface_quantum_m);
+}
+
+namespace {
+
+/// Live parameters that applyFidelity() sets.
+constexpr std::array<std::string_view, 2> kOfLevel = {"particles.count", "particles.iterations_count"};
+
+void keepNumbers(const google::protobuf::Message& from, google::protobuf::Message& to, const std::string& prefix) {
+  const google::protobuf::Descriptor& type = *to.GetDescriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const google::protobuf::FieldDescriptor& field = *type.field(i);
+    if (field.is_repeated()) continue;
+    const std::string path = prefix + field.name();
+    if (field.cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
+      if (!from.GetReflection()->HasField(from, &field) || !to.GetReflection()->HasField(to, &field)) continue;
+      keepNumbers(from.GetReflection()->GetMessage(from, &field), *to.GetReflection()->MutableMessage(&to, &field),
+                  path + ".");
+    } else if (const v1::ParameterOptions* options = parameterOptions(field);
+               options && !options->restart() && std::ranges::find(kOfLevel, path) == kOfLevel.end()) {
+      setNumber(to, field, numberOf(from, field));
+    }
+  }
+}
+
+}  // namespace
+
+void keepParameters(const v1::Scene& from, v1::Scene& to) {
+  keepNumbers(from, to, "");
 }
 
 }  // namespace spindrift::scene

@@ -129,7 +129,9 @@ void fillMessageDefaults(Message& message) {
         fillMessageDefaults(*reflection.MutableMessage(&message, &field));
       }
     } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM && !field.is_repeated()) {
-      if (reflection.GetEnumValue(message, &field) == 0) reflection.SetEnumValue(&message, &field, 1);
+      // An `optional` one may be left out: then it says nothing.
+      if (!field.has_presence() && reflection.GetEnumValue(message, &field) == 0)
+        reflection.SetEnumValue(&message, &field, 1);
     } else if (const v1::ParameterOptions* options = parameterOptions(field)) {
       if (field.has_presence() && !reflection.HasField(message, &field)) setNumber(message, field, options->default_());
     }

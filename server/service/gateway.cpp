@@ -269,6 +269,10 @@ void Gateway::hasRecovered(const rooms::Room& room, const std::string& how) {
                        wire::roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, room.tick(), how));
 }
 
+void Gateway::fidelityChanged(const rooms::Room& room, const std::string& how) {
+  hub().broadcastState(room.name(), topic::kFidelity, wire::roomEvent(v1::ROOM_EVENT_KIND_FIDELITY, room.tick(), how));
+}
+
 void Gateway::closed(const rooms::Room& room) {
   encoder_->forget(room.name());
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/scene/fidelity.h>
 #include <spindrift/service/metrics.h>
 
 namespace spindrift::service {
@@ -38,6 +39,7 @@ struct RoomSample {
   std::string label;
   std::size_t session_count;
   int person_count;
+  std::size_t fidelity_rank;
   std::shared_ptr<const rooms::RoomVitals> vitals;
 };
 
@@ -50,6 +52,8 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
   each("room_ticks_total", "counter", "Ticks since the room opened.", [](Sample r) { return r.vitals->tick; });
   each("room_real_time_factor", "gauge", "Simulated seconds per second over the last second; 0 while paused or asleep.",
        [](Sample r) { return r.vitals->diagnostics.real_time_factor; });
+  each("room_fidelity", "gauge", "Fidelity level: 0 draft, 1 balanced, 2 fine, 3 reference.",
+       [](Sample r) { return r.fidelity_rank; });
   each("room_asleep", "gauge", "1 while nobody is connected and the scene sleeps then.",
        [](Sample r) { return r.vitals->asleep ? 1 : 0; });
   each("room_step_seconds", "gauge", "Time of a tick on the simulation thread, mean of the last quarter second.",
@@ -149,7 +153,8 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {
     samples.push_back({fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
-                       room->roster().people().people_size(), room->vitals()});
+                       room->roster().people().people_size(), scene::rankOf(room->snapshot()->scene.fidelity()),
+                       room->vitals()});
   }
   Page page;
   writeRooms(page, samples);

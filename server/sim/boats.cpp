@@ -91,6 +91,13 @@ void Boats::numberFrom(std::uint32_t first_id) {
   first_id_ = next_id_ = first_id;
 }
 
+void Boats::takeOver(const CarriedBoats& carried) {
+  places_ = carried.places;
+  first_id_ = carried.first_id;
+  next_id_ = carried.next_id;
+  uploadControls();
+}
+
 std::optional<std::size_t> Boats::find(std::uint32_t boat_id) const {
   const auto it = std::ranges::find(places_, boat_id, &Place::boat_id);
   if (boat_id == 0 || it == places_.end()) return std::nullopt;

@@ -15,6 +15,7 @@
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim/boat_record.h>
+#include <spindrift/sim/carried_state.h>
 #include <spindrift/sim_setup/derive.h>
 
 #include "wave.h"
@@ -33,6 +34,9 @@ class Boats {
   void numberFrom(std::uint32_t first_id);
   /// Returns a number above every id in use or used before.
   [[nodiscard]] std::uint32_t nextId() const { return next_id_; }
+  /// Everything but the device's state, and its replacement; that of state() is copied apart.
+  [[nodiscard]] CarriedBoats carried() const { return {places_, first_id_, next_id_}; }
+  void takeOver(const CarriedBoats& carried);
   /// Returns the new boat's id. kUnavailable when all places or all ids are taken.
   core::Result<std::uint32_t> spawn(const core::Boat& boat);
   /// kInvalidInput for an unknown boat.
@@ -57,10 +61,7 @@ class Boats {
  private:
   Boats(gpu::Context& ctx, const core::Scene& scene, double cell_m);
 
-  struct Place {
-    std::uint32_t boat_id = 0;  ///< 0 = free
-    core::Boat boat;
-  };
+  using Place = BoatPlace;
   core::Result<void> launch(const core::Boat& boat, std::uint32_t boat_id);
   std::optional<std::size_t> find(std::uint32_t boat_id) const;
   void uploadControls();

@@ -21,6 +21,8 @@ class PatchFollower {
 
   /// Sets the place of the next event; the next move() moves the patch there.
   void goTo(double x_m, double z_m);
+  [[nodiscard]] double x_m() const { return x_m_; }
+  [[nodiscard]] double z_m() const { return z_m_; }
   /// Rewrites the patch in `sim_uniforms`. `boats` may be null.
   void move(const gpu::Buffer& sim_uniforms, const Boats* boats);
 

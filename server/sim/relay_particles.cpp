@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
+
+#include <spindrift/sim_setup/random.h>
 
 #include "starting_state.h"
 
@@ -50,14 +53,17 @@ class OldParticles {
     }
   }
 
-  /// Shepard mean of velocity and foam at x.
-  std::array<double, 4> meanAt(const float* x) const {
+  /// Old water around a place: the sum of W, and the Shepard mean of velocity and foam.
+  struct Around {
+    double weight = 0.0;
+    std::array<double, 4> mean{};
+  };
+  Around around(const float* x) const {
     const auto H = static_cast<float>(layout_.support_radius_m);
     const std::array<int, 3> centre = cellAt(x);
     const int low_y = std::max(centre[1] - 1, 0);
     const int high_y = std::min(centre[1] + 1, static_cast<int>(layout_.cells[1]) - 1);
-    std::array<double, 4> sum{};
-    double weight = 0.0;
+    Around out;
     for (int dz = -1; dz <= 1; ++dz) {
       for (int dx = -1; dx <= 1; ++dx) {
         std::array<int, 3> cell = {centre[0] + dx, low_y, centre[2] + dz};
@@ -75,15 +81,15 @@ class OldParticles {
           const float r2 = rx * rx + ry * ry + rz * rz;
           if (r2 >= H * H) continue;
           const double w = weightOf(scene_.particles->kernel_set, std::sqrt(r2) / layout_.support_radius_m);
-          weight += w;
-          for (std::size_t axis = 0; axis < 4; ++axis) sum[axis] += w * m.velocity[axis];
+          out.weight += w;
+          for (std::size_t axis = 0; axis < 4; ++axis) out.mean[axis] += w * m.velocity[axis];
         }
       }
     }
-    if (weight > 0) {
-      for (double& value : sum) value /= weight;
+    if (out.weight > 0) {
+      for (double& value : out.mean) value /= out.weight;
     }
-    return sum;
+    return out;
   }
 
  private:
@@ -150,7 +156,55 @@ RelaidParticles relayParticles(const core::Scene& scene, const Derived& before, 
       x[1] =
           static_cast<float>(std::clamp(x[1] + (std::isfinite(eta_m) ? eta_m : 0.0), after.min_m[1], after.max_m[1]));
     }
-    for (const double value : old.meanAt(x)) out.velocity.push_back(static_cast<float>(value));
+    for (const double value : old.around(x).mean) out.velocity.push_back(static_cast<float>(value));
+  }
+  return out;
+}
+
+RelaidParticles refillParticles(const core::Scene& scene, const Derived& before, const StateCopy& state,
+                                const ParticleLayout& after) {
+  struct Candidate {
+    std::array<float, 3> place_m;
+    OldParticles::Around water;
+  };
+  const OldParticles old(scene, *before.particles, state);
+  std::vector<Candidate> candidates;
+  const auto point = [](double min_m, double pitch_m, std::uint32_t k) { return min_m + (k + 0.5) * pitch_m; };
+  const auto countOf = [](double length_m, double pitch_m) {
+    return static_cast<std::uint32_t>(std::max(1.0, std::floor(length_m / pitch_m + 1e-6)));
+  };
+  const std::uint32_t x_count = countOf(after.max_m[0] - after.min_m[0], after.pitch_x_m);
+  const std::uint32_t z_count = countOf(after.max_m[2] - after.min_m[2], after.pitch_z_m);
+  // The resting layers, and above them layers one spacing apart.
+  std::vector<double> heights_m;
+  for (const double height_m : after.layer_heights_m) heights_m.push_back(-after.band_m + height_m);
+  while (heights_m.back() + 1.5 * after.spacing_m < after.max_m[1])
+    heights_m.push_back(heights_m.back() + after.spacing_m);
+  for (const double y_m : heights_m) {
+    for (std::uint32_t z = 0; z < z_count; ++z) {
+      for (std::uint32_t x = 0; x < x_count; ++x) {
+        Candidate one{{static_cast<float>(point(after.min_m[0], after.pitch_x_m, x)), static_cast<float>(y_m),
+                       static_cast<float>(point(after.min_m[2], after.pitch_z_m, z))},
+                      {}};
+        one.water = old.around(one.place_m.data());
+        candidates.push_back(one);
+      }
+    }
+  }
+  // Stable: equal water is taken from below, so that a run repeats.
+  std::ranges::stable_sort(candidates, std::ranges::greater(), [](const Candidate& c) { return c.water.weight; });
+  RelaidParticles out;
+  SplitMix64 random(scene.seed);
+  const double jitter_m = scene.particles->jitter_ratio * after.spacing_m;
+  for (std::uint32_t k = 0; k < after.count; ++k) {
+    // The box has more lattice points than particles; a box that is full to the brim might not.
+    const Candidate& from = candidates[k % candidates.size()];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double place_m = from.place_m[axis] + jitter_m * random.symmetric();
+      out.position.push_back(static_cast<float>(std::clamp(place_m, after.min_m[axis], after.max_m[axis])));
+    }
+    out.position.push_back(static_cast<float>(k));
+    for (const double value : from.water.mean) out.velocity.push_back(static_cast<float>(value));
   }
   return out;
 }

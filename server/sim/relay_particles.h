@@ -14,4 +14,10 @@ namespace spindrift::sim {
 RelaidParticles relayParticles(const core::Scene& scene, const Derived& before, const StateCopy& state,
                                const ParticleLayout& after);
 
+/// The same for a box of particles alone, whose water may have left its starting place: of the lattice points of
+/// `after` over the whole box, those with the most old water around them (sum of W), as many as `after` has particles.
+/// So the water keeps its place and shape to within about a spacing, and its volume as mass. O(lattice points).
+RelaidParticles refillParticles(const core::Scene& scene, const Derived& before, const StateCopy& state,
+                                const ParticleLayout& after);
+
 }  // namespace spindrift::sim

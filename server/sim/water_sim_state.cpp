@@ -169,6 +169,7 @@ void WaterSim::setState(const StateCopy& state) {
     parts_->particles->position.upload(state.position);
     parts_->particles->velocity.upload(state.velocity);
   }
+  if (parts_->pool && !state.pool.empty()) parts_->pool->words().upload(state.pool);
   if (parts_->boats) parts_->boats->state().upload(state.boats);
   if (parts_->wave) {
     std::vector<std::int32_t> units;

@@ -124,12 +124,21 @@ void Wave::fillUpToBed(const core::Scene& scene, const WaveLayout& layout) {
   if (!filled.is_changed) return;
   elevation_.upload(elevation_units);
   if (filled.from_outside_units > 0) {
-    // Only the sum over all cells matters, so the first cell takes the difference. Low 24 bits, then the rest.
-    auto outflow = outflow_.downloadVector<std::int32_t>(2);
-    const std::int64_t units = std::int64_t{outflow[1]} * (1 << 24) + outflow[0] - filled.from_outside_units;
-    outflow_.upload(std::array<std::int32_t, 2>{static_cast<std::int32_t>(units & 0xffffff),
-                                                static_cast<std::int32_t>(units >> 24)});
+    const auto outflow = outflow_.downloadVector<std::int32_t>(2);
+    uploadOutflow(std::int64_t{outflow[1]} * (1 << 24) + outflow[0] - filled.from_outside_units);
   }
+}
+
+void Wave::setOutflow(std::int64_t units) {
+  if (!has_outflow_) return;
+  outflow_.clear();
+  uploadOutflow(units);
+}
+
+/// Only the sum over all cells matters, so the first cell takes all. Low 24 bits, then the rest.
+void Wave::uploadOutflow(std::int64_t units) {
+  outflow_.upload(
+      std::array<std::int32_t, 2>{static_cast<std::int32_t>(units & 0xffffff), static_cast<std::int32_t>(units >> 24)});
 }
 
 void Wave::bindTerrain() const {

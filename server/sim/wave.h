@@ -41,6 +41,9 @@ class Wave {
   /// rare changes only.
   void fillUpToBed(const core::Scene& scene, const WaveLayout& layout);
 
+  /// Sets the volume that has left since the start, in units of a cell; 0 in basins without absorbing sides.
+  void setOutflow(std::int64_t units);
+
   /// Advances one wave step: the flow driven by the slope plus this step's share of the active effects, limited to the
   /// water that cells hold. `breaking` may be null; empty `events` mean that no effect is active. `incident_sea`: what
   /// comes in through absorbing sides (wind_sea.h), null when nothing does.
@@ -73,6 +76,7 @@ class Wave {
  private:
   Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count), cell_m_(layout.cell_m) {}
   void displace(shared::EventUniforms events);
+  void uploadOutflow(std::int64_t units);
   void limit();
 
   gpu::Context& ctx_;

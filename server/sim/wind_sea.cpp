@@ -94,6 +94,18 @@ void WindSea::fadeTo(SeaState sea) {
   wanted_ = std::move(sea);
 }
 
+CarriedSea WindSea::carried() const {
+  return {.shown = shown_, .next = next_, .fade_begin_s = fade_begin_s_};
+}
+
+void WindSea::takeOver(const CarriedSea& carried) {
+  // Each grid resolves other waves. Those of the other one come in until they have faded into this grid's.
+  shown_ = carried.shown;
+  next_ = carried.next;
+  fade_begin_s_ = carried.fade_begin_s;
+  uploadTables();
+}
+
 const gpu::TexelBuffer* WindSea::advance(double begin_s, double dt_s) {
   if (!fade_begin_s_ && wanted_.waves != shown_.waves) {
     next_ = wanted_;

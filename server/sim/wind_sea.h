@@ -13,6 +13,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
+#include <spindrift/sim/carried_state.h>
 #include <spindrift/sim_setup/sea_state.h>
 
 namespace spindrift::sim {
@@ -28,6 +29,11 @@ class WindSea {
   void clear();
   /// The sea to fade to: from the next step on, or after a fade in progress.
   void fadeTo(SeaState sea);
+
+  /// What carries on in another simulation of the same water, and its continuation there: call takeOver() after
+  /// clear() and fadeTo(), with the scene's time going on.
+  [[nodiscard]] CarriedSea carried() const;
+  void takeOver(const CarriedSea& carried);
 
   /// Returns the sea during the step of dt_s that begins at begin_s, n x n texels (wave/incident_sea.comp); null while
   /// calm. BASIN and BED must be bound.

@@ -199,6 +199,26 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.ok(full.delayMs > 0 && full.delayMs < 10_000, `the picture is ${full.delayMs} ms behind`);
   });
 
+  step("goes on with the water at another fidelity, with its view and sliders", async () => {
+    const before = await statsOf(page);
+    const fidelity = page.getByTestId("fidelity");
+    assert.equal(await fidelity.inputValue(), "balanced");
+    assert.match(await page.getByTestId("fidelity-cost").textContent(), /balanced/i);
+    await acknowledged(page, () => fidelity.selectOption("draft"));
+    const draft = await waitFor(page, "the surface of the draft level", (stats) => stats.surfaceResolutionCount === 80);
+    assert.ok(draft.simTime >= before.simTime, `time went from ${before.simTime} s to ${draft.simTime} s`);
+    assert.equal(draft.view, before.view);
+    assert.equal(await fidelity.inputValue(), "draft");
+    assert.match(await page.getByTestId("fidelity-cost").textContent(), /0\.35 times the work of balanced/);
+    assert.equal(await page.getByRole("slider", { name: /viscosity/i }).inputValue(), "55");
+    await waitFor(page, "the draft water to move on", (stats) => stats.simTime > draft.simTime);
+    // Scenes change at most once per second.
+    await sleep(1000);
+    await acknowledged(page, () => fidelity.selectOption("balanced"));
+    const after = await waitFor(page, "the surface of the scene's own level", (stats) => stats.surfaceResolutionCount === 144);
+    assert.equal(after.malformedCount, 0);
+  });
+
   step("owns a boat that others cannot take, and keeps it after a reload", async () => {
     const ada = await openPage("marina");
     const bob = await openPage("marina");

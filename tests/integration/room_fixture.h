@@ -19,6 +19,7 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   int frame_count = 0;
   std::vector<std::uint64_t> applied;
   std::vector<std::string> rejected;
+  std::vector<std::string> fidelity_news;
   std::vector<std::uint64_t> rejected_ids;
 
   void sceneChanged(const rooms::Room&) override { ++scene_count; }
@@ -27,6 +28,7 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
   void peopleChanged(const rooms::Room&, const v1::People&) override {}
   void wasReset(const rooms::Room&) override {}
+  void fidelityChanged(const rooms::Room&, const std::string& how) override { fidelity_news.push_back(how); }
   void hasRecovered(const rooms::Room&, const std::string&) override { ++recovered_count; }
   void closed(const rooms::Room&) override {}
   void commandApplied(const rooms::Command& command, std::uint64_t, std::uint32_t) override {
@@ -50,7 +52,7 @@ class RoomTest : public testing::Test {
  protected:
   void SetUp() override {
     device_.kind = gpu::DeviceChoice::Kind::kSoftware;
-    auto scene = scene::parseSceneText(sceneText(), "main");
+    auto scene = scene::parseSceneText(sceneText(), sceneName());
     ASSERT_TRUE(scene);
     auto water = rooms::Water::create(device_, *std::move(scene));
     if (!water && water.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << water.error().message;
@@ -67,6 +69,7 @@ class RoomTest : public testing::Test {
   }
 
   virtual std::string sceneText() const { return kStillPool; }
+  virtual std::string sceneName() const { return "main"; }
 
   /// Runs the room until the condition holds; false after kPatience.
   bool runUntil(const std::function<bool()>& holds) {
@@ -78,11 +81,12 @@ class RoomTest : public testing::Test {
     }
     return true;
   }
-  void send(std::uint64_t command_id, v1::Command message = splash(), std::uint64_t session_id = 1) {
+  void send(std::uint64_t command_id, v1::Command message = splash(), std::uint64_t session_id = 1,
+            std::uint32_t person_id = 0) {
     auto checked = wire::checkCommand(numbered(command_id, std::move(message)));
     ASSERT_TRUE(std::holds_alternative<v1::Command>(checked));
-    const auto refused =
-        room_->admit({.sender = {.session_id = session_id}, .message = std::get<v1::Command>(std::move(checked))});
+    const auto refused = room_->admit({.sender = {.session_id = session_id, .person_id = person_id},
+                                       .message = std::get<v1::Command>(std::move(checked))});
     ASSERT_FALSE(refused) << refused->message;
   }
 

@@ -36,6 +36,19 @@ TEST(SceneCatalog, LoadsAListedSceneAsItIsNowUnderItsListedName) {
   EXPECT_EQ(scene->wave().depth_m(), 2.0);
 }
 
+TEST(SceneCatalog, ListsAFurtherFileInPlaceOfTheFoldersOwn) {
+  const test::TemporaryFolder folder, elsewhere;
+  folder.write("pond.textproto", "wave { depth_m: 1 }\n");
+  elsewhere.write("mine.textproto", "wave { depth_m: 2 }\n");
+  SceneCatalog catalog(folder.path());
+  catalog.add("lake", elsewhere.path() / "mine.textproto");
+  catalog.add("pond", elsewhere.path() / "mine.textproto");
+  catalog.add("a b", elsewhere.path() / "mine.textproto");
+  EXPECT_THAT(catalog.names(), ElementsAre("lake", "pond"));
+  EXPECT_EQ(catalog.load("lake")->name(), "lake");
+  EXPECT_EQ(catalog.load("pond")->wave().depth_m(), 2.0);
+}
+
 TEST(SceneCatalog, LoadsNothingThatItDoesNotList) {
   const test::TemporaryFolder folder;
   const SceneCatalog catalog(folder.path());

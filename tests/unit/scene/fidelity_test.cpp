@@ -97,5 +97,35 @@ TEST(Fidelity, AWrongNumberIsAnErrorAtEveryLevel) {
   EXPECT_NE(scene.error().message.find("wave.resolution_count"), std::string::npos) << scene.error().message;
 }
 
+TEST(Fidelity, LevelsAreInOrder) {
+  EXPECT_FALSE(coarserThan(v1::FIDELITY_DRAFT));
+  EXPECT_EQ(finerThan(v1::FIDELITY_DRAFT), v1::FIDELITY_BALANCED);
+  EXPECT_EQ(finerThan(v1::FIDELITY_UNSPECIFIED), v1::FIDELITY_FINE) << "BALANCED";
+  EXPECT_EQ(coarserThan(v1::FIDELITY_REFERENCE), v1::FIDELITY_FINE);
+  EXPECT_FALSE(finerThan(v1::FIDELITY_REFERENCE));
+  EXPECT_LT(rankOf(v1::FIDELITY_DRAFT), rankOf(v1::FIDELITY_BALANCED));
+}
+
+TEST(Fidelity, KeepsTheLiveParametersThatNoLevelChooses) {
+  const std::string text =
+      "wave { resolution_count: 64 } particles { count: 4000 } coupling {} boats { boats { x_m: 1 } }";
+  v1::Scene from = parsed(text);
+  from.mutable_wave()->set_damping_per_s(0.75);
+  from.mutable_wave()->set_depth_m(2.5);
+  from.mutable_particles()->set_viscosity_pas(12.0);
+  from.mutable_particles()->set_count(999);
+  from.mutable_boats()->mutable_boats(0)->set_x_m(3.0);
+  const v1::Scene fine = parsed(text, v1::FIDELITY_FINE);
+  v1::Scene to = fine;
+  keepParameters(from, to);
+  EXPECT_EQ(to.wave().damping_per_s(), 0.75);
+  EXPECT_EQ(to.wave().depth_m(), 2.5);
+  EXPECT_EQ(to.particles().viscosity_pas(), 12.0);
+  EXPECT_EQ(to.particles().count(), fine.particles().count()) << "of the level";
+  EXPECT_EQ(to.particles().iterations_count(), fine.particles().iterations_count());
+  EXPECT_EQ(to.wave().resolution_count(), 96u) << "fixed while a room runs";
+  EXPECT_EQ(to.boats().boats(0).x_m(), 1.0) << "where the scene starts them";
+}
+
 }  // namespace
 }  // namespace spindrift::scene

@@ -102,6 +102,21 @@ TEST(SceneCommands, AcceptNamesButNoPaths) {
   }
 }
 
+TEST(SceneCommands, KeepALevelThatIsLeftOutApartFromEveryOther) {
+  const auto with = [](std::optional<int> fidelity) {
+    return [fidelity](v1::Command& c) {
+      c.mutable_change_scene()->set_name("harbor");
+      if (fidelity) c.mutable_change_scene()->set_fidelity(static_cast<v1::Fidelity>(*fidelity));
+    };
+  };
+  EXPECT_FALSE(checkedCommand(with(std::nullopt)).change_scene().has_fidelity());
+  EXPECT_EQ(checkedCommand(with(0)).change_scene().fidelity(), v1::FIDELITY_UNSPECIFIED);
+  EXPECT_EQ(checkedCommand(with(3)).change_scene().fidelity(), v1::FIDELITY_FINE);
+  const auto rejection = rejectionOf(with(7));
+  EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(rejection.field, "change_scene.fidelity");
+}
+
 v1::Scene harbour() {
   const auto scene = scene::parseSceneText(
       "wave { side_m: 16 depth_m: 1 }\nobstacles { rock { x_m: 4 } }\nboats { boats { x_m: -4 } }", "harbour");

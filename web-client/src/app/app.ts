@@ -22,7 +22,7 @@ import { CommandSender } from "./command_sender";
 import { Display, nowS } from "./display";
 
 /** Shown where the server sends no text. */
-const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", other: "Something happened in the room." };
+const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water goes on at another fidelity.", other: "Something happened in the room." };
 
 /** Takes the answers to its own commands and ignores the others. */
 interface AnswerListener {
@@ -104,7 +104,10 @@ export class App {
         this.simTimeS = frame.timeS;
         this.display.take(frame);
       },
-      diagnostics: ({ diagnostics }) => this.hud.diagnostics(diagnostics),
+      diagnostics: ({ diagnostics }) => {
+        this.hud.diagnostics(diagnostics);
+        this.room.diagnostics(diagnostics, nowS());
+      },
       ack: ({ boatId, ...ack }) => {
         const commandId = Number(ack.commandId);
         const appliedTick = Number(ack.appliedTick);
@@ -130,7 +133,7 @@ export class App {
         this.display.scene.setBoats(boats);
         this.boats.setBoats(boats);
       },
-      roomEvent: ({ event, message }) => this.toast.show(message || kRoomEventTexts[event], event === "recovered" ? "warn" : "good"),
+      roomEvent: ({ event, message }) => this.toast.show(message || kRoomEventTexts[event], event === "recovered" || event === "fidelity" ? "warn" : "good"),
       clock: ({ leadS }) => this.display.scene.clock.sync(leadS + performance.timeOrigin / 1000),
       stats: ({ stats, supersededCount }) => {
         this.link = stats;

@@ -1,6 +1,7 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, without Protobuf objects.
 import { CouplingMode, type ParticleScene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
+import { fidelityName, type FidelityName } from "./fidelity";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
 import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
@@ -51,6 +52,8 @@ export interface GreetingInfo {
   sceneName: string;
   title: string;
   description: string;
+  /** Level at which the server simulates the scene. */
+  fidelity: FidelityName;
   /** Undefined in a scene without a heightfield. */
   wave: WaveInfo | undefined;
   /** Horizontal side of the water, metres. */
@@ -117,6 +120,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       sceneName: scene?.name ?? "",
       title: scene?.title || scene?.name || greeting.room,
       description: scene?.description ?? "",
+      fidelity: fidelityName(scene?.fidelity),
       wave,
       sideM,
       widthM: (!wave && scene?.particles?.boxWidthM) || sideM,

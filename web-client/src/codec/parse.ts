@@ -70,7 +70,8 @@ function readDiagnostics({ $typeName: _, $unknown: __, passes, ...numbers }: Dia
   return { ...numbers, passes: passes.map(({ name, ms }) => ({ name, ms })) };
 }
 
-function roomEventName(kind: RoomEventKind): "recovered" | "reset" | "other" {
+function roomEventName(kind: RoomEventKind): "recovered" | "reset" | "fidelity" | "other" {
   if (kind === RoomEventKind.RECOVERED) return "recovered";
+  if (kind === RoomEventKind.FIDELITY) return "fidelity";
   return kind === RoomEventKind.RESET ? "reset" : "other";
 }

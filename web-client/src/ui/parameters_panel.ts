@@ -4,8 +4,14 @@ import type { CommandAction } from "../net/messages";
 import { SliderModel } from "./slider_model";
 import { SliderRow } from "./slider_row";
 
+/** True if both lists give the same sliders, whatever their values. */
+function haveSameRows(a: readonly ParameterInfo[], b: readonly ParameterInfo[]): boolean {
+  return a.length === b.length && a.every((one, i) => (["path", "label", "unit", "min", "max", "step", "help"] as const).every((key) => one[key] === b[i]![key]));
+}
+
 export class ParametersPanel {
   private models = new Map<string, SliderModel>();
+  private shown: readonly ParameterInfo[] = [];
 
   constructor(
     private readonly root: HTMLElement,
@@ -15,6 +21,9 @@ export class ParametersPanel {
   ) {}
 
   enter(parameters: ParameterInfo[]): void {
+    // A slider that is being moved stays in the hand when only the room's fidelity changed.
+    if (haveSameRows(this.shown, parameters)) return parameters.forEach(({ path, value }) => this.setServerValue(path, value));
+    this.shown = parameters;
     for (const model of this.models.values()) model.dispose();
     this.models = new Map();
     this.root.replaceChildren();

@@ -1,8 +1,10 @@
-// Controls that affect everybody in the room: pause, single steps, reset, speed, scene.
+// Controls that affect everybody in the room: pause, single steps, reset, speed, scene, fidelity.
 import type { GreetingInfo } from "../codec/greeting";
+import type { DiagnosticsInfo } from "../codec/parse";
 import type { CommandAction } from "../net/messages";
 import { byId, setText } from "./dom";
 import { speedRange } from "./effect_limits";
+import { FidelityRow } from "./fidelity_row";
 import { SelectRow } from "./select_row";
 import { SliderModel } from "./slider_model";
 import { SliderRow } from "./slider_row";
@@ -19,6 +21,7 @@ export class RoomPanel {
   private readonly speedRow: SliderRow;
   private readonly speed: SliderModel;
   private readonly scenes: SelectRow;
+  private readonly fidelity: FidelityRow;
 
   constructor(send: (action: CommandAction, label: string) => number) {
     this.pause.addEventListener("click", () => {
@@ -37,7 +40,8 @@ export class RoomPanel {
     this.scenes = new SelectRow("scene", "Scene", "Changes the scene for everybody in the room.", (name) => {
       this.changeId = send({ case: "changeScene", value: { name } }, `Scene ${name}`);
     });
-    byId("room").append(this.scenes.element, this.speedRow.element);
+    this.fidelity = new FidelityRow(send);
+    byId("room").append(this.scenes.element, this.fidelity.element, this.speedRow.element);
   }
 
   enter(greeting: GreetingInfo): void {
@@ -45,6 +49,7 @@ export class RoomPanel {
     const names = greeting.scenes.includes(greeting.sceneName) || greeting.scenes.length === 0 ? greeting.scenes : [greeting.sceneName, ...greeting.scenes];
     this.scenes.setChoices(names.map((name) => ({ value: name, label: name.replaceAll("_", " ") })), this.sceneName);
     this.scenes.element.hidden = names.length < 2;
+    this.fidelity.enter(greeting);
     this.roomState(greeting.paused, greeting.speed);
     this.setLive(true);
   }
@@ -62,7 +67,7 @@ export class RoomPanel {
 
   private refresh(): void {
     const isOff = !this.isLive || !this.isAllowed;
-    this.pause.disabled = this.reset.disabled = this.scenes.disabled = this.speedRow.disabled = isOff;
+    this.pause.disabled = this.reset.disabled = this.scenes.disabled = this.fidelity.disabled = this.speedRow.disabled = isOff;
     this.step.disabled = isOff || !this.paused;
     this.step.title = this.paused ? "One tick" : "Pause first";
   }
@@ -71,16 +76,25 @@ export class RoomPanel {
     this.paused = paused;
     setText(this.pause, paused ? "Resume" : "Pause");
     this.pause.setAttribute("aria-pressed", String(paused));
-    if (speed > 0) this.speed.setServerValue(speed);
+    if (speed > 0) {
+      this.speed.setServerValue(speed);
+      this.fidelity.setSpeed(speed);
+    }
     this.setLive(this.isLive);
+  }
+
+  diagnostics(diagnostics: DiagnosticsInfo, nowS: number): void {
+    this.fidelity.diagnostics(diagnostics, nowS);
   }
 
   ack(commandId: number): void {
     this.speed.ack(commandId);
+    this.fidelity.ack(commandId);
   }
 
   reject(commandId: number, message: string): void {
     this.speed.reject(commandId, message);
+    this.fidelity.reject(commandId, message);
     if (commandId === this.changeId) this.scenes.value = this.sceneName;
   }
 }

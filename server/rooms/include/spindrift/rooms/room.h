@@ -18,6 +18,7 @@
 #include <spindrift/rooms/command.h>
 #include <spindrift/rooms/command_log.h>
 #include <spindrift/rooms/command_queue.h>
+#include <spindrift/rooms/fidelity_governor.h>
 #include <spindrift/rooms/growth_news.h>
 #include <spindrift/rooms/real_time_clock.h>
 #include <spindrift/rooms/room_outlets.h>
@@ -47,6 +48,7 @@ struct RoomRules {
   std::chrono::milliseconds grace{20'000};  ///< how long a lost connection's person and boats are kept
   std::filesystem::path record_folder;      ///< folder for logs; empty: no logs
   std::uint32_t hash_interval_ticks = 60;   ///< interval of the state hashes in logs
+  bool adapts = false;                      ///< lowers a room's fidelity where the machine cannot keep up
 };
 
 /// State of a room for other threads: immutable, replaced when it changes.
@@ -95,8 +97,9 @@ class Room {
   /// Returns the time of the next needed run().
   [[nodiscard]] TimePoint due(TimePoint now) const;
   /// Takes commands, steps unless paused or asleep, requests a frame when one is due and watched, and passes on
-  /// finished frames. At most one tick per call, so that rooms share the thread.
-  void run(TimePoint now);
+  /// finished frames. At most one tick per call, so that rooms share the thread. `thread_load`: share of its time that
+  /// the thread was busy lately, with all rooms.
+  void run(TimePoint now, double thread_load = 0.0);
 
   /// For the summary at the end.
   [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
@@ -128,8 +131,12 @@ class Room {
   };
   /// New water that is being built while the old one runs.
   struct WaterBuild {
-    Batch commands;  ///< the equal ChangeScene commands that started it; empty after a device failure
-    std::future<WaterBuilder::Built> water;
+    Batch commands{};  ///< the equal ChangeScene commands that started it
+    std::future<WaterBuilder::Built> water{};
+    enum class Cause { kCommand, kDeviceFailure, kAdapting } cause = Cause::kCommand;
+    bool goes_on = false;  ///< the present water goes on in it, at another fidelity
+    FidelityGovernor::Step step = FidelityGovernor::Step::kNone;  ///< if adapting
+    std::string why{};                                            ///< if adapting: for people
   };
 
   /// Values of one sender for one parameter. Tried from the newest on, until the water accepts one.
@@ -214,13 +221,26 @@ class Room {
   void beginScene(Batch batch);
   /// Adopts the new water if it is built.
   void adoptWater(TimePoint now);
-  /// Clears the state that belonged to the previous water.
-  void restartScene();
+  /// Clears the state that belonged to the previous water. `goes_on`: the boats keep their owners.
+  void restartScene(bool goes_on);
   /// Rejects if ticks would take longer than `max_ms` and longer than now while others than the sender are connected.
   [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                    double max_ms) const;
   /// Continues with new water at its start.
   void replaceWater(std::unique_ptr<Water> water);
+
+  // room_fidelity.cpp
+  /// Returns the room's scene at another level, with the present parameters.
+  [[nodiscard]] core::Result<v1::Scene> sceneAt(v1::Fidelity level) const;
+  /// Goes on with the present water in `next`, and announces it. `why`: for people, may be empty. On a rejection the
+  /// room goes on as before, and `next` is unchanged.
+  Outcome goOnIn(std::unique_ptr<Water>& next, const std::string& why);
+  /// With `serve --adapt`: starts a change of the level if the machine asks for one.
+  void adaptFidelity(TimePoint now);
+  /// Adopts the water of such a change, or notes that it cannot.
+  void adoptAdapted(TimePoint now, const WaterBuild& build, WaterBuilder::Built water);
+  /// Predicts how busy the thread is with the room at another level; infinite if the level is not possible.
+  [[nodiscard]] double loadAt(v1::Fidelity level) const;
   /// Asks the device whether it still works. If not, starts building the same scene on a working device and rejects
   /// commands meanwhile. Returns true until that is done.
   bool isLost(TimePoint now);
@@ -259,6 +279,9 @@ class Room {
   std::chrono::seconds rebuild_pause_{1};
   std::size_t session_count_ = 0;  ///< in all rooms, as of this round
   TickCost tick_cost_;
+  double thread_load_ = 0.0;  ///< as of this round
+  FidelityGovernor governor_;
+  v1::Fidelity chosen_fidelity_;  ///< of the scene, or chosen by a person; adapting never goes above it
   Roster roster_;
   RealTimeClock clock_;
   bool paused_ = false;

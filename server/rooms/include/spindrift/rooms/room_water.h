@@ -67,6 +67,11 @@ class RoomWater {
   /// Replaces the water by another one, which is bound from now on; returns the old one for destruction. The room's
   /// tick continues: the new water starts at a tick later than any frame of the old one, and its boats get unused ids.
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);
+  /// Goes on with the present state in `next`, which is bound from now on: the same scene at another resolution, whose
+  /// live parameters take their present values. Then `next` is the old water, for destruction. Room ticks continue as
+  /// with replaceWater(). Errors leave both as they were: kUnavailable when the device failed, kInvalidInput when it
+  /// is not the same water or a parameter changed meanwhile to what it cannot take.
+  core::Result<void> continueIn(std::unique_ptr<Water>& next);
   /// Makes its GL context current. Call it first whenever another context may be current.
   void bind() { water_->bind(); }
   /// gpu::Context::reloadChangedShaders().
@@ -99,6 +104,8 @@ class RoomWater {
   /// Returns the handler of a command; null if it does not change the water.
   static Handler handlerOf(const v1::Command& command);
   Outcome startEffect(const core::Effect& effect);
+  /// Exchanges the waters between two ticks.
+  void exchange(std::unique_ptr<Water>& water);
 
   void setScene(v1::Scene scene) {
     water_->scene() = std::move(scene);

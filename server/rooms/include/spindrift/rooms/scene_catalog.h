@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,10 @@ class SceneCatalog {
   /// are none. `fidelity` replaces the fidelity of every scene.
   explicit SceneCatalog(std::filesystem::path folder, std::optional<v1::Fidelity> fidelity = std::nullopt);
 
+  /// Lists a file under this name, in place of the folder's if that has one. Does nothing for a name that a scene may
+  /// not have, and when kCatalogMaxCount are listed.
+  void add(const std::string& name, const std::filesystem::path& file);
+
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] bool has(const std::string& name) const;
   /// Reads the file again, so that edits take effect; the scene gets the listed name. `fidelity` replaces the
@@ -30,9 +35,9 @@ class SceneCatalog {
                                              std::optional<v1::Fidelity> fidelity = std::nullopt) const;
 
  private:
-  std::filesystem::path folder_;
   std::optional<v1::Fidelity> fidelity_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_;  ///< sorted
+  std::map<std::string, std::filesystem::path> files_;
 };
 
 }  // namespace spindrift::rooms

@@ -34,6 +34,8 @@ class WaterBuilder {
   /// Any thread. Runs sim::prepareScene() on a separate thread and not behind builds, because a room's ticks wait for
   /// it. Errors: those of prepareScene(); kUnavailable when the builder ends.
   std::future<Prepared> prepare(core::Scene scene, sim::SceneBasis basis);
+  /// Any thread. Returns whether no water is being built or destroyed.
+  [[nodiscard]] bool isIdle() const { return builds_.isIdle(); }
   /// Destroys the water, which must be bound to the calling thread.
   void dispose(std::unique_ptr<Water> water);
 

@@ -1,7 +1,9 @@
 // A thread that runs pieces of work beside the simulation, one at a time.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -23,6 +25,8 @@ class Worker {
   using Work = std::function<void(bool runs)>;
   /// Any thread.
   void push(Work work);
+  /// Any thread. Returns whether no work waits or runs.
+  [[nodiscard]] bool isIdle() const { return unfinished_count_ == 0; }
 
  private:
   void loop();
@@ -32,6 +36,7 @@ class Worker {
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Work> work_;
+  std::atomic<std::size_t> unfinished_count_ = 0;
   bool stopping_ = false;
   std::thread thread_;
 };

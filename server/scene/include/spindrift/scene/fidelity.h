@@ -2,12 +2,23 @@
 // "What accuracy costs").
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <spindrift/v1/scene.pb.h>
 
 namespace spindrift::scene {
+
+/// The levels, coarsest first.
+inline constexpr std::array kFidelities = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
+                                           v1::FIDELITY_REFERENCE};
+/// Returns the level's place in kFidelities; that of BALANCED for UNSPECIFIED.
+std::size_t rankOf(v1::Fidelity fidelity);
+/// Returns the next level; nullopt beyond the last one.
+std::optional<v1::Fidelity> coarserThan(v1::Fidelity fidelity);
+std::optional<v1::Fidelity> finerThan(v1::Fidelity fidelity);
 
 /// Returns the level for a name in any case, "draft"; nullopt for an unknown name.
 std::optional<v1::Fidelity> parseFidelity(std::string_view name);
@@ -18,5 +29,9 @@ std::string fidelityName(v1::Fidelity fidelity);
 /// in: fields that the scene leaves out and the level chooses are set. Call it once per scene, because a second call
 /// scales again.
 void applyFidelity(v1::Scene& scene);
+
+/// Gives `to`, the same scene at another level, the present values of the parameters that change while a room runs
+/// (`from`), except those that applyFidelity() chooses. Does not check the result.
+void keepParameters(const v1::Scene& from, v1::Scene& to);
 
 }  // namespace spindrift::scene

@@ -46,7 +46,7 @@ std::optional<FieldIssue> checkNumber(const google::protobuf::FieldDescriptor& f
 void checkFields(const google::protobuf::Message& message, const std::string& prefix, std::vector<FieldIssue>& issues);
 
 /// Sets defaults for every number left out and every enum UNSPECIFIED (its value 1, as the proto files say), in the
-/// parts that are present.
+/// parts that are present. An enum with presence (`optional`) stays as it is.
 void fillMessageDefaults(google::protobuf::Message& message);
 
 }  // namespace spindrift::scene

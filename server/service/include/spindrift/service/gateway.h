@@ -55,6 +55,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void peopleChanged(const rooms::Room& room, const v1::People& people) override;
   void wasReset(const rooms::Room& room) override;
   void hasRecovered(const rooms::Room& room, const std::string& how) override;
+  void fidelityChanged(const rooms::Room& room, const std::string& how) override;
   void closed(const rooms::Room& room) override;
   void frameReady(const rooms::Room& room, core::FrameView frame) override;
   [[nodiscard]] rooms::WatchedLayers watched(const rooms::Room& room, const core::ReducedCounts& counts) const override;

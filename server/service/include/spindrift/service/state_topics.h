@@ -20,5 +20,6 @@ inline const net::StateTopic kPeople{.name = "people"};
 inline const net::StateTopic kLevel{.name = "level"};
 inline const net::StateTopic kReset{.name = "reset"};
 inline const net::StateTopic kRecovered{.name = "recovered"};
+inline const net::StateTopic kFidelity{.name = "fidelity"};
 
 }  // namespace spindrift::service::topic

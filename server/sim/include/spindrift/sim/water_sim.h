@@ -17,6 +17,7 @@
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
 #include <spindrift/sim/boat_record.h>
+#include <spindrift/sim/carried_state.h>
 #include <spindrift/sim/health.h>
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/state_copy.h>
@@ -111,6 +112,14 @@ class WaterSim {
   /// Resets to the starting state at time 0. Parameters keep their present values, and the tick count continues.
   /// Uploads only what changed since the start: particle positions, boats, one uniform block.
   void reset();
+
+  /// Copies what another simulation of the same water needs to go on from here. Waits.
+  [[nodiscard]] CarriedState carriedState();
+  /// Goes on from the state of another simulation instead of the start: same time (to half a tick), water, boats with
+  /// their ids, effects and wind sea; carry_state.h says what becomes of each at another resolution. Call it before a
+  /// tick is run or after reset(). Parameters are not carried. kInvalidInput, with nothing changed, if it is not the
+  /// same water.
+  core::Result<void> takeOver(const CarriedState& carried);
 
   /// Packs a frame of the present state. Returns false when there will be none: all slots are still in use by earlier
   /// frames, or the scene has none of the requested layers.

@@ -1,0 +1,60 @@
+// WaterSim: another simulation of the same water goes on where this one is.
+#include <algorithm>
+#include <cmath>
+
+#include <shared/bindings.h>
+
+#include "carry_state.h"
+#include "water_sim_parts.h"
+
+namespace spindrift::sim {
+
+CarriedState WaterSim::carriedState() {
+  CarriedState out{.scene = scene_, .derived = derived_, .time_s = time_s(), .state = copyState()};
+  if (parts_->breakers) {
+    const std::size_t cells = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
+    out.breaking = parts_->breakers->state().downloadVector<float>(4 * cells);
+  }
+  if (parts_->foam) {
+    const std::size_t side_count = derived_.wave->resolution_count / 2;
+    out.foam = parts_->foam->field().downloadVector<float>(4 * side_count * side_count);
+  }
+  out.effects = parts_->effects;
+  if (parts_->boats) out.boats = parts_->boats->carried();
+  if (parts_->wind_sea) out.sea = parts_->wind_sea->carried();
+  if (parts_->follower) {
+    out.patch_x_m = parts_->follower->x_m();
+    out.patch_z_m = parts_->follower->z_m();
+  }
+  return out;
+}
+
+core::Result<void> WaterSim::takeOver(const CarriedState& carried) {
+  if (!isSameWater(carried.scene, scene_)) {
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       "scene " + scene_.name + ": its sides, bed or parts differ, so it cannot go on from there"};
+  }
+  const ResampledState resampled = resampleState(carried, scene_, derived_);
+  setState(resampled.state);
+  if (parts_->wave) parts_->wave->setOutflow(resampled.outflow_units);
+  if (parts_->breakers && !resampled.breaking.empty()) parts_->breakers->state().upload(resampled.breaking);
+  if (parts_->foam && !resampled.foam.empty()) parts_->foam->field().upload(resampled.foam);
+  parts_->effects = carried.effects;
+  if (parts_->wind_sea) parts_->wind_sea->takeOver(carried.sea);
+  if (parts_->follower) parts_->follower->goTo(carried.patch_x_m, carried.patch_z_m);
+  if (parts_->boats) {
+    parts_->boats->takeOver(carried.boats);
+    first_boat_id_ = carried.boats.first_id;
+    // The tick before has set the pressure of the hulls for the next one.
+    parts_->uniforms.bindUniform(SIM_UNIFORMS);
+    if (parts_->wave) parts_->boats->press(parts_->wave->pressureHead());
+  }
+  start_tick_ = tick_ - static_cast<std::uint64_t>(std::llround(carried.time_s / derived_.tick_s));  // modulo 2^64
+  abandoned_until_tick_ = tick_;  // health in flight belongs to the start
+  parts_->checkpoints->forget();
+  parts_->checkpoints->save(tick_);  // confirmed by the health of the next ticks
+  ++revision_;
+  return {};
+}
+
+}  // namespace spindrift::sim

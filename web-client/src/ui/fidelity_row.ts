@@ -1,0 +1,92 @@
+// The room's fidelity: the level, what each costs and how far off it is, and a note where the machine cannot keep up.
+import { type FidelityName, kFidelities, wireFidelity } from "../codec/fidelity";
+import type { GreetingInfo } from "../codec/greeting";
+import type { DiagnosticsInfo } from "../codec/parse";
+import type { CommandAction } from "../net/messages";
+import { make, setText } from "./dom";
+import { describeCost, shortCost } from "./fidelity_costs";
+import { PaceWatch } from "./pace_watch";
+import { SelectRow } from "./select_row";
+
+const kHelp = "How finely the water is simulated, for everybody in the room. The water goes on.";
+
+export class FidelityRow {
+  readonly element: HTMLElement;
+  private readonly row: SelectRow;
+  private readonly cost = make("p", { class: "hint", "data-testid": "fidelity-cost" });
+  private readonly pace = make("p", { class: "hint trouble", "data-testid": "pace", role: "status", hidden: "" });
+  private readonly table = make("table", { "data-testid": "fidelity-table" });
+  private readonly watch = new PaceWatch();
+  private sceneName = "";
+  private level: FidelityName = "balanced";
+  private speed = 1;
+  private changeId = 0;
+
+  constructor(send: (action: CommandAction, label: string) => number) {
+    this.row = new SelectRow("fidelity", "Fidelity", kHelp, (value) => {
+      const wanted = value as FidelityName;
+      this.changeId = send({ case: "changeScene", value: { name: this.sceneName, fidelity: wireFidelity(wanted) } }, `Fidelity ${wanted}`);
+      setText(this.cost, `Building the water at ${wanted}: until then it goes on at ${this.level}.`);
+    });
+    this.row.setChoices(
+      kFidelities.map(({ name }) => ({ value: name, label: name })),
+      this.level,
+    );
+    const costs = make("details", { class: "costs" }, [make("summary", {}, ["What each level costs"]), this.table]);
+    this.element = make("div", {}, [this.row.element, this.cost, this.pace, costs]);
+  }
+
+  enter(greeting: GreetingInfo): void {
+    this.sceneName = greeting.sceneName;
+    this.level = greeting.fidelity;
+    this.speed = greeting.speed;
+    this.changeId = 0;
+    this.watch.forget();
+    this.showPace("");
+    // A scene that the server does not list cannot be loaded again at another level.
+    this.element.hidden = !greeting.scenes.includes(greeting.sceneName);
+    this.showTable();
+    this.show();
+  }
+
+  setSpeed(speed: number): void {
+    this.speed = speed;
+  }
+
+  set disabled(disabled: boolean) {
+    this.row.disabled = disabled;
+  }
+
+  diagnostics({ realTimeFactor }: DiagnosticsInfo, nowS: number): void {
+    const note = this.watch.note(realTimeFactor, this.speed, nowS);
+    const advice = this.level === kFidelities[0].name ? "" : " A coarser fidelity costs less.";
+    this.showPace(note && note + advice);
+  }
+
+  /** The greeting of the new water comes before its ack. */
+  ack(commandId: number): void {
+    if (commandId === this.changeId) this.show();
+  }
+
+  reject(commandId: number, message: string): void {
+    if (commandId !== this.changeId) return;
+    this.show();
+    setText(this.cost, message);
+  }
+
+  private show(): void {
+    this.row.value = this.level;
+    setText(this.cost, describeCost(this.sceneName, this.level));
+  }
+
+  private showTable(): void {
+    const rowOf = (tag: "th" | "td", cells: string[]) => make("tr", {}, cells.map((text) => make(tag, {}, [text])));
+    const rows = kFidelities.map(({ name }) => [name, ...Object.values(shortCost(this.sceneName, name))]);
+    this.table.replaceChildren(rowOf("th", ["level", "work per second", "error"]), ...rows.map((cells) => rowOf("td", cells)));
+  }
+
+  private showPace(text: string): void {
+    setText(this.pace, text);
+    this.pace.hidden = text === "";
+  }
+}

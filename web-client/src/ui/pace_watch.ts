@@ -1,0 +1,32 @@
+// Tells from the diagnostics whether the room's time runs slower than wanted. No DOM.
+
+/** As the server's warning: below this share of the wanted speed the machine does not keep up. */
+const kSlowPace = 0.9;
+/** A pace above this ends the note. */
+const kFullPace = 0.95;
+const kPatienceS = 3;
+
+export class PaceWatch {
+  private slowSinceS: number | undefined;
+  private fullSinceS: number | undefined;
+  private isSlow = false;
+
+  /** Returns the note to show, or an empty text. `realTimeFactor` is 0 while the room is paused or asleep. */
+  note(realTimeFactor: number, speed: number, nowS: number): string {
+    const pace = speed > 0 ? realTimeFactor / speed : 0;
+    if (!(pace > 0)) this.forget();
+    else {
+      this.slowSinceS = pace < kSlowPace ? (this.slowSinceS ?? nowS) : undefined;
+      this.fullSinceS = pace >= kFullPace ? (this.fullSinceS ?? nowS) : undefined;
+      if (this.slowSinceS !== undefined && nowS - this.slowSinceS >= kPatienceS) this.isSlow = true;
+      if (this.fullSinceS !== undefined && nowS - this.fullSinceS >= kPatienceS) this.isSlow = false;
+    }
+    return this.isSlow ? `Time runs at ${Math.round(100 * pace)} % of the wanted speed: the server's machine cannot keep up.` : "";
+  }
+
+  /** Other water: what was measured does not count. */
+  forget(): void {
+    this.slowSinceS = this.fullSinceS = undefined;
+    this.isSlow = false;
+  }
+}
