@@ -3,7 +3,18 @@ import { CouplingMode, type ParticleScene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
-import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
+import {
+  readBeaches,
+  readObstacles,
+  readSetting,
+  readWave,
+  readWind,
+  type BeachInfo,
+  type ObstacleInfo,
+  type SettingName,
+  type WaveInfo,
+  type WindInfo,
+} from "./scene_info";
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
@@ -51,8 +62,12 @@ export interface GreetingInfo {
   sceneName: string;
   title: string;
   description: string;
+  /** Where the water is. */
+  setting: SettingName;
   /** Undefined in a scene without a heightfield. */
   wave: WaveInfo | undefined;
+  /** Undefined in a scene without a storm. */
+  wind: WindInfo | undefined;
   /** Horizontal side of the water, metres. */
   sideM: number;
   /** Length of the water along z; differs from `sideM` in a narrow tank of particles. */
@@ -117,7 +132,9 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       sceneName: scene?.name ?? "",
       title: scene?.title || scene?.name || greeting.room,
       description: scene?.description ?? "",
+      setting: scene ? readSetting(scene) : "glassTank",
       wave,
+      wind: scene && readWind(scene),
       sideM,
       widthM: (!wave && scene?.particles?.boxWidthM) || sideM,
       waterExtents: wave ? { sideM, depthM: wave.depthM } : boxExtents(scene?.particles),
