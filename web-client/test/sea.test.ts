@@ -135,13 +135,15 @@ describe("the coast", () => {
   });
 
   it("is made of finite triangles, with land on the closed sides only", () => {
-    const geometry = makeCoastGeometry(coast, 24);
+    const geometry = makeCoastGeometry(coast, 24, true);
     const position = geometry.getAttribute("position");
     const normal = geometry.getAttribute("normal");
     for (let n = 0; n < position.count; ++n) {
       for (const value of [position.getX(n), position.getY(n), position.getZ(n), normal.getX(n), normal.getY(n), normal.getZ(n)]) expect(Number.isFinite(value)).toBe(true);
       if (position.getX(n) < 8.9 && position.getZ(n) < 15.9) expect(position.getY(n)).toBeLessThan(-1.1);
     }
+    const withoutBed = makeCoastGeometry(coast, 24, false);
+    expect(withoutBed.index!.count).toBeLessThan(0.8 * geometry.index!.count);
     geometry.dispose();
   });
 });

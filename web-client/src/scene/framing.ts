@@ -18,7 +18,7 @@ export interface ViewedBox {
   widthM?: number;
   /** Share of the box's sides that has to be seen in a wide and in a tall free part; 1 if left out. The rest may lie outside the picture. */
   focus?: { wide: number; tall: number };
-  /** Where in the box that part is, along x and z: from -1, at the one end, to 1, and outside beyond; in the middle if left out. */
+  /** Place of that part's middle in sides of the box, along x and z; the middle of the box if left out. */
   lean?: { x: number; z: number };
   /** Middle of the box if it is not the y axis. */
   centreM?: { x: number; z: number };
@@ -69,7 +69,7 @@ export function focusBox(box: ViewedBox, tangents: { across: number; up: number 
   const share = box.focus.wide + (box.focus.tall - box.focus.wide) * tallness(tangents);
   const widthM = box.widthM ?? box.sideM;
   const lean = box.lean ?? { x: 0, z: 0 };
-  const centreM = { x: 0.5 * (1 - share) * lean.x * box.sideM, z: 0.5 * (1 - share) * lean.z * widthM };
+  const centreM = { x: lean.x * box.sideM, z: lean.z * widthM };
   return { ...box, sideM: share * box.sideM, widthM: share * widthM, centreM };
 }
 

@@ -129,12 +129,13 @@ function bandsOf(coast: Coast, axis: "x" | "z", cellsCount: number, descending: 
   return descending ? bands.map(({ at, low, high }) => ({ at: [...at].reverse(), low: high, high: low })).reverse() : bands;
 }
 
-/** Returns the ground as coloured triangles. */
-export function makeCoastGeometry(coast: Coast, cellsCount: number): BufferGeometry {
+/** Returns the ground as coloured triangles. `hasFlatBed` false: without the bed at the scene's depth, for which the water has a colour. */
+export function makeCoastGeometry(coast: Coast, cellsCount: number, hasFlatBed: boolean): BufferGeometry {
   const { bed } = coast;
   const builder = new MeshBuilder();
   const reachM = (0.5 + kBedReachSides) * bed.sideM;
-  const isSeen = (points: readonly Point[]): boolean => points.some(([x, y, z]) => y > -0.6 * bed.depthM || (Math.abs(x) <= reachM && Math.abs(z) <= reachM));
+  const isNear = ([x, y, z]: Point): boolean => (hasFlatBed || y > -0.999 * bed.depthM) && Math.abs(x) <= reachM && Math.abs(z) <= reachM;
+  const isSeen = (points: readonly Point[]): boolean => points.some((point) => point[1] > -0.6 * bed.depthM || isNear(point));
   for (const zBand of bandsOf(coast, "z", cellsCount, true))
     for (const xBand of bandsOf(coast, "x", cellsCount, false)) {
       const pastQuay = [xBand, zBand].some(({ low, high }) => low || high);

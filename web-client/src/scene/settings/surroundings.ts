@@ -24,18 +24,18 @@ const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised">> = 
   openSea: { focus: { wide: 0.72, tall: 0.5 }, raised: { wide: 1, tall: 1.45 } },
   pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 } },
   glassTank: { focus: { wide: 0.8, tall: 0.62 }, raised: { wide: 1.1, tall: 1.6 } },
-  flume: { focus: { wide: 0.85, tall: 0.55 }, raised: { wide: 0.8, tall: 1.2 } },
+  flume: { focus: { wide: 0.85, tall: 0.75 }, raised: { wide: 0.8, tall: 1.2 } },
 };
 
-const kLeanFromLand = 1.7;
+/** How far away from land, in sides of the square, the middle of a view is. Views look along z, so land there hides more of the water. */
+const kLeanFromLand = { x: 0.04, z: 0.16 };
 
 /** Returns how a view frames the scene's water; in the open sea away from the land. */
 export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "lean"> {
   const view = kSettingViews[setting];
   if (setting !== "openSea" || !wave) return view;
-  // Some of the part may be the sea outside the square.
-  const closed = (side: SideName): number => (wave.sides[side] === "closed" ? kLeanFromLand : 0);
-  return { ...view, lean: { x: closed("-x") - closed("+x"), z: closed("-z") - closed("+z") } };
+  const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
+  return { ...view, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
 }
 
 export function hazeM(greeting: GreetingInfo): number {
@@ -65,7 +65,7 @@ export class Surroundings {
     if (setting === "openSea" && wave) {
       this.sea = new OpenSea(wave, wind, plain);
       this.edge = { kind: "sea", sea: this.sea.uniforms, sides: wave.sides, hazeM: hazeM(greeting) };
-      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount), obstacles, context.solid);
+      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid);
       this.solids.push(this.landscape.group);
       return;
     }

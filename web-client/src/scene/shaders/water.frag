@@ -42,6 +42,15 @@ layout(location = 0) out vec4 color;
 const vec3 kFarBed = vec3(0.19, 0.18, 0.14);  // light of the bed of coast.ts, on average
 const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
 
+// exp(-x) for x >= 0. Exponentials cost software renderers a third of the frame.
+vec3 fading(vec3 x) {
+#ifdef PLAIN
+  return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * 0.1667)));
+#else
+  return exp(-x);
+#endif
+}
+
 float viewZ(float depth) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
   return near * far / ((far - near) * depth - far);
@@ -100,6 +109,15 @@ vec3 mirroredLight(vec3 from, vec3 direction) {
     before_m = along_m;
   }
   return sky;
+}
+#elif defined(OPEN_SEA) && defined(PLAIN)
+// The colours of sky_bake.frag without their clouds: on ripples these cannot be made out, and a cube map is slow to read.
+vec3 mirroredLight(vec3 from, vec3 direction) {
+  vec3 sky = mix(vec3(0.24, 0.42, 0.70), vec3(0.12, 0.22, 0.44), smoothstep(0.12, 0.75, direction.y));
+  sky = mix(vec3(0.60, 0.73, 0.84), sky, smoothstep(-0.02, 0.20, direction.y));
+  float toward_sun = max(dot(direction, u_sun_direction), 0.0);
+  toward_sun *= toward_sun;
+  return sky + vec3(0.08, 0.06, 0.036) * toward_sun * toward_sun;
 }
 #else
 vec3 mirroredLight(vec3 from, vec3 direction) { return skyLight(direction); }
@@ -165,7 +183,8 @@ void main() {
   else behind_depth = shifted_depth;
 #endif
 #ifdef OPEN_SEA
-  // Outside the square the bed is drawn for a short way only, and has one colour beyond; far away it falls off.
+  // Outside the square the bed is drawn for a short way only, at low quality nowhere where it is level. Elsewhere it has one colour; far
+  // away it falls off.
   float undrawn = smoothstep(0.02, 0.35, v_share_away.y / u_side_m);
   float sunk = smoothstep(0.8, 5.0, length(v_world.xz) / u_side_m);
 #ifdef BEACH
@@ -173,7 +192,7 @@ void main() {
   undrawn *= floor_share * floor_share;
   sunk *= floor_share * floor_share;
 #endif
-  vec3 behind = undrawn < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, kFarBed, undrawn) : kFarBed;
+  vec3 behind = undrawn < 1.0 && behind_depth < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, kFarBed, undrawn) : kFarBed;
 #else
   const float sunk = 0.0;
   vec3 behind = texture(u_behind, shifted_uv).rgb;
@@ -181,13 +200,13 @@ void main() {
   float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
   float path_m = clamp(behind_m, 0.0, way_m) + 9.0 * sunk;
   // The light is absorbed twice: down to the object and up to the eye.
-  vec3 passed = exp(-kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
+  vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = mix(vec3(0.004, 0.085, 0.155), vec3(0.030, 0.34, 0.40), lifted) * 1.2;
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun;
   scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
-  vec3 under = behind * passed + scattered * (1.0 - exp(-0.55 * path_m));
+  vec3 under = behind * passed + scattered * (1.0 - fading(vec3(0.55 * path_m)).x);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
   // Schlick's fit of the Fresnel equations for water.
@@ -196,10 +215,11 @@ void main() {
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
   // A rough surface seen at a low angle shows more of its facing slopes (fit after Bruneton et al. 2010), and reflects higher sky.
-  float rough = sqrt(variance);
-  fresnel = mix(fresnel, fresnel / (1.0 + 22.7 * rough * sqrt(rough)), min(rough * 12.0, 1.0));
-  mirrored.y = abs(mirrored.y) + 1.6 * rough;
-  mirrored = normalize(mirrored);
+  if (variance > 1e-4) {
+    float rough = sqrt(variance);
+    fresnel = mix(fresnel, fresnel / (1.0 + 22.7 * rough * sqrt(rough)), min(rough * 12.0, 1.0));
+    mirrored = normalize(vec3(mirrored.x, abs(mirrored.y) + 1.6 * rough, mirrored.z));
+  }
 #endif
   fresnel *= edge;
 #ifdef SKIRT
@@ -207,7 +227,11 @@ void main() {
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
 #else
   mirrored.y = abs(mirrored.y);
+#if defined(OPEN_SEA) && defined(PLAIN)
+  vec3 water = mix(under, mirroredLight(v_world, mirrored), fresnel);
+#else
   vec3 water = mix(under, fresnel > 0.03 ? mirroredLight(v_world, mirrored) : skyLight(mirrored), fresnel);
+#endif
   float at_sun = dot(mirrored, u_sun_direction);
   if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
