@@ -39,7 +39,7 @@ uniform float u_lace_m;
 #endif
 layout(location = 0) out vec4 color;
 
-const vec3 kFarBed = vec3(0.19, 0.18, 0.14);  // light of the bed of coast.ts, on average
+const vec3 kFarBed = vec3(0.209, 0.198, 0.154);  // light of the level bed of coast.ts as solid.frag draws it, on average
 const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
 
 // exp(-x) for x >= 0. Exponentials cost software renderers a third of the frame.
@@ -182,6 +182,7 @@ void main() {
   if (shifted_depth < gl_FragCoord.z) shifted_uv = uv;
   else behind_depth = shifted_depth;
 #endif
+  float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
 #ifdef OPEN_SEA
   // Outside the square the bed is drawn for a short way only, at low quality nowhere where it is level. Elsewhere it has one colour; far
   // away it falls off.
@@ -191,13 +192,18 @@ void main() {
   float floor_share = bedDepth(v_world.xz, u_side_m, u_depth_m) / u_depth_m;
   undrawn *= floor_share * floor_share;
   sunk *= floor_share * floor_share;
+#ifdef PLAIN
+  // The mesh of the beach ends where the bed becomes level: fade its grain before, but not what stands on it.
+  vec3 hit = v_world + ray * behind_m;
+  float hit_depth_m = bedDepth(hit.xz, u_side_m, u_depth_m);
+  if (hit.y < 0.1 * u_depth_m - hit_depth_m) undrawn = max(undrawn, smoothstep(0.6, 0.95, hit_depth_m / u_depth_m));
+#endif
 #endif
   vec3 behind = undrawn < 1.0 && behind_depth < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, kFarBed, undrawn) : kFarBed;
 #else
   const float sunk = 0.0;
   vec3 behind = texture(u_behind, shifted_uv).rgb;
 #endif
-  float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
   float path_m = clamp(behind_m, 0.0, way_m) + 9.0 * sunk;
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
