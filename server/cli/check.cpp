@@ -10,6 +10,7 @@
 #include <spindrift/core/paths.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/setting.h>
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
@@ -100,9 +101,9 @@ void printStorm(const core::Scene& scene, const sim::Derived& derived) {
 }
 
 void print(const std::string& file, const v1::Scene& scene, const core::Scene& in, const sim::Derived& d) {
-  fmt::print("{}: fine\n  scene      {} ({}), {}\n  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", file,
-             scene.name(), scene.title(), scene::fidelityName(scene.fidelity()), d.tick_s * 1e3, d.substeps_count,
-             d.dt_s * 1e3);
+  fmt::print("{}: fine\n  scene      {} ({}), {}\n  setting    {}\n", file, scene.name(), scene.title(),
+             scene::fidelityName(scene.fidelity()), scene::settingName(scene.setting()));
+  fmt::print("  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", d.tick_s * 1e3, d.substeps_count, d.dt_s * 1e3);
   if (d.wave) {
     fmt::print(
         "  wave       {0} x {0} cells of {1:.3f} m, speed {2:.2f} m/s, {3} steps a tick, Courant number {4:.3f}\n",

@@ -2,6 +2,7 @@
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
+#include <spindrift/scene/setting.h>
 
 namespace spindrift::scene {
 namespace {
@@ -269,12 +270,15 @@ core::Boat toCore(const v1::Boat& boat) {
 void fillDefaults(v1::Scene& scene) {
   scene.mutable_stream();
   if (scene.seed() == 0) scene.set_seed(core::Scene{}.seed);
-  // The only enum whose default depends on another field.
+  // Enums whose defaults depend on other fields: absorption, and the setting below, which needs the numbers filled in.
   if (scene.has_wave() && scene.wave().absorption() == v1::ABSORPTION_UNSPECIFIED) {
     scene.mutable_wave()->set_absorption(scene.wave().dispersion() == v1::DISPERSION_AIRY ? v1::ABSORPTION_PML
                                                                                           : v1::ABSORPTION_SPONGE);
   }
+  const v1::Setting named = scene.setting();
   fillMessageDefaults(scene);
+  scene.set_setting(named);
+  scene.set_setting(settingOf(scene));
 }
 
 core::Scene toCore(const v1::Scene& scene) {

@@ -85,6 +85,11 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
               "PATCH_FOLLOW_BOAT needs boats; add \"boats {}\" or follow something else");
   }
   if (scene.has_wave()) return;
+  if (scene.setting() == v1::SETTING_OPEN_SEA) {
+    addAbsent(issues, "setting",
+              "SETTING_OPEN_SEA needs a wave; add \"wave {}\" or choose SETTING_POOL, SETTING_GLASS_TANK or "
+              "SETTING_FLUME");
+  }
   const auto needsWave = [&](const char* path, const std::string& part) {
     addAbsent(issues, path, "needs a wave; add \"wave {}\" or remove " + part);
   };

@@ -10,7 +10,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
-import { measure, shootWater } from "./pixels.mjs";
+import { brightnessAt, measure, shootWater } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
 const WAIT_MS = 60_000;
@@ -217,6 +217,50 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await acknowledged(page, () => fidelity.selectOption("balanced"));
     const after = await waitFor(page, "the surface of the scene's own level", (stats) => stats.surfaceResolutionCount === 144);
     assert.equal(after.malformedCount, 0);
+  });
+
+  step("draws the open sea without an edge at the sides of the simulated square", async () => {
+    const sea = await openPage("sea");
+    await waitFor(sea, "the waves to travel in", (stats) => stats.simTime > 8);
+    // From farther above, so that the sides are in the picture.
+    await sea.getByTestId("view-overview").click();
+    await sleep(3000);
+    await sea.mouse.move(300, 400);
+    for (let turn = 0; turn < 4; ++turn) await sea.mouse.wheel(0, 300);
+    await sleep(3000);
+    const kHalfM = 12;
+    const kApartM = 0.6;
+    // Pairs of points on both sides of lines parallel to the far and to the left side, at several distances from the middle.
+    const lines = [];
+    for (const axis of ["x", "z"])
+      for (const atM of [-7, -9, -kHalfM, -14, -16]) {
+        const pairs = [];
+        for (let alongM = -4; alongM <= 4; alongM += 0.25)
+          pairs.push([atM - kApartM / 2, atM + kApartM / 2].map((acrossM) => (axis === "x" ? [acrossM, alongM] : [alongM, acrossM])));
+        lines.push({ axis, atM, pairs });
+      }
+    // The mean over pictures leaves out the waves themselves.
+    const sums = lines.map(() => 0);
+    const kPictureCount = 4;
+    for (let picture = 0; picture < kPictureCount; ++picture) {
+      const points = await sea.evaluate((all) => all.map(([x, z]) => window.spindrift.pixelOf(x, z)), lines.flatMap(({ pairs }) => pairs.flat()));
+      const isWater = await sea.evaluate((all) => all.map(([x, y]) => document.elementFromPoint(x, y)?.tagName === "CANVAS"), points);
+      assert.ok(isWater.every(Boolean), "the sides are outside the picture or behind a panel");
+      const png = await sea.screenshot({ timeout: 2 * WAIT_MS });
+      const seen = await brightnessAt(sea, png, points);
+      let at = 0;
+      lines.forEach(({ pairs }, n) => {
+        for (let pair = 0; pair < pairs.length; ++pair, at += 2) sums[n] += (seen[at + 1] - seen[at]) / pairs.length / kPictureCount;
+      });
+      await sleep(500);
+    }
+    for (const axis of ["x", "z"]) {
+      const of = (isEdge) => lines.flatMap((line, n) => (line.axis === axis && (line.atM === -kHalfM) === isEdge ? [Math.abs(sums[n])] : []));
+      const [edge] = of(true);
+      const elsewhere = Math.max(...of(false));
+      assert.ok(edge <= elsewhere + 2, `brightness steps by ${edge.toFixed(1)} of 255 at the side -${axis}, by at most ${elsewhere.toFixed(1)} elsewhere`);
+    }
+    await sea.close();
   });
 
   step("owns a boat that others cannot take, and keeps it after a reload", async () => {

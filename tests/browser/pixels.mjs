@@ -44,3 +44,22 @@ export async function measure(page, png, other = png) {
     [png.toString("base64"), other.toString("base64")],
   );
 }
+
+/** Returns the brightness (0..255) of a PNG at points in pixels, each the mean of 3 x 3. */
+export async function brightnessAt(page, png, points) {
+  return page.evaluate(
+    async ([base64, places]) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+      context.drawImage(bitmap, 0, 0);
+      return places.map(([x, y]) => {
+        const { data } = context.getImageData(Math.round(x) - 1, Math.round(y) - 1, 3, 3);
+        let sum = 0;
+        for (let i = 0; i < data.length; i += 4) sum += 0.2126 * data[i] + 0.7152 * data[i + 1] + 0.0722 * data[i + 2];
+        return sum / 9;
+      });
+    },
+    [png.toString("base64"), points],
+  );
+}

@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { frameBox, freeTangents, type PixelRect, type ViewedBox } from "../src/scene/framing";
+import { focusBox, frameBox, freeTangents, raisedBy, type PixelRect, type ViewedBox } from "../src/scene/framing";
 
 const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
 const waters: ViewedBox[] = [
@@ -65,12 +65,47 @@ describe("a view of the water", () => {
     expect(far.positionM.distanceTo(near.positionM.multiplyScalar(2))).toBeCloseTo(0, 9);
   });
 
-  it("is centred on the ground where there is land on one side", () => {
+  it("is centred on the box where that is not in the middle of the water", () => {
     const tangents = freeTangents(47, 800, 1280, screens[0]!.free);
     const water = { sideM: 40, minYM: -3, maxYM: 2 };
     const square = frameBox(water, backwards[0]!, tangents);
-    const moved = frameBox({ ...water, ground: { minXM: -10, maxXM: 30, minZM: -25, maxZM: 15 } }, backwards[0]!, tangents);
+    const moved = frameBox({ ...water, centreM: { x: 10, z: -5 } }, backwards[0]!, tangents);
     expect(moved.positionM.sub(square.positionM).distanceTo(new Vector3(10, 0, -5))).toBeCloseTo(0, 9);
+  });
+
+  it("shows the whole water without a focus, and a smaller part of it the taller the free part is, round the place that it leans to", () => {
+    const water = { sideM: 40, minYM: -3, maxYM: 2 };
+    expect(focusBox(water, { across: 0.2, up: 0.4 })).toEqual(water);
+    const focused = { ...water, focus: { wide: 0.8, tall: 0.5 }, lean: { x: -0.1, z: 0 } };
+    let before = 1;
+    for (const ratio of [2, 1.1, 0.9, 0.7, 0.5]) {
+      const { sideM, centreM } = focusBox(focused, { across: ratio, up: 1 });
+      expect(sideM / 40).toBeLessThanOrEqual(before);
+      expect(centreM).toEqual({ x: -4, z: 0 });
+      before = sideM / 40;
+    }
+    expect(focusBox(focused, { across: 2, up: 1 }).sideM).toBeCloseTo(32, 9);
+    expect(before).toBeCloseTo(0.5, 9);
+  });
+
+  it("comes nearer to an open sea than to a square that has to be seen whole, on a desktop and on a phone", () => {
+    for (const screen of [screens[0]!, { widthPx: 390, heightPx: 844, free: { leftPx: 0, topPx: 90, rightPx: 390, bottomPx: 844 } }]) {
+      const tangents = freeTangents(47, screen.heightPx, screen.widthPx, screen.free);
+      const square = { sideM: 32, minYM: -1.2, maxYM: 1.3 };
+      const distanceM = (box: ViewedBox): number => {
+        const { positionM, targetM } = frameBox(focusBox(box, tangents), backwards[0]!, tangents);
+        return positionM.distanceTo(targetM);
+      };
+      const share = distanceM({ ...square, focus: { wide: 0.72, tall: 0.5 } }) / distanceM(square);
+      expect(share).toBeLessThan(screen.widthPx > 1000 ? 0.76 : 0.56);
+    }
+  });
+
+  it("looks down more steeply in a tall free part", () => {
+    const box = { sideM: 10, minYM: 0, maxYM: 1, raised: { wide: 1, tall: 2 } };
+    expect(raisedBy(box, { across: 2, up: 1 })).toBe(1);
+    expect(raisedBy(box, { across: 0.5, up: 1 })).toBe(2);
+    expect(raisedBy(box, { across: 0.9, up: 1 })).toBeCloseTo(1.5, 9);
   });
 
   it("keeps a finite distance where the panels leave no free part", () => {

@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +33,37 @@ core::Scene openSea() {
 
 SeaState seaOf(const core::Scene& scene) {
   return seaState(scene, *derive(scene)->wave);
+}
+
+// The page continues the sea outside the water with the same waves. web-client/test/sea.test.ts compares its own with
+// the same file. SPINDRIFT_UPDATE_GOLDEN=1 writes it again.
+TEST(SeaState, IsTheOneThatThePageDrawsOutside) {
+  const auto file = std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "tests" / "golden" / "sea_waves.txt";
+  core::Scene scene = openSea();
+  scene.seed = 7;
+  const SeaState sea = seaOf(scene);
+  const char* update = std::getenv("SPINDRIFT_UPDATE_GOLDEN");
+  if (update != nullptr && std::string(update) == "1") {
+    std::ofstream out(file);
+    out.precision(17);
+    for (const PlaneWave& wave : sea.waves)
+      out << wave.amplitude_m << ' ' << wave.omega_radps << ' ' << wave.kx_radpm << ' ' << wave.kz_radpm << ' '
+          << wave.phase_rad << '\n';
+    GTEST_SKIP() << "wrote " << file;
+  }
+  std::ifstream in(file);
+  std::size_t count = 0;
+  PlaneWave kept;
+  for (; in >> kept.amplitude_m >> kept.omega_radps >> kept.kx_radpm >> kept.kz_radpm >> kept.phase_rad; ++count) {
+    ASSERT_LT(count, sea.waves.size());
+    const PlaneWave& wave = sea.waves[count];
+    EXPECT_NEAR(wave.amplitude_m, kept.amplitude_m, 1e-9);
+    EXPECT_NEAR(wave.omega_radps, kept.omega_radps, 1e-9);
+    EXPECT_NEAR(wave.kx_radpm, kept.kx_radpm, 1e-9);
+    EXPECT_NEAR(wave.kz_radpm, kept.kz_radpm, 1e-9);
+    EXPECT_NEAR(wave.phase_rad, kept.phase_rad, 1e-9);
+  }
+  EXPECT_EQ(count, sea.waves.size()) << file;
 }
 
 TEST(WaveNumber, SolvesAirysRelationFromShallowToDeepWater) {

@@ -123,7 +123,10 @@ export class App {
         for (const listener of this.answerListeners) listener.reject(commandId, message, reason);
         this.toast.show(`${this.commands.takeLabel(commandId)}: ${message}`, "bad");
       },
-      parameterChanged: ({ path, value }) => this.parameters.setServerValue(path, value),
+      parameterChanged: ({ path, value }) => {
+        this.parameters.setServerValue(path, value);
+        this.display.scene.setParameter(path, value);
+      },
       roomState: ({ paused, speed }) => this.room.roomState(paused, speed),
       people: ({ people }) => {
         this.people.setPeople(people);

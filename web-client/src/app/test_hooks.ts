@@ -1,11 +1,21 @@
 // window.spindrift: measured values of the running page, read-only, for tests and the browser's console.
+import { Vector3 } from "three";
+
 import { kLayerNames, type LayerName } from "../codec/layers";
 import { elevationRangeM } from "../scene/height_field";
 import { describeState } from "../ui/hud";
 import type { App } from "./app";
 
 export function installTestHooks(app: App): void {
-  Object.defineProperty(window, "spindrift", { value: Object.freeze({ stats: () => stats(app) }) });
+  Object.defineProperty(window, "spindrift", { value: Object.freeze({ stats: () => stats(app), pixelOf: (xM: number, zM: number) => pixelOf(app, xM, zM) }) });
+}
+
+/** Returns where a point of the still water is on the page, in CSS pixels from the top left corner. */
+function pixelOf(app: App, xM: number, zM: number): [number, number] {
+  const { camera } = app.display.scene;
+  const { left, top, width, height } = app.display.canvas.getBoundingClientRect();
+  const { x, y } = new Vector3(xM, 0, zM).project(camera);
+  return [left + ((x + 1) / 2) * width, top + ((1 - y) / 2) * height];
 }
 
 function stats(app: App) {

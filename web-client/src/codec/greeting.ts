@@ -4,7 +4,18 @@ import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
 import { fidelityName, type FidelityName } from "./fidelity";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
-import { readBeaches, readObstacles, readWave, type BeachInfo, type ObstacleInfo, type WaveInfo } from "./scene_info";
+import {
+  readBeaches,
+  readObstacles,
+  readSetting,
+  readWave,
+  readWind,
+  type BeachInfo,
+  type ObstacleInfo,
+  type SettingName,
+  type WaveInfo,
+  type WindInfo,
+} from "./scene_info";
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
@@ -54,8 +65,12 @@ export interface GreetingInfo {
   description: string;
   /** Level at which the server simulates the scene. */
   fidelity: FidelityName;
+  /** Where the water is. */
+  setting: SettingName;
   /** Undefined in a scene without a heightfield. */
   wave: WaveInfo | undefined;
+  /** Undefined in a scene without a storm. */
+  wind: WindInfo | undefined;
   /** Horizontal side of the water, metres. */
   sideM: number;
   /** Length of the water along z; differs from `sideM` in a narrow tank of particles. */
@@ -121,7 +136,9 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       title: scene?.title || scene?.name || greeting.room,
       description: scene?.description ?? "",
       fidelity: fidelityName(scene?.fidelity),
+      setting: scene ? readSetting(scene) : "glassTank",
       wave,
+      wind: scene && readWind(scene),
       sideM,
       widthM: (!wave && scene?.particles?.boxWidthM) || sideM,
       waterExtents: wave ? { sideM, depthM: wave.depthM } : boxExtents(scene?.particles),

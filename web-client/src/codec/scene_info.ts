@@ -1,8 +1,13 @@
-// The solid parts of a scene: rocks, breakwaters and beaches, as plain, finite numbers.
-import { Side, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
+// What the page draws of a scene besides its water: setting, sides, wind sea, rocks, breakwaters and beaches, as plain, finite numbers.
+import { Dispersion, Setting, Side, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
 
 /** More than the server allows; the rest is not drawn. */
 const kMaxObstacleCount = 256;
+
+export type SettingName = "openSea" | "pool" | "glassTank" | "flume";
+export type SideName = "+x" | "-x" | "+z" | "-z";
+/** What waves do at a side: come in again opposite, stay inside, or leave. */
+export type SideKind = "periodic" | "closed" | "open";
 
 export interface WaveInfo {
   resolutionCount: number;
@@ -10,6 +15,23 @@ export interface WaveInfo {
   depthM: number;
   periodicX: boolean;
   periodicZ: boolean;
+  sides: Record<SideName, SideKind>;
+  /** Width of the layer along open sides in which waves are absorbed. */
+  spongeWidthM: number;
+  dampingPerS: number;
+}
+
+/** What the sea that wind raises follows from, as in the server (docs/wind_sea.md). */
+export interface WindInfo {
+  seed: bigint;
+  gravityMps2: number;
+  /** The water has dispersion and an open side, so that the wind's waves come in through the open sides; elsewhere gusts raise single crests. */
+  comesIn: boolean;
+  levelRatio: number;
+  waveHeightM: number;
+  directionDeg: number;
+  speedMps: number;
+  fetchM: number;
 }
 
 /** `heightM` above the still water, `radiusM` at its level. */
@@ -33,7 +55,6 @@ export interface BreakwaterInfo {
 }
 
 export type ObstacleInfo = RockInfo | BreakwaterInfo;
-export type SideName = "+x" | "-x" | "+z" | "-z";
 
 export interface BeachInfo {
   side: SideName;
@@ -41,15 +62,64 @@ export interface BeachInfo {
   shoreDepthM: number;
 }
 
+function sideKind(boundary: WaveBoundary): SideKind {
+  return boundary === WaveBoundary.ABSORB ? "open" : boundary === WaveBoundary.REFLECT ? "closed" : "periodic";
+}
+
 export function readWave(wave: WaveScene): WaveInfo {
-  const open = [WaveBoundary.REFLECT, WaveBoundary.ABSORB];
+  const sides = {
+    "+x": sideKind(wave.boundaryPlusX),
+    "-x": sideKind(wave.boundaryMinusX),
+    "+z": sideKind(wave.boundaryPlusZ),
+    "-z": sideKind(wave.boundaryMinusZ),
+  };
+  const spongeWidthM = wave.spongeWidthM ?? 0;
+  const dampingPerS = wave.dampingPerS ?? 0;
   return {
     resolutionCount: wave.resolutionCount ?? 0,
     sideM: wave.sideM ?? 0,
     depthM: wave.depthM ?? 0,
-    periodicX: !open.includes(wave.boundaryMinusX) && !open.includes(wave.boundaryPlusX),
-    periodicZ: !open.includes(wave.boundaryMinusZ) && !open.includes(wave.boundaryPlusZ),
+    periodicX: sides["+x"] === "periodic" && sides["-x"] === "periodic",
+    periodicZ: sides["+z"] === "periodic" && sides["-z"] === "periodic",
+    sides,
+    spongeWidthM: isSize(spongeWidthM) ? spongeWidthM : 0,
+    dampingPerS: Number.isFinite(dampingPerS) ? Math.max(dampingPerS, 0) : 0,
   };
+}
+
+const kSettings: Partial<Record<Setting, SettingName>> = {
+  [Setting.OPEN_SEA]: "openSea",
+  [Setting.POOL]: "pool",
+  [Setting.GLASS_TANK]: "glassTank",
+  [Setting.FLUME]: "flume",
+};
+
+/** Returns the scene's setting. A server that names none, or one that this page does not know, gets a simple one for its parts. */
+export function readSetting(scene: Scene): SettingName {
+  const wave = scene.wave && readWave(scene.wave);
+  const named = kSettings[scene.setting];
+  if (named && (wave || named !== "openSea")) return named;
+  if (!wave) return "glassTank";
+  return Object.values(wave.sides).every((kind) => kind === "closed") ? "pool" : "openSea";
+}
+
+/** Returns the wind of a scene with a storm; undefined without one, or with numbers that cannot be drawn. */
+export function readWind(scene: Scene): WindInfo | undefined {
+  const { storm, wave } = scene;
+  if (!storm || !wave) return undefined;
+  const { levelRatio = 0, waveHeightM = 0, windDirectionDeg = 0, windSpeedMps = 0, fetchM = 0 } = storm;
+  const read: WindInfo = {
+    seed: scene.seed,
+    gravityMps2: scene.gravityMps2 ?? 0,
+    comesIn: wave.dispersion === Dispersion.AIRY && Object.values(readWave(wave).sides).includes("open"),
+    levelRatio,
+    waveHeightM,
+    directionDeg: windDirectionDeg,
+    speedMps: windSpeedMps,
+    fetchM,
+  };
+  const isDrawable = [read.gravityMps2, levelRatio, waveHeightM, windSpeedMps, fetchM].every((value) => value >= 0 && value <= 1e7);
+  return isDrawable && isPlace(windDirectionDeg) ? read : undefined;
 }
 
 const isSize = (value: number): boolean => value > 0 && value <= 1e6;

@@ -3,7 +3,7 @@ import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { wrapAngle } from "./bodies";
-import { frameBox, freeTangents, type PixelRect, type Placement, type ViewedBox } from "./framing";
+import { focusBox, frameBox, freeTangents, raisedBy, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
 export type ViewName = "above" | "side" | "boat" | "overview";
 type FixedView = Exclude<ViewName, "boat">;
@@ -14,9 +14,6 @@ const kBackward: Record<FixedView, Vector3> = {
   side: new Vector3(0.20, 0.13, 1.30),
   overview: new Vector3(-0.30, 1.25, 0.80),
 };
-/** A free part narrower than kWideTangents heights raises the view from above, at most by the factor kMostRaised. */
-const kWideTangents = 1.3;
-const kMostRaised = 2.6;
 const kTravelS = 0.9;
 /** The boat's view: distance behind and above in boat lengths, and the rates at which it follows position, heading and camera position. */
 const kBehindLengths = 2.5;
@@ -185,9 +182,8 @@ export class CameraViews {
     const { extent, camera } = this;
     const tangents = freeTangents(camera.fov, this.heightPx, this.widthPx, this.free);
     const backward = kBackward[name].clone();
-    // In a tall free part a higher camera fills more of it.
-    if (name === "above") backward.y *= Math.min(Math.max((kWideTangents * tangents.up) / tangents.across, 1), kMostRaised);
-    const placement = frameBox(extent, backward, tangents);
+    if (name === "above") backward.y *= raisedBy(extent, tangents);
+    const placement = frameBox(focusBox(extent, tangents), backward, tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);
     this.controls.minDistance = 0.25 * extent.sideM;
     this.controls.maxDistance = Math.max(4 * extent.sideM, 1.5 * distanceM);

@@ -14,8 +14,16 @@ export interface ViewedBox {
   sideM: number;
   minYM: number;
   maxYM: number;
-  /** Set if the land behind shores must be seen as well as the square. */
-  ground?: { minXM: number; maxXM: number; minZM: number; maxZM: number };
+  /** Length along z where it differs. */
+  widthM?: number;
+  /** Share of the box's sides that has to be seen in a wide and in a tall free part; 1 if left out. The rest may lie outside the picture. */
+  focus?: { wide: number; tall: number };
+  /** Place of that part's middle in sides of the box, along x and z; the middle of the box if left out. */
+  lean?: { x: number; z: number };
+  /** Middle of the box if it is not the y axis. */
+  centreM?: { x: number; z: number };
+  /** How much higher than usual the view from above looks down in a wide and in a tall free part; the framing's own limits if left out. */
+  raised?: { wide: number; tall: number };
 }
 
 export interface Placement {
@@ -37,6 +45,32 @@ export function freeTangents(fovDegrees: number, heightPx: number, widthPx: numb
     across: perPx * share * Math.max(free.rightPx - free.leftPx, kMinFreeShare * widthPx),
     up: perPx * share * Math.max(free.bottomPx - free.topPx, kMinFreeShare * heightPx),
   };
+}
+
+/** A free part is wide above the first ratio of width to height, and tall below the second. */
+const kWideRatio = 1.2;
+const kTallRatio = 0.6;
+const kRaised = { wide: 1, tall: 2.2 };
+
+/** Returns 0 for a wide free part and 1 for a tall one. */
+function tallness(tangents: { across: number; up: number }): number {
+  return Math.min(Math.max((kWideRatio - tangents.across / tangents.up) / (kWideRatio - kTallRatio), 0), 1);
+}
+
+/** Returns the factor by which a view from above is raised in a free part of this shape: a higher camera fills more of a tall one. */
+export function raisedBy(box: ViewedBox, tangents: { across: number; up: number }): number {
+  const { wide, tall } = box.raised ?? kRaised;
+  return wide + (tall - wide) * tallness(tangents);
+}
+
+/** Returns the part of the box that has to be seen in a free part of this shape. */
+export function focusBox(box: ViewedBox, tangents: { across: number; up: number }): ViewedBox {
+  if (!box.focus) return box;
+  const share = box.focus.wide + (box.focus.tall - box.focus.wide) * tallness(tangents);
+  const widthM = box.widthM ?? box.sideM;
+  const lean = box.lean ?? { x: 0, z: 0 };
+  const centreM = { x: lean.x * box.sideM, z: lean.z * widthM };
+  return { ...box, sideM: share * box.sideM, widthM: share * widthM, centreM };
 }
 
 /** Corners along one axis of the picture, in the camera's axes: sideways and toward the camera. */
@@ -72,15 +106,15 @@ export function frameBox(extent: ViewedBox, backward: Vector3, tangents: { acros
   const back = backward.clone().normalize();
   const right = new Vector3(0, 1, 0).cross(back).normalize();
   const up = back.clone().cross(right);
-  const half = extent.sideM / 2;
-  const { minXM, maxXM, minZM, maxZM } = extent.ground ?? { minXM: -half, maxXM: half, minZM: -half, maxZM: half };
-  const middleM = new Vector3((minXM + maxXM) / 2, (extent.minYM + extent.maxYM) / 2, (minZM + maxZM) / 2);
+  const halfX = extent.sideM / 2;
+  const halfZ = (extent.widthM ?? extent.sideM) / 2;
+  const middleM = new Vector3(extent.centreM?.x ?? 0, (extent.minYM + extent.maxYM) / 2, extent.centreM?.z ?? 0);
   const across: AxisCorners = [];
   const upward: AxisCorners = [];
-  for (const x of [minXM, maxXM])
+  for (const x of [-halfX, halfX])
     for (const y of [extent.minYM, extent.maxYM])
-      for (const z of [minZM, maxZM]) {
-        const corner = new Vector3(x, y, z).sub(middleM);
+      for (const z of [-halfZ, halfZ]) {
+        const corner = new Vector3(x, y - middleM.y, z);
         across.push([corner.dot(right), corner.dot(back)]);
         upward.push([corner.dot(up), corner.dot(back)]);
       }

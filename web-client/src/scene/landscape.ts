@@ -10,7 +10,7 @@ const kDrySand: Paint = [0.66, 0.53, 0.36, 0.7];
 const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
-export const kFloorDropSides = 0.002;
+const kFloorDropSides = 0.002;
 
 /** Returns the bed as a grid with vertical faces on all sides, down to the floor. */
 export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry {
@@ -36,9 +36,9 @@ export class Landscape {
   readonly group = new Group();
   private readonly geometries: BufferGeometry[] = [];
 
-  /** `material` is shared; the caller disposes it. */
-  constructor(bed: Bed, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, cellsCount: number) {
-    this.add(makeGroundGeometry(bed, cellsCount), material);
+  /** Takes ownership of `ground`. `material` is shared; the caller disposes it. */
+  constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial) {
+    this.add(ground, material);
     for (const obstacle of obstacles) {
       // Down to the bed at the obstacle's middle, and deeper by a quarter of the depth for a sloping bed.
       const depthM = Math.min(depthAtM(bed, obstacle.xM, obstacle.zM) + 0.25 * bed.depthM, bed.depthM);

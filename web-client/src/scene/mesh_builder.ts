@@ -10,8 +10,11 @@ export class MeshBuilder {
   private readonly colors: number[] = [];
   private readonly index: number[] = [];
 
-  /** Adds a grid of points, smooth inside and sharp at its edges. Seen from outside, rows go up and columns go right. */
-  grid(rows: readonly (readonly Point[])[], paint: Paint | ((row: number, column: number) => Paint)): this {
+  /**
+   * Adds a grid of points, smooth inside and sharp at its edges. Seen from outside, rows go up and columns go right. `keeps`: leaves out
+   * the cells for whose corners it returns false.
+   */
+  grid(rows: readonly (readonly Point[])[], paint: Paint | ((row: number, column: number) => Paint), keeps?: (corners: readonly Point[]) => boolean): this {
     const first = this.positions.length / 3;
     const columnsCount = rows[0]!.length;
     rows.forEach((row, r) =>
@@ -22,6 +25,7 @@ export class MeshBuilder {
     );
     for (let r = 0; r + 1 < rows.length; ++r)
       for (let c = 0; c + 1 < columnsCount; ++c) {
+        if (keeps && !keeps([rows[r]![c]!, rows[r]![c + 1]!, rows[r + 1]![c]!, rows[r + 1]![c + 1]!])) continue;
         const low = first + r * columnsCount + c;
         const high = low + columnsCount;
         this.index.push(low, low + 1, high, high, low + 1, high + 1);

@@ -6,13 +6,15 @@ import cellHash from "./shaders/cell_hash.glsl?raw";
 import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
-import groundFrag from "./shaders/ground.frag?raw";
-import groundVert from "./shaders/ground.vert?raw";
+import glassFrag from "./shaders/glass.frag?raw";
 import particleColor from "./shaders/particle_color.glsl?raw";
 import particleFrag from "./shaders/particle.frag?raw";
 import particlePlainFrag from "./shaders/particle_plain.frag?raw";
 import particleVert from "./shaders/particle.vert?raw";
 import presentFrag from "./shaders/present.frag?raw";
+import roomBakeFrag from "./shaders/room_bake.frag?raw";
+import seaBlend from "./shaders/sea_blend.glsl?raw";
+import seaTileFrag from "./shaders/sea_tile.frag?raw";
 import sky from "./shaders/sky.glsl?raw";
 import skyBakeFrag from "./shaders/sky_bake.frag?raw";
 import skyBakeVert from "./shaders/sky_bake.vert?raw";
@@ -20,26 +22,30 @@ import skyDomeFrag from "./shaders/sky_dome.frag?raw";
 import skyDomeVert from "./shaders/sky_dome.vert?raw";
 import solidFrag from "./shaders/solid.frag?raw";
 import solidVert from "./shaders/solid.vert?raw";
+import tilesFrag from "./shaders/tiles.frag?raw";
 import waterFrag from "./shaders/water.frag?raw";
 import waterVert from "./shaders/water.vert?raw";
 
 const kPrograms = {
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
-  ground: [groundVert, groundFrag],
+  glass: [solidVert, glassFrag],
   particle: [particleVert, particleFrag],
   particlePlain: [particleVert, particlePlainFrag],
   present: [fullscreenVert, presentFrag],
+  roomBake: [skyBakeVert, roomBakeFrag],
+  seaTile: [fullscreenVert, seaTileFrag],
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
   solid: [solidVert, solidFrag],
+  tiles: [solidVert, tilesFrag],
   water: [waterVert, waterFrag],
 } as const;
 
 // Samplers default to low precision in GLSL ES, which would round elevations on phones.
 const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].map((t) => `precision highp ${t};\n`).join("");
 
-const kShared: Record<string, string> = { sky, bed, cell_hash: cellHash, particle_color: particleColor };
+const kShared: Record<string, string> = { sky, bed, cell_hash: cellHash, particle_color: particleColor, sea_blend: seaBlend };
 
 function expand(source: string): string {
   return kPrecision + source.replace(/#include <(\w+)>/g, (_, name: string) => kShared[name]!);

@@ -1,4 +1,4 @@
-// The sky: baked once into a cube map that the dome, the water's reflection and the particles' gloss read.
+// The sky, or a room: baked once into a cube map that the dome, the water's reflection and the particles' gloss read.
 import {
   BackSide,
   BoxGeometry,
@@ -19,6 +19,8 @@ import { makeFullscreenGeometry } from "./fullscreen";
 import { makeMaterial, type Uniforms } from "./shaders";
 
 const kFaceCount = 512;
+/** Height of the lowest direction in which the sky is seen over a horizon of land or sea. */
+const kLowestShown = -0.03;
 
 export class Sky {
   /** Unit vector toward the sun. */
@@ -42,6 +44,8 @@ export class Sky {
       ...this.uniforms,
       u_inverse_projection: { value: new Matrix4() },
       u_camera_world: { value: new Matrix4() },
+      u_has_sun: { value: true },
+      u_lowest: { value: -1 },
     };
     this.dome = new Mesh(makeFullscreenGeometry(), makeMaterial("skyDome", this.domeUniforms, { depthWrite: false }));
     this.dome.frustumCulled = false;
@@ -49,15 +53,21 @@ export class Sky {
     this.dome.renderOrder = 10;
   }
 
-  /** Draws the cube map; needed again after the WebGL context was restored. */
-  bake(renderer: WebGLRenderer): void {
-    const material = makeMaterial("skyBake", { u_sun_direction: { value: this.sunDirection } }, { side: BackSide });
+  /** Draws the cube map of the open sky or of a room; needed again after the WebGL context was restored. */
+  bake(renderer: WebGLRenderer, indoors: boolean): void {
+    (this.domeUniforms["u_has_sun"]!).value = !indoors;
+    const material = makeMaterial(indoors ? "roomBake" : "skyBake", { u_sun_direction: { value: this.sunDirection } }, { side: BackSide });
     const box = new Mesh(new BoxGeometry(2, 2, 2), material);
     const scene = new Scene();
     scene.add(box);
     new CubeCamera(0.1, 10, this.cube).update(renderer, scene);
     box.geometry.dispose();
     material.dispose();
+  }
+
+  /** `hasHorizon`: something hides the lower half of the dome, so that it need not be shaded. */
+  hideBelowHorizon(hasHorizon: boolean): void {
+    this.domeUniforms["u_lowest"]!.value = hasHorizon ? kLowestShown : -1;
   }
 
   follow(camera: PerspectiveCamera): void {

@@ -20,7 +20,7 @@ export function bedOf(greeting: Pick<GreetingInfo, "sideM" | "waterExtents" | "b
 }
 
 /** Returns the distance from the side to a point inside the water; negative outside. */
-function insideM(side: SideName, sideM: number, xM: number, zM: number): number {
+export function insideM(side: SideName, sideM: number, xM: number, zM: number): number {
   const along = side[1] === "x" ? xM : zM;
   return sideM / 2 - (side[0] === "+" ? along : -along);
 }

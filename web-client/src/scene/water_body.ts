@@ -1,6 +1,8 @@
-// The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor.
+// The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
+// goes on to the horizon and has no sides.
 import { BufferAttribute, BufferGeometry, DoubleSide, FrontSide, Group, Mesh, Vector2, Vector3, Vector4, type RawShaderMaterial, type Texture } from "three";
 
+import type { SideKind, SideName } from "../codec/scene_info";
 import { makeMaterial, type Uniforms } from "./shaders";
 import type { Sky } from "./sky";
 import { bedUniformValues, type Bed } from "./terrain";
@@ -10,23 +12,45 @@ export interface BehindTextures {
   depth: Texture;
 }
 
-/** Unit grid, x and z in -1/2..1/2, `cellsCount` cells per side, y = 1 ("on the surface" for the shader). */
-function makeGrid(cellsCount: number): BufferGeometry {
-  const pointsCount = cellsCount + 1;
-  const positions = new Float32Array(pointsCount * pointsCount * 3);
+/** The grid of an open sea reaches this many sides of the square, past the horizon's last pixel. */
+const kSeaReachSides = 300;
+/** Its cells outside the square become larger by this factor, first slowly, for the waves near the square. */
+const kNearGrowth = 1.2;
+const kNearCount = 6;
+const kFarGrowth = 2.2;
+
+/**
+ * Returns the places of the grid's lines along one axis: `cellsCount` equal cells over -1/2..1/2, and beyond the ends that are open
+ * cells that grow toward the horizon.
+ */
+export function gridLines(cellsCount: number, openBelow: boolean, openAbove: boolean): number[] {
+  const inside = Array.from({ length: cellsCount + 1 }, (_, i) => i / cellsCount - 0.5);
+  const outside: number[] = [];
+  let step = 1 / cellsCount;
+  for (let at = 0.5, n = 0; at < kSeaReachSides; ++n) {
+    step *= n < kNearCount ? kNearGrowth : kFarGrowth;
+    at += step;
+    outside.push(at);
+  }
+  return [...(openBelow ? outside.map((at) => -at).reverse() : []), ...inside, ...(openAbove ? outside : [])];
+}
+
+/** Grid of the given lines; y = 1 ("on the surface" for the shader). */
+function makeGrid(xs: readonly number[], zs: readonly number[]): BufferGeometry {
+  const positions = new Float32Array(xs.length * zs.length * 3);
   let at = 0;
-  for (let k = 0; k < pointsCount; ++k)
-    for (let i = 0; i < pointsCount; ++i) {
-      positions[at++] = i / cellsCount - 0.5;
+  for (const z of zs)
+    for (const x of xs) {
+      positions[at++] = x;
       positions[at++] = 1;
-      positions[at++] = k / cellsCount - 0.5;
+      positions[at++] = z;
     }
-  const index = new Uint32Array(cellsCount * cellsCount * 6);
+  const index = new Uint32Array((xs.length - 1) * (zs.length - 1) * 6);
   at = 0;
-  for (let k = 0; k < cellsCount; ++k)
-    for (let i = 0; i < cellsCount; ++i) {
-      const corner = k * pointsCount + i;
-      for (const vertex of [corner, corner + pointsCount, corner + 1, corner + 1, corner + pointsCount, corner + pointsCount + 1])
+  for (let k = 0; k + 1 < zs.length; ++k)
+    for (let i = 0; i + 1 < xs.length; ++i) {
+      const corner = k * xs.length + i;
+      for (const vertex of [corner, corner + xs.length, corner + 1, corner + 1, corner + xs.length, corner + xs.length + 1])
         index[at++] = vertex;
     }
   const geometry = new BufferGeometry();
@@ -61,13 +85,22 @@ function makeSkirt(cellsCount: number): BufferGeometry {
   return geometry;
 }
 
+/** What bounds the water at its sides. */
+export type WaterEdge =
+  /** It goes on as a sea, except at closed sides. */
+  | { kind: "sea"; sea: Uniforms; sides: Readonly<Record<SideName, SideKind>>; hazeM: number }
+  /** Its sides are seen: a block of water, or water behind glass. */
+  | { kind: "cut" }
+  /** Walls, which others draw. */
+  | { kind: "walls" };
+
 export class WaterBody {
   readonly group = new Group();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
   /** `foam` undefined: the room sends none. `hasSolids`: the water reflects solids as well as the sky. */
-  constructor(sky: Sky, field: Texture, behind: BehindTextures, bed: Bed, noise: Texture, foam: Uniforms | undefined, hasSolids: boolean, quality: { surfaceCellsCount: number; plain: boolean }) {
+  constructor(sky: Sky, field: Texture, behind: BehindTextures, bed: Bed, noise: Texture, foam: Uniforms | undefined, hasSolids: boolean, edge: WaterEdge, quality: { surfaceCellsCount: number; plain: boolean }) {
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
     this.uniforms = {
@@ -85,6 +118,7 @@ export class WaterBody {
       u_noise: { value: noise },
       u_lace_m: { value: Math.min(Math.max(sideM / 7, 1), 9) },
       ...foam,
+      ...(edge.kind === "sea" && { ...edge.sea, u_haze_m: { value: edge.hazeM } }),
     };
     const cellsCount = quality.surfaceCellsCount;
     const defines: Record<string, number> = {};
@@ -92,10 +126,13 @@ export class WaterBody {
     if (beaches.length > 0) defines["BEACH"] = 1;
     if (foam) defines["FOAM"] = 1;
     if (hasSolids) defines["MIRROR"] = 1;
-    this.meshes = [
-      new Mesh(makeGrid(cellsCount), makeMaterial("water", this.uniforms, { side: DoubleSide, defines })),
-      new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })),
-    ];
+    const isSea = edge.kind === "sea";
+    if (isSea) defines["OPEN_SEA"] = 1;
+    const opens = (side: SideName): boolean => isSea && edge.sides[side] !== "closed";
+    const grid = makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z")));
+    this.meshes = [new Mesh(grid, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }))];
+    if (edge.kind === "cut")
+      this.meshes.push(new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;
       this.group.add(mesh);

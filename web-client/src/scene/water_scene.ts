@@ -23,17 +23,16 @@ import { FoamField } from "./foam_field";
 import { FrameRing } from "./frame_ring";
 import { FullscreenPass } from "./fullscreen";
 import type { ViewedBox } from "./framing";
-import { Ground } from "./ground";
 import { elevationAtM, elevationRangeM } from "./height_field";
-import { kFloorDropSides, Landscape } from "./landscape";
 import { makeNoiseTexture } from "./noise_texture";
 import { ParticleCloud } from "./particle_cloud";
 import { PlayoutClock } from "./playout_clock";
 import type { WaterShape } from "./pick";
 import type { Quality } from "./quality";
 import { makeMaterial } from "./shaders";
+import { hazeM, isIndoors, Surroundings, viewOf } from "./settings/surroundings";
 import { Sky } from "./sky";
-import { bedOf, groundExtent, type Bed } from "./terrain";
+import { bedOf, type Bed } from "./terrain";
 import { WaterBody } from "./water_body";
 
 /** The four frames around the time shown, and one that came early. */
@@ -42,9 +41,13 @@ const kRingCount = 5;
 const kMaxAdvanceIntervals = 1.5;
 /** Room for waves above the water in a view, as a share of its side. */
 const kWaveRoom = 0.04;
-/** Cells along each side of a bed with beaches or obstacles. */
-const kBedCells = 96;
-const kPlainBedCells = 48;
+/** The far plane in sides of the square: behind the last cell of an open sea. */
+const kFarSides = 500;
+
+/** The water reflects solids as well as the sky. */
+function hasSolids({ hasBoats, obstacles, beaches, setting }: GreetingInfo): boolean {
+  return hasBoats || obstacles.length > 0 || beaches.length > 0 || setting === "pool";
+}
 
 export class WaterScene {
   readonly camera = new PerspectiveCamera(47, 1, 0.1, 1000);
@@ -61,11 +64,10 @@ export class WaterScene {
   private behind: WebGLRenderTarget;
   private field: FieldPass | undefined;
   private body: WaterBody | undefined;
-  private ground: Ground | undefined;
+  private surroundings: Surroundings | undefined;
   private cloud: ParticleCloud | undefined;
   private foam: FoamField | undefined;
   private solid: RawShaderMaterial | undefined;
-  private landscape: Landscape | undefined;
   private boats: Boats | undefined;
   private greeting: GreetingInfo | undefined;
   private readonly size = new Vector2();
@@ -85,7 +87,7 @@ export class WaterScene {
     renderer.autoClear = false;
     this.behind = this.makeBehind(1, 1);
     this.solids.add(this.sky.dome);
-    this.sky.bake(renderer);
+    this.sky.bake(renderer, false);
   }
 
   /** Builds the parts of this room and disposes those of the one before. */
@@ -99,21 +101,21 @@ export class WaterScene {
       this.field = new FieldPass(resolutionCount, this.quality.fieldCountMax, sideM, wave.periodicX, wave.periodicZ);
       this.field.renderStill(this.renderer);
       if (greeting.layers.includes("foam")) this.foam = new FoamField(wave.periodicX, wave.periodicZ);
-      const bed = bedOf(greeting);
-      const hasSolids = greeting.hasBoats || greeting.obstacles.length > 0 || greeting.beaches.length > 0;
-      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), bed, this.noise, this.foam?.uniforms, hasSolids, this.quality);
+    }
+    this.sky.bake(this.renderer, isIndoors(greeting));
+    this.sky.hideBelowHorizon(greeting.setting === "openSea");
+    this.enterSolids(greeting, bedOf(greeting));
+    if (this.field) {
+      const { edge } = this.surroundings!;
+      this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), bedOf(greeting), this.noise, this.foam?.uniforms, hasSolids(greeting), edge, this.quality);
       this.waters.add(this.body.group);
     }
-    this.enterSolids(greeting, bedOf(greeting));
-    this.ground = new Ground(this.sky, this.field?.texture, sideM, greeting.widthM, depthM, this.quality.plain);
-    if (this.landscape) this.ground.lowerTo(-depthM - kFloorDropSides * sideM);
-    this.solids.add(this.ground.mesh);
     if (greeting.hasParticles) {
       this.cloud = new ParticleCloud(this.sky, this.field?.texture, sideM, depthM, this.quality);
       this.solids.add(this.cloud.mesh);
     }
     this.camera.near = sideM / 160;
-    this.camera.far = sideM * 45;
+    this.camera.far = sideM * kFarSides;
     this.camera.updateProjectionMatrix();
   }
 
@@ -135,10 +137,11 @@ export class WaterScene {
   /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particle frame. */
   viewedBox(): ViewedBox | undefined {
     if (!this.greeting) return undefined;
-    const { sideM, wave } = this.greeting;
-    if (wave) return { sideM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM, ground: groundExtent(bedOf(this.greeting)) };
+    const { sideM, widthM, wave } = this.greeting;
+    const view = viewOf(this.greeting);
+    if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM };
     const frame = this.particleFrames.newest();
-    return frame && { sideM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
+    return frame && { ...view, sideM, widthM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
   }
 
   /** Takes ownership of a frame; `nowS`: client time. */
@@ -155,7 +158,7 @@ export class WaterScene {
         this.release(frame);
         break;
       case "particles":
-        if (!this.greeting?.wave && frame.count > 0) this.ground?.lowerTo(frame.minM[1] - frame.radiusM);
+        if (!this.greeting?.wave && frame.count > 0) this.surroundings?.setFloorM(frame.minM[1] - frame.radiusM);
         this.particleFrames.push(frame);
     }
     // Only one layer sets the clock: the layers of a tick arrive one after the other, and a late one would look like time going back.
@@ -186,7 +189,7 @@ export class WaterScene {
     }
     camera.updateMatrixWorld();
     this.sky.follow(camera);
-    this.ground?.update(camera.position);
+    this.surroundings?.look(camera.position);
     (this.solid?.uniforms["u_camera_m"]!.value as Vector3 | undefined)?.copy(camera.position);
     this.cloud?.update(camera, this.size.x, this.size.y);
     this.body?.update(camera.position, camera.near, camera.far, this.behindTextures(), this.size.x, this.size.y);
@@ -200,11 +203,17 @@ export class WaterScene {
     renderer.render(this.waters, camera);
     // Last, so that it shades only the pixels without water.
     this.present.render(renderer, null);
+    if (this.surroundings?.overlay) renderer.render(this.surroundings.overlay, camera);
+  }
+
+  /** Follows a parameter of the room, by its path in the scene. */
+  setParameter(path: string, value: number): void {
+    this.surroundings?.setParameter(path, value);
   }
 
   /** Draws again what exists only on the GPU. */
   contextRestored(): void {
-    this.sky.bake(this.renderer);
+    this.sky.bake(this.renderer, false);
     if (this.greeting) this.enter(this.greeting);
   }
 
@@ -217,6 +226,7 @@ export class WaterScene {
   }
 
   private advanceTo(shownS: number): void {
+    this.surroundings?.prepare(this.renderer, shownS);
     const surfaces = this.surfaces.around(shownS);
     if (surfaces) this.field?.render(this.renderer, surfaces);
     const foam = this.foam && this.foamFrames.around(shownS);
@@ -237,18 +247,15 @@ export class WaterScene {
     this.bodyStates.clear();
     this.clock.reset();
     if (this.body) this.waters.remove(this.body.group);
-    if (this.ground) this.solids.remove(this.ground.mesh);
+    if (this.surroundings) this.solids.remove(...this.surroundings.solids);
     if (this.cloud) this.solids.remove(this.cloud.mesh);
-    if (this.landscape) this.solids.remove(this.landscape.group);
-    for (const part of [this.field, this.body, this.ground, this.cloud, this.foam, this.landscape, this.boats, this.solid]) part?.dispose();
-    this.field = this.body = this.ground = this.cloud = undefined;
-    this.foam = this.landscape = this.boats = this.solid = undefined;
+    for (const part of [this.field, this.body, this.surroundings, this.cloud, this.foam, this.boats, this.solid]) part?.dispose();
+    this.field = this.body = this.surroundings = this.cloud = undefined;
+    this.foam = this.boats = this.solid = undefined;
   }
 
-  /** Boats, obstacles and a bed with beaches share one material. */
+  /** Boats and surroundings share one material. */
   private enterSolids(greeting: GreetingInfo, bed: Bed): void {
-    const isNatural = greeting.obstacles.length > 0 || greeting.beaches.length > 0;
-    if (!isNatural && !greeting.hasBoats) return;
     const { plain } = this.quality;
     this.solid = makeMaterial(
       "solid",
@@ -260,13 +267,12 @@ export class WaterScene {
         u_side_m: { value: bed.sideM },
         u_grain_m: { value: Math.min(Math.max(bed.sideM / 16, 0.5), 4) },
         u_wet_m: { value: 0.08 * bed.depthM },
+        u_haze_m: { value: isIndoors(greeting) ? 0 : hazeM(greeting) },
       },
       { defines: plain ? { PLAIN: 1 } : {} },
     );
-    if (isNatural) {
-      this.landscape = new Landscape(bed, greeting.obstacles, this.solid, plain ? kPlainBedCells : kBedCells);
-      this.solids.add(this.landscape.group);
-    }
+    this.surroundings = new Surroundings(greeting, { sky: this.sky, noise: this.noise, field: this.field?.texture, solid: this.solid, quality: this.quality });
+    this.solids.add(...this.surroundings.solids);
     if (greeting.hasBoats) {
       this.boats = new Boats(this.solids, this.solid);
       this.boats.setBoats(greeting.boats);

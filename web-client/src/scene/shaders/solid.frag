@@ -1,5 +1,5 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker; under water, crests focus light (caustics).
-// PLAIN: without caustics and gloss.
+// PLAIN: without caustics and gloss. Distant land fades into the haze.
 #include <sky>
 
 in vec3 v_world;
@@ -11,6 +11,7 @@ uniform sampler2D u_noise;
 uniform float u_side_m;
 uniform float u_grain_m;  // size of one tile of the noise
 uniform float u_wet_m;    // height over the still water up to which stone is wet
+uniform float u_haze_m;   // half of the light at this distance; 0: no haze
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -37,8 +38,10 @@ void main() {
 #endif
   vec3 ambient = mix(vec3(0.15, 0.17, 0.19), vec3(0.38, 0.47, 0.58), normal.y * 0.5 + 0.5);
   vec3 lit = albedo * (kSunColor * 1.25 * sun + ambient);
+  vec3 ray = v_world - u_camera_m;
+  float distance_m = length(ray);
+  ray /= distance_m;
 #ifndef PLAIN
-  vec3 ray = normalize(v_world - u_camera_m);
   float away = 1.0 - clamp(-dot(normal, ray), 0.0, 1.0);
   float shine = (0.03 + 0.30 * away * away * away * away) * (1.0 - min(grain, 1.0));
   if (shine > 0.01 && v_world.y > 0.0) {
@@ -47,5 +50,9 @@ void main() {
     lit += shine * skyLight(mirrored) + (1.0 - grain) * kSunColor * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
   }
 #endif
+  if (u_haze_m > 0.0) {
+    float hazy = max(distance_m - 2.0 * u_side_m, 0.0) / u_haze_m;
+    lit = mix(lit, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.9 * hazy / (1.0 + hazy));
+  }
   color = vec4(lit, 1.0);
 }

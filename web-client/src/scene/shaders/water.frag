@@ -1,6 +1,7 @@
 // The water's surface: reflected sky by Fresnel, and through it the scene drawn before, refracted by the slope. Its colour is absorbed
 // along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
 // MIRROR: solids are reflected as well, as far as they are on the screen. BEACH: the water ends where the bed rises above it.
+// OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
 // FOAM: white water where the noise tile ("lace") is above a threshold that falls with the foam.
 #include <sky>
 
@@ -23,6 +24,12 @@ uniform float u_depth_m;
 #ifdef BEACH
 #include <bed>
 #endif
+#ifdef OPEN_SEA
+#include <sea_blend>
+in vec2 v_share_away;
+uniform vec2 u_slope_variances;  // of the swell and of the ripples
+uniform float u_haze_m;
+#endif
 #ifdef FOAM
 uniform sampler2D u_foam_from;
 uniform sampler2D u_foam_to;
@@ -32,7 +39,17 @@ uniform float u_lace_m;
 #endif
 layout(location = 0) out vec4 color;
 
+const vec3 kFarBed = vec3(0.209, 0.198, 0.154);  // light of the level bed of coast.ts as solid.frag draws it, on average
 const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
+
+// exp(-x) for x >= 0. Exponentials cost software renderers a third of the frame.
+vec3 fading(vec3 x) {
+#ifdef PLAIN
+  return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * 0.1667)));
+#else
+  return exp(-x);
+#endif
+}
 
 float viewZ(float depth) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
@@ -41,8 +58,13 @@ float viewZ(float depth) {
 
 // Distance from `from` along `direction` to the sides or the floor of the water.
 float wayOut(vec3 from, vec3 direction) {
+#ifdef OPEN_SEA
+  vec3 high = vec3(1e5, 1e3, 1e5);
+  vec3 low = vec3(-1e5, -u_depth_m, -1e5);
+#else
   vec3 high = vec3(0.5 * u_side_m, 1e3, 0.5 * u_side_m);
   vec3 low = vec3(-0.5 * u_side_m, -u_depth_m, -0.5 * u_side_m);
+#endif
   vec3 safe = mix(vec3(1e-6), direction, step(vec3(1e-6), abs(direction)));
   vec3 t = max((high - from) / safe, (low - from) / safe);
   return max(min(t.x, min(t.y, t.z)), 0.0);
@@ -88,6 +110,15 @@ vec3 mirroredLight(vec3 from, vec3 direction) {
   }
   return sky;
 }
+#elif defined(OPEN_SEA) && defined(PLAIN)
+// The colours of sky_bake.frag without their clouds: on ripples these cannot be made out, and a cube map is slow to read.
+vec3 mirroredLight(vec3 from, vec3 direction) {
+  vec3 sky = mix(vec3(0.24, 0.42, 0.70), vec3(0.12, 0.22, 0.44), smoothstep(0.12, 0.75, direction.y));
+  sky = mix(vec3(0.60, 0.73, 0.84), sky, smoothstep(-0.02, 0.20, direction.y));
+  float toward_sun = max(dot(direction, u_sun_direction), 0.0);
+  toward_sun *= toward_sun;
+  return sky + vec3(0.08, 0.06, 0.036) * toward_sun * toward_sun;
+}
 #else
 vec3 mirroredLight(vec3 from, vec3 direction) { return skyLight(direction); }
 #endif
@@ -109,7 +140,31 @@ void main() {
 #ifdef SKIRT
   vec3 normal = v_side_normal;
 #else
+#ifdef OPEN_SEA
+  vec4 field = v_share_away.x > 0.0 ? textureLod(u_field, v_world.xz / u_side_m + 0.5, 0.0) : vec4(0.0);
+#else
   vec4 field = texture(u_field, v_world.xz / u_side_m + 0.5);
+#endif
+  float variance = 0.0;
+#ifdef OPEN_SEA
+  vec2 sea_at = v_world.xz;
+  // Waves smaller than a pixel are flat, and widen the reflection instead.
+  vec2 width_m = fwidth(sea_at);
+  vec2 lost = smoothstep(vec2(0.004, 0.01), vec2(0.05, 0.08), max(width_m.x, width_m.y) / u_tiles_m);
+  // Somewhere far out there is always some wind.
+  float far_out = smoothstep(0.5, 6.0, length(sea_at) / u_side_m);
+  variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out;
+#ifdef PLAIN
+  // Without mip levels the waves are faded here.
+  if (v_share_away.x < 1.0) field.gb = mix((1.0 - lost.x) * textureLod(u_swell, sea_at / u_tiles_m.x, 0.0).gb, field.gb, v_share_away.x);
+  if (lost.y < 1.0) field.gb += (1.0 - lost.y) * textureLod(u_ripples, sea_at / u_tiles_m.y, 0.0).gb;
+#else
+  field.gb = mix(texture(u_swell, sea_at / u_tiles_m.x).gb, field.gb, v_share_away.x);
+  // A second copy, turned and stretched, so that the tile does not show.
+  vec2 ripples = texture(u_ripples, sea_at / u_tiles_m.y).gb;
+  field.gb += 0.71 * (ripples + mat2(0.8, -0.6, 0.6, 0.8) * texture(u_ripples, mat2(0.8, 0.6, -0.6, 0.8) * sea_at * 0.618 / u_tiles_m.y).gb);
+#endif
+#endif
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
@@ -127,37 +182,72 @@ void main() {
   if (shifted_depth < gl_FragCoord.z) shifted_uv = uv;
   else behind_depth = shifted_depth;
 #endif
-  vec3 behind = texture(u_behind, shifted_uv).rgb;
   float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
-  float path_m = clamp(behind_m, 0.0, way_m);
-
+#ifdef OPEN_SEA
+  // Outside the square the bed is drawn for a short way only, at low quality nowhere where it is level. Elsewhere it has one colour; far
+  // away it falls off.
+  float undrawn = smoothstep(0.02, 0.35, v_share_away.y / u_side_m);
+  float sunk = smoothstep(0.8, 5.0, length(v_world.xz) / u_side_m);
+#ifdef BEACH
+  float floor_share = bedDepth(v_world.xz, u_side_m, u_depth_m) / u_depth_m;
+  undrawn *= floor_share * floor_share;
+  sunk *= floor_share * floor_share;
+#ifdef PLAIN
+  // The mesh of the beach ends where the bed becomes level: fade its grain before, but not what stands on it.
+  vec3 hit = v_world + ray * behind_m;
+  float hit_depth_m = bedDepth(hit.xz, u_side_m, u_depth_m);
+  if (hit.y < 0.1 * u_depth_m - hit_depth_m) undrawn = max(undrawn, smoothstep(0.6, 0.95, hit_depth_m / u_depth_m));
+#endif
+#endif
+  vec3 behind = undrawn < 1.0 && behind_depth < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, kFarBed, undrawn) : kFarBed;
+#else
+  const float sunk = 0.0;
+  vec3 behind = texture(u_behind, shifted_uv).rgb;
+#endif
+  float path_m = clamp(behind_m, 0.0, way_m) + 9.0 * sunk;
   // The light is absorbed twice: down to the object and up to the eye.
-  vec3 passed = exp(-kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
+  vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = mix(vec3(0.004, 0.085, 0.155), vec3(0.030, 0.34, 0.40), lifted) * 1.2;
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun;
   scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
-  vec3 under = behind * passed + scattered * (1.0 - exp(-0.55 * path_m));
+  vec3 under = behind * passed + scattered * (1.0 - fading(vec3(0.55 * path_m)).x);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
   // Schlick's fit of the Fresnel equations for water.
   float away = (1.0 - facing) * (1.0 - facing);
   float fresnel = 0.02 + 0.98 * away * away * (1.0 - facing);
   vec3 mirrored = reflect(ray, normal);
+#if defined(OPEN_SEA) && !defined(SKIRT)
+  // A rough surface seen at a low angle shows more of its facing slopes (fit after Bruneton et al. 2010), and reflects higher sky.
+  if (variance > 1e-4) {
+    float rough = sqrt(variance);
+    fresnel = mix(fresnel, fresnel / (1.0 + 22.7 * rough * sqrt(rough)), min(rough * 12.0, 1.0));
+    mirrored = normalize(vec3(mirrored.x, abs(mirrored.y) + 1.6 * rough, mirrored.z));
+  }
+#endif
   fresnel *= edge;
 #ifdef SKIRT
   float rim = smoothstep(0.07, 0.0, v_top_m - v_world.y);
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
 #else
   mirrored.y = abs(mirrored.y);
+#if defined(OPEN_SEA) && defined(PLAIN)
+  vec3 water = mix(under, mirroredLight(v_world, mirrored), fresnel);
+#else
   vec3 water = mix(under, fresnel > 0.03 ? mirroredLight(v_world, mirrored) : skyLight(mirrored), fresnel);
+#endif
   float at_sun = dot(mirrored, u_sun_direction);
   if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
 #if defined(FOAM) && !defined(SKIRT)
   vec2 place = v_world.xz / u_side_m + 0.5;
+#ifdef OPEN_SEA
+  float foam = v_share_away.x > 0.0 ? v_share_away.x * mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix) : 0.0;
+#else
   float foam = mix(texture(u_foam_from, place).r, texture(u_foam_to, place).r, u_foam_mix);
+#endif
 #ifdef BEACH
   // Shallow water at a beach always has a little foam.
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
@@ -178,6 +268,10 @@ void main() {
     vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 1.05 * sunlit + vec3(0.40, 0.45, 0.50)) * (0.80 + 0.28 * lace);
     water = mix(water, froth, 0.94 * white);
   }
+#endif
+#ifdef OPEN_SEA
+  float hazy = max(distance_m - 2.0 * u_side_m, 0.0) / u_haze_m;
+  if (hazy > 0.01) water = mix(water, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.85 * hazy / (1.0 + hazy));
 #endif
   color = vec4(toDisplay(water), 1.0);
 }

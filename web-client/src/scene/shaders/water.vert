@@ -1,7 +1,7 @@
 // Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
-// BEACH: the floor rises toward some sides.
+// BEACH: the floor rises toward some sides. OPEN_SEA: the grid goes on to the horizon (sea/open_sea.ts).
 
-in vec3 position;  // x, z in -1/2..1/2; y: 1 on the surface, 0 on the floor
+in vec3 position;  // x, z in -1/2..1/2 over the square; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT
 in vec3 normal;
 out vec3 v_side_normal;
@@ -17,12 +17,26 @@ uniform float u_depth_m;
 #include <bed>
 #endif
 
+#ifdef OPEN_SEA
+#include <sea_blend>
+out vec2 v_share_away;  // of the simulated water; distance from the square (m)
+#endif
+
 out vec3 v_world;
 out float v_view_z;
 out float v_top_m;
 
 void main() {
   v_top_m = texture(u_field, position.xz + 0.5).r;
+#ifdef OPEN_SEA
+  vec2 at = position.xz * u_side_m;
+  float away_m = awayFromSquare(at, u_side_m);
+  v_share_away = vec2(simulatedShare(at, u_side_m), away_m);
+  // The grid becomes coarser outside: there the waves are in the normals only.
+  float raised = 1.0 - smoothstep(0.12, 0.5, away_m / u_side_m);
+  float sea_m = raised > 0.0 ? raised * textureLod(u_swell, at / u_tiles_m.x, 0.0).r : 0.0;
+  v_top_m = mix(sea_m, v_top_m, v_share_away.x);
+#endif
   float depth_m = u_depth_m;
 #ifdef BEACH
   depth_m = bedDepth(position.xz * u_side_m, u_side_m, u_depth_m);

@@ -1,0 +1,68 @@
+#include <spindrift/scene/scene_rules.h>
+#include <spindrift/scene/setting.h>
+
+namespace spindrift::scene {
+namespace {
+
+/// A box of particles that is at least this many times as long as wide is a flume.
+constexpr double kFlumeAspect = 2.0;
+/// Walled water with a side up to this length is in a glass tank, larger water in a pool. [m]
+constexpr double kTankMaxSide_m = 6.0;
+
+bool isPeriodic(v1::WaveBoundary side) {
+  return side == v1::WAVE_BOUNDARY_UNSPECIFIED || side == v1::WAVE_BOUNDARY_PERIODIC;
+}
+
+bool isPeriodic(v1::Boundary side) {
+  return side == v1::BOUNDARY_UNSPECIFIED || side == v1::BOUNDARY_PERIODIC;
+}
+
+v1::Setting walledSetting(double side_m) {
+  return side_m <= kTankMaxSide_m ? v1::SETTING_GLASS_TANK : v1::SETTING_POOL;
+}
+
+v1::Setting ofWave(const v1::WaveScene& wave) {
+  const auto absorbs = [](v1::WaveBoundary side) { return side == v1::WAVE_BOUNDARY_ABSORB; };
+  if (absorbs(wave.boundary_minus_x()) || absorbs(wave.boundary_plus_x()) || absorbs(wave.boundary_minus_z()) ||
+      absorbs(wave.boundary_plus_z()))
+    return v1::SETTING_OPEN_SEA;
+  const bool is_periodic_x = isPeriodic(wave.boundary_minus_x());
+  const bool is_periodic_z = isPeriodic(wave.boundary_minus_z());
+  if (is_periodic_x && is_periodic_z) return v1::SETTING_OPEN_SEA;
+  // Walls at two ends only: the waves do not depend on the width, as in a flume.
+  if (is_periodic_x != is_periodic_z) return v1::SETTING_FLUME;
+  return walledSetting(wave.side_m());
+}
+
+v1::Setting ofBox(const v1::Scene& scene) {
+  const v1::ParticleScene& box = scene.particles();
+  const WaterExtents water = waterExtentsOf(scene);
+  const double longer_m = water.side_x_m + water.side_z_m - water.shorterSide_m();
+  if (isPeriodic(box.boundary_x()) != isPeriodic(box.boundary_z())) return v1::SETTING_FLUME;
+  if (longer_m >= kFlumeAspect * water.shorterSide_m()) return v1::SETTING_FLUME;
+  return walledSetting(longer_m);
+}
+
+}  // namespace
+
+v1::Setting settingOf(const v1::Scene& scene) {
+  if (scene.setting() != v1::SETTING_UNSPECIFIED) return scene.setting();
+  return scene.has_wave() ? ofWave(scene.wave()) : ofBox(scene);
+}
+
+std::string settingName(v1::Setting setting) {
+  switch (setting) {
+    case v1::SETTING_OPEN_SEA:
+      return "open sea";
+    case v1::SETTING_POOL:
+      return "pool";
+    case v1::SETTING_GLASS_TANK:
+      return "glass tank";
+    case v1::SETTING_FLUME:
+      return "flume";
+    default:
+      return "unknown";
+  }
+}
+
+}  // namespace spindrift::scene

@@ -1,0 +1,132 @@
+// The sea outside the simulated square: two cascades of waves and how they blend with the simulated water. The longer cascade is the
+// wind sea that the server lets in through the open sides, wave for wave, so heights agree where the layers of these sides have replaced
+// the simulated water by it (docs/wind_sea.md). The shorter one is ripples.
+import { Vector2, Vector4, type WebGLRenderer } from "three";
+
+import type { SideName, WaveInfo, WindInfo } from "../../codec/scene_info";
+import type { Uniforms } from "../shaders";
+import { makeRipples, rippleSlope } from "./ripples";
+import { SeaTile, slopeVariance } from "./sea_tile";
+import { seaStateOf, type PlaneWave } from "./sea_state";
+
+/** As in the server: a sea fades into the next one in this time (wind_sea.cpp). */
+const kFadeS = 4;
+/** A tile of long waves is this many sides of the square: the wider, the less a wave is bent to fit it. */
+const kSwellTileSides = { plain: 2, full: 4 };
+const kTexels = { plain: 128, full: 256 };
+/** Ripples begin where the simulated grid ends, at 8 cells, and the tile is this many of the longest. */
+const kLongestRippleCells = 8;
+const kRippleRange = 5;
+const kRippleTileLengths = 9;
+const kRippleCount = { plain: 20, full: 40 };
+/** Water outside periodic sides repeats the simulated water and fades within this share of the side. */
+const kPeriodicFadeSides = 0.3;
+/** Blending at an open side without a layer. */
+const kLeastBlendSides = 0.06;
+/** Never reached: at a closed side the simulated water does not blend with anything. */
+const kNever = 1e6;
+
+export const kSideOrder: readonly SideName[] = ["+x", "-x", "+z", "-z"];
+
+/**
+ * Returns the uniforms of sea_blend.glsl for the sides +x, -x, +z, -z: `beyondM`, how far outside a side the simulated water's share
+ * becomes 0, and `widthM`, over which it falls from 1.
+ */
+export function blendOf(wave: Pick<WaveInfo, "sides" | "sideM" | "spongeWidthM">): { beyondM: number[]; widthM: number[] } {
+  const { sideM } = wave;
+  const of = (side: SideName): [number, number] => {
+    const kind = wave.sides[side];
+    if (kind === "closed") return [kNever, 1];
+    if (kind === "periodic") return [kPeriodicFadeSides * sideM, kPeriodicFadeSides * sideM];
+    return [0, Math.max(wave.spongeWidthM, kLeastBlendSides * sideM)];
+  };
+  return { beyondM: kSideOrder.map((side) => of(side)[0]), widthM: kSideOrder.map((side) => of(side)[1]) };
+}
+
+export class OpenSea {
+  /** For the shaders of the water. */
+  readonly uniforms: Uniforms;
+  private readonly swell: SeaTile;
+  private readonly ripples: SeaTile;
+  private readonly rippleWaves: PlaneWave[];
+  private readonly variances = new Vector2();
+  private wave: WaveInfo;
+  private wind: WindInfo | undefined;
+  private shown: PlaneWave[] = [];
+  private shownSlope: number;
+  private next: { waves: PlaneWave[]; slope: number; beganS: number } | undefined;
+  private lastS = 0;
+
+  constructor(wave: WaveInfo, wind: WindInfo | undefined, plain: boolean) {
+    this.wave = wave;
+    this.wind = wind;
+    const tier = plain ? "plain" : "full";
+    const longestM = (kLongestRippleCells * wave.sideM) / wave.resolutionCount;
+    this.swell = new SeaTile(kSwellTileSides[tier] * wave.sideM, kTexels[tier], !plain);
+    this.ripples = new SeaTile(kRippleTileLengths * longestM, kTexels[tier], !plain);
+    this.rippleWaves = makeRipples(kRippleCount[tier], longestM / kRippleRange, longestM, wind?.directionDeg ?? 30, wind?.gravityMps2 ?? 9.81);
+    const { beyondM, widthM } = blendOf(wave);
+    this.uniforms = {
+      u_swell: { value: this.swell.texture },
+      u_ripples: { value: this.ripples.texture },
+      u_tiles_m: { value: new Vector2(this.swell.tileM, this.ripples.tileM) },
+      u_slope_variances: { value: this.variances },
+      u_blend_beyond_m: { value: new Vector4(...beyondM) },
+      u_blend_width_m: { value: new Vector4(...widthM) },
+    };
+    this.shown = this.waves();
+    this.shownSlope = this.slope();
+  }
+
+  /** Follows a parameter of the room, by its path in the scene. */
+  setParameter(path: string, value: number): void {
+    if (path === "wave.depth_m" && value > 0) this.wave = { ...this.wave, depthM: value };
+    if (this.wind) {
+      if (path === "storm.level_ratio") this.wind = { ...this.wind, levelRatio: value };
+      else if (path === "storm.wave_height_m") this.wind = { ...this.wind, waveHeightM: value };
+      else if (path === "storm.wind_direction_deg") this.wind = { ...this.wind, directionDeg: value };
+      else if (path === "storm.wind_speed_mps") this.wind = { ...this.wind, speedMps: value };
+      else if (path === "storm.fetch_m") this.wind = { ...this.wind, fetchM: value };
+      else if (path === "gravity_mps2") this.wind = { ...this.wind, gravityMps2: value };
+      else if (path !== "wave.depth_m") return;
+    } else return;
+    // A change during a fade shortens it.
+    if (this.next) [this.shown, this.shownSlope] = [this.next.waves, this.next.slope];
+    this.next = { waves: this.waves(), slope: this.slope(), beganS: this.lastS };
+  }
+
+  /** Draws both cascades at the time shown, in seconds since the scene began. */
+  render(renderer: WebGLRenderer, shownS: number): void {
+    this.lastS = shownS;
+    let faded = 0;
+    if (this.next) {
+      // Time that has gone back is that of a scene that started again.
+      faded = shownS < this.next.beganS ? 1 : Math.min((shownS - this.next.beganS) / kFadeS, 1);
+      if (faded >= 1) {
+        [this.shown, this.shownSlope] = [this.next.waves, this.next.slope];
+        this.next = undefined;
+        faded = 0;
+      }
+    }
+    // Like the server's: the energies of two independent seas add up.
+    const angle = (faded * Math.PI) / 2;
+    const [from, to] = [Math.cos(angle), Math.sin(angle)];
+    this.swell.render(renderer, shownS, [{ waves: this.shown, share: from }, { waves: this.next?.waves ?? [], share: to }]);
+    const slope = this.shownSlope + ((this.next?.slope ?? 0) - this.shownSlope) * (this.next ? faded : 0);
+    this.ripples.render(renderer, shownS, [{ waves: this.rippleWaves, share: slope }]);
+    this.variances.set(from ** 2 * slopeVariance(this.shown) + to ** 2 * slopeVariance(this.next?.waves ?? []), slope ** 2);
+  }
+
+  dispose(): void {
+    this.swell.dispose();
+    this.ripples.dispose();
+  }
+
+  private waves(): PlaneWave[] {
+    return this.wind ? seaStateOf(this.wave, this.wind) : [];
+  }
+
+  private slope(): number {
+    return rippleSlope(this.wind ? this.wind.levelRatio : 0);
+  }
+}

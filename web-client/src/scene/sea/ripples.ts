@@ -1,0 +1,35 @@
+// Ripples: waves too short for the simulation's grid, as the second cascade of the open sea. They change the normals only, inside and
+// outside the simulated square alike. Pure.
+import { makeRandom, type PlaneWave } from "./sea_state";
+
+/** Surface tension over density, m^3/s^2. */
+const kSurfaceTension = 7.3e-5;
+const kSpreadRad = 1.25;
+/** Root mean square slope without wind, and what a full storm adds (half of what Cox & Munk 1954 give for 15 m/s: the rest is in the longer waves). */
+const kCalmSlope = 0.022;
+const kStormSlope = 0.11;
+
+/** Returns the root mean square slope of the ripples at a storm level. */
+export function rippleSlope(levelRatio: number): number {
+  return kCalmSlope + kStormSlope * Math.min(Math.max(levelRatio, 0), 1);
+}
+
+/**
+ * Returns `count` waves with lengths between the two given, spread about the wind's direction, whose slopes have the root mean square 1:
+ * multiply the amplitudes by the slope wanted. Each carries the same share.
+ */
+export function makeRipples(count: number, shortestM: number, longestM: number, directionDeg: number, gravityMps2: number): PlaneWave[] {
+  const random = makeRandom(7n);
+  return Array.from({ length: count }, (_, n) => {
+    const lengthM = longestM * (shortestM / longestM) ** ((n + random()) / count);
+    const k = (2 * Math.PI) / lengthM;
+    const angle = (directionDeg * Math.PI) / 180 + kSpreadRad * (2 * random() - 1);
+    return {
+      amplitudeM: Math.sqrt(2 / count) / k,
+      omegaRadps: Math.sqrt(Math.max(gravityMps2, 0) * k + kSurfaceTension * k ** 3),
+      kxRadpm: k * Math.cos(angle),
+      kzRadpm: k * Math.sin(angle),
+      phaseRad: 2 * Math.PI * random(),
+    };
+  });
+}

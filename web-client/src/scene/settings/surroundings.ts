@@ -1,0 +1,111 @@
+// What is around the water: chooses and owns the parts of the scene's setting.
+import type { Object3D, Vector3, WebGLRenderer } from "three";
+
+import type { GreetingInfo } from "../../codec/greeting";
+import type { SettingName, SideName } from "../../codec/scene_info";
+import type { ViewedBox } from "../framing";
+import { Landscape, makeGroundGeometry } from "../landscape";
+import { makeCoastGeometry } from "../sea/coast";
+import { OpenSea } from "../sea/open_sea";
+import { bedOf } from "../terrain";
+import type { WaterEdge } from "../water_body";
+import type { SurroundingsContext } from "./context";
+import { GlassTank } from "./glass_tank";
+import { PoolBasin } from "./pool_basin";
+
+/** Haze of the open air takes half of the light at this many sides of the square. */
+const kHazeSides = 34;
+/** Cells along each side of a bed with beaches, obstacles or a coast. */
+const kBedCells = 96;
+const kPlainBedCells = 48;
+
+/** How much of the water a view has to show: where it goes on beyond the picture, only a part. */
+const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised">> = {
+  openSea: { focus: { wide: 0.72, tall: 0.5 }, raised: { wide: 1, tall: 1.45 } },
+  pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 } },
+  glassTank: { focus: { wide: 0.8, tall: 0.62 }, raised: { wide: 1.1, tall: 1.6 } },
+  flume: { focus: { wide: 0.85, tall: 0.75 }, raised: { wide: 0.8, tall: 1.2 } },
+};
+
+/** How far away from land, in sides of the square, the middle of a view is. Views look along z, so land there hides more of the water. */
+const kLeanFromLand = { x: 0.04, z: 0.16 };
+
+/** Returns how a view frames the scene's water; in the open sea away from the land. */
+export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "lean"> {
+  const view = kSettingViews[setting];
+  if (setting !== "openSea" || !wave) return view;
+  const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
+  return { ...view, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
+}
+
+export function hazeM(greeting: GreetingInfo): number {
+  return kHazeSides * greeting.sideM;
+}
+
+export function isIndoors({ setting }: GreetingInfo): boolean {
+  return setting === "glassTank" || setting === "flume";
+}
+
+export class Surroundings {
+  /** Drawn before the water. */
+  readonly solids: Object3D[] = [];
+  /** Drawn over everything, blended; it is before whatever it covers. */
+  readonly overlay: Object3D | undefined;
+  readonly edge: WaterEdge;
+  private readonly sea: OpenSea | undefined;
+  private readonly basin: PoolBasin | undefined;
+  private readonly tank: GlassTank | undefined;
+  private readonly landscape: Landscape | undefined;
+
+  constructor(greeting: GreetingInfo, context: SurroundingsContext) {
+    const { setting, wave, wind, obstacles, beaches } = greeting;
+    const { plain } = context.quality;
+    const bed = bedOf(greeting);
+    const cellsCount = plain ? kPlainBedCells : kBedCells;
+    if (setting === "openSea" && wave) {
+      this.sea = new OpenSea(wave, wind, plain);
+      this.edge = { kind: "sea", sea: this.sea.uniforms, sides: wave.sides, hazeM: hazeM(greeting) };
+      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid);
+      this.solids.push(this.landscape.group);
+      return;
+    }
+    if (obstacles.length > 0 || beaches.length > 0) {
+      this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount), obstacles, context.solid);
+      this.solids.push(this.landscape.group);
+    }
+    if (setting === "pool") {
+      this.edge = { kind: "walls" };
+      this.basin = new PoolBasin(greeting, context);
+      this.solids.push(this.basin.group);
+    } else {
+      this.edge = { kind: "cut" };
+      this.tank = new GlassTank(greeting, context);
+      this.solids.push(this.tank.group);
+      this.overlay = this.tank.glass;
+    }
+  }
+
+  /** Sets the height of the floor, where it comes with the first frame. */
+  setFloorM(yM: number): void {
+    this.basin?.setFloorM(yM);
+    this.tank?.setFloorM(yM);
+  }
+
+  setParameter(path: string, value: number): void {
+    this.sea?.setParameter(path, value);
+  }
+
+  /** Draws what the water's shaders read; `shownS`: time shown, in seconds since the scene began. */
+  prepare(renderer: WebGLRenderer, shownS: number): void {
+    this.sea?.render(renderer, shownS);
+  }
+
+  look(cameraM: Vector3): void {
+    this.basin?.look(cameraM);
+    this.tank?.look(cameraM);
+  }
+
+  dispose(): void {
+    for (const part of [this.sea, this.basin, this.tank, this.landscape]) part?.dispose();
+  }
+}

@@ -1,0 +1,17 @@
+// Include: the sea outside the simulated square, and the simulated water's share. Sides in the order +x, -x, +z, -z.
+uniform sampler2D u_swell;    // elevation (m), slope along x, slope along z
+uniform sampler2D u_ripples;  // the same of ripples
+uniform vec2 u_tiles_m;
+uniform vec4 u_blend_beyond_m;
+uniform vec4 u_blend_width_m;
+
+// 1 where the water is the simulated one, 0 where it is the sea.
+float simulatedShare(vec2 at, float side_m) {
+  vec4 inside_m = 0.5 * side_m - vec4(at.x, -at.x, at.y, -at.y);
+  vec4 share = clamp((inside_m + u_blend_beyond_m) / u_blend_width_m, 0.0, 1.0);
+  share = share * share * (3.0 - 2.0 * share);
+  return min(min(share.x, share.y), min(share.z, share.w));
+}
+
+// Distance from the simulated square; 0 inside.
+float awayFromSquare(vec2 at, float side_m) { return length(max(abs(at) - 0.5 * side_m, 0.0)); }

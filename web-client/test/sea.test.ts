@@ -1,0 +1,149 @@
+// The sea outside the simulated square: its waves, their tiles, the blend, the grid and the coast.
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { describe, expect, it } from "vitest";
+
+import type { SideKind, SideName, WaveInfo, WindInfo } from "../src/codec/scene_info";
+import { coastHeightM, makeCoastGeometry, quayHeightM } from "../src/scene/sea/coast";
+import { blendOf, kSideOrder } from "../src/scene/sea/open_sea";
+import { makeRipples, rippleSlope } from "../src/scene/sea/ripples";
+import { fitToTile, slopeVariance } from "../src/scene/sea/sea_tile";
+import { seaStateOf, waveFrequencyRadps } from "../src/scene/sea/sea_state";
+import { gridLines } from "../src/scene/water_body";
+
+const sidesOf = (plusX: SideKind, minusX: SideKind, plusZ: SideKind, minusZ: SideKind): Record<SideName, SideKind> => ({ "+x": plusX, "-x": minusX, "+z": plusZ, "-z": minusZ });
+
+// As openSea() in tests/unit/sim_setup/sea_state_test.cpp.
+const wave: WaveInfo = {
+  resolutionCount: 256, sideM: 30, depthM: 2, periodicX: false, periodicZ: false,
+  sides: sidesOf("open", "open", "open", "open"), spongeWidthM: 4, dampingPerS: 0.1,
+};
+const wind: WindInfo = { seed: 7n, gravityMps2: 9.81, comesIn: true, levelRatio: 1, waveHeightM: 1, directionDeg: 30, speedMps: 15, fetchM: 2000 };
+
+const varianceOf = (waves: readonly { amplitudeM: number }[]): number => waves.reduce((sum, { amplitudeM }) => sum + amplitudeM ** 2 / 2, 0);
+
+describe("the wind sea outside", () => {
+  it("has the server's waves: amplitude, frequency, wave number and phase", () => {
+    const kept = readFileSync(join(import.meta.dirname, "../../tests/golden/sea_waves.txt"), "utf8").trim().split("\n").map((line) => line.split(" ").map(Number));
+    const waves = seaStateOf(wave, wind);
+    expect(kept.length).toBe(32);
+    expect(waves.length).toBe(kept.length);
+    waves.forEach(({ amplitudeM, omegaRadps, kxRadpm, kzRadpm, phaseRad }, n) => {
+      [amplitudeM, omegaRadps, kxRadpm, kzRadpm, phaseRad].forEach((value, at) => expect(value, `wave ${n}`).toBeCloseTo(kept[n]![at]!, 8));
+    });
+  });
+
+  it("is calm at level 0, without wind, and with the wind from closed sides", () => {
+    expect(seaStateOf(wave, { ...wind, levelRatio: 0 })).toEqual([]);
+    expect(seaStateOf(wave, { ...wind, speedMps: 0 })).toEqual([]);
+    expect(seaStateOf({ ...wave, sides: sidesOf("open", "closed", "closed", "closed") }, { ...wind, directionDeg: 0 })).toEqual([]);
+  });
+
+  it("grows with the storm and obeys Airy's relation", () => {
+    const low = seaStateOf(wave, { ...wind, levelRatio: 0.3 });
+    const high = seaStateOf(wave, wind);
+    expect(varianceOf(low)).toBeGreaterThan(0);
+    expect(varianceOf(high)).toBeGreaterThan(varianceOf(low));
+    for (const { kxRadpm, kzRadpm, omegaRadps } of high)
+      expect(omegaRadps).toBeCloseTo(waveFrequencyRadps(Math.hypot(kxRadpm, kzRadpm), 9.81, 2), 12);
+  });
+
+  it("keeps a wave's direction and length on a tile to less than one wave per tile", () => {
+    for (const each of seaStateOf(wave, wind)) {
+      const { columnsCount, rowsCount } = fitToTile(each, 60);
+      expect(Number.isInteger(columnsCount) && Number.isInteger(rowsCount)).toBe(true);
+      expect(Math.abs(columnsCount - (each.kxRadpm * 60) / (2 * Math.PI))).toBeLessThanOrEqual(0.5);
+      expect(Math.abs(rowsCount - (each.kzRadpm * 60) / (2 * Math.PI))).toBeLessThanOrEqual(0.5);
+    }
+  });
+});
+
+describe("ripples", () => {
+  it("have a root mean square slope of 1 and lengths in their range", () => {
+    const ripples = makeRipples(20, 0.2, 1, 40, 9.81);
+    expect(slopeVariance(ripples)).toBeCloseTo(1, 9);
+    for (const { kxRadpm, kzRadpm } of ripples) {
+      const lengthM = (2 * Math.PI) / Math.hypot(kxRadpm, kzRadpm);
+      expect(lengthM).toBeGreaterThan(0.19);
+      expect(lengthM).toBeLessThan(1.01);
+    }
+  });
+
+  it("become steeper with the storm", () => {
+    expect(rippleSlope(0)).toBeGreaterThan(0);
+    expect(rippleSlope(1)).toBeGreaterThan(2 * rippleSlope(0));
+    expect(rippleSlope(5)).toBe(rippleSlope(1));
+  });
+});
+
+describe("the blend with the simulated water", () => {
+  /** As simulatedShare() in sea_blend.glsl. */
+  const shareAt = (info: Pick<WaveInfo, "sides" | "sideM" | "spongeWidthM">, xM: number, zM: number): number => {
+    const { beyondM, widthM } = blendOf(info);
+    const inside = [xM, -xM, zM, -zM].map((at) => info.sideM / 2 - at);
+    return Math.min(...inside.map((insideM, n) => {
+      const share = Math.min(Math.max((insideM + beyondM[n]!) / widthM[n]!, 0), 1);
+      return share * share * (3 - 2 * share);
+    }));
+  };
+
+  it("is complete at an open side and begins where its layer begins", () => {
+    expect(shareAt(wave, 15, 3)).toBe(0);
+    expect(shareAt(wave, 13, 3)).toBeGreaterThan(0);
+    expect(shareAt(wave, 11, 3)).toBe(1);
+    expect(kSideOrder.length).toBe(4);
+  });
+
+  it("keeps the simulated water up to a closed side, and repeats it beyond a periodic one", () => {
+    expect(shareAt({ ...wave, sides: sidesOf("closed", "open", "open", "open") }, 15, 0)).toBe(1);
+    const periodic = { ...wave, sides: sidesOf("periodic", "periodic", "open", "open") };
+    expect(shareAt(periodic, 15, 0)).toBe(1);
+    expect(shareAt(periodic, 20, 0)).toBeGreaterThan(0);
+    expect(shareAt(periodic, 24.1, 0)).toBe(0);
+  });
+});
+
+describe("the water's grid", () => {
+  it("reaches the horizon on open sides and ends at closed ones, with cells that grow outward", () => {
+    const lines = gridLines(72, true, false);
+    expect(lines[0]!).toBeLessThan(-100);
+    expect(lines.at(-1)).toBe(0.5);
+    for (let n = 1; n < lines.length; ++n) expect(lines[n]!).toBeGreaterThan(lines[n - 1]!);
+    expect(gridLines(8, false, false)).toEqual([-0.5, -0.375, -0.25, -0.125, 0, 0.125, 0.25, 0.375, 0.5]);
+  });
+});
+
+describe("the coast", () => {
+  const bed = { sideM: 32, depthM: 1.2, beaches: [{ side: "+x" as const, widthM: 7, shoreDepthM: 0 }] };
+  const coast = { bed, sides: sidesOf("closed", "open", "closed", "open") };
+
+  it("has the bed's depth under open water, rises behind a beach without a step, and stands as a quay at a closed side without one", () => {
+    expect(coastHeightM(coast, -60, -60)).toBeCloseTo(-1.2, 9);
+    let before = coastHeightM(coast, 15.9, 0);
+    for (let xM = 15.95; xM < 60; xM += 0.05) {
+      const heightM = coastHeightM(coast, xM, 0);
+      expect(Math.abs(heightM - before)).toBeLessThan(0.03);
+      before = heightM;
+    }
+    expect(before).toBeGreaterThan(0.5);
+    expect(coastHeightM(coast, 0, 15.99)).toBeLessThan(-1);
+    expect(coastHeightM(coast, 0, 16.01)).toBeGreaterThanOrEqual(quayHeightM(bed) - 1e-9);
+  });
+
+  it("follows the beach outside the square as well", () => {
+    expect(coastHeightM(coast, 14, -80)).toBeCloseTo(coastHeightM(coast, 14, 0), 9);
+  });
+
+  it("is made of finite triangles, with land on the closed sides only", () => {
+    const geometry = makeCoastGeometry(coast, 24, true);
+    const position = geometry.getAttribute("position");
+    const normal = geometry.getAttribute("normal");
+    for (let n = 0; n < position.count; ++n) {
+      for (const value of [position.getX(n), position.getY(n), position.getZ(n), normal.getX(n), normal.getY(n), normal.getZ(n)]) expect(Number.isFinite(value)).toBe(true);
+      if (position.getX(n) < 8.9 && position.getZ(n) < 15.9) expect(position.getY(n)).toBeLessThan(-1.1);
+    }
+    const withoutBed = makeCoastGeometry(coast, 24, false);
+    expect(withoutBed.index!.count).toBeLessThan(0.8 * geometry.index!.count);
+    geometry.dispose();
+  });
+});

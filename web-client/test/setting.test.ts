@@ -1,0 +1,84 @@
+// Where a scene's water is, as the page reads it, and what is built around it.
+import { create } from "@bufbuild/protobuf";
+import { describe, expect, it } from "vitest";
+
+import { readSetting, readWind } from "../src/codec/scene_info";
+import { Boundary, Dispersion, SceneSchema, Setting, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
+import { makeGlassGeometry, makeStandGeometry, tankSize } from "../src/scene/settings/glass_tank";
+import { makeBasinGeometries } from "../src/scene/settings/pool_basin";
+
+const wall = { boundaryMinusX: WaveBoundary.REFLECT, boundaryPlusX: WaveBoundary.REFLECT, boundaryMinusZ: WaveBoundary.REFLECT, boundaryPlusZ: WaveBoundary.REFLECT };
+const sized = { sideM: 16, depthM: 1.5, resolutionCount: 192 };
+
+describe("the setting", () => {
+  it("is the one that the server names", () => {
+    for (const [setting, name] of [[Setting.POOL, "pool"], [Setting.GLASS_TANK, "glassTank"], [Setting.FLUME, "flume"], [Setting.OPEN_SEA, "openSea"]] as const)
+      expect(readSetting(create(SceneSchema, { wave: sized, setting }))).toBe(name);
+  });
+
+  it("follows from the sides where a server names none, or one that this page does not know", () => {
+    for (const setting of [Setting.UNSPECIFIED, 99 as Setting]) {
+      expect(readSetting(create(SceneSchema, { wave: sized, setting }))).toBe("openSea");
+      expect(readSetting(create(SceneSchema, { wave: { ...sized, ...wall }, setting }))).toBe("pool");
+      expect(readSetting(create(SceneSchema, { particles: { boxSideM: 4, boundaryX: Boundary.WALL }, setting }))).toBe("glassTank");
+    }
+  });
+
+  it("is no open sea without a wave", () => {
+    expect(readSetting(create(SceneSchema, { particles: {}, setting: Setting.OPEN_SEA }))).toBe("glassTank");
+  });
+});
+
+describe("the wind of a scene", () => {
+  const storm = { levelRatio: 0.3, waveHeightM: 0.35, windDirectionDeg: 40, windSpeedMps: 15, fetchM: 2000 };
+  const open = { ...sized, dispersion: Dispersion.AIRY, boundaryMinusX: WaveBoundary.ABSORB, boundaryPlusX: WaveBoundary.ABSORB };
+
+  it("comes in as a sea through an open side of water with dispersion only", () => {
+    expect(readWind(create(SceneSchema, { wave: open, storm, gravityMps2: 9.81, seed: 3n }))).toMatchObject({ comesIn: true, seed: 3n, levelRatio: 0.3, directionDeg: 40 });
+    expect(readWind(create(SceneSchema, { wave: { ...open, dispersion: Dispersion.NONE }, storm, gravityMps2: 9.81 }))).toMatchObject({ comesIn: false });
+  });
+
+  it("is absent without a storm, or with numbers that cannot be drawn", () => {
+    expect(readWind(create(SceneSchema, { wave: open, gravityMps2: 9.81 }))).toBeUndefined();
+    expect(readWind(create(SceneSchema, { wave: open, storm: { ...storm, fetchM: NaN }, gravityMps2: 9.81 }))).toBeUndefined();
+  });
+});
+
+function boundsOf(geometry: ReturnType<typeof makeGlassGeometry>) {
+  geometry.computeBoundingBox();
+  return geometry.boundingBox!;
+}
+
+describe("a tank", () => {
+  const greeting = { sideM: 4, widthM: 0.8, waterExtents: { sideM: 0.8, depthM: 2 }, setting: "flume" as const };
+
+  it("encloses the water with room above it, and the glass lies outside the water", () => {
+    const size = tankSize(greeting);
+    expect(size.heightM).toBeGreaterThan(2.1);
+    const { min, max } = boundsOf(makeGlassGeometry(size));
+    expect(max.x).toBeGreaterThan(2);
+    expect(max.z).toBeGreaterThan(0.4);
+    expect(min.y).toBe(0);
+    expect(max.y).toBeCloseTo(size.heightM, 6);
+  });
+
+  it("stands on something that begins below its floor", () => {
+    for (const setting of ["flume", "glassTank"] as const) {
+      const { min, max } = boundsOf(makeStandGeometry(tankSize({ ...greeting, setting })));
+      expect(min.y).toBeLessThan(-1);
+      expect(max.x).toBeGreaterThan(2);
+    }
+  });
+});
+
+describe("a pool", () => {
+  it("has its floor at 0, a rim above the water, and nothing inside the square above the floor", () => {
+    const { tiled, planted } = makeBasinGeometries(16, 16, 1.5);
+    expect(boundsOf(tiled).min.y).toBe(0);
+    expect(boundsOf(tiled).max.y).toBeGreaterThan(1.5);
+    expect(boundsOf(planted).max.x).toBeGreaterThan(300);
+    const position = tiled.getAttribute("position");
+    for (let n = 0; n < position.count; ++n)
+      if (Math.abs(position.getX(n)) < 7.8 && Math.abs(position.getZ(n)) < 7.8) expect(position.getY(n)).toBe(0);
+  });
+});
