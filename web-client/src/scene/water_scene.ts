@@ -1,5 +1,5 @@
-// Draws everything of one room. Order of a picture: field pass → sky, floor, solids and particles into a linear target → the water to
-// the canvas, which reads that target for refraction → the target to the canvas where there is no water.
+// Draws everything of one room. Order of a picture: field pass → sky, floor and solids into a linear target → the water to the canvas,
+// which reads that target for refraction → the target to the canvas where there is no water → the particles' liquid (fluid.ts).
 import {
   DepthTexture,
   HalfFloatType,
@@ -19,6 +19,7 @@ import type { FoamFrame, Frame, ParticleFrame, SurfaceFrame } from "../net/messa
 import { unpackBodies, type BodiesState, type BodyPose } from "./bodies";
 import { Boats } from "./boats";
 import { FieldPass } from "./field_pass";
+import { Fluid } from "./fluid";
 import { FoamField } from "./foam_field";
 import { FrameRing } from "./frame_ring";
 import { FullscreenPass } from "./fullscreen";
@@ -27,7 +28,6 @@ import { Ground } from "./ground";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { kFloorDropSides, Landscape } from "./landscape";
 import { makeNoiseTexture } from "./noise_texture";
-import { ParticleCloud } from "./particle_cloud";
 import { PlayoutClock } from "./playout_clock";
 import type { WaterShape } from "./pick";
 import type { Quality } from "./quality";
@@ -62,7 +62,7 @@ export class WaterScene {
   private field: FieldPass | undefined;
   private body: WaterBody | undefined;
   private ground: Ground | undefined;
-  private cloud: ParticleCloud | undefined;
+  private fluid: Fluid | undefined;
   private foam: FoamField | undefined;
   private solid: RawShaderMaterial | undefined;
   private landscape: Landscape | undefined;
@@ -108,10 +108,7 @@ export class WaterScene {
     this.ground = new Ground(this.sky, this.field?.texture, sideM, greeting.widthM, depthM, this.quality.plain);
     if (this.landscape) this.ground.lowerTo(-depthM - kFloorDropSides * sideM);
     this.solids.add(this.ground.mesh);
-    if (greeting.hasParticles) {
-      this.cloud = new ParticleCloud(this.sky, this.field?.texture, sideM, depthM, this.quality);
-      this.solids.add(this.cloud.mesh);
-    }
+    if (greeting.hasParticles) this.fluid = new Fluid(this.sky, this.field?.texture, sideM, this.quality.fluid);
     this.camera.near = sideM / 160;
     this.camera.far = sideM * 45;
     this.camera.updateProjectionMatrix();
@@ -188,7 +185,6 @@ export class WaterScene {
     this.sky.follow(camera);
     this.ground?.update(camera.position);
     (this.solid?.uniforms["u_camera_m"]!.value as Vector3 | undefined)?.copy(camera.position);
-    this.cloud?.update(camera, this.size.x, this.size.y);
     this.body?.update(camera.position, camera.near, camera.far, this.behindTextures(), this.size.x, this.size.y);
 
     renderer.setRenderTarget(this.behind);
@@ -198,8 +194,9 @@ export class WaterScene {
     renderer.setRenderTarget(null);
     renderer.clear();
     renderer.render(this.waters, camera);
-    // Last, so that it shades only the pixels without water.
+    // After the water, so that it shades only the pixels without water.
     this.present.render(renderer, null);
+    this.fluid?.render(renderer, camera, this.behindTextures());
   }
 
   /** Draws again what exists only on the GPU. */
@@ -224,10 +221,10 @@ export class WaterScene {
     const bodies = this.boats && this.bodyStates.around(shownS);
     if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
     const particles = this.particleFrames.around(shownS);
-    if (!particles || !this.cloud) return;
+    if (!particles || !this.fluid) return;
     const maxAdvanceS = kMaxAdvanceIntervals * this.clock.intervalS();
     const advanceS = Math.min(Math.max(shownS - particles.from.timeS, 0), maxAdvanceS);
-    this.cloud.show(particles.from, advanceS);
+    this.fluid.show(particles.from, advanceS);
   }
 
   private leave(): void {
@@ -238,10 +235,9 @@ export class WaterScene {
     this.clock.reset();
     if (this.body) this.waters.remove(this.body.group);
     if (this.ground) this.solids.remove(this.ground.mesh);
-    if (this.cloud) this.solids.remove(this.cloud.mesh);
     if (this.landscape) this.solids.remove(this.landscape.group);
-    for (const part of [this.field, this.body, this.ground, this.cloud, this.foam, this.landscape, this.boats, this.solid]) part?.dispose();
-    this.field = this.body = this.ground = this.cloud = undefined;
+    for (const part of [this.field, this.body, this.ground, this.fluid, this.foam, this.landscape, this.boats, this.solid]) part?.dispose();
+    this.field = this.body = this.ground = this.fluid = undefined;
     this.foam = this.landscape = this.boats = this.solid = undefined;
   }
 
