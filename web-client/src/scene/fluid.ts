@@ -1,16 +1,18 @@
 // Particles as one liquid, in screen space: the passes in order. Their targets may be smaller than the canvas; the last pass draws on it.
+//   shadow     particles -> light on the floor of a tank, before the canvas is drawn
 //   tiles      particles -> tiles of the screen with fluid; the screen passes below run there only
 //   depth      particles -> nearest surface
 //   smooth     nearest surface -> smooth surface
 //   normal     smooth surface -> normals
 //   thickness  particles -> thickness, coverage
 //   surface    all of these, sky, solids -> canvas
-import { Vector2, Vector4, type PerspectiveCamera, type Texture, type WebGLRenderer } from "three";
+import { Vector2, Vector4, type PerspectiveCamera, type Texture, type WebGLRenderer, type WebGLRenderTarget } from "three";
 
 import type { ParticleFrame } from "../net/messages";
 import { FluidDepthPass } from "./fluid_depth_pass";
 import { FluidNormalPass } from "./fluid_normal_pass";
 import { FluidParticles } from "./fluid_particles";
+import { FluidShadowPass } from "./fluid_shadow_pass";
 import { FluidSmoothPass } from "./fluid_smooth_pass";
 import { FluidSurfacePass } from "./fluid_surface_pass";
 import { FluidThicknessPass } from "./fluid_thickness_pass";
@@ -20,6 +22,9 @@ import type { Sky } from "./sky";
 import { viewRay } from "./view_ray";
 import type { BehindTextures } from "./water_body";
 
+/** A tank of particles absorbs light as if it had this side, because small ones would look like glass. */
+const kColourSideM = 6;
+
 export class Fluid {
   private readonly particles: FluidParticles;
   private readonly tiles: FluidTilesPass;
@@ -28,23 +33,33 @@ export class Fluid {
   private readonly normal: FluidNormalPass;
   private readonly thickness: FluidThicknessPass;
   private readonly surface: FluidSurfacePass;
+  /** Undefined over a wave, which has no floor of its own. */
+  private readonly shadow: FluidShadowPass | undefined;
   private readonly size = new Vector2();
   private readonly ray = new Vector4();
 
   /** `field` undefined: no wave around the particles. */
-  constructor(sky: Sky, field: Texture | undefined, sideM: number, private readonly quality: FluidQuality) {
+  constructor(sky: Sky, noise: Texture, field: Texture | undefined, sideM: number, private readonly quality: FluidQuality) {
     this.particles = new FluidParticles(field, sideM);
+    const colourRatio = field ? 1 : Math.max(kColourSideM / sideM, 1);
     this.tiles = new FluidTilesPass(this.particles);
     this.depth = new FluidDepthPass(this.particles);
     this.smooth = new FluidSmoothPass(this.tiles, quality.samplesCount, quality.roundsCount);
     this.normal = new FluidNormalPass(this.tiles);
     this.thickness = new FluidThicknessPass(this.particles);
-    this.surface = new FluidSurfacePass(this.tiles, sky, this.particles.uniforms, field !== undefined, sideM);
+    this.surface = new FluidSurfacePass(this.tiles, sky, noise, this.particles.uniforms, field !== undefined, colourRatio);
+    if (!field) this.shadow = new FluidShadowPass(this.particles, sky, sideM, colourRatio);
   }
 
   /** Shows `frame`, extrapolated by its velocities for `advanceS` seconds. */
   show(frame: ParticleFrame, advanceS: number): void {
     this.particles.show(frame, advanceS);
+  }
+
+  /** Shades the floor in the target of the solids; `floorM`: its height. */
+  renderShadow(renderer: WebGLRenderer, camera: PerspectiveCamera, solids: WebGLRenderTarget, floorM: number): void {
+    const { frame } = this.particles;
+    if (frame && frame.count > 0) this.shadow?.render(renderer, camera, solids, floorM, frame.radiusM);
   }
 
   /** Draws the fluid over the picture on the canvas. `behind`: the solids. */
@@ -63,7 +78,7 @@ export class Fluid {
   }
 
   dispose(): void {
-    for (const part of [this.particles, this.tiles, this.depth, this.smooth, this.normal, this.thickness, this.surface]) part.dispose();
+    for (const part of [this.particles, this.tiles, this.depth, this.smooth, this.normal, this.thickness, this.surface, this.shadow]) part?.dispose();
   }
 
   private resize(renderer: WebGLRenderer): void {

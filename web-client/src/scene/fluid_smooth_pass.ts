@@ -5,9 +5,9 @@ import { makeFrontTarget } from "./fluid_targets";
 import type { FluidTilesPass } from "./fluid_tiles_pass";
 import { makeMaterial } from "./shaders";
 
-/** Lengths of the filter in particle radii: half the kernel, and half the range of distances that counts as one surface. */
+/** Lengths of the filter in particle radii: half the kernel, and how far a pair's mean may lie from the pixel. */
 const kReachRadii = 5;
-const kRangeRadii = 4;
+const kRangeRadii = 2;
 
 export class FluidSmoothPass {
   private readonly across = makeFrontTarget(false);

@@ -7,20 +7,18 @@ import { makeMaterial, type Uniforms } from "./shaders";
 import type { Sky } from "./sky";
 import type { BehindTextures } from "./water_body";
 
-/** A tank of particles absorbs light as if it had this side, because small ones would look like glass. */
-const kColourSideM = 6;
-
 export class FluidSurfacePass {
   private readonly material: RawShaderMaterial;
 
   /** `hasWave`: the fluid is one body with the wave, whose textures are in `particleUniforms`. */
-  constructor(private readonly tiles: FluidTilesPass, sky: Sky, particleUniforms: Uniforms, hasWave: boolean, sideM: number) {
+  constructor(private readonly tiles: FluidTilesPass, sky: Sky, noise: Texture, particleUniforms: Uniforms, hasWave: boolean, colourRatio: number) {
     this.material = makeMaterial(
       "fluidSurface",
       {
         ...sky.uniforms,
         ...tiles.uniforms,
         ...particleUniforms,
+        u_noise: { value: noise },
         u_front: { value: null },
         u_normals: { value: null },
         u_thickness: { value: null },
@@ -31,7 +29,7 @@ export class FluidSurfacePass {
         u_projection: { value: new Matrix4() },
         u_camera_world: { value: new Matrix4() },
         u_camera_m: { value: new Vector3() },
-        u_colour_ratio: { value: hasWave ? 1 : Math.max(kColourSideM / sideM, 1) },
+        u_colour_ratio: { value: colourRatio },
       },
       { defines: hasWave ? { WAVE: 1 } : {}, transparent: true },
     );

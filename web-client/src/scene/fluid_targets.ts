@@ -1,5 +1,5 @@
 // Render targets of the fluid's passes.
-import { FloatType, HalfFloatType, LinearFilter, NearestFilter, RGBAFormat, RGFormat, WebGLRenderTarget } from "three";
+import { AddEquation, CustomBlending, FloatType, HalfFloatType, LinearFilter, NearestFilter, OneFactor, OneMinusDstAlphaFactor, RGBAFormat, RGFormat, WebGLRenderTarget, type ShaderMaterialParameters } from "three";
 
 /** 1 / distance and foam. Full floats: normals come from differences of neighbours. */
 export function makeFrontTarget(depthBuffer: boolean): WebGLRenderTarget {
@@ -10,3 +10,16 @@ export function makeFrontTarget(depthBuffer: boolean): WebGLRenderTarget {
 export function makeHalfTarget(): WebGLRenderTarget {
   return new WebGLRenderTarget(1, 1, { format: RGBAFormat, type: HalfFloatType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
 }
+
+/** Blending of fluid_thickness.frag. */
+export const thicknessBlending: ShaderMaterialParameters = {
+  blending: CustomBlending,
+  blendEquation: AddEquation,
+  blendSrc: OneFactor,
+  blendDst: OneFactor,
+  blendSrcAlpha: OneMinusDstAlphaFactor,
+  blendDstAlpha: OneFactor,
+  depthTest: false,
+  depthWrite: false,
+  transparent: true,
+};

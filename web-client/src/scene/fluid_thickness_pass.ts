@@ -1,9 +1,9 @@
 // Adds up the particles along each pixel's ray. Reads the particles. Writes thickness [m], weight, weight of particles
 // among others, coverage.
-import { AddEquation, CustomBlending, OneFactor, OneMinusDstAlphaFactor, Vector2, type PerspectiveCamera, type RawShaderMaterial, type WebGLRenderer } from "three";
+import { Vector2, type PerspectiveCamera, type RawShaderMaterial, type WebGLRenderer } from "three";
 
 import type { FluidParticles } from "./fluid_particles";
-import { makeHalfTarget } from "./fluid_targets";
+import { makeHalfTarget, thicknessBlending } from "./fluid_targets";
 import { makeMaterial } from "./shaders";
 
 export class FluidThicknessPass {
@@ -11,17 +11,7 @@ export class FluidThicknessPass {
   private readonly material: RawShaderMaterial;
 
   constructor(private readonly particles: FluidParticles) {
-    this.material = makeMaterial("fluidThickness", { ...particles.uniforms, u_target_px: { value: new Vector2(1, 1) } }, {
-      blending: CustomBlending,
-      blendEquation: AddEquation,
-      blendSrc: OneFactor,
-      blendDst: OneFactor,
-      blendSrcAlpha: OneMinusDstAlphaFactor,
-      blendDstAlpha: OneFactor,
-      depthTest: false,
-      depthWrite: false,
-      transparent: true,
-    });
+    this.material = makeMaterial("fluidThickness", { ...particles.uniforms, u_target_px: { value: new Vector2(1, 1) } }, thicknessBlending);
   }
 
   resize(widthPx: number, heightPx: number): void {

@@ -9,6 +9,8 @@ import fluidDepthFrag from "./shaders/fluid_depth.frag?raw";
 import fluidEllipse from "./shaders/fluid_ellipse.glsl?raw";
 import fluidNormalFrag from "./shaders/fluid_normal.frag?raw";
 import fluidParticleVert from "./shaders/fluid_particle.vert?raw";
+import fluidShadowFrag from "./shaders/fluid_shadow.frag?raw";
+import fluidShadowVert from "./shaders/fluid_shadow.vert?raw";
 import fluidSizes from "./shaders/fluid_sizes.glsl?raw";
 import fluidSmoothFrag from "./shaders/fluid_smooth.frag?raw";
 import fluidSurfaceFrag from "./shaders/fluid_surface.frag?raw";
@@ -35,6 +37,7 @@ const kPrograms = {
   field: [fullscreenVert, fieldFrag],
   fluidDepth: [fluidParticleVert, fluidDepthFrag],
   fluidNormal: [fluidTileVert, fluidNormalFrag],
+  fluidShadow: [fluidShadowVert, fluidShadowFrag],
   fluidSmooth: [fluidTileVert, fluidSmoothFrag],
   fluidSurface: [fluidTileVert, fluidSurfaceFrag],
   fluidThickness: [fluidParticleVert, fluidThicknessFrag],

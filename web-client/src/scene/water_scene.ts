@@ -108,7 +108,7 @@ export class WaterScene {
     this.ground = new Ground(this.sky, this.field?.texture, sideM, greeting.widthM, depthM, this.quality.plain);
     if (this.landscape) this.ground.lowerTo(-depthM - kFloorDropSides * sideM);
     this.solids.add(this.ground.mesh);
-    if (greeting.hasParticles) this.fluid = new Fluid(this.sky, this.field?.texture, sideM, this.quality.fluid);
+    if (greeting.hasParticles) this.fluid = new Fluid(this.sky, this.noise, this.field?.texture, sideM, this.quality.fluid);
     this.camera.near = sideM / 160;
     this.camera.far = sideM * 45;
     this.camera.updateProjectionMatrix();
@@ -190,6 +190,7 @@ export class WaterScene {
     renderer.setRenderTarget(this.behind);
     renderer.clear();
     renderer.render(this.solids, camera);
+    if (this.ground) this.fluid?.renderShadow(renderer, camera, this.behind, this.ground.mesh.position.y);
     this.present.material.uniforms["u_behind"]!.value = this.behind.texture;
     renderer.setRenderTarget(null);
     renderer.clear();

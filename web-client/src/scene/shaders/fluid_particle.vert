@@ -3,7 +3,8 @@
 // Points, not instanced quads: software renderers handle each instance like a draw call (measured: 3 times the processor time).
 // A particle among others is drawn wider than it is, so that neighbours overlap. A single one is a drop, drawn smaller, because it
 // stands for many, and stretched along its flight. Under the wave's surface (u_has_water) a particle is the wave's water and is not
-// drawn; where many of them are white, their foam floats on the surface. TILES: the target's pixels are tiles of the screen.
+// drawn; where many of them are white, their foam floats on the surface. TILES: the target's pixels are tiles of the screen. SHADOW: seen along
+// the sunlight, at the place of the floor that it shades.
 in vec3 position;  // x, z, y as fractions of the bounds
 in vec3 a_packed;  // u16 / 65535
 
@@ -20,6 +21,11 @@ uniform float u_side_m;
 uniform bool u_has_water;
 
 #include <fluid_sizes>
+#ifdef SHADOW
+uniform vec3 u_sun_direction;
+uniform float u_floor_m;   // height of the floor
+uniform float u_shaded_m;  // side of the square of floor that the target shows, around the origin
+#endif
 
 flat out float v_ahead_m;    // distance of the centre along the view's axis
 flat out float v_radius_m;   // across the flight
@@ -47,6 +53,16 @@ void main() {
       bulk = 1.0;
     }
   }
+#ifdef SHADOW
+  v_ahead_m = 0.0;
+  v_radius_m = u_radius_m * kBulkRadius;
+  v_foam_bulk = vec2(foam, 1.0);
+  v_flight = vec3(1.0, 0.0, 1.0);
+  vec2 shaded = center.xz - u_sun_direction.xz / u_sun_direction.y * (center.y - u_floor_m);
+  gl_Position = vec4(2.0 * shaded / u_shaded_m, 0.0, 1.0);
+  gl_PointSize = 2.0 * v_radius_m * u_target_px.y / u_shaded_m;
+  return;
+#endif
   vec3 center_m = (viewMatrix * vec4(center, 1.0)).xyz;
   v_ahead_m = -center_m.z;
   v_radius_m = u_radius_m * mix(kDropRadius, kBulkRadius, bulk);

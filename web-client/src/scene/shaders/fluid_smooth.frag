@@ -8,7 +8,7 @@
 uniform sampler2D u_front;
 uniform vec2 u_axis;        // (1, 0) or (0, 1)
 uniform float u_reach_m;    // half the filter's length in the water
-uniform float u_range_m;    // half the range of distances
+uniform float u_range_m;    // farthest from the pixel that a pair's mean may lie
 uniform float u_px_per_m;   // pixels of the target per metre at distance 1 m
 layout(location = 0) out vec2 front;
 

@@ -20,12 +20,16 @@ uniform mat4 u_projection;
 uniform mat4 u_camera_world;
 uniform vec3 u_camera_m;
 uniform float u_radius_m;
+uniform sampler2D u_noise;
 uniform float u_colour_ratio;  // lengths in the fluid count as so much longer for its colour
 #ifdef WAVE
 uniform sampler2D u_field;
 uniform float u_side_m;
 #endif
-const float kOutlineBend = 1.5;
+const float kLeastFacing = 0.18;
+// Size of one tile of the noise in particle radii.
+const float kLaceRadii = 26.0;
+const float kOutlineBend = 0.8;
 #ifdef WAVE
 const float kGlow = 1.0;
 #else
@@ -86,11 +90,16 @@ void main() {
   // Drawn in front of the wave's surface, from which it can hardly be told.
   gl_FragDepth -= 1e-4 * (1.0 - raised);
 #endif
-  if (dot(normal, ray) > -0.02) normal = normalize(normal - (dot(normal, ray) + 0.04) * ray);
+  // At the lowest angles a normal from few pixels says little, and the reflection would hide the fluid.
+  if (dot(normal, ray) > -kLeastFacing) normal = normalize(normal - (dot(normal, ray) + kLeastFacing) * ray);
 
   // A single drop is a lens: it shows the sky. Foam makes it cloudy; among other particles it is a closed white layer.
   float alone = 1.0 - clamp(through.b / max(through.g, 1e-4), 0.0, 1.0);
-  float white = smoothstep(0.25, 0.85, foam) * mix(0.92, 0.35, alone * raised);
+  // Foam is white where the noise is above a threshold that falls with the foam, so that a thin sheet stays clear between its threads.
+  float lace = texture(u_noise, (world.xz + world.y * vec2(0.7, -0.4)) / (kLaceRadii * u_radius_m)).r;
+  float strength = 0.85 * smoothstep(0.3, 1.0, foam);
+  float threads = smoothstep(1.0 - strength, 1.5 - 0.7 * strength, lace + 0.1);
+  float white = mix(threads * (0.5 + 0.4 * foam), 0.35 * foam, alone * raised);
   // Near an outline the far side reflects totally, so that the path is longer than the ray's straight way out.
   float folded_m = 6.0 * u_radius_m * (1.0 - exp(-thickness_m / u_radius_m)) * (1.0 - alone) * raised;
   float path_m = (thickness_m + folded_m) * u_colour_ratio;
@@ -104,9 +113,10 @@ void main() {
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
   float fresnel = waterFresnel(facing) * raised;
   vec3 mirrored = reflect(ray, normal);
-  vec3 reflected = fresnel * skyLight(mirrored);
+  vec3 mirrored_light = skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z));
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.9) reflected += raised * kSunColor * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel);
+  vec3 glint = vec3(0.0);
+  if (at_sun > 0.9) glint = raised * kSunColor * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel);
 
   vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 1.05 * sun * sun + vec3(0.40, 0.46, 0.53));
   vec3 bent = refract(ray, normal, 0.75);
@@ -114,7 +124,7 @@ void main() {
 #ifdef WAVE
   // The picture behind shows through by the green share that passes.
   float kept = (1.0 - fresnel) * passed.g * (1.0 - white) * (1.0 - 0.6 * alone * raised);
-  vec3 own = mix(reflected + (1.0 - fresnel) * mix(glow, lens * 0.6, alone * raised), froth, white);
+  vec3 own = mix(fresnel * mirrored_light + glint + (1.0 - fresnel) * mix(glow, lens * 0.6, alone * raised), froth, white);
   color = vec4(toDisplay(own / max(1.0 - kept, 0.02)), covered * (1.0 - kept));
 #else
   // The point where the refracted ray leaves the fluid, and what the screen shows there.
@@ -122,7 +132,9 @@ void main() {
   vec2 uv = clamp(((leaves.xy / -leaves.z - u_ray.zw) / u_ray.xy) * 0.5 + 0.5, 0.001, 0.999);
   if (distanceAt(uv) < ahead_m) uv = v_uv;
   vec3 behind = texture(u_behind, uv).rgb;
+  // Below the horizon the floor is reflected, of which the screen shows a part.
+  mirrored_light = mix(mirrored_light, behind, smoothstep(0.1, -0.1, mirrored.y));
   vec3 inside = mix(behind * passed + glow, lens, 0.6 * alone);
-  color = vec4(toDisplay(mix(inside * (1.0 - fresnel) + reflected, froth, white)), covered);
+  color = vec4(toDisplay(mix(mix(inside, mirrored_light, fresnel) + glint, froth, white)), covered);
 #endif
 }

@@ -3,6 +3,7 @@
 // MIRROR: solids are reflected as well, as far as they are on the screen. BEACH: the water ends where the bed rises above it.
 // FOAM: white water where the noise tile ("lace") is above a threshold that falls with the foam.
 #include <sky>
+#include <water_optics>
 
 in vec3 v_world;
 in float v_view_z;
@@ -31,8 +32,6 @@ uniform sampler2D u_noise;
 uniform float u_lace_m;
 #endif
 layout(location = 0) out vec4 color;
-
-const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
 
 float viewZ(float depth) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
@@ -134,16 +133,14 @@ void main() {
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = exp(-kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = mix(vec3(0.004, 0.085, 0.155), vec3(0.030, 0.34, 0.40), lifted) * 1.2;
+  vec3 scattered = waterScattered(lifted);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun;
   scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
-  vec3 under = behind * passed + scattered * (1.0 - exp(-0.55 * path_m));
+  vec3 under = behind * passed + scattered * (1.0 - exp(-kScatteringPerM * path_m));
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
-  // Schlick's fit of the Fresnel equations for water.
-  float away = (1.0 - facing) * (1.0 - facing);
-  float fresnel = 0.02 + 0.98 * away * away * (1.0 - facing);
+  float fresnel = waterFresnel(facing);
   vec3 mirrored = reflect(ray, normal);
   fresnel *= edge;
 #ifdef SKIRT
