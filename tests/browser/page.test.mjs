@@ -220,7 +220,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
       const said = `${view}: ${JSON.stringify(body)}`;
       assert.ok(body.water_ratio > 0.2, `water covers too little; ${said}`);
       assert.ok(body.filled_ratio > 0.93, `the water has gaps; ${said}`);
-      // Shaded spheres of this size measured 4 to 6.5, the surface 1 to 1.2.
+      // Shaded spheres of this size measured 4 to 6.5, the surface 0.8 to 1.0.
       assert.ok(body.roughness < 2.5, `single particles are seen; ${said}`);
     }
     await tank.close();
