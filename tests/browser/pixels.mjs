@@ -63,3 +63,42 @@ export async function brightnessAt(page, png, points) {
     [png.toString("base64"), points],
   );
 }
+
+/**
+ * Measures a body of water on a floor: its pixels are those that are bluer than red by more than 12 of 255.
+ * @returns {Promise<{water_ratio: number, filled_ratio: number, roughness: number}>} share of water in the picture; share of water
+ *   between the first and the last water pixel of each row; mean difference of a water pixel's brightness to the mean of those 4 px
+ *   left, right, above and below (0..255), where all of them are water
+ */
+export async function measureBody(page, png) {
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const { width, height } = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    const isWater = (x, y) => data[4 * (y * width + x) + 2] - data[4 * (y * width + x)] > 12;
+    const brightness = (x, y) => [0.2126, 0.7152, 0.0722].reduce((sum, share, i) => sum + share * data[4 * (y * width + x) + i], 0);
+    const apart = 4;
+    const around = [[apart, 0], [-apart, 0], [0, apart], [0, -apart]];
+    let water = 0;
+    let between = 0;
+    let inner = 0;
+    let rough = 0;
+    for (let y = 0; y < height; ++y) {
+      const row = [];
+      for (let x = 0; x < width; ++x) if (isWater(x, y)) row.push(x);
+      if (row.length === 0) continue;
+      water += row.length;
+      between += row.at(-1) - row[0] + 1;
+      for (const x of row) {
+        const beside = around.map(([dx, dy]) => [x + dx, y + dy]);
+        if (!beside.every(([i, k]) => i >= 0 && i < width && k >= 0 && k < height && isWater(i, k))) continue;
+        ++inner;
+        rough += Math.abs(brightness(x, y) - beside.reduce((sum, [i, k]) => sum + brightness(i, k), 0) / 4);
+      }
+    }
+    return { water_ratio: water / (width * height), filled_ratio: water / Math.max(between, 1), roughness: rough / Math.max(inner, 1) };
+  }, png.toString("base64"));
+}

@@ -1,15 +1,25 @@
 // Chooses the drawing quality: `?quality=low|high`, or by the name of the renderer. With ?quality=high the resolution is never lowered.
 
+/** Settings of the particles' liquid. */
+export interface FluidQuality {
+  /** Size of its targets, as a share of the canvas. */
+  scale: number;
+  /** Samples of its filter on each side of a pixel, and how often the filter runs. */
+  samplesCount: number;
+  roundsCount: number;
+}
+
 /** Settings of the scene. */
 export interface Quality {
   /** Cells along each side of the drawn surface. */
   surfaceCellsCount: number;
-  /** Samples per pixel for solids and particles. */
+  /** Samples per pixel for solids and the water's edge. */
   samplesCount: number;
-  /** Shaders without the parts that are slow on software renderers: refraction, caustics, exact spheres. */
+  /** Shaders without the parts that are slow on software renderers: refraction and caustics of the wave. */
   plain: boolean;
   /** Most texels along each side of the field texture; a finer surface is sampled. */
   fieldCountMax: number;
+  fluid: FluidQuality;
 }
 
 export interface ChosenQuality extends Quality {
@@ -20,8 +30,8 @@ export interface ChosenQuality extends Quality {
   remark: string;
 }
 
-const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, adaptive: true, maxPixelRatio: 2, remark: "" };
-const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
+const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, adaptive: true, maxPixelRatio: 2, remark: "" };
+const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 1 }, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
 
 export function chooseQuality(search: string, rendererName: string): ChosenQuality {
   const wanted = new URLSearchParams(search).get("quality");

@@ -14,7 +14,10 @@ export function makeRenderer(canvas: HTMLCanvasElement, search: string): { rende
   const quality = chooseQuality(search, name);
   try {
     const antialias = quality.samplesCount > 1;
-    return { renderer: new WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" }), quality };
+    const renderer = new WebGLRenderer({ canvas, antialias, powerPreference: "high-performance" });
+    // Targets are cleared to zero in all channels.
+    renderer.setClearColor(0x000000, 0);
+    return { renderer, quality };
   } catch {
     // three has logged the reason.
     return undefined;

@@ -5,12 +5,20 @@ import bed from "./shaders/bed.glsl?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
 import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
+import fluidDepthFrag from "./shaders/fluid_depth.frag?raw";
+import fluidEllipse from "./shaders/fluid_ellipse.glsl?raw";
+import fluidNormalFrag from "./shaders/fluid_normal.frag?raw";
+import fluidParticleVert from "./shaders/fluid_particle.vert?raw";
+import fluidShadowFrag from "./shaders/fluid_shadow.frag?raw";
+import fluidShadowVert from "./shaders/fluid_shadow.vert?raw";
+import fluidSizes from "./shaders/fluid_sizes.glsl?raw";
+import fluidSmoothFrag from "./shaders/fluid_smooth.frag?raw";
+import fluidSurfaceFrag from "./shaders/fluid_surface.frag?raw";
+import fluidThicknessFrag from "./shaders/fluid_thickness.frag?raw";
+import fluidTileMarkFrag from "./shaders/fluid_tile_mark.frag?raw";
+import fluidTileVert from "./shaders/fluid_tile.vert?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
-import particleColor from "./shaders/particle_color.glsl?raw";
-import particleFrag from "./shaders/particle.frag?raw";
-import particlePlainFrag from "./shaders/particle_plain.frag?raw";
-import particleVert from "./shaders/particle.vert?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
@@ -24,14 +32,20 @@ import solidFrag from "./shaders/solid.frag?raw";
 import solidVert from "./shaders/solid.vert?raw";
 import tilesFrag from "./shaders/tiles.frag?raw";
 import waterFrag from "./shaders/water.frag?raw";
+import waterOptics from "./shaders/water_optics.glsl?raw";
 import waterVert from "./shaders/water.vert?raw";
 
 const kPrograms = {
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
+  fluidDepth: [fluidParticleVert, fluidDepthFrag],
+  fluidNormal: [fluidTileVert, fluidNormalFrag],
+  fluidShadow: [fluidShadowVert, fluidShadowFrag],
+  fluidSmooth: [fluidTileVert, fluidSmoothFrag],
+  fluidSurface: [fluidTileVert, fluidSurfaceFrag],
+  fluidThickness: [fluidParticleVert, fluidThicknessFrag],
+  fluidTileMark: [fluidParticleVert, fluidTileMarkFrag],
   glass: [solidVert, glassFrag],
-  particle: [particleVert, particleFrag],
-  particlePlain: [particleVert, particlePlainFrag],
   present: [fullscreenVert, presentFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
@@ -45,7 +59,15 @@ const kPrograms = {
 // Samplers default to low precision in GLSL ES, which would round elevations on phones.
 const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].map((t) => `precision highp ${t};\n`).join("");
 
-const kShared: Record<string, string> = { sky, bed, cell_hash: cellHash, particle_color: particleColor, sea_blend: seaBlend };
+const kShared: Record<string, string> = {
+  sky,
+  bed,
+  cell_hash: cellHash,
+  fluid_ellipse: fluidEllipse,
+  fluid_sizes: fluidSizes,
+  sea_blend: seaBlend,
+  water_optics: waterOptics,
+};
 
 function expand(source: string): string {
   return kPrecision + source.replace(/#include <(\w+)>/g, (_, name: string) => kShared[name]!);

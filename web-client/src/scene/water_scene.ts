@@ -1,5 +1,5 @@
-// Draws everything of one room. Order of a picture: field pass → sky, floor, solids and particles into a linear target → the water to
-// the canvas, which reads that target for refraction → the target to the canvas where there is no water.
+// Draws everything of one room. Order of a picture: field pass → sky, floor and solids into a linear target → the water to the canvas,
+// which reads that target for refraction → the target to the canvas where there is no water → the particles' liquid (fluid.ts).
 import {
   DepthTexture,
   HalfFloatType,
@@ -19,13 +19,13 @@ import type { FoamFrame, Frame, ParticleFrame, SurfaceFrame } from "../net/messa
 import { unpackBodies, type BodiesState, type BodyPose } from "./bodies";
 import { Boats } from "./boats";
 import { FieldPass } from "./field_pass";
+import { Fluid } from "./fluid";
 import { FoamField } from "./foam_field";
 import { FrameRing } from "./frame_ring";
 import { FullscreenPass } from "./fullscreen";
 import type { ViewedBox } from "./framing";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { makeNoiseTexture } from "./noise_texture";
-import { ParticleCloud } from "./particle_cloud";
 import { PlayoutClock } from "./playout_clock";
 import type { WaterShape } from "./pick";
 import type { Quality } from "./quality";
@@ -65,7 +65,7 @@ export class WaterScene {
   private field: FieldPass | undefined;
   private body: WaterBody | undefined;
   private surroundings: Surroundings | undefined;
-  private cloud: ParticleCloud | undefined;
+  private fluid: Fluid | undefined;
   private foam: FoamField | undefined;
   private solid: RawShaderMaterial | undefined;
   private boats: Boats | undefined;
@@ -110,10 +110,7 @@ export class WaterScene {
       this.body = new WaterBody(this.sky, this.field.texture, this.behindTextures(), bedOf(greeting), this.noise, this.foam?.uniforms, hasSolids(greeting), edge, this.quality);
       this.waters.add(this.body.group);
     }
-    if (greeting.hasParticles) {
-      this.cloud = new ParticleCloud(this.sky, this.field?.texture, sideM, depthM, this.quality);
-      this.solids.add(this.cloud.mesh);
-    }
+    if (greeting.hasParticles) this.fluid = new Fluid(this.sky, this.noise, this.field?.texture, sideM, this.quality.fluid);
     this.camera.near = sideM / 160;
     this.camera.far = sideM * kFarSides;
     this.camera.updateProjectionMatrix();
@@ -191,18 +188,19 @@ export class WaterScene {
     this.sky.follow(camera);
     this.surroundings?.look(camera.position);
     (this.solid?.uniforms["u_camera_m"]!.value as Vector3 | undefined)?.copy(camera.position);
-    this.cloud?.update(camera, this.size.x, this.size.y);
     this.body?.update(camera.position, camera.near, camera.far, this.behindTextures(), this.size.x, this.size.y);
 
     renderer.setRenderTarget(this.behind);
     renderer.clear();
     renderer.render(this.solids, camera);
+    if (this.ground) this.fluid?.renderShadow(renderer, camera, this.behind, this.ground.mesh.position.y);
     this.present.material.uniforms["u_behind"]!.value = this.behind.texture;
     renderer.setRenderTarget(null);
     renderer.clear();
     renderer.render(this.waters, camera);
-    // Last, so that it shades only the pixels without water.
+    // After the water, so that it shades only the pixels without water.
     this.present.render(renderer, null);
+    this.fluid?.render(renderer, camera, this.behindTextures());
     if (this.surroundings?.overlay) renderer.render(this.surroundings.overlay, camera);
   }
 
@@ -234,10 +232,10 @@ export class WaterScene {
     const bodies = this.boats && this.bodyStates.around(shownS);
     if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
     const particles = this.particleFrames.around(shownS);
-    if (!particles || !this.cloud) return;
+    if (!particles || !this.fluid) return;
     const maxAdvanceS = kMaxAdvanceIntervals * this.clock.intervalS();
     const advanceS = Math.min(Math.max(shownS - particles.from.timeS, 0), maxAdvanceS);
-    this.cloud.show(particles.from, advanceS);
+    this.fluid.show(particles.from, advanceS);
   }
 
   private leave(): void {
@@ -248,9 +246,8 @@ export class WaterScene {
     this.clock.reset();
     if (this.body) this.waters.remove(this.body.group);
     if (this.surroundings) this.solids.remove(...this.surroundings.solids);
-    if (this.cloud) this.solids.remove(this.cloud.mesh);
-    for (const part of [this.field, this.body, this.surroundings, this.cloud, this.foam, this.boats, this.solid]) part?.dispose();
-    this.field = this.body = this.surroundings = this.cloud = undefined;
+    for (const part of [this.field, this.body, this.surroundings, this.fluid, this.foam, this.boats, this.solid]) part?.dispose();
+    this.field = this.body = this.surroundings = this.fluid = undefined;
     this.foam = this.boats = this.solid = undefined;
   }
 

@@ -4,6 +4,7 @@
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
 // FOAM: white water where the noise tile ("lace") is above a threshold that falls with the foam.
 #include <sky>
+#include <water_optics>
 
 in vec3 v_world;
 in float v_view_z;
@@ -40,7 +41,6 @@ uniform float u_lace_m;
 layout(location = 0) out vec4 color;
 
 const vec3 kFarBed = vec3(0.209, 0.198, 0.154);  // light of the level bed of coast.ts as solid.frag draws it, on average
-const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
 
 // exp(-x) for x >= 0. Exponentials cost software renderers a third of the frame.
 vec3 fading(vec3 x) {
@@ -208,16 +208,14 @@ void main() {
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = mix(vec3(0.004, 0.085, 0.155), vec3(0.030, 0.34, 0.40), lifted) * 1.2;
+  vec3 scattered = waterScattered(lifted);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun;
   scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
-  vec3 under = behind * passed + scattered * (1.0 - fading(vec3(0.55 * path_m)).x);
+  vec3 under = behind * passed + scattered * (1.0 - fading(vec3(kScatteringPerM * path_m)).x);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
-  // Schlick's fit of the Fresnel equations for water.
-  float away = (1.0 - facing) * (1.0 - facing);
-  float fresnel = 0.02 + 0.98 * away * away * (1.0 - facing);
+  float fresnel = waterFresnel(facing);
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
   // A rough surface seen at a low angle shows more of its facing slopes (fit after Bruneton et al. 2010), and reflects higher sky.

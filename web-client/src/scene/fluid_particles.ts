@@ -1,0 +1,84 @@
+// The particles of the time shown, on the GPU: the 12 bytes of a plain particle unchanged, as six u16 in one interleaved buffer, so no
+// JavaScript runs per particle. Several passes draw them as points.
+import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type WebGLRenderer } from "three";
+
+import { kParticleBytes } from "../codec/frame_types";
+import type { ParticleFrame } from "../net/messages";
+import type { Uniforms } from "./shaders";
+
+const kWordsPerParticle = kParticleBytes / 2;
+
+export class FluidParticles {
+  /** For the materials of fluid_particle.vert, besides u_target_px. */
+  readonly uniforms: Uniforms;
+  private readonly scene = new Scene();
+  private readonly points = new Points<BufferGeometry, RawShaderMaterial>(new BufferGeometry());
+  private words: InterleavedBuffer | undefined;
+  private shown: ParticleFrame | undefined;
+
+  /** `field` undefined: no wave around the particles. */
+  constructor(field: Texture | undefined, sideM: number) {
+    this.uniforms = {
+      u_min_m: { value: new Vector3() },
+      u_max_m: { value: new Vector3() },
+      u_max_speed_mps: { value: 0 },
+      u_advance_s: { value: 0 },
+      u_radius_m: { value: 1 },
+      u_field: { value: field ?? null },
+      u_side_m: { value: sideM },
+      u_has_water: { value: field !== undefined },
+    };
+    this.points.frustumCulled = false;
+    this.scene.add(this.points);
+  }
+
+  /** The frame whose particles are shown; undefined before the first one. */
+  get frame(): ParticleFrame | undefined {
+    return this.shown;
+  }
+
+  /** Shows `frame`, extrapolated by its velocities for `advanceS` seconds. */
+  show(frame: ParticleFrame, advanceS: number): void {
+    this.uniforms["u_advance_s"]!.value = advanceS;
+    if (frame === this.shown) return;
+    this.shown = frame;
+    if (frame.count === 0) return;
+    // A copy, because the frame's buffer returns to the worker when the ring drops the frame. The copy only grows, and only the used
+    // part is uploaded. After a lost context the next frame fills it again.
+    const wordsCount = frame.count * kWordsPerParticle;
+    const words = this.words && this.words.array.length >= wordsCount ? this.words : this.rebuild(frame.buffer.byteLength / 2);
+    words.array.set(new Uint16Array(frame.buffer, 0, wordsCount));
+    words.clearUpdateRanges();
+    words.addUpdateRange(0, wordsCount);
+    words.needsUpdate = true;
+    this.points.geometry.setDrawRange(0, frame.count);
+    (this.uniforms["u_min_m"]!.value as Vector3).set(...frame.wordMinM);
+    (this.uniforms["u_max_m"]!.value as Vector3).set(...frame.wordMaxM);
+    this.uniforms["u_max_speed_mps"]!.value = frame.maxSpeedMps;
+    this.uniforms["u_radius_m"]!.value = frame.radiusM;
+  }
+
+  /** Clears the target and draws the particles into it. */
+  render(renderer: WebGLRenderer, camera: PerspectiveCamera, material: RawShaderMaterial, target: RenderTarget): void {
+    this.points.material = material;
+    renderer.setRenderTarget(target as never);
+    renderer.clear();
+    renderer.render(this.scene, camera);
+  }
+
+  dispose(): void {
+    this.points.geometry.dispose();
+  }
+
+  private rebuild(wordsCount: number): InterleavedBuffer {
+    this.points.geometry.dispose();
+    const geometry = new BufferGeometry();
+    const wholeCount = Math.floor(wordsCount / kWordsPerParticle) * kWordsPerParticle;
+    const words = new InterleavedBuffer(new Uint16Array(wholeCount), kWordsPerParticle);
+    geometry.setAttribute("position", new InterleavedBufferAttribute(words, 3, 0, true));
+    geometry.setAttribute("a_packed", new InterleavedBufferAttribute(words, 3, 3, true));
+    this.points.geometry = geometry;
+    this.words = words;
+    return words;
+  }
+}

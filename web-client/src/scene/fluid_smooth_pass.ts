@@ -1,0 +1,69 @@
+// Smooths the particles' surface (fluid_smooth.frag), along x and y in turn. Reads and writes 1 / distance [1/m] and foam.
+import { Vector2, type PerspectiveCamera, type RawShaderMaterial, type Texture, type WebGLRenderTarget, type WebGLRenderer } from "three";
+
+import { makeFrontTarget } from "./fluid_targets";
+import type { FluidTilesPass } from "./fluid_tiles_pass";
+import { makeMaterial } from "./shaders";
+
+/** Lengths of the filter in particle radii: half the kernel, and how far a pair's mean may lie from the pixel. */
+const kReachRadii = 5;
+const kRangeRadii = 2;
+
+export class FluidSmoothPass {
+  private readonly across = makeFrontTarget(false);
+  private readonly along = makeFrontTarget(false);
+  private readonly material: RawShaderMaterial;
+
+  /** `samplesCount`: on each side of a pixel. `roundsCount`: times that both axes are smoothed. */
+  constructor(
+    private readonly tiles: FluidTilesPass,
+    samplesCount: number,
+    private readonly roundsCount: number,
+  ) {
+    this.material = makeMaterial(
+      "fluidSmooth",
+      {
+        ...tiles.uniforms,
+        u_front: { value: null },
+        u_axis: { value: new Vector2() },
+        u_reach_m: { value: 1 },
+        u_range_m: { value: 1 },
+        u_px_per_m: { value: 1 },
+      },
+      { defines: { SAMPLES: samplesCount }, depthTest: false, depthWrite: false },
+    );
+  }
+
+  resize(widthPx: number, heightPx: number): void {
+    this.across.setSize(widthPx, heightPx);
+    this.along.setSize(widthPx, heightPx);
+  }
+
+  /** Returns the smoothed texture. */
+  render(renderer: WebGLRenderer, camera: PerspectiveCamera, front: Texture, radiusM: number): Texture {
+    const { uniforms } = this.material;
+    uniforms["u_range_m"]!.value = kRangeRadii * radiusM;
+    uniforms["u_px_per_m"]!.value = 0.5 * this.along.height * camera.projectionMatrix.elements[5]!;
+    // Later rounds smooth what the first left, over a shorter length.
+    for (let round = 0; round < this.roundsCount; ++round) {
+      uniforms["u_reach_m"]!.value = (kReachRadii * radiusM) / (1 + round);
+      this.smooth(renderer, round === 0 ? front : this.along.texture, 1, 0, this.across);
+      this.smooth(renderer, this.across.texture, 0, 1, this.along);
+    }
+    return this.along.texture;
+  }
+
+  dispose(): void {
+    this.across.dispose();
+    this.along.dispose();
+    this.material.dispose();
+  }
+
+  private smooth(renderer: WebGLRenderer, from: Texture, x: number, y: number, to: WebGLRenderTarget): void {
+    this.material.uniforms["u_front"]!.value = from;
+    (this.material.uniforms["u_axis"]!.value as Vector2).set(x, y);
+    renderer.setRenderTarget(to);
+    renderer.clear();
+    this.tiles.draw(renderer, this.material, to);
+  }
+}

@@ -1,0 +1,30 @@
+// The shader files as text: what a browser would report only when it draws.
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { describe, expect, it } from "vitest";
+
+const kFolder = join(import.meta.dirname, "..", "src", "scene", "shaders");
+const names = readdirSync(kFolder);
+const texts = new Map(names.map((name) => [name, readFileSync(join(kFolder, name), "utf8")]));
+const table = readFileSync(join(kFolder, "..", "shaders.ts"), "utf8");
+
+describe("the shader files", () => {
+  it("include only files that exist and that the table of includes holds", () => {
+    for (const [name, text] of texts)
+      for (const [, included] of text.matchAll(/#include <(\w+)>/g)) {
+        expect(texts.has(`${included}.glsl`), `${name} includes <${included}>`).toBe(true);
+        expect(table, `shaders.ts has no <${included}>`).toMatch(new RegExp(`import (\\w+) from "./shaders/${included}\\.glsl\\?raw";[^]*(\\b${included}: \\1|[{ ]\\1,)`));
+      }
+  });
+
+  it("are all used", () => {
+    for (const name of names) expect(table, `nothing uses ${name}`).toContain(`./shaders/${name}?raw`);
+  });
+
+  it("read only those varyings of a particle that its vertex shader writes", () => {
+    const written = new Set([...texts.get("fluid_particle.vert")!.matchAll(/^flat out \w+ (\w+);/gm)].map(([, varying]) => varying));
+    const read = [...texts.get("fluid_ellipse.glsl")!.matchAll(/^flat in \w+ (\w+);/gm)].map(([, varying]) => varying);
+    expect(read.length).toBeGreaterThan(0);
+    for (const varying of read) expect(written, `nothing writes ${varying}`).toContain(varying);
+  });
+});
