@@ -23,15 +23,15 @@ constexpr double kFadeShare = 0.4;
 constexpr double kSpongeReturn = 2e-3;
 constexpr double kSpongePower = 3.0;
 
-/// Profile of the perfectly matched layer: sigma = sigma_max inside^1.1, with exp(-2 integral(sigma)/c) = 6e-6 for
+/// Profile of the perfectly matched layer: sigma = sigma_max inside^0.7, with exp(-2 integral(sigma)/c) = 6e-5 for
 /// waves of normal incidence that are twice as long as the layer is wide. A matched layer may be much stronger than a
 /// sponge, because its slope reflects little; a lower power makes the slope even, which dispersed waves need
 /// (docs/absorption.md).
-constexpr double kMatchedReturn = 6e-6;
-constexpr double kMatchedPower = 1.1;
+constexpr double kMatchedReturn = 6e-5;
+constexpr double kMatchedPower = 0.7;
 /// Share of the loss rate that acts along the layer, too. A matched layer amplifies waves that decay along its normal,
 /// such as the tails of waves that a bed traps; this share makes up for it. Over an uneven bed it must be larger.
-constexpr double kAlongShareFlat = 0.003;
+constexpr double kAlongShareFlat = 0.007;
 constexpr double kAlongShareUneven = 0.05;
 
 /// Loss rates along x and along z. [1/s]
