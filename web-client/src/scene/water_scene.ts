@@ -95,7 +95,6 @@ export class WaterScene {
     this.leave();
     this.greeting = greeting;
     const { wave, sideM } = greeting;
-    const depthM = wave?.depthM ?? 1;
     if (wave) {
       const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
       this.field = new FieldPass(resolutionCount, this.quality.fieldCountMax, sideM, wave.periodicX, wave.periodicZ);
@@ -193,7 +192,7 @@ export class WaterScene {
     renderer.setRenderTarget(this.behind);
     renderer.clear();
     renderer.render(this.solids, camera);
-    if (this.ground) this.fluid?.renderShadow(renderer, camera, this.behind, this.ground.mesh.position.y);
+    if (this.surroundings) this.fluid?.renderShadow(renderer, camera, this.behind, this.surroundings.floorM);
     this.present.material.uniforms["u_behind"]!.value = this.behind.texture;
     renderer.setRenderTarget(null);
     renderer.clear();

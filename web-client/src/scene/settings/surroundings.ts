@@ -52,6 +52,8 @@ export class Surroundings {
   /** Drawn over everything, blended; it is before whatever it covers. */
   readonly overlay: Object3D | undefined;
   readonly edge: WaterEdge;
+  /** Height of the floor below the water. */
+  floorM: number;
   private readonly sea: OpenSea | undefined;
   private readonly basin: PoolBasin | undefined;
   private readonly tank: GlassTank | undefined;
@@ -61,6 +63,7 @@ export class Surroundings {
     const { setting, wave, wind, obstacles, beaches } = greeting;
     const { plain } = context.quality;
     const bed = bedOf(greeting);
+    this.floorM = wave ? -wave.depthM : 0;
     const cellsCount = plain ? kPlainBedCells : kBedCells;
     if (setting === "openSea" && wave) {
       this.sea = new OpenSea(wave, wind, plain);
@@ -87,6 +90,7 @@ export class Surroundings {
 
   /** Sets the height of the floor, where it comes with the first frame. */
   setFloorM(yM: number): void {
+    this.floorM = yM;
     this.basin?.setFloorM(yM);
     this.tank?.setFloorM(yM);
   }
