@@ -9,7 +9,7 @@ import { blendOf, kSideOrder } from "../src/scene/sea/open_sea";
 import { makeRipples, rippleSlope } from "../src/scene/sea/ripples";
 import { fitToTile, slopeVariance } from "../src/scene/sea/sea_tile";
 import { seaStateOf, waveFrequencyRadps } from "../src/scene/sea/sea_state";
-import { gridLines } from "../src/scene/water_body";
+import { gridLines } from "../src/scene/water_grid";
 
 const sidesOf = (plusX: SideKind, minusX: SideKind, plusZ: SideKind, minusZ: SideKind): Record<SideName, SideKind> => ({ "+x": plusX, "-x": minusX, "+z": plusZ, "-z": minusZ });
 

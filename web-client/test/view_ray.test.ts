@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Vector3, Vector4 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { viewRay } from "../src/scene/view_ray";
+import { viewRay } from "../src/scene/fluid/view_ray";
 
 describe("a view ray", () => {
   it("leads to the point that was projected, also where the picture is centred beside the canvas's middle", () => {

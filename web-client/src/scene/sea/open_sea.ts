@@ -1,9 +1,10 @@
 // The sea outside the simulated square: two cascades of waves and how they blend with the simulated water. The longer cascade is the
 // wind sea that the server lets in through the open sides, wave for wave, so heights agree where the layers of these sides have replaced
 // the simulated water by it (docs/wind_sea.md). The shorter one is ripples.
-import { Vector2, Vector4, type WebGLRenderer } from "three";
+import { Vector2, Vector4 } from "three";
 
 import type { SideName, WaveInfo, WindInfo } from "../../codec/scene_info";
+import type { Pass, Picture } from "../passes/pass";
 import type { Uniforms } from "../shaders";
 import { makeRipples, rippleSlope } from "./ripples";
 import { SeaTile, slopeVariance } from "./sea_tile";
@@ -43,7 +44,10 @@ export function blendOf(wave: Pick<WaveInfo, "sides" | "sideM" | "spongeWidthM">
   return { beyondM: kSideOrder.map((side) => of(side)[0]), widthM: kSideOrder.map((side) => of(side)[1]) };
 }
 
-export class OpenSea {
+export class OpenSea implements Pass {
+  readonly name = "sea";
+  readonly reads = [] as const;
+  readonly writes = ["sea"] as const;
   /** For the shaders of the water. */
   readonly uniforms: Uniforms;
   private readonly swell: SeaTile;
@@ -95,8 +99,9 @@ export class OpenSea {
     this.next = { waves: this.waves(), slope: this.slope(), beganS: this.lastS };
   }
 
-  /** Draws both cascades at the time shown, in seconds since the scene began. */
-  render(renderer: WebGLRenderer, shownS: number): void {
+  /** Draws both cascades at the time shown. */
+  draw({ renderer, shownS }: Picture): void {
+    if (shownS === undefined) return;
     this.lastS = shownS;
     let faded = 0;
     if (this.next) {

@@ -1,7 +1,9 @@
-// What the parts of a setting are built with.
+// What the parts of a setting are built with, and what they tell the water.
 import type { RawShaderMaterial, Texture } from "three";
 
+import type { SideKind, SideName } from "../../codec/scene_info";
 import type { Quality } from "../quality";
+import type { Uniforms } from "../shaders";
 import type { Sky } from "../sky";
 
 export interface SurroundingsContext {
@@ -12,3 +14,12 @@ export interface SurroundingsContext {
   solid: RawShaderMaterial;
   quality: Pick<Quality, "plain">;
 }
+
+/** What bounds the water at its sides. */
+export type WaterEdge =
+  /** It goes on as a sea, except at closed sides. */
+  | { kind: "sea"; sea: Uniforms; sides: Readonly<Record<SideName, SideKind>>; hazeM: number }
+  /** Its sides are seen: a block of water, or water behind glass. */
+  | { kind: "cut" }
+  /** Walls, which others draw. */
+  | { kind: "walls" };

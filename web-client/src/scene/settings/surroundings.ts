@@ -1,5 +1,5 @@
 // What is around the water: chooses and owns the parts of the scene's setting.
-import type { Object3D, Vector3, WebGLRenderer } from "three";
+import type { Object3D, Vector3 } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
 import type { SettingName, SideName } from "../../codec/scene_info";
@@ -8,8 +8,7 @@ import { Landscape, makeGroundGeometry } from "../landscape";
 import { makeCoastGeometry } from "../sea/coast";
 import { OpenSea } from "../sea/open_sea";
 import { bedOf } from "../terrain";
-import type { WaterEdge } from "../water_body";
-import type { SurroundingsContext } from "./context";
+import type { SurroundingsContext, WaterEdge } from "./context";
 import { GlassTank } from "./glass_tank";
 import { PoolBasin } from "./pool_basin";
 
@@ -49,12 +48,13 @@ export function isIndoors({ setting }: GreetingInfo): boolean {
 export class Surroundings {
   /** Drawn before the water. */
   readonly solids: Object3D[] = [];
-  /** Drawn over everything, blended; it is before whatever it covers. */
-  readonly overlay: Object3D | undefined;
+  /** Panes of a tank, drawn over everything and blended: they are before whatever they cover. */
+  readonly glass: Object3D | undefined;
   readonly edge: WaterEdge;
   /** Height of the floor below the water. */
   floorM: number;
-  private readonly sea: OpenSea | undefined;
+  /** The pass of the sea around the square, in an open sea; the list that it is in disposes it. */
+  readonly sea: OpenSea | undefined;
   private readonly basin: PoolBasin | undefined;
   private readonly tank: GlassTank | undefined;
   private readonly landscape: Landscape | undefined;
@@ -84,7 +84,7 @@ export class Surroundings {
       this.edge = { kind: "cut" };
       this.tank = new GlassTank(greeting, context);
       this.solids.push(this.tank.group);
-      this.overlay = this.tank.glass;
+      this.glass = this.tank.glass;
     }
   }
 
@@ -99,17 +99,12 @@ export class Surroundings {
     this.sea?.setParameter(path, value);
   }
 
-  /** Draws what the water's shaders read; `shownS`: time shown, in seconds since the scene began. */
-  prepare(renderer: WebGLRenderer, shownS: number): void {
-    this.sea?.render(renderer, shownS);
-  }
-
   look(cameraM: Vector3): void {
     this.basin?.look(cameraM);
     this.tank?.look(cameraM);
   }
 
   dispose(): void {
-    for (const part of [this.sea, this.basin, this.tank, this.landscape]) part?.dispose();
+    for (const part of [this.basin, this.tank, this.landscape]) part?.dispose();
   }
 }

@@ -1,10 +1,12 @@
-// Shades the floor under a tank of particles. Reads the particles. Writes the colour of the solids' target.
-import { BufferAttribute, BufferGeometry, DstColorFactor, CustomBlending, Mesh, Scene, Vector2, ZeroFactor, type PerspectiveCamera, type RawShaderMaterial, type WebGLRenderer, type WebGLRenderTarget } from "three";
+// Shades the floor under a tank of particles. Reads the particles and the depth of the solids. Writes the colour of the solids.
+import { BufferAttribute, BufferGeometry, DstColorFactor, CustomBlending, Mesh, Scene, Vector2, ZeroFactor, type RawShaderMaterial } from "three";
 
+import type { Pass, Picture } from "../passes/pass";
+import type { SolidsPass } from "../passes/solids_pass";
 import type { FluidParticles } from "./fluid_particles";
 import { makeHalfTarget, thicknessBlending } from "./fluid_targets";
-import { makeMaterial } from "./shaders";
-import type { Sky } from "./sky";
+import { makeMaterial } from "../shaders";
+import type { Sky } from "../sky";
 
 const kTargetPx = 256;
 /** The floor that is shaded, in sides of the tank. */
@@ -12,13 +14,22 @@ const kShadedSides = 2;
 /** Distance between samples in particle radii. */
 const kApartRadii = 4;
 
-export class FluidShadowPass {
+export class FluidShadowPass implements Pass {
+  readonly name = "fluid shadow";
+  readonly reads = ["particles", "solids"] as const;
+  readonly writes = ["solids"] as const;
   private readonly target = makeHalfTarget();
   private readonly along: RawShaderMaterial;
   private readonly scene = new Scene();
   private readonly floor: Mesh<BufferGeometry, RawShaderMaterial>;
 
-  constructor(private readonly particles: FluidParticles, sky: Sky, sideM: number, colourRatio: number) {
+  constructor(
+    private readonly particles: FluidParticles,
+    private readonly solids: SolidsPass,
+    sky: Sky,
+    sideM: number,
+    colourRatio: number,
+  ) {
     this.target.setSize(kTargetPx, kTargetPx);
     const place = { u_floor_m: { value: 0 }, u_shaded_m: { value: kShadedSides * sideM } };
     const sunlit = { ...particles.uniforms, ...sky.uniforms, ...place, u_target_px: { value: new Vector2(kTargetPx, kTargetPx) } };
@@ -44,13 +55,13 @@ export class FluidShadowPass {
     this.scene.add(this.floor);
   }
 
-  /** `floorM`: height of the floor in `solids`. */
-  render(renderer: WebGLRenderer, camera: PerspectiveCamera, solids: WebGLRenderTarget, floorM: number, radiusM: number): void {
+  draw({ renderer, camera }: Picture): void {
+    if (this.particles.isEmpty) return;
     const { uniforms } = this.floor.material;
-    uniforms["u_floor_m"]!.value = floorM;
-    uniforms["u_apart_m"]!.value = kApartRadii * radiusM;
+    uniforms["u_floor_m"]!.value = this.solids.surroundings.floorM;
+    uniforms["u_apart_m"]!.value = kApartRadii * this.particles.radiusM;
     this.particles.render(renderer, camera, this.along, this.target);
-    renderer.setRenderTarget(solids);
+    renderer.setRenderTarget(this.solids.target);
     renderer.render(this.scene, camera);
   }
 

@@ -1,4 +1,5 @@
 // Surface frames → the field texture that every shader reads: elevation, slopes and curvature at the time shown.
+// Reads the surface frames around that time. Writes the field.
 import {
   ClampToEdgeWrapping,
   DataTexture,
@@ -18,20 +19,26 @@ import {
   type WebGLRenderer,
 } from "three";
 
-import type { SurfaceFrame } from "../net/messages";
-import { kCurvature, kSlope, kSmooth } from "./field_kernels";
-import type { Between } from "./frame_ring";
-import { FrameTextures } from "./frame_textures";
-import { FullscreenPass } from "./fullscreen";
-import { makeMaterial } from "./shaders";
-import { timeWeights, type FrameTimes } from "./time_weights";
+import type { WaveInfo } from "../../codec/scene_info";
+import { kMaxResolutionCount } from "../../codec/frame_types";
+import type { SurfaceFrame } from "../../net/messages";
+import { kCurvature, kSlope, kSmooth } from "../field_kernels";
+import type { Between, FrameRing } from "../frame_ring";
+import { FrameTextures } from "../frame_textures";
+import { FullscreenPass } from "../fullscreen";
+import { makeMaterial } from "../shaders";
+import { timeWeights, type FrameTimes } from "../time_weights";
+import type { Pass, Picture } from "./pass";
 
 /** The elevation between frames is kept in fractions of the quantum: 15 bits and these 8 fill the 24 of a float. */
 const kUnitsPerQuantum = 256;
 /** Frames that a picture is interpolated from. */
 const kFrameCount = 4;
 
-export class FieldPass {
+export class FieldPass implements Pass {
+  readonly name = "field";
+  readonly reads = ["frames"] as const;
+  readonly writes = ["field"] as const;
   /** Elevation (m), slope x, slope z, curvature (1/m); u along x and v along z, the water's square is 0..1. */
   readonly texture: Texture;
   private readonly target: WebGLRenderTarget;
@@ -44,14 +51,17 @@ export class FieldPass {
   private readonly weights: [number, number, number, number] = [0, 1, 0, 0];
   private readonly drawn: SurfaceFrame[] = [];
 
-  /** `resolutionCount`: samples per side of the first surface. The texture has as many texels, at most `fieldCountMax` per side. */
+  private readonly sideM: number;
+  private isDrawn = false;
+
+  /** The texture has as many texels as a surface has samples, at most `fieldCountMax` per side. */
   constructor(
-    resolutionCount: number,
+    { sideM, periodicX, periodicZ, ...wave }: WaveInfo,
+    private readonly surfaces: FrameRing<SurfaceFrame>,
     private readonly fieldCountMax: number,
-    private readonly sideM: number,
-    periodicX: boolean,
-    periodicZ: boolean,
   ) {
+    this.sideM = sideM;
+    const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
     const fieldCount = Math.min(resolutionCount, fieldCountMax);
     this.target = new WebGLRenderTarget(fieldCount, fieldCount, {
       format: RGBAFormat,
@@ -106,8 +116,23 @@ export class FieldPass {
     this.scale();
   }
 
+  draw({ renderer, shownS }: Picture): void {
+    const surfaces = shownS === undefined ? undefined : this.surfaces.around(shownS);
+    if (surfaces) this.drawBetween(renderer, surfaces);
+    else if (!this.isDrawn) this.drawStill(renderer);
+    this.isDrawn = true;
+  }
+
+  dispose(): void {
+    this.target.dispose();
+    this.elevation.dispose();
+    this.interpolate.dispose();
+    this.derive.dispose();
+    this.frames.dispose();
+  }
+
   /** Draws the field at a time between two frames; their neighbours give the curve between them. */
-  render(renderer: WebGLRenderer, between: Readonly<Between<SurfaceFrame>>): void {
+  private drawBetween(renderer: WebGLRenderer, between: Readonly<Between<SurfaceFrame>>): void {
     const { to, mix } = between;
     // The level of detail changed: frames of two sizes cannot be interpolated.
     const isLike = (frame: SurfaceFrame | undefined): frame is SurfaceFrame => frame?.resolutionCount === to.resolutionCount;
@@ -140,18 +165,10 @@ export class FieldPass {
   }
 
   /** Draws water at rest, until the first frame comes. */
-  renderStill(renderer: WebGLRenderer): void {
+  private drawStill(renderer: WebGLRenderer): void {
     (this.interpolate.material.uniforms["u_weights"]!.value as Vector4).set(0, 0, 0, 0);
     this.interpolate.render(renderer, this.elevation);
     this.derive.render(renderer, this.target);
-  }
-
-  dispose(): void {
-    this.target.dispose();
-    this.elevation.dispose();
-    this.interpolate.dispose();
-    this.derive.dispose();
-    this.frames.dispose();
   }
 
   private resize(resolutionCount: number): void {

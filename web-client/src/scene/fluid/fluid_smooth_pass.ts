@@ -1,22 +1,31 @@
 // Smooths the particles' surface (fluid_smooth.frag), along x and y in turn. Reads and writes 1 / distance [1/m] and foam.
-import { Vector2, type PerspectiveCamera, type RawShaderMaterial, type Texture, type WebGLRenderTarget, type WebGLRenderer } from "three";
+import { Vector2, type RawShaderMaterial, type Texture, type WebGLRenderTarget, type WebGLRenderer } from "three";
 
+import type { Pass, Picture } from "../passes/pass";
+import type { FluidDepthPass } from "./fluid_depth_pass";
+import type { FluidParticles } from "./fluid_particles";
 import { makeFrontTarget } from "./fluid_targets";
 import type { FluidTilesPass } from "./fluid_tiles_pass";
-import { makeMaterial } from "./shaders";
+import { makeMaterial } from "../shaders";
 
 /** Lengths of the filter in particle radii: half the kernel, and how far a pair's mean may lie from the pixel. */
 const kReachRadii = 5;
 const kRangeRadii = 2;
 
-export class FluidSmoothPass {
+export class FluidSmoothPass implements Pass {
+  readonly name = "fluid smooth";
+  readonly reads = ["fluidTiles", "fluidFront"] as const;
+  readonly writes = ["fluidSurface"] as const;
+  /** The smoothed surface. */
+  readonly target = makeFrontTarget(false);
   private readonly across = makeFrontTarget(false);
-  private readonly along = makeFrontTarget(false);
   private readonly material: RawShaderMaterial;
 
   /** `samplesCount`: on each side of a pixel. `roundsCount`: times that both axes are smoothed. */
   constructor(
     private readonly tiles: FluidTilesPass,
+    private readonly particles: FluidParticles,
+    private readonly depth: FluidDepthPass,
     samplesCount: number,
     private readonly roundsCount: number,
   ) {
@@ -34,28 +43,24 @@ export class FluidSmoothPass {
     );
   }
 
-  resize(widthPx: number, heightPx: number): void {
-    this.across.setSize(widthPx, heightPx);
-    this.along.setSize(widthPx, heightPx);
-  }
-
-  /** Returns the smoothed texture. */
-  render(renderer: WebGLRenderer, camera: PerspectiveCamera, front: Texture, radiusM: number): Texture {
+  draw({ renderer, camera }: Picture): void {
     const { uniforms } = this.material;
+    const { radiusM } = this.particles;
+    const front = this.depth.target;
+    for (const target of [this.across, this.target]) target.setSize(front.width, front.height);
     uniforms["u_range_m"]!.value = kRangeRadii * radiusM;
-    uniforms["u_px_per_m"]!.value = 0.5 * this.along.height * camera.projectionMatrix.elements[5]!;
+    uniforms["u_px_per_m"]!.value = 0.5 * this.target.height * camera.projectionMatrix.elements[5]!;
     // Later rounds smooth what the first left, over a shorter length.
     for (let round = 0; round < this.roundsCount; ++round) {
       uniforms["u_reach_m"]!.value = (kReachRadii * radiusM) / (1 + round);
-      this.smooth(renderer, round === 0 ? front : this.along.texture, 1, 0, this.across);
-      this.smooth(renderer, this.across.texture, 0, 1, this.along);
+      this.smooth(renderer, round === 0 ? front.texture : this.target.texture, 1, 0, this.across);
+      this.smooth(renderer, this.across.texture, 0, 1, this.target);
     }
-    return this.along.texture;
   }
 
   dispose(): void {
     this.across.dispose();
-    this.along.dispose();
+    this.target.dispose();
     this.material.dispose();
   }
 
@@ -64,6 +69,6 @@ export class FluidSmoothPass {
     (this.material.uniforms["u_axis"]!.value as Vector2).set(x, y);
     renderer.setRenderTarget(to);
     renderer.clear();
-    this.tiles.draw(renderer, this.material, to);
+    this.tiles.cover(renderer, this.material, to);
   }
 }

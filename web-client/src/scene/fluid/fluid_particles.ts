@@ -1,14 +1,23 @@
 // The particles of the time shown, on the GPU: the 12 bytes of a plain particle unchanged, as six u16 in one interleaved buffer, so no
-// JavaScript runs per particle. Several passes draw them as points.
+// JavaScript runs per particle. Several passes draw them as points. Reads the particle frames. Writes
+// the particles.
 import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type WebGLRenderer } from "three";
 
-import { kParticleBytes } from "../codec/frame_types";
-import type { ParticleFrame } from "../net/messages";
-import type { Uniforms } from "./shaders";
+import { kParticleBytes } from "../../codec/frame_types";
+import type { ParticleFrame } from "../../net/messages";
+import type { FrameRing } from "../frame_ring";
+import type { Pass, Picture } from "../passes/pass";
+import type { PlayoutClock } from "../playout_clock";
+import type { Uniforms } from "../shaders";
 
 const kWordsPerParticle = kParticleBytes / 2;
+/** Particles are extrapolated for at most this many frame intervals. */
+const kMaxAdvanceIntervals = 1.5;
 
-export class FluidParticles {
+export class FluidParticles implements Pass {
+  readonly name = "particles";
+  readonly reads = ["frames"] as const;
+  readonly writes = ["particles"] as const;
   /** For the materials of fluid_particle.vert, besides u_target_px. */
   readonly uniforms: Uniforms;
   private readonly scene = new Scene();
@@ -17,7 +26,12 @@ export class FluidParticles {
   private shown: ParticleFrame | undefined;
 
   /** `field` undefined: no wave around the particles. */
-  constructor(field: Texture | undefined, sideM: number) {
+  constructor(
+    private readonly frames: FrameRing<ParticleFrame>,
+    private readonly clock: PlayoutClock,
+    field: Texture | undefined,
+    sideM: number,
+  ) {
     this.uniforms = {
       u_min_m: { value: new Vector3() },
       u_max_m: { value: new Vector3() },
@@ -32,13 +46,35 @@ export class FluidParticles {
     this.scene.add(this.points);
   }
 
-  /** The frame whose particles are shown; undefined before the first one. */
-  get frame(): ParticleFrame | undefined {
-    return this.shown;
+  /** No particles are there now: the passes have nothing to draw. */
+  get isEmpty(): boolean {
+    return !this.shown || this.shown.count === 0;
   }
 
-  /** Shows `frame`, extrapolated by its velocities for `advanceS` seconds. */
-  show(frame: ParticleFrame, advanceS: number): void {
+  /** Radius of the particles shown. */
+  get radiusM(): number {
+    return this.shown?.radiusM ?? 1;
+  }
+
+  /** Takes the particles of the time shown: those of the frame before, extrapolated by their velocities. */
+  draw({ shownS }: Picture): void {
+    const frames = shownS === undefined ? undefined : this.frames.around(shownS);
+    if (frames) this.show(frames.from, Math.min(Math.max(shownS! - frames.from.timeS, 0), kMaxAdvanceIntervals * this.clock.intervalS()));
+  }
+
+  /** Clears the target and draws the particles into it. */
+  render(renderer: WebGLRenderer, camera: PerspectiveCamera, material: RawShaderMaterial, target: RenderTarget): void {
+    this.points.material = material;
+    renderer.setRenderTarget(target as never);
+    renderer.clear();
+    renderer.render(this.scene, camera);
+  }
+
+  dispose(): void {
+    this.points.geometry.dispose();
+  }
+
+  private show(frame: ParticleFrame, advanceS: number): void {
     this.uniforms["u_advance_s"]!.value = advanceS;
     if (frame === this.shown) return;
     this.shown = frame;
@@ -56,18 +92,6 @@ export class FluidParticles {
     (this.uniforms["u_max_m"]!.value as Vector3).set(...frame.wordMaxM);
     this.uniforms["u_max_speed_mps"]!.value = frame.maxSpeedMps;
     this.uniforms["u_radius_m"]!.value = frame.radiusM;
-  }
-
-  /** Clears the target and draws the particles into it. */
-  render(renderer: WebGLRenderer, camera: PerspectiveCamera, material: RawShaderMaterial, target: RenderTarget): void {
-    this.points.material = material;
-    renderer.setRenderTarget(target as never);
-    renderer.clear();
-    renderer.render(this.scene, camera);
-  }
-
-  dispose(): void {
-    this.points.geometry.dispose();
   }
 
   private rebuild(wordsCount: number): InterleavedBuffer {

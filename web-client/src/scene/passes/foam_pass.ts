@@ -1,23 +1,35 @@
-// Foam frames → two byte textures that the water's shader interpolates between.
+// Foam frames → two byte textures that the water's shader interpolates between. Reads the foam frames around the time shown.
 import { ClampToEdgeWrapping, DataTexture, LinearFilter, RedFormat, RepeatWrapping, UnsignedByteType } from "three";
 
-import type { FoamFrame } from "../net/messages";
-import { FrameTextures } from "./frame_textures";
-import type { Uniforms } from "./shaders";
+import type { FoamFrame } from "../../net/messages";
+import type { FrameRing } from "../frame_ring";
+import { FrameTextures } from "../frame_textures";
+import type { Uniforms } from "../shaders";
+import type { Pass, Picture } from "./pass";
 
-export class FoamField {
+export class FoamPass implements Pass {
+  readonly name = "foam";
+  readonly reads = ["frames"] as const;
+  readonly writes = ["foam"] as const;
   /** For materials that show foam. */
   readonly uniforms: Uniforms;
   private readonly frames: FrameTextures<FoamFrame>;
 
-  constructor(periodicX: boolean, periodicZ: boolean) {
+  constructor(
+    private readonly foam: FrameRing<FoamFrame>,
+    periodicX: boolean,
+    periodicZ: boolean,
+  ) {
     this.frames = new FrameTextures<FoamFrame>(2, 2, (n) => makeTexture(n, periodicX, periodicZ));
     const { blank } = this.frames;
     this.uniforms = { u_foam_from: { value: blank }, u_foam_to: { value: blank }, u_foam_mix: { value: 0 } };
   }
 
-  /** Shows the foam `mix` of the way from one frame to the other. */
-  show(from: FoamFrame, to: FoamFrame, mix: number): void {
+  draw({ shownS }: Picture): void {
+    const foam = shownS === undefined ? undefined : this.foam.around(shownS);
+    if (!foam) return;
+    const { to, mix } = foam;
+    let { from } = foam;
     if (from.resolutionCount !== to.resolutionCount) from = to;
     if (from.resolutionCount !== this.frames.resolutionCount) this.frames.resize(from.resolutionCount);
     const drawn = [from, to];

@@ -1,14 +1,18 @@
 // Finds the tiles of the screen that particles touch, and draws screen passes over those tiles only.
 // Reads the particles. Writes one byte per tile.
-import { BufferAttribute, BufferGeometry, Camera, Mesh, NearestFilter, RedFormat, Scene, UnsignedByteType, Vector2, WebGLRenderTarget, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type WebGLRenderer } from "three";
+import { BufferAttribute, BufferGeometry, Camera, Mesh, NearestFilter, RedFormat, Scene, UnsignedByteType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type RenderTarget, type WebGLRenderer } from "three";
 
+import type { Pass, Picture } from "../passes/pass";
 import type { FluidParticles } from "./fluid_particles";
-import { makeMaterial, type Uniforms } from "./shaders";
+import { makeMaterial, type Uniforms } from "../shaders";
 
 const kColumnsCount = 48;
 const kRowsCount = 32;
 
-export class FluidTilesPass {
+export class FluidTilesPass implements Pass {
+  readonly name = "fluid tiles";
+  readonly reads = ["particles"] as const;
+  readonly writes = ["fluidTiles"] as const;
   /** For the materials of fluid_tile.vert. */
   readonly uniforms: Uniforms;
   private readonly target: WebGLRenderTarget;
@@ -17,7 +21,7 @@ export class FluidTilesPass {
   private readonly camera = new Camera();
   private readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
 
-  constructor(particles: FluidParticles) {
+  constructor(private readonly particles: FluidParticles) {
     this.target = new WebGLRenderTarget(kColumnsCount, kRowsCount, {
       format: RedFormat,
       type: UnsignedByteType,
@@ -33,15 +37,17 @@ export class FluidTilesPass {
     this.scene.add(this.mesh);
   }
 
-  mark(renderer: WebGLRenderer, camera: PerspectiveCamera, particles: FluidParticles): void {
+  draw({ renderer, camera }: Picture): void {
+    if (this.particles.isEmpty) return;
     // A tile is wider or narrower than high: the points are squares of the longer count.
     const across = kColumnsCount / camera.aspect;
     (this.material.uniforms["u_target_px"]!.value as Vector2).set(kColumnsCount, Math.max(kRowsCount, across));
-    particles.render(renderer, camera, this.material, this.target);
+    this.particles.render(renderer, camera, this.material, this.target);
   }
 
-  /** Draws `material` over the marked tiles of `target`. */
-  draw(renderer: WebGLRenderer, material: RawShaderMaterial, target: RenderTarget | null): void {
+  /** Draws `material` over the marked tiles of `target`; nothing where there are no particles. */
+  cover(renderer: WebGLRenderer, material: RawShaderMaterial, target: RenderTarget | null): void {
+    if (this.particles.isEmpty) return;
     this.mesh.material = material;
     renderer.setRenderTarget(target as never);
     renderer.render(this.scene, this.camera);

@@ -1,0 +1,51 @@
+// Particles as one liquid, in screen space. Its targets may be smaller than the canvas; the last pass draws on it.
+//   particles  frames -> particles on the GPU
+//   shadow     particles -> light on the floor of a tank; where there is no wave
+//   tiles      particles -> tiles of the screen with fluid; the screen passes below run there only
+//   depth      particles -> nearest surface
+//   smooth     nearest surface -> smooth surface
+//   normal     smooth surface -> normals
+//   thickness  particles -> thickness, coverage
+//   surface    all of these, sky, solids -> canvas
+import type { Texture } from "three";
+
+import type { Pass } from "../passes/pass";
+import type { SolidsPass } from "../passes/solids_pass";
+import type { FluidQuality } from "../quality";
+import type { Sky } from "../sky";
+import type { StreamedFrames } from "../streamed_frames";
+import { FluidDepthPass } from "./fluid_depth_pass";
+import { FluidNormalPass } from "./fluid_normal_pass";
+import { FluidParticles } from "./fluid_particles";
+import { FluidShadowPass } from "./fluid_shadow_pass";
+import { FluidSmoothPass } from "./fluid_smooth_pass";
+import { FluidSurfacePass } from "./fluid_surface_pass";
+import { FluidThicknessPass } from "./fluid_thickness_pass";
+import { FluidTilesPass } from "./fluid_tiles_pass";
+
+/** A tank of particles absorbs light as if it had this side, because small ones would look like glass. */
+const kColourSideM = 6;
+
+/** The passes of one room's particles, in the order in which they are drawn. */
+export interface FluidPasses {
+  /** Before the water. */
+  before: Pass[];
+  /** After the water. */
+  after: Pass[];
+}
+
+/** `field` undefined: no wave around the particles. */
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, sideM: number, quality: FluidQuality): FluidPasses {
+  const { scale, samplesCount, roundsCount } = quality;
+  const particles = new FluidParticles(frames.particles, frames.clock, field, sideM);
+  const colourRatio = field ? 1 : Math.max(kColourSideM / sideM, 1);
+  const tiles = new FluidTilesPass(particles);
+  const depth = new FluidDepthPass(particles, scale);
+  const smooth = new FluidSmoothPass(tiles, particles, depth, samplesCount, roundsCount);
+  const normal = new FluidNormalPass(tiles, smooth);
+  const thickness = new FluidThicknessPass(particles, scale);
+  const surface = new FluidSurfacePass({ tiles, smooth, normal, thickness, solids }, sky, noise, particles.uniforms, field !== undefined, colourRatio);
+  // A wave has no floor of its own.
+  const before = field ? [particles] : [particles, new FluidShadowPass(particles, solids, sky, sideM, colourRatio)];
+  return { before, after: [tiles, depth, smooth, normal, thickness, surface] };
+}

@@ -1,0 +1,36 @@
+// Draws the particles' nearest surface. Reads the particles. Writes 1 / distance [1/m] and foam.
+import { Vector2, type RawShaderMaterial } from "three";
+
+import type { Pass, Picture } from "../passes/pass";
+import type { FluidParticles } from "./fluid_particles";
+import { makeFrontTarget } from "./fluid_targets";
+import { makeMaterial } from "../shaders";
+
+export class FluidDepthPass implements Pass {
+  readonly name = "fluid depth";
+  readonly reads = ["particles"] as const;
+  readonly writes = ["fluidFront"] as const;
+  readonly target = makeFrontTarget(true);
+  private readonly material: RawShaderMaterial;
+
+  /** `scale`: size of the target as a share of the canvas. */
+  constructor(
+    private readonly particles: FluidParticles,
+    private readonly scale: number,
+  ) {
+    this.material = makeMaterial("fluidDepth", { ...particles.uniforms, u_target_px: { value: new Vector2(1, 1) } });
+  }
+
+  draw({ renderer, camera, sizePx }: Picture): void {
+    if (this.particles.isEmpty) return;
+    const countPx = this.material.uniforms["u_target_px"]!.value as Vector2;
+    countPx.copy(sizePx).multiplyScalar(this.scale).ceil();
+    this.target.setSize(countPx.x, countPx.y);
+    this.particles.render(renderer, camera, this.material, this.target);
+  }
+
+  dispose(): void {
+    this.target.dispose();
+    this.material.dispose();
+  }
+}

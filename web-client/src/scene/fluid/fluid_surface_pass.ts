@@ -1,0 +1,71 @@
+// Shades the fluid over the picture (fluid_surface.frag). Reads the smoothed surface, its normals, the thickness, and the solids' colour
+// and depth. Writes the canvas and its depth.
+import { Matrix4, Vector2, Vector3, Vector4, type RawShaderMaterial, type Texture } from "three";
+
+import type { Pass, Picture } from "../passes/pass";
+import type { SolidsPass } from "../passes/solids_pass";
+import type { FluidNormalPass } from "./fluid_normal_pass";
+import type { FluidSmoothPass } from "./fluid_smooth_pass";
+import type { FluidThicknessPass } from "./fluid_thickness_pass";
+import type { FluidTilesPass } from "./fluid_tiles_pass";
+import { makeMaterial, type Uniforms } from "../shaders";
+import type { Sky } from "../sky";
+import { viewRay } from "./view_ray";
+
+/** What the surface is shaded from. */
+export interface FluidSurfaceInputs {
+  tiles: FluidTilesPass;
+  smooth: FluidSmoothPass;
+  normal: FluidNormalPass;
+  thickness: FluidThicknessPass;
+  solids: SolidsPass;
+}
+
+export class FluidSurfacePass implements Pass {
+  readonly name = "fluid surface";
+  readonly reads = ["fluidTiles", "fluidSurface", "fluidNormals", "fluidThickness", "solids", "canvas"] as const;
+  readonly writes = ["canvas"] as const;
+  private readonly tiles: FluidTilesPass;
+  private readonly material: RawShaderMaterial;
+
+  /** `hasWave`: the fluid is one body with the wave, whose textures are in `particleUniforms`. */
+  constructor({ tiles, smooth, normal, thickness, solids }: FluidSurfaceInputs, sky: Sky, noise: Texture, particleUniforms: Uniforms, hasWave: boolean, colourRatio: number) {
+    this.tiles = tiles;
+    const { color, depth } = solids.textures;
+    this.material = makeMaterial(
+      "fluidSurface",
+      {
+        ...sky.uniforms,
+        ...tiles.uniforms,
+        ...particleUniforms,
+        u_noise: { value: noise },
+        u_front: { value: smooth.target.texture },
+        u_normals: { value: normal.target.texture },
+        u_thickness: { value: thickness.target.texture },
+        u_behind: { value: color },
+        u_behind_depth: { value: depth },
+        u_ray: { value: new Vector4() },
+        u_near_far_m: { value: new Vector2(1, 2) },
+        u_projection: { value: new Matrix4() },
+        u_camera_world: { value: new Matrix4() },
+        u_camera_m: { value: new Vector3() },
+        u_colour_ratio: { value: colourRatio },
+      },
+      { defines: hasWave ? { WAVE: 1 } : {}, transparent: true },
+    );
+  }
+
+  draw({ renderer, camera }: Picture): void {
+    const { uniforms } = this.material;
+    viewRay(camera, uniforms["u_ray"]!.value as Vector4);
+    (uniforms["u_near_far_m"]!.value as Vector2).set(camera.near, camera.far);
+    (uniforms["u_projection"]!.value as Matrix4).copy(camera.projectionMatrix);
+    (uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
+    (uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
+    this.tiles.cover(renderer, this.material, null);
+  }
+
+  dispose(): void {
+    this.material.dispose();
+  }
+}

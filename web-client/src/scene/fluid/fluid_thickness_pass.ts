@@ -1,0 +1,37 @@
+// Adds up the particles along each pixel's ray. Reads the particles. Writes thickness [m], weight, weight of particles
+// among others, coverage.
+import { Vector2, type RawShaderMaterial } from "three";
+
+import type { Pass, Picture } from "../passes/pass";
+import type { FluidParticles } from "./fluid_particles";
+import { makeHalfTarget, thicknessBlending } from "./fluid_targets";
+import { makeMaterial } from "../shaders";
+
+export class FluidThicknessPass implements Pass {
+  readonly name = "fluid thickness";
+  readonly reads = ["particles"] as const;
+  readonly writes = ["fluidThickness"] as const;
+  readonly target = makeHalfTarget();
+  private readonly material: RawShaderMaterial;
+
+  /** `scale`: size of the target as a share of the canvas. */
+  constructor(
+    private readonly particles: FluidParticles,
+    private readonly scale: number,
+  ) {
+    this.material = makeMaterial("fluidThickness", { ...particles.uniforms, u_target_px: { value: new Vector2(1, 1) } }, thicknessBlending);
+  }
+
+  draw({ renderer, camera, sizePx }: Picture): void {
+    if (this.particles.isEmpty) return;
+    const countPx = this.material.uniforms["u_target_px"]!.value as Vector2;
+    countPx.copy(sizePx).multiplyScalar(this.scale).ceil();
+    this.target.setSize(countPx.x, countPx.y);
+    this.particles.render(renderer, camera, this.material, this.target);
+  }
+
+  dispose(): void {
+    this.target.dispose();
+    this.material.dispose();
+  }
+}

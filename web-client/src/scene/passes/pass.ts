@@ -1,0 +1,47 @@
+// What a picture is drawn by: a list of passes (water_scene.ts). Each draws what it writes from what it reads, and owns what it writes.
+import type { PerspectiveCamera, Vector2, WebGLRenderer } from "three";
+
+/** What passes hand on to each other. */
+export type Resource =
+  /** The server's frames around the time shown. */
+  | "frames"
+  /** Elevation, slopes and curvature of the simulated water. */
+  | "field"
+  /** Foam of the simulated water. */
+  | "foam"
+  /** Elevation and slopes of the sea around it. */
+  | "sea"
+  /** Colour (linear light) and depth of everything but water. */
+  | "solids"
+  /** The particles, on the GPU. */
+  | "particles"
+  /** Tiles of the screen with particles. */
+  | "fluidTiles"
+  /** Distance of the particles' nearest surface. */
+  | "fluidFront"
+  /** The same, smoothed. */
+  | "fluidSurface"
+  /** Its normals. */
+  | "fluidNormals"
+  /** Thickness of the particles along each pixel's ray. */
+  | "fluidThickness"
+  /** Colours for the display, and depth. */
+  | "canvas";
+
+/** One picture, as every pass takes it. The next picture overwrites it. */
+export interface Picture {
+  readonly renderer: WebGLRenderer;
+  readonly camera: PerspectiveCamera;
+  /** Size of the canvas. */
+  readonly sizePx: Vector2;
+  /** Time shown, in seconds since the scene began; undefined before the first frame. */
+  shownS: number | undefined;
+}
+
+export interface Pass {
+  readonly name: string;
+  readonly reads: readonly Resource[];
+  readonly writes: readonly Resource[];
+  draw(picture: Picture): void;
+  dispose(): void;
+}

@@ -1,0 +1,26 @@
+// The solids on the canvas where there is no water. Reads the solids, and the canvas's depth: after the water it shades the other pixels
+// only. Writes the canvas.
+import { FullscreenPass } from "../fullscreen";
+import { makeMaterial } from "../shaders";
+import type { Sky } from "../sky";
+import type { Pass, Picture } from "./pass";
+import type { SolidsPass } from "./solids_pass";
+
+export class PresentPass implements Pass {
+  readonly name = "present";
+  readonly reads = ["solids", "canvas"] as const;
+  readonly writes = ["canvas"] as const;
+  private readonly screen: FullscreenPass;
+
+  constructor(sky: Sky, solids: SolidsPass) {
+    this.screen = new FullscreenPass(makeMaterial("present", { ...sky.uniforms, u_behind: { value: solids.textures.color } }, { depthWrite: false }));
+  }
+
+  draw({ renderer }: Picture): void {
+    this.screen.render(renderer, null);
+  }
+
+  dispose(): void {
+    this.screen.dispose();
+  }
+}

@@ -1,0 +1,100 @@
+// Everything but water: the sky, what is around the water, and the boats. Reads the field, for caustics, and the frames of the boats.
+// Writes the solids' colour (linear light) and depth.
+import { DepthTexture, HalfFloatType, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+
+import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
+import type { BodiesState, BodyPose } from "../bodies";
+import { Boats } from "../boats";
+import type { FrameRing } from "../frame_ring";
+import type { Quality } from "../quality";
+import { hazeM, isIndoors, Surroundings } from "../settings/surroundings";
+import { makeMaterial } from "../shaders";
+import type { Sky } from "../sky";
+import { bedOf } from "../terrain";
+import type { Pass, Picture } from "./pass";
+
+/** Size of the grain on stone and sand: a share of the side within bounds. */
+const kGrainSides = 1 / 16;
+const kGrainLimitsM = [0.5, 4] as const;
+/** Stone is wet up to this share of the depth above the still water. */
+const kWetDepths = 0.08;
+
+export class SolidsPass implements Pass {
+  readonly name = "solids";
+  readonly reads = ["frames", "field"] as const;
+  readonly writes = ["solids"] as const;
+  readonly surroundings: Surroundings;
+  readonly target: WebGLRenderTarget;
+  private readonly scene = new Scene();
+  private readonly material: RawShaderMaterial;
+  private readonly boats: Boats | undefined;
+
+  /** `field` undefined: the room has no wave. */
+  constructor(
+    greeting: GreetingInfo,
+    private readonly sky: Sky,
+    noise: Texture,
+    field: Texture | undefined,
+    private readonly bodies: FrameRing<BodiesState>,
+    quality: Quality,
+  ) {
+    const { sideM } = greeting;
+    const [leastM, mostM] = kGrainLimitsM;
+    const uniforms = {
+      ...sky.uniforms,
+      u_camera_m: { value: new Vector3() },
+      u_field: { value: field ?? null },
+      u_noise: { value: noise },
+      u_side_m: { value: sideM },
+      u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
+      u_wet_m: { value: kWetDepths * bedOf(greeting).depthM },
+      u_haze_m: { value: isIndoors(greeting) ? 0 : hazeM(greeting) },
+    };
+    this.material = makeMaterial("solid", uniforms, { defines: quality.plain ? { PLAIN: 1 } : {} });
+    this.surroundings = new Surroundings(greeting, { sky, noise, field, solid: this.material, quality });
+    this.scene.add(sky.dome, ...this.surroundings.solids);
+    if (greeting.hasBoats) {
+      this.boats = new Boats(this.scene, this.material);
+      this.boats.setBoats(greeting.boats);
+    }
+    const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
+    this.target = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples });
+    this.target.depthTexture = new DepthTexture(1, 1, UnsignedIntType);
+  }
+
+  /** For the passes that look through water. */
+  get textures(): { color: Texture; depth: Texture } {
+    return { color: this.target.texture, depth: this.target.depthTexture! };
+  }
+
+  setBoats(boats: readonly BoatDetail[]): void {
+    this.boats?.setBoats(boats);
+  }
+
+  poseOf(boatId: number): BodyPose | undefined {
+    return this.boats?.poseOf(boatId);
+  }
+
+  drawnBoats(): BodyPose[] {
+    return this.boats?.drawn() ?? [];
+  }
+
+  draw({ renderer, camera, sizePx, shownS }: Picture): void {
+    const bodies = this.boats && shownS !== undefined ? this.bodies.around(shownS) : undefined;
+    if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
+    this.target.setSize(sizePx.x, sizePx.y);
+    this.sky.follow(camera);
+    this.surroundings.look(camera.position);
+    (this.material.uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
+    renderer.setRenderTarget(this.target);
+    renderer.clear();
+    renderer.render(this.scene, camera);
+  }
+
+  dispose(): void {
+    this.boats?.dispose();
+    this.surroundings.dispose();
+    this.material.dispose();
+    this.target.dispose();
+  }
+}

@@ -1,0 +1,86 @@
+// The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
+// goes on to the horizon and has no sides. Reads the field, the foam, the sea around, and the solids, which are seen through the water
+// and in its mirror. Writes the canvas and its depth.
+import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
+
+import type { GreetingInfo } from "../../codec/greeting";
+import type { SideName } from "../../codec/scene_info";
+import type { Quality } from "../quality";
+import { makeMaterial, type Uniforms } from "../shaders";
+import type { Sky } from "../sky";
+import { bedOf, bedUniformValues } from "../terrain";
+import { gridLines, makeGrid, makeSkirt } from "../water_grid";
+import type { Pass, Picture } from "./pass";
+import type { SolidsPass } from "./solids_pass";
+
+/** The water reflects solids as well as the sky. */
+function hasSolids({ hasBoats, obstacles, beaches, setting }: GreetingInfo): boolean {
+  return hasBoats || obstacles.length > 0 || beaches.length > 0 || setting === "pool";
+}
+
+export class WaterPass implements Pass {
+  readonly name = "water";
+  readonly reads = ["field", "foam", "sea", "solids"] as const;
+  readonly writes = ["canvas"] as const;
+  private readonly scene = new Scene();
+  private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
+  private readonly uniforms: Uniforms;
+
+  /** `foam` undefined: the room sends none. */
+  constructor(greeting: GreetingInfo, sky: Sky, noise: Texture, field: Texture, foam: Uniforms | undefined, solids: SolidsPass, quality: Quality) {
+    const bed = bedOf(greeting);
+    const { sideM, depthM, beaches } = bed;
+    const { widthsM, shoreDepthsM } = bedUniformValues(bed);
+    const { edge } = solids.surroundings;
+    const { color, depth } = solids.textures;
+    this.uniforms = {
+      ...sky.uniforms,
+      u_field: { value: field },
+      u_behind: { value: color },
+      u_behind_depth: { value: depth },
+      u_camera_m: { value: new Vector3() },
+      u_resolution: { value: new Vector2(1, 1) },
+      u_near_far_m: { value: new Vector2(1, 2) },
+      u_side_m: { value: sideM },
+      u_depth_m: { value: depthM },
+      u_beach_width_m: { value: new Vector4(...widthsM) },
+      u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
+      u_noise: { value: noise },
+      u_lace_m: { value: Math.min(Math.max(sideM / 7, 1), 9) },
+      ...foam,
+      ...(edge.kind === "sea" && { ...edge.sea, u_haze_m: { value: edge.hazeM } }),
+    };
+    const defines: Record<string, number> = {};
+    if (quality.plain) defines["PLAIN"] = 1;
+    if (beaches.length > 0) defines["BEACH"] = 1;
+    if (foam) defines["FOAM"] = 1;
+    if (hasSolids(greeting)) defines["MIRROR"] = 1;
+    const isSea = edge.kind === "sea";
+    if (isSea) defines["OPEN_SEA"] = 1;
+    const opens = (side: SideName): boolean => isSea && edge.sides[side] !== "closed";
+    const cellsCount = quality.surfaceCellsCount;
+    const grid = makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z")));
+    this.meshes = [new Mesh(grid, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }))];
+    if (edge.kind === "cut")
+      this.meshes.push(new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
+    for (const mesh of this.meshes) {
+      mesh.frustumCulled = false;
+      this.scene.add(mesh);
+    }
+  }
+
+  draw({ renderer, camera, sizePx }: Picture): void {
+    (this.uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
+    (this.uniforms["u_near_far_m"]!.value as Vector2).set(camera.near, camera.far);
+    (this.uniforms["u_resolution"]!.value as Vector2).copy(sizePx);
+    renderer.setRenderTarget(null);
+    renderer.render(this.scene, camera);
+  }
+
+  dispose(): void {
+    for (const mesh of this.meshes) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
+  }
+}
