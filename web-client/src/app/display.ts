@@ -91,6 +91,34 @@ export class Display {
     this.views.resize(window.innerWidth, window.innerHeight, this.layout.freePart());
   }
 
+  /**
+   * Draws `picturesCount` pictures and returns the mean time of each pass, in ms, by its name; "read back" is what the measurement itself
+   * takes per pass, and is subtracted already. The page waits after each pass until the GPU has drawn it.
+   */
+  passTimesMs(picturesCount: number): Record<string, number> {
+    const context = this.renderer.getContext() as WebGL2RenderingContext;
+    const pixel = new Uint8Array(4);
+    const drawnMs = (): number => {
+      this.renderer.setRenderTarget(null);
+      context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel);
+      return performance.now();
+    };
+    const sumsMs = new Map<string, number>();
+    const add = (name: string, ms: number): Map<string, number> => sumsMs.set(name, (sumsMs.get(name) ?? 0) + ms);
+    for (let i = 0; i < picturesCount; ++i) {
+      const idleMs = drawnMs();
+      let beforeMs = drawnMs();
+      const readBackMs = beforeMs - idleMs;
+      add("read back", readBackMs);
+      this.scene.render(nowS(), ({ name }) => {
+        const afterMs = drawnMs();
+        add(name, afterMs - beforeMs - readBackMs);
+        beforeMs = afterMs;
+      });
+    }
+    return Object.fromEntries([...sumsMs].map(([name, sumMs]) => [name, sumMs / picturesCount]));
+  }
+
   private draw(frameMs: number): void {
     if (this.governor.note(frameMs)) this.resize();
     const now = nowS();

@@ -7,7 +7,12 @@ import { describeState } from "../ui/hud";
 import type { App } from "./app";
 
 export function installTestHooks(app: App): void {
-  Object.defineProperty(window, "spindrift", { value: Object.freeze({ stats: () => stats(app), pixelOf: (xM: number, zM: number) => pixelOf(app, xM, zM) }) });
+  const hooks = {
+    stats: () => stats(app),
+    pixelOf: (xM: number, zM: number) => pixelOf(app, xM, zM),
+    passTimesMs: (picturesCount: number) => app.display.passTimesMs(picturesCount),
+  };
+  Object.defineProperty(window, "spindrift", { value: Object.freeze(hooks) });
 }
 
 /** Returns where a point of the still water is on the page, in CSS pixels from the top left corner. */

@@ -1,0 +1,73 @@
+// Measures the page in headless Chromium against the real server, with software WebGL: time to the first picture, pictures per second, and
+// the time of each pass. `npm run bench:page` in web-client builds the page and calls this. The server must be built (`./dev build`).
+//   bench_page.mjs [--scenes A,B] [--qualities low,high] [--seconds S] [--size 1280x720]
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
+import { parseArgs } from "node:util";
+
+import { chromium } from "playwright-core";
+
+import { executable, kChromiumArgs } from "./chromium.mjs";
+import { startServer } from "./server.mjs";
+
+const kWaitMs = 120_000;
+/** The page lowers its resolution in steps of 1.5 s until it keeps up. */
+const kSettleMs = 8000;
+const kSamplesPerS = 2;
+const kPassPictures = 12;
+
+const { values } = parseArgs({
+  options: {
+    scenes: { type: "string", default: "harbor,dam_break" },
+    qualities: { type: "string", default: "low" },
+    seconds: { type: "string", default: "10" },
+    size: { type: "string", default: "1280x720" },
+  },
+});
+const seconds = Number(values.seconds);
+const [width, height] = values.size.split("x").map(Number);
+if (!(seconds > 0 && width > 0 && height > 0)) {
+  console.error("usage: bench_page.mjs [--scenes A,B] [--qualities low,high] [--seconds S] [--size WIDTHxHEIGHT]");
+  process.exit(2);
+}
+
+for (const scene of values.scenes.split(",")) {
+  const server = await startServer(0, ["--scene", scene]);
+  try {
+    for (const quality of values.qualities.split(",")) await measure(scene, quality, server.url);
+  } finally {
+    await server.stop("SIGTERM");
+  }
+}
+
+async function measure(scene, quality, url) {
+  const profile = mkdtempSync(join(tmpdir(), "spindrift-chromium-"));
+  const context = await chromium.launchPersistentContext(profile, { executablePath: executable, headless: true, viewport: { width, height }, args: kChromiumArgs });
+  try {
+    const page = await context.newPage();
+    const begunMs = performance.now();
+    await page.goto(`${url}?quality=${quality}`);
+    await page.waitForFunction(() => (window.spindrift?.stats().delayMs ?? NaN) > 0, undefined, { timeout: kWaitMs, polling: 20 });
+    const firstS = (performance.now() - begunMs) / 1000;
+    await sleep(kSettleMs);
+    const rates = [];
+    for (let i = 0; i < seconds * kSamplesPerS; ++i) {
+      await sleep(1000 / kSamplesPerS);
+      rates.push(await page.evaluate(() => window.spindrift.stats().displayFps));
+    }
+    rates.sort((a, b) => a - b);
+    const { pixelRatio } = await page.evaluate(() => window.spindrift.stats());
+    const timesMs = await page.evaluate((count) => window.spindrift.passTimesMs(count), kPassPictures);
+    const { "read back": readBackMs, ...passes } = timesMs;
+    const rate = (share) => rates[Math.floor(share * (rates.length - 1))].toFixed(1);
+    console.log(`${scene}, ${quality}, ${width} x ${height} at pixel ratio ${pixelRatio.toFixed(2)}: first picture with water after ${firstS.toFixed(2)} s, ` +
+      `${rate(0.5)} pictures/s (lowest ${rate(0)})`);
+    for (const [name, ms] of Object.entries(passes)) console.log(`  ${name.padEnd(16)} ${ms.toFixed(1).padStart(7)} ms`);
+    console.log(`  ${"(each wait".padEnd(16)} ${readBackMs.toFixed(1).padStart(7)} ms, subtracted)`);
+  } finally {
+    await context.close();
+    rmSync(profile, { recursive: true, force: true, maxRetries: 10 });
+  }
+}
