@@ -58,9 +58,10 @@ TEST_F(Crowd, AllTwoHundredGetFramesAndEveryCommandIsAnswered) {
   const std::uint64_t encoded_count = after.encoded - before.encoded;
   // A frame that was in flight when the measurement began may arrive within it.
   EXPECT_LE(crowd.most_frames, after.surface - before.surface + 2) << "a client gets a frame twice";
-  // Each frame goes to all two hundred clients; frames encoded per client would be as many as the clients were given.
+  // Each frame goes to all two hundred clients; frames encoded twice would be half as many as the clients were given.
+  // In thirds, because on a busy machine frames are on their way between the two counts.
   EXPECT_GE(encoded_count, 3u);
-  EXPECT_LE(200 * encoded_count, after.offered - before.offered + 200 * 4 * kWaitingFrames)
+  EXPECT_LE(3 * 200 * encoded_count, 4 * (after.offered - before.offered) + 3 * 200 * 4 * kWaitingFrames)
       << "encoded once, whatever the number of clients";
   EXPECT_EQ(server().networkStats().evicted_session_count, 0u);
 }

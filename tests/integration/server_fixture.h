@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -78,6 +79,28 @@ class ServerTest : public testing::Test {
   std::uint64_t offeredFrameCount() const {
     const net::ServerStats stats = server_->networkStats();
     return stats.sent_frame_count + stats.dropped_frame_count;
+  }
+
+  /// Reads frames until each of them, encoded since this began, was given to `clients_count` sessions, except for
+  /// `waiting_count` that may still wait; returns whether it was. `read` reads one frame of every client. The frames on
+  /// their way from the encoder to the sessions are the more the busier the machine is, but not the more the longer
+  /// this reads; frames encoded for each client, or twice, would be too many however long it reads.
+  bool areEncodedOnce(std::uint64_t clients_count, std::uint64_t waiting_count,
+                      const std::function<std::uint64_t()>& encoded, const std::function<void()>& read,
+                      int least_rounds) const {
+    constexpr int kMostRounds = 600;
+    const std::uint64_t offered_before = offeredFrameCount();
+    const std::uint64_t encoded_before = encoded();
+    for (int round = 1; round <= kMostRounds && !testing::Test::HasFatalFailure(); ++round) {
+      read();
+      if (round < least_rounds) continue;
+      const std::uint64_t encoded_count = encoded() - encoded_before;
+      // In thirds, so that frames encoded twice do not come within the bound in the long run.
+      if (3 * clients_count * encoded_count <=
+          4 * (offeredFrameCount() - offered_before) + 3 * clients_count * waiting_count)
+        return true;
+    }
+    return false;
   }
 
   /// A client that has said hello.

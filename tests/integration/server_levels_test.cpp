@@ -105,29 +105,28 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWatchersAndNotWithoutOne) {
     full.back().subscribe(subscription(v1::LAYER_SURFACE, v1::LEVEL_FULL, v1::PACKING_PACKED));
     ASSERT_TRUE(full.back().nextFrame(v1::LAYER_SURFACE));
   }
-  // Each encoded frame goes to the three clients of its level. Frames encoded per client would be as many as the
-  // clients were given.
-  const std::uint64_t offered_before = offeredFrameCount();
+  // Each encoded frame goes to the three clients of its level.
   const std::uint64_t full_before = frames(core::Level::kFull);
-  for (int k = 0; k < 20; ++k) ASSERT_TRUE(full[0].nextFrame(v1::LAYER_SURFACE));
+  const auto read_full = [&] { ASSERT_TRUE(full[0].nextFrame(v1::LAYER_SURFACE)); };
+  EXPECT_TRUE(areEncodedOnce(
+      3, kWaitingFrames, [&] { return frames(core::Level::kFull); }, read_full, 20));
   const std::uint64_t full_count = frames(core::Level::kFull) - full_before;
   EXPECT_EQ(frames(core::Level::kCoarse), 0u) << "the level is not watched";
   EXPECT_GE(full_count + kWaitingFrames, 20u);
-  EXPECT_LE(3 * full_count, offeredFrameCount() - offered_before + 3 * kWaitingFrames);
 
   for (int k = 0; k < 3; ++k) {
     coarse.push_back(client());
     coarse.back().subscribe(subscription(v1::LAYER_SURFACE, v1::LEVEL_COARSE, v1::PACKING_PACKED));
     ASSERT_TRUE(coarse.back().nextFrame(v1::LAYER_SURFACE));
   }
-  const std::uint64_t offered_to_full = offeredFrameCount();
   const std::uint64_t both_before = frames(core::Level::kFull);
   const std::uint64_t coarse_before = frames(core::Level::kCoarse);
-  for (int k = 0; k < 10; ++k) ASSERT_TRUE(coarse[0].nextFrame(v1::LAYER_SURFACE));
+  const auto both = [&] { return frames(core::Level::kFull) + frames(core::Level::kCoarse); };
+  const auto read_coarse = [&] { ASSERT_TRUE(coarse[0].nextFrame(v1::LAYER_SURFACE)); };
+  EXPECT_TRUE(areEncodedOnce(3, 2 * kWaitingFrames, both, read_coarse, 10));
   const std::uint64_t coarse_count = frames(core::Level::kCoarse) - coarse_before;
   const std::uint64_t both_count = frames(core::Level::kFull) - both_before + coarse_count;
   EXPECT_GE(coarse_count + kWaitingFrames, 10u);
-  EXPECT_LE(3 * both_count, offeredFrameCount() - offered_to_full + 6 * kWaitingFrames);
   // 15 of 30 frames per second, independent of other watchers.
   EXPECT_LE(coarse_count, (both_count - coarse_count) / 2 + 2);
 }
