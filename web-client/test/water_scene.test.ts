@@ -85,8 +85,8 @@ describe.each(Object.entries(kRooms))("the passes of %s", (_, change) => {
 describe("the list of passes", () => {
   it("holds only what the room needs", () => {
     const names = (change: Partial<GreetingInfo>): string[] => enter(change, "low").map(({ name }) => name);
-    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "water", "present"]);
-    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "water", "present"]);
+    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
+    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);
     expect(tank.at(-1)).toBe("glass");

@@ -9,6 +9,16 @@ export interface FluidQuality {
   roundsCount: number;
 }
 
+/** Settings of drops, foam and bubbles. */
+export interface WhitewaterQuality {
+  /** Most of them at a time. */
+  capacityCount: number;
+  /** Share of the number that begins at full quality. */
+  densityRatio: number;
+  /** Texels of the foam's texture along each side of the square. */
+  frothTexelsCount: number;
+}
+
 /** Settings of the scene. */
 export interface Quality {
   /** Cells along each side of the drawn surface. */
@@ -20,6 +30,7 @@ export interface Quality {
   /** Most texels along each side of the field texture; a finer surface is sampled. */
   fieldCountMax: number;
   fluid: FluidQuality;
+  whitewater: WhitewaterQuality;
 }
 
 export interface ChosenQuality extends Quality {
@@ -30,8 +41,8 @@ export interface ChosenQuality extends Quality {
   remark: string;
 }
 
-const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, adaptive: true, maxPixelRatio: 2, remark: "" };
-const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 1 }, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
+const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 }, adaptive: true, maxPixelRatio: 2, remark: "" };
+const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 1 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 }, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
 
 export function chooseQuality(search: string, rendererName: string): ChosenQuality {
   const wanted = new URLSearchParams(search).get("quality");

@@ -2,6 +2,7 @@
 import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
 
 import bed from "./shaders/bed.glsl?raw";
+import bubblesFrag from "./shaders/bubbles.frag?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
 import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
@@ -17,6 +18,7 @@ import fluidSurfaceFrag from "./shaders/fluid_surface.frag?raw";
 import fluidThicknessFrag from "./shaders/fluid_thickness.frag?raw";
 import fluidTileMarkFrag from "./shaders/fluid_tile_mark.frag?raw";
 import fluidTileVert from "./shaders/fluid_tile.vert?raw";
+import frothFrag from "./shaders/froth.frag?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
 import presentFrag from "./shaders/present.frag?raw";
@@ -30,12 +32,15 @@ import skyDomeFrag from "./shaders/sky_dome.frag?raw";
 import skyDomeVert from "./shaders/sky_dome.vert?raw";
 import solidFrag from "./shaders/solid.frag?raw";
 import solidVert from "./shaders/solid.vert?raw";
+import sprayFrag from "./shaders/spray.frag?raw";
 import tilesFrag from "./shaders/tiles.frag?raw";
 import waterFrag from "./shaders/water.frag?raw";
 import waterOptics from "./shaders/water_optics.glsl?raw";
 import waterVert from "./shaders/water.vert?raw";
+import whitewaterVert from "./shaders/whitewater.vert?raw";
 
 const kPrograms = {
+  bubbles: [whitewaterVert, bubblesFrag],
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
   fluidDepth: [fluidParticleVert, fluidDepthFrag],
@@ -45,6 +50,7 @@ const kPrograms = {
   fluidSurface: [fluidTileVert, fluidSurfaceFrag],
   fluidThickness: [fluidParticleVert, fluidThicknessFrag],
   fluidTileMark: [fluidParticleVert, fluidTileMarkFrag],
+  froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
   present: [fullscreenVert, presentFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
@@ -52,6 +58,7 @@ const kPrograms = {
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
   solid: [solidVert, solidFrag],
+  spray: [whitewaterVert, sprayFrag],
   tiles: [solidVert, tilesFrag],
   water: [waterVert, waterFrag],
 } as const;

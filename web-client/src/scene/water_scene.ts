@@ -4,9 +4,11 @@
 //   sea        time -> the sea around the square, in an open sea
 //   solids     sky, ground, rocks, boats -> solids (linear light, depth)
 //   particles  frames -> particles; their shadow -> solids (fluid/fluid.ts)
-//   water      field, foam, sea, solids -> canvas
+//   whitewater frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
+//   water      field, foam, froth, sea, solids -> canvas
 //   present    solids -> canvas where there is no water
 //   fluid      particles, solids -> canvas (fluid/fluid.ts)
+//   spray      drops, solids -> canvas
 //   glass      panes of a tank -> canvas
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
@@ -26,9 +28,11 @@ import { SolidsPass } from "./passes/solids_pass";
 import { WaterPass } from "./passes/water_pass";
 import type { WaterShape } from "./pick";
 import type { Quality } from "./quality";
+import { withParameter } from "./sea/sea_state";
 import { isIndoors, viewOf } from "./settings/surroundings";
 import { Sky } from "./sky";
 import { StreamedFrames } from "./streamed_frames";
+import { makeWhitewaterPasses } from "./whitewater/whitewater";
 
 /** Room for waves above the water in a view, as a share of its side. */
 const kWaveRoom = 0.04;
@@ -132,6 +136,7 @@ export class WaterScene {
 
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
+    if (this.greeting?.wind) this.greeting.wind = withParameter(this.greeting.wind, path, value);
     this.solids?.surroundings.setParameter(path, value);
   }
 
@@ -155,9 +160,12 @@ export class WaterScene {
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
     const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
     const { sea, glass } = solids.surroundings;
-    const water = field && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, solids, quality);
+    const white = wave && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater);
+    const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
-    const passes = [field, foam, sea, solids, ...fluid.before, water, new PresentPass(sky, solids), ...fluid.after, glass && new GlassPass(glass)];
+    const before = [field, foam, sea, solids, ...fluid.before, ...(white?.before ?? [])];
+    const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), glass && new GlassPass(glass)];
+    const passes = [...before, water, ...after];
     return passes.filter((pass) => pass !== undefined);
   }
 

@@ -9,6 +9,10 @@ export type Resource =
   | "field"
   /** Foam of the simulated water. */
   | "foam"
+  /** Drops, foam and bubbles that the page adds. */
+  | "whitewater"
+  /** Their foam as a texture over the water. */
+  | "froth"
   /** Elevation and slopes of the sea around it. */
   | "sea"
   /** Colour (linear light) and depth of everything but water. */

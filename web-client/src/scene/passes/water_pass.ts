@@ -1,5 +1,5 @@
 // The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
-// goes on to the horizon and has no sides. Reads the field, the foam, the sea around, and the solids, which are seen through the water
+// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the sea around, and the solids, which are seen through the water
 // and in its mirror. Writes the canvas and its depth.
 import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
@@ -20,14 +20,14 @@ function hasSolids({ hasBoats, obstacles, beaches, setting }: GreetingInfo): boo
 
 export class WaterPass implements Pass {
   readonly name = "water";
-  readonly reads = ["field", "foam", "sea", "solids"] as const;
+  readonly reads = ["field", "foam", "froth", "sea", "solids"] as const;
   readonly writes = ["canvas"] as const;
   private readonly scene = new Scene();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
   /** `foam` undefined: the room sends none. */
-  constructor(greeting: GreetingInfo, sky: Sky, noise: Texture, field: Texture, foam: Uniforms | undefined, solids: SolidsPass, quality: Quality) {
+  constructor(greeting: GreetingInfo, sky: Sky, noise: Texture, field: Texture, foam: Uniforms | undefined, froth: Texture, solids: SolidsPass, quality: Quality) {
     const bed = bedOf(greeting);
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
@@ -47,6 +47,7 @@ export class WaterPass implements Pass {
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
       u_lace_m: { value: Math.min(Math.max(sideM / 7, 1), 9) },
+      u_froth: { value: froth },
       ...foam,
       ...(edge.kind === "sea" && { ...edge.sea, u_haze_m: { value: edge.hazeM } }),
     };

@@ -8,7 +8,7 @@ import type { Pass, Picture } from "../passes/pass";
 import type { Uniforms } from "../shaders";
 import { makeRipples, rippleSlope } from "./ripples";
 import { SeaTile, slopeVariance } from "./sea_tile";
-import { seaStateOf, type PlaneWave } from "./sea_state";
+import { seaStateOf, withParameter, type PlaneWave } from "./sea_state";
 
 /** As in the server: a sea fades into the next one in this time (wind_sea.cpp). */
 const kFadeS = 4;
@@ -85,15 +85,10 @@ export class OpenSea implements Pass {
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
     if (path === "wave.depth_m" && value > 0) this.wave = { ...this.wave, depthM: value };
-    if (this.wind) {
-      if (path === "storm.level_ratio") this.wind = { ...this.wind, levelRatio: value };
-      else if (path === "storm.wave_height_m") this.wind = { ...this.wind, waveHeightM: value };
-      else if (path === "storm.wind_direction_deg") this.wind = { ...this.wind, directionDeg: value };
-      else if (path === "storm.wind_speed_mps") this.wind = { ...this.wind, speedMps: value };
-      else if (path === "storm.fetch_m") this.wind = { ...this.wind, fetchM: value };
-      else if (path === "gravity_mps2") this.wind = { ...this.wind, gravityMps2: value };
-      else if (path !== "wave.depth_m") return;
-    } else return;
+    if (!this.wind) return;
+    const wind = withParameter(this.wind, path, value);
+    if (wind === this.wind && path !== "wave.depth_m") return;
+    this.wind = wind;
     // A change during a fade shortens it.
     if (this.next) [this.shown, this.shownSlope] = [this.next.waves, this.next.slope];
     this.next = { waves: this.waves(), slope: this.slope(), beganS: this.lastS };

@@ -39,6 +39,22 @@ export function makeRandom(seed: bigint): () => number {
   };
 }
 
+/** Fields of the wind that a room's parameters set, by their paths in the scene. */
+const kWindPaths: Readonly<Record<string, Exclude<keyof WindInfo, "seed" | "comesIn">>> = {
+  "storm.level_ratio": "levelRatio",
+  "storm.wave_height_m": "waveHeightM",
+  "storm.wind_direction_deg": "directionDeg",
+  "storm.wind_speed_mps": "speedMps",
+  "storm.fetch_m": "fetchM",
+  gravity_mps2: "gravityMps2",
+};
+
+/** Returns the wind after a change of a parameter; the same object if the parameter is none of the wind's. */
+export function withParameter(wind: WindInfo, path: string, value: number): WindInfo {
+  const field = kWindPaths[path];
+  return field ? { ...wind, [field]: value } : wind;
+}
+
 /** Returns omega of Airy's relation, rad/s. */
 export function waveFrequencyRadps(kRadpm: number, gravityMps2: number, depthM: number): number {
   return Math.sqrt(gravityMps2 * kRadpm * Math.tanh(kRadpm * depthM));

@@ -2,7 +2,8 @@
 // along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
 // MIRROR: solids are reflected as well, as far as they are on the screen. BEACH: the water ends where the bed rises above it.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
-// FOAM: white water where the noise tile ("lace") is above a threshold that falls with the foam.
+// White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
+// there is only the page's own froth.
 #include <sky>
 #include <water_optics>
 
@@ -35,9 +36,10 @@ uniform float u_haze_m;
 uniform sampler2D u_foam_from;
 uniform sampler2D u_foam_to;
 uniform float u_foam_mix;
+#endif
+uniform sampler2D u_froth;
 uniform sampler2D u_noise;
 uniform float u_lace_m;
-#endif
 layout(location = 0) out vec4 color;
 
 const vec3 kFarBed = vec3(0.209, 0.198, 0.154);  // light of the level bed of coast.ts as solid.frag draws it, on average
@@ -239,12 +241,19 @@ void main() {
   float at_sun = dot(mirrored, u_sun_direction);
   if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
-#if defined(FOAM) && !defined(SKIRT)
+#ifndef SKIRT
   vec2 place = v_world.xz / u_side_m + 0.5;
+  float foam = 0.0;
 #ifdef OPEN_SEA
-  float foam = v_share_away.x > 0.0 ? v_share_away.x * mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix) : 0.0;
-#else
-  float foam = mix(texture(u_foam_from, place).r, texture(u_foam_to, place).r, u_foam_mix);
+  if (v_share_away.x > 0.0) {
+#endif
+    foam = textureLod(u_froth, place, 0.0).r;
+#ifdef FOAM
+    foam = max(foam, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
+#endif
+#ifdef OPEN_SEA
+    foam *= v_share_away.x;
+  }
 #endif
 #ifdef BEACH
   // Shallow water at a beach always has a little foam.

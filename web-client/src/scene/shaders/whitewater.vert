@@ -1,0 +1,84 @@
+// One point per drop, patch of foam or bubble (whitewater/diffuse_particles.ts). Draws those of one kind:
+// SPRAY: drops, stretched along their flight, and mist. BUBBLES: below the surface. FROTH: foam, seen from above.
+in vec4 position;  // place (m), kind + share of its life that has passed
+in vec4 a_motion;  // velocity (m/s), radius (m)
+
+uniform mat4 viewMatrix;
+uniform mat4 projectionMatrix;
+
+flat out float v_strength;
+#ifdef FROTH
+uniform float u_side_m;
+uniform float u_target_px;
+const int kKind = 1;
+#else
+uniform vec2 u_target_px;
+flat out vec3 v_flight;  // unit direction on the screen, and width over length
+#ifdef SPRAY
+const int kKind = 0;
+#else
+const int kKind = 2;
+#endif
+#endif
+
+const float kMistRadiusM = 0.05;  // larger drops are puffs of mist
+const float kExposureS = 0.02;    // drops are drawn as long as they fly in this time
+const float kLeastPx = 1.5;
+
+float hash(uint n) {
+  n = (n ^ 61u) ^ (n >> 16u);
+  n *= 9u;
+  n ^= n >> 4u;
+  n *= 0x27d4eb2du;
+  return float((n ^ (n >> 15u)) & 65535u) / 65535.0;
+}
+
+void main() {
+  int kind = int(position.w);
+  float age = fract(position.w);
+  gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+  gl_PointSize = 1.0;
+  v_strength = 0.0;
+#ifdef FROTH
+  if (kind != kKind) return;
+  // Foam spreads and fades.
+  float radius_m = a_motion.w * (1.0 + 1.5 * age);
+  v_strength = 0.75 * (1.0 - age);
+  gl_Position = vec4(2.0 * position.xz / u_side_m, 0.0, 1.0);
+  gl_PointSize = max(2.0 * radius_m / u_side_m * u_target_px, 2.0);
+#else
+  v_flight = vec3(1.0, 0.0, 1.0);
+  if (kind != kKind) return;
+  vec3 center_m = (viewMatrix * vec4(position.xyz, 1.0)).xyz;
+  float radius_m = a_motion.w;
+  bool is_mist = radius_m > kMistRadiusM;
+  if (is_mist) radius_m *= 1.0 + 2.5 * age;
+  if (-center_m.z < 2.0 * radius_m) return;
+  float px_per_m = 0.5 * projectionMatrix[1][1] * u_target_px.y / -center_m.z;
+  float width_px = 2.0 * radius_m * px_per_m;
+  float length_px = width_px;
+#ifdef SPRAY
+  vec2 flight = (mat3(viewMatrix) * a_motion.xyz).xy;
+  float speed_mps = length(flight);
+  if (!is_mist && speed_mps > 0.01) {
+    length_px += speed_mps * kExposureS * px_per_m;
+    v_flight.xy = flight / speed_mps;
+  }
+  v_strength = is_mist ? 0.16 * (1.0 - age) * smoothstep(0.0, 0.08, age) : 0.85 * (1.0 - age * age);
+#else
+  v_strength = 1.0;
+#endif
+  // What is thinner than a pixel covers a part of it: drops become fainter, bubbles fewer.
+  float covered = min(width_px / kLeastPx, 1.0);
+#ifdef SPRAY
+  v_strength *= covered;
+#else
+  if (hash(uint(gl_VertexID)) > covered * covered) return;
+#endif
+  width_px = max(width_px, kLeastPx);
+  length_px = max(length_px, width_px);
+  v_flight.z = width_px / length_px;
+  gl_Position = projectionMatrix * vec4(center_m, 1.0);
+  gl_PointSize = length_px;
+#endif
+}

@@ -1,0 +1,69 @@
+// The streamed surface between two frames, on the CPU: elevation, its rate of change and its slope. Pure.
+import type { SurfaceFrame } from "../../net/messages";
+import type { Between } from "../frame_ring";
+
+export interface SurfaceMotion {
+  elevationM: number;
+  /** Vertical speed of the surface. */
+  riseMps: number;
+  slopeX: number;
+  slopeZ: number;
+}
+
+export class MovingSurface {
+  readonly sideM: number;
+  private readonly from: Int16Array;
+  private readonly to: Int16Array;
+  private readonly resolutionCount: number;
+  private readonly quantaM: readonly [number, number];
+  private readonly mix: number;
+  private readonly intervalS: number;
+  // Overwritten by every call: thousands run per picture.
+  private readonly motion: SurfaceMotion = { elevationM: 0, riseMps: 0, slopeX: 0, slopeZ: 0 };
+
+  constructor({ from, to, mix }: Readonly<Between<SurfaceFrame>>) {
+    const earlier = from.resolutionCount === to.resolutionCount ? from : to;
+    this.sideM = to.sideM;
+    this.resolutionCount = to.resolutionCount;
+    this.from = new Int16Array(earlier.buffer);
+    this.to = new Int16Array(to.buffer);
+    this.quantaM = [earlier.quantumM, to.quantumM];
+    this.mix = mix;
+    this.intervalS = to.timeS - earlier.timeS;
+  }
+
+  get cellM(): number {
+    return this.sideM / this.resolutionCount;
+  }
+
+  /** Returns the elevation of the nearest sample; undefined outside the square. */
+  elevationAtM(xM: number, zM: number): number | undefined {
+    const at = this.sampleAt(xM, zM);
+    if (at < 0) return undefined;
+    return this.from[at]! * this.quantaM[0] * (1 - this.mix) + this.to[at]! * this.quantaM[1] * this.mix;
+  }
+
+  /** Returns how the surface moves at the nearest sample; undefined outside the square. The next call overwrites the result. */
+  motionAt(xM: number, zM: number): Readonly<SurfaceMotion> | undefined {
+    const at = this.sampleAt(xM, zM);
+    if (at < 0) return undefined;
+    const n = this.resolutionCount;
+    const { motion, to, from, quantaM } = this;
+    const [i, k] = [at % n, Math.floor(at / n)];
+    const [left, right] = [Math.max(i - 1, 0), Math.min(i + 1, n - 1)];
+    const [back, front] = [Math.max(k - 1, 0), Math.min(k + 1, n - 1)];
+    motion.elevationM = from[at]! * quantaM[0] * (1 - this.mix) + to[at]! * quantaM[1] * this.mix;
+    motion.riseMps = this.intervalS > 0 ? (to[at]! * quantaM[1] - from[at]! * quantaM[0]) / this.intervalS : 0;
+    motion.slopeX = ((to[k * n + right]! - to[k * n + left]!) * quantaM[1]) / (Math.max(right - left, 1) * this.cellM);
+    motion.slopeZ = ((to[front * n + i]! - to[back * n + i]!) * quantaM[1]) / (Math.max(front - back, 1) * this.cellM);
+    return motion;
+  }
+
+  /** Returns the index of the sample nearest to a place, or -1. */
+  private sampleAt(xM: number, zM: number): number {
+    const n = this.resolutionCount;
+    const i = Math.floor((xM / this.sideM + 0.5) * n);
+    const k = Math.floor((zM / this.sideM + 0.5) * n);
+    return i >= 0 && i < n && k >= 0 && k < n ? k * n + i : -1;
+  }
+}

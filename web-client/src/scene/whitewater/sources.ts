@@ -1,0 +1,245 @@
+// Where white water begins, from what the server streams: at breaking crests (new foam), at hulls, where the surface rises against rocks
+// and breakwaters, and among fast white particles. Every source adds a mean number per second and area, length or particle, so that the
+// picture does not depend on the rates of frames and pictures. Pure: no renderer.
+import type { BoatDetail } from "../../codec/greeting";
+import { kParticleBytes } from "../../codec/frame_types";
+import type { ObstacleInfo } from "../../codec/scene_info";
+import type { FoamFrame, ParticleFrame } from "../../net/messages";
+import type { BodyPose } from "../bodies";
+import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
+import type { MovingSurface } from "./moving_surface";
+
+/** Marsaglia's xorshift (2003) with 32 bits: fast, and the same in every run. Returns 0..1. */
+export function makeFastRandom(seed: number): () => number {
+  let state = seed | 1;
+  return () => {
+    state ^= state << 13;
+    state ^= state >>> 17;
+    state ^= state << 5;
+    return (state >>> 0) / 2 ** 32;
+  };
+}
+
+/** Ihmsen et al. (2012), equation 1: 0 below `least`, 1 above `most`, linear between. */
+export function share(value: number, least: number, most: number): number {
+  return Math.min(Math.max((value - least) / (most - least), 0), 1);
+}
+
+/** What the sources add to. `scale`: 1 for the densities below, less where fewer particles are wanted. */
+export interface Births {
+  particles: DiffuseParticles;
+  random: () => number;
+  scale: number;
+}
+
+/** Returns a whole number with the mean `expected`. */
+function countOf(expected: number, random: () => number): number {
+  const whole = Math.floor(expected);
+  return whole + Number(random() < expected - whole);
+}
+
+const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
+
+/** Few drops are large: radii from 6 mm to 3 cm, and puffs of mist. */
+function dropRadiusM(random: () => number): number {
+  const u = random();
+  return u < 0.12 ? 0.06 + 0.1 * random() : 0.006 + 0.024 * u * u;
+}
+
+function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
+  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: dropRadiusM(random), lifeS: 1 + 1.5 * random() };
+}
+
+function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
+  return { kind: kinds.bubble, xM, yM: yM - 0.05 - 0.3 * random(), zM, vxMps: 0, vyMps: 0, vzMps: 0, radiusM: 0.008 + 0.02 * random(), lifeS: 2.5 };
+}
+
+function froth(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vzMps: number): Birth {
+  return { kind: kinds.foam, xM, yM, zM, vxMps, vyMps: 0, vzMps, radiusM: 0.1 + 0.15 * random(), lifeS: 2 + 3 * random() };
+}
+
+/** Foam that grows by this much (of 255) between frames is new: the water breaks there. */
+const kNewFoam = 24;
+/** Per m^2 of water whose foam grows from none to white. */
+const kCrestDropsPerM2 = 14;
+const kCrestBubblesPerM2 = 8;
+const kCrestSpeedsMps = [0.25, 1.2] as const;
+const kMostCrestMps = 6;
+
+/** Breaking crests: foam that grew from one frame to the next. */
+export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surface: MovingSurface): void {
+  const n = to.resolutionCount;
+  if (from.resolutionCount !== n) return;
+  const { particles, random, scale } = births;
+  const [before, after] = [new Uint8Array(from.buffer), new Uint8Array(to.buffer)];
+  const cellM = to.sideM / n;
+  for (let at = 0; at < n * n; ++at) {
+    const grown = after[at]! - before[at]!;
+    if (grown < kNewFoam) continue;
+    const xM = ((at % n) + 0.5) * cellM - to.sideM / 2;
+    const zM = (Math.floor(at / n) + 0.5) * cellM - to.sideM / 2;
+    const motion = surface.motionAt(xM, zM);
+    if (!motion) continue;
+    const { elevationM, riseMps, slopeX, slopeZ } = motion;
+    const fresh = (grown / 255) * cellM * cellM * scale;
+    for (let left = countOf(kCrestBubblesPerM2 * fresh, random); left > 0; --left)
+      particles.add(bubble(random, xM + spread(random, cellM / 2), elevationM, zM + spread(random, cellM / 2)));
+    // A crest's front rises: it travels down its slope with the speed rise / slope.
+    const slope = Math.hypot(slopeX, slopeZ);
+    const alongMps = slope > 0.02 ? Math.min(Math.max(riseMps, 0) / slope, kMostCrestMps) : 0;
+    const [dx, dz] = slope > 0 ? [-slopeX / slope, -slopeZ / slope] : [0, 0];
+    const drops = countOf(kCrestDropsPerM2 * fresh * share(riseMps, ...kCrestSpeedsMps), random);
+    for (let left = drops; left > 0; --left) {
+      const speedMps = alongMps * (0.7 + 0.5 * random());
+      const upMps = 0.4 + 1.3 * riseMps * (0.4 + random());
+      particles.add(drop(random, xM + spread(random, cellM / 2), elevationM + 0.03, zM + spread(random, cellM / 2), dx * speedMps + spread(random, 0.4), upMps, dz * speedMps + spread(random, 0.4)));
+    }
+  }
+}
+
+/** A hull throws spray above this speed, over sqrt(g L). */
+const kSprayFroude = 0.25;
+/** Per s and m of hull at a Froude number of 1 above it. */
+const kBowDropsPerMS = 420;
+const kWakeFrothPerMS = 14;
+
+/** Bow waves and wakes. `poses` are the first `boats.length` or fewer boats drawn now. */
+export function addHulls(births: Births, poses: readonly BodyPose[], hulls: ReadonlyMap<number, BoatDetail>, surface: MovingSurface, gravityMps2: number, stepS: number): void {
+  const { particles, random, scale } = births;
+  for (const { boatId, xM, zM, headingRad, speedMps } of poses) {
+    const hull = hulls.get(boatId);
+    if (!hull) continue;
+    const { lengthM, beamM } = hull;
+    const [fx, fz] = [Math.cos(headingRad), Math.sin(headingRad)];
+    const place = (along: number, across: number): [number, number] => [xM + fx * along - fz * across, zM + fz * along + fx * across];
+    const froude = speedMps / Math.sqrt(Math.max(gravityMps2, 0.1) * lengthM);
+    const above = Math.max(froude - kSprayFroude, 0);
+    const [bowX, bowZ] = place(0.46 * lengthM, 0);
+    const bow = surface.motionAt(bowX, bowZ);
+    if (!bow) continue;
+    const { elevationM, riseMps } = bow;
+    // The bow meets a rising surface harder.
+    const hit = above * above * (1 + 2 * share(riseMps, 0, 1.5));
+    for (let left = countOf(kBowDropsPerMS * hit * lengthM * stepS * scale, random); left > 0; --left) {
+      const side = random() < 0.5 ? -1 : 1;
+      const [px, pz] = place(lengthM * (0.46 - 0.22 * random()), side * beamM * (0.15 + 0.3 * random()));
+      const outMps = side * speedMps * (0.25 + 0.35 * random());
+      const alongMps = speedMps * (0.45 + 0.4 * random());
+      const upMps = speedMps * (0.2 + 0.35 * random());
+      particles.add(drop(random, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps));
+    }
+    const wake = share(froude, 0.1, 0.6) * lengthM * stepS * scale;
+    for (let left = countOf(kWakeFrothPerMS * wake, random); left > 0; --left) {
+      const [px, pz] = place(-0.5 * lengthM, spread(random, 0.4 * beamM));
+      // The screw throws the water astern.
+      const asternMps = -0.15 * speedMps;
+      const sternM = surface.elevationAtM(px, pz);
+      if (sternM === undefined) continue;
+      particles.add(froth(random, px, sternM, pz, fx * asternMps + spread(random, 0.15), fz * asternMps + spread(random, 0.15)));
+      if (random() < 0.4) particles.add(bubble(random, px, sternM, pz));
+    }
+  }
+}
+
+/** A place at the water line of an obstacle; the normal points to the water, and each stands for `lengthM` of the line. */
+export interface RimPoint {
+  xM: number;
+  zM: number;
+  normalX: number;
+  normalZ: number;
+  lengthM: number;
+}
+
+const kRimSpacingM = 0.4;
+const kMostRimPoints = 4000;
+/** Distance of the places from the obstacle, where the surface is that of the water. */
+const kRimAwayM = 0.15;
+
+/** Returns the places along the water lines of rocks and breakwaters. */
+export function rimOf(obstacles: readonly ObstacleInfo[]): RimPoint[] {
+  const rim: RimPoint[] = [];
+  for (const obstacle of obstacles) {
+    if (obstacle.shape === "rock") {
+      const radiusM = obstacle.radiusM + kRimAwayM;
+      const count = Math.min(Math.max(Math.ceil((2 * Math.PI * radiusM) / kRimSpacingM), 6), kMostRimPoints);
+      for (let n = 0; n < count; ++n) {
+        const [normalX, normalZ] = [Math.cos((2 * Math.PI * n) / count), Math.sin((2 * Math.PI * n) / count)];
+        rim.push({ xM: obstacle.xM + radiusM * normalX, zM: obstacle.zM + radiusM * normalZ, normalX, normalZ, lengthM: (2 * Math.PI * radiusM) / count });
+      }
+    } else {
+      const { xM, zM, lengthM, widthM, headingRad } = obstacle;
+      const [ax, az] = [Math.cos(headingRad), Math.sin(headingRad)];
+      const edge = (halfM: number, alongM: number, ux: number, uz: number, vx: number, vz: number): void => {
+        const count = Math.min(Math.max(Math.ceil(alongM / kRimSpacingM), 1), kMostRimPoints);
+        for (let n = 0; n < count; ++n)
+          for (const side of [-1, 1]) {
+            const at = ((n + 0.5) / count - 0.5) * alongM;
+            const outM = side * (halfM + kRimAwayM);
+            rim.push({ xM: xM + ux * at + vx * outM, zM: zM + uz * at + vz * outM, normalX: side * vx, normalZ: side * vz, lengthM: alongM / count });
+          }
+      };
+      edge(widthM / 2, lengthM, ax, az, -az, ax);
+      edge(lengthM / 2, widthM, -az, ax, ax, az);
+    }
+    if (rim.length > kMostRimPoints) break;
+  }
+  return rim.slice(0, kMostRimPoints);
+}
+
+/** Drops per s and m of water line where the surface rises by 1 m/s more than the first of these speeds. */
+const kRimDropsPerMS = 60;
+const kRimSpeedsMps = [0.3, 1.3] as const;
+
+/** Water that rises against rocks and breakwaters. */
+export function addRims(births: Births, rim: readonly RimPoint[], surface: MovingSurface, stepS: number): void {
+  const { particles, random, scale } = births;
+  for (const { xM, zM, normalX, normalZ, lengthM } of rim) {
+    const motion = surface.motionAt(xM, zM);
+    if (!motion) continue;
+    const { elevationM, riseMps } = motion;
+    const hit = share(riseMps, ...kRimSpeedsMps);
+    if (hit <= 0) continue;
+    for (let left = countOf(kRimDropsPerMS * hit * lengthM * stepS * scale, random); left > 0; --left) {
+      const along = spread(random, lengthM / 2);
+      const outMps = riseMps * (0.1 + 0.5 * random());
+      const upMps = riseMps * (1 + 1.6 * random()) + 0.4;
+      particles.add(drop(random, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
+      if (random() < 0.3) particles.add(froth(random, xM, elevationM, zM, 0.3 * normalX, 0.3 * normalZ));
+    }
+  }
+}
+
+/** Drops per s from one white particle of at least the second speed. */
+const kParticleDropsPerS = 1.6;
+const kParticleSpeedsMps = [1.5, 5] as const;
+const kWhite = 100;
+/** At most so many particles of a frame are looked at, evenly spaced. */
+const kLookedAtCount = 4000;
+
+/** Fast white particles of the server tear off finer drops (kinetic energy, Ihmsen et al. 2012, equation 6, with the speed for its root). */
+export function addFromParticles(births: Births, frame: ParticleFrame, surface: MovingSurface, intervalS: number): void {
+  const { particles, random, scale } = births;
+  const words = new Uint16Array(frame.buffer, 0, frame.count * (kParticleBytes / 2));
+  const stride = Math.max(Math.ceil(frame.count / kLookedAtCount), 1);
+  const signed = (byte: number): number => ((byte << 24) >> 24) / 127;
+  const { wordMinM, wordMaxM, maxSpeedMps } = frame;
+  const placeM = (word: number, axis: 0 | 1 | 2): number => wordMinM[axis] + (word / 65535) * (wordMaxM[axis] - wordMinM[axis]);
+  for (let n = 0; n < frame.count; n += stride) {
+    const at = (n * kParticleBytes) / 2;
+    if ((words[at + 5]! & 255) < kWhite) continue;
+    const vx = signed(words[at + 3]! & 255) * maxSpeedMps;
+    const vy = signed(words[at + 3]! >> 8) * maxSpeedMps;
+    const vz = signed(words[at + 4]! & 255) * maxSpeedMps;
+    const fast = share(Math.hypot(vx, vy, vz), ...kParticleSpeedsMps);
+    if (fast <= 0) continue;
+    const drops = countOf(kParticleDropsPerS * fast * stride * intervalS * scale, random);
+    if (drops === 0) continue;
+    const [xM, yM, zM] = [placeM(words[at]!, 0), placeM(words[at + 2]!, 1), placeM(words[at + 1]!, 2)];
+    const surfaceM = surface.elevationAtM(xM, zM);
+    if (surfaceM === undefined || yM < surfaceM) continue;
+    for (let left = drops; left > 0; --left) {
+      const apart = (): number => spread(random, frame.radiusM);
+      particles.add(drop(random, xM + apart(), yM + apart(), zM + apart(), vx * (0.8 + 0.4 * random()) + spread(random, 0.5), vy * (0.8 + 0.4 * random()) + spread(random, 0.5), vz * (0.8 + 0.4 * random()) + spread(random, 0.5)));
+    }
+  }
+}

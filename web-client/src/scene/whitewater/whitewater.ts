@@ -1,0 +1,31 @@
+// White water on the page alone, at no bandwidth: the passes in order.
+//   whitewater  frames, boats -> drops, foam, bubbles
+//   froth       foam -> texture over the square, which the water shows
+//   bubbles     bubbles -> solids, before the water
+//   spray       drops -> canvas, after the water
+import type { GreetingInfo } from "../../codec/greeting";
+import type { Pass } from "../passes/pass";
+import type { SolidsPass } from "../passes/solids_pass";
+import type { WhitewaterQuality } from "../quality";
+import type { Sky } from "../sky";
+import type { StreamedFrames } from "../streamed_frames";
+import { BubblesPass } from "./bubbles_pass";
+import { FrothPass } from "./froth_pass";
+import { SprayPass } from "./spray_pass";
+import { WhitewaterPass } from "./whitewater_pass";
+
+export interface WhitewaterPasses {
+  /** Before the water. */
+  before: Pass[];
+  /** After the water. */
+  after: Pass[];
+  froth: FrothPass;
+}
+
+/** For a room with a wave. */
+export function makeWhitewaterPasses(greeting: GreetingInfo, frames: StreamedFrames, solids: SolidsPass, sky: Sky, quality: WhitewaterQuality): WhitewaterPasses {
+  const whitewater = new WhitewaterPass(greeting, frames, solids, quality);
+  const { points } = whitewater;
+  const froth = new FrothPass(points, greeting.sideM, quality.frothTexelsCount);
+  return { before: [whitewater, froth, new BubblesPass(points, solids, sky)], after: [new SprayPass(points, solids, sky)], froth };
+}

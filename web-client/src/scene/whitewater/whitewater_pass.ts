@@ -1,0 +1,88 @@
+// Drops, foam and bubbles of the time shown: lets them begin (sources.ts), moves them (diffuse_particles.ts) and uploads them.
+// Reads the frames and the boats as drawn. Writes the white water: points for the passes of white_points.ts.
+import type { GreetingInfo } from "../../codec/greeting";
+import type { FoamFrame, ParticleFrame } from "../../net/messages";
+import type { Pass, Picture } from "../passes/pass";
+import type { SolidsPass } from "../passes/solids_pass";
+import type { WhitewaterQuality } from "../quality";
+import type { StreamedFrames } from "../streamed_frames";
+import { DiffuseParticles, kMaxStepS, type Medium } from "./diffuse_particles";
+import { MovingSurface } from "./moving_surface";
+import { addCrests, addFromParticles, addHulls, addRims, makeFastRandom, rimOf, type Births, type RimPoint } from "./sources";
+import { WhitePoints } from "./white_points";
+
+/** After a longer gap, or when time goes back, the white water starts anew. */
+const kGapS = 0.5;
+const kSeed = 20_260_101;
+
+export class WhitewaterPass implements Pass {
+  readonly name = "whitewater";
+  readonly reads = ["frames", "solids"] as const;
+  readonly writes = ["whitewater"] as const;
+  readonly points: WhitePoints;
+  readonly particles: DiffuseParticles;
+  private readonly births: Births;
+  private readonly rim: readonly RimPoint[];
+  private lastS: number | undefined;
+  private lastFoam: FoamFrame | undefined;
+  private lastParticles: ParticleFrame | undefined;
+
+  /** `greeting` is read in every picture, because its boats and its wind change. */
+  constructor(
+    private readonly greeting: GreetingInfo,
+    private readonly frames: StreamedFrames,
+    private readonly solids: SolidsPass,
+    quality: WhitewaterQuality,
+  ) {
+    const random = makeFastRandom(kSeed);
+    this.particles = new DiffuseParticles(quality.capacityCount, random);
+    this.births = { particles: this.particles, random, scale: quality.densityRatio };
+    this.points = new WhitePoints(this.particles.values);
+    this.rim = rimOf(greeting.obstacles);
+  }
+
+  draw({ shownS }: Picture): void {
+    const surfaces = shownS === undefined ? undefined : this.frames.surfaces.around(shownS);
+    if (!surfaces) return;
+    const stepS = shownS! - (this.lastS ?? shownS!);
+    this.lastS = shownS;
+    if (stepS < 0 || stepS > kGapS) this.particles.clear();
+    else if (stepS > 0) this.advance(shownS!, stepS, new MovingSurface(surfaces));
+    this.points.upload(this.particles.count);
+  }
+
+  dispose(): void {
+    this.points.dispose();
+  }
+
+  private advance(shownS: number, stepS: number, surface: MovingSurface): void {
+    const { births, frames, greeting } = this;
+    const gravityMps2 = greeting.wind?.gravityMps2 ?? 9.81;
+    const foam = frames.foam.around(shownS);
+    if (foam && foam.to !== this.lastFoam) {
+      if (foam.from !== foam.to) addCrests(births, foam.from, foam.to, surface);
+      this.lastFoam = foam.to;
+    }
+    const hulls = new Map(greeting.boats.map((boat) => [boat.boatId, boat]));
+    addHulls(births, this.solids.drawnBoats(), hulls, surface, gravityMps2, stepS);
+    addRims(births, this.rim, surface, stepS);
+    const particles = frames.particles.around(shownS)?.from;
+    if (particles && particles !== this.lastParticles) {
+      addFromParticles(births, particles, surface, frames.clock.intervalS());
+      this.lastParticles = particles;
+    }
+    const medium = this.medium(surface, gravityMps2);
+    for (let leftS = stepS; leftS > 1e-6; leftS -= kMaxStepS) this.particles.step(Math.min(leftS, kMaxStepS), medium);
+  }
+
+  private medium(surface: MovingSurface, gravityMps2: number): Medium {
+    const { levelRatio = 0, speedMps = 0, directionDeg = 0 } = this.greeting.wind ?? {};
+    const angle = (directionDeg * Math.PI) / 180;
+    const blowsMps = levelRatio * speedMps;
+    return {
+      elevationAtM: (xM, zM) => surface.elevationAtM(xM, zM),
+      gravityMps2,
+      windMps: { x: blowsMps * Math.cos(angle), z: blowsMps * Math.sin(angle) },
+    };
+  }
+}

@@ -1,0 +1,266 @@
+// White water without a renderer: how drops, foam and bubbles move, and where they begin.
+import { describe, expect, it } from "vitest";
+
+import type { FoamFrame, ParticleFrame, SurfaceFrame } from "../src/net/messages";
+import { makePose } from "../src/scene/bodies";
+import { DiffuseParticles, kFloatsPerParticle, kinds, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
+import { MovingSurface } from "../src/scene/whitewater/moving_surface";
+import { addCrests, addFromParticles, addHulls, addRims, makeFastRandom, rimOf, share, type Births } from "../src/scene/whitewater/sources";
+
+const kSideM = 16;
+const kCount = 32;
+const header = { tick: 0n, stateId: 0n, serverTimeS: 0, level: "full" as const };
+
+function surfaceFrame(timeS: number, elevationM: (xM: number, zM: number) => number): SurfaceFrame {
+  const samples = new Int16Array(kCount * kCount);
+  const at = (i: number): number => ((i + 0.5) / kCount - 0.5) * kSideM;
+  samples.forEach((_, n) => (samples[n] = Math.round(elevationM(at(n % kCount), at(Math.floor(n / kCount))) * 1000)));
+  return { ...header, layer: "surface", timeS, resolutionCount: kCount, sideM: kSideM, quantumM: 0.001, buffer: samples.buffer };
+}
+
+function foamFrame(timeS: number, value: number): FoamFrame {
+  return { ...header, layer: "foam", timeS, resolutionCount: kCount, sideM: kSideM, buffer: new Uint8Array(kCount * kCount).fill(value).buffer };
+}
+
+/** A surface that rises everywhere by `riseMps`, with the slope `slope` along x. */
+function moving(riseMps: number, slope = 0): MovingSurface {
+  const from = surfaceFrame(0, (xM) => slope * xM);
+  const to = surfaceFrame(0.1, (xM) => slope * xM + 0.1 * riseMps);
+  return new MovingSurface({ before: undefined, from, to, after: undefined, mix: 0.5 });
+}
+
+const kStill: Medium = { elevationAtM: (xM, zM) => (Math.max(Math.abs(xM), Math.abs(zM)) < kSideM / 2 ? 0 : undefined), gravityMps2: 9.81, windMps: { x: 0, z: 0 } };
+
+function births(capacityCount = 20_000): Births {
+  const random = makeFastRandom(1);
+  return { particles: new DiffuseParticles(capacityCount, random), random, scale: 1 };
+}
+
+const born = (kind: Kind, change: Partial<Birth> = {}): Birth => ({ kind, xM: 0, yM: 0, zM: 0, vxMps: 0, vyMps: 0, vzMps: 0, radiusM: 0.02, lifeS: 10, ...change });
+
+/** Returns the values of one particle: place, kind + age share, velocity, radius. */
+const valuesOf = ({ values }: DiffuseParticles, n = 0): number[] => [...values.subarray(n * kFloatsPerParticle, (n + 1) * kFloatsPerParticle)];
+
+describe("a drop", () => {
+  it("flies like a thrown body and becomes foam where it falls", () => {
+    const { particles } = births();
+    // A large drop feels little drag: 2 m/s up comes down after 2 v / g, 0.41 s, 0.41 m away at 1 m/s.
+    particles.add(born(kinds.spray, { yM: 0.001, vxMps: 1, vyMps: 2, radiusM: 0.05 }));
+    let highestM = 0;
+    let timeS = 0;
+    while (particles.countOf(kinds.spray) > 0 && timeS < 2) {
+      particles.step(1 / 240, kStill);
+      timeS += 1 / 240;
+      highestM = Math.max(highestM, particles.values[1]!);
+    }
+    expect(timeS).toBeGreaterThan(0.38);
+    expect(timeS).toBeLessThan(0.43);
+    expect(highestM).toBeGreaterThan(0.18);
+    expect(highestM).toBeLessThan(0.205);
+    expect(particles.countOf(kinds.foam)).toBe(1);
+    expect(particles.values[0]).toBeGreaterThan(0.36);
+    expect(particles.values[0]).toBeLessThan(0.42);
+    expect(particles.values[1]).toBe(0);
+  });
+
+  it("is carried by the wind, the smaller the faster, and never faster than it", () => {
+    const { particles } = births();
+    for (const radiusM of [0.006, 0.05]) particles.add(born(kinds.spray, { yM: 50, radiusM }));
+    const wind: Medium = { ...kStill, elevationAtM: () => 0, windMps: { x: 8, z: 0 } };
+    for (let n = 0; n < 20; ++n) particles.step(kMaxStepS, wind);
+    const [small, large] = [valuesOf(particles, 0)[4]!, valuesOf(particles, 1)[4]!];
+    expect(small).toBeGreaterThan(2 * large);
+    expect(small).toBeLessThanOrEqual(8);
+    expect(large).toBeGreaterThan(0);
+  });
+});
+
+describe("bubbles and foam", () => {
+  it("rise to the surface, become foam, slow down and vanish", () => {
+    const { particles } = births();
+    particles.add(born(kinds.bubble, { yM: -0.25 }));
+    for (let n = 0; n < 30; ++n) particles.step(kMaxStepS, kStill);
+    expect(particles.countOf(kinds.foam)).toBe(1);
+    for (let n = 0; n < 240; ++n) particles.step(kMaxStepS, kStill);
+    expect(particles.count).toBe(0);
+  });
+
+  it("float on a surface that moves, and stop where they float", () => {
+    const { particles } = births();
+    particles.add(born(kinds.foam, { vxMps: 2 }));
+    for (let n = 0; n < 120; ++n) particles.step(kMaxStepS, { ...kStill, elevationAtM: () => 0.3 });
+    expect(particles.values[1]).toBeCloseTo(0.3, 6);
+    expect(Math.abs(particles.values[4]!)).toBeLessThan(0.05);
+    // 2 m/s that relax within 0.6 s.
+    expect(particles.values[0]).toBeGreaterThan(0.9);
+    expect(particles.values[0]).toBeLessThan(1.3);
+  });
+});
+
+describe("the pool of particles", () => {
+  it("never holds more than its capacity, removes what leaves the water, and stays finite", () => {
+    const random = makeFastRandom(5);
+    const particles = new DiffuseParticles(500, random);
+    for (let n = 0; n < 400; ++n) {
+      for (let k = 0; k < 40; ++k)
+        particles.add(born((k % 3) as Kind, { xM: 16 * (random() - 0.5), zM: 16 * (random() - 0.5), yM: random() - 0.5, vxMps: 40 * (random() - 0.5), vyMps: 8 * random(), lifeS: 0.1 + random(), radiusM: 0.001 + 0.2 * random() }));
+      particles.step(kMaxStepS, { ...kStill, windMps: { x: 12, z: -5 } });
+      expect(particles.count).toBeLessThanOrEqual(500);
+    }
+    expect(particles.count).toBeGreaterThan(50);
+    for (let n = 0; n < particles.count; ++n) {
+      const values = valuesOf(particles, n);
+      expect(values.every(Number.isFinite)).toBe(true);
+      expect(Math.abs(values[0]!)).toBeLessThanOrEqual(kSideM / 2);
+      expect([0, 1, 2]).toContain(Math.floor(values[3]!));
+    }
+  });
+});
+
+describe("the moving surface", () => {
+  it("has the elevation, the vertical speed and the slope of its frames", () => {
+    const surface = moving(0.8, 0.1);
+    const motion = surface.motionAt(1.25, -2.25)!;
+    expect(motion.elevationM).toBeCloseTo(0.125 + 0.04, 3);
+    expect(motion.riseMps).toBeCloseTo(0.8, 2);
+    expect(motion.slopeX).toBeCloseTo(0.1, 2);
+    expect(motion.slopeZ).toBeCloseTo(0, 3);
+    expect(surface.elevationAtM(1.25, -2.25)).toBeCloseTo(0.165, 3);
+    expect(surface.motionAt(8.1, 0)).toBeUndefined();
+    expect(surface.elevationAtM(0, -8.1)).toBeUndefined();
+  });
+
+  it("stands still with frames of two sizes", () => {
+    const from = { ...surfaceFrame(0, () => 1), resolutionCount: 4 };
+    const surface = new MovingSurface({ before: undefined, from, to: surfaceFrame(0.1, () => 0.5), after: undefined, mix: 0.5 });
+    expect(surface.motionAt(0, 0)).toEqual({ elevationM: 0.5, riseMps: 0, slopeX: 0, slopeZ: 0 });
+  });
+});
+
+describe("breaking crests", () => {
+  it("throw drops ahead where foam grew and the surface rises, with bubbles below", () => {
+    const made = births();
+    addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(1, -0.5));
+    // 14 drops and 8 bubbles per m^2 of 256 m^2 that became white; a rise of 1 m/s makes 79 % of the drops.
+    const drops = made.particles.countOf(kinds.spray);
+    expect(drops).toBeGreaterThan(0.7 * 14 * 256 * share(1, 0.25, 1.2));
+    expect(drops).toBeLessThan(1.3 * 14 * 256 * share(1, 0.25, 1.2));
+    expect(made.particles.countOf(kinds.bubble)).toBeGreaterThan(0.7 * 8 * 256);
+    let forward = 0;
+    for (let n = 0; n < made.particles.count; ++n) {
+      const values = valuesOf(made.particles, n);
+      if (Math.floor(values[3]!) === kinds.spray) forward += values[4]! / drops;
+    }
+    // Down the slope of -0.5 along x: toward +x with about rise / slope, 2 m/s.
+    expect(forward).toBeGreaterThan(1.5);
+    expect(forward).toBeLessThan(2.3);
+  });
+
+  it("do nothing where the foam fades, the surface falls, or two sizes of frames meet", () => {
+    const made = births();
+    addCrests(made, foamFrame(0, 255), foamFrame(0.1, 0), moving(1));
+    addCrests(made, { ...foamFrame(0, 0), resolutionCount: 8 }, foamFrame(0.1, 255), moving(1));
+    expect(made.particles.count).toBe(0);
+    addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(-1));
+    expect(made.particles.countOf(kinds.spray)).toBe(0);
+  });
+});
+
+describe("hulls", () => {
+  const hulls = new Map([[1, { boatId: 1, lengthM: 2.5, beamM: 1, heightM: 0.8, draughtM: 0.2 }]]);
+  const run = (speedMps: number, stepS: number, steps: number): Births => {
+    const made = births();
+    for (let n = 0; n < steps; ++n) addHulls(made, [{ ...makePose(), boatId: 1, speedMps }, { ...makePose(), boatId: 9, speedMps: 9 }], hulls, moving(0), 9.81, stepS);
+    return made;
+  };
+
+  it("throw more spray the faster they are, none when slow, and leave foam behind them", () => {
+    expect(run(1, 0.05, 20).particles.countOf(kinds.spray)).toBe(0);
+    const [slow, fast] = [run(3, 0.05, 20).particles, run(4.5, 0.05, 20).particles];
+    expect(slow.countOf(kinds.spray)).toBeGreaterThan(20);
+    expect(fast.countOf(kinds.spray)).toBeGreaterThan(2 * slow.countOf(kinds.spray));
+    expect(run(0, 0.05, 20).particles.count).toBe(0);
+    for (let n = 0; n < fast.count; ++n) {
+      const [xM, , zM, kindAge] = valuesOf(fast, n);
+      // Spray at the bow (+x), foam and bubbles at the stern.
+      expect(Math.sign(xM!)).toBe(Math.floor(kindAge!) === kinds.spray ? 1 : -1);
+      expect(Math.abs(zM!)).toBeLessThan(0.5);
+    }
+  });
+
+  it("throw the same number per second at any rate of pictures", () => {
+    const [often, seldom] = [run(4, 1 / 60, 120).particles.count, run(4, 1 / 10, 20).particles.count];
+    expect(often / seldom).toBeGreaterThan(0.75);
+    expect(often / seldom).toBeLessThan(1.33);
+  });
+});
+
+describe("the water lines of obstacles", () => {
+  const obstacles = [
+    { shape: "rock", xM: 2, zM: 1, radiusM: 1, heightM: 1 },
+    { shape: "breakwater", xM: -3, zM: 0, lengthM: 6, widthM: 1, headingRad: Math.PI / 2, heightM: 1 },
+  ] as const;
+  const rim = rimOf(obstacles);
+
+  it("have their length, and normals that point away from them", () => {
+    const lengthOf = (from: number, to: number): number => rim.slice(from, to).reduce((sum, { lengthM }) => sum + lengthM, 0);
+    const rockCount = rim.findIndex(({ xM }) => xM < 0);
+    expect(lengthOf(0, rockCount)).toBeCloseTo(2 * Math.PI * 1.15, 6);
+    expect(lengthOf(rockCount, rim.length)).toBeCloseTo(14, 6);
+    rim.forEach(({ xM, zM, normalX, normalZ }, n) => {
+      const middle = n < rockCount ? obstacles[0] : obstacles[1];
+      expect(Math.hypot(normalX, normalZ)).toBeCloseTo(1, 6);
+      expect((xM - middle.xM) * normalX + (zM - middle.zM) * normalZ).toBeGreaterThan(0.5);
+      if (n >= rockCount) expect(Math.abs(xM - middle.xM) < 0.66 && Math.abs(zM) < 3.16).toBe(true);
+    });
+  });
+
+  it("throw drops up and outward where the surface rises fast, and none where it falls", () => {
+    const calm = births();
+    addRims(calm, rim, moving(-2), 0.1);
+    addRims(calm, rim, moving(0.2), 0.1);
+    expect(calm.particles.count).toBe(0);
+    const made = births();
+    addRims(made, rim, moving(2), 0.1);
+    expect(made.particles.countOf(kinds.spray)).toBeGreaterThan(60);
+    for (let n = 0; n < made.particles.count; ++n) {
+      const values = valuesOf(made.particles, n);
+      if (Math.floor(values[3]!) === kinds.spray) expect(values[5]).toBeGreaterThan(2);
+    }
+  });
+
+  it("are bounded for a scene with very many obstacles", () => {
+    expect(rimOf(Array.from({ length: 64 }, () => ({ shape: "rock", xM: 0, zM: 0, radiusM: 1e5, heightM: 1 }) as const)).length).toBeLessThanOrEqual(4000);
+  });
+});
+
+describe("white particles of the server", () => {
+  const frameOf = (foam: number, vx: number, word: number): ParticleFrame => {
+    const bytes = new Uint8Array(12 * 100);
+    const view = new DataView(bytes.buffer);
+    for (let n = 0; n < 100; ++n) {
+      // x, z, y.
+      for (let axis = 0; axis < 3; ++axis) view.setUint16(12 * n + 2 * axis, word, true);
+      view.setInt8(12 * n + 6, vx);
+      view.setUint8(12 * n + 10, foam);
+    }
+    const bounds = { minM: [-2, -2, -2], maxM: [2, 2, 2], wordMinM: [-2, -2, -2], wordMaxM: [2, 2, 2] } as const;
+    return { ...header, ...structuredClone(bounds), layer: "particles", timeS: 0, count: 100, maxSpeedMps: 6, radiusM: 0.1, buffer: bytes.buffer } as unknown as ParticleFrame;
+  };
+
+  it("tear off drops where they are fast, white and above the surface, with about their velocity", () => {
+    const none = births();
+    addFromParticles(none, frameOf(0, 127, 65535), moving(0), 1);
+    addFromParticles(none, frameOf(255, 20, 65535), moving(0), 1);
+    addFromParticles(none, frameOf(255, 127, 0), moving(0), 1);
+    expect(none.particles.count).toBe(0);
+    const made = births();
+    addFromParticles(made, frameOf(255, 127, 65535), moving(0), 1);
+    expect(made.particles.count).toBeGreaterThan(100);
+    expect(made.particles.count).toBeLessThan(240);
+    const [xM, yM, zM, , vx] = valuesOf(made.particles);
+    for (const placeM of [xM!, yM!, zM!]) expect(Math.abs(placeM - 2)).toBeLessThanOrEqual(0.1);
+    expect(vx).toBeGreaterThan(4);
+    expect(vx).toBeLessThan(8);
+  });
+});
