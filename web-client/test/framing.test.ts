@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { focusBox, frameBox, freeTangents, raisedBy, type PixelRect, type ViewedBox } from "../src/scene/framing";
+import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type ViewedBox } from "../src/scene/framing";
 
 const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
 const waters: ViewedBox[] = [
@@ -113,5 +113,21 @@ describe("a view of the water", () => {
     const { positionM } = frameBox(waters[0]!, backwards[0]!, nothing);
     expect(positionM.length()).toBeGreaterThan(24);
     expect(positionM.length()).toBeLessThan(24 * 20);
+  });
+});
+
+describe("a direction turned to another side", () => {
+  it("points out of that side, and keeps its length and its share along the side", () => {
+    const direction = new Vector3(0.2, 0.13, 1.3);
+    expect(turnedTo("+z", direction)).toEqual(direction);
+    const outward = { "+x": new Vector3(1, 0, 0), "-x": new Vector3(-1, 0, 0), "-z": new Vector3(0, 0, -1) } as const;
+    for (const [side, out] of Object.entries(outward) as [keyof typeof outward, Vector3][]) {
+      const turned = turnedTo(side, direction);
+      expect(turned.dot(out)).toBeCloseTo(1.3, 12);
+      expect(turned.y).toBe(0.13);
+      expect(turned.length()).toBeCloseTo(direction.length(), 12);
+      // A turn, not a mirror image.
+      expect(turned.clone().setY(0).cross(out).y).toBeCloseTo(direction.clone().setY(0).cross(new Vector3(0, 0, 1)).y, 12);
+    }
   });
 });

@@ -141,11 +141,11 @@ describe("breaking crests", () => {
   it("throw drops ahead where foam grew and the surface rises, with bubbles below", () => {
     const made = births();
     addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(1, -0.5));
-    // 14 drops and 8 bubbles per m^2 of 256 m^2 that became white; a rise of 1 m/s makes 79 % of the drops.
+    // 30 drops and 12 bubbles per m^2 of 256 m^2 that became white; a rise of 1 m/s makes 79 % of the drops.
     const drops = made.particles.countOf(kinds.spray);
-    expect(drops).toBeGreaterThan(0.7 * 14 * 256 * share(1, 0.25, 1.2));
-    expect(drops).toBeLessThan(1.3 * 14 * 256 * share(1, 0.25, 1.2));
-    expect(made.particles.countOf(kinds.bubble)).toBeGreaterThan(0.7 * 8 * 256);
+    expect(drops).toBeGreaterThan(0.8 * 30 * 256 * share(1, 0.25, 1.2));
+    expect(drops).toBeLessThan(1.2 * 30 * 256 * share(1, 0.25, 1.2));
+    expect(made.particles.countOf(kinds.bubble)).toBeGreaterThan(0.8 * 12 * 256);
     let forward = 0;
     for (let n = 0; n < made.particles.count; ++n) {
       const values = valuesOf(made.particles, n);
@@ -175,7 +175,7 @@ describe("hulls", () => {
   };
 
   it("throw more spray the faster they are, none when slow, and leave foam behind them", () => {
-    expect(run(1, 0.05, 20).particles.countOf(kinds.spray)).toBe(0);
+    expect(run(0.9, 0.05, 20).particles.countOf(kinds.spray)).toBe(0);
     const [slow, fast] = [run(3, 0.05, 20).particles, run(4.5, 0.05, 20).particles];
     expect(slow.countOf(kinds.spray)).toBeGreaterThan(20);
     expect(fast.countOf(kinds.spray)).toBeGreaterThan(2 * slow.countOf(kinds.spray));
@@ -222,7 +222,7 @@ describe("the water lines of obstacles", () => {
     expect(calm.particles.count).toBe(0);
     const made = births();
     addRims(made, rim, moving(2), 0.1);
-    expect(made.particles.countOf(kinds.spray)).toBeGreaterThan(60);
+    expect(made.particles.countOf(kinds.spray)).toBeGreaterThan(200);
     for (let n = 0; n < made.particles.count; ++n) {
       const values = valuesOf(made.particles, n);
       if (Math.floor(values[3]!) === kinds.spray) expect(values[5]).toBeGreaterThan(2);
@@ -256,8 +256,8 @@ describe("white particles of the server", () => {
     expect(none.particles.count).toBe(0);
     const made = births();
     addFromParticles(made, frameOf(255, 127, 65535), moving(0), 1);
-    expect(made.particles.count).toBeGreaterThan(100);
-    expect(made.particles.count).toBeLessThan(240);
+    expect(made.particles.count).toBeGreaterThan(240);
+    expect(made.particles.count).toBeLessThan(360);
     const [xM, yM, zM, , vx] = valuesOf(made.particles);
     for (const placeM of [xM!, yM!, zM!]) expect(Math.abs(placeM - 2)).toBeLessThanOrEqual(0.1);
     expect(vx).toBeGreaterThan(4);

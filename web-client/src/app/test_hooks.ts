@@ -46,6 +46,7 @@ function stats(app: App) {
     pixelRatio,
     paused: app.room.paused,
     boats: scene.drawnBoats(),
+    whitewater: scene.whitewaterCounts(),
     role: app.role,
     myBoat: app.boats.mineId,
     view: views.view ?? null,

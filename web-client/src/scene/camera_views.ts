@@ -3,7 +3,7 @@ import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { wrapAngle } from "./bodies";
-import { focusBox, frameBox, freeTangents, raisedBy, type PixelRect, type Placement, type ViewedBox } from "./framing";
+import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
 export type ViewName = "above" | "side" | "boat" | "overview";
 type FixedView = Exclude<ViewName, "boat">;
@@ -181,7 +181,7 @@ export class CameraViews {
   private placed(name: FixedView): Placement {
     const { extent, camera } = this;
     const tangents = freeTangents(camera.fov, this.heightPx, this.widthPx, this.free);
-    const backward = kBackward[name].clone();
+    const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
     if (name === "above") backward.y *= raisedBy(extent, tangents);
     const placement = frameBox(focusBox(extent, tangents), backward, tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);

@@ -1,6 +1,8 @@
 // Places a camera so that a whole box is seen inside a part of the canvas. Pure: no DOM, no renderer.
 import { Vector3 } from "three";
 
+import type { SideName } from "../codec/scene_info";
+
 /** A part of the canvas in CSS pixels from its top left corner. */
 export interface PixelRect {
   leftPx: number;
@@ -24,6 +26,8 @@ export interface ViewedBox {
   centreM?: { x: number; z: number };
   /** How much higher than usual the view from above looks down in a wide and in a tall free part; the framing's own limits if left out. */
   raised?: { wide: number; tall: number };
+  /** Side from which the view from the side looks, because no land hides the water there; +z if left out. */
+  seenFrom?: SideName;
 }
 
 export interface Placement {
@@ -71,6 +75,15 @@ export function focusBox(box: ViewedBox, tangents: { across: number; up: number 
   const lean = box.lean ?? { x: 0, z: 0 };
   const centreM = { x: lean.x * box.sideM, z: lean.z * widthM };
   return { ...box, sideM: share * box.sideM, widthM: share * widthM, centreM };
+}
+
+/** Unit vectors out of the sides, along x and z. */
+const kOutward: Record<SideName, readonly [number, number]> = { "+x": [1, 0], "-x": [-1, 0], "+z": [0, 1], "-z": [0, -1] };
+
+/** Returns a direction that was given for a camera at the side +z, turned about the y axis to another side. */
+export function turnedTo(side: SideName, direction: Vector3): Vector3 {
+  const [x, z] = kOutward[side];
+  return new Vector3(z * direction.x + x * direction.z, direction.y, z * direction.z - x * direction.x);
 }
 
 /** Corners along one axis of the picture, in the camera's axes: sideways and toward the camera. */

@@ -32,7 +32,8 @@ import { withParameter } from "./sea/sea_state";
 import { isIndoors, viewOf } from "./settings/surroundings";
 import { Sky } from "./sky";
 import { StreamedFrames } from "./streamed_frames";
-import { makeWhitewaterPasses } from "./whitewater/whitewater";
+import { kinds } from "./whitewater/diffuse_particles";
+import { makeWhitewaterPasses, type WhitewaterPasses } from "./whitewater/whitewater";
 
 /** Room for waves above the water in a view, as a share of its side. */
 const kWaveRoom = 0.04;
@@ -48,6 +49,7 @@ export class WaterScene {
   private readonly picture: Picture;
   private passes: readonly Pass[] = [];
   private solids: SolidsPass | undefined;
+  private white: WhitewaterPasses | undefined;
   private greeting: GreetingInfo | undefined;
 
   constructor(
@@ -111,6 +113,12 @@ export class WaterScene {
     return this.solids?.drawnBoats() ?? [];
   }
 
+  /** Returns how many drops, patches of foam and bubbles the page has added to the streamed water. */
+  whitewaterCounts(): Record<keyof typeof kinds, number> {
+    const of = (kind: keyof typeof kinds): number => this.white?.particles.countOf(kinds[kind]) ?? 0;
+    return { spray: of("spray"), foam: of("foam"), bubble: of("bubble") };
+  }
+
   /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particle frame. */
   viewedBox(): ViewedBox | undefined {
     if (!this.greeting) return undefined;
@@ -160,7 +168,7 @@ export class WaterScene {
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
     const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
     const { sea, glass } = solids.surroundings;
-    const white = wave && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater);
+    const white = (this.white = wave && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater));
     const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
     const before = [field, foam, sea, solids, ...fluid.before, ...(white?.before ?? [])];
@@ -172,6 +180,6 @@ export class WaterScene {
   private leave(): void {
     for (const pass of this.passes) pass.dispose();
     this.passes = [];
-    this.solids = undefined;
+    this.solids = this.white = undefined;
   }
 }

@@ -29,12 +29,16 @@ const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised">> = 
 /** How far away from land, in sides of the square, the middle of a view is. Views look along z, so land there hides more of the water. */
 const kLeanFromLand = { x: 0.04, z: 0.16 };
 
+/** The view from the side looks from the first of these sides without land. */
+const kSeenFrom: readonly SideName[] = ["+z", "-x", "-z", "+x"];
+
 /** Returns how a view frames the scene's water; in the open sea away from the land. */
-export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "lean"> {
+export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "lean" | "seenFrom"> {
   const view = kSettingViews[setting];
   if (setting !== "openSea" || !wave) return view;
   const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
-  return { ...view, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
+  const seenFrom = kSeenFrom.find((side) => closed(side) === 0) ?? "+z";
+  return { ...view, seenFrom, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
 }
 
 export function hazeM(greeting: GreetingInfo): number {

@@ -61,8 +61,8 @@ function froth(random: () => number, xM: number, yM: number, zM: number, vxMps: 
 /** Foam that grows by this much (of 255) between frames is new: the water breaks there. */
 const kNewFoam = 24;
 /** Per m^2 of water whose foam grows from none to white. */
-const kCrestDropsPerM2 = 14;
-const kCrestBubblesPerM2 = 8;
+const kCrestDropsPerM2 = 30;
+const kCrestBubblesPerM2 = 12;
 const kCrestSpeedsMps = [0.25, 1.2] as const;
 const kMostCrestMps = 6;
 
@@ -98,10 +98,10 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
 }
 
 /** A hull throws spray above this speed, over sqrt(g L). */
-const kSprayFroude = 0.25;
+const kSprayFroude = 0.2;
 /** Per s and m of hull at a Froude number of 1 above it. */
-const kBowDropsPerMS = 420;
-const kWakeFrothPerMS = 14;
+const kBowDropsPerMS = 1200;
+const kWakeFrothPerMS = 20;
 
 /** Bow waves and wakes. `poses` are the first `boats.length` or fewer boats drawn now. */
 export function addHulls(births: Births, poses: readonly BodyPose[], hulls: ReadonlyMap<number, BoatDetail>, surface: MovingSurface, gravityMps2: number, stepS: number): void {
@@ -187,7 +187,7 @@ export function rimOf(obstacles: readonly ObstacleInfo[]): RimPoint[] {
 }
 
 /** Drops per s and m of water line where the surface rises by 1 m/s more than the first of these speeds. */
-const kRimDropsPerMS = 60;
+const kRimDropsPerMS = 160;
 const kRimSpeedsMps = [0.3, 1.3] as const;
 
 /** Water that rises against rocks and breakwaters. */
@@ -210,7 +210,7 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Movin
 }
 
 /** Drops per s from one white particle of at least the second speed. */
-const kParticleDropsPerS = 1.6;
+const kParticleDropsPerS = 3;
 const kParticleSpeedsMps = [1.5, 5] as const;
 const kWhite = 100;
 /** At most so many particles of a frame are looked at, evenly spaced. */

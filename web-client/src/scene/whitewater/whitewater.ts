@@ -10,6 +10,7 @@ import type { WhitewaterQuality } from "../quality";
 import type { Sky } from "../sky";
 import type { StreamedFrames } from "../streamed_frames";
 import { BubblesPass } from "./bubbles_pass";
+import type { DiffuseParticles } from "./diffuse_particles";
 import { FrothPass } from "./froth_pass";
 import { SprayPass } from "./spray_pass";
 import { WhitewaterPass } from "./whitewater_pass";
@@ -20,6 +21,7 @@ export interface WhitewaterPasses {
   /** After the water. */
   after: Pass[];
   froth: FrothPass;
+  particles: DiffuseParticles;
 }
 
 /** For a room with a wave. */
@@ -27,5 +29,5 @@ export function makeWhitewaterPasses(greeting: GreetingInfo, frames: StreamedFra
   const whitewater = new WhitewaterPass(greeting, frames, solids, quality);
   const { points } = whitewater;
   const froth = new FrothPass(points, greeting.sideM, quality.frothTexelsCount);
-  return { before: [whitewater, froth, new BubblesPass(points, solids, sky)], after: [new SprayPass(points, solids, sky)], froth };
+  return { before: [whitewater, froth, new BubblesPass(points, solids, sky)], after: [new SprayPass(points, solids, sky)], froth, particles: whitewater.particles };
 }

@@ -11,8 +11,9 @@ import { MovingSurface } from "./moving_surface";
 import { addCrests, addFromParticles, addHulls, addRims, makeFastRandom, rimOf, type Births, type RimPoint } from "./sources";
 import { WhitePoints } from "./white_points";
 
-/** After a longer gap, or when time goes back, the white water starts anew. */
-const kGapS = 0.5;
+/** After a longer gap, or when time goes back, the white water starts anew. Of shorter ones the last kLongestS are computed. */
+const kGapS = 4;
+const kLongestS = 0.5;
 const kSeed = 20_260_101;
 
 export class WhitewaterPass implements Pass {
@@ -47,7 +48,7 @@ export class WhitewaterPass implements Pass {
     const stepS = shownS! - (this.lastS ?? shownS!);
     this.lastS = shownS;
     if (stepS < 0 || stepS > kGapS) this.particles.clear();
-    else if (stepS > 0) this.advance(shownS!, stepS, new MovingSurface(surfaces));
+    else if (stepS > 0) this.advance(shownS!, Math.min(stepS, kLongestS), new MovingSurface(surfaces));
     this.points.upload(this.particles.count);
   }
 
