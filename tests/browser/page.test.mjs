@@ -110,12 +110,9 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await waitFor(page, "ten more surface frames", (stats) => stats.framesReceived.surface > first.framesReceived.surface + 10);
     await waitFor(page, "diagnostics", (stats) => stats.framesReceived.diagnostics > 0);
     await page.waitForFunction(() => /\d/.test(document.querySelector('[data-testid="latency"]')?.textContent ?? ""), undefined, { timeout: WAIT_MS });
-    assert.ok((await shown(page, "sim-time")) > 0);
-    assert.ok((await shown(page, "net-fps")) > 0);
-    assert.ok((await shown(page, "display-fps")) > 0);
-    assert.ok((await shown(page, "kbps")) > 0);
-    const speed = await shown(page, "rtf");
-    assert.ok(speed > 0, `real-time factor ${speed}`);
+    // Rates are those of the last half second, in which a busy machine may have had nothing.
+    for (const testId of ["sim-time", "net-fps", "display-fps", "kbps", "rtf"])
+      await page.waitForFunction((id) => parseFloat(document.querySelector(`[data-testid="${id}"]`)?.textContent ?? "") > 0, testId, { timeout: WAIT_MS });
     const latency_ms = await shown(page, "latency");
     assert.ok(latency_ms >= 0 && latency_ms < WAIT_MS, `latency ${latency_ms} ms`);
     const particle_count = await shown(page, "particles");
@@ -277,13 +274,15 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
         for (const start = performance.now(); performance.now() < start + 1500; ) await picture();
         for (let i = 0; i < 3; ++i) await picture();
       });
-      const box = await tank.locator("canvas").first().boundingBox();
-      // Below the horizon, and beside the panel.
-      const clip = { x: 0, y: 0.25 * box.height, width: 0.6 * box.width, height: 0.75 * box.height };
+      // The middle of the tank, where no pane's edge is before the water.
+      const corners = await tank.evaluate(() => [-0.5, 0.5].flatMap((xM) => [-0.5, 0.5].map((zM) => window.spindrift.pixelOf(xM, zM))));
+      const [xs, ys] = [0, 1].map((axis) => corners.map((corner) => corner[axis]));
+      const [left, top] = [Math.min(...xs), Math.min(...ys)];
+      const clip = { x: left, y: top, width: Math.max(...xs) - left, height: Math.max(...ys) - top };
       const body = await measureBody(tank, await tank.screenshot({ clip, timeout: 2 * WAIT_MS }));
       const said = `${view}: ${JSON.stringify(body)}`;
-      assert.ok(body.water_ratio > 0.2, `water covers too little; ${said}`);
-      assert.ok(body.filled_ratio > 0.93, `the water has gaps; ${said}`);
+      assert.ok(body.water_ratio > 0.9, `water covers too little; ${said}`);
+      assert.ok(body.filled_ratio > 0.95, `the water has gaps; ${said}`);
       // Shaded spheres of this size measured 4 to 6.5, the surface 0.8 to 1.0.
       assert.ok(body.roughness < 2.5, `single particles are seen; ${said}`);
     }

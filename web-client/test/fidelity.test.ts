@@ -70,7 +70,8 @@ describe("the note of a slow room", () => {
     expect(notes.slice(0, 3)).toEqual(["", "", ""]);
     expect(notes[3]).toContain("62 %");
     // In between it stays: no flicker.
-    expect(watch.note(0.93, 1, 10)).toContain("93 %");
+    expect(watch.note(0.93, 1, 10)).toContain("62 %");
+    expect(watch.note(1.04, 1, 10.5)).toContain("62 %");
     expect(watch.note(1, 1, 11)).not.toBe("");
     expect(watch.note(1, 1, 14)).toBe("");
   });

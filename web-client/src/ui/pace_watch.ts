@@ -10,6 +10,8 @@ export class PaceWatch {
   private slowSinceS: number | undefined;
   private fullSinceS: number | undefined;
   private isSlow = false;
+  /** The last one that was slow: a moment at full speed does not end the note. */
+  private slowPace = 1;
 
   /** Returns the note to show, or an empty text. `realTimeFactor` is 0 while the room is paused or asleep. */
   note(realTimeFactor: number, speed: number, nowS: number): string {
@@ -18,10 +20,11 @@ export class PaceWatch {
     else {
       this.slowSinceS = pace < kSlowPace ? (this.slowSinceS ?? nowS) : undefined;
       this.fullSinceS = pace >= kFullPace ? (this.fullSinceS ?? nowS) : undefined;
+      if (pace < kSlowPace) this.slowPace = pace;
       if (this.slowSinceS !== undefined && nowS - this.slowSinceS >= kPatienceS) this.isSlow = true;
       if (this.fullSinceS !== undefined && nowS - this.fullSinceS >= kPatienceS) this.isSlow = false;
     }
-    return this.isSlow ? `Time runs at ${Math.round(100 * pace)} % of the wanted speed: the server's machine cannot keep up.` : "";
+    return this.isSlow ? `Time runs at ${Math.round(100 * this.slowPace)} % of the wanted speed: the server's machine cannot keep up.` : "";
   }
 
   /** Other water: what was measured does not count. */

@@ -22,8 +22,8 @@ const kPlainBedCells = 48;
 const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised">> = {
   openSea: { focus: { wide: 0.72, tall: 0.5 }, raised: { wide: 1, tall: 1.45 } },
   pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 } },
-  glassTank: { focus: { wide: 0.8, tall: 0.62 }, raised: { wide: 1.1, tall: 1.6 } },
-  flume: { focus: { wide: 0.85, tall: 0.75 }, raised: { wide: 0.8, tall: 1.2 } },
+  glassTank: { focus: { wide: 1.05, tall: 0.95 }, raised: { wide: 1.1, tall: 1.6 } },
+  flume: { focus: { wide: 1.02, tall: 0.9 }, raised: { wide: 0.8, tall: 1.2 } },
 };
 
 /** How far away from land, in sides of the square, the middle of a view is. Views look along z, so land there hides more of the water. */
