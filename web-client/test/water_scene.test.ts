@@ -4,6 +4,7 @@ import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../src/codec/greeting";
 import type { SideKind, WaveInfo } from "../src/codec/scene_info";
+import type { Frame } from "../src/net/messages";
 import type { Pass } from "../src/scene/passes/pass";
 import { chooseQuality } from "../src/scene/quality";
 import { WaterScene } from "../src/scene/water_scene";
@@ -48,7 +49,7 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
 
 function enter(change: Partial<GreetingInfo>, quality: "low" | "high"): Pass[] {
   const scene = new WaterScene(fakeRenderer(), chooseQuality(`?quality=${quality}`, ""), () => {});
-  scene.enter({ ...kRoom, ...change });
+  scene.enter({ ...kRoom, ...change }, false);
   const drawn: Pass[] = [];
   scene.render(1, (pass) => drawn.push(pass));
   scene.dispose();
@@ -90,5 +91,28 @@ describe("the list of passes", () => {
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);
     expect(tank.at(-1)).toBe("glass");
+  });
+});
+
+describe("a new greeting", () => {
+  const frame = (timeS: number): Frame => ({
+    layer: "surface", tick: 0n, stateId: BigInt(Math.round(timeS * 60)), timeS, serverTimeS: timeS, level: "full", resolutionCount: 32, sideM: 16, quantumM: 0.001, buffer: new ArrayBuffer(2048),
+  });
+
+  it("keeps the frames of the same water at another fidelity, and returns those of other water", () => {
+    const released: Frame[] = [];
+    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), (given) => released.push(given));
+    const sea = { ...kRoom, ...kRooms["an open sea with boats"] };
+    scene.enter(sea, false);
+    const [first, second] = [frame(1), frame(1.1)];
+    scene.take(first, 1);
+    scene.take(second, 1.1);
+    scene.enter({ ...sea, wave: { ...kWave, resolutionCount: 64 } }, true);
+    expect(scene.newestSurface()).toBe(second);
+    expect(released).toEqual([]);
+    scene.enter({ ...sea, sceneName: "other" }, false);
+    expect(scene.newestSurface()).toBeUndefined();
+    expect(released).toEqual([first, second]);
+    scene.dispose();
   });
 });

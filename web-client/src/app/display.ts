@@ -70,7 +70,7 @@ export class Display {
     const before = this.greeting;
     const isSameWater = before?.sideM === greeting.sideM && before.room === greeting.room && before.sceneName === greeting.sceneName;
     this.greeting = greeting;
-    this.scene.enter(greeting);
+    this.scene.enter(greeting, isSameWater);
     if (isSameWater) return;
     const box = this.scene.viewedBox();
     this.isBoxKnown = box !== undefined;

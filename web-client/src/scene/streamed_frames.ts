@@ -22,10 +22,12 @@ export class StreamedFrames {
     this.foam = new FrameRing<FoamFrame>(kRingCount, release);
   }
 
-  /** Returns the frames of the room before. `hasWave`: the new room sends surfaces. */
-  enter(hasWave: boolean): void {
-    for (const ring of [this.surfaces, this.particles, this.foam, this.bodies]) ring.clear();
-    this.clock.reset();
+  /** `hasWave`: the room sends surfaces. Unless it has the same water as the one before, the frames of that one are returned. */
+  enter(hasWave: boolean, isSameWater: boolean): void {
+    if (!isSameWater) {
+      for (const ring of [this.surfaces, this.particles, this.foam, this.bodies]) ring.clear();
+      this.clock.reset();
+    }
     // Only one layer sets the clock: the layers of a tick arrive one after the other, and a late one would look like time going back.
     this.clockLayer = hasWave ? "surface" : "particles";
   }

@@ -67,11 +67,14 @@ export class WaterScene {
     return this.frames.clock;
   }
 
-  /** Builds the passes of this room and disposes those of the one before. */
-  enter(greeting: GreetingInfo): void {
+  /**
+   * Builds the passes of this room and disposes those of the one before. `isSameWater`: the frames before are of the same water, perhaps
+   * at another fidelity, and are shown until new ones come.
+   */
+  enter(greeting: GreetingInfo, isSameWater: boolean): void {
     this.leave();
     this.greeting = greeting;
-    this.frames.enter(greeting.wave !== undefined);
+    this.frames.enter(greeting.wave !== undefined, isSameWater);
     this.passes = this.makePasses(greeting);
     this.camera.near = greeting.sideM / kNearPerSide;
     this.camera.far = greeting.sideM * kFarSides;
@@ -150,7 +153,7 @@ export class WaterScene {
 
   /** Draws again what exists only on the GPU. */
   contextRestored(): void {
-    if (this.greeting) this.enter(this.greeting);
+    if (this.greeting) this.enter(this.greeting, true);
   }
 
   dispose(): void {
