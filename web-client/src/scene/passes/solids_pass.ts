@@ -25,6 +25,8 @@ export class SolidsPass implements Pass {
   readonly writes = ["solids"] as const;
   readonly surroundings: Surroundings;
   readonly target: WebGLRenderTarget;
+  /** The uniform of the lamps: 0 by day, 1 at night. */
+  readonly darkness = { value: 0 };
   private readonly scene = new Scene();
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
@@ -49,12 +51,14 @@ export class SolidsPass implements Pass {
       u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
       u_wet_m: { value: kWetDepths * bedOf(greeting).depthM },
       u_haze_m: { value: isIndoors(greeting) ? 0 : hazeM(greeting) },
+      u_darkness: this.darkness,
     };
-    this.material = makeMaterial("solid", uniforms, { defines: quality.plain ? { PLAIN: 1 } : {} });
+    const defines: Record<string, number> = quality.plain ? { PLAIN: 1 } : {};
+    this.material = makeMaterial("solid", uniforms, { defines });
     this.surroundings = new Surroundings(greeting, { sky, noise, field, solid: this.material, quality });
     this.scene.add(sky.dome, ...this.surroundings.solids);
     if (greeting.hasBoats) {
-      this.boats = new Boats(this.scene, this.material);
+      this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
       this.boats.setBoats(greeting.boats);
     }
     const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
@@ -69,6 +73,11 @@ export class SolidsPass implements Pass {
 
   setBoats(boats: readonly BoatDetail[]): void {
     this.boats?.setBoats(boats);
+  }
+
+  /** `colors`: CSS colours of the owners, by boat. */
+  setOwnerColors(colors: ReadonlyMap<number, string>): void {
+    this.boats?.setOwnerColors(colors);
   }
 
   poseOf(boatId: number): BodyPose | undefined {

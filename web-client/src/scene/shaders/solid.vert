@@ -1,7 +1,7 @@
 // Boats, rocks, walls and the bed: coloured triangles.
 in vec3 position;
 in vec3 normal;
-in vec4 color;  // rgb, and the material's grain (0 paint, 1 stone)
+in vec4 color;  // rgb, and the material's grain (0 paint, 1 stone, -1 lamp)
 uniform mat4 modelMatrix;
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
