@@ -11,6 +11,7 @@
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { PersonInfo } from "../codec/people";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import type { BodyPose } from "./bodies";
 import { makeFluidPasses } from "./fluid/fluid";
@@ -44,6 +45,7 @@ export class WaterScene {
   private readonly picture: Picture;
   private passes: readonly Pass[] = [];
   private solids: SolidsPass | undefined;
+  private ownerColors: ReadonlyMap<number, string> = new Map();
   private greeting: GreetingInfo | undefined;
 
   constructor(
@@ -96,6 +98,12 @@ export class WaterScene {
   setBoats(boats: readonly BoatDetail[]): void {
     if (this.greeting) this.greeting.boats = [...boats];
     this.solids?.setBoats(boats);
+  }
+
+  /** Paints boats in the colours of their owners. */
+  setPeople(people: readonly PersonInfo[]): void {
+    this.ownerColors = new Map(people.flatMap(({ color, boatIds }) => boatIds.map((boatId): [number, string] => [boatId, color])));
+    this.solids?.setOwnerColors(this.ownerColors);
   }
 
   /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
@@ -154,6 +162,7 @@ export class WaterScene {
     const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
     const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
+    solids.setOwnerColors(this.ownerColors);
     const { sea, glass } = solids.surroundings;
     const water = field && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };

@@ -21,9 +21,9 @@ export const kSteel: Paint = [0.55, 0.57, 0.58, 0];
 export const kBlack: Paint = [0.03, 0.032, 0.035, 0.3];
 export const kCanvas: Paint = [0.62, 0.57, 0.47, 0.4];
 
-/** Of boats without an owner. */
+/** Of boats without an owner; duller than the colours that the server gives to people. */
 const kSideColors: readonly Paint[] = [
-  [0.05, 0.17, 0.36, 0], [0.62, 0.10, 0.06, 0], [0.04, 0.28, 0.20, 0], [0.78, 0.47, 0.05, 0], [0.30, 0.31, 0.33, 0], [0.02, 0.30, 0.38, 0],
+  [0.04, 0.13, 0.30, 0], [0.30, 0.05, 0.05, 0], [0.04, 0.22, 0.16, 0], [0.62, 0.60, 0.52, 0], [0.24, 0.26, 0.28, 0], [0.03, 0.20, 0.26, 0],
 ];
 /** Paint reflects less than a screen's full colour. */
 const kPaintReflects = 0.8;
