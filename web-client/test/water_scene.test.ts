@@ -85,7 +85,7 @@ describe.each(Object.entries(kRooms))("the passes of %s", (_, change) => {
 describe("the list of passes", () => {
   it("holds only what the room needs", () => {
     const names = (change: Partial<GreetingInfo>): string[] => enter(change, "low").map(({ name }) => name);
-    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "water", "present"]);
+    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "water", "present", "lamps"]);
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "water", "present"]);
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);

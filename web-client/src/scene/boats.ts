@@ -1,12 +1,14 @@
 // The boats: made when they appear or get another owner, disposed when they are removed, placed in every frame. Each has a mesh and a lid:
 // a surface at its gunwale that has a depth but no colour. It is drawn after all solids, so that the water inside the hull, which is
 // behind it, is not drawn.
-import { Group, Mesh, Scene, type BufferGeometry, type RawShaderMaterial } from "three";
+import { Group, Mesh, Scene, type BufferGeometry, type RawShaderMaterial, type Vector3 } from "three";
 
 import type { BoatDetail } from "../codec/greeting";
 import { mixBodies, type BodiesState, type BodyPose } from "./bodies";
 import { makeBoatParts } from "./hull/boat_geometry";
+import { addBoatLamps } from "./hull/boat_lamps";
 import type { BoatLamp } from "./hull/fittings";
+import type { Lamps } from "./lamps";
 
 /** A boat as it is drawn. */
 interface DrawnBoat {
@@ -70,6 +72,11 @@ export class Boats {
   /** Returns copies of all poses drawn now. */
   drawn(): BodyPose[] {
     return this.poses.slice(0, this.posesCount).map((pose) => ({ ...pose }));
+  }
+
+  /** Adds the lights of the boats, as far as they are seen from the camera. */
+  collectLamps(lamps: Lamps, cameraM: Vector3): void {
+    for (const { detail, group, lamps: own } of this.boats.values()) if (group.visible) addBoatLamps(lamps, detail, group, own, cameraM);
   }
 
   dispose(): void {

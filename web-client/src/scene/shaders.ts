@@ -19,6 +19,8 @@ import fluidTileMarkFrag from "./shaders/fluid_tile_mark.frag?raw";
 import fluidTileVert from "./shaders/fluid_tile.vert?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
+import lampFrag from "./shaders/lamp.frag?raw";
+import lampVert from "./shaders/lamp.vert?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
@@ -46,6 +48,7 @@ const kPrograms = {
   fluidThickness: [fluidParticleVert, fluidThicknessFrag],
   fluidTileMark: [fluidParticleVert, fluidTileMarkFrag],
   glass: [solidVert, glassFrag],
+  lamp: [lampVert, lampFrag],
   present: [fullscreenVert, presentFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],

@@ -7,6 +7,7 @@
 //   water      field, foam, sea, solids -> canvas
 //   present    solids -> canvas where there is no water
 //   fluid      particles, solids -> canvas (fluid/fluid.ts)
+//   lamps      solids, field -> canvas, in the dark
 //   glass      panes of a tank -> canvas
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
@@ -21,6 +22,7 @@ import { makeNoiseTexture } from "./noise_texture";
 import { FieldPass } from "./passes/field_pass";
 import { FoamPass } from "./passes/foam_pass";
 import { GlassPass } from "./passes/glass_pass";
+import { LampsPass } from "./passes/lamps_pass";
 import type { Pass, Picture } from "./passes/pass";
 import { PresentPass } from "./passes/present_pass";
 import { SolidsPass } from "./passes/solids_pass";
@@ -45,6 +47,7 @@ export class WaterScene {
   private readonly picture: Picture;
   private passes: readonly Pass[] = [];
   private solids: SolidsPass | undefined;
+  private darknessShare = 0;
   private ownerColors: ReadonlyMap<number, string> = new Map();
   private greeting: GreetingInfo | undefined;
 
@@ -106,6 +109,12 @@ export class WaterScene {
     this.solids?.setOwnerColors(this.ownerColors);
   }
 
+  /** 0 by day, 1 at night: how bright lamps are. */
+  set darkness(share: number) {
+    this.darknessShare = Math.min(Math.max(share, 0), 1);
+    if (this.solids) this.solids.darkness.value = this.darknessShare;
+  }
+
   /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
   poseOf(boatId: number): BodyPose | undefined {
     return this.solids?.poseOf(boatId);
@@ -163,10 +172,12 @@ export class WaterScene {
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
     const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
     solids.setOwnerColors(this.ownerColors);
+    solids.darkness.value = this.darknessShare;
     const { sea, glass } = solids.surroundings;
     const water = field && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
-    const passes = [field, foam, sea, solids, ...fluid.before, water, new PresentPass(sky, solids), ...fluid.after, glass && new GlassPass(glass)];
+    const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, sideM) : undefined;
+    const passes = [field, foam, sea, solids, ...fluid.before, water, new PresentPass(sky, solids), ...fluid.after, lamps, glass && new GlassPass(glass)];
     return passes.filter((pass) => pass !== undefined);
   }
 

@@ -4,13 +4,14 @@ import type { HullLines } from "./lines";
 import { kBlack, kCanvas, kGlass, kMetal, kSteel, type Livery } from "./livery";
 import { addPlate, addRod, addTurned, addWindow } from "./shapes";
 
-/** A navigation light: its place on the boat, colour, and the sector in which it is seen (International Regulations for Preventing Collisions at Sea, rule 21). */
+/** A navigation light: its place on the boat, and its kind, from which colour and sector follow (boat_lamps.ts). */
 export interface BoatLamp {
   at: Point;
-  kind: "port" | "starboard" | "masthead" | "stern";
+  kind: "port" | "starboard" | "masthead" | "stern" | "allRound";
 }
 
-const kLampPaints: Record<BoatLamp["kind"], Paint> = { port: [0.75, 0.05, 0.04, -1], starboard: [0.04, 0.55, 0.20, -1], masthead: [0.95, 0.92, 0.80, -1], stern: [0.95, 0.92, 0.80, -1] };
+const kWhiteLamp: Paint = [0.95, 0.92, 0.80, -1];
+const kLampPaints: Record<BoatLamp["kind"], Paint> = { port: [0.75, 0.05, 0.04, -1], starboard: [0.04, 0.55, 0.20, -1], masthead: kWhiteLamp, stern: kWhiteLamp, allRound: kWhiteLamp };
 
 export interface Detail {
   /** Sides of round things. */
@@ -81,7 +82,7 @@ function fitDinghy(builder: MeshBuilder, lines: HullLines, livery: Livery): Boat
   return [
     { at: [lines.xM(0.93, bowM), bowM + 0.05 * heightM, -half], kind: "port" },
     { at: [lines.xM(0.93, bowM), bowM + 0.05 * heightM, half], kind: "starboard" },
-    { at: [staff[0], staff[1] + 0.8 * heightM, staff[2]], kind: "masthead" },
+    { at: [staff[0], staff[1] + 0.8 * heightM, staff[2]], kind: "allRound" },
   ];
 }
 

@@ -6,6 +6,7 @@ import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
 import type { BodiesState, BodyPose } from "../bodies";
 import { Boats } from "../boats";
 import type { FrameRing } from "../frame_ring";
+import type { Lamps } from "../lamps";
 import type { Quality } from "../quality";
 import { hazeM, isIndoors, Surroundings } from "../settings/surroundings";
 import { makeMaterial } from "../shaders";
@@ -78,6 +79,12 @@ export class SolidsPass implements Pass {
   /** `colors`: CSS colours of the owners, by boat. */
   setOwnerColors(colors: ReadonlyMap<number, string>): void {
     this.boats?.setOwnerColors(colors);
+  }
+
+  /** Adds the lamps that are seen from the camera. Call it after draw(). */
+  collectLamps(lamps: Lamps, cameraM: Vector3, shownS: number): void {
+    this.boats?.collectLamps(lamps, cameraM);
+    this.surroundings.collectLamps(lamps, shownS);
   }
 
   poseOf(boatId: number): BodyPose | undefined {
