@@ -1,10 +1,11 @@
-// Everything but water: the sky, what is around the water, and the boats. Reads the field, for caustics, and the frames of the boats.
+// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for caustics and buoys, and the frames of the boats.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, HalfFloatType, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
 import type { BodiesState, BodyPose } from "../bodies";
 import { Boats } from "../boats";
+import { buoyPlaces, Buoys } from "../buoys";
 import type { FrameRing } from "../frame_ring";
 import type { Lamps } from "../lamps";
 import type { Quality } from "../quality";
@@ -31,6 +32,7 @@ export class SolidsPass implements Pass {
   private readonly scene = new Scene();
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
+  private readonly buoys: Buoys | undefined;
 
   /** `field` undefined: the room has no wave. */
   constructor(
@@ -62,6 +64,11 @@ export class SolidsPass implements Pass {
       this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
       this.boats.setBoats(greeting.boats);
     }
+    const buoys = field ? buoyPlaces(greeting) : [];
+    if (buoys.length > 0) {
+      this.buoys = new Buoys(buoys, makeMaterial("solid", uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
+      this.scene.add(this.buoys.group);
+    }
     const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
     this.target = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples });
     this.target.depthTexture = new DepthTexture(1, 1, UnsignedIntType);
@@ -84,6 +91,7 @@ export class SolidsPass implements Pass {
   /** Adds the lamps that are seen from the camera. Call it after draw(). */
   collectLamps(lamps: Lamps, cameraM: Vector3, shownS: number): void {
     this.boats?.collectLamps(lamps, cameraM);
+    this.buoys?.collectLamps(lamps, shownS);
     this.surroundings.collectLamps(lamps, shownS);
   }
 
@@ -109,6 +117,7 @@ export class SolidsPass implements Pass {
 
   dispose(): void {
     this.boats?.dispose();
+    this.buoys?.dispose();
     this.surroundings.dispose();
     this.material.dispose();
     this.target.dispose();
