@@ -1,7 +1,6 @@
 import { describe, expect, it } from "vitest";
 
 import { makePose, mixAngle, mixBodies, unpackBodies, wrapAngle, type BodiesState, type BodyPose } from "../src/scene/bodies";
-import { breadthShare, makeBoatGeometry } from "../src/scene/boat_mesh";
 import type { BodiesFrame } from "../src/net/messages";
 import { bodiesPayload, type BodyRecord } from "./wire";
 
@@ -76,35 +75,5 @@ describe("boats between two frames", () => {
         expect(Math.abs(mixed)).toBeLessThanOrEqual(Math.PI + 1e-9);
         expect(Math.abs(wrapAngle(mixed - from))).toBeLessThanOrEqual(Math.PI / 2 + 1e-9);
       }
-  });
-});
-
-describe("a hull", () => {
-  const boat = { boatId: 2, lengthM: 4, beamM: 1.5, heightM: 1, draughtM: 0.4 };
-
-  it("comes to a point at the bow and is broad at the stern", () => {
-    expect(breadthShare(1)).toBe(0);
-    expect(breadthShare(0)).toBe(1);
-    expect(breadthShare(-1)).toBeGreaterThan(0.6);
-  });
-
-  it("is as long and as broad as the boat, keel at the bottom, and faces outward", () => {
-    const geometry = makeBoatGeometry(boat);
-    geometry.computeBoundingBox();
-    const { min, max } = geometry.boundingBox!;
-    expect(max.x - min.x).toBeCloseTo(4, 1);
-    expect(max.z - min.z).toBeCloseTo(1.5, 1);
-    expect(max.z).toBeCloseTo(-min.z, 6);
-    expect(min.y).toBeCloseTo(-0.5, 6);
-    const positions = geometry.getAttribute("position");
-    const normals = geometry.getAttribute("normal");
-    for (let i = 0; i < positions.count; ++i) {
-      expect([normals.getX(i), normals.getY(i), normals.getZ(i)].every(Number.isFinite)).toBe(true);
-      // Amidships under water: away from the middle, and never up.
-      if (Math.abs(positions.getX(i)) > 0.5 || positions.getY(i) > -0.15 || Math.abs(positions.getZ(i)) < 0.3) continue;
-      expect(normals.getZ(i) * Math.sign(positions.getZ(i))).toBeGreaterThan(0);
-      expect(normals.getY(i)).toBeLessThan(0.05);
-    }
-    geometry.dispose();
   });
 });

@@ -2,11 +2,13 @@ import type { BufferGeometry } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { BreakwaterInfo, RockInfo } from "../src/codec/scene_info";
+import { makeBreakwater } from "../src/scene/breakwater_mesh";
+import { clearanceM } from "../src/scene/clearance";
 import { makeGroundGeometry } from "../src/scene/landscape";
 import { makeLace } from "../src/scene/noise_texture";
-import { makeBreakwaterGeometry, makeRockGeometry } from "../src/scene/obstacle_mesh";
+import { makeRockGeometry } from "../src/scene/obstacle_mesh";
 import { bedUniformValues, depthAtM, groundExtent, groundHeightM, landWidthM, type Bed } from "../src/scene/terrain";
-import { clearanceM, spawnPlace } from "../src/ui/spawn_place";
+import { spawnPlace } from "../src/ui/spawn_place";
 
 const bed: Bed = { sideM: 40, depthM: 3, beaches: [{ side: "-x", widthM: 12, shoreDepthM: 0 }, { side: "+z", widthM: 5, shoreDepthM: 1 }] };
 const rock: RockInfo = { shape: "rock", xM: 5, zM: -6, radiusM: 2, heightM: 1.2 };
@@ -76,12 +78,22 @@ describe("an obstacle", () => {
     expect(makeRockGeometry(rock, 3).getAttribute("position").array).toEqual(once);
   });
 
-  it("is a wall of its own length and width, from the bed up", () => {
-    const { min, max } = bounds(makeBreakwaterGeometry(wall, 3));
+  it.each([false, true])("is a wall of its own length and width, from the bed up, with stones at its foot (plain: %s)", (plain) => {
+    const { geometry, lamp } = makeBreakwater(wall, 3, "lighthouse", plain);
+    const { min, max } = bounds(geometry);
     expect(max.x - min.x).toBeCloseTo(12, 1);
-    expect(max.z - min.z).toBeCloseTo(2, 0);
+    expect(max.z - min.z).toBeGreaterThan(2);
+    expect(max.z - min.z).toBeLessThan(3.6);
     expect(min.y).toBeLessThanOrEqual(-3);
-    expect(max.y).toBeGreaterThan(1);
+    expect(max.y).toBeGreaterThan(lamp.yM);
+    expect(lamp.yM).toBeGreaterThan(1 + 2);
+    expect(lamp.xM).toBeLessThan(6);
+    expect(geometry.getIndex()!.count / 3).toBeLessThan(plain ? 2500 : 4000);
+  });
+
+  it("is drawn where the simulation has it: at the still water, stones stand at most a little outside of a wall", () => {
+    const positions = makeBreakwater(wall, 3, "beacon", false).geometry.getAttribute("position");
+    for (let n = 0; n < positions.count; ++n) if (positions.getY(n) > 0.05) expect(Math.abs(positions.getZ(n))).toBeLessThan(1 + 0.15);
   });
 });
 

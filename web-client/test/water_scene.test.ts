@@ -86,7 +86,7 @@ describe.each(Object.entries(kRooms))("the passes of %s", (_, change) => {
 describe("the list of passes", () => {
   it("holds only what the room needs", () => {
     const names = (change: Partial<GreetingInfo>): string[] => enter(change, "low").map(({ name }) => name);
-    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
+    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray", "lamps"]);
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);

@@ -9,6 +9,7 @@ import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messa
 import { socketUrl, WaterClient } from "../net/water_client";
 import type { ChosenQuality } from "../scene/quality";
 import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
+import { BoatTags } from "../ui/boat_tags";
 import { addDetailRow } from "../ui/detail_row";
 import { byId, setText } from "../ui/dom";
 import { EffectsPanel } from "../ui/effects_panel";
@@ -50,6 +51,7 @@ export class App {
   private readonly toast = new Toast(byId("toast"));
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
+  private readonly tags = new BoatTags(byId("view"));
   private readonly answerListeners: AnswerListener[];
   private readonly url = socketUrl(location);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
@@ -59,6 +61,7 @@ export class App {
     this.display = new Display(renderer, quality, {
       release: (frame) => this.client.release(frame),
       update: (atS) => this.boats.update(atS),
+      drawn: () => this.showTags(),
       measured: (framesPerS, delayS, remark) => this.hud.display(framesPerS, delayS, remark),
     });
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
@@ -131,10 +134,13 @@ export class App {
       people: ({ people }) => {
         this.people.setPeople(people);
         this.boats.setPeople(people);
+        this.tags.setPeople(people);
+        this.display.scene.setPeople(people);
       },
       boatList: ({ boats }) => {
         this.display.scene.setBoats(boats);
         this.boats.setBoats(boats);
+        this.tags.setBoats(boats);
       },
       roomEvent: ({ event, message }) => this.toast.show(message || kRoomEventTexts[event], event === "recovered" || event === "fidelity" ? "warn" : "good"),
       clock: ({ leadS }) => this.display.scene.clock.sync(leadS + performance.timeOrigin / 1000),
@@ -157,11 +163,17 @@ export class App {
     this.hud.enter(greeting);
     this.room.enter(greeting);
     this.boats.enter(greeting);
+    this.tags.setBoats(greeting.boats);
     this.viewButtons.hasBoats = this.boats.available;
     this.showRole();
     this.viewButtons.refresh();
     // The card's height has changed with the text.
     this.display.resize();
+  }
+
+  private showTags(): void {
+    const { scene, views, covered } = this.display;
+    this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 
   /** Enables and shows the controls that this role may use. */

@@ -4,6 +4,7 @@ import type { WebGLRenderer } from "three";
 import type { GreetingInfo } from "../codec/greeting";
 import type { Frame } from "../net/messages";
 import { CameraViews, type Followed } from "../scene/camera_views";
+import type { PixelRect } from "../scene/framing";
 import { FrameGovernor } from "../scene/frame_governor";
 import type { ChosenQuality } from "../scene/quality";
 import { WaterScene } from "../scene/water_scene";
@@ -18,6 +19,8 @@ export interface DisplayHooks {
   release(frame: Frame): void;
   /** Called before each picture; returns the boat that the boat's view follows. */
   update(nowS: number): Followed | undefined;
+  /** Called after each picture. */
+  drawn(): void;
   /** Called twice a second. `delayS`: age of the water shown. */
   measured(framesPerS: number, delayS: number | undefined, remark: string): void;
 }
@@ -26,6 +29,8 @@ export class Display {
   readonly canvas: HTMLCanvasElement;
   readonly scene: WaterScene;
   readonly views: CameraViews;
+  /** The parts of the page that panels cover. */
+  covered: readonly PixelRect[] = [];
   private readonly governor: FrameGovernor;
   private readonly layout: PageLayout;
   private readonly loop: DisplayLoop;
@@ -87,6 +92,7 @@ export class Display {
 
   resize(): void {
     this.renderer.setPixelRatio(this.governor.pixelRatio);
+    this.covered = this.layout.covered();
     this.renderer.setSize(window.innerWidth, window.innerHeight, false);
     this.views.resize(window.innerWidth, window.innerHeight, this.layout.freePart());
   }
@@ -124,5 +130,6 @@ export class Display {
     const now = nowS();
     this.views.update(now, this.hooks.update(now));
     this.scene.render(now);
+    this.hooks.drawn();
   }
 }

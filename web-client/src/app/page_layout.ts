@@ -31,6 +31,15 @@ export class PageLayout {
     };
   }
 
+  /** The parts of the page that card, panel and their button cover. */
+  covered(): PixelRect[] {
+    const elements = ["card", "panel-toggle", ...(this.isPanelOpen ? ["panel"] : [])];
+    return elements.map((id) => {
+      const { left, top, right, bottom } = byId(id).getBoundingClientRect();
+      return { leftPx: left, topPx: top, rightPx: right, bottomPx: bottom };
+    });
+  }
+
   private get isPanelOpen(): boolean {
     return !document.body.classList.contains("panel-closed");
   }

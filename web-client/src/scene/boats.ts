@@ -1,46 +1,65 @@
-// The boats: one mesh per boat, made when the boat appears, disposed when it is removed, and placed in every frame.
-import { Mesh, Scene, type BufferGeometry, type RawShaderMaterial } from "three";
+// The boats: made when they appear or get another owner, disposed when they are removed, placed in every frame. Each has a mesh and a lid:
+// a surface at its gunwale that has a depth but no colour. It is drawn after all solids, so that the water inside the hull, which is
+// behind it, is not drawn.
+import { Group, Mesh, Scene, type BufferGeometry, type RawShaderMaterial, type Vector3 } from "three";
 
 import type { BoatDetail } from "../codec/greeting";
 import { mixBodies, type BodiesState, type BodyPose } from "./bodies";
-import { makeBoatGeometry } from "./boat_mesh";
+import { makeBoatParts } from "./hull/boat_geometry";
+import { addBoatLamps } from "./hull/boat_lamps";
+import type { BoatLamp } from "./hull/fittings";
+import type { Lamps } from "./lamps";
+
+/** A boat as it is drawn. */
+interface DrawnBoat {
+  detail: BoatDetail;
+  ownerColor: string | undefined;
+  group: Group;
+  geometries: BufferGeometry[];
+  lamps: BoatLamp[];
+}
 
 export class Boats {
-  private readonly meshes = new Map<number, Mesh<BufferGeometry, RawShaderMaterial>>();
+  private readonly boats = new Map<number, DrawnBoat>();
   private readonly poses: BodyPose[] = [];
   private posesCount = 0;
+  private ownerColors: ReadonlyMap<number, string> = new Map();
 
-  /** `material` is shared; the caller disposes it. */
+  /** `material` is shared, and the caller disposes it; this object disposes `lidMaterial`, which writes no colour. */
   constructor(
     private readonly scene: Scene,
     private readonly material: RawShaderMaterial,
+    private readonly lidMaterial: RawShaderMaterial,
+    private readonly plain: boolean,
   ) {}
 
   /** Sets the boats on the water; known boats keep their meshes. */
   setBoats(boats: readonly BoatDetail[]): void {
     const there = new Set(boats.map(({ boatId }) => boatId));
-    for (const [boatId, mesh] of this.meshes) if (!there.has(boatId)) this.drop(boatId, mesh);
-    for (const boat of boats) {
-      if (this.meshes.has(boat.boatId)) continue;
-      const mesh = new Mesh(makeBoatGeometry(boat), this.material);
-      // Pitch (bow up) turns about z, roll (starboard down) about x. Headings turn from +x toward +z, opposite to three's y rotation.
-      mesh.rotation.order = "YZX";
-      mesh.visible = false;
-      this.meshes.set(boat.boatId, mesh);
-      this.scene.add(mesh);
+    for (const boatId of [...this.boats.keys()]) if (!there.has(boatId)) this.drop(boatId);
+    for (const boat of boats) if (!this.boats.has(boat.boatId)) this.build(boat);
+  }
+
+  /** Paints the boats in the CSS colours of their owners, by boat; the others in one of their own. */
+  setOwnerColors(colors: ReadonlyMap<number, string>): void {
+    this.ownerColors = colors;
+    for (const { detail, ownerColor } of [...this.boats.values()]) {
+      if (ownerColor === colors.get(detail.boatId)) continue;
+      this.drop(detail.boatId);
+      this.build(detail);
     }
   }
 
   show(from: BodiesState, to: BodiesState, mix: number): void {
     this.posesCount = mixBodies(from, to, mix, this.poses);
-    for (const mesh of this.meshes.values()) mesh.visible = false;
+    for (const { group } of this.boats.values()) group.visible = false;
     for (let i = 0; i < this.posesCount; ++i) {
       const pose = this.poses[i]!;
-      const mesh = this.meshes.get(pose.boatId);
-      if (!mesh) continue;
-      mesh.visible = true;
-      mesh.position.set(pose.xM, pose.yM, pose.zM);
-      mesh.rotation.set(pose.rollRad, -pose.headingRad, pose.pitchRad, "YZX");
+      const group = this.boats.get(pose.boatId)?.group;
+      if (!group) continue;
+      group.visible = true;
+      group.position.set(pose.xM, pose.yM, pose.zM);
+      group.rotation.set(pose.rollRad, -pose.headingRad, pose.pitchRad, "YZX");
     }
   }
 
@@ -55,13 +74,35 @@ export class Boats {
     return this.poses.slice(0, this.posesCount).map((pose) => ({ ...pose }));
   }
 
-  dispose(): void {
-    for (const [boatId, mesh] of this.meshes) this.drop(boatId, mesh);
+  /** Adds the lights of the boats, as far as they are seen from the camera. */
+  collectLamps(lamps: Lamps, cameraM: Vector3): void {
+    for (const { detail, group, lamps: own } of this.boats.values()) if (group.visible) addBoatLamps(lamps, detail, group, own, cameraM);
   }
 
-  private drop(boatId: number, mesh: Mesh<BufferGeometry, RawShaderMaterial>): void {
-    this.scene.remove(mesh);
-    mesh.geometry.dispose();
-    this.meshes.delete(boatId);
+  dispose(): void {
+    for (const boatId of [...this.boats.keys()]) this.drop(boatId);
+    this.lidMaterial.dispose();
+  }
+
+  private build(detail: BoatDetail): void {
+    const ownerColor = this.ownerColors.get(detail.boatId);
+    const { hull, lid, lamps } = makeBoatParts(detail, ownerColor, this.plain);
+    const group = new Group();
+    // Pitch (bow up) turns about z, roll (starboard down) about x. Headings turn from +x toward +z, opposite to three's y rotation.
+    group.rotation.order = "YZX";
+    group.visible = false;
+    const cover = new Mesh(lid, this.lidMaterial);
+    cover.renderOrder = 1;
+    group.add(new Mesh(hull, this.material), cover);
+    this.boats.set(detail.boatId, { detail, ownerColor, group, geometries: [hull, lid], lamps });
+    this.scene.add(group);
+  }
+
+  private drop(boatId: number): void {
+    const boat = this.boats.get(boatId);
+    if (!boat) return;
+    this.scene.remove(boat.group);
+    for (const geometry of boat.geometries) geometry.dispose();
+    this.boats.delete(boatId);
   }
 }

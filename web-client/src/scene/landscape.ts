@@ -1,9 +1,11 @@
 // The bed with its beaches, the rocks and the breakwaters. Built once per scene.
-import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
+import { Group, Mesh, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { ObstacleInfo } from "../codec/scene_info";
+import { makeBreakwater, type LightKind } from "./breakwater_mesh";
 import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
-import { makeBreakwaterGeometry, makeRockGeometry } from "./obstacle_mesh";
+import { kLampColors, type Lamps } from "./lamps";
+import { makeRockGeometry } from "./obstacle_mesh";
 import { depthAtM, groundExtent, groundHeightM, type Bed } from "./terrain";
 
 const kDrySand: Paint = [0.66, 0.53, 0.36, 0.7];
@@ -32,13 +34,32 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry
   return builder.build();
 }
 
+/** A turn of the lighthouse's two beams. */
+const kTurnS = 9;
+/** Reach of a beam and radius of its end, in heights of the lamp over the water. */
+const kBeamHeights = 7;
+const kBeamEndHeights = 0.75;
+
+interface Light {
+  kind: LightKind;
+  atM: Vector3;
+}
+
+/** Returns the heading of a lighthouse's beam, the same for everybody at a time of the scene. */
+export function beamHeadingRad(shownS: number): number {
+  return 2 * Math.PI * ((shownS / kTurnS) % 1);
+}
+
 export class Landscape {
   readonly group = new Group();
+  private readonly lights: Light[] = [];
   private readonly geometries: BufferGeometry[] = [];
 
   /** Takes ownership of `ground`. `material` is shared; the caller disposes it. */
-  constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial) {
+  constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, plain: boolean) {
     this.add(ground, material);
+    // The longest breakwater has the lighthouse.
+    const longestM = Math.max(...obstacles.map((each) => (each.shape === "breakwater" ? each.lengthM : 0)));
     for (const obstacle of obstacles) {
       // Down to the bed at the obstacle's middle, and deeper by a quarter of the depth for a sloping bed.
       const depthM = Math.min(depthAtM(bed, obstacle.xM, obstacle.zM) + 0.25 * bed.depthM, bed.depthM);
@@ -46,9 +67,28 @@ export class Landscape {
         this.add(makeRockGeometry(obstacle, depthM), material);
         continue;
       }
-      const mesh = this.add(makeBreakwaterGeometry(obstacle, depthM), material);
+      const kind = obstacle.lengthM === longestM && this.lights.every((light) => light.kind !== "lighthouse") ? "lighthouse" : "beacon";
+      const { geometry, lamp } = makeBreakwater(obstacle, depthM, kind, plain);
+      const mesh = this.add(geometry, material);
       mesh.position.set(obstacle.xM, 0, obstacle.zM);
       mesh.rotation.y = -obstacle.headingRad;
+      mesh.updateMatrixWorld();
+      this.lights.push({ kind, atM: mesh.localToWorld(new Vector3(lamp.xM, lamp.yM, 0)) });
+    }
+  }
+
+  /** Adds the lights of the breakwaters: a beacon, and a lighthouse with two beams that turn. */
+  collectLamps(lamps: Lamps, shownS: number): void {
+    for (const { kind, atM } of this.lights) {
+      const { x, y, z } = atM;
+      if (kind === "beacon") {
+        lamps.add(x, y, z, 0.3 * y, kLampColors.green);
+        continue;
+      }
+      lamps.add(x, y, z, 0.4 * y, kLampColors.white);
+      const headingRad = beamHeadingRad(shownS);
+      for (const way of [-1, 1])
+        lamps.addBeam(x, y, z, kBeamEndHeights * y, kLampColors.white, way * kBeamHeights * y * Math.cos(headingRad), 0, way * kBeamHeights * y * Math.sin(headingRad));
     }
   }
 

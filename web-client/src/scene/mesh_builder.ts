@@ -1,14 +1,24 @@
 // Collects coloured triangles of procedural solids: position, normal and colour. The fourth number of a colour is the grain of the
-// material (0 paint, 1 stone).
+// material (0 paint, 1 stone; -1: a lamp, which shines by itself in the dark).
 import { BufferAttribute, BufferGeometry } from "three";
 
 export type Point = readonly [number, number, number];
 export type Paint = readonly [red: number, green: number, blue: number, grain: number];
 
+/** Rows `from` to `to` of a grid in one paint. `isSharp`: with an edge toward the band below. */
+export interface Band {
+  from: number;
+  to: number;
+  paint: Paint;
+  isSharp?: boolean;
+}
+
 export class MeshBuilder {
   private readonly positions: number[] = [];
   private readonly colors: number[] = [];
   private readonly index: number[] = [];
+  /** Vertices at one place that share a normal. */
+  private readonly welds: [number, number][] = [];
 
   /**
    * Adds a grid of points, smooth inside and sharp at its edges. Seen from outside, rows go up and columns go right. `keeps`: leaves out
@@ -28,9 +38,29 @@ export class MeshBuilder {
         if (keeps && !keeps([rows[r]![c]!, rows[r]![c + 1]!, rows[r + 1]![c]!, rows[r + 1]![c + 1]!])) continue;
         const low = first + r * columnsCount + c;
         const high = low + columnsCount;
-        this.index.push(low, low + 1, high, high, low + 1, high + 1);
+        this.triangle(low, low + 1, high);
+        this.triangle(high, low + 1, high + 1);
       }
     return this;
+  }
+
+  /** Adds a grid in bands of several paints, smooth across their borders unless a band is sharp. */
+  bands(rows: readonly (readonly Point[])[], bands: readonly Band[]): this {
+    const columnsCount = rows[0]!.length;
+    bands.forEach(({ from, to, paint, isSharp }, n) => {
+      const first = this.positions.length / 3;
+      if (n > 0 && !isSharp) for (let c = 0; c < columnsCount; ++c) this.welds.push([first - columnsCount + c, first + c]);
+      this.grid(rows.slice(from, to + 1), paint);
+    });
+    return this;
+  }
+
+  /** Adds a band round an axis, smooth round it: each row's last point is its first one. */
+  ring(rows: readonly (readonly Point[])[], paint: Paint): this {
+    const first = this.positions.length / 3;
+    const columnsCount = rows[0]!.length;
+    rows.forEach((_, r) => this.welds.push([first + r * columnsCount, first + (r + 1) * columnsCount - 1]));
+    return this.grid(rows, paint);
   }
 
   /** Adds a flat face; corners counter-clockwise seen from outside. */
@@ -55,6 +85,28 @@ export class MeshBuilder {
     const geometry = flat ? indexed.toNonIndexed() : indexed;
     geometry.computeVertexNormals();
     if (flat) indexed.dispose();
+    else this.weld(geometry.getAttribute("normal") as BufferAttribute);
     return geometry;
+  }
+
+  /** Leaves out triangles without an area, which have no normal. */
+  private triangle(a: number, b: number, c: number): void {
+    if (!this.isSame(a, b) && !this.isSame(b, c) && !this.isSame(c, a)) this.index.push(a, b, c);
+  }
+
+  private isSame(a: number, b: number): boolean {
+    const { positions } = this;
+    return [0, 1, 2].every((k) => positions[3 * a + k] === positions[3 * b + k]);
+  }
+
+  private weld(normals: BufferAttribute): void {
+    for (const [a, b] of this.welds) {
+      const [x, y, z] = [normals.getX(a) + normals.getX(b), normals.getY(a) + normals.getY(b), normals.getZ(a) + normals.getZ(b)];
+      const length = Math.hypot(x, y, z);
+      if (length === 0) continue;
+      for (const vertex of [a, b]) normals.setXYZ(vertex, x / length, y / length, z / length);
+    }
+    // A vertex of left out triangles only.
+    for (let n = 0; n < normals.count; ++n) if (normals.getX(n) === 0 && normals.getY(n) === 0 && normals.getZ(n) === 0) normals.setY(n, 1);
   }
 }

@@ -1,16 +1,16 @@
-// Rocks and breakwaters as triangles, standing on the bed. Their outline at the level of the still water is that of the scene.
+// Rocks as triangles, standing on the bed. Their outline at the level of the still water is that of the scene.
 import type { BufferGeometry } from "three";
 
-import type { BreakwaterInfo, RockInfo } from "../codec/scene_info";
+import type { RockInfo } from "../codec/scene_info";
 import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
+import { overgrown, shaded } from "./overgrowth";
 
 const kRingsCount = 16;
 const kAroundCount = 26;
-const kCutsCount = 11;
-const kConcrete: Paint = [0.46, 0.45, 0.42, 0.8];
-const kWhitePaint: Paint = [0.85, 0.85, 0.82, 0];
-const kRedPaint: Paint = [0.70, 0.07, 0.04, 0];
-const kLamp: Paint = [1.6, 1.2, 0.5, 0];
+const kCutsCount = 13;
+/** Colour of a rock, and the share of its height up to which weed grows over the still water. */
+const kStone: Paint = [0.30, 0.275, 0.25, 1];
+const kWeedHeights = 0.14;
 
 /** Returns a fixed pseudo-random number in [0, 1) for three integers. */
 export function hash(a: number, b: number, c: number): number {
@@ -36,7 +36,7 @@ function makeCuts(seed: number): [x: number, y: number, z: number, away: number]
   return Array.from({ length: kCutsCount }, (_, i) => {
     const round = 2 * Math.PI * ((i + hash(i, 5, seed)) / kCutsCount) * 3;
     const up = 0.05 + 0.95 * hash(i, 6, seed) ** 1.3;
-    return [Math.cos(round) * Math.cos(up), Math.sin(up), Math.sin(round) * Math.cos(up), 0.70 + 0.24 * hash(i, 7, seed)];
+    return [Math.cos(round) * Math.cos(up), Math.sin(up), Math.sin(round) * Math.cos(up), 0.64 + 0.28 * hash(i, 7, seed)];
   });
 }
 
@@ -67,11 +67,10 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
     }
     rows.push(row);
   }
+  const weedM = kWeedHeights * heightM;
   builder.grid(rows, (row, column) => {
-    const share = row / kRingsCount;
-    const uneven = 0.82 + 0.36 * hash(row, column % kAroundCount, seed);
-    const weed = Math.max(1 - Math.abs(share - 0.38) / 0.12, 0);
-    return [uneven * (0.30 - 0.12 * weed), uneven * (0.275 - 0.07 * weed), uneven * (0.25 - 0.13 * weed), 1];
+    const uneven = 0.8 + 0.4 * hash(row, column % kAroundCount, seed);
+    return overgrown(shaded(kStone, uneven), rows[row]![column]![1], weedM * (0.7 + 0.6 * hash(row >> 1, column >> 1, seed + 3)));
   });
 }
 
@@ -95,50 +94,4 @@ export function makeRockGeometry(rock: RockInfo, depthM: number): BufferGeometry
     );
   }
   return builder.build(true);
-}
-
-/** Returns a wall of stone courses with a concrete top and a light at its +x end; its middle is the origin, its length lies along x. */
-export function makeBreakwaterGeometry(wall: BreakwaterInfo, depthM: number): BufferGeometry {
-  const { lengthM, widthM, heightM } = wall;
-  const builder = new MeshBuilder();
-  const capM = Math.min(0.16 * heightM, 0.25 * widthM);
-  const courseM = Math.min(Math.max(0.45 * widthM, 0.25), 1.4, Math.max(heightM, 0.2));
-  const stonesCount = Math.min(Math.max(Math.round(lengthM / (1.7 * courseM)), 1), 160);
-  const stoneM = lengthM / stonesCount;
-  const bottomM = -depthM - 0.05;
-  const topM = heightM - capM;
-  const coursesCount = Math.min(Math.max(Math.round((topM - bottomM) / courseM), 1), 12);
-  for (let course = 0; course < coursesCount; ++course)
-    for (let stone = 0; stone < stonesCount; ++stone) {
-      const at = hash(stone, course, 11);
-      const lowM = bottomM + ((topM - bottomM) * course) / coursesCount;
-      const highM = bottomM + ((topM - bottomM) * (course + 1)) / coursesCount;
-      const shade = 0.75 + 0.4 * hash(stone, course, 12);
-      const gap = 0.02 * courseM;
-      const halfZ = (widthM / 2) * (1 - 0.05 * at);
-      const shift = course % 2 === 0 ? 0 : 0.3 * stoneM;
-      const fromM = Math.max(-lengthM / 2 + stone * stoneM + (stone > 0 ? shift : 0), -lengthM / 2);
-      const toM = Math.min(-lengthM / 2 + (stone + 1) * stoneM + (stone < stonesCount - 1 ? shift : 0), lengthM / 2);
-      const halfX = (toM - fromM) / 2 - gap;
-      const size = (yM: number, inset: number) => ({ yM, halfX: halfX - inset, halfZ: halfZ - inset });
-      builder.block((fromM + toM) / 2, 0, size(lowM, 0), size(highM - gap, 0.06 * courseM), [0.27 * shade, 0.255 * shade, 0.235 * shade, 1]);
-    }
-  // A dark core behind the joints.
-  const core = { halfX: 0.96 * (lengthM / 2), halfZ: 0.9 * (widthM / 2) };
-  builder.block(0, 0, { yM: bottomM, ...core }, { yM: topM, ...core }, [0.10, 0.10, 0.095, 1]);
-  const cap = { halfX: lengthM / 2, halfZ: 0.97 * (widthM / 2) };
-  builder.block(0, 0, { yM: topM, ...cap }, { yM: heightM, halfX: cap.halfX - 0.1 * capM, halfZ: cap.halfZ - 0.1 * capM }, kConcrete);
-  addLight(builder, lengthM / 2 - 0.5 * widthM, heightM, widthM);
-  return builder.build();
-}
-
-function addLight(builder: MeshBuilder, xM: number, baseM: number, widthM: number): void {
-  const high = Math.min(1.6 * widthM, 3.5);
-  const size = (yM: number, half: number) => ({ yM: baseM + yM * high, halfX: half * high, halfZ: half * high });
-  builder.block(xM, 0, size(0, 0.16), size(0.12, 0.13), kConcrete);
-  for (let band = 0; band < 4; ++band)
-    builder.block(xM, 0, size(0.12 + 0.15 * band, 0.085 - 0.008 * band), size(0.27 + 0.15 * band, 0.077 - 0.008 * band), band % 2 === 0 ? kRedPaint : kWhitePaint);
-  builder.block(xM, 0, size(0.72, 0.09), size(0.76, 0.09), kWhitePaint);
-  builder.block(xM, 0, size(0.76, 0.05), size(0.9, 0.05), kLamp);
-  builder.block(xM, 0, size(0.9, 0.075), size(1, 0.01), kRedPaint);
 }

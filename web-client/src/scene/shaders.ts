@@ -21,6 +21,8 @@ import fluidTileVert from "./shaders/fluid_tile.vert?raw";
 import frothFrag from "./shaders/froth.frag?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
+import lampFrag from "./shaders/lamp.frag?raw";
+import lampVert from "./shaders/lamp.vert?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
@@ -52,6 +54,7 @@ const kPrograms = {
   fluidTileMark: [fluidParticleVert, fluidTileMarkFrag],
   froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
+  lamp: [lampVert, lampFrag],
   present: [fullscreenVert, presentFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],

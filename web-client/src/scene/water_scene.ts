@@ -9,10 +9,12 @@
 //   present    solids -> canvas where there is no water
 //   fluid      particles, solids -> canvas (fluid/fluid.ts)
 //   spray      drops, solids -> canvas
+//   lamps      solids, field -> canvas, in the dark
 //   glass      panes of a tank -> canvas
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { PersonInfo } from "../codec/people";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import type { BodyPose } from "./bodies";
 import { makeFluidPasses } from "./fluid/fluid";
@@ -22,6 +24,7 @@ import { makeNoiseTexture } from "./noise_texture";
 import { FieldPass } from "./passes/field_pass";
 import { FoamPass } from "./passes/foam_pass";
 import { GlassPass } from "./passes/glass_pass";
+import { LampsPass } from "./passes/lamps_pass";
 import type { Pass, Picture } from "./passes/pass";
 import { PresentPass } from "./passes/present_pass";
 import { SolidsPass } from "./passes/solids_pass";
@@ -50,6 +53,8 @@ export class WaterScene {
   private passes: readonly Pass[] = [];
   private solids: SolidsPass | undefined;
   private white: WhitewaterPasses | undefined;
+  private darknessShare = 0;
+  private ownerColors: ReadonlyMap<number, string> = new Map();
   private greeting: GreetingInfo | undefined;
 
   constructor(
@@ -105,6 +110,18 @@ export class WaterScene {
   setBoats(boats: readonly BoatDetail[]): void {
     if (this.greeting) this.greeting.boats = [...boats];
     this.solids?.setBoats(boats);
+  }
+
+  /** Paints boats in the colours of their owners. */
+  setPeople(people: readonly PersonInfo[]): void {
+    this.ownerColors = new Map(people.flatMap(({ color, boatIds }) => boatIds.map((boatId): [number, string] => [boatId, color])));
+    this.solids?.setOwnerColors(this.ownerColors);
+  }
+
+  /** 0 by day, 1 at night: how bright lamps are. */
+  set darkness(share: number) {
+    this.darknessShare = Math.min(Math.max(share, 0), 1);
+    if (this.solids) this.solids.darkness.value = this.darknessShare;
   }
 
   /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
@@ -170,12 +187,15 @@ export class WaterScene {
     const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
     const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
+    solids.setOwnerColors(this.ownerColors);
+    solids.darkness.value = this.darknessShare;
     const { sea, glass } = solids.surroundings;
     const white = (this.white = wave && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater));
     const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
+    const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, sideM) : undefined;
     const before = [field, foam, sea, solids, ...fluid.before, ...(white?.before ?? [])];
-    const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), glass && new GlassPass(glass)];
+    const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
     const passes = [...before, water, ...after];
     return passes.filter((pass) => pass !== undefined);
   }

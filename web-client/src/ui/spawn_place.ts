@@ -1,22 +1,11 @@
 // Finds a place for a new boat: deep enough, and clear of obstacles and other boats. Pure.
 import type { GreetingInfo } from "../codec/greeting";
-import type { ObstacleInfo } from "../codec/scene_info";
+import { clearanceM } from "../scene/clearance";
 import { bedOf, depthAtM, type Bed } from "../scene/terrain";
 
 const kTriesCount = 160;
 /** The golden angle: candidates fill the square evenly from the middle outward. */
 const kTurnRad = Math.PI * (3 - Math.sqrt(5));
-
-/** Returns the distance from a point to the outline of an obstacle; negative inside. */
-export function clearanceM(obstacle: ObstacleInfo, xM: number, zM: number): number {
-  const dx = xM - obstacle.xM;
-  const dz = zM - obstacle.zM;
-  if (obstacle.shape === "rock") return Math.hypot(dx, dz) - obstacle.radiusM;
-  const [c, s] = [Math.cos(obstacle.headingRad), Math.sin(obstacle.headingRad)];
-  const outX = Math.abs(dx * c + dz * s) - obstacle.lengthM / 2;
-  const outZ = Math.abs(dz * c - dx * s) - obstacle.widthM / 2;
-  return Math.hypot(Math.max(outX, 0), Math.max(outZ, 0)) + Math.min(Math.max(outX, outZ), 0);
-}
 
 /** Returns the free place nearest to the middle for a hull of `lengthM`; if none is free, the candidate with the most room. */
 export function spawnPlace(

@@ -1,11 +1,13 @@
-// Everything but water: the sky, what is around the water, and the boats. Reads the field, for caustics, and the frames of the boats.
+// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for caustics and buoys, and the frames of the boats.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, HalfFloatType, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
 import type { BodiesState, BodyPose } from "../bodies";
 import { Boats } from "../boats";
+import { buoyPlaces, Buoys } from "../buoys";
 import type { FrameRing } from "../frame_ring";
+import type { Lamps } from "../lamps";
 import type { Quality } from "../quality";
 import { hazeM, isIndoors, Surroundings } from "../settings/surroundings";
 import { makeMaterial } from "../shaders";
@@ -25,9 +27,12 @@ export class SolidsPass implements Pass {
   readonly writes = ["solids"] as const;
   readonly surroundings: Surroundings;
   readonly target: WebGLRenderTarget;
+  /** The uniform of the lamps: 0 by day, 1 at night. */
+  readonly darkness = { value: 0 };
   private readonly scene = new Scene();
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
+  private readonly buoys: Buoys | undefined;
 
   /** `field` undefined: the room has no wave. */
   constructor(
@@ -49,13 +54,20 @@ export class SolidsPass implements Pass {
       u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
       u_wet_m: { value: kWetDepths * bedOf(greeting).depthM },
       u_haze_m: { value: isIndoors(greeting) ? 0 : hazeM(greeting) },
+      u_darkness: this.darkness,
     };
-    this.material = makeMaterial("solid", uniforms, { defines: quality.plain ? { PLAIN: 1 } : {} });
+    const defines: Record<string, number> = quality.plain ? { PLAIN: 1 } : {};
+    this.material = makeMaterial("solid", uniforms, { defines });
     this.surroundings = new Surroundings(greeting, { sky, noise, field, solid: this.material, quality });
     this.scene.add(sky.dome, ...this.surroundings.solids);
     if (greeting.hasBoats) {
-      this.boats = new Boats(this.scene, this.material);
+      this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
       this.boats.setBoats(greeting.boats);
+    }
+    const buoys = field ? buoyPlaces(greeting) : [];
+    if (buoys.length > 0) {
+      this.buoys = new Buoys(buoys, makeMaterial("solid", uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
+      this.scene.add(this.buoys.group);
     }
     const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
     this.target = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples });
@@ -69,6 +81,18 @@ export class SolidsPass implements Pass {
 
   setBoats(boats: readonly BoatDetail[]): void {
     this.boats?.setBoats(boats);
+  }
+
+  /** `colors`: CSS colours of the owners, by boat. */
+  setOwnerColors(colors: ReadonlyMap<number, string>): void {
+    this.boats?.setOwnerColors(colors);
+  }
+
+  /** Adds the lamps that are seen from the camera. Call it after draw(). */
+  collectLamps(lamps: Lamps, cameraM: Vector3, shownS: number): void {
+    this.boats?.collectLamps(lamps, cameraM);
+    this.buoys?.collectLamps(lamps, shownS);
+    this.surroundings.collectLamps(lamps, shownS);
   }
 
   poseOf(boatId: number): BodyPose | undefined {
@@ -93,6 +117,7 @@ export class SolidsPass implements Pass {
 
   dispose(): void {
     this.boats?.dispose();
+    this.buoys?.dispose();
     this.surroundings.dispose();
     this.material.dispose();
     this.target.dispose();

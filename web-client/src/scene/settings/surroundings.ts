@@ -4,6 +4,7 @@ import type { Object3D, Vector3 } from "three";
 import type { GreetingInfo } from "../../codec/greeting";
 import type { SettingName, SideName } from "../../codec/scene_info";
 import type { ViewedBox } from "../framing";
+import type { Lamps } from "../lamps";
 import { Landscape, makeGroundGeometry } from "../landscape";
 import { makeCoastGeometry } from "../sea/coast";
 import { OpenSea } from "../sea/open_sea";
@@ -72,12 +73,12 @@ export class Surroundings {
     if (setting === "openSea" && wave) {
       this.sea = new OpenSea(wave, wind, plain);
       this.edge = { kind: "sea", sea: this.sea.uniforms, sides: wave.sides, hazeM: hazeM(greeting) };
-      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid);
+      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);
       return;
     }
     if (obstacles.length > 0 || beaches.length > 0) {
-      this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount), obstacles, context.solid);
+      this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);
     }
     if (setting === "pool") {
@@ -106,6 +107,11 @@ export class Surroundings {
   look(cameraM: Vector3): void {
     this.basin?.look(cameraM);
     this.tank?.look(cameraM);
+  }
+
+  /** Adds the lights of breakwaters at a time of the scene. */
+  collectLamps(lamps: Lamps, shownS: number): void {
+    this.landscape?.collectLamps(lamps, shownS);
   }
 
   dispose(): void {

@@ -1,5 +1,5 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker; under water, crests focus light (caustics).
-// PLAIN: without caustics and gloss. Distant land fades into the haze.
+// PLAIN: without caustics and gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
 
 in vec3 v_world;
@@ -12,12 +12,13 @@ uniform float u_side_m;
 uniform float u_grain_m;  // size of one tile of the noise
 uniform float u_wet_m;    // height over the still water up to which stone is wet
 uniform float u_haze_m;   // half of the light at this distance; 0: no haze
+uniform float u_darkness; // 0 by day, 1 at night
 layout(location = 0) out vec4 color;
 
 void main() {
   vec3 normal = normalize(v_normal);
   vec3 albedo = v_color.rgb;
-  float grain = v_color.a;
+  float grain = max(v_color.a, 0.0);
   if (grain > 0.0) {
     vec3 steep = abs(normal);
     vec2 at = steep.y > max(steep.x, steep.z) ? v_world.xz : steep.x > steep.z ? v_world.zy : v_world.xy;
@@ -54,5 +55,6 @@ void main() {
     float hazy = max(distance_m - 2.0 * u_side_m, 0.0) / u_haze_m;
     lit = mix(lit, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.9 * hazy / (1.0 + hazy));
   }
+  if (v_color.a < 0.0) lit = mix(lit, 5.0 * v_color.rgb, u_darkness);
   color = vec4(lit, 1.0);
 }

@@ -1,17 +1,41 @@
-// Boats, rocks, walls and the bed: coloured triangles.
+// Boats, rocks, walls and the bed: coloured triangles. FLOATS: a buoy, which rises and tilts with the water's surface.
 in vec3 position;
 in vec3 normal;
-in vec4 color;  // rgb, and the material's grain (0 paint, 1 stone)
+in vec4 color;  // rgb, and the material's grain (0 paint, 1 stone, -1 lamp)
 uniform mat4 modelMatrix;
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 out vec3 v_world;
 out vec3 v_normal;
 out vec4 v_color;
+#ifdef FLOATS
+uniform sampler2D u_field;
+uniform float u_side_m;
+
+const float kReachM = 0.25;  // of the water that moves it, from its middle
+
+// Elevation and slopes of the water under the buoy.
+vec3 waterAt(vec2 middle_m) {
+  vec2 uv = middle_m / u_side_m + 0.5;
+  float reach = kReachM / u_side_m;
+  vec3 sum = 2.0 * textureLod(u_field, uv, 0.0).rgb;
+  sum += textureLod(u_field, uv + vec2(reach, 0.0), 0.0).rgb + textureLod(u_field, uv - vec2(reach, 0.0), 0.0).rgb;
+  sum += textureLod(u_field, uv + vec2(0.0, reach), 0.0).rgb + textureLod(u_field, uv - vec2(0.0, reach), 0.0).rgb;
+  return sum / 6.0;
+}
+#endif
 
 void main() {
   v_world = (modelMatrix * vec4(position, 1.0)).xyz;
   v_normal = mat3(modelMatrix) * normal;
+#ifdef FLOATS
+  vec3 water = waterAt(modelMatrix[3].xz);
+  vec3 up = normalize(vec3(-water.y, 1.0, -water.z));
+  vec3 side = normalize(vec3(up.y, -up.x, 0.0));
+  mat3 tilt = mat3(side, up, cross(side, up));
+  v_world = modelMatrix[3].xyz + vec3(0.0, water.x, 0.0) + tilt * position;
+  v_normal = tilt * normal;
+#endif
   v_color = color;
   gl_Position = projectionMatrix * viewMatrix * vec4(v_world, 1.0);
 }

@@ -1,0 +1,101 @@
+// Names over the boats that people own. Elements are moved by transforms only, and nothing is measured while drawing. Hidden from screen
+// readers: the list of people says the same.
+import { Matrix4, Vector4, type PerspectiveCamera } from "three";
+
+import type { BoatDetail } from "../codec/greeting";
+import type { PersonInfo } from "../codec/people";
+import type { BodyPose } from "../scene/bodies";
+import type { PixelRect } from "../scene/framing";
+import { make, setText } from "./dom";
+
+/** Only the nearest boats have tags. */
+const kTagsMax = 8;
+/** Height of a tag's foot over the boat's middle, in boat lengths. */
+const kOverBoatLengths = 0.5;
+/** Half the width and the height that a tag needs. */
+const kHalfWidthPx = 44;
+const kHeightPx = 26;
+
+export interface TagPlace {
+  xPx: number;
+  yPx: number;
+  /** Distance along the view. */
+  awayM: number;
+}
+
+const scratch = new Vector4();
+
+/** Returns where a point is on the page; undefined behind the camera, outside the window, or where a panel covers the tag. */
+export function tagPlace(seen: Matrix4, point: readonly [number, number, number], widthPx: number, heightPx: number, covered: readonly PixelRect[]): TagPlace | undefined {
+  const { x, y, w } = scratch.set(...point, 1).applyMatrix4(seen);
+  if (!(w > 1e-6)) return undefined;
+  const xPx = (0.5 + (0.5 * x) / w) * widthPx;
+  const yPx = (0.5 - (0.5 * y) / w) * heightPx;
+  if (!(xPx > 0 && xPx < widthPx && yPx > kHeightPx && yPx < heightPx)) return undefined;
+  const hides = ({ leftPx, topPx, rightPx, bottomPx }: PixelRect): boolean =>
+    xPx + kHalfWidthPx > leftPx && xPx - kHalfWidthPx < rightPx && yPx > topPx && yPx - kHeightPx < bottomPx;
+  return covered.some(hides) ? undefined : { xPx, yPx, awayM: w };
+}
+
+/** Returns at most `most` boats with an owner, the nearest first. */
+export function nearestTags<T extends { place: TagPlace }>(tags: T[], most: number): T[] {
+  return tags.sort((a, b) => a.place.awayM - b.place.awayM).slice(0, most);
+}
+
+export class BoatTags {
+  private readonly element = make("div", { class: "boat-tags", "aria-hidden": "true", "data-testid": "boat-tags" });
+  private readonly labels = new Map<number, HTMLElement>();
+  private owners = new Map<number, PersonInfo>();
+  private lengthsM = new Map<number, number>();
+  private readonly seen = new Matrix4();
+
+  /** `before`: the tags lie over this element and under everything after it. */
+  constructor(before: Element) {
+    before.after(this.element);
+  }
+
+  setPeople(people: readonly PersonInfo[]): void {
+    this.owners = new Map(people.flatMap((person) => person.boatIds.map((boatId): [number, PersonInfo] => [boatId, person])));
+  }
+
+  setBoats(boats: readonly BoatDetail[]): void {
+    this.lengthsM = new Map(boats.map(({ boatId, lengthM }) => [boatId, lengthM]));
+  }
+
+  /** Called for each picture. `hiddenId`: the boat that the camera follows, which needs no name; 0 for none. */
+  update(camera: PerspectiveCamera, poseOf: (boatId: number) => BodyPose | undefined, hiddenId: number, covered: readonly PixelRect[]): void {
+    this.seen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    const found: { boatId: number; person: PersonInfo; place: TagPlace }[] = [];
+    for (const [boatId, person] of this.owners) {
+      const lengthM = this.lengthsM.get(boatId);
+      const pose = boatId === hiddenId || lengthM === undefined ? undefined : poseOf(boatId);
+      const place = pose && tagPlace(this.seen, [pose.xM, pose.yM + kOverBoatLengths * lengthM!, pose.zM], window.innerWidth, window.innerHeight, covered);
+      if (place) found.push({ boatId, person, place });
+    }
+    const shown = nearestTags(found, kTagsMax);
+    for (const [boatId, label] of this.labels)
+      if (!shown.some((tag) => tag.boatId === boatId)) {
+        label.remove();
+        this.labels.delete(boatId);
+      }
+    shown.forEach(({ boatId, person, place }, order) => this.show(this.labelOf(boatId), person, place, order));
+  }
+
+  private show(label: HTMLElement, person: PersonInfo, { xPx, yPx }: TagPlace, order: number): void {
+    setText(label, person.name);
+    label.classList.toggle("away", person.away);
+    label.style.setProperty("--owner", person.color);
+    label.style.zIndex = String(kTagsMax - order);
+    label.style.transform = `translate(${xPx.toFixed(1)}px, ${yPx.toFixed(1)}px) translate(-50%, -100%)`;
+  }
+
+  private labelOf(boatId: number): HTMLElement {
+    let label = this.labels.get(boatId);
+    if (!label) {
+      label = make("span");
+      this.labels.set(boatId, label);
+      this.element.append(label);
+    }
+    return label;
+  }
+}
