@@ -16,6 +16,7 @@ import type { BodyPose } from "./bodies";
 import { makeFluidPasses } from "./fluid/fluid";
 import type { ViewedBox } from "./framing";
 import { elevationAtM, elevationRangeM } from "./height_field";
+import { Daylight } from "./light/daylight";
 import { makeNoiseTexture } from "./noise_texture";
 import { FieldPass } from "./passes/field_pass";
 import { FoamPass } from "./passes/foam_pass";
@@ -38,6 +39,8 @@ const kFarSides = 500;
 
 export class WaterScene {
   readonly camera = new PerspectiveCamera(47, 1, 0.1, 1000);
+  /** Hour and weather of the light. */
+  readonly daylight = new Daylight();
   private readonly frames: StreamedFrames;
   private readonly sky: Sky;
   private readonly noise = makeNoiseTexture();
@@ -78,6 +81,9 @@ export class WaterScene {
     picture.shownS = this.clock.displayTimeS(nowS);
     renderer.getDrawingBufferSize(picture.sizePx);
     camera.updateMatrixWorld();
+    const light = this.daylight.update(nowS);
+    if (light) this.sky.setLight(light);
+    this.sky.update(renderer, nowS);
     renderer.setRenderTarget(null);
     renderer.clear();
     for (const pass of this.passes) {
@@ -132,6 +138,7 @@ export class WaterScene {
 
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
+    if (path === "storm.level_ratio") this.daylight.setRoomStorm(value);
     this.solids?.surroundings.setParameter(path, value);
   }
 
@@ -149,7 +156,8 @@ export class WaterScene {
   private makePasses(greeting: GreetingInfo): Pass[] {
     const { frames, sky, noise, quality } = this;
     const { wave, sideM } = greeting;
-    sky.bake(this.renderer, isIndoors(greeting));
+    sky.enter(isIndoors(greeting));
+    this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
     sky.hideBelowHorizon(greeting.setting === "openSea");
     const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;

@@ -36,8 +36,9 @@ void main() {
     sun *= mix(0.85, 1.0 / clamp(1.0 - 0.25 * v_world.y * curvature, 0.35, 4.0), 0.75);
   }
 #endif
-  vec3 ambient = mix(vec3(0.15, 0.17, 0.19), vec3(0.38, 0.47, 0.58), normal.y * 0.5 + 0.5);
-  vec3 lit = albedo * (kSunColor * 1.25 * sun + ambient);
+  vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
+  // Lamps are painted brighter than white.
+  vec3 lit = albedo * (u_sun_light * 1.25 * sun + ambient) + 1.5 * max(albedo - 1.0, 0.0);
   vec3 ray = v_world - u_camera_m;
   float distance_m = length(ray);
   ray /= distance_m;
@@ -47,7 +48,7 @@ void main() {
   if (shine > 0.01 && v_world.y > 0.0) {
     vec3 mirrored = reflect(ray, normal);
     mirrored.y = abs(mirrored.y);
-    lit += shine * skyLight(mirrored) + (1.0 - grain) * kSunColor * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
+    lit += shine * skyLight(mirrored) + (1.0 - grain) * u_sun_light * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
   }
 #endif
   if (u_haze_m > 0.0) {

@@ -41,11 +41,13 @@ void main() {
   vec3 albedo = v_color.rgb * tiles(at, v_color.a * u_side_m);
   float deep_m = u_level_m - v_world.y;
   bool below = u_has_water && deep_m > 0.0 && all(lessThanEqual(abs(v_world.xz), u_half_m * 1.001));
-  vec3 ambient = mix(vec3(0.17, 0.18, 0.19), vec3(0.38, 0.47, 0.58), normal.y * 0.5 + 0.5);
+  vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
   vec3 toward_sun = u_sun_direction;
+  vec3 sun_light = u_sun_light;
   float sun;
   if (below) {
     // Refracted at the level surface the light comes from higher up.
+    sun_light = u_sun_below;
     toward_sun = normalize(vec3(u_sun_direction.xz * 0.75, 0.0).xzy + vec3(0.0, sqrt(1.0 - 0.5625 * dot(u_sun_direction.xz, u_sun_direction.xz)), 0.0));
     vec2 crossed = v_world.xz + toward_sun.xz / toward_sun.y * deep_m;
     vec2 over_m = u_half_m - abs(crossed);
@@ -63,6 +65,6 @@ void main() {
     // The rim's shade on the inner walls.
     if (steep.y < 0.5) ambient *= 0.85;
   }
-  vec3 lit = albedo * (kSunColor * 1.25 * sun + ambient);
+  vec3 lit = albedo * (sun_light * 1.25 * sun + ambient);
   color = vec4(lit, 1.0);
 }
