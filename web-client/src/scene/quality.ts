@@ -20,6 +20,8 @@ export interface Quality {
   /** Most texels along each side of the field texture; a finer surface is sampled. */
   fieldCountMax: number;
   fluid: FluidQuality;
+  /** Grid and texture of the sunlight focused by waves; undefined: an approximation. */
+  caustics: { cellsCount: number; texelsCount: number } | undefined;
 }
 
 export interface ChosenQuality extends Quality {
@@ -30,8 +32,8 @@ export interface ChosenQuality extends Quality {
   remark: string;
 }
 
-const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, adaptive: true, maxPixelRatio: 2, remark: "" };
-const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 1 }, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
+const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, caustics: { cellsCount: 192, texelsCount: 512 }, adaptive: true, maxPixelRatio: 2, remark: "" };
+const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 1 }, caustics: undefined, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
 
 export function chooseQuality(search: string, rendererName: string): ChosenQuality {
   const wanted = new URLSearchParams(search).get("quality");

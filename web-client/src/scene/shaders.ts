@@ -2,6 +2,9 @@
 import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
 
 import bed from "./shaders/bed.glsl?raw";
+import caustics from "./shaders/caustics.glsl?raw";
+import causticsFrag from "./shaders/caustics.frag?raw";
+import causticsVert from "./shaders/caustics.vert?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
 import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
@@ -36,6 +39,7 @@ import waterOptics from "./shaders/water_optics.glsl?raw";
 import waterVert from "./shaders/water.vert?raw";
 
 const kPrograms = {
+  caustics: [causticsVert, causticsFrag],
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
   fluidDepth: [fluidParticleVert, fluidDepthFrag],
@@ -62,6 +66,7 @@ const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].ma
 const kShared: Record<string, string> = {
   sky,
   bed,
+  caustics,
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,

@@ -1,5 +1,6 @@
 // Draws everything of one room: the list of its passes, each with what it reads and writes, in the order in which they are drawn.
 //   field      frames -> field (elevation, slopes, curvature of the water)
+//   caustics   field -> sunlight that the waves focus on what is below them; not at low quality
 //   foam       frames -> foam
 //   sea        time -> the sea around the square, in an open sea
 //   solids     sky, ground, rocks, boats -> solids (linear light, depth)
@@ -18,6 +19,7 @@ import type { ViewedBox } from "./framing";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { Daylight } from "./light/daylight";
 import { makeNoiseTexture } from "./noise_texture";
+import { CausticsPass } from "./passes/caustics_pass";
 import { FieldPass } from "./passes/field_pass";
 import { FoamPass } from "./passes/foam_pass";
 import { GlassPass } from "./passes/glass_pass";
@@ -161,11 +163,12 @@ export class WaterScene {
     sky.hideBelowHorizon(greeting.setting === "openSea");
     const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
-    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
+    const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
+    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, caustics?.uniforms, frames.bodies, quality));
     const { sea, glass } = solids.surroundings;
     const water = field && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
-    const passes = [field, foam, sea, solids, ...fluid.before, water, new PresentPass(sky, solids), ...fluid.after, glass && new GlassPass(glass)];
+    const passes = [field, caustics, foam, sea, solids, ...fluid.before, water, new PresentPass(sky, solids), ...fluid.after, glass && new GlassPass(glass)];
     return passes.filter((pass) => pass !== undefined);
   }
 

@@ -7,6 +7,8 @@ export type Resource =
   | "frames"
   /** Elevation, slopes and curvature of the simulated water. */
   | "field"
+  /** Sunlight that the waves focus below them. */
+  | "caustics"
   /** Foam of the simulated water. */
   | "foam"
   /** Elevation and slopes of the sea around it. */

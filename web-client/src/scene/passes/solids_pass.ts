@@ -1,4 +1,4 @@
-// Everything but water: the sky, what is around the water, and the boats. Reads the field, for caustics, and the frames of the boats.
+// Everything but water: the sky, what is around the water, and the boats. Reads the field and the caustics, and the frames of the boats.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, HalfFloatType, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
@@ -8,7 +8,7 @@ import { Boats } from "../boats";
 import type { FrameRing } from "../frame_ring";
 import type { Quality } from "../quality";
 import { hazeM, isIndoors, Surroundings } from "../settings/surroundings";
-import { makeMaterial } from "../shaders";
+import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
 import { bedOf } from "../terrain";
 import type { Pass, Picture } from "./pass";
@@ -21,7 +21,7 @@ const kWetDepths = 0.08;
 
 export class SolidsPass implements Pass {
   readonly name = "solids";
-  readonly reads = ["frames", "field"] as const;
+  readonly reads = ["frames", "field", "caustics"] as const;
   readonly writes = ["solids"] as const;
   readonly surroundings: Surroundings;
   readonly target: WebGLRenderTarget;
@@ -29,12 +29,13 @@ export class SolidsPass implements Pass {
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
 
-  /** `field` undefined: the room has no wave. */
+  /** `field` undefined: the room has no wave. `caustics`: of caustics.glsl. */
   constructor(
     greeting: GreetingInfo,
     private readonly sky: Sky,
     noise: Texture,
     field: Texture | undefined,
+    caustics: Uniforms | undefined,
     private readonly bodies: FrameRing<BodiesState>,
     quality: Quality,
   ) {
@@ -42,16 +43,16 @@ export class SolidsPass implements Pass {
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
       ...sky.uniforms,
+      ...caustics,
       u_camera_m: { value: new Vector3() },
-      u_field: { value: field ?? null },
       u_noise: { value: noise },
       u_side_m: { value: sideM },
       u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
       u_wet_m: { value: kWetDepths * bedOf(greeting).depthM },
       u_haze_m: { value: isIndoors(greeting) ? 0 : hazeM(greeting) },
     };
-    this.material = makeMaterial("solid", uniforms, { defines: quality.plain ? { PLAIN: 1 } : {} });
-    this.surroundings = new Surroundings(greeting, { sky, noise, field, solid: this.material, quality });
+    this.material = makeMaterial("solid", uniforms, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }) } });
+    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, solid: this.material, quality });
     this.scene.add(sky.dome, ...this.surroundings.solids);
     if (greeting.hasBoats) {
       this.boats = new Boats(this.scene, this.material);
