@@ -307,15 +307,13 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
         for (const start = performance.now(); performance.now() < start + 2000; ) await picture();
         for (let i = 0; i < 3; ++i) await picture();
       });
-      const { brightness, warmth } = await measure(page, await shootWater(page));
-      return { brightness, warmth };
+      return (await measure(page, await shootWater(page))).brightness;
     };
     const noon = await mean("noon");
     const dusk = await mean("dusk");
     const moon = await mean("moon");
     const said = JSON.stringify({ noon, dusk, moon });
-    assert.ok(dusk.brightness < 0.85 * noon.brightness && moon.brightness < 0.7 * noon.brightness, said);
-    assert.ok(dusk.warmth > noon.warmth, said);
+    assert.ok(dusk < 0.8 * noon && moon < dusk, said);
     assert.equal(await page.getByTestId("slider-hour").inputValue(), "23");
     await page.getByTestId("slider-hour").fill("12");
     assert.equal(await page.getByTestId("light").inputValue(), "hour");

@@ -9,9 +9,8 @@ export async function shootWater(page) {
 
 /**
  * Measures one PNG, or one against another of the same size.
- * @returns {Promise<{colour_count: number, deviation: number, changed_ratio: number, brightness: number, warmth: number}>} different colours (of 4096),
- *   standard deviation of the brightness (0..128), share of pixels whose brightness differs by more than 6 of 255, mean brightness (0..255),
- *   red over blue
+ * @returns {Promise<{colour_count: number, deviation: number, changed_ratio: number, brightness: number}>} different colours (of 4096),
+ *   standard deviation of the brightness (0..128), share of pixels whose brightness differs by more than 6 of 255, mean brightness (0..255)
  */
 export async function measure(page, png, other = png) {
   return page.evaluate(
@@ -31,20 +30,16 @@ export async function measure(page, png, other = png) {
       let sum = 0;
       let squares = 0;
       let changed = 0;
-      let red = 0;
-      let blue = 0;
       for (let i = 0; i < a.length; i += 4) {
         colours.add(((a[i] >> 4) << 8) | ((a[i + 1] >> 4) << 4) | (a[i + 2] >> 4));
         const value = brightness(a, i);
         sum += value;
-        red += a[i];
-        blue += a[i + 2];
         squares += value * value;
         if (Math.abs(value - brightness(b, i)) > 6) changed += 1;
       }
       const count = a.length / 4;
       const mean = sum / count;
-      return { colour_count: colours.size, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)), changed_ratio: changed / count, brightness: mean, warmth: red / Math.max(blue, 1) };
+      return { colour_count: colours.size, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)), changed_ratio: changed / count, brightness: mean };
     },
     [png.toString("base64"), other.toString("base64")],
   );

@@ -39,14 +39,14 @@ const kNoonAzimuthRad = Math.atan2(kNoon[0], -kNoon[2]);
 const kAzimuthRadPerHour = (7 * Math.PI) / 180;
 const kMoonAltitudeSine = 0.46;
 const kMoonAzimuthRad = (-16 * Math.PI) / 180;
-const kMoonLight: Rgb = [0.15, 0.19, 0.26];
+const kMoonLight: Rgb = [0.095, 0.125, 0.175];
 
 type Sky = Pick<Light, "key" | "zenith" | "middle" | "horizon" | "glow" | "cloud" | "cloudLit" | "ambientUp" | "ambientDown" | "exposure">;
 
 /** Clear sky over the sine of the sun's altitude; `key` is the sun's light. */
 const kSkies: readonly (Sky & { sine: number })[] = [
-  { sine: -0.30, key: [0, 0, 0], zenith: [0.004, 0.008, 0.020], middle: [0.008, 0.015, 0.033], horizon: [0.020, 0.031, 0.052], glow: [0, 0, 0], cloud: [0.030, 0.038, 0.056], cloudLit: [0.036, 0.045, 0.064], ambientUp: [0.030, 0.043, 0.070], ambientDown: [0.012, 0.016, 0.022], exposure: 1.9 },
-  { sine: -0.14, key: [0, 0, 0], zenith: [0.012, 0.026, 0.072], middle: [0.040, 0.062, 0.125], horizon: [0.17, 0.15, 0.19], glow: [0.10, 0.045, 0.020], cloud: [0.055, 0.055, 0.080], cloudLit: [0.15, 0.085, 0.075], ambientUp: [0.075, 0.095, 0.145], ambientDown: [0.030, 0.033, 0.042], exposure: 1.75 },
+  { sine: -0.30, key: [0, 0, 0], zenith: [0.004, 0.008, 0.020], middle: [0.008, 0.015, 0.033], horizon: [0.020, 0.031, 0.052], glow: [0, 0, 0], cloud: [0.030, 0.038, 0.056], cloudLit: [0.036, 0.045, 0.064], ambientUp: [0.030, 0.043, 0.070], ambientDown: [0.012, 0.016, 0.022], exposure: 1.75 },
+  { sine: -0.14, key: [0, 0, 0], zenith: [0.012, 0.026, 0.072], middle: [0.040, 0.062, 0.125], horizon: [0.17, 0.15, 0.19], glow: [0.10, 0.045, 0.020], cloud: [0.055, 0.055, 0.080], cloudLit: [0.15, 0.085, 0.075], ambientUp: [0.075, 0.095, 0.145], ambientDown: [0.030, 0.033, 0.042], exposure: 1.65 },
   { sine: -0.05, key: [0, 0, 0], zenith: [0.026, 0.058, 0.155], middle: [0.115, 0.135, 0.225], horizon: [0.50, 0.30, 0.23], glow: [0.55, 0.22, 0.07], cloud: [0.15, 0.125, 0.165], cloudLit: [0.72, 0.30, 0.17], ambientUp: [0.155, 0.175, 0.24], ambientDown: [0.075, 0.068, 0.075], exposure: 1.45 },
   { sine: 0.02, key: [0.62, 0.25, 0.075], zenith: [0.032, 0.084, 0.225], middle: [0.17, 0.215, 0.33], horizon: [0.74, 0.47, 0.29], glow: [0.95, 0.44, 0.14], cloud: [0.30, 0.235, 0.25], cloudLit: [1.15, 0.56, 0.27], ambientUp: [0.225, 0.245, 0.31], ambientDown: [0.115, 0.10, 0.10], exposure: 1.25 },
   { sine: 0.10, key: [1.25, 0.74, 0.33], zenith: [0.036, 0.105, 0.29], middle: [0.19, 0.29, 0.47], horizon: [0.78, 0.64, 0.48], glow: [1.05, 0.60, 0.24], cloud: [0.52, 0.46, 0.45], cloudLit: [1.40, 0.92, 0.54], ambientUp: [0.345, 0.36, 0.40], ambientDown: [0.14, 0.135, 0.13], exposure: 1.15 },

@@ -12,7 +12,7 @@ uniform float u_exposure;
 
 vec3 skyLight(vec3 direction) { return texture(u_sky, direction).rgb; }
 
-// Linear light → display: a shoulder that reaches white at about 4, then gamma 2. Divisions and a square root only:
+// Linear light → display: a shoulder that reaches white at 1.6, then gamma 2 (docs/light.md). Divisions and a square root only:
 // exponentials cost software renderers a third of the frame.
 vec3 toDisplay(vec3 linear) {
   vec3 x = linear * (1.9 * u_exposure);
