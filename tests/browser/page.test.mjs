@@ -10,6 +10,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
+import { focusLight } from "./caustics.mjs";
 import { brightnessAt, measure, measureBody, shootWater } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
@@ -287,6 +288,35 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
       assert.ok(body.roughness < 2.5, `single particles are seen; ${said}`);
     }
     await tank.close();
+  });
+
+  step("focuses sunlight by waves without making or losing any", async () => {
+    const found = await focusLight(page);
+    assert.ok(Math.abs(found.mean - 1) < 0.02, `mean ${found.mean}`);
+    assert.ok(Math.abs(found.still_mean - 1) < 0.005 && found.still_most < 1.1, `still water: ${JSON.stringify(found)}`);
+    assert.ok(found.most > 2, `the waves focus by ${found.most} at most`);
+  });
+
+  step("lights the picture by the chosen hour", async () => {
+    const mean = async (light) => {
+      await page.getByTestId("light").selectOption(light);
+      // The change takes 1.2 s of drawn time, however long a picture takes.
+      await page.evaluate(async () => {
+        const picture = () => new Promise((drawn) => requestAnimationFrame(drawn));
+        for (const start = performance.now(); performance.now() < start + 2000; ) await picture();
+        for (let i = 0; i < 3; ++i) await picture();
+      });
+      return (await measure(page, await shootWater(page))).brightness;
+    };
+    const noon = await mean("noon");
+    const dusk = await mean("dusk");
+    const moon = await mean("moon");
+    const said = JSON.stringify({ noon, dusk, moon });
+    assert.ok(dusk < 0.8 * noon && moon < dusk, said);
+    assert.equal(await page.getByTestId("slider-hour").inputValue(), "23");
+    await page.getByTestId("slider-hour").fill("12");
+    assert.equal(await page.getByTestId("light").inputValue(), "hour");
+    await page.getByTestId("light").selectOption("automatic");
   });
 
   step("owns a boat that others cannot take, and keeps it after a reload", async () => {

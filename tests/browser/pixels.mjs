@@ -9,8 +9,8 @@ export async function shootWater(page) {
 
 /**
  * Measures one PNG, or one against another of the same size.
- * @returns {Promise<{colour_count: number, deviation: number, changed_ratio: number}>} different colours (of 4096),
- *   standard deviation of the brightness (0..128), share of pixels whose brightness differs by more than 6 of 255
+ * @returns {Promise<{colour_count: number, deviation: number, changed_ratio: number, brightness: number}>} different colours (of 4096),
+ *   standard deviation of the brightness (0..128), share of pixels whose brightness differs by more than 6 of 255, mean brightness (0..255)
  */
 export async function measure(page, png, other = png) {
   return page.evaluate(
@@ -39,7 +39,7 @@ export async function measure(page, png, other = png) {
       }
       const count = a.length / 4;
       const mean = sum / count;
-      return { colour_count: colours.size, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)), changed_ratio: changed / count };
+      return { colour_count: colours.size, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)), changed_ratio: changed / count, brightness: mean };
     },
     [png.toString("base64"), other.toString("base64")],
   );

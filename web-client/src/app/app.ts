@@ -14,6 +14,7 @@ import { addDetailRow } from "../ui/detail_row";
 import { byId, setText } from "../ui/dom";
 import { EffectsPanel } from "../ui/effects_panel";
 import { Hud } from "../ui/hud";
+import { addLightRows } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
 import { RoomPanel } from "../ui/room_panel";
@@ -71,6 +72,7 @@ export class App {
       this.keepIdentity(false);
       this.client.call("introduce", name, token);
     });
+    addLightRows(this.display.scene.daylight, location.search);
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
   }

@@ -3,6 +3,9 @@ import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters 
 
 import bed from "./shaders/bed.glsl?raw";
 import bubblesFrag from "./shaders/bubbles.frag?raw";
+import caustics from "./shaders/caustics.glsl?raw";
+import causticsFrag from "./shaders/caustics.frag?raw";
+import causticsVert from "./shaders/caustics.vert?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
 import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
@@ -43,6 +46,7 @@ import whitewaterVert from "./shaders/whitewater.vert?raw";
 
 const kPrograms = {
   bubbles: [whitewaterVert, bubblesFrag],
+  caustics: [causticsVert, causticsFrag],
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
   fluidDepth: [fluidParticleVert, fluidDepthFrag],
@@ -72,6 +76,7 @@ const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].ma
 const kShared: Record<string, string> = {
   sky,
   bed,
+  caustics,
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,

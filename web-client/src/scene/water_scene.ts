@@ -1,5 +1,6 @@
 // Draws everything of one room: the list of its passes, each with what it reads and writes, in the order in which they are drawn.
 //   field      frames -> field (elevation, slopes, curvature of the water)
+//   caustics   field -> sunlight that the waves focus on what is below them; not at low quality
 //   foam       frames -> foam
 //   sea        time -> the sea around the square, in an open sea
 //   solids     sky, ground, rocks, boats -> solids (linear light, depth)
@@ -20,7 +21,10 @@ import type { BodyPose } from "./bodies";
 import { makeFluidPasses } from "./fluid/fluid";
 import type { ViewedBox } from "./framing";
 import { elevationAtM, elevationRangeM } from "./height_field";
+import { Daylight } from "./light/daylight";
+import { darknessOf, type Light } from "./light/light";
 import { makeNoiseTexture } from "./noise_texture";
+import { CausticsPass } from "./passes/caustics_pass";
 import { FieldPass } from "./passes/field_pass";
 import { FoamPass } from "./passes/foam_pass";
 import { GlassPass } from "./passes/glass_pass";
@@ -46,6 +50,8 @@ const kFarSides = 500;
 
 export class WaterScene {
   readonly camera = new PerspectiveCamera(47, 1, 0.1, 1000);
+  /** Hour and weather of the light. */
+  readonly daylight = new Daylight();
   private readonly frames: StreamedFrames;
   private readonly sky: Sky;
   private readonly noise = makeNoiseTexture();
@@ -92,6 +98,9 @@ export class WaterScene {
     picture.shownS = this.clock.displayTimeS(nowS);
     renderer.getDrawingBufferSize(picture.sizePx);
     camera.updateMatrixWorld();
+    const light = this.daylight.update(nowS);
+    if (light) this.setLight(light);
+    this.sky.update(renderer, nowS);
     renderer.setRenderTarget(null);
     renderer.clear();
     for (const pass of this.passes) {
@@ -116,12 +125,6 @@ export class WaterScene {
   setPeople(people: readonly PersonInfo[]): void {
     this.ownerColors = new Map(people.flatMap(({ color, boatIds }) => boatIds.map((boatId): [number, string] => [boatId, color])));
     this.solids?.setOwnerColors(this.ownerColors);
-  }
-
-  /** 0 by day, 1 at night: how bright lamps are. */
-  set darkness(share: number) {
-    this.darknessShare = Math.min(Math.max(share, 0), 1);
-    if (this.solids) this.solids.darkness.value = this.darknessShare;
   }
 
   /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
@@ -165,6 +168,7 @@ export class WaterScene {
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
     if (this.greeting?.wind) this.greeting.wind = withParameter(this.greeting.wind, path, value);
+    if (path === "storm.level_ratio") this.daylight.setRoomStorm(value);
     this.solids?.surroundings.setParameter(path, value);
   }
 
@@ -182,11 +186,13 @@ export class WaterScene {
   private makePasses(greeting: GreetingInfo): Pass[] {
     const { frames, sky, noise, quality } = this;
     const { wave, sideM } = greeting;
-    sky.bake(this.renderer, isIndoors(greeting));
+    sky.enter(isIndoors(greeting));
+    this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
     sky.hideBelowHorizon(greeting.setting === "openSea");
     const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
-    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
+    const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
+    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, caustics?.uniforms, frames.bodies, quality));
     solids.setOwnerColors(this.ownerColors);
     solids.darkness.value = this.darknessShare;
     const { sea, glass } = solids.surroundings;
@@ -194,10 +200,16 @@ export class WaterScene {
     const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
     const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, sideM) : undefined;
-    const before = [field, foam, sea, solids, ...fluid.before, ...(white?.before ?? [])];
+    const before = [field, caustics, foam, sea, solids, ...fluid.before, ...(white?.before ?? [])];
     const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
     const passes = [...before, water, ...after];
     return passes.filter((pass) => pass !== undefined);
+  }
+
+  private setLight(light: Light): void {
+    this.sky.setLight(light);
+    this.darknessShare = darknessOf(light);
+    if (this.solids) this.solids.darkness.value = this.darknessShare;
   }
 
   private leave(): void {

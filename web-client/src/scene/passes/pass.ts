@@ -7,6 +7,8 @@ export type Resource =
   | "frames"
   /** Elevation, slopes and curvature of the simulated water. */
   | "field"
+  /** Sunlight that the waves focus below them. */
+  | "caustics"
   /** Foam of the simulated water. */
   | "foam"
   /** Drops, foam and bubbles that the page adds. */

@@ -1,4 +1,5 @@
-// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for caustics and buoys, and the frames of the boats.
+// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the caustics, and the frames of the
+// boats.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, HalfFloatType, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
@@ -10,7 +11,7 @@ import type { FrameRing } from "../frame_ring";
 import type { Lamps } from "../lamps";
 import type { Quality } from "../quality";
 import { hazeM, isIndoors, Surroundings } from "../settings/surroundings";
-import { makeMaterial } from "../shaders";
+import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
 import { bedOf } from "../terrain";
 import type { Pass, Picture } from "./pass";
@@ -23,7 +24,7 @@ const kWetDepths = 0.08;
 
 export class SolidsPass implements Pass {
   readonly name = "solids";
-  readonly reads = ["frames", "field"] as const;
+  readonly reads = ["frames", "field", "caustics"] as const;
   readonly writes = ["solids"] as const;
   readonly surroundings: Surroundings;
   readonly target: WebGLRenderTarget;
@@ -34,12 +35,13 @@ export class SolidsPass implements Pass {
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
 
-  /** `field` undefined: the room has no wave. */
+  /** `field` undefined: the room has no wave. `caustics`: of caustics.glsl. */
   constructor(
     greeting: GreetingInfo,
     private readonly sky: Sky,
     noise: Texture,
     field: Texture | undefined,
+    caustics: Uniforms | undefined,
     private readonly bodies: FrameRing<BodiesState>,
     quality: Quality,
   ) {
@@ -47,8 +49,8 @@ export class SolidsPass implements Pass {
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
       ...sky.uniforms,
+      ...caustics,
       u_camera_m: { value: new Vector3() },
-      u_field: { value: field ?? null },
       u_noise: { value: noise },
       u_side_m: { value: sideM },
       u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
@@ -56,9 +58,9 @@ export class SolidsPass implements Pass {
       u_haze_m: { value: isIndoors(greeting) ? 0 : hazeM(greeting) },
       u_darkness: this.darkness,
     };
-    const defines: Record<string, number> = quality.plain ? { PLAIN: 1 } : {};
+    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }) };
     this.material = makeMaterial("solid", uniforms, { defines });
-    this.surroundings = new Surroundings(greeting, { sky, noise, field, solid: this.material, quality });
+    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, solid: this.material, quality });
     this.scene.add(sky.dome, ...this.surroundings.solids);
     if (greeting.hasBoats) {
       this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);

@@ -10,6 +10,8 @@ export interface SurroundingsContext {
   sky: Sky;
   noise: Texture;
   field: Texture | undefined;
+  /** Of caustics.glsl; undefined at low quality, and where there is no wave. */
+  caustics: Uniforms | undefined;
   /** Shared by rocks, land and lawns; the caller disposes it. */
   solid: RawShaderMaterial;
   quality: Pick<Quality, "plain">;

@@ -102,12 +102,13 @@ export class PoolBasin {
   private readonly material: RawShaderMaterial;
   private readonly uniforms: Uniforms;
 
-  constructor(greeting: GreetingInfo, { sky, field, solid, quality }: SurroundingsContext) {
+  constructor(greeting: GreetingInfo, { sky, field, caustics, solid, quality }: SurroundingsContext) {
     const { sideM, widthM, waterExtents } = greeting;
     const { depthM } = waterExtents;
     this.geometries = makeBasinGeometries(sideM, widthM, depthM);
     this.uniforms = {
       ...sky.uniforms,
+      ...caustics,
       u_camera_m: { value: new Vector3() },
       u_field: { value: field ?? null },
       u_side_m: { value: sideM },
@@ -115,7 +116,7 @@ export class PoolBasin {
       u_level_m: { value: 0 },
       u_has_water: { value: field !== undefined },
     };
-    this.material = makeMaterial("tiles", this.uniforms, { defines: quality.plain ? { PLAIN: 1 } : {} });
+    this.material = makeMaterial("tiles", this.uniforms, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }) } });
     for (const mesh of [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, solid)]) {
       mesh.frustumCulled = false;
       this.group.add(mesh);

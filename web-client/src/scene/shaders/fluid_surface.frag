@@ -106,8 +106,8 @@ void main() {
   vec3 passed = exp(-kAbsorptionPerM * path_m);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
-  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * (0.5 + 0.6 * sun);
-  scattered += vec3(0.02, 0.26, 0.24) * against_sun * against_sun * 0.35;
+  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
+  scattered += vec3(0.02, 0.289, 0.324) * u_sun_light * against_sun * against_sun * 0.35;
   vec3 glow = kGlow * scattered * (1.0 - exp(-kScatteringPerM * path_m));
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
@@ -116,9 +116,9 @@ void main() {
   vec3 mirrored_light = skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z));
   float at_sun = dot(mirrored, u_sun_direction);
   vec3 glint = vec3(0.0);
-  if (at_sun > 0.9) glint = raised * kSunColor * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel);
+  if (at_sun > 0.9) glint = raised * u_sun_sharp * u_sun_light * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel);
 
-  vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 1.05 * sun * sun + vec3(0.40, 0.46, 0.53));
+  vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
   vec3 bent = refract(ray, normal, 0.75);
   vec3 lens = skyLight(normalize(bent + 0.6 * (bent - ray))) * (0.55 + 0.4 * sun);
 #ifdef WAVE

@@ -18,7 +18,7 @@ void main() {
   vec3 mirrored = reflect(ray, normal);
   vec3 light = skyLight(mirrored) * fresnel;
   float edge = v_color.a;
-  light += edge * vec3(0.16, 0.30, 0.26);
+  light += edge * vec3(0.42, 0.64, 0.45) * u_ambient_up;
   float through = (1.0 - fresnel) * mix(0.94, 0.45, edge);
   // What is behind is already on the screen in display values; light of this size adds about linearly there.
   color = vec4(toDisplay(light) * mix(0.45, 1.0, edge), through);

@@ -1,14 +1,20 @@
 // Include: the sky's light. u_sky holds the baked dome without the sun; shaders that show it sharp add the sun.
+// The rest is the light of the hour and the weather (light/light.ts).
 uniform samplerCube u_sky;
-uniform vec3 u_sun_direction;
-
-const vec3 kSunColor = vec3(1.0, 0.90, 0.74);
+uniform vec3 u_sun_direction;  // of the sun or the moon, whichever gives the direct light
+uniform vec3 u_sun_light;      // on a surface that faces it
+uniform vec3 u_sun_below;      // the same below level water
+uniform vec3 u_ambient_up;     // light of the sky on surfaces that face up and down
+uniform vec3 u_ambient_down;
+uniform vec3 u_water_light;    // light that enters the water, relative to noon
+uniform float u_sun_sharp;     // share of it that comes from the disc: 0 under clouds
+uniform float u_exposure;
 
 vec3 skyLight(vec3 direction) { return texture(u_sky, direction).rgb; }
 
-// Linear light → display: a shoulder that reaches white at about 4, then gamma 2. Divisions and a square root only:
+// Linear light → display: a shoulder that reaches white at 1.6, then gamma 2 (docs/light.md). Divisions and a square root only:
 // exponentials cost software renderers a third of the frame.
 vec3 toDisplay(vec3 linear) {
-  vec3 x = linear * 1.9;
+  vec3 x = linear * (1.9 * u_exposure);
   return sqrt(clamp(x * (1.0 + x / 9.0) / (1.0 + x), 0.0, 1.0));
 }

@@ -1,18 +1,20 @@
-// Sun and sky light on painted or grainy solids. Wet stone and sand are darker; under water, crests focus light (caustics).
-// PLAIN: without caustics and gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
+// Sun and sky light on painted or grainy solids. Wet stone and sand are darker. CAUSTICS: under water, waves focus the sunlight.
+// PLAIN: without gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
 
 in vec3 v_world;
 in vec3 v_normal;
 in vec4 v_color;
 uniform vec3 u_camera_m;
-uniform sampler2D u_field;
 uniform sampler2D u_noise;
 uniform float u_side_m;
 uniform float u_grain_m;  // size of one tile of the noise
 uniform float u_wet_m;    // height over the still water up to which stone is wet
 uniform float u_haze_m;   // half of the light at this distance; 0: no haze
 uniform float u_darkness; // 0 by day, 1 at night
+#ifdef CAUSTICS
+#include <caustics>
+#endif
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -29,16 +31,17 @@ void main() {
     albedo *= 1.0 - 0.42 * min(grain, 1.0) * wet;
   }
   float sun = max(dot(normal, u_sun_direction), 0.0);
-#ifndef PLAIN
+#ifdef CAUSTICS
   if (v_world.y < 0.0) {
-    // Sunlight on this point crossed the surface further toward the sun and was refracted to a steeper path.
-    vec2 crossed = v_world.xz - u_sun_direction.xz / u_sun_direction.y * v_world.y * 0.62;
-    float curvature = texture(u_field, crossed / u_side_m + 0.5).a;
-    sun *= mix(0.85, 1.0 / clamp(1.0 - 0.25 * v_world.y * curvature, 0.35, 4.0), 0.75);
+    // Sunlight on this point crossed the surface further toward the sun and was refracted to a steeper path; some was reflected.
+    vec3 level = refract(-u_sun_direction, vec3(0.0, 1.0, 0.0), 0.75);
+    vec2 crossed = v_world.xz - level.xz / level.y * v_world.y;
+    sun *= 0.96 * mix(1.0, focusedLight(crossed, -v_world.y), 0.85 * u_sun_sharp);
   }
 #endif
-  vec3 ambient = mix(vec3(0.15, 0.17, 0.19), vec3(0.38, 0.47, 0.58), normal.y * 0.5 + 0.5);
-  vec3 lit = albedo * (kSunColor * 1.25 * sun + ambient);
+  vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
+  // Lamps are painted brighter than white.
+  vec3 lit = albedo * (u_sun_light * 1.25 * sun + ambient) + 1.5 * max(albedo - 1.0, 0.0);
   vec3 ray = v_world - u_camera_m;
   float distance_m = length(ray);
   ray /= distance_m;
@@ -48,7 +51,7 @@ void main() {
   if (shine > 0.01 && v_world.y > 0.0) {
     vec3 mirrored = reflect(ray, normal);
     mirrored.y = abs(mirrored.y);
-    lit += shine * skyLight(mirrored) + (1.0 - grain) * kSunColor * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
+    lit += shine * skyLight(mirrored) + (1.0 - grain) * u_sun_light * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
   }
 #endif
   if (u_haze_m > 0.0) {

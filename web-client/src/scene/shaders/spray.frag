@@ -15,6 +15,6 @@ void main() {
   if (away > 1.0) discard;
   if (texture(u_behind_depth, gl_FragCoord.xy / u_target_px).r < gl_FragCoord.z) discard;
   float soft = (1.0 - away) * (1.0 - away);
-  vec3 white = vec3(0.95, 0.97, 0.98) * (kSunColor * 0.8 + vec3(0.40, 0.45, 0.50));
+  vec3 white = vec3(0.95, 0.97, 0.98) * (u_sun_light * 0.8 + u_ambient_up * vec3(1.05, 0.96, 0.86));
   color = vec4(toDisplay(white), v_strength * soft);
 }

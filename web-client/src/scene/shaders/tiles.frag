@@ -1,14 +1,19 @@
 // Tiles and slabs with joints: floor and walls of a pool, rim and deck, table tops. Under water, crests focus the sunlight (caustics),
 // and walls shade the floor. Reads v_color: colour, and the side of a tile in sides of the water.
-// PLAIN: one sample of the surface per point.
+// CAUSTICS: from a photon grid; otherwise from the surface's curvature.
 #include <sky>
 #include <cell_hash>
+#ifdef CAUSTICS
+#include <caustics>
+#endif
 
 in vec3 v_world;
 in vec3 v_normal;
 in vec4 v_color;
 uniform vec3 u_camera_m;
+#ifndef CAUSTICS
 uniform sampler2D u_field;
+#endif
 uniform float u_side_m;
 uniform vec2 u_half_m;
 uniform float u_level_m;    // of the resting water
@@ -28,11 +33,13 @@ float tiles(vec2 at, float tile_m) {
   return 1.0 + fine * 0.16 * (cellHash(floor(cell)) - 0.5) - seen * 0.34 * joint;
 }
 
+#ifndef CAUSTICS
 // Sunlight gathered by the curvature of the surface at the point where the light came in, for a way of `deep_m` below it.
-float gathered(vec2 crossed, float deep_m) {
+float focusedLight(vec2 crossed, float deep_m) {
   float curvature = textureLod(u_field, crossed / u_side_m + 0.5, 0.0).a;
   return 1.0 / clamp(1.0 + 0.25 * deep_m * curvature, 0.3, 4.0);
 }
+#endif
 
 void main() {
   vec3 normal = normalize(v_normal);
@@ -41,28 +48,25 @@ void main() {
   vec3 albedo = v_color.rgb * tiles(at, v_color.a * u_side_m);
   float deep_m = u_level_m - v_world.y;
   bool below = u_has_water && deep_m > 0.0 && all(lessThanEqual(abs(v_world.xz), u_half_m * 1.001));
-  vec3 ambient = mix(vec3(0.17, 0.18, 0.19), vec3(0.38, 0.47, 0.58), normal.y * 0.5 + 0.5);
+  vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
   vec3 toward_sun = u_sun_direction;
+  vec3 sun_light = u_sun_light;
   float sun;
   if (below) {
     // Refracted at the level surface the light comes from higher up.
+    sun_light = u_sun_below;
     toward_sun = normalize(vec3(u_sun_direction.xz * 0.75, 0.0).xzy + vec3(0.0, sqrt(1.0 - 0.5625 * dot(u_sun_direction.xz, u_sun_direction.xz)), 0.0));
     vec2 crossed = v_world.xz + toward_sun.xz / toward_sun.y * deep_m;
     vec2 over_m = u_half_m - abs(crossed);
     float lit = smoothstep(-0.1, 0.1, min(over_m.x, over_m.y) / (0.2 * deep_m + 0.02 * u_side_m) + 0.05);
-    float focus = gathered(crossed, deep_m);
-#ifndef PLAIN
-    vec2 beside = vec2(0.4, 0.9) * u_side_m / 400.0;
-    focus = 0.5 * (focus + gathered(crossed + beside, deep_m));
-#endif
     // Walls take part of the light that the water scatters.
-    sun = lit * (max(dot(normal, toward_sun), 0.0) * 0.9 + 0.1) * mix(0.75, focus, 0.85);
+    sun = lit * (max(dot(normal, toward_sun), 0.0) * 0.9 + 0.1) * 0.96 * mix(1.0, focusedLight(crossed, deep_m), 0.88 * u_sun_sharp);
     ambient *= vec3(0.75, 0.95, 1.0) * (1.0 - 0.25 * smoothstep(0.0, 1.0, deep_m / (0.12 * u_side_m)));
   } else {
     sun = max(dot(normal, toward_sun), 0.0);
     // The rim's shade on the inner walls.
     if (steep.y < 0.5) ambient *= 0.85;
   }
-  vec3 lit = albedo * (kSunColor * 1.25 * sun + ambient);
+  vec3 lit = albedo * (sun_light * 1.25 * sun + ambient);
   color = vec4(lit, 1.0);
 }

@@ -42,7 +42,8 @@ uniform sampler2D u_noise;
 uniform float u_lace_m;
 layout(location = 0) out vec4 color;
 
-const vec3 kFarBed = vec3(0.209, 0.198, 0.154);  // light of the level bed of coast.ts as solid.frag draws it, on average
+// Albedo of the level bed of coast.ts as solid.frag draws it, on average.
+const vec3 kFarBed = vec3(0.224, 0.205, 0.156);
 
 // exp(-x) for x >= 0. Exponentials cost software renderers a third of the frame.
 vec3 fading(vec3 x) {
@@ -113,13 +114,15 @@ vec3 mirroredLight(vec3 from, vec3 direction) {
   return sky;
 }
 #elif defined(OPEN_SEA) && defined(PLAIN)
-// The colours of sky_bake.frag without their clouds: on ripples these cannot be made out, and a cube map is slow to read.
+// The colours of sky_bake.frag with the clouds' mean: on ripples clouds cannot be made out, and a cube map is slow to read.
+uniform vec3 u_veiled_sky[3];  // zenith, middle, horizon
+uniform vec3 u_glow;
 vec3 mirroredLight(vec3 from, vec3 direction) {
-  vec3 sky = mix(vec3(0.24, 0.42, 0.70), vec3(0.12, 0.22, 0.44), smoothstep(0.12, 0.75, direction.y));
-  sky = mix(vec3(0.60, 0.73, 0.84), sky, smoothstep(-0.02, 0.20, direction.y));
+  vec3 sky = mix(u_veiled_sky[1], u_veiled_sky[0], smoothstep(0.12, 0.75, direction.y));
+  sky = mix(u_veiled_sky[2], sky, smoothstep(-0.02, 0.20, direction.y));
   float toward_sun = max(dot(direction, u_sun_direction), 0.0);
   toward_sun *= toward_sun;
-  return sky + vec3(0.08, 0.06, 0.036) * toward_sun * toward_sun;
+  return sky + 0.08 * u_glow * toward_sun * toward_sun;
 }
 #else
 vec3 mirroredLight(vec3 from, vec3 direction) { return skyLight(direction); }
@@ -201,7 +204,8 @@ void main() {
   if (hit.y < 0.1 * u_depth_m - hit_depth_m) undrawn = max(undrawn, smoothstep(0.6, 0.95, hit_depth_m / u_depth_m));
 #endif
 #endif
-  vec3 behind = undrawn < 1.0 && behind_depth < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, kFarBed, undrawn) : kFarBed;
+  vec3 far_bed = kFarBed * (1.25 * u_sun_direction.y * u_sun_light + u_ambient_up);
+  vec3 behind = undrawn < 1.0 && behind_depth < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, far_bed, undrawn) : far_bed;
 #else
   const float sunk = 0.0;
   vec3 behind = texture(u_behind, shifted_uv).rgb;
@@ -210,10 +214,10 @@ void main() {
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = waterScattered(lifted);
+  vec3 scattered = waterScattered(lifted) * u_water_light;
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun;
-  scattered += vec3(0.02, 0.26, 0.24) * against_sun * max(v_top_m, 0.0) * 1.6;
+  scattered += vec3(0.02, 0.289, 0.324) * u_sun_light * against_sun * max(v_top_m, 0.0) * 1.6;
   vec3 under = behind * passed + scattered * (1.0 - fading(vec3(kScatteringPerM * path_m)).x);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
@@ -230,7 +234,7 @@ void main() {
   fresnel *= edge;
 #ifdef SKIRT
   float rim = smoothstep(0.07, 0.0, v_top_m - v_world.y);
-  vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23);
+  vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23) * u_water_light;
 #else
   mirrored.y = abs(mirrored.y);
 #if defined(OPEN_SEA) && defined(PLAIN)
@@ -238,8 +242,22 @@ void main() {
 #else
   vec3 water = mix(under, fresnel > 0.03 ? mirroredLight(v_world, mirrored) : skyLight(mirrored), fresnel);
 #endif
+#ifdef OPEN_SEA
+  // Glitter of the waves smaller than a pixel: the share of their slopes that mirror the sun (after Cox & Munk 1954; a rational function
+  // of the same width stands for their Gaussian).
+  // Of a low sun only: a high one is mirrored far out by slopes too steep for that.
+  float unresolved = u_sun_sharp * smoothstep(0.0005, 0.008, variance) * (1.0 - smoothstep(0.2, 0.4, u_sun_direction.y));
+  if (unresolved > 0.0) {
+    vec3 halfway = normalize(u_sun_direction - ray);
+    vec2 missing = halfway.xz / max(halfway.y, 0.05) + field.gb;
+    float spread = 1.0 + dot(missing, missing) / (8.0 * variance);
+    spread *= spread;
+    float glitter = 0.07 * waterFresnel(max(-dot(halfway, ray), 0.0)) / (variance * spread * spread * max(facing, 0.15));
+    water += u_sun_light * unresolved * min(glitter, 2.5);
+  }
+#endif
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.95) water += kSunColor * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
+  if (at_sun > 0.95) water += u_sun_light * u_sun_sharp * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
 #ifndef SKIRT
   vec2 place = v_world.xz / u_side_m + 0.5;
@@ -270,9 +288,9 @@ void main() {
     float strength = min(1.1 * foam * sqrt(foam) + 0.1, 1.0);
     float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
-    water = mix(water, vec3(0.16, 0.42, 0.46), 0.45 * foam);
+    water = mix(water, vec3(0.16, 0.42, 0.46) * u_water_light, 0.45 * foam);
     float sunlit = clamp(dot(normal, u_sun_direction), 0.0, 1.0);
-    vec3 froth = vec3(0.93, 0.96, 0.97) * (kSunColor * 1.05 * sunlit + vec3(0.40, 0.45, 0.50)) * (0.80 + 0.28 * lace);
+    vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.80 + 0.28 * lace);
     water = mix(water, froth, 0.94 * white);
   }
 #endif

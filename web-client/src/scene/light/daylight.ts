@@ -1,0 +1,75 @@
+// Which light is shown: the hour and the weather that the user chose, or the room's storm. Changes are gradual. Pure: no renderer.
+import { lightAt, type Light } from "./light";
+
+/** Points of the day by name. `storm` undefined: the room's. */
+const kPresets = {
+  automatic: { hour: 12, storm: undefined },
+  noon: { hour: 12, storm: 0 },
+  "golden hour": { hour: 17.15, storm: 0 },
+  dusk: { hour: 18.35, storm: 0 },
+  moon: { hour: 23, storm: 0 },
+  storm: { hour: 12, storm: 1 },
+} as const;
+
+export type PresetName = keyof typeof kPresets;
+export const kPresetNames = Object.keys(kPresets) as readonly PresetName[];
+
+/** A change takes about this long. */
+const kTravelS = 1.2;
+
+interface Moment {
+  hour: number;
+  storm: number;
+}
+
+export class Daylight {
+  private chosen: { hour: number; storm: number | undefined } = kPresets.automatic;
+  private roomStorm = 0;
+  private shown: Moment = { hour: 12, storm: 0 };
+  /** `shown` has not been returned yet. */
+  private isNew = true;
+  private travel: { from: Moment; to: Moment; beganS: number } | undefined;
+
+  /** Chooses a preset. Returns its hour. */
+  choose(name: PresetName): number {
+    this.chosen = kPresets[name];
+    return this.chosen.hour;
+  }
+
+  /** Chooses an hour (0..24) in the weather of the room, without a transition: a slider is one. */
+  chooseHour(hour: number): void {
+    this.chosen = { hour: Math.min(Math.max(hour, 0), 24), storm: undefined };
+    this.shown = this.target();
+    this.travel = undefined;
+    this.isNew = true;
+  }
+
+  /** Follows the storm of the room, 0..1. `atOnce`: the room is new. */
+  setRoomStorm(storm: number, atOnce = false): void {
+    this.roomStorm = Math.min(Math.max(storm, 0), 1);
+    if (!atOnce) return;
+    this.shown = this.target();
+    this.travel = undefined;
+    this.isNew = true;
+  }
+
+  /** Returns the light to show, or undefined if it is that of the call before. */
+  update(nowS: number): Light | undefined {
+    const to = this.target();
+    const towards = this.travel?.to ?? this.shown;
+    if (to.hour !== towards.hour || to.storm !== towards.storm) this.travel = { from: { ...this.shown }, to, beganS: nowS };
+    if (!this.travel && !this.isNew) return undefined;
+    this.isNew = false;
+    if (!this.travel) return lightAt(this.shown.hour, this.shown.storm);
+    const share = Math.min((nowS - this.travel.beganS) / kTravelS, 1);
+    const eased = share * share * (3 - 2 * share);
+    const { from } = this.travel;
+    this.shown = share < 1 ? { hour: from.hour + (to.hour - from.hour) * eased, storm: from.storm + (to.storm - from.storm) * eased } : to;
+    if (share >= 1) this.travel = undefined;
+    return lightAt(this.shown.hour, this.shown.storm);
+  }
+
+  private target(): Moment {
+    return { hour: this.chosen.hour, storm: this.chosen.storm ?? this.roomStorm };
+  }
+}
