@@ -44,7 +44,7 @@ export interface ChosenQuality extends Quality {
 }
 
 const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 }, caustics: { cellsCount: 192, texelsCount: 512 }, adaptive: true, maxPixelRatio: 2, remark: "" };
-const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 1 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 }, caustics: undefined, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
+const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 }, caustics: undefined, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
 
 export function chooseQuality(search: string, rendererName: string): ChosenQuality {
   const wanted = new URLSearchParams(search).get("quality");
