@@ -56,7 +56,7 @@ void main() {
 #endif
   if (u_haze_m > 0.0) {
     float hazy = max(distance_m - 2.0 * u_side_m, 0.0) / u_haze_m;
-    lit = mix(lit, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.9 * hazy / (1.0 + hazy));
+    if (hazy > 0.01) lit = mix(lit, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.9 * hazy / (1.0 + hazy));
   }
   if (v_color.a < 0.0) lit = mix(lit, 5.0 * v_color.rgb, u_darkness);
   color = vec4(lit, 1.0);
