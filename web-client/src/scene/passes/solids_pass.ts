@@ -51,6 +51,7 @@ export class SolidsPass implements Pass {
       ...sky.uniforms,
       ...caustics,
       u_camera_m: { value: new Vector3() },
+      u_field: { value: field ?? null },
       u_noise: { value: noise },
       u_side_m: { value: sideM },
       u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
