@@ -183,6 +183,7 @@ export class CameraViews {
     const tangents = freeTangents(camera.fov, this.heightPx, this.widthPx, this.free);
     const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
     if (name === "above") backward.y *= raisedBy(extent, tangents);
+    if (name === "side") backward.y *= extent.sideRaised ?? 1;
     const placement = frameBox(focusBox(extent, tangents), backward, tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);
     this.controls.minDistance = 0.25 * extent.sideM;

@@ -26,6 +26,8 @@ export interface ViewedBox {
   centreM?: { x: number; z: number };
   /** How much higher than usual the view from above looks down in a wide and in a tall free part; the framing's own limits if left out. */
   raised?: { wide: number; tall: number };
+  /** How much higher than usual the view from the side looks down, because a rim hides the water from below; 1 if left out. */
+  sideRaised?: number;
   /** Side from which the view from the side looks, because no land hides the water there; +z if left out. */
   seenFrom?: SideName;
 }

@@ -20,9 +20,9 @@ const kBedCells = 96;
 const kPlainBedCells = 48;
 
 /** How much of the water a view has to show: where it goes on beyond the picture, only a part. */
-const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised">> = {
+const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised" | "sideRaised">> = {
   openSea: { focus: { wide: 0.72, tall: 0.5 }, raised: { wide: 1, tall: 1.45 } },
-  pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 } },
+  pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 }, sideRaised: 4 },
   glassTank: { focus: { wide: 1.05, tall: 0.95 }, raised: { wide: 1.1, tall: 1.6 } },
   flume: { focus: { wide: 1.02, tall: 0.9 }, raised: { wide: 0.8, tall: 1.2 } },
 };
@@ -34,7 +34,7 @@ const kLeanFromLand = { x: 0.04, z: 0.16 };
 const kSeenFrom: readonly SideName[] = ["+z", "-x", "-z", "+x"];
 
 /** Returns how a view frames the scene's water; in the open sea away from the land. */
-export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "lean" | "seenFrom"> {
+export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "lean" | "seenFrom"> {
   const view = kSettingViews[setting];
   if (setting !== "openSea" || !wave) return view;
   const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
