@@ -84,17 +84,18 @@ class SimulationThread {
   RoomOutlets& outlets_;
   RoomRules rules_;
   std::size_t max_room_count_ = 0;
+  // Before the builder, whose thread uses them until it has ended.
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  bool was_built_ = false;  ///< the builder has finished a piece of work since the last round
   std::unique_ptr<WaterBuilder> builder_;
   std::vector<Opening> openings_;  ///< used by the thread only
   mutable std::mutex rooms_mutex_;
   std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;
   std::vector<std::string> summary_;
-  mutable std::mutex mutex_;
-  std::condition_variable wake_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};
-  bool was_built_ = false;  ///< the builder has finished a piece of work since the last round
   bool running_ = false;
   bool stopping_ = false;
   std::thread thread_;
