@@ -87,6 +87,7 @@ export class WaterScene {
     this.greeting = greeting;
     this.frames.enter(greeting.wave !== undefined, isSameWater);
     this.passes = this.makePasses(greeting);
+    this.findFloor();
     this.camera.near = greeting.sideM / kNearPerSide;
     this.camera.far = greeting.sideM * kFarSides;
     this.camera.updateProjectionMatrix();
@@ -111,8 +112,8 @@ export class WaterScene {
 
   /** Takes ownership of a frame; `nowS`: client time. */
   take(frame: Frame, nowS: number): void {
-    if (frame.layer === "particles" && !this.greeting?.wave && frame.count > 0) this.solids?.surroundings.setFloorM(frame.minM[1] - frame.radiusM);
     this.frames.take(frame, nowS);
+    if (frame.layer === "particles") this.findFloor();
   }
 
   /** Sets the boats on the water. */
@@ -204,6 +205,12 @@ export class WaterScene {
     const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
     const passes = [...before, water, ...after];
     return passes.filter((pass) => pass !== undefined);
+  }
+
+  /** Without a wave the lowest particles tell where the floor is. */
+  private findFloor(): void {
+    const frame = this.greeting?.wave ? undefined : this.frames.particles.newest();
+    if (frame && frame.count > 0) this.solids?.surroundings.setFloorM(frame.minM[1] - frame.radiusM);
   }
 
   private setLight(light: Light): void {

@@ -1,7 +1,7 @@
 // The particles of the time shown, on the GPU: the 12 bytes of a plain particle unchanged, as six u16 in one interleaved buffer, so no
 // JavaScript runs per particle. Several passes draw them as points. Reads the particle frames. Writes
 // the particles.
-import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type WebGLRenderer } from "three";
+import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type Vector2, type WebGLRenderer, type WebGLRenderTarget } from "three";
 
 import { kParticleBytes } from "../../codec/frame_types";
 import type { ParticleFrame } from "../../net/messages";
@@ -68,6 +68,15 @@ export class FluidParticles implements Pass {
     renderer.setRenderTarget(target as never);
     renderer.clear();
     renderer.render(this.scene, camera);
+  }
+
+  /** The same for a target that has `scale` times the canvas's size; nothing where there are no particles. */
+  renderScaled({ renderer, camera, sizePx }: Picture, material: RawShaderMaterial, target: WebGLRenderTarget, scale: number): void {
+    if (this.isEmpty) return;
+    const countPx = material.uniforms["u_target_px"]!.value as Vector2;
+    countPx.copy(sizePx).multiplyScalar(scale).ceil();
+    target.setSize(countPx.x, countPx.y);
+    this.render(renderer, camera, material, target);
   }
 
   dispose(): void {

@@ -22,12 +22,8 @@ export class FluidThicknessPass implements Pass {
     this.material = makeMaterial("fluidThickness", { ...particles.uniforms, u_target_px: { value: new Vector2(1, 1) } }, thicknessBlending);
   }
 
-  draw({ renderer, camera, sizePx }: Picture): void {
-    if (this.particles.isEmpty) return;
-    const countPx = this.material.uniforms["u_target_px"]!.value as Vector2;
-    countPx.copy(sizePx).multiplyScalar(this.scale).ceil();
-    this.target.setSize(countPx.x, countPx.y);
-    this.particles.render(renderer, camera, this.material, this.target);
+  draw(picture: Picture): void {
+    this.particles.renderScaled(picture, this.material, this.target, this.scale);
   }
 
   dispose(): void {
