@@ -4,6 +4,7 @@ import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../src/codec/greeting";
 import type { SideKind, WaveInfo } from "../src/codec/scene_info";
+import { chooseLook, looksOf, type LookName } from "../src/scene/looks/looks";
 import type { Pass } from "../src/scene/passes/pass";
 import { chooseQuality } from "../src/scene/quality";
 import { WaterScene } from "../src/scene/water_scene";
@@ -30,10 +31,11 @@ const kRoom = {
   parameters: [],
   hasParticles: false,
   hasBoats: false,
+  gravityMps2: 9.81,
 } as unknown as GreetingInfo;
 
 const kRooms: Record<string, Partial<GreetingInfo>> = {
-  "an open sea with boats": { wave: kWave, setting: "openSea", hasBoats: true },
+  "an open sea with boats": { wave: kWave, setting: "openSea", hasBoats: true, hasBreakers: true },
   "a harbor with everything": {
     wave: { ...kWave, sides: { ...kOpen, "-z": "closed" } },
     setting: "openSea",
@@ -46,18 +48,25 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
   "a flume": { wave: kWave, setting: "flume" },
 };
 
-function enter(change: Partial<GreetingInfo>, quality: "low" | "high"): Pass[] {
+/** Returns the passes of a room in every look that it has data for. */
+function passesOf(change: Partial<GreetingInfo>, quality: "low" | "high"): Map<LookName, Pass[]> {
+  const greeting = { ...kRoom, ...change };
   const scene = new WaterScene(fakeRenderer(), chooseQuality(`?quality=${quality}`, ""), () => {});
-  scene.enter({ ...kRoom, ...change });
-  const drawn: Pass[] = [];
-  scene.render(1, (pass) => drawn.push(pass));
+  scene.enter(greeting);
+  const lists = new Map<LookName, Pass[]>();
+  for (const look of looksOf(greeting)) {
+    scene.setLook(look);
+    const drawn: Pass[] = [];
+    scene.render(1, (pass) => drawn.push(pass));
+    lists.set(look, drawn);
+  }
   scene.dispose();
-  return drawn;
+  return lists;
 }
 
-describe.each(Object.entries(kRooms))("the passes of %s", (_, change) => {
-  const passes = enter(change, "low");
+const kLists = Object.entries(kRooms).flatMap(([room, change]) => [...passesOf(change, "low")].map(([look, passes]): [string, LookName, Pass[]] => [room, look, passes]));
 
+describe.each(kLists)("the passes of %s in the look %s", (_, __, passes) => {
   it("read what passes before them wrote", () => {
     passes.forEach((pass, at) => {
       for (const read of pass.reads) {
@@ -75,20 +84,80 @@ describe.each(Object.entries(kRooms))("the passes of %s", (_, change) => {
     });
   });
 
-  it("have names of their own, the same at both qualities", () => {
+  it("have names of their own", () => {
     const names = passes.map(({ name }) => name);
     expect(new Set(names).size).toBe(names.length);
-    expect(enter(change, "high").map(({ name }) => name)).toEqual(names);
+  });
+});
+
+const namesOf = (lists: Map<LookName, Pass[]>): [LookName, string[]][] => [...lists].map(([look, passes]) => [look, passes.map(({ name }) => name)]);
+
+describe.each(Object.entries(kRooms))("the lists of passes of %s", (_, change) => {
+  it("are the same at both qualities", () => {
+    expect(namesOf(passesOf(change, "high"))).toEqual(namesOf(passesOf(change, "low")));
   });
 });
 
 describe("the list of passes", () => {
   it("holds only what the room needs", () => {
-    const names = (change: Partial<GreetingInfo>): string[] => enter(change, "low").map(({ name }) => name);
+    const names = (change: Partial<GreetingInfo>): string[] => passesOf(change, "low").get("natural")!.map(({ name }) => name);
     expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "water", "present"]);
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "water", "present"]);
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);
     expect(tank.at(-1)).toBe("glass");
+  });
+});
+
+describe("the look of the water", () => {
+  const names = (scene: WaterScene): string[] => {
+    const drawn: string[] = [];
+    scene.render(1, ({ name }) => drawn.push(name));
+    return drawn;
+  };
+
+  it("is one that the room has data for", () => {
+    const of = (change: Partial<GreetingInfo>): LookName[] => looksOf({ ...kRoom, ...change });
+    expect(of({ wave: kWave, hasBreakers: true })).toEqual(["natural", "height", "velocity", "breaking", "foam", "thesis"]);
+    expect(of({ wave: kWave, hasBreakers: true, gravityMps2: 0 })).not.toContain("breaking");
+    expect(of({ wave: kWave, layers: ["surface"] })).toEqual(["natural", "height", "velocity", "thesis"]);
+    expect(of({ hasParticles: true })).toEqual(["natural", "speed", "density", "thesis"]);
+  });
+
+  it("comes from the address, if there is one of this name", () => {
+    expect(chooseLook("?quality=low&look=speed")).toBe("speed");
+    for (const search of ["", "?look=", "?look=toString", "?look=HEIGHT"]) expect(chooseLook(search)).toBe("natural");
+  });
+
+  it("stays in the next room, after a lost context, and after a room without its data", () => {
+    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), () => {});
+    const room = (name: string): GreetingInfo => ({ ...kRoom, ...kRooms[name]! });
+    scene.enter(room("a pool"));
+    scene.setLook("height");
+    const inPool = names(scene);
+    expect(inPool).toEqual(["field", "solids", "look value", "look surface", "present"]);
+    expect(scene.legend?.quantity.unit).toBe("m");
+    scene.contextRestored();
+    expect(names(scene)).toEqual(inPool);
+    scene.enter(room("a tank of particles"));
+    expect(scene.look).toBe("natural");
+    expect(scene.legend).toBeUndefined();
+    expect(names(scene)).toContain("fluid surface");
+    scene.enter(room("a harbor with everything"));
+    expect(scene.look).toBe("height");
+    scene.setLook("thesis");
+    expect(names(scene)).toEqual(["field", "sea", "solids", "particles", "look surface", "look particles", "present"]);
+    scene.setLook("natural");
+    expect(names(scene)).toContain("water");
+    scene.dispose();
+  });
+
+  it("reads no value before the first frame", () => {
+    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), () => {});
+    scene.setLook("velocity");
+    scene.enter({ ...kRoom, ...kRooms["a pool"]! });
+    scene.render(1);
+    expect(scene.probe({ originM: [0, 5, 0], direction: [0, -1, 0] })).toBeUndefined();
+    scene.dispose();
   });
 });

@@ -20,6 +20,7 @@ import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
 import { CommandSender } from "./command_sender";
 import { Display, nowS } from "./display";
+import { LookControls } from "./look_controls";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water goes on at another fidelity.", other: "Something happened in the room." };
@@ -50,6 +51,7 @@ export class App {
   private readonly toast = new Toast(byId("toast"));
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
+  private readonly looks: LookControls;
   private readonly answerListeners: AnswerListener[];
   private readonly url = socketUrl(location);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
@@ -59,6 +61,7 @@ export class App {
     this.display = new Display(renderer, quality, {
       release: (frame) => this.client.release(frame),
       update: (atS) => this.boats.update(atS),
+      drawn: (atS) => this.looks.update(atS),
       measured: (framesPerS, delayS, remark) => this.hud.display(framesPerS, delayS, remark),
     });
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
@@ -68,6 +71,7 @@ export class App {
       this.keepIdentity(false);
       this.client.call("introduce", name, token);
     });
+    this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
   }
@@ -157,6 +161,7 @@ export class App {
     this.hud.enter(greeting);
     this.room.enter(greeting);
     this.boats.enter(greeting);
+    this.looks.enter(greeting);
     this.viewButtons.hasBoats = this.boats.available;
     this.showRole();
     this.viewButtons.refresh();

@@ -4,6 +4,7 @@ import type { WebGLRenderer } from "three";
 import type { GreetingInfo } from "../codec/greeting";
 import type { Frame } from "../net/messages";
 import { CameraViews, type Followed } from "../scene/camera_views";
+import type { PixelRect } from "../scene/framing";
 import { FrameGovernor } from "../scene/frame_governor";
 import type { ChosenQuality } from "../scene/quality";
 import { WaterScene } from "../scene/water_scene";
@@ -18,6 +19,8 @@ export interface DisplayHooks {
   release(frame: Frame): void;
   /** Called before each picture; returns the boat that the boat's view follows. */
   update(nowS: number): Followed | undefined;
+  /** Called after each picture. */
+  drawn(nowS: number): void;
   /** Called twice a second. `delayS`: age of the water shown. */
   measured(framesPerS: number, delayS: number | undefined, remark: string): void;
 }
@@ -60,6 +63,11 @@ export class Display {
     return this.governor.pixelRatio;
   }
 
+  /** The part of the canvas that the panels leave free. */
+  get freePart(): PixelRect {
+    return this.layout.freePart();
+  }
+
   start(): void {
     this.resize();
     this.loop.start();
@@ -96,5 +104,6 @@ export class Display {
     const now = nowS();
     this.views.update(now, this.hooks.update(now));
     this.scene.render(now);
+    this.hooks.drawn(now);
   }
 }

@@ -19,6 +19,11 @@ import fluidTileMarkFrag from "./shaders/fluid_tile_mark.frag?raw";
 import fluidTileVert from "./shaders/fluid_tile.vert?raw";
 import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
+import lookMap from "./shaders/look_map.glsl?raw";
+import lookParticleFrag from "./shaders/look_particle.frag?raw";
+import lookParticleVert from "./shaders/look_particle.vert?raw";
+import lookSurfaceFrag from "./shaders/look_surface.frag?raw";
+import lookValueFrag from "./shaders/look_value.frag?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
@@ -46,6 +51,9 @@ const kPrograms = {
   fluidThickness: [fluidParticleVert, fluidThicknessFrag],
   fluidTileMark: [fluidParticleVert, fluidTileMarkFrag],
   glass: [solidVert, glassFrag],
+  lookParticle: [lookParticleVert, lookParticleFrag],
+  lookSurface: [waterVert, lookSurfaceFrag],
+  lookValue: [fullscreenVert, lookValueFrag],
   present: [fullscreenVert, presentFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
@@ -65,6 +73,7 @@ const kShared: Record<string, string> = {
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,
+  look_map: lookMap,
   sea_blend: seaBlend,
   water_optics: waterOptics,
 };

@@ -8,6 +8,7 @@
 //   present    solids -> canvas where there is no water
 //   fluid      particles, solids -> canvas (fluid/fluid.ts)
 //   glass      panes of a tank -> canvas
+// Other looks than the natural one draw the water with passes of their own (looks/look_room.ts).
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
@@ -16,6 +17,8 @@ import type { BodyPose } from "./bodies";
 import { makeFluidPasses } from "./fluid/fluid";
 import type { ViewedBox } from "./framing";
 import { elevationAtM, elevationRangeM } from "./height_field";
+import { LookRoom, type Legend, type Reading } from "./looks/look_room";
+import { looksOf, type LookName } from "./looks/looks";
 import { makeNoiseTexture } from "./noise_texture";
 import { FieldPass } from "./passes/field_pass";
 import { FoamPass } from "./passes/foam_pass";
@@ -24,7 +27,7 @@ import type { Pass, Picture } from "./passes/pass";
 import { PresentPass } from "./passes/present_pass";
 import { SolidsPass } from "./passes/solids_pass";
 import { WaterPass } from "./passes/water_pass";
-import type { WaterShape } from "./pick";
+import type { Ray, WaterShape } from "./pick";
 import type { Quality } from "./quality";
 import { isIndoors, viewOf } from "./settings/surroundings";
 import { Sky } from "./sky";
@@ -36,14 +39,28 @@ const kWaveRoom = 0.04;
 const kNearPerSide = 160;
 const kFarSides = 500;
 
+/** The passes of one room that all looks share. `field` undefined: there is no wave. */
+interface Base {
+  field: FieldPass | undefined;
+  foam: FoamPass | undefined;
+  solids: SolidsPass;
+  passes: readonly Pass[];
+}
+
 export class WaterScene {
   readonly camera = new PerspectiveCamera(47, 1, 0.1, 1000);
   private readonly frames: StreamedFrames;
   private readonly sky: Sky;
   private readonly noise = makeNoiseTexture();
   private readonly picture: Picture;
+  /** What every look needs: field, foam, surroundings. */
+  private base: Base | undefined;
+  /** The water in the look shown. */
+  private water: readonly Pass[] = [];
+  private lookRoom: LookRoom | undefined;
+  /** Those of the above whose results are used, in the order in which they are drawn. */
   private passes: readonly Pass[] = [];
-  private solids: SolidsPass | undefined;
+  private wantedLook: LookName = "natural";
   private greeting: GreetingInfo | undefined;
 
   constructor(
@@ -66,7 +83,8 @@ export class WaterScene {
     this.leave();
     this.greeting = greeting;
     this.frames.enter(greeting.wave !== undefined);
-    this.passes = this.makePasses(greeting);
+    this.base = this.makeBase(greeting);
+    this.makeWater();
     this.camera.near = greeting.sideM / kNearPerSide;
     this.camera.far = greeting.sideM * kFarSides;
     this.camera.updateProjectionMatrix();
@@ -84,27 +102,50 @@ export class WaterScene {
       pass.draw(picture);
       drawn?.(pass);
     }
+    this.lookRoom?.measure(nowS);
+  }
+
+  /** The look shown: the wanted one, or the natural one where the room lacks its data. */
+  get look(): LookName {
+    return this.greeting && looksOf(this.greeting).includes(this.wantedLook) ? this.wantedLook : "natural";
+  }
+
+  /** Shows the water in another look, in this room and those after it. */
+  setLook(look: LookName): void {
+    this.wantedLook = look;
+    this.makeWater();
+  }
+
+  /** What the colours of the look mean; undefined for looks without values. */
+  get legend(): Legend | undefined {
+    return this.lookRoom?.legend;
+  }
+
+  /** Returns the look's value where the ray meets the water of the last picture. Call it before the next frame arrives. */
+  probe(ray: Ray): Reading | undefined {
+    const { shownS } = this.picture;
+    return shownS === undefined ? undefined : this.lookRoom?.probe(ray, shownS);
   }
 
   /** Takes ownership of a frame; `nowS`: client time. */
   take(frame: Frame, nowS: number): void {
-    if (frame.layer === "particles" && !this.greeting?.wave && frame.count > 0) this.solids?.surroundings.setFloorM(frame.minM[1] - frame.radiusM);
+    if (frame.layer === "particles" && !this.greeting?.wave && frame.count > 0) this.base?.solids.surroundings.setFloorM(frame.minM[1] - frame.radiusM);
     this.frames.take(frame, nowS);
   }
 
   /** Sets the boats on the water. */
   setBoats(boats: readonly BoatDetail[]): void {
     if (this.greeting) this.greeting.boats = [...boats];
-    this.solids?.setBoats(boats);
+    this.base?.solids.setBoats(boats);
   }
 
   /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
   poseOf(boatId: number): BodyPose | undefined {
-    return this.solids?.poseOf(boatId);
+    return this.base?.solids.poseOf(boatId);
   }
 
   drawnBoats(): BodyPose[] {
-    return this.solids?.drawnBoats() ?? [];
+    return this.base?.solids.drawnBoats() ?? [];
   }
 
   /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particle frame. */
@@ -132,7 +173,7 @@ export class WaterScene {
 
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
-    this.solids?.surroundings.setParameter(path, value);
+    this.base?.solids.surroundings.setParameter(path, value);
   }
 
   /** Draws again what exists only on the GPU. */
@@ -146,24 +187,52 @@ export class WaterScene {
     this.noise.dispose();
   }
 
-  private makePasses(greeting: GreetingInfo): Pass[] {
+  private makeBase(greeting: GreetingInfo): Base {
     const { frames, sky, noise, quality } = this;
-    const { wave, sideM } = greeting;
+    const { wave } = greeting;
     sky.bake(this.renderer, isIndoors(greeting));
     sky.hideBelowHorizon(greeting.setting === "openSea");
     const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
-    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality));
-    const { sea, glass } = solids.surroundings;
+    const solids = new SolidsPass(greeting, sky, noise, field?.texture, frames.bodies, quality);
+    return { field, foam, solids, passes: [field, foam, solids.surroundings.sea, solids].filter((pass) => pass !== undefined) };
+  }
+
+  private makeWater(): void {
+    const { base, greeting } = this;
+    if (!base || !greeting) return;
+    this.leaveWater();
+    if (this.look !== "natural") this.lookRoom = new LookRoom(this.look, greeting, { ...base, frames: this.frames, sky: this.sky, quality: this.quality });
+    this.water = this.lookRoom?.passes ?? this.makeNaturalWater(greeting, base);
+    this.passes = usedPasses([...base.passes, ...this.water]);
+  }
+
+  private makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: Base): Pass[] {
+    const { frames, sky, noise, quality } = this;
+    const { glass } = solids.surroundings;
     const water = field && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, solids, quality);
-    const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
-    const passes = [field, foam, sea, solids, ...fluid.before, water, new PresentPass(sky, solids), ...fluid.after, glass && new GlassPass(glass)];
-    return passes.filter((pass) => pass !== undefined);
+    const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting.sideM, quality.fluid) : { before: [], after: [] };
+    return [...fluid.before, water, new PresentPass(sky, solids), ...fluid.after, glass && new GlassPass(glass)].filter((pass) => pass !== undefined);
+  }
+
+  private leaveWater(): void {
+    if (this.lookRoom) this.lookRoom.dispose();
+    else for (const pass of this.water) pass.dispose();
+    this.lookRoom = undefined;
+    this.water = this.passes = [];
   }
 
   private leave(): void {
-    for (const pass of this.passes) pass.dispose();
-    this.passes = [];
-    this.solids = undefined;
+    this.leaveWater();
+    for (const pass of this.base?.passes ?? []) pass.dispose();
+    this.base = undefined;
   }
+}
+
+/** Leaves out passes whose results no later pass reads. */
+function usedPasses(passes: readonly Pass[]): Pass[] {
+  const used: Pass[] = [];
+  for (const pass of [...passes].reverse())
+    if (pass.writes.some((written) => written === "canvas" || used.some(({ reads }) => reads.includes(written)))) used.unshift(pass);
+  return used;
 }

@@ -25,6 +25,8 @@ export type Resource =
   | "fluidNormals"
   /** Thickness of the particles along each pixel's ray. */
   | "fluidThickness"
+  /** The value that a look shows on the surface. */
+  | "lookValue"
   /** Colours for the display, and depth. */
   | "canvas";
 
