@@ -11,7 +11,7 @@ import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
 import { focusLight } from "./caustics.mjs";
-import { brightnessAt, measure, measureBody, shootWater } from "./pixels.mjs";
+import { brightnessAt, colourAt, measure, measureBody, shootWater } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
 const WAIT_MS = 60_000;
@@ -74,6 +74,15 @@ async function acknowledged(target, press) {
 async function stillWater(target) {
   await acknowledged(target, () => target.getByTestId("reset").click());
   await waitFor(target, "still water", (stats) => stats.maxElevationM - stats.minElevationM < 0.02);
+}
+
+/** Waits until pictures were drawn for this long, and three more. */
+function drawnPictures(target, during_ms) {
+  return target.evaluate(async (wanted_ms) => {
+    const picture = () => new Promise((drawn) => requestAnimationFrame(drawn));
+    for (const start = performance.now(); performance.now() < start + wanted_ms; ) await picture();
+    for (let i = 0; i < 3; ++i) await picture();
+  }, during_ms);
 }
 
 /** A test that uses the page opened by the first test. */
@@ -197,6 +206,78 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     const full = await waitFor(page, "a full surface", (stats) => stats.surfaceResolutionCount === 144);
     assert.equal(full.malformedCount, 0);
     assert.ok(full.delayMs > 0 && full.delayMs < 10_000, `the picture is ${full.delayMs} ms behind`);
+  });
+
+  step("shows data in colours: the probe reads the value whose colour the water has there", async () => {
+    await stillWater(page);
+    const natural = await shootWater(page);
+    const look = page.getByTestId("look");
+    assert.deepEqual(await look.locator("option").evaluateAll((options) => options.map(({ value }) => value)), ["natural", "height", "velocity", "speed", "density", "thesis"]);
+    assert.ok(await page.getByTestId("look-key").isHidden(), "natural water has a colour bar");
+    await look.selectOption("height");
+    assert.match(await page.getByTestId("key-title").textContent(), /height \[m\]/);
+    assert.match(page.url(), /look=height/);
+    await acknowledged(page, () => page.getByTestId("splash").click());
+    await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.2);
+    await acknowledged(page, () => page.getByTestId("pause").click());
+    await waitFor(page, "the room to pause", (stats) => stats.paused);
+    await drawnPictures(page, 1500);
+    const picture = await measure(page, natural, await shootWater(page));
+    assert.ok(picture.changed_ratio > 0.5, `${(100 * picture.changed_ratio).toFixed(0)} % of the pixels changed`);
+
+    const { minElevationM, maxElevationM } = await statsOf(page);
+    const differences = [];
+    const values = [];
+    for (const [xM, zM] of [[0, 0], [1, 1], [-1.5, 0.5], [0.5, 2], [2, -1], [-2, 2.5], [0, 1.5]]) {
+      const [xPx, yPx] = await page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [xM, zM]);
+      await page.mouse.move(xPx, yPx);
+      await drawnPictures(page, 300);
+      const label = await page.getByTestId("probe").textContent();
+      const [, value, atXM, atZM] = /^(-?[\d.]+) mx (-?[\d.]+) m, z (-?[\d.]+) m$/.exec(label)?.map(Number) ?? [];
+      assert.ok(value >= minElevationM - 0.02 && value <= maxElevationM + 0.02, `the probe says "${label}"; elevations are ${minElevationM} to ${maxElevationM} m`);
+      // The point of the still water under the pixel, not where the ray meets a wave.
+      assert.ok(Math.hypot(atXM - xM, atZM - zM) < 1.5, `the probe at ${xM}, ${zM} m says "${label}"`);
+      values.push(value);
+      const seen = await colourAt(page, await page.screenshot({ timeout: 2 * WAIT_MS }), xPx, yPx);
+      const wanted = await page.evaluate((shown) => {
+        const bar = document.querySelector("#look-key canvas");
+        const ticks = [...document.querySelectorAll("#look-key li")].map((tick) => [Number(tick.textContent), parseFloat(tick.style.getPropertyValue("--at")) / 100]);
+        const [[firstValue, firstAt], [lastValue, lastAt]] = [ticks[0], ticks.at(-1)];
+        const share = firstAt + ((shown - firstValue) / (lastValue - firstValue)) * (lastAt - firstAt);
+        return [...bar.getContext("2d").getImageData(Math.round(255 * Math.min(Math.max(share, 0), 1)), 0, 1, 1).data].slice(0, 3);
+      }, value);
+      differences.push(Math.max(...wanted.map((channel, i) => Math.abs(channel - seen[i]))));
+    }
+    assert.ok(Math.max(...values) - Math.min(...values) > 0.02, `the probe reads ${values} m at places of a splash`);
+    differences.sort((a, b) => a - b);
+    // Where the surface is steep, the drawn mesh is coarser than what the probe reads.
+    assert.ok(differences[3] <= 12, `colours of water and bar differ by ${differences} of 255`);
+    await acknowledged(page, () => page.getByTestId("pause").click());
+  });
+
+  step("keeps the look at another level and after a lost graphics context, and goes back to natural water", async () => {
+    await page.getByTestId("detail").selectOption("coarse");
+    await waitFor(page, "a coarse surface", (stats) => stats.surfaceResolutionCount === 128);
+    const loss = await page.evaluateHandle(() => document.querySelector("canvas").getContext("webgl2").getExtension("WEBGL_lose_context"));
+    await loss.evaluate((extension) => extension.loseContext());
+    await page.locator("#notice").waitFor({ state: "visible", timeout: WAIT_MS });
+    await loss.evaluate((extension) => extension.restoreContext());
+    await page.locator("#notice").waitFor({ state: "hidden", timeout: WAIT_MS });
+    assert.equal(await page.getByTestId("look").inputValue(), "height");
+    await drawnPictures(page, 1000);
+    const height = await shootWater(page);
+    const picture = await measure(page, height);
+    assert.ok(picture.colour_count >= 2, "the picture is one colour");
+    await page.getByTestId("look").selectOption("speed");
+    assert.match(await page.getByTestId("key-title").textContent(), /speed \[m\/s\]/);
+    await page.getByTestId("look").selectOption("natural");
+    assert.ok(await page.getByTestId("look-key").isHidden(), "natural water has a colour bar");
+    assert.doesNotMatch(page.url(), /look=/);
+    await drawnPictures(page, 500);
+    assert.ok(await page.getByTestId("probe").isHidden(), "natural water has a probe");
+    assert.ok((await measure(page, height, await shootWater(page))).changed_ratio > 0.5, "the water still shows its height");
+    await page.getByTestId("detail").selectOption("auto");
+    await waitFor(page, "a full surface", (stats) => stats.surfaceResolutionCount === 144);
   });
 
   step("goes on with the water at another fidelity, with its view and sliders", async () => {

@@ -45,6 +45,20 @@ export async function measure(page, png, other = png) {
   );
 }
 
+/** Returns red, green and blue (0..255) of one pixel of a PNG. */
+export async function colourAt(page, png, x, y) {
+  return page.evaluate(
+    async ([base64, at_x, at_y]) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+      context.drawImage(bitmap, 0, 0);
+      return [...context.getImageData(Math.round(at_x), Math.round(at_y), 1, 1).data].slice(0, 3);
+    },
+    [png.toString("base64"), x, y],
+  );
+}
+
 /** Returns the brightness (0..255) of a PNG at points in pixels, each the mean of 3 x 3. */
 export async function brightnessAt(page, png, points) {
   return page.evaluate(

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { Layer, Level } from "../src/gen/spindrift/v1/wire_pb";
+import { Layer, Level, Packing } from "../src/gen/spindrift/v1/wire_pb";
 import { LoadGovernor } from "../src/net/load_governor";
 import { Rig } from "./fakes";
 import { greeting, surfaceFrame } from "./wire";
@@ -41,6 +41,25 @@ describe("the level of detail", () => {
     rig.connection.setDetail("fine");
     rig.time.advance(500);
     expect(rig.lastStats()).toMatchObject({ level: "fine", levelLimitedBy: "choice" });
+  });
+
+  it("leaves the particles' packing to the page, also after a reconnection", () => {
+    const rig = liveRig();
+    const ofParticles = (): Packing | undefined => rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.PARTICLES).at(-1)?.value.packing;
+    expect(ofParticles()).toBe(Packing.PACKED);
+    rig.connection.setExactParticles(true);
+    expect(ofParticles()).toBe(Packing.PLAIN);
+    expect(rig.socket.sentOf("subscribe").filter(({ value }) => value.packing === Packing.PLAIN).map(({ value }) => value.layer)).toEqual([Layer.PARTICLES]);
+    const { length } = rig.socket.sent;
+    rig.connection.setExactParticles(true);
+    expect(rig.socket.sent).toHaveLength(length);
+    rig.socket.drop();
+    rig.time.advance(1000);
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    expect(ofParticles()).toBe(Packing.PLAIN);
+    rig.connection.setExactParticles(false);
+    expect(ofParticles()).toBe(Packing.PACKED);
   });
 
   it("is unlimited again after a reconnection", () => {

@@ -134,6 +134,16 @@ describe("the choice of a light", () => {
     daylight.chooseHour(7);
     expect(daylight.update(0.1)).toEqual(lightAt(7, 0.8));
   });
+
+  it("is a fair noon while that is held, and the chosen one again afterwards", () => {
+    const daylight = new Daylight();
+    daylight.setRoomStorm(0.7, true);
+    daylight.choose("moon");
+    daylight.holdNoon(true);
+    expect(settled(daylight)).toEqual(lightAt(12, 0));
+    daylight.holdNoon(false);
+    expect(settled(daylight)).toEqual(lightAt(23, 0));
+  });
 });
 
 describe("lamps", () => {

@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { crc32c } from "../src/codec/crc32c";
 import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frame_types";
 import { parse } from "../src/codec/parse";
-import { Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
+import { CouplingMode, Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
 import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
 import { bodiesFrame, bodiesPayload, encode, foamFrame, greeting, particleFrame, surfaceFrame } from "./wire";
 
@@ -46,6 +46,22 @@ describe("parse", () => {
   it("takes the box's side as the water's side where there is no wave", () => {
     const parsed = parse(encode(greeting({ scene: { particles: { boxSideM: 2.4 } } })));
     expect(parsed).toMatchObject({ kind: "greeting", greeting: { wave: undefined, sideM: 2.4 } });
+  });
+
+  it("reads whether the wave breaks, and how thick the particles lie that it carries", () => {
+    const read = (scene: object) => {
+      const parsed = parse(encode(greeting({ scene })));
+      if (parsed.kind !== "greeting") throw new Error(parsed.kind);
+      return parsed.greeting;
+    };
+    const wave = { resolutionCount: 64, sideM: 16, depthM: 1 };
+    const particles = { count: 1024, layersCount: 4, patchScale: 0.5 };
+    // 4 layers of 16 x 16 particles over 8 m.
+    expect(read({ gravityMps2: 9.81, wave, particles })).toMatchObject({ gravityMps2: 9.81, hasBreakers: false, bandM: 2 });
+    expect(read({ wave, particles, coupling: { mode: CouplingMode.TWO_WAY } })).toMatchObject({ hasBreakers: true, bandM: 0 });
+    expect(read({ wave, foam: { surface: true } })).toMatchObject({ hasBreakers: true, bandM: 0, gravityMps2: 0 });
+    expect(read({ wave: { ...wave, steepeningRatio: 0.4 } }).hasBreakers).toBe(true);
+    expect(read({ particles: { boxSideM: 4 }, foam: {} })).toMatchObject({ hasBreakers: false, bandM: 0 });
   });
 
   it("refuses a greeting whose water has no size", () => {

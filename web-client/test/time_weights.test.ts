@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { timeWeights, type FrameTimes } from "../src/scene/time_weights";
+import { timeRateWeights, timeWeights, type FrameTimes } from "../src/scene/time_weights";
 
 type Weights = [number, number, number, number];
 
@@ -82,5 +82,34 @@ describe("the curve between two frames", () => {
       expect(lowestAmplitude(0.46, rateHz, false)).toBeCloseTo(line, 3);
       expect(lowestAmplitude(0.46, rateHz, true)).toBeCloseTo(curve, 3);
     }
+  });
+});
+
+describe("the rate between two frames", () => {
+  const ratesOf = (times: FrameTimes, mix: number): Weights => {
+    const out: Weights = [9, 9, 9, 9];
+    expect(timeRateWeights(times, mix, out)).toBe(true);
+    return out;
+  };
+
+  it("is the derivative by time of the curve, with and without neighbours", () => {
+    const step = 1e-6;
+    for (const times of [kEven, kUneven, { ...kUneven, beforeS: undefined }, { ...kUneven, afterS: undefined }, { beforeS: -9, fromS: 0, toS: 0.5, afterS: 11 }])
+      for (const mix of [0.1, 0.5, 0.8]) {
+        const intervalS = times.toS - times.fromS;
+        const [low, high] = [weightsOf(times, mix - step), weightsOf(times, mix + step)];
+        ratesOf(times, mix).forEach((rate, i) => expect(rate).toBeCloseTo((high[i]! - low[i]!) / (2 * step * intervalS), 6));
+      }
+  });
+
+  it("is that of the line to a neighbour where the time shown is that of a single frame, as in a paused room", () => {
+    expect(ratesOf({ beforeS: 3.5, fromS: 4, toS: 4, afterS: undefined }, 0)).toEqual([-2, 2, 0, 0]);
+    expect(ratesOf({ beforeS: undefined, fromS: 4, toS: 4, afterS: 4.25 }, 0)).toEqual([0, 0, -4, 4]);
+  });
+
+  it("is not known from a single frame", () => {
+    const out: Weights = [9, 9, 9, 9];
+    expect(timeRateWeights({ beforeS: undefined, fromS: 4, toS: 4, afterS: undefined }, 0, out)).toBe(false);
+    expect(out).toEqual([0, 0, 0, 0]);
   });
 });

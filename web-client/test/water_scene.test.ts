@@ -5,6 +5,7 @@ import { describe, expect, it } from "vitest";
 import type { GreetingInfo } from "../src/codec/greeting";
 import type { SideKind, WaveInfo } from "../src/codec/scene_info";
 import type { Frame } from "../src/net/messages";
+import { chooseLook, looksOf, type LookName } from "../src/scene/looks/looks";
 import type { Pass } from "../src/scene/passes/pass";
 import { chooseQuality } from "../src/scene/quality";
 import { WaterScene } from "../src/scene/water_scene";
@@ -31,10 +32,11 @@ const kRoom = {
   parameters: [],
   hasParticles: false,
   hasBoats: false,
+  gravityMps2: 9.81,
 } as unknown as GreetingInfo;
 
 const kRooms: Record<string, Partial<GreetingInfo>> = {
-  "an open sea with boats": { wave: kWave, setting: "openSea", hasBoats: true },
+  "an open sea with boats": { wave: kWave, setting: "openSea", hasBoats: true, hasBreakers: true },
   "a harbor with everything": {
     wave: { ...kWave, sides: { ...kOpen, "-z": "closed" } },
     setting: "openSea",
@@ -47,22 +49,28 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
   "a flume": { wave: kWave, setting: "flume" },
 };
 
-function enter(change: Partial<GreetingInfo>, quality: "low" | "high"): Pass[] {
+/** Returns the passes of a room in every look that it has data for. */
+function passesOf(change: Partial<GreetingInfo>, quality: "low" | "high"): Map<LookName, Pass[]> {
+  const greeting = { ...kRoom, ...change };
   const scene = new WaterScene(fakeRenderer(), chooseQuality(`?quality=${quality}`, ""), () => {});
-  scene.enter({ ...kRoom, ...change }, false);
-  const drawn: Pass[] = [];
-  scene.render(1, (pass) => drawn.push(pass));
+  scene.enter(greeting, false);
+  const lists = new Map<LookName, Pass[]>();
+  for (const look of looksOf(greeting)) {
+    scene.setLook(look);
+    const drawn: Pass[] = [];
+    scene.render(1, (pass) => drawn.push(pass));
+    lists.set(look, drawn);
+  }
   scene.dispose();
-  return drawn;
+  return lists;
 }
 
-const kRoomsAndQualities = Object.entries(kRooms).flatMap(([name, change]) => {
-  const [low, high] = [enter(change, "low"), enter(change, "high")];
-  return [{ name, quality: "low", passes: low, others: high }, { name, quality: "high", passes: high, others: low }];
-});
+/** Meshes of high quality take seconds on a busy machine. */
+const kLongestMs = 120_000;
+const kLow = Object.entries(kRooms).map(([room, change]) => ({ room, change, lists: passesOf(change, "low") }));
+const kLists = kLow.flatMap(({ room, lists }) => [...lists].map(([look, passes]): [string, LookName, Pass[]] => [room, look, passes]));
 
-describe.each(kRoomsAndQualities)("the passes of $name at $quality quality", ({ quality, passes, others }) => {
-
+describe.each(kLists)("the passes of %s in the look %s", (_, __, passes) => {
   it("read what passes before them wrote", () => {
     passes.forEach((pass, at) => {
       for (const read of pass.reads) {
@@ -80,18 +88,25 @@ describe.each(kRoomsAndQualities)("the passes of $name at $quality quality", ({ 
     });
   });
 
-  it("have names of their own, and only the caustics differ between the qualities", () => {
+  it("have names of their own", () => {
     const names = passes.map(({ name }) => name);
     expect(new Set(names).size).toBe(names.length);
-    const isShared = (name: string): boolean => name !== "caustics";
-    expect(others.map(({ name }) => name).filter(isShared)).toEqual(names.filter(isShared));
-    expect(names.includes("caustics")).toBe(quality === "high" && names.includes("field"));
+  });
+});
+
+const namesOf = (lists: Map<LookName, Pass[]>): [LookName, string[]][] => [...lists].map(([look, passes]) => [look, passes.map(({ name }) => name)]);
+
+describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
+  it("differ between the qualities by the caustics alone", { timeout: kLongestMs }, () => {
+    const high = namesOf(passesOf(change, "high"));
+    expect(high.map(([look, names]) => [look, names.filter((name) => name !== "caustics")])).toEqual(namesOf(lists));
+    for (const [, names] of high) expect(names.includes("caustics")).toBe(names.includes("field"));
   });
 });
 
 describe("the list of passes", () => {
-  it("holds only what the room needs", () => {
-    const names = (change: Partial<GreetingInfo>): string[] => enter(change, "low").map(({ name }) => name);
+  it("holds only what the room needs", { timeout: kLongestMs }, () => {
+    const names = (change: Partial<GreetingInfo>): string[] => passesOf(change, "low").get("natural")!.map(({ name }) => name);
     expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray", "lamps"]);
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
     const tank = names(kRooms["a tank of particles"]!);
@@ -119,6 +134,59 @@ describe("a new greeting", () => {
     scene.enter({ ...sea, sceneName: "other" }, false);
     expect(scene.newestSurface()).toBeUndefined();
     expect(released).toEqual([first, second]);
+    scene.dispose();
+  });
+});
+
+describe("the look of the water", () => {
+  const names = (scene: WaterScene): string[] => {
+    const drawn: string[] = [];
+    scene.render(1, ({ name }) => drawn.push(name));
+    return drawn;
+  };
+
+  it("is one that the room has data for", () => {
+    const of = (change: Partial<GreetingInfo>): LookName[] => looksOf({ ...kRoom, ...change });
+    expect(of({ wave: kWave, hasBreakers: true })).toEqual(["natural", "height", "velocity", "breaking", "foam", "thesis"]);
+    expect(of({ wave: kWave, hasBreakers: true, gravityMps2: 0 })).not.toContain("breaking");
+    expect(of({ wave: kWave, layers: ["surface"] })).toEqual(["natural", "height", "velocity", "thesis"]);
+    expect(of({ hasParticles: true })).toEqual(["natural", "speed", "density", "thesis"]);
+  });
+
+  it("comes from the address, if there is one of this name", () => {
+    expect(chooseLook("?quality=low&look=speed")).toBe("speed");
+    for (const search of ["", "?look=", "?look=toString", "?look=HEIGHT"]) expect(chooseLook(search)).toBe("natural");
+  });
+
+  it("stays in the next room, after a lost context, and after a room without its data", { timeout: kLongestMs }, () => {
+    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), () => {});
+    const room = (name: string): GreetingInfo => ({ ...kRoom, ...kRooms[name]! });
+    scene.enter(room("a pool"), false);
+    scene.setLook("height");
+    const inPool = names(scene);
+    expect(inPool).toEqual(["field", "solids", "look value", "look surface", "present"]);
+    expect(scene.legend?.quantity.unit).toBe("m");
+    scene.contextRestored();
+    expect(names(scene)).toEqual(inPool);
+    scene.enter(room("a tank of particles"), false);
+    expect(scene.look).toBe("natural");
+    expect(scene.legend).toBeUndefined();
+    expect(names(scene)).toContain("fluid surface");
+    scene.enter(room("a harbor with everything"), false);
+    expect(scene.look).toBe("height");
+    scene.setLook("thesis");
+    expect(names(scene)).toEqual(["field", "sea", "solids", "particles", "look surface", "look particles", "present"]);
+    scene.setLook("natural");
+    expect(names(scene)).toContain("water");
+    scene.dispose();
+  });
+
+  it("reads no value before the first frame", () => {
+    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), () => {});
+    scene.setLook("velocity");
+    scene.enter({ ...kRoom, ...kRooms["a pool"]! }, false);
+    scene.render(1);
+    expect(scene.probe({ originM: [0, 5, 0], direction: [0, -1, 0] })).toBeUndefined();
     scene.dispose();
   });
 });

@@ -22,6 +22,7 @@ import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
 import { CommandSender } from "./command_sender";
 import { Display, nowS } from "./display";
+import { LookControls } from "./look_controls";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water goes on at another fidelity.", other: "Something happened in the room." };
@@ -53,6 +54,7 @@ export class App {
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
+  private readonly looks: LookControls;
   private readonly answerListeners: AnswerListener[];
   private readonly url = socketUrl(location);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
@@ -62,7 +64,10 @@ export class App {
     this.display = new Display(renderer, quality, {
       release: (frame) => this.client.release(frame),
       update: (atS) => this.boats.update(atS),
-      drawn: () => this.showTags(),
+      drawn: (atS) => {
+        this.showTags();
+        this.looks.update(atS);
+      },
       measured: (framesPerS, delayS, remark) => this.hud.display(framesPerS, delayS, remark),
     });
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
@@ -73,6 +78,7 @@ export class App {
       this.client.call("introduce", name, token);
     });
     addLightRows(this.display.scene.daylight, location.search);
+    this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
   }
@@ -166,6 +172,7 @@ export class App {
     this.room.enter(greeting);
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
+    this.looks.enter(greeting);
     this.viewButtons.hasBoats = this.boats.available;
     this.showRole();
     this.viewButtons.refresh();

@@ -20,7 +20,7 @@ export interface DisplayHooks {
   /** Called before each picture; returns the boat that the boat's view follows. */
   update(nowS: number): Followed | undefined;
   /** Called after each picture. */
-  drawn(): void;
+  drawn(nowS: number): void;
   /** Called twice a second. `delayS`: age of the water shown. */
   measured(framesPerS: number, delayS: number | undefined, remark: string): void;
 }
@@ -63,6 +63,11 @@ export class Display {
 
   get pixelRatio(): number {
     return this.governor.pixelRatio;
+  }
+
+  /** The part of the canvas that the panels leave free. */
+  get freePart(): PixelRect {
+    return this.layout.freePart();
   }
 
   start(): void {
@@ -130,6 +135,6 @@ export class Display {
     const now = nowS();
     this.views.update(now, this.hooks.update(now));
     this.scene.render(now);
-    this.hooks.drawn();
+    this.hooks.drawn(now);
   }
 }

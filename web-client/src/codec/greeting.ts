@@ -1,5 +1,5 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, without Protobuf objects.
-import { CouplingMode, type ParticleScene } from "../gen/spindrift/v1/scene_pb";
+import { CouplingMode, type ParticleScene, type Scene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
 import { fidelityName, type FidelityName } from "./fidelity";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
@@ -78,6 +78,11 @@ export interface GreetingInfo {
   /** Limits of effects and boats follow from these: the wave, or the resting water of a box of particles. */
   waterExtents: WaterExtents;
   hasParticles: boolean;
+  /** Thickness of a layer of particles that the wave carries at its surface; 0 without one. */
+  bandM: number;
+  /** The server decides where the wave breaks. */
+  hasBreakers: boolean;
+  gravityMps2: number;
   /** Breaking water turns into particles and back. */
   isTwoWay: boolean;
   /** The scene allows boats. */
@@ -109,6 +114,24 @@ function boxExtents(particles: ParticleScene | undefined): WaterExtents {
   const widthM = boxWidthM > 0 ? boxWidthM : boxSideM;
   const areaM2 = boxSideM * fillXRatio * widthM * fillZRatio;
   return { sideM: Math.min(boxSideM, widthM), depthM: layersCount * Math.sqrt((areaM2 * layersCount) / Math.max(count, 1)) };
+}
+
+function finiteAbove0(value: number | undefined): number {
+  return value !== undefined && value > 0 && Number.isFinite(value) ? value : 0;
+}
+
+/** As in the server: layers at the spacing of the resting particles. */
+function bandOf(scene: Scene | undefined): number {
+  if (!scene?.wave || !scene.particles || scene.coupling?.mode === CouplingMode.TWO_WAY) return 0;
+  const { patchScale = 1, layersCount = 0, count = 0 } = scene.particles;
+  const bandM = layersCount * (scene.wave.sideM ?? 0) * patchScale * Math.sqrt(layersCount / Math.max(count, 1));
+  return bandM > 0 && bandM < 1e4 ? bandM : 0;
+}
+
+/** As in the server: breakers of a wave that makes spray or foam, or that steepens. */
+function breaks(scene: Scene | undefined): boolean {
+  const hasBreakers = scene?.coupling?.mode === CouplingMode.TWO_WAY || scene?.foam?.surface === true || (scene?.wave?.steepeningRatio ?? 0) > 0;
+  return scene?.wave !== undefined && hasBreakers;
 }
 
 /** Malformed if a size that the page draws with is not a positive number. */
@@ -143,6 +166,9 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       widthM: (!wave && scene?.particles?.boxWidthM) || sideM,
       waterExtents: wave ? { sideM, depthM: wave.depthM } : boxExtents(scene?.particles),
       hasParticles: scene?.particles !== undefined,
+      bandM: bandOf(scene),
+      hasBreakers: breaks(scene),
+      gravityMps2: finiteAbove0(scene?.gravityMps2),
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
       hasBoats: scene?.boats !== undefined,
       obstacles: scene ? readObstacles(scene) : [],

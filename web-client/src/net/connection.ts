@@ -77,6 +77,7 @@ export class Connection implements ConnectionCalls {
   private tickTimer: number | undefined;
   private greeting: GreetingInfo | undefined;
   private visible = true;
+  private exactParticles = false;
   private readonly pending = new PendingCommands();
   private readonly meter: LinkMeter;
   private readonly unpacker = new FrameUnpacker();
@@ -126,6 +127,12 @@ export class Connection implements ConnectionCalls {
   setDetail(detail: DetailChoice): void {
     if (detail === this.detail) return;
     this.detail = detail;
+    if (this.state.name === "live") this.subscribe();
+  }
+
+  setExactParticles(exact: boolean): void {
+    if (exact === this.exactParticles) return;
+    this.exactParticles = exact;
     if (this.state.name === "live") this.subscribe();
   }
 
@@ -275,7 +282,7 @@ export class Connection implements ConnectionCalls {
     for (const layer of this.greeting.layers) {
       const rateHz = layer === "diagnostics" ? Math.min(kDiagnosticsRateHz, frameRateHz) : frameRateHz;
       const maxRateHz = this.visible || layer === "diagnostics" ? rateHz : 0;
-      this.send({ case: "subscribe", value: { layer: kLayers[layer], maxRateHz, packing: Packing.PACKED, level, adapts } });
+      this.send({ case: "subscribe", value: { layer: kLayers[layer], maxRateHz, packing: layer === "particles" && this.exactParticles ? Packing.PLAIN : Packing.PACKED, level, adapts } });
     }
   }
 

@@ -83,6 +83,8 @@ export interface ConnectionCalls {
   /** Exactly one ack or reject follows: the server's, or a local one if nothing was sent or no answer came. */
   command(commandId: number, action: CommandAction): void;
   setDetail(detail: DetailChoice): void;
+  /** Particles in the plain packing: finer velocities and densities, and more bytes. */
+  setExactParticles(exact: boolean): void;
   /** A hidden page gets no frames; showing it again subscribes to them again. */
   setVisible(visible: boolean): void;
   /** Connects now: after a refusal, or instead of waiting. */

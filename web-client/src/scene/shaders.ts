@@ -26,6 +26,11 @@ import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
 import lampFrag from "./shaders/lamp.frag?raw";
 import lampVert from "./shaders/lamp.vert?raw";
+import lookMap from "./shaders/look_map.glsl?raw";
+import lookParticleFrag from "./shaders/look_particle.frag?raw";
+import lookParticleVert from "./shaders/look_particle.vert?raw";
+import lookSurfaceFrag from "./shaders/look_surface.frag?raw";
+import lookValueFrag from "./shaders/look_value.frag?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
@@ -59,6 +64,9 @@ const kPrograms = {
   froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
   lamp: [lampVert, lampFrag],
+  lookParticle: [lookParticleVert, lookParticleFrag],
+  lookSurface: [waterVert, lookSurfaceFrag],
+  lookValue: [fullscreenVert, lookValueFrag],
   present: [fullscreenVert, presentFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
@@ -80,6 +88,7 @@ const kShared: Record<string, string> = {
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,
+  look_map: lookMap,
   sea_blend: seaBlend,
   water_optics: waterOptics,
 };

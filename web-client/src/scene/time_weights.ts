@@ -13,26 +13,17 @@ export interface FrameTimes {
 /** A neighbour further away than this many times the interval says nothing about the slope of a short wave. */
 const kMostIntervals = 2;
 
-/**
- * Writes the weights of the frames before, from, to and after into `out`. They sum to 1. The slope at each frame is that of the
- * parabola through it and its neighbours; with one neighbour the curve is a parabola, with none a straight line. `mix`: position
- * between from and to, 0..1.
- */
-export function timeWeights(times: Readonly<FrameTimes>, mix: number, out: [number, number, number, number]): void {
-  const { fromS, toS } = times;
+type Weights = [number, number, number, number];
+
+/** Returns the intervals before and after the two frames, in units of the one between them; 0 where there is no usable neighbour. */
+function neighboursOf({ beforeS, fromS, toS, afterS }: Readonly<FrameTimes>): [a: number, b: number] {
   const intervalS = toS - fromS;
-  // Intervals before and after, in units of the one between; 0 if there is no usable neighbour.
   const near = (gapS: number): number => (intervalS > 0 && gapS > 0 && gapS <= kMostIntervals * intervalS ? gapS / intervalS : 0);
-  const a = times.beforeS === undefined ? 0 : near(fromS - times.beforeS);
-  const b = times.afterS === undefined ? 0 : near(times.afterS - toS);
-  const u = mix;
-  out[0] = out[3] = 0;
-  out[1] = 1 - u;
-  out[2] = u;
-  if (a === 0 && b === 0) return;
-  // The line plus u (1 - u) times the curvature at either end: (1 - u) of the one at `from` and u of the one at `to`.
-  const atFrom = u * (1 - u) * (a === 0 ? 0 : b === 0 ? 1 : 1 - u);
-  const atTo = u * (1 - u) * (b === 0 ? 0 : a === 0 ? 1 : u);
+  return [beforeS === undefined ? 0 : near(fromS - beforeS), afterS === undefined ? 0 : near(afterS - toS)];
+}
+
+/** Adds the curvatures of the parabolas at both frames, times the given shares, to the weights. */
+function addCurvatures(out: Weights, a: number, b: number, atFrom: number, atTo: number): void {
   if (a > 0) {
     out[0] -= atFrom / (a * (a + 1));
     out[1] += atFrom / a;
@@ -43,4 +34,46 @@ export function timeWeights(times: Readonly<FrameTimes>, mix: number, out: [numb
     out[2] += atTo / b;
     out[3] -= atTo / (b * (b + 1));
   }
+}
+
+/**
+ * Writes the weights of the frames before, from, to and after into `out`. They sum to 1. The slope at each frame is that of the
+ * parabola through it and its neighbours; with one neighbour the curve is a parabola, with none a straight line. `mix`: position
+ * between from and to, 0..1.
+ */
+export function timeWeights(times: Readonly<FrameTimes>, mix: number, out: Weights): void {
+  const [a, b] = neighboursOf(times);
+  const u = mix;
+  out[0] = out[3] = 0;
+  out[1] = 1 - u;
+  out[2] = u;
+  // The line plus u (1 - u) times the curvature at either end: (1 - u) of the one at `from` and u of the one at `to`.
+  const alone = u * (1 - u);
+  addCurvatures(out, a, b, b === 0 ? alone : alone * (1 - u), a === 0 ? alone : alone * u);
+}
+
+/**
+ * Writes the derivatives of these weights by time [1/s] into `out`. They sum to 0. At a single frame (`fromS` equal to `toS`) they are
+ * those of the straight line to a neighbour; false where there is none, because the rate is not known.
+ */
+export function timeRateWeights(times: Readonly<FrameTimes>, mix: number, out: Weights): boolean {
+  const { beforeS, fromS, toS, afterS } = times;
+  const intervalS = toS - fromS;
+  out[0] = out[1] = out[2] = out[3] = 0;
+  if (!(intervalS > 0)) {
+    const gapS = beforeS !== undefined ? fromS - beforeS : afterS !== undefined ? afterS - toS : 0;
+    if (!(gapS > 0)) return false;
+    const first = beforeS !== undefined ? 0 : 2;
+    out[first] = -1 / gapS;
+    out[first + 1] = 1 / gapS;
+    return true;
+  }
+  const [a, b] = neighboursOf(times);
+  const u = mix;
+  const alone = 1 - 2 * u;
+  out[1] = -1;
+  out[2] = 1;
+  addCurvatures(out, a, b, b === 0 ? alone : (1 - u) * (1 - 3 * u), a === 0 ? alone : u * (2 - 3 * u));
+  for (let i = 0; i < 4; ++i) out[i]! /= intervalS;
+  return true;
 }

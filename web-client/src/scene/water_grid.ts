@@ -1,6 +1,9 @@
 // The meshes of the water: a grid over the square, which in an open sea goes on to the horizon, and the sides of a block of water.
 import { BufferAttribute, BufferGeometry } from "three";
 
+import type { SideName } from "../codec/scene_info";
+import type { WaterEdge } from "./settings/context";
+
 /** The grid of an open sea reaches this many sides of the square, past the horizon's last pixel. */
 const kSeaReachSides = 300;
 /** Its cells outside the square become larger by this factor, first slowly, for the waves near the square. */
@@ -49,7 +52,7 @@ export function makeGrid(xs: readonly number[], zs: readonly number[]): BufferGe
 }
 
 /** Four strips, each `cellsCount` quads from the surface (y = 1) to the floor (y = 0), normals outward. */
-export function makeSkirt(cellsCount: number): BufferGeometry {
+function makeSkirt(cellsCount: number): BufferGeometry {
   const positions: number[] = [];
   const normals: number[] = [];
   const index: number[] = [];
@@ -72,4 +75,13 @@ export function makeSkirt(cellsCount: number): BufferGeometry {
   geometry.setAttribute("normal", new BufferAttribute(new Float32Array(normals), 3));
   geometry.setIndex(index);
   return geometry;
+}
+
+/** Returns the meshes of a water's surface and, where they are seen, of its sides. */
+export function makeWaterGeometries(edge: WaterEdge, cellsCount: number): { top: BufferGeometry; sides: BufferGeometry | undefined } {
+  const opens = (side: SideName): boolean => edge.kind === "sea" && edge.sides[side] !== "closed";
+  return {
+    top: makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z"))),
+    sides: edge.kind === "cut" ? makeSkirt(cellsCount) : undefined,
+  };
 }

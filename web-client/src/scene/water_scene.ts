@@ -1,46 +1,26 @@
-// Draws everything of one room: the list of its passes, each with what it reads and writes, in the order in which they are drawn.
-//   field      frames -> field (elevation, slopes, curvature of the water)
-//   caustics   field -> sunlight that the waves focus on what is below them; not at low quality
-//   foam       frames -> foam
-//   sea        time -> the sea around the square, in an open sea
-//   solids     sky, ground, rocks, boats -> solids (linear light, depth)
-//   particles  frames -> particles; their shadow -> solids (fluid/fluid.ts)
-//   whitewater frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
-//   water      field, foam, froth, sea, solids -> canvas
-//   present    solids -> canvas where there is no water
-//   fluid      particles, solids -> canvas (fluid/fluid.ts)
-//   spray      drops, solids -> canvas
-//   lamps      solids, field -> canvas, in the dark
-//   glass      panes of a tank -> canvas
+// Everything of one room as one picture: draws the passes that room_passes.ts lists, and what the page asks of them.
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { PersonInfo } from "../codec/people";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import type { BodyPose } from "./bodies";
-import { makeFluidPasses } from "./fluid/fluid";
 import type { ViewedBox } from "./framing";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { Daylight } from "./light/daylight";
 import { darknessOf, type Light } from "./light/light";
+import { LookRoom, type Legend, type Reading } from "./looks/look_room";
+import { looksOf, type LookName } from "./looks/looks";
 import { makeNoiseTexture } from "./noise_texture";
-import { CausticsPass } from "./passes/caustics_pass";
-import { FieldPass } from "./passes/field_pass";
-import { FoamPass } from "./passes/foam_pass";
-import { GlassPass } from "./passes/glass_pass";
-import { LampsPass } from "./passes/lamps_pass";
 import type { Pass, Picture } from "./passes/pass";
-import { PresentPass } from "./passes/present_pass";
-import { SolidsPass } from "./passes/solids_pass";
-import { WaterPass } from "./passes/water_pass";
-import type { WaterShape } from "./pick";
+import type { Ray, WaterShape } from "./pick";
 import type { Quality } from "./quality";
+import { makeBase, makeNaturalWater, usedPasses, type RoomBase, type RoomTools, type RoomWater } from "./room_passes";
 import { withParameter } from "./sea/sea_state";
 import { isIndoors, viewOf } from "./settings/surroundings";
 import { Sky } from "./sky";
 import { StreamedFrames } from "./streamed_frames";
 import { kinds } from "./whitewater/diffuse_particles";
-import { makeWhitewaterPasses, type WhitewaterPasses } from "./whitewater/whitewater";
 
 /** Room for waves above the water in a view, as a share of its side. */
 const kWaveRoom = 0.04;
@@ -55,21 +35,28 @@ export class WaterScene {
   private readonly frames: StreamedFrames;
   private readonly sky: Sky;
   private readonly noise = makeNoiseTexture();
+  private readonly tools: RoomTools;
   private readonly picture: Picture;
+  /** What every look needs: field, foam, surroundings. */
+  private base: RoomBase | undefined;
+  /** The water in the look shown. */
+  private water: RoomWater | undefined;
+  private lookRoom: LookRoom | undefined;
+  /** Those of the above whose results are used, in the order in which they are drawn. */
   private passes: readonly Pass[] = [];
-  private solids: SolidsPass | undefined;
-  private white: WhitewaterPasses | undefined;
   private darknessShare = 0;
   private ownerColors: ReadonlyMap<number, string> = new Map();
+  private wantedLook: LookName = "natural";
   private greeting: GreetingInfo | undefined;
 
   constructor(
     private readonly renderer: WebGLRenderer,
-    private readonly quality: Quality,
+    quality: Quality,
     release: (frame: Frame) => void,
   ) {
     this.frames = new StreamedFrames(release);
     this.sky = new Sky(quality.samplesCount > 1);
+    this.tools = { frames: this.frames, sky: this.sky, noise: this.noise, quality };
     this.picture = { renderer, camera: this.camera, sizePx: new Vector2(), shownS: undefined };
     renderer.autoClear = false;
   }
@@ -86,7 +73,13 @@ export class WaterScene {
     this.leave();
     this.greeting = greeting;
     this.frames.enter(greeting.wave !== undefined, isSameWater);
-    this.passes = this.makePasses(greeting);
+    this.sky.enter(isIndoors(greeting));
+    this.sky.hideBelowHorizon(greeting.setting === "openSea");
+    this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
+    this.base = makeBase(greeting, this.tools);
+    this.base.solids.setOwnerColors(this.ownerColors);
+    this.base.solids.darkness.value = this.darknessShare;
+    this.makeWater();
     this.findFloor();
     this.camera.near = greeting.sideM / kNearPerSide;
     this.camera.far = greeting.sideM * kFarSides;
@@ -108,6 +101,29 @@ export class WaterScene {
       pass.draw(picture);
       drawn?.(pass);
     }
+    this.lookRoom?.measure(nowS);
+  }
+
+  /** The look shown: the wanted one, or the natural one where the room lacks its data. */
+  get look(): LookName {
+    return this.greeting && looksOf(this.greeting).includes(this.wantedLook) ? this.wantedLook : "natural";
+  }
+
+  /** Shows the water in another look, in this room and those after it. */
+  setLook(look: LookName): void {
+    this.wantedLook = look;
+    this.makeWater();
+  }
+
+  /** What the colours of the look mean; undefined for looks without values. */
+  get legend(): Legend | undefined {
+    return this.lookRoom?.legend;
+  }
+
+  /** Returns the look's value where the ray meets the water of the last picture. Call it before the next frame arrives. */
+  probe(ray: Ray): Reading | undefined {
+    const { shownS } = this.picture;
+    return shownS === undefined ? undefined : this.lookRoom?.probe(ray, shownS);
   }
 
   /** Takes ownership of a frame; `nowS`: client time. */
@@ -119,27 +135,27 @@ export class WaterScene {
   /** Sets the boats on the water. */
   setBoats(boats: readonly BoatDetail[]): void {
     if (this.greeting) this.greeting.boats = [...boats];
-    this.solids?.setBoats(boats);
+    this.base?.solids.setBoats(boats);
   }
 
   /** Paints boats in the colours of their owners. */
   setPeople(people: readonly PersonInfo[]): void {
     this.ownerColors = new Map(people.flatMap(({ color, boatIds }) => boatIds.map((boatId): [number, string] => [boatId, color])));
-    this.solids?.setOwnerColors(this.ownerColors);
+    this.base?.solids.setOwnerColors(this.ownerColors);
   }
 
   /** Returns the pose in which a boat is drawn now. The next frame overwrites it. */
   poseOf(boatId: number): BodyPose | undefined {
-    return this.solids?.poseOf(boatId);
+    return this.base?.solids.poseOf(boatId);
   }
 
   drawnBoats(): BodyPose[] {
-    return this.solids?.drawnBoats() ?? [];
+    return this.base?.solids.drawnBoats() ?? [];
   }
 
   /** Returns how many drops, patches of foam and bubbles the page has added to the streamed water. */
   whitewaterCounts(): Record<keyof typeof kinds, number> {
-    const of = (kind: keyof typeof kinds): number => this.white?.particles.countOf(kinds[kind]) ?? 0;
+    const of = (kind: keyof typeof kinds): number => this.water?.white?.countOf(kinds[kind]) ?? 0;
     return { spray: of("spray"), foam: of("foam"), bubble: of("bubble") };
   }
 
@@ -170,7 +186,7 @@ export class WaterScene {
   setParameter(path: string, value: number): void {
     if (this.greeting?.wind) this.greeting.wind = withParameter(this.greeting.wind, path, value);
     if (path === "storm.level_ratio") this.daylight.setRoomStorm(value);
-    this.solids?.surroundings.setParameter(path, value);
+    this.base?.solids.surroundings.setParameter(path, value);
   }
 
   /** Draws again what exists only on the GPU. */
@@ -184,44 +200,37 @@ export class WaterScene {
     this.noise.dispose();
   }
 
-  private makePasses(greeting: GreetingInfo): Pass[] {
-    const { frames, sky, noise, quality } = this;
-    const { wave, sideM } = greeting;
-    sky.enter(isIndoors(greeting));
-    this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
-    sky.hideBelowHorizon(greeting.setting === "openSea");
-    const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
-    const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
-    const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
-    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, caustics?.uniforms, frames.bodies, quality));
-    solids.setOwnerColors(this.ownerColors);
-    solids.darkness.value = this.darknessShare;
-    const { sea, glass } = solids.surroundings;
-    const white = (this.white = wave && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater));
-    const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
-    const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
-    const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, sideM) : undefined;
-    const before = [field, caustics, foam, sea, solids, ...fluid.before, ...(white?.before ?? [])];
-    const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
-    const passes = [...before, water, ...after];
-    return passes.filter((pass) => pass !== undefined);
+  private makeWater(): void {
+    const { base, greeting } = this;
+    if (!base || !greeting) return;
+    this.leaveWater();
+    if (this.look === "natural") this.water = makeNaturalWater(greeting, base, this.tools);
+    else this.water = this.lookRoom = new LookRoom(this.look, greeting, { ...base, ...this.tools });
+    this.daylight.holdNoon(this.lookRoom !== undefined);
+    this.passes = usedPasses([...base.passes, ...this.water.passes]);
+  }
+
+  private leaveWater(): void {
+    this.water?.dispose();
+    this.water = this.lookRoom = undefined;
+    this.passes = [];
   }
 
   /** Without a wave the lowest particles tell where the floor is. */
   private findFloor(): void {
     const frame = this.greeting?.wave ? undefined : this.frames.particles.newest();
-    if (frame && frame.count > 0) this.solids?.surroundings.setFloorM(frame.minM[1] - frame.radiusM);
+    if (frame && frame.count > 0) this.base?.solids.surroundings.setFloorM(frame.minM[1] - frame.radiusM);
   }
 
   private setLight(light: Light): void {
     this.sky.setLight(light);
     this.darknessShare = darknessOf(light);
-    if (this.solids) this.solids.darkness.value = this.darknessShare;
+    if (this.base) this.base.solids.darkness.value = this.darknessShare;
   }
 
   private leave(): void {
-    for (const pass of this.passes) pass.dispose();
-    this.passes = [];
-    this.solids = this.white = undefined;
+    this.leaveWater();
+    for (const pass of this.base?.passes ?? []) pass.dispose();
+    this.base = undefined;
   }
 }

@@ -6,6 +6,7 @@ import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, 
 import { kParticleBytes } from "../../codec/frame_types";
 import type { ParticleFrame } from "../../net/messages";
 import type { FrameRing } from "../frame_ring";
+import type { ShownParticles } from "../looks/particle_values";
 import type { Pass, Picture } from "../passes/pass";
 import type { PlayoutClock } from "../playout_clock";
 import type { Uniforms } from "../shaders";
@@ -62,11 +63,22 @@ export class FluidParticles implements Pass {
     if (frames) this.show(frames.from, Math.min(Math.max(shownS! - frames.from.timeS, 0), kMaxAdvanceIntervals * this.clock.intervalS()));
   }
 
+  /** The particles of the last picture, for values on the CPU; undefined if there are none. */
+  get values(): ShownParticles | undefined {
+    return this.isEmpty ? undefined : { frame: this.shown!, words: this.words!.array as Uint16Array, advanceS: this.uniforms["u_advance_s"]!.value as number };
+  }
+
   /** Clears the target and draws the particles into it. */
   render(renderer: WebGLRenderer, camera: PerspectiveCamera, material: RawShaderMaterial, target: RenderTarget): void {
-    this.points.material = material;
     renderer.setRenderTarget(target as never);
     renderer.clear();
+    this.renderOver(renderer, camera, material, target);
+  }
+
+  /** Draws the particles over what the target shows. */
+  renderOver(renderer: WebGLRenderer, camera: PerspectiveCamera, material: RawShaderMaterial, target: RenderTarget | null): void {
+    this.points.material = material;
+    renderer.setRenderTarget(target as never);
     renderer.render(this.scene, camera);
   }
 

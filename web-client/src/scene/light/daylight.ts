@@ -25,6 +25,7 @@ interface Moment {
 export class Daylight {
   private chosen: { hour: number; storm: number | undefined } = kPresets.automatic;
   private roomStorm = 0;
+  private isNoonHeld = false;
   private shown: Moment = { hour: 12, storm: 0 };
   /** `shown` has not been returned yet. */
   private isNew = true;
@@ -53,6 +54,11 @@ export class Daylight {
     this.isNew = true;
   }
 
+  /** While `isHeld`, the light is that of a fair noon, whatever was chosen: for looks whose colours are data. */
+  holdNoon(isHeld: boolean): void {
+    this.isNoonHeld = isHeld;
+  }
+
   /** Returns the light to show, or undefined if it is that of the call before. */
   update(nowS: number): Light | undefined {
     const to = this.target();
@@ -70,6 +76,7 @@ export class Daylight {
   }
 
   private target(): Moment {
+    if (this.isNoonHeld) return kPresets.noon;
     return { hour: this.chosen.hour, storm: this.chosen.storm ?? this.roomStorm };
   }
 }

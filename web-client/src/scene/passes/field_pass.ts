@@ -26,14 +26,25 @@ import { kCurvature, kSlope, kSmooth } from "../field_kernels";
 import type { Between, FrameRing } from "../frame_ring";
 import { FrameTextures } from "../frame_textures";
 import { FullscreenPass } from "../fullscreen";
-import { makeMaterial } from "../shaders";
-import { timeWeights, type FrameTimes } from "../time_weights";
+import { makeMaterial, type Uniforms } from "../shaders";
+import { timeRateWeights, timeWeights, type FrameTimes } from "../time_weights";
 import type { Pass, Picture } from "./pass";
 
 /** The elevation between frames is kept in fractions of the quantum: 15 bits and these 8 fill the 24 of a float. */
 const kUnitsPerQuantum = 256;
 /** Frames that a picture is interpolated from. */
 const kFrameCount = 4;
+
+/** What the field was drawn from last. The frames are in the ring until the next one arrives. */
+export interface ShownSurfaces {
+  /** Before, from, to and after the time shown. */
+  readonly frames: readonly SurfaceFrame[];
+  /** Of the frames in the elevation, and in its derivative by time [1/s]. */
+  readonly weights: readonly [number, number, number, number];
+  readonly ratesPerS: readonly [number, number, number, number];
+  /** False with a single frame: the rates are 0. */
+  isRateKnown: boolean;
+}
 
 export class FieldPass implements Pass {
   readonly name = "field";
@@ -49,7 +60,9 @@ export class FieldPass implements Pass {
   // Of the picture drawn last; kept, because every picture would make new ones.
   private readonly times: FrameTimes = { beforeS: undefined, fromS: 0, toS: 0, afterS: undefined };
   private readonly weights: [number, number, number, number] = [0, 1, 0, 0];
+  private readonly ratesPerS: [number, number, number, number] = [0, 0, 0, 0];
   private readonly drawn: SurfaceFrame[] = [];
+  private readonly drawnFrom: ShownSurfaces = { frames: this.drawn, weights: this.weights, ratesPerS: this.ratesPerS, isRateKnown: false };
 
   private readonly sideM: number;
   private isDrawn = false;
@@ -116,6 +129,17 @@ export class FieldPass implements Pass {
     this.scale();
   }
 
+  /** What the last picture shows; undefined before the first frame. The next picture overwrites it. */
+  get shown(): ShownSurfaces | undefined {
+    return this.drawn.length > 0 ? this.drawnFrom : undefined;
+  }
+
+  /** The textures of the frames shown, as entries for materials. */
+  get frameUniforms(): Uniforms {
+    const { u_before, u_from, u_to, u_after } = this.interpolate.material.uniforms;
+    return { u_before: u_before!, u_from: u_from!, u_to: u_to!, u_after: u_after! };
+  }
+
   draw({ renderer, shownS }: Picture): void {
     const surfaces = shownS === undefined ? undefined : this.surfaces.around(shownS);
     if (surfaces) this.drawBetween(renderer, surfaces);
@@ -137,8 +161,8 @@ export class FieldPass implements Pass {
     // The level of detail changed: frames of two sizes cannot be interpolated.
     const isLike = (frame: SurfaceFrame | undefined): frame is SurfaceFrame => frame?.resolutionCount === to.resolutionCount;
     const from = isLike(between.from) ? between.from : to;
-    const before = from !== to && isLike(between.before) ? between.before : from;
-    const after = from !== to && isLike(between.after) ? between.after : to;
+    const before = isLike(between.before) ? between.before : from;
+    const after = isLike(between.after) ? between.after : to;
     if (to.resolutionCount !== this.frames.resolutionCount) this.resize(to.resolutionCount);
 
     const { times, weights, drawn } = this;
@@ -147,6 +171,7 @@ export class FieldPass implements Pass {
     times.toS = to.timeS;
     times.afterS = after === to ? undefined : after.timeS;
     timeWeights(times, mix, weights);
+    this.drawnFrom.isRateKnown = timeRateWeights(times, mix, this.ratesPerS);
     const unitM = to.quantumM / kUnitsPerQuantum;
     const uniforms = this.interpolate.material.uniforms;
     drawn[0] = before;

@@ -1,4 +1,4 @@
-// What a picture is drawn by: a list of passes (water_scene.ts). Each draws what it writes from what it reads, and owns what it writes.
+// What a picture is drawn by: a list of passes (room_passes.ts). Each draws what it writes from what it reads, and owns what it writes.
 import type { PerspectiveCamera, Vector2, WebGLRenderer } from "three";
 
 /** What passes hand on to each other. */
@@ -31,6 +31,8 @@ export type Resource =
   | "fluidNormals"
   /** Thickness of the particles along each pixel's ray. */
   | "fluidThickness"
+  /** The value that a look shows on the surface. */
+  | "lookValue"
   /** Colours for the display, and depth. */
   | "canvas";
 

@@ -4,12 +4,11 @@
 import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
-import type { SideName } from "../../codec/scene_info";
 import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
 import { bedOf, bedUniformValues } from "../terrain";
-import { gridLines, makeGrid, makeSkirt } from "../water_grid";
+import { makeWaterGeometries } from "../water_grid";
 import type { Pass, Picture } from "./pass";
 import type { SolidsPass } from "./solids_pass";
 
@@ -56,14 +55,10 @@ export class WaterPass implements Pass {
     if (beaches.length > 0) defines["BEACH"] = 1;
     if (foam) defines["FOAM"] = 1;
     if (hasSolids(greeting)) defines["MIRROR"] = 1;
-    const isSea = edge.kind === "sea";
-    if (isSea) defines["OPEN_SEA"] = 1;
-    const opens = (side: SideName): boolean => isSea && edge.sides[side] !== "closed";
-    const cellsCount = quality.surfaceCellsCount;
-    const grid = makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z")));
-    this.meshes = [new Mesh(grid, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }))];
-    if (edge.kind === "cut")
-      this.meshes.push(new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
+    if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
+    const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
+    this.meshes = [new Mesh(top, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }))];
+    if (sides) this.meshes.push(new Mesh(sides, makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;
       this.scene.add(mesh);

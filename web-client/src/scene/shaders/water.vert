@@ -1,5 +1,5 @@
 // Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
-// BEACH: the floor rises toward some sides. OPEN_SEA: the grid goes on to the horizon (sea/open_sea.ts).
+// LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid goes on to the horizon (sea/open_sea.ts).
 
 in vec3 position;  // x, z in -1/2..1/2 over the square; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT
@@ -12,6 +12,10 @@ uniform mat4 projectionMatrix;
 uniform sampler2D u_field;
 uniform float u_side_m;
 uniform float u_depth_m;
+
+#ifdef LOWERED
+uniform float u_lowered_m;
+#endif
 
 #ifdef BEACH
 #include <bed>
@@ -36,6 +40,9 @@ void main() {
   float raised = 1.0 - smoothstep(0.12, 0.5, away_m / u_side_m);
   float sea_m = raised > 0.0 ? raised * textureLod(u_swell, at / u_tiles_m.x, 0.0).r : 0.0;
   v_top_m = mix(sea_m, v_top_m, v_share_away.x);
+#endif
+#ifdef LOWERED
+  v_top_m -= u_lowered_m;
 #endif
   float depth_m = u_depth_m;
 #ifdef BEACH

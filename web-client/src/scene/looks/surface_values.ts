@@ -1,0 +1,110 @@
+// Values of the water's surface at a place, from the samples of the frames: the same that look_value.frag and look_surface.frag draw,
+// without the rounding of textures. Pure.
+import type { FoamFrame } from "../../net/messages";
+import type { Between } from "../frame_ring";
+import { elevationRangeM } from "../height_field";
+import type { ShownSurfaces } from "../passes/field_pass";
+import { depthAtM, type Bed } from "../terrain";
+
+/** A square of samples, and what is beyond its edges: the opposite edge, or the edge's own samples again. */
+export interface Square {
+  sideM: number;
+  periodicX: boolean;
+  periodicZ: boolean;
+}
+
+/** Returns the bilinear value at a place; `at`: value of sample (i, k) of n x n. */
+function bilinear({ sideM, periodicX, periodicZ }: Square, n: number, xM: number, zM: number, at: (i: number, k: number) => number): number {
+  const u = (xM / sideM + 0.5) * n - 0.5;
+  const v = (zM / sideM + 0.5) * n - 0.5;
+  const held = (i: number, periodic: boolean): number => (periodic ? ((i % n) + n) % n : Math.min(Math.max(i, 0), n - 1));
+  const [i, k] = [Math.floor(u), Math.floor(v)];
+  const [fu, fv] = [u - i, v - k];
+  const [i0, i1, k0, k1] = [held(i, periodicX), held(i + 1, periodicX), held(k, periodicZ), held(k + 1, periodicZ)];
+  return (at(i0, k0) * (1 - fu) + at(i1, k0) * fu) * (1 - fv) + (at(i0, k1) * (1 - fu) + at(i1, k1) * fu) * fv;
+}
+
+/** The surface of one picture, for evaluation at many places. Valid until the next frame arrives. */
+export class ShownSurface {
+  private readonly n: number;
+  private readonly planes: readonly Int16Array[];
+
+  constructor(
+    private readonly square: Square,
+    private readonly shown: ShownSurfaces,
+  ) {
+    this.n = shown.frames[2]!.resolutionCount;
+    this.planes = shown.frames.map(({ buffer }) => new Int16Array(buffer));
+  }
+
+  /** Distance between samples. */
+  get cellM(): number {
+    return this.square.sideM / this.n;
+  }
+
+  /** The smallest difference of two elevations, in metres. */
+  get quantumM(): number {
+    return this.shown.frames[2]!.quantumM;
+  }
+
+  /** The smallest difference of two rates, in m/s: a quantum over the interval of the frames. 0 if rates are not known. */
+  get rateQuantumMps(): number {
+    return Math.max(...this.shown.ratesPerS.map(Math.abs)) * this.quantumM;
+  }
+
+  elevationM(xM: number, zM: number): number {
+    return this.weighted(this.shown.weights, xM, zM);
+  }
+
+  /** Returns the vertical velocity of the surface: the derivative by time of elevationM(). */
+  rateMps(xM: number, zM: number): number {
+    return this.weighted(this.shown.ratesPerS, xM, zM);
+  }
+
+  /** Returns bounds of elevationM(). */
+  boundsM(): { minM: number; maxM: number } {
+    let minM = 0;
+    let maxM = 0;
+    this.shown.frames.forEach((frame, i) => {
+      const weight = this.shown.weights[i]!;
+      if (weight === 0) return;
+      const range = elevationRangeM(frame);
+      minM += weight * (weight > 0 ? range.minM : range.maxM);
+      maxM += weight * (weight > 0 ? range.maxM : range.minM);
+    });
+    return { minM, maxM };
+  }
+
+  private weighted(weights: readonly number[], xM: number, zM: number): number {
+    const { n, planes } = this;
+    const [a, b, c, d] = this.shown.frames.map(({ quantumM }, i) => weights[i]! * quantumM) as [number, number, number, number];
+    return bilinear(this.square, n, xM, zM, (i, k) => {
+      const at = k * n + i;
+      return a * planes[0]![at]! + b * planes[1]![at]! + c * planes[2]![at]! + d * planes[3]![at]!;
+    });
+  }
+}
+
+/**
+ * Returns the breaking criterion: the rate of rise, as the mean of four places half a sample away, which at a sample has the weights
+ * (1 2 1)^2 / 16 of the server's mean over 3 x 3 (shaders/wave/surface_rate.glsl), over sqrt(g d) with the still depth d.
+ */
+export function breakingCriterion(surface: ShownSurface, bed: Bed, gravityMps2: number, xM: number, zM: number): number {
+  const half = surface.cellM / 2;
+  const rateMps = (surface.rateMps(xM - half, zM - half) + surface.rateMps(xM + half, zM - half) + surface.rateMps(xM - half, zM + half) + surface.rateMps(xM + half, zM + half)) / 4;
+  return rateMps / Math.sqrt(gravityMps2 * Math.max(depthAtM(bed, xM, zM), kLeastDepths * bed.depthM));
+}
+
+/** Where the still depth is below this share of the scene's depth, the server lets nothing break (shaders/wave/breaking.comp). */
+export const kLeastDepths = 0.02;
+
+/** Returns the streamed foam between two frames, 0 none to 255 white. */
+export function foamAt(square: Square, { from, to, mix }: Readonly<Between<FoamFrame>>, xM: number, zM: number): number {
+  const at = (frame: FoamFrame): number => {
+    const n = frame.resolutionCount;
+    const bytes = new Uint8Array(frame.buffer);
+    return bilinear(square, n, xM, zM, (i, k) => bytes[k * n + i]!);
+  };
+  const first = from.resolutionCount === to.resolutionCount ? from : to;
+  return first === to || mix === 0 ? at(first) : at(first) * (1 - mix) + at(to) * mix;
+}

@@ -1,0 +1,86 @@
+// The passes of one room, each with what it reads and writes, in the order in which they are drawn.
+//   field      frames -> field (elevation, slopes, curvature of the water)
+//   caustics   field -> sunlight that the waves focus on what is below them; not at low quality
+//   foam       frames -> foam
+//   sea        time -> the sea around the square, in an open sea
+//   solids     sky, ground, rocks, boats -> solids (linear light, depth)
+//   particles  frames -> particles; their shadow -> solids (fluid/fluid.ts)
+//   whitewater frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
+//   water      field, foam, froth, sea, solids -> canvas
+//   present    solids -> canvas where there is no water
+//   fluid      particles, solids -> canvas (fluid/fluid.ts)
+//   spray      drops, solids -> canvas
+//   lamps      solids, field -> canvas, in the dark
+//   glass      panes of a tank -> canvas
+// Other looks than the natural one draw the water with passes of their own (looks/look_room.ts).
+import type { DataTexture } from "three";
+
+import type { GreetingInfo } from "../codec/greeting";
+import { makeFluidPasses } from "./fluid/fluid";
+import { CausticsPass } from "./passes/caustics_pass";
+import { FieldPass } from "./passes/field_pass";
+import { FoamPass } from "./passes/foam_pass";
+import { GlassPass } from "./passes/glass_pass";
+import { LampsPass } from "./passes/lamps_pass";
+import type { Pass } from "./passes/pass";
+import { PresentPass } from "./passes/present_pass";
+import { SolidsPass } from "./passes/solids_pass";
+import { WaterPass } from "./passes/water_pass";
+import type { Quality } from "./quality";
+import type { Sky } from "./sky";
+import type { StreamedFrames } from "./streamed_frames";
+import type { DiffuseParticles } from "./whitewater/diffuse_particles";
+import { makeWhitewaterPasses } from "./whitewater/whitewater";
+
+/** What passes of all rooms are made with. */
+export interface RoomTools {
+  frames: StreamedFrames;
+  sky: Sky;
+  noise: DataTexture;
+  quality: Quality;
+}
+
+/** What all looks of a room share. `field` undefined: there is no wave. */
+export interface RoomBase {
+  field: FieldPass | undefined;
+  foam: FoamPass | undefined;
+  solids: SolidsPass;
+  passes: readonly Pass[];
+}
+
+/** The water of a room in one look. */
+export interface RoomWater {
+  readonly passes: readonly Pass[];
+  /** Drops, foam and bubbles that the page adds. */
+  readonly white?: DiffuseParticles | undefined;
+  dispose(): void;
+}
+
+export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality }: RoomTools): RoomBase {
+  const { wave, sideM } = greeting;
+  const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
+  const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
+  const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
+  const solids = new SolidsPass(greeting, sky, noise, field?.texture, caustics?.uniforms, frames.bodies, quality);
+  return { field, foam, solids, passes: [field, caustics, foam, solids.surroundings.sea, solids].filter((pass) => pass !== undefined) };
+}
+
+export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {
+  const { glass } = solids.surroundings;
+  const white = field && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater);
+  const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
+  const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting.sideM, quality.fluid) : { before: [], after: [] };
+  const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting.sideM) : undefined;
+  const before = [...fluid.before, ...(white?.before ?? [])];
+  const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
+  const passes = [...before, water, ...after].filter((pass) => pass !== undefined);
+  return { passes, white: white?.particles, dispose: () => passes.forEach((pass) => pass.dispose()) };
+}
+
+/** Leaves out passes whose results no later pass reads. */
+export function usedPasses(passes: readonly Pass[]): Pass[] {
+  const used: Pass[] = [];
+  for (const pass of [...passes].reverse())
+    if (pass.writes.some((written) => written === "canvas" || used.some(({ reads }) => reads.includes(written)))) used.unshift(pass);
+  return used;
+}
