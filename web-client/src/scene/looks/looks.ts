@@ -63,7 +63,7 @@ export const kLooks: Record<LookName, Look> = {
     quantity: { title: "Density / rest density", unit: "", map: "viridis", range: kDensityRatios, of: "particles" },
   },
   thesis: {
-    label: "plain spheres (thesis)",
+    label: "plain (thesis)",
     help: "As in the thesis: particles as spheres, whiter where their density is low, and the surface with Phong's lighting. The surface lies below the particles that it carries.",
   },
 };
