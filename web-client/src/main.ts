@@ -7,9 +7,9 @@ import { makeRenderer } from "./scene/renderer";
 import { byId } from "./ui/dom";
 import { showNotice } from "./ui/notice";
 
-const made = makeRenderer(byId<HTMLCanvasElement>("view"), location.search);
+const made = makeRenderer(byId<HTMLCanvasElement>("view"));
 if (made) {
-  const app = new App(made.renderer, made.quality);
+  const app = new App(made.renderer, made.isSoftwareRenderer);
   connectInput(app);
   installTestHooks(app);
   app.start();

@@ -1,10 +1,8 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { FrameGovernor, kMinPixelRatio } from "../src/scene/frame_governor";
 import { elevationAtM, elevationRangeM } from "../src/scene/height_field";
 import { pickWater, type WaterShape } from "../src/scene/pick";
-import { chooseQuality } from "../src/scene/quality";
 import { TapDetector, toDeviceCoordinates } from "../src/ui/tap";
 
 const flat: WaterShape = { sideM: 16, minM: 0, maxM: 0, elevationAtM: () => 0 };
@@ -69,50 +67,6 @@ describe("the CPU's view of the surface", () => {
     const range = elevationRangeM(frame);
     expect(range.minM).toBe(0);
     expect(range.maxM).toBeCloseTo(3.3, 9);
-  });
-});
-
-describe("the frame governor", () => {
-  it("lowers the pixel ratio in steps to 0.5 while frames stay slow", () => {
-    const governor = new FrameGovernor(2);
-    for (let i = 0; i < 400; ++i) governor.note(80);
-    expect(governor.pixelRatio).toBe(kMinPixelRatio);
-    expect(governor.remark()).toContain("25 %");
-  });
-
-  it("ignores single slow frames and pauses", () => {
-    const governor = new FrameGovernor(1);
-    for (let i = 0; i < 400; ++i) governor.note(i % 2 ? 80 : 16);
-    for (let i = 0; i < 10; ++i) governor.note(60_000);
-    expect(governor.pixelRatio).toBe(1);
-    expect(governor.remark()).toBe("");
-  });
-
-  it("never changes a requested resolution", () => {
-    const governor = new FrameGovernor(2, chooseQuality("?quality=high", "SwiftShader").adaptive);
-    for (let i = 0; i < 400; ++i) expect(governor.note(80)).toBe(false);
-    expect(governor.pixelRatio).toBe(2);
-    expect(chooseQuality("", "ANGLE (NVIDIA, GeForce)").adaptive).toBe(true);
-    expect(chooseQuality("?quality=low", "A GPU").adaptive).toBe(true);
-  });
-
-  it("raises it again at most twice", () => {
-    const governor = new FrameGovernor(1);
-    let raises = 0;
-    for (let round = 0; round < 6; ++round) {
-      while (governor.pixelRatio > 0.7) governor.note(80);
-      for (let i = 0; i < 1000; ++i) if (governor.note(16)) ++raises;
-    }
-    expect(raises).toBe(2);
-  });
-});
-
-describe("the quality", () => {
-  it("comes from the address, or is low on a software renderer", () => {
-    expect(chooseQuality("?quality=high", "SwiftShader").remark).toBe("");
-    expect(chooseQuality("?quality=low", "A GPU").remark).toBe("low quality");
-    expect(chooseQuality("", "ANGLE (Google, Vulkan 1.3 (SwiftShader Device))").remark).toContain("no graphics hardware");
-    expect(chooseQuality("", "ANGLE (NVIDIA, GeForce)").remark).toBe("");
   });
 });
 

@@ -7,7 +7,7 @@ import type { SideKind, WaveInfo } from "../src/codec/scene_info";
 import type { Frame } from "../src/net/messages";
 import { chooseLook, looksOf, type LookName } from "../src/scene/looks/looks";
 import type { Pass } from "../src/scene/passes/pass";
-import { chooseQuality } from "../src/scene/quality";
+import { kTiers, type TierName } from "../src/scene/quality";
 import { WaterScene } from "../src/scene/water_scene";
 
 /** Takes every call; only what WaterScene reads has a value. */
@@ -50,9 +50,9 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
 };
 
 /** Returns the passes of a room in every look that it has data for. */
-function passesOf(change: Partial<GreetingInfo>, quality: "low" | "high"): Map<LookName, Pass[]> {
+function passesOf(change: Partial<GreetingInfo>, quality: TierName): Map<LookName, Pass[]> {
   const greeting = { ...kRoom, ...change };
-  const scene = new WaterScene(fakeRenderer(), chooseQuality(`?quality=${quality}`, ""), () => {});
+  const scene = new WaterScene(fakeRenderer(), kTiers[quality], () => {});
   scene.enter(greeting, false);
   const lists = new Map<LookName, Pass[]>();
   for (const look of looksOf(greeting)) {
@@ -122,7 +122,7 @@ describe("a new greeting", () => {
 
   it("keeps the frames of the same water at another fidelity, and returns those of other water", () => {
     const released: Frame[] = [];
-    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), (given) => released.push(given));
+    const scene = new WaterScene(fakeRenderer(), kTiers.low, (given) => released.push(given));
     const sea = { ...kRoom, ...kRooms["an open sea with boats"] };
     scene.enter(sea, false);
     const [first, second] = [frame(1), frame(1.1)];
@@ -159,7 +159,7 @@ describe("the look of the water", () => {
   });
 
   it("stays in the next room, after a lost context, and after a room without its data", { timeout: kLongestMs }, () => {
-    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), () => {});
+    const scene = new WaterScene(fakeRenderer(), kTiers.low, () => {});
     const room = (name: string): GreetingInfo => ({ ...kRoom, ...kRooms[name]! });
     scene.enter(room("a pool"), false);
     scene.setLook("height");
@@ -182,7 +182,7 @@ describe("the look of the water", () => {
   });
 
   it("reads no value before the first frame", () => {
-    const scene = new WaterScene(fakeRenderer(), chooseQuality("?quality=low", ""), () => {});
+    const scene = new WaterScene(fakeRenderer(), kTiers.low, () => {});
     scene.setLook("velocity");
     scene.enter({ ...kRoom, ...kRooms["a pool"]! }, false);
     scene.render(1);

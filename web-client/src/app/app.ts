@@ -7,7 +7,7 @@ import type { RoleName } from "../codec/people";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { socketUrl, WaterClient } from "../net/water_client";
-import type { ChosenQuality } from "../scene/quality";
+import { chooseQuality, firstTier } from "../scene/quality";
 import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
 import { BoatTags } from "../ui/boat_tags";
 import { addDetailRow } from "../ui/detail_row";
@@ -17,9 +17,11 @@ import { Hud } from "../ui/hud";
 import { addLightRows } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
+import { QualityRow } from "../ui/quality_row";
 import { RoomPanel } from "../ui/room_panel";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
+import { setAddressParameter } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display, nowS } from "./display";
 import { LookControls } from "./look_controls";
@@ -55,12 +57,15 @@ export class App {
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
   private readonly looks: LookControls;
+  private readonly qualityRow: QualityRow;
   private readonly answerListeners: AnswerListener[];
   private readonly url = socketUrl(location);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
   private identity = this.identities.load();
 
-  constructor(renderer: WebGLRenderer, quality: ChosenQuality) {
+  constructor(renderer: WebGLRenderer, isSoftwareRenderer: boolean) {
+    const isHandheld = window.matchMedia("(pointer: coarse)").matches;
+    const quality = { first: firstTier(isSoftwareRenderer, isHandheld), choice: chooseQuality(location.search) };
     this.display = new Display(renderer, quality, {
       release: (frame) => this.client.release(frame),
       update: (atS) => this.boats.update(atS),
@@ -68,7 +73,8 @@ export class App {
         this.showTags();
         this.looks.update(atS);
       },
-      measured: (framesPerS, delayS, remark) => this.hud.display(framesPerS, delayS, remark),
+      measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
+      qualityChanged: () => this.showQuality(),
     });
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
@@ -79,6 +85,12 @@ export class App {
     });
     addLightRows(this.display.scene.daylight, location.search);
     this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
+    this.qualityRow = new QualityRow(isSoftwareRenderer, (choice) => {
+      setAddressParameter("quality", choice === "automatic" ? undefined : choice);
+      this.display.chooseQuality(choice);
+      this.showQuality();
+    });
+    this.showQuality();
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
   }
@@ -178,6 +190,10 @@ export class App {
     this.viewButtons.refresh();
     // The card's height has changed with the text.
     this.display.resize();
+  }
+
+  private showQuality(): void {
+    this.qualityRow.show(this.display.quality);
   }
 
   private showTags(): void {

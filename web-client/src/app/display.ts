@@ -5,8 +5,8 @@ import type { GreetingInfo } from "../codec/greeting";
 import type { Frame } from "../net/messages";
 import { CameraViews, type Followed } from "../scene/camera_views";
 import type { PixelRect } from "../scene/framing";
-import { FrameGovernor } from "../scene/frame_governor";
-import type { ChosenQuality } from "../scene/quality";
+import { kTiers, type QualityChoice, type TierName } from "../scene/quality";
+import { QualityGovernor } from "../scene/quality_governor";
 import { WaterScene } from "../scene/water_scene";
 import { DisplayLoop } from "./display_loop";
 import { PageLayout } from "./page_layout";
@@ -22,7 +22,9 @@ export interface DisplayHooks {
   /** Called after each picture. */
   drawn(nowS: number): void;
   /** Called twice a second. `delayS`: age of the water shown. */
-  measured(framesPerS: number, delayS: number | undefined, remark: string): void;
+  measured(framesPerS: number, delayS: number | undefined): void;
+  /** The quality of the drawing has changed by itself. */
+  qualityChanged(): void;
 }
 
 export class Display {
@@ -31,7 +33,8 @@ export class Display {
   readonly views: CameraViews;
   /** The parts of the page that panels cover. */
   covered: readonly PixelRect[] = [];
-  private readonly governor: FrameGovernor;
+  private readonly governor: QualityGovernor;
+  private drawnTier: TierName;
   private readonly layout: PageLayout;
   private readonly loop: DisplayLoop;
   private greeting: GreetingInfo | undefined;
@@ -40,19 +43,18 @@ export class Display {
 
   constructor(
     private readonly renderer: WebGLRenderer,
-    quality: ChosenQuality,
+    quality: { first: TierName; choice: QualityChoice },
     private readonly hooks: DisplayHooks,
   ) {
     this.canvas = renderer.domElement;
-    document.body.classList.toggle("plain", quality.samplesCount === 1);
-    this.scene = new WaterScene(renderer, quality, (frame) => hooks.release(frame));
+    this.governor = new QualityGovernor(quality.first, quality.choice);
+    this.drawnTier = this.governor.tier;
+    this.scene = new WaterScene(renderer, kTiers[this.drawnTier], (frame) => hooks.release(frame));
     this.views = new CameraViews(this.scene.camera, this.canvas, reducedMotion);
-    this.governor = new FrameGovernor(Math.min(window.devicePixelRatio || 1, quality.maxPixelRatio), quality.adaptive);
     this.layout = new PageLayout(() => this.resize());
     this.loop = new DisplayLoop(renderer, {
       draw: (frameMs) => this.draw(frameMs),
-      measured: (framesPerS) =>
-        hooks.measured(framesPerS, this.scene.clock.delayS(), [quality.remark, this.governor.remark()].filter(Boolean).join("; ")),
+      measured: (framesPerS) => hooks.measured(framesPerS, this.scene.clock.delayS()),
       contextRestored: () => this.scene.contextRestored(),
     });
   }
@@ -62,7 +64,18 @@ export class Display {
   }
 
   get pixelRatio(): number {
-    return this.governor.pixelRatio;
+    return this.governor.pixelRatio(window.devicePixelRatio || 1);
+  }
+
+  /** The tier that is drawn, the share of its resolution, and whether both follow the time that pictures take. */
+  get quality(): { tier: TierName; resolutionShare: number; isAutomatic: boolean } {
+    const { tier, resolutionShare, isAutomatic } = this.governor;
+    return { tier, resolutionShare, isAutomatic };
+  }
+
+  chooseQuality(choice: QualityChoice): void {
+    this.governor.choose(choice);
+    this.applyQuality();
   }
 
   /** The part of the canvas that the panels leave free. */
@@ -71,7 +84,7 @@ export class Display {
   }
 
   start(): void {
-    this.resize();
+    this.applyQuality();
     this.loop.start();
   }
 
@@ -96,7 +109,7 @@ export class Display {
   }
 
   resize(): void {
-    this.renderer.setPixelRatio(this.governor.pixelRatio);
+    this.renderer.setPixelRatio(this.pixelRatio);
     this.covered = this.layout.covered();
     this.renderer.setSize(window.innerWidth, window.innerHeight, false);
     this.views.resize(window.innerWidth, window.innerHeight, this.layout.freePart());
@@ -130,8 +143,19 @@ export class Display {
     return Object.fromEntries([...sumsMs].map(([name, sumMs]) => [name, sumMs / picturesCount]));
   }
 
+  private applyQuality(): void {
+    const { tier } = this.governor;
+    document.body.classList.toggle("plain", kTiers[tier].plain);
+    if (tier !== this.drawnTier) this.scene.setQuality(kTiers[tier]);
+    this.drawnTier = tier;
+    this.resize();
+  }
+
   private draw(frameMs: number): void {
-    if (this.governor.note(frameMs)) this.resize();
+    if (this.governor.note(frameMs)) {
+      this.applyQuality();
+      this.hooks.qualityChanged();
+    }
     const now = nowS();
     this.views.update(now, this.hooks.update(now));
     this.scene.render(now);

@@ -8,6 +8,7 @@ import { LookKey } from "../ui/look_key";
 import { LookRow } from "../ui/look_row";
 import { ProbeLabel, type ProbePlace } from "../ui/probe_label";
 import { toDeviceCoordinates } from "../ui/tap";
+import { setAddressParameter } from "./address";
 import type { Display } from "./display";
 
 /** The probe reads this often, and less often where reading takes long: at most this share of the time. */
@@ -70,11 +71,7 @@ export class LookControls {
 
   private choose(look: LookName): void {
     this.display.scene.setLook(look);
-    // A reload and a copied address keep the look.
-    const url = new URL(location.href);
-    if (look === "natural") url.searchParams.delete("look");
-    else url.searchParams.set("look", look);
-    history.replaceState(null, "", url);
+    setAddressParameter("look", look === "natural" ? undefined : look);
     this.refresh();
   }
 

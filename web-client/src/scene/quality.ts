@@ -1,4 +1,4 @@
-// Chooses the drawing quality: `?quality=low|high`, or by the name of the renderer. With ?quality=high the resolution is never lowered.
+// The tiers of the drawing's quality, from a software renderer to a workstation, and which of them a page begins with. Pure.
 
 /** Settings of the particles' liquid. */
 export interface FluidQuality {
@@ -13,7 +13,7 @@ export interface FluidQuality {
 export interface WhitewaterQuality {
   /** Most of them at a time. */
   capacityCount: number;
-  /** Share of the number that begins at full quality. */
+  /** How many begin, relative to the tier "high". */
   densityRatio: number;
   /** Texels of the foam's texture along each side of the square. */
   frothTexelsCount: number;
@@ -21,36 +21,68 @@ export interface WhitewaterQuality {
 
 /** Settings of the scene. */
 export interface Quality {
+  /** Most drawn pixels per CSS pixel, along each axis. */
+  maxPixelRatio: number;
   /** Cells along each side of the drawn surface. */
   surfaceCellsCount: number;
-  /** Samples per pixel for solids and the water's edge. */
+  /** Samples per pixel for solids. */
   samplesCount: number;
-  /** Shaders without the parts that are slow on software renderers: refraction and caustics of the wave. */
+  /** Shaders and meshes without what is slow on software renderers. */
   plain: boolean;
   /** Most texels along each side of the field texture; a finer surface is sampled. */
   fieldCountMax: number;
+  /** Texels along each side of the two tiles of the sea around the square. */
+  seaTexelsCount: number;
+  /** Steps of a reflected ray in search of boats, rocks and walls; 0: water reflects only the sky. */
+  mirrorStepsCount: number;
   fluid: FluidQuality;
   whitewater: WhitewaterQuality;
   /** Grid and texture of the sunlight focused by waves; undefined: an approximation. */
   caustics: { cellsCount: number; texelsCount: number } | undefined;
 }
 
-export interface ChosenQuality extends Quality {
-  /** The resolution may be lowered to keep up. */
-  adaptive: boolean;
-  maxPixelRatio: number;
-  /** For the HUD; empty at high quality. */
-  remark: string;
+/** From the cheapest to the most expensive. */
+export const kTierNames = ["minimal", "low", "medium", "high", "highest"] as const;
+export type TierName = (typeof kTierNames)[number];
+/** "automatic": by the time that pictures take. */
+export type QualityChoice = TierName | "automatic";
+
+export const kTiers: Record<TierName, Quality> = {
+  minimal: {
+    maxPixelRatio: 0.5, surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, seaTexelsCount: 128, mirrorStepsCount: 0,
+    fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 }, caustics: undefined,
+  },
+  low: {
+    maxPixelRatio: 1, surfaceCellsCount: 96, samplesCount: 1, plain: true, fieldCountMax: 256, seaTexelsCount: 128, mirrorStepsCount: 0,
+    fluid: { scale: 0.5, samplesCount: 8, roundsCount: 2 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 }, caustics: undefined,
+  },
+  medium: {
+    maxPixelRatio: 1, surfaceCellsCount: 160, samplesCount: 2, plain: false, fieldCountMax: 512, seaTexelsCount: 256, mirrorStepsCount: 10,
+    fluid: { scale: 0.75, samplesCount: 8, roundsCount: 2 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 }, caustics: undefined,
+  },
+  high: {
+    maxPixelRatio: 1.5, surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,
+    fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 }, caustics: { cellsCount: 192, texelsCount: 512 },
+  },
+  highest: {
+    maxPixelRatio: 2, surfaceCellsCount: 384, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 512, mirrorStepsCount: 32,
+    fluid: { scale: 1, samplesCount: 16, roundsCount: 3 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 }, caustics: { cellsCount: 384, texelsCount: 1024 },
+  },
+};
+
+/** Returns the choice that the page's address makes: `?quality=low`. */
+export function chooseQuality(search: string): QualityChoice {
+  const wanted = new URLSearchParams(search).get("quality");
+  return kTierNames.find((name) => name === wanted) ?? "automatic";
 }
 
-const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 }, caustics: { cellsCount: 192, texelsCount: 512 }, adaptive: true, maxPixelRatio: 2, remark: "" };
-const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 }, caustics: undefined, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
+/** Returns true if the name of a WebGL renderer is that of one without graphics hardware. */
+export function isSoftware(rendererName: string): boolean {
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(rendererName);
+}
 
-export function chooseQuality(search: string, rendererName: string): ChosenQuality {
-  const wanted = new URLSearchParams(search).get("quality");
-  if (wanted === "high") return { ...kHigh, adaptive: false };
-  if (wanted === "low") return kLow;
-  if (/swiftshader|llvmpipe|softpipe|software|basic render/i.test(rendererName))
-    return { ...kLow, remark: "low quality (no graphics hardware)" };
-  return kHigh;
+/** Returns the tier that an automatic choice begins with. `isHandheld`: the device is operated by fingers. */
+export function firstTier(isSoftwareRenderer: boolean, isHandheld: boolean): TierName {
+  if (isSoftwareRenderer) return "low";
+  return isHandheld ? "medium" : "high";
 }

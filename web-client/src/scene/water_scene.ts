@@ -33,9 +33,8 @@ export class WaterScene {
   /** Hour and weather of the light. */
   readonly daylight = new Daylight();
   private readonly frames: StreamedFrames;
-  private readonly sky: Sky;
+  private sky: Sky;
   private readonly noise = makeNoiseTexture();
-  private readonly tools: RoomTools;
   private readonly picture: Picture;
   /** What every look needs: field, foam, surroundings. */
   private base: RoomBase | undefined;
@@ -51,12 +50,11 @@ export class WaterScene {
 
   constructor(
     private readonly renderer: WebGLRenderer,
-    quality: Quality,
+    private quality: Quality,
     release: (frame: Frame) => void,
   ) {
     this.frames = new StreamedFrames(release);
-    this.sky = new Sky(quality.samplesCount > 1);
-    this.tools = { frames: this.frames, sky: this.sky, noise: this.noise, quality };
+    this.sky = new Sky(!quality.plain);
     this.picture = { renderer, camera: this.camera, sizePx: new Vector2(), shownS: undefined };
     renderer.autoClear = false;
   }
@@ -84,6 +82,15 @@ export class WaterScene {
     this.camera.near = greeting.sideM / kNearPerSide;
     this.camera.far = greeting.sideM * kFarSides;
     this.camera.updateProjectionMatrix();
+  }
+
+  /** Draws the same water in another quality. */
+  setQuality(quality: Quality): void {
+    this.leave();
+    this.sky.dispose();
+    this.quality = quality;
+    this.sky = new Sky(!quality.plain);
+    if (this.greeting) this.enter(this.greeting, true);
   }
 
   /** Draws one picture; `drawn` is called after each pass. */
@@ -198,6 +205,11 @@ export class WaterScene {
     this.leave();
     this.sky.dispose();
     this.noise.dispose();
+  }
+
+  private get tools(): RoomTools {
+    const { frames, sky, noise, quality } = this;
+    return { frames, sky, noise, quality };
   }
 
   private makeWater(): void {

@@ -38,7 +38,6 @@ export class Hud {
   private readonly exchanged = byId("exchanged");
   private readonly lastAck = byId("last-ack");
   private readonly passes = byId("passes");
-  private readonly remark = byId("remark");
   private readonly health = byId("health");
 
   /** Shows only the rows that this room has values for. */
@@ -87,11 +86,9 @@ export class Hud {
   }
 
   /** `delayS`: age of the water shown. */
-  display(framesPerS: number, delayS: number | undefined, remark: string): void {
+  display(framesPerS: number, delayS: number | undefined): void {
     setText(this.delay, delayS === undefined ? "–" : `${(1000 * delayS).toFixed(0)} ms`);
     setText(this.displayFps, framesPerS.toFixed(0));
-    setText(this.remark, remark);
-    this.remark.hidden = remark === "";
   }
 
   connection(state: ConnectionState): void {

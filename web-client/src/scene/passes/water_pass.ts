@@ -54,7 +54,7 @@ export class WaterPass implements Pass {
     if (quality.plain) defines["PLAIN"] = 1;
     if (beaches.length > 0) defines["BEACH"] = 1;
     if (foam) defines["FOAM"] = 1;
-    if (hasSolids(greeting)) defines["MIRROR"] = 1;
+    if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
     this.meshes = [new Mesh(top, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }))];

@@ -5,6 +5,7 @@ import { Vector2, Vector4 } from "three";
 
 import type { SideName, WaveInfo, WindInfo } from "../../codec/scene_info";
 import type { Pass, Picture } from "../passes/pass";
+import type { Quality } from "../quality";
 import type { Uniforms } from "../shaders";
 import { makeRipples, rippleSlope } from "./ripples";
 import { SeaTile, slopeVariance } from "./sea_tile";
@@ -14,7 +15,6 @@ import { seaStateOf, withParameter, type PlaneWave } from "./sea_state";
 const kFadeS = 4;
 /** A tile of long waves is this many sides of the square: the wider, the less a wave is bent to fit it. */
 const kSwellTileSides = { plain: 2, full: 4 };
-const kTexels = { plain: 128, full: 256 };
 /** Ripples begin where the simulated grid ends, at 8 cells, and the tile is this many of the longest. */
 const kLongestRippleCells = 8;
 const kRippleRange = 5;
@@ -61,14 +61,14 @@ export class OpenSea implements Pass {
   private next: { waves: PlaneWave[]; slope: number; beganS: number } | undefined;
   private lastS = 0;
 
-  constructor(wave: WaveInfo, wind: WindInfo | undefined, plain: boolean) {
+  constructor(wave: WaveInfo, wind: WindInfo | undefined, { plain, seaTexelsCount }: Pick<Quality, "plain" | "seaTexelsCount">) {
     this.wave = wave;
     this.wind = wind;
-    const tier = plain ? "plain" : "full";
+    const kind = plain ? "plain" : "full";
     const longestM = (kLongestRippleCells * wave.sideM) / wave.resolutionCount;
-    this.swell = new SeaTile(kSwellTileSides[tier] * wave.sideM, kTexels[tier], !plain);
-    this.ripples = new SeaTile(kRippleTileLengths * longestM, kTexels[tier], !plain);
-    this.rippleWaves = makeRipples(kRippleCount[tier], longestM / kRippleRange, longestM, wind?.directionDeg ?? 30, wind?.gravityMps2 ?? 9.81);
+    this.swell = new SeaTile(kSwellTileSides[kind] * wave.sideM, seaTexelsCount, !plain);
+    this.ripples = new SeaTile(kRippleTileLengths * longestM, seaTexelsCount, !plain);
+    this.rippleWaves = makeRipples(kRippleCount[kind], longestM / kRippleRange, longestM, wind?.directionDeg ?? 30, wind?.gravityMps2 ?? 9.81);
     const { beyondM, widthM } = blendOf(wave);
     this.uniforms = {
       u_swell: { value: this.swell.texture },

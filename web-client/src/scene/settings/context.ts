@@ -14,7 +14,7 @@ export interface SurroundingsContext {
   caustics: Uniforms | undefined;
   /** Shared by rocks, land and lawns; the caller disposes it. */
   solid: RawShaderMaterial;
-  quality: Pick<Quality, "plain">;
+  quality: Pick<Quality, "plain" | "seaTexelsCount">;
 }
 
 /** What bounds the water at its sides. */

@@ -71,7 +71,7 @@ export class Surroundings {
     this.floorM = wave ? -wave.depthM : 0;
     const cellsCount = plain ? kPlainBedCells : kBedCells;
     if (setting === "openSea" && wave) {
-      this.sea = new OpenSea(wave, wind, plain);
+      this.sea = new OpenSea(wave, wind, context.quality);
       this.edge = { kind: "sea", sea: this.sea.uniforms, sides: wave.sides, hazeM: hazeM(greeting) };
       this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);

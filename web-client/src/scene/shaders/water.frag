@@ -1,6 +1,6 @@
 // The water's surface: reflected sky by Fresnel, and through it the scene drawn before, refracted by the slope. Its colour is absorbed
 // along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
-// MIRROR: solids are reflected as well, as far as they are on the screen. BEACH: the water ends where the bed rises above it.
+// MIRROR: solids are reflected as well, as far as they are on the screen; steps of the search for them. BEACH: the water ends where the bed rises above it.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
 // there is only the page's own froth.
@@ -73,9 +73,9 @@ float wayOut(vec3 from, vec3 direction) {
   return max(min(t.x, min(t.y, t.z)), 0.0);
 }
 
-#if defined(MIRROR) && !defined(SKIRT) && !defined(PLAIN)
+#if defined(MIRROR) && !defined(SKIRT)
 uniform mat4 projectionMatrix;
-const int kMirrorSteps = 18;
+const int kMirrorSteps = MIRROR;
 const int kMirrorHalvings = 4;
 
 // Distance (m) of a point behind what the screen shows there; a large negative number if it is off the screen.
