@@ -37,7 +37,7 @@ async function openPage(room = "", layer = "surface") {
     if (is_server_down && /WebSocket connection|ERR_CONNECTION/.test(message.text())) return;
     complaints.push(`console: ${message.text()} (${message.location().url})`);
   });
-  await opened.goto(`${server.url}?quality=low${room && `&room=${room}`}`, { timeout: WAIT_MS });
+  await opened.goto(`${server.url}?quality=minimal${room && `&room=${room}`}`, { timeout: WAIT_MS });
   await waitFor(opened, "the page to be live", (stats) => stats.connectionState === "live" && stats.framesReceived[layer] > 0);
   return opened;
 }
@@ -282,6 +282,8 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
 
   step("goes on with the water at another fidelity, with its view and sliders", async () => {
     const before = await statsOf(page);
+    const viscosity = page.getByRole("slider", { name: /viscosity/i });
+    const chosenViscosity = await viscosity.inputValue();
     const fidelity = page.getByTestId("fidelity");
     assert.equal(await fidelity.inputValue(), "balanced");
     assert.match(await page.getByTestId("fidelity-cost").textContent(), /balanced/i);
@@ -291,12 +293,32 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.equal(draft.view, before.view);
     assert.equal(await fidelity.inputValue(), "draft");
     assert.match(await page.getByTestId("fidelity-cost").textContent(), /0\.35 times the work of balanced/);
-    assert.equal(await page.getByRole("slider", { name: /viscosity/i }).inputValue(), "55");
+    assert.equal(await viscosity.inputValue(), chosenViscosity);
     await waitFor(page, "the draft water to move on", (stats) => stats.simTime > draft.simTime);
     // Scenes change at most once per second.
     await sleep(1000);
     await acknowledged(page, () => fidelity.selectOption("balanced"));
     const after = await waitFor(page, "the surface of the scene's own level", (stats) => stats.surfaceResolutionCount === 144);
+    assert.equal(after.malformedCount, 0);
+  });
+
+  step("draws the same water in another quality, with its view, and keeps the choice in the address", async () => {
+    const quality = page.getByTestId("quality");
+    assert.equal(await quality.inputValue(), "minimal");
+    const before = await statsOf(page);
+    for (const tier of ["low", "high", "minimal"]) {
+      await quality.selectOption(tier);
+      const stats = await waitFor(page, `the tier ${tier}`, (now) => now.quality === tier);
+      assert.equal(stats.pixelRatio, tier === "minimal" ? 0.5 : 1);
+      assert.equal(new URL(page.url()).searchParams.get("quality"), tier);
+      await drawnPictures(page, 0);
+      // A picture of the tier "high" takes a second here.
+      assert.ok(stats.maxElevationM !== null, "no water is shown");
+      const picture = await measure(page, await shootWater(page));
+      assert.ok(picture.colour_count >= 12, `${tier}: only ${picture.colour_count} colours`);
+    }
+    const after = await statsOf(page);
+    assert.equal(after.view, before.view);
     assert.equal(after.malformedCount, 0);
   });
 

@@ -25,7 +25,7 @@ function pixelOf(app: App, xM: number, zM: number): [number, number] {
 
 function stats(app: App) {
   const { link } = app;
-  const { scene, views, framesPerS, pixelRatio } = app.display;
+  const { scene, views, framesPerS, pixelRatio, quality } = app.display;
   const surface = scene.newestSurface();
   const range = surface && elevationRangeM(surface);
   return {
@@ -44,6 +44,7 @@ function stats(app: App) {
     connectionState: describeState(app.state),
     displayFps: framesPerS,
     pixelRatio,
+    quality: quality.tier,
     paused: app.room.paused,
     boats: scene.drawnBoats(),
     whitewater: scene.whitewaterCounts(),

@@ -1,6 +1,6 @@
 // The passes of one room, each with what it reads and writes, in the order in which they are drawn.
 //   field      frames -> field (elevation, slopes, curvature of the water)
-//   caustics   field -> sunlight that the waves focus on what is below them; not at low quality
+//   caustics   field -> sunlight that the waves focus on what is below them; in the tiers from high on
 //   foam       frames -> foam
 //   sea        time -> the sea around the square, in an open sea
 //   solids     sky, ground, rocks, boats -> solids (linear light, depth)

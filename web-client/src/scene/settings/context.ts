@@ -10,7 +10,7 @@ export interface SurroundingsContext {
   sky: Sky;
   noise: Texture;
   field: Texture | undefined;
-  /** Of caustics.glsl; undefined at low quality, and where there is no wave. */
+  /** Of caustics.glsl; undefined below the tier high, and where there is no wave. */
   caustics: Uniforms | undefined;
   /** Shared by rocks, land and lawns; the caller disposes it. */
   solid: RawShaderMaterial;

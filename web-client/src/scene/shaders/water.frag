@@ -189,7 +189,7 @@ void main() {
 #endif
   float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
 #ifdef OPEN_SEA
-  // Outside the square the bed is drawn for a short way only, at low quality nowhere where it is level. Elsewhere it has one colour; far
+  // Outside the square the bed is drawn for a short way only, with PLAIN nowhere where it is level. Elsewhere it has one colour; far
   // away it falls off.
   float undrawn = smoothstep(0.02, 0.35, v_share_away.y / u_side_m);
   float sunk = smoothstep(0.8, 5.0, length(v_world.xz) / u_side_m);
