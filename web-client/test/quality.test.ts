@@ -6,11 +6,12 @@ import { QualityGovernor } from "../src/scene/quality_governor";
 
 /** Settings of a tier that cost time, as numbers that grow with it. */
 function costsOf(tier: TierName): number[] {
-  const { maxPixelRatio, surfaceCellsCount, samplesCount, plain, fieldCountMax, seaTexelsCount, mirrorStepsCount, fluid, whitewater, caustics } = kTiers[tier];
+  const { maxPixelRatio, surfaceCellsCount, samplesCount, plain, fieldCountMax, seaTexelsCount, mirrorStepsCount, fluid, whitewater, rain, caustics } = kTiers[tier];
   return [
     ...[maxPixelRatio, surfaceCellsCount, samplesCount, Number(!plain), fieldCountMax, seaTexelsCount, mirrorStepsCount],
     ...Object.values(fluid),
     ...Object.values(whitewater),
+    ...Object.values(rain),
     ...[caustics?.cellsCount ?? 0, caustics?.texelsCount ?? 0],
   ];
 }

@@ -18,7 +18,7 @@ const wave: WaveInfo = {
   resolutionCount: 256, sideM: 30, depthM: 2, periodicX: false, periodicZ: false,
   sides: sidesOf("open", "open", "open", "open"), spongeWidthM: 4, dampingPerS: 0.1,
 };
-const wind: WindInfo = { seed: 7n, gravityMps2: 9.81, comesIn: true, levelRatio: 1, waveHeightM: 1, directionDeg: 30, speedMps: 15, fetchM: 2000 };
+const wind: WindInfo = { seed: 7n, gravityMps2: 9.81, comesIn: true, levelRatio: 1, dropsPerM2S: 0.08, waveHeightM: 1, directionDeg: 30, speedMps: 15, fetchM: 2000 };
 
 const varianceOf = (waves: readonly { amplitudeM: number }[]): number => waves.reduce((sum, { amplitudeM }) => sum + amplitudeM ** 2 / 2, 0);
 

@@ -3,7 +3,7 @@ import { WebGLCoordinateSystem, type WebGLRenderer } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../src/codec/greeting";
-import type { SideKind, WaveInfo } from "../src/codec/scene_info";
+import type { SideKind, WaveInfo, WindInfo } from "../src/codec/scene_info";
 import type { Frame } from "../src/net/messages";
 import { chooseLook, looksOf, type LookName } from "../src/scene/looks/looks";
 import type { Pass } from "../src/scene/passes/pass";
@@ -35,6 +35,8 @@ const kRoom = {
   gravityMps2: 9.81,
 } as unknown as GreetingInfo;
 
+const kWind: WindInfo = { seed: 1n, gravityMps2: 9.81, comesIn: false, levelRatio: 1, dropsPerM2S: 0.08, waveHeightM: 0.3, directionDeg: 0, speedMps: 15, fetchM: 2000 };
+
 const kRooms: Record<string, Partial<GreetingInfo>> = {
   "an open sea with boats": { wave: kWave, setting: "openSea", hasBoats: true, hasBreakers: true },
   "a harbor with everything": {
@@ -43,10 +45,11 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
     hasParticles: true,
     hasBoats: true,
     obstacles: [{ shape: "rock", xM: 2, zM: 2, radiusM: 1, heightM: 1 }],
+    wind: kWind,
   },
   "a pool": { wave: kWave, setting: "pool", hasParticles: true },
   "a tank of particles": { setting: "glassTank", hasParticles: true },
-  "a flume": { wave: kWave, setting: "flume" },
+  "a flume": { wave: kWave, setting: "flume", wind: kWind },
 };
 
 /** Returns the passes of a room in every look that it has data for. */
@@ -97,10 +100,14 @@ describe.each(kLists)("the passes of %s in the look %s", (_, __, passes) => {
 const namesOf = (lists: Map<LookName, Pass[]>): [LookName, string[]][] => [...lists].map(([look, passes]) => [look, passes.map(({ name }) => name)]);
 
 describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
-  it("differ between the qualities by the caustics alone", { timeout: kLongestMs }, () => {
+  it("differ between the qualities by caustics and rings of rain alone", { timeout: kLongestMs }, () => {
     const high = namesOf(passesOf(change, "high"));
-    expect(high.map(([look, names]) => [look, names.filter((name) => name !== "caustics")])).toEqual(namesOf(lists));
-    for (const [, names] of high) expect(names.includes("caustics")).toBe(names.includes("field"));
+    const isShared = (name: string): boolean => name !== "caustics" && name !== "rain rings";
+    expect(high.map(([look, names]) => [look, names.filter(isShared)])).toEqual(namesOf(lists));
+    for (const [, names] of high) {
+      expect(names.includes("caustics")).toBe(names.includes("field"));
+      expect(names.includes("rain rings")).toBe(names.includes("rain streaks"));
+    }
   });
 });
 
@@ -109,6 +116,8 @@ describe("the list of passes", () => {
     const names = (change: Partial<GreetingInfo>): string[] => passesOf(change, "low").get("natural")!.map(({ name }) => name);
     expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray", "lamps"]);
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
+    expect(names(kRooms["a harbor with everything"]!)).toContain("rain streaks");
+    expect(names(kRooms["a flume"]!)).not.toContain("rain streaks");
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);
     expect(tank.at(-1)).toBe("glass");

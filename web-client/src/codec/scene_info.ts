@@ -28,6 +28,8 @@ export interface WindInfo {
   /** The water has dispersion and an open side, so that the wind's waves come in through the open sides; elsewhere gusts raise single crests. */
   comesIn: boolean;
   levelRatio: number;
+  /** Drops at full storm. */
+  dropsPerM2S: number;
   waveHeightM: number;
   directionDeg: number;
   speedMps: number;
@@ -107,18 +109,19 @@ export function readSetting(scene: Scene): SettingName {
 export function readWind(scene: Scene): WindInfo | undefined {
   const { storm, wave } = scene;
   if (!storm || !wave) return undefined;
-  const { levelRatio = 0, waveHeightM = 0, windDirectionDeg = 0, windSpeedMps = 0, fetchM = 0 } = storm;
+  const { levelRatio = 0, dropsPerM2S = 0, waveHeightM = 0, windDirectionDeg = 0, windSpeedMps = 0, fetchM = 0 } = storm;
   const read: WindInfo = {
     seed: scene.seed,
     gravityMps2: scene.gravityMps2 ?? 0,
     comesIn: wave.dispersion === Dispersion.AIRY && Object.values(readWave(wave).sides).includes("open"),
     levelRatio,
+    dropsPerM2S,
     waveHeightM,
     directionDeg: windDirectionDeg,
     speedMps: windSpeedMps,
     fetchM,
   };
-  const isDrawable = [read.gravityMps2, levelRatio, waveHeightM, windSpeedMps, fetchM].every((value) => value >= 0 && value <= 1e7);
+  const isDrawable = [read.gravityMps2, levelRatio, dropsPerM2S, waveHeightM, windSpeedMps, fetchM].every((value) => value >= 0 && value <= 1e7);
   return isDrawable && isPlace(windDirectionDeg) ? read : undefined;
 }
 

@@ -6,10 +6,12 @@
 //   solids     sky, ground, rocks, boats -> solids (linear light, depth)
 //   particles  frames -> particles; their shadow -> solids (fluid/fluid.ts)
 //   whitewater frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
-//   water      field, foam, froth, sea, solids -> canvas
+//   rain rings time -> rings on the water, under the open sky; in the tiers from medium on
+//   water      field, foam, froth, rain, sea, solids -> canvas
 //   present    solids -> canvas where there is no water
 //   fluid      particles, solids -> canvas (fluid/fluid.ts)
 //   spray      drops, solids -> canvas
+//   rain streaks solids -> canvas
 //   lamps      solids, field -> canvas, in the dark
 //   glass      panes of a tank -> canvas
 // Other looks than the natural one draw the water with passes of their own (looks/look_room.ts).
@@ -27,6 +29,9 @@ import { PresentPass } from "./passes/present_pass";
 import { SolidsPass } from "./passes/solids_pass";
 import { WaterPass } from "./passes/water_pass";
 import type { Quality } from "./quality";
+import { RainRingsPass } from "./rain/rain_rings_pass";
+import { RainStreaksPass } from "./rain/rain_streaks_pass";
+import { isIndoors } from "./settings/surroundings";
 import type { Sky } from "./sky";
 import type { StreamedFrames } from "./streamed_frames";
 import type { DiffuseParticles } from "./whitewater/diffuse_particles";
@@ -68,11 +73,15 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality }
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {
   const { glass } = solids.surroundings;
   const white = field && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater);
-  const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
+  const { ringTexelsCount, streaksCount } = quality.rain;
+  const isRainedOn = field !== undefined && greeting.wind !== undefined && !isIndoors(greeting);
+  const rings = isRainedOn && ringTexelsCount > 0 ? new RainRingsPass(greeting, ringTexelsCount) : undefined;
+  const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
+  const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, rings?.uniforms, solids, quality);
   const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting.sideM, quality.fluid) : { before: [], after: [] };
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting.sideM) : undefined;
-  const before = [...fluid.before, ...(white?.before ?? [])];
-  const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
+  const before = [...fluid.before, ...(white?.before ?? []), rings];
+  const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass)];
   const passes = [...before, water, ...after].filter((pass) => pass !== undefined);
   return { passes, white: white?.particles, dispose: () => passes.forEach((pass) => pass.dispose()) };
 }

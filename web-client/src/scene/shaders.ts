@@ -32,6 +32,10 @@ import lookParticleVert from "./shaders/look_particle.vert?raw";
 import lookSurfaceFrag from "./shaders/look_surface.frag?raw";
 import lookValueFrag from "./shaders/look_value.frag?raw";
 import presentFrag from "./shaders/present.frag?raw";
+import rainRingFrag from "./shaders/rain_ring.frag?raw";
+import rainRingVert from "./shaders/rain_ring.vert?raw";
+import rainStreakFrag from "./shaders/rain_streak.frag?raw";
+import rainStreakVert from "./shaders/rain_streak.vert?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
 import seaTileFrag from "./shaders/sea_tile.frag?raw";
@@ -68,6 +72,8 @@ const kPrograms = {
   lookSurface: [waterVert, lookSurfaceFrag],
   lookValue: [fullscreenVert, lookValueFrag],
   present: [fullscreenVert, presentFrag],
+  rainRing: [rainRingVert, rainRingFrag],
+  rainStreak: [rainStreakVert, rainStreakFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
   skyBake: [skyBakeVert, skyBakeFrag],

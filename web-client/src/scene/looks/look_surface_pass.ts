@@ -57,7 +57,7 @@ export class LookSurfacePass implements Pass {
       ...sky.uniforms,
       ...colour?.colours.uniforms,
       ...(colour && (colour.of === "foam" ? colour.foam : { u_value: { value: colour.value.texture } })),
-      ...(edge.kind === "sea" && { ...edge.sea, u_haze_m: { value: edge.hazeM } }),
+      ...(edge.kind === "sea" && edge.sea),
       u_field: { value: field },
       u_behind_depth: { value: solids.textures.depth },
       u_camera_m: { value: new Vector3() },

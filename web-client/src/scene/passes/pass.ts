@@ -15,6 +15,8 @@ export type Resource =
   | "whitewater"
   /** Their foam as a texture over the water. */
   | "froth"
+  /** Slopes of the rings of rain, as a repeating tile. */
+  | "rain"
   /** Elevation and slopes of the sea around it. */
   | "sea"
   /** Colour (linear light) and depth of everything but water. */

@@ -30,14 +30,15 @@ export class SolidsPass implements Pass {
   readonly target: WebGLRenderTarget;
   /** The uniform of the lamps: 0 by day, 1 at night. */
   readonly darkness = { value: 0 };
+  private readonly haze = { value: 0 };
   private readonly scene = new Scene();
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
 
-  /** `field` undefined: the room has no wave. `caustics`: of caustics.glsl. */
+  /** `greeting` is read in every picture, because its wind changes. `field` undefined: the room has no wave. `caustics`: of caustics.glsl. */
   constructor(
-    greeting: GreetingInfo,
+    private readonly greeting: GreetingInfo,
     private readonly sky: Sky,
     noise: Texture,
     field: Texture | undefined,
@@ -56,12 +57,12 @@ export class SolidsPass implements Pass {
       u_side_m: { value: sideM },
       u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
       u_wet_m: { value: kWetDepths * bedOf(greeting).depthM },
-      u_haze_m: { value: isIndoors(greeting) ? 0 : hazeM(greeting) },
+      u_haze_m: this.haze,
       u_darkness: this.darkness,
     };
     const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }) };
     this.material = makeMaterial("solid", uniforms, { defines });
-    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, solid: this.material, quality });
+    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, haze: this.haze, solid: this.material, quality });
     this.scene.add(sky.dome, ...this.surroundings.solids);
     if (greeting.hasBoats) {
       this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
@@ -110,6 +111,7 @@ export class SolidsPass implements Pass {
     const bodies = this.boats && shownS !== undefined ? this.bodies.around(shownS) : undefined;
     if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
     this.target.setSize(sizePx.x, sizePx.y);
+    this.haze.value = isIndoors(this.greeting) ? 0 : hazeM(this.greeting);
     this.sky.follow(camera);
     this.surroundings.look(camera.position);
     (this.material.uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);

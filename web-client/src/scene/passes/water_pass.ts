@@ -19,14 +19,14 @@ function hasSolids({ hasBoats, obstacles, beaches, setting }: GreetingInfo): boo
 
 export class WaterPass implements Pass {
   readonly name = "water";
-  readonly reads = ["field", "foam", "froth", "sea", "solids"] as const;
+  readonly reads = ["field", "foam", "froth", "rain", "sea", "solids"] as const;
   readonly writes = ["canvas"] as const;
   private readonly scene = new Scene();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
 
-  /** `foam` undefined: the room sends none. */
-  constructor(greeting: GreetingInfo, sky: Sky, noise: Texture, field: Texture, foam: Uniforms | undefined, froth: Texture, solids: SolidsPass, quality: Quality) {
+  /** `foam` undefined: the room sends none. `rain` undefined: no rings of rain. */
+  constructor(greeting: GreetingInfo, sky: Sky, noise: Texture, field: Texture, foam: Uniforms | undefined, froth: Texture, rain: Uniforms | undefined, solids: SolidsPass, quality: Quality) {
     const bed = bedOf(greeting);
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
@@ -48,12 +48,14 @@ export class WaterPass implements Pass {
       u_lace_m: { value: Math.min(Math.max(sideM / 7, 1), 9) },
       u_froth: { value: froth },
       ...foam,
-      ...(edge.kind === "sea" && { ...edge.sea, u_haze_m: { value: edge.hazeM } }),
+      ...rain,
+      ...(edge.kind === "sea" && edge.sea),
     };
     const defines: Record<string, number> = {};
     if (quality.plain) defines["PLAIN"] = 1;
     if (beaches.length > 0) defines["BEACH"] = 1;
     if (foam) defines["FOAM"] = 1;
+    if (rain) defines["RAIN"] = 1;
     if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);

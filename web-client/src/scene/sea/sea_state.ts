@@ -42,6 +42,7 @@ export function makeRandom(seed: bigint): () => number {
 /** Fields of the wind that a room's parameters set, by their paths in the scene. */
 const kWindPaths: Readonly<Record<string, Exclude<keyof WindInfo, "seed" | "comesIn">>> = {
   "storm.level_ratio": "levelRatio",
+  "storm.drops_per_m2_s": "dropsPerM2S",
   "storm.wave_height_m": "waveHeightM",
   "storm.wind_direction_deg": "directionDeg",
   "storm.wind_speed_mps": "speedMps",

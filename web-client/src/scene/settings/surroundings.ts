@@ -6,6 +6,7 @@ import type { SettingName, SideName } from "../../codec/scene_info";
 import type { ViewedBox } from "../framing";
 import type { Lamps } from "../lamps";
 import { Landscape, makeGroundGeometry } from "../landscape";
+import { rainShare } from "../rain/rain";
 import { makeCoastGeometry } from "../sea/coast";
 import { OpenSea } from "../sea/open_sea";
 import { bedOf } from "../terrain";
@@ -15,6 +16,8 @@ import { PoolBasin } from "./pool_basin";
 
 /** Haze of the open air takes half of the light at this many sides of the square. */
 const kHazeSides = 34;
+/** So many times hazier in the hardest rain. */
+const kRainHaze = 3;
 /** Cells along each side of a bed with beaches, obstacles or a coast. */
 const kBedCells = 96;
 const kPlainBedCells = 48;
@@ -42,8 +45,9 @@ export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus"
   return { ...view, seenFrom, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
 }
 
-export function hazeM(greeting: GreetingInfo): number {
-  return kHazeSides * greeting.sideM;
+/** Returns the distance at which haze has half of the light. Rain makes it hazier. */
+export function hazeM({ sideM, wind }: GreetingInfo): number {
+  return (kHazeSides * sideM) / (1 + kRainHaze * rainShare(wind));
 }
 
 export function isIndoors({ setting }: GreetingInfo): boolean {
@@ -72,7 +76,7 @@ export class Surroundings {
     const cellsCount = plain ? kPlainBedCells : kBedCells;
     if (setting === "openSea" && wave) {
       this.sea = new OpenSea(wave, wind, context.quality);
-      this.edge = { kind: "sea", sea: this.sea.uniforms, sides: wave.sides, hazeM: hazeM(greeting) };
+      this.edge = { kind: "sea", sea: { ...this.sea.uniforms, u_haze_m: context.haze }, sides: wave.sides };
       this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);
       return;

@@ -2,6 +2,7 @@
 // along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
 // MIRROR: solids are reflected as well, as far as they are on the screen; steps of the search for them. BEACH: the water ends where the bed rises above it.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
+// RAIN: with the rings of rain.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
 // there is only the page's own froth.
 #include <sky>
@@ -36,6 +37,11 @@ uniform float u_haze_m;
 uniform sampler2D u_foam_from;
 uniform sampler2D u_foam_to;
 uniform float u_foam_mix;
+#endif
+#ifdef RAIN
+uniform sampler2D u_rain;  // slopes of rings, as a repeating tile
+uniform float u_rain_tile_m;
+uniform float u_rain_share;
 #endif
 uniform sampler2D u_froth;
 uniform sampler2D u_noise;
@@ -169,6 +175,9 @@ void main() {
   vec2 ripples = texture(u_ripples, sea_at / u_tiles_m.y).gb;
   field.gb += 0.71 * (ripples + mat2(0.8, -0.6, 0.6, 0.8) * texture(u_ripples, mat2(0.8, 0.6, -0.6, 0.8) * sea_at * 0.618 / u_tiles_m.y).gb);
 #endif
+#endif
+#ifdef RAIN
+  if (u_rain_share > 0.0) field.gb += texture(u_rain, v_world.xz / u_rain_tile_m).rg;
 #endif
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
