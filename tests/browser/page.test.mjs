@@ -309,7 +309,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     for (const tier of ["low", "high", "minimal"]) {
       await quality.selectOption(tier);
       const stats = await waitFor(page, `the tier ${tier}`, (now) => now.quality === tier);
-      assert.equal(stats.pixelRatio, tier === "minimal" ? 0.5 : 1);
+      assert.equal(stats.pixelRatio, tier === "minimal" ? 0.45 : 1);
       assert.equal(new URL(page.url()).searchParams.get("quality"), tier);
       await drawnPictures(page, 0);
       // A picture of the tier "high" takes a second here.

@@ -51,7 +51,7 @@ export type QualityChoice = TierName | "automatic";
 
 export const kTiers: Record<TierName, Quality> = {
   minimal: {
-    maxPixelRatio: 0.5, surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, seaTexelsCount: 128, mirrorStepsCount: 0,
+    maxPixelRatio: 0.45, surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
     fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
     rain: { ringTexelsCount: 0, streaksCount: 1500 }, caustics: undefined,
   },
