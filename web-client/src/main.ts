@@ -9,7 +9,7 @@ import { showNotice } from "./ui/notice";
 
 const made = makeRenderer(byId<HTMLCanvasElement>("view"));
 if (made) {
-  const app = new App(made.renderer, made.isSoftwareRenderer);
+  const app = new App(made);
   connectInput(app);
   installTestHooks(app);
   app.start();

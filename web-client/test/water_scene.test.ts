@@ -1,5 +1,5 @@
 // The list of passes of every kind of room, with a renderer that draws nothing.
-import { WebGLCoordinateSystem, type WebGLRenderer } from "three";
+import { HalfFloatType, WebGLCoordinateSystem, type WebGLRenderer } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../src/codec/greeting";
@@ -55,7 +55,7 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
 /** Returns the passes of a room in every look that it has data for. */
 function passesOf(change: Partial<GreetingInfo>, quality: TierName): Map<LookName, Pass[]> {
   const greeting = { ...kRoom, ...change };
-  const scene = new WaterScene(fakeRenderer(), kTiers[quality], () => {});
+  const scene = new WaterScene(fakeRenderer(), { ...kTiers[quality], texelType: HalfFloatType }, () => {});
   scene.enter(greeting, false);
   const lists = new Map<LookName, Pass[]>();
   for (const look of looksOf(greeting)) {
@@ -131,7 +131,7 @@ describe("a new greeting", () => {
 
   it("keeps the frames of the same water at another fidelity, and returns those of other water", () => {
     const released: Frame[] = [];
-    const scene = new WaterScene(fakeRenderer(), kTiers.low, (given) => released.push(given));
+    const scene = new WaterScene(fakeRenderer(), { ...kTiers.low, texelType: HalfFloatType }, (given) => released.push(given));
     const sea = { ...kRoom, ...kRooms["an open sea with boats"] };
     scene.enter(sea, false);
     const [first, second] = [frame(1), frame(1.1)];
@@ -168,7 +168,7 @@ describe("the look of the water", () => {
   });
 
   it("stays in the next room, after a lost context, and after a room without its data", { timeout: kLongestMs }, () => {
-    const scene = new WaterScene(fakeRenderer(), kTiers.low, () => {});
+    const scene = new WaterScene(fakeRenderer(), { ...kTiers.low, texelType: HalfFloatType }, () => {});
     const room = (name: string): GreetingInfo => ({ ...kRoom, ...kRooms[name]! });
     scene.enter(room("a pool"), false);
     scene.setLook("height");
@@ -191,7 +191,7 @@ describe("the look of the water", () => {
   });
 
   it("reads no value before the first frame", () => {
-    const scene = new WaterScene(fakeRenderer(), kTiers.low, () => {});
+    const scene = new WaterScene(fakeRenderer(), { ...kTiers.low, texelType: HalfFloatType }, () => {});
     scene.setLook("velocity");
     scene.enter({ ...kRoom, ...kRooms["a pool"]! }, false);
     scene.render(1);

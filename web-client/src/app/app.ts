@@ -1,13 +1,12 @@
 // The page: connects the client in the worker, the display and the panels. handlers() takes the messages of the server and the worker;
 // input.ts calls the methods for the user's actions.
-import type { WebGLRenderer } from "three";
-
 import type { GreetingInfo } from "../codec/greeting";
 import type { RoleName } from "../codec/people";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { socketUrl, WaterClient } from "../net/water_client";
 import { chooseQuality, firstTier } from "../scene/quality";
+import type { MadeRenderer } from "../scene/renderer";
 import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
 import { BoatTags } from "../ui/boat_tags";
 import { addDetailRow } from "../ui/detail_row";
@@ -63,9 +62,9 @@ export class App {
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
   private identity = this.identities.load();
 
-  constructor(renderer: WebGLRenderer, isSoftwareRenderer: boolean) {
+  constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
     const isHandheld = window.matchMedia("(pointer: coarse)").matches;
-    const quality = { first: firstTier(isSoftwareRenderer, isHandheld), choice: chooseQuality(location.search) };
+    const quality = { first: firstTier(isSoftwareRenderer, isHandheld), choice: chooseQuality(location.search), texelType };
     this.display = new Display(renderer, quality, {
       release: (frame) => this.client.release(frame),
       update: (atS) => this.boats.update(atS),

@@ -1,11 +1,11 @@
 // Everything on the canvas: scene, camera, resolution and the loop that draws at display rate.
-import type { WebGLRenderer } from "three";
+import { HalfFloatType, type WebGLRenderer } from "three";
 
 import type { GreetingInfo } from "../codec/greeting";
 import type { Frame } from "../net/messages";
 import { CameraViews, type Followed } from "../scene/camera_views";
 import type { PixelRect } from "../scene/framing";
-import { kTiers, type QualityChoice, type TierName } from "../scene/quality";
+import { kTiers, type Quality, type QualityChoice, type TexelType, type TierName } from "../scene/quality";
 import { QualityGovernor } from "../scene/quality_governor";
 import { WaterScene } from "../scene/water_scene";
 import { DisplayLoop } from "./display_loop";
@@ -43,13 +43,13 @@ export class Display {
 
   constructor(
     private readonly renderer: WebGLRenderer,
-    quality: { first: TierName; choice: QualityChoice },
+    private readonly qualities: { first: TierName; choice: QualityChoice; texelType: TexelType },
     private readonly hooks: DisplayHooks,
   ) {
     this.canvas = renderer.domElement;
-    this.governor = new QualityGovernor(quality.first, quality.choice);
+    this.governor = new QualityGovernor(qualities.first, qualities.choice);
     this.drawnTier = this.governor.tier;
-    this.scene = new WaterScene(renderer, kTiers[this.drawnTier], (frame) => hooks.release(frame));
+    this.scene = new WaterScene(renderer, this.qualityOf(this.drawnTier), (frame) => hooks.release(frame));
     this.views = new CameraViews(this.scene.camera, this.canvas, reducedMotion);
     this.layout = new PageLayout(() => this.resize());
     this.loop = new DisplayLoop(renderer, {
@@ -143,10 +143,15 @@ export class Display {
     return Object.fromEntries([...sumsMs].map(([name, sumMs]) => [name, sumMs / picturesCount]));
   }
 
+  private qualityOf(tier: TierName): Quality {
+    // Targets of floats cannot be counted on to have several samples per pixel and mip levels.
+    return { ...kTiers[tier], texelType: kTiers[tier].plain ? this.qualities.texelType : HalfFloatType };
+  }
+
   private applyQuality(): void {
     const { tier } = this.governor;
     document.body.classList.toggle("plain", kTiers[tier].plain);
-    if (tier !== this.drawnTier) this.scene.setQuality(kTiers[tier]);
+    if (tier !== this.drawnTier) this.scene.setQuality(this.qualityOf(tier));
     this.drawnTier = tier;
     this.resize();
   }

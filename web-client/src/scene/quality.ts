@@ -1,4 +1,5 @@
 // The tiers of the drawing's quality, from a software renderer to a workstation, and which of them a page begins with. Pure.
+import type { FloatType, HalfFloatType } from "three";
 
 /** Settings of the particles' liquid. */
 export interface FluidQuality {
@@ -19,8 +20,8 @@ export interface WhitewaterQuality {
   frothTexelsCount: number;
 }
 
-/** Settings of the scene. */
-export interface Quality {
+/** Settings of a tier. */
+export interface Tier {
   /** Most drawn pixels per CSS pixel, along each axis. */
   maxPixelRatio: number;
   /** Cells along each side of the drawn surface. */
@@ -43,13 +44,20 @@ export interface Quality {
   caustics: { cellsCount: number; texelsCount: number } | undefined;
 }
 
+/** Settings of the scene. */
+export interface Quality extends Tier {
+  /** Numbers of the textures that the water and the sky sample: half floats, or floats, which software renderers sample faster. */
+  texelType: TexelType;
+}
+export type TexelType = typeof HalfFloatType | typeof FloatType;
+
 /** From the cheapest to the most expensive. */
 export const kTierNames = ["minimal", "low", "medium", "high", "highest"] as const;
 export type TierName = (typeof kTierNames)[number];
 /** "automatic": by the time that pictures take. */
 export type QualityChoice = TierName | "automatic";
 
-export const kTiers: Record<TierName, Quality> = {
+export const kTiers: Record<TierName, Tier> = {
   minimal: {
     maxPixelRatio: 0.45, surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
     fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },

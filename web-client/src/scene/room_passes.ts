@@ -63,7 +63,7 @@ export interface RoomWater {
 
 export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality }: RoomTools): RoomBase {
   const { wave, sideM } = greeting;
-  const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
+  const field = wave && new FieldPass(wave, frames.surfaces, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
   const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
   const solids = new SolidsPass(greeting, sky, noise, field?.texture, caustics?.uniforms, frames.bodies, quality);

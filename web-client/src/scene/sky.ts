@@ -5,7 +5,6 @@ import {
   BackSide,
   BoxGeometry,
   CubeCamera,
-  HalfFloatType,
   LinearFilter,
   LinearMipmapLinearFilter,
   Matrix4,
@@ -20,6 +19,7 @@ import {
 
 import { makeFullscreenGeometry } from "./fullscreen";
 import { derive, indoors, lightAt, type Light, type Rgb } from "./light/light";
+import type { Quality } from "./quality";
 import { makeMaterial, type Uniforms } from "./shaders";
 
 const kFaceCount = 512;
@@ -48,10 +48,11 @@ export class Sky {
   private isStale = true;
   private bakedS = Number.NEGATIVE_INFINITY;
 
-  /** `smooth`: with mip levels, against flicker in distant reflections; too slow for software renderers. */
-  constructor(smooth: boolean) {
+  /** Plain: without mip levels, which prevent flicker in distant reflections but are too slow for software renderers. */
+  constructor({ plain, texelType }: Pick<Quality, "plain" | "texelType">) {
+    const smooth = !plain;
     this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 2, {
-      type: HalfFloatType,
+      type: texelType,
       generateMipmaps: smooth,
       minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
       magFilter: LinearFilter,

@@ -54,7 +54,7 @@ export class WaterScene {
     release: (frame: Frame) => void,
   ) {
     this.frames = new StreamedFrames(release);
-    this.sky = new Sky(!quality.plain);
+    this.sky = new Sky(quality);
     this.picture = { renderer, camera: this.camera, sizePx: new Vector2(), shownS: undefined };
     renderer.autoClear = false;
   }
@@ -89,7 +89,7 @@ export class WaterScene {
     this.leave();
     this.sky.dispose();
     this.quality = quality;
-    this.sky = new Sky(!quality.plain);
+    this.sky = new Sky(quality);
     if (this.greeting) this.enter(this.greeting, true);
   }
 

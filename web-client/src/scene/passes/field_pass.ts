@@ -3,7 +3,6 @@
 import {
   ClampToEdgeWrapping,
   DataTexture,
-  HalfFloatType,
   IntType,
   LinearFilter,
   NearestFilter,
@@ -26,6 +25,7 @@ import { kCurvature, kSlope, kSmooth } from "../field_kernels";
 import type { Between, FrameRing } from "../frame_ring";
 import { FrameTextures } from "../frame_textures";
 import { FullscreenPass } from "../fullscreen";
+import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import { timeRateWeights, timeWeights, type FrameTimes } from "../time_weights";
 import type { Pass, Picture } from "./pass";
@@ -67,18 +67,18 @@ export class FieldPass implements Pass {
   private readonly sideM: number;
   private isDrawn = false;
 
-  /** The texture has as many texels as a surface has samples, at most `fieldCountMax` per side. */
+  /** The texture has as many texels as a surface has samples, at most `quality.fieldCountMax` per side. */
   constructor(
     { sideM, periodicX, periodicZ, ...wave }: WaveInfo,
     private readonly surfaces: FrameRing<SurfaceFrame>,
-    private readonly fieldCountMax: number,
+    private readonly quality: Pick<Quality, "fieldCountMax" | "texelType">,
   ) {
     this.sideM = sideM;
     const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
-    const fieldCount = Math.min(resolutionCount, fieldCountMax);
+    const fieldCount = Math.min(resolutionCount, quality.fieldCountMax);
     this.target = new WebGLRenderTarget(fieldCount, fieldCount, {
       format: RGBAFormat,
-      type: HalfFloatType,
+      type: quality.texelType,
       minFilter: LinearFilter,
       magFilter: LinearFilter,
       wrapS: periodicX ? RepeatWrapping : ClampToEdgeWrapping,
@@ -199,7 +199,7 @@ export class FieldPass implements Pass {
   private resize(resolutionCount: number): void {
     this.frames.resize(resolutionCount);
     this.elevation.setSize(resolutionCount, resolutionCount);
-    const fieldCount = Math.min(resolutionCount, this.fieldCountMax);
+    const fieldCount = Math.min(resolutionCount, this.quality.fieldCountMax);
     this.target.setSize(fieldCount, fieldCount);
     this.scale();
   }

@@ -1,7 +1,7 @@
 // Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the caustics, and the frames of the
 // boats.
 // Writes the solids' colour (linear light) and depth.
-import { DepthTexture, HalfFloatType, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+import { DepthTexture, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
 import type { BodiesState, BodyPose } from "../bodies";
@@ -74,7 +74,7 @@ export class SolidsPass implements Pass {
       this.scene.add(this.buoys.group);
     }
     const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
-    this.target = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples });
+    this.target = new WebGLRenderTarget(1, 1, { type: quality.texelType, samples });
     this.target.depthTexture = new DepthTexture(1, 1, UnsignedIntType);
   }
 

@@ -61,13 +61,13 @@ export class OpenSea implements Pass {
   private next: { waves: PlaneWave[]; slope: number; beganS: number } | undefined;
   private lastS = 0;
 
-  constructor(wave: WaveInfo, wind: WindInfo | undefined, { plain, seaTexelsCount }: Pick<Quality, "plain" | "seaTexelsCount">) {
+  constructor(wave: WaveInfo, wind: WindInfo | undefined, { plain, seaTexelsCount, texelType }: Pick<Quality, "plain" | "seaTexelsCount" | "texelType">) {
     this.wave = wave;
     this.wind = wind;
     const kind = plain ? "plain" : "full";
     const longestM = (kLongestRippleCells * wave.sideM) / wave.resolutionCount;
-    this.swell = new SeaTile(kSwellTileSides[kind] * wave.sideM, seaTexelsCount, !plain);
-    this.ripples = new SeaTile(kRippleTileLengths * longestM, seaTexelsCount, !plain);
+    this.swell = new SeaTile(kSwellTileSides[kind] * wave.sideM, seaTexelsCount, !plain, texelType);
+    this.ripples = new SeaTile(kRippleTileLengths * longestM, seaTexelsCount, !plain, texelType);
     this.rippleWaves = makeRipples(kRippleCount[kind], longestM / kRippleRange, longestM, wind?.directionDeg ?? 30, wind?.gravityMps2 ?? 9.81);
     const { beyondM, widthM } = blendOf(wave);
     this.uniforms = {

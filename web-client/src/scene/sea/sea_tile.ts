@@ -1,7 +1,8 @@
 // A sum of plane waves as a repeating texture: elevation and slopes, drawn again for every picture.
-import { HalfFloatType, LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat, Vector4, WebGLRenderTarget, type Texture, type WebGLRenderer } from "three";
+import { LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat, Vector4, WebGLRenderTarget, type Texture, type WebGLRenderer } from "three";
 
 import { FullscreenPass } from "../fullscreen";
+import type { TexelType } from "../quality";
 import { makeMaterial } from "../shaders";
 import type { PlaneWave } from "./sea_state";
 
@@ -42,10 +43,10 @@ export class SeaTile {
   private readonly values = Array.from({ length: kMaxTileWaves }, () => new Vector4());
 
   /** `smooth`: with mip levels; too slow for software renderers, whose shader fades the waves smaller than a pixel itself. */
-  constructor(readonly tileM: number, texelsCount: number, smooth: boolean) {
+  constructor(readonly tileM: number, texelsCount: number, smooth: boolean, texelType: TexelType) {
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
       format: RGBAFormat,
-      type: HalfFloatType,
+      type: texelType,
       minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
       magFilter: LinearFilter,
       wrapS: RepeatWrapping,

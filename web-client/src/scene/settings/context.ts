@@ -16,7 +16,7 @@ export interface SurroundingsContext {
   haze: IUniform<number>;
   /** Shared by rocks, land and lawns; the caller disposes it. */
   solid: RawShaderMaterial;
-  quality: Pick<Quality, "plain" | "seaTexelsCount">;
+  quality: Pick<Quality, "plain" | "seaTexelsCount" | "texelType">;
 }
 
 /** What bounds the water at its sides. */
