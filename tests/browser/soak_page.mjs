@@ -78,9 +78,11 @@ async function soak(page) {
 
 async function show(page, select, scene) {
   if ((await select.inputValue()) !== scene) {
-    const before = await page.evaluate(() => window.spindrift.stats().lastAck?.commandId ?? 0);
+    const before = await page.title();
     await choose(page, "scene", scene);
-    await page.waitForFunction((id) => (window.spindrift.stats().lastAck?.commandId ?? 0) > id, before, { timeout: kWaitMs, polling: 50 });
+    await page.waitForFunction((title) => document.title !== title, before, { timeout: kWaitMs, polling: 50 }).catch(async (error) => {
+      throw new Error(`${scene}: ${await page.getByTestId("toast").textContent()}`, { cause: error });
+    });
     await sleep(kSceneMs);
   }
   await pictures(page);

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import type { ObstacleInfo, SideKind, SideName } from "../src/codec/scene_info";
-import { Buoys, buoyPlaces, makeBuoyGeometry } from "../src/scene/buoys";
+import { Buoys, buoyPlaces, makeBuoyGeometry, pushedAside } from "../src/scene/buoys";
 import { clearanceM } from "../src/scene/clearance";
 import { Lamps } from "../src/scene/lamps";
 import { depthAtM } from "../src/scene/terrain";
@@ -52,6 +52,39 @@ describe("the places of buoys", () => {
   it("are bounded in a scene full of breakwaters", () => {
     const many = Array.from({ length: 60 }, (_, n) => wall(-100 + 30 * (n % 8), -100 + 30 * Math.floor(n / 8), 6, 0));
     expect(buoyPlaces({ ...harbor, sideM: 400, waterExtents: { sideM: 400, depthM: 1.2 }, obstacles: many, beaches: [] })).toHaveLength(8);
+  });
+});
+
+describe("a buoy in the way of a boat", () => {
+  const place = { xM: 0, zM: 0.1, radiusM: 0.2 };
+  const boat = (xM: number, headingRad = 0) => ({ xM, zM: 0, headingRad, lengthM: 4, beamM: 1.6 });
+
+  it("stays where it is while the boat is away or beside it", () => {
+    expect(pushedAside(place, [])).toEqual([0, 0.1]);
+    expect(pushedAside(place, [boat(-2.3), boat(2.3)])).toEqual([0, 0.1]);
+    expect(pushedAside({ ...place, zM: 1.1 }, [boat(0)])).toEqual([0, 1.1]);
+  });
+
+  it("is pushed to its side of the hull, and never moves far from one picture to the next", () => {
+    let [, before] = pushedAside(place, [boat(-3)]);
+    let mostM = 0;
+    for (let xM = -3; xM <= 3; xM += 0.02) {
+      const [x, z] = pushedAside(place, [boat(xM)]);
+      expect(x).toBeCloseTo(0, 9);
+      expect(z).toBeGreaterThanOrEqual(0.1);
+      expect(((x - xM) / 2.2) ** 2 + (z / 1) ** 2).toBeGreaterThan(0.9999);
+      expect(Math.abs(z - before)).toBeLessThan(0.15);
+      before = z;
+      mostM = Math.max(mostM, z);
+    }
+    expect(mostM).toBeCloseTo(1, 3);
+    expect(before).toBe(0.1);
+  });
+
+  it("is pushed across the heading of the boat", () => {
+    const [x, z] = pushedAside({ xM: -0.1, zM: 0, radiusM: 0.2 }, [{ ...boat(0), headingRad: Math.PI / 2 }]);
+    expect(x).toBeCloseTo(-1, 3);
+    expect(z).toBeCloseTo(0, 9);
   });
 });
 

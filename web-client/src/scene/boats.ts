@@ -5,6 +5,7 @@ import { Group, Mesh, Scene, type BufferGeometry, type RawShaderMaterial, type V
 
 import type { BoatDetail } from "../codec/greeting";
 import { mixBodies, type BodiesState, type BodyPose } from "./bodies";
+import type { HullPlan } from "./buoys";
 import { makeBoatParts } from "./hull/boat_geometry";
 import { addBoatLamps } from "./hull/boat_lamps";
 import type { BoatLamp } from "./hull/fittings";
@@ -72,6 +73,13 @@ export class Boats {
   /** Returns copies of all poses drawn now. */
   drawn(): BodyPose[] {
     return this.poses.slice(0, this.posesCount).map((pose) => ({ ...pose }));
+  }
+
+  /** Returns the plans of the boats drawn now. */
+  hulls(): HullPlan[] {
+    return [...this.boats.values()]
+      .filter(({ group }) => group.visible)
+      .map(({ detail: { lengthM, beamM }, group: { position, rotation } }) => ({ xM: position.x, zM: position.z, headingRad: -rotation.y, lengthM, beamM }));
   }
 
   /** Adds the lights of the boats, as far as they are seen from the camera. */

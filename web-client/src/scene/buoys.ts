@@ -1,5 +1,5 @@
-// Buoys off the ends of breakwaters, in an open sea. Decoration: the server does not know them, and boats pass through them. Their
-// places follow from the scene alone; the vertex shader moves them with the drawn water (shaders/solid.vert, FLOATS).
+// Buoys off the ends of breakwaters, in an open sea. Decoration: the server does not know them; boats push them
+// aside. Their places follow from the scene alone; the vertex shader moves them with the drawn water (shaders/solid.vert, FLOATS).
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../codec/greeting";
@@ -65,6 +65,32 @@ export function buoyPlaces(greeting: BuoyScene): BuoyPlace[] {
   return found;
 }
 
+/** A boat from above: its length is along the heading. */
+export interface HullPlan {
+  xM: number;
+  zM: number;
+  headingRad: number;
+  lengthM: number;
+  beamM: number;
+}
+
+/** Returns where boats push a buoy: across each hull that reaches it, out of the ellipse around hull and buoy. Far from boats it is at its place. */
+export function pushedAside({ xM, zM, radiusM }: Pick<BuoyPlace, "xM" | "zM" | "radiusM">, hulls: readonly HullPlan[]): [xM: number, zM: number] {
+  let [x, z] = [xM, zM];
+  for (const hull of hulls) {
+    const [cos, sin] = [Math.cos(hull.headingRad), Math.sin(hull.headingRad)];
+    const along = ((x - hull.xM) * cos + (z - hull.zM) * sin) / (hull.lengthM / 2 + radiusM);
+    if (Math.abs(along) >= 1) continue;
+    const acrossM = (z - hull.zM) * cos - (x - hull.xM) * sin;
+    const leastM = (hull.beamM / 2 + radiusM) * Math.sqrt(1 - along * along);
+    const outM = (acrossM < 0 ? -leastM : leastM) - acrossM;
+    if (Math.abs(acrossM) >= leastM) continue;
+    x -= sin * outM;
+    z += cos * outM;
+  }
+  return [x, z];
+}
+
 /** Height of the lamp over the water, in radii. */
 const kLampRadii = 3.5;
 
@@ -111,9 +137,18 @@ export class Buoys {
     }
   }
 
+  /** Moves them out of the way of the boats. */
+  pushAside(hulls: readonly HullPlan[]): void {
+    this.places.forEach((place, n) => {
+      const [xM, zM] = pushedAside(place, hulls);
+      this.group.children[n]!.position.set(xM, 0, zM);
+    });
+  }
+
   /** Adds their lights, which flash one after the other by the scene's time. */
   collectLamps(lamps: Lamps, shownS: number): void {
-    this.places.forEach(({ kind, xM, zM, radiusM }, n) => {
+    this.places.forEach(({ kind, radiusM }, n) => {
+      const { x: xM, z: zM } = this.group.children[n]!.position;
       const phaseS = (shownS + 0.37 * n * kFlashEveryS) % kFlashEveryS;
       const share = Math.min(Math.max(3 - 6 * Math.abs(phaseS / kFlashS - 0.5), 0), 1);
       lamps.add(xM, kLampRadii * radiusM, zM, 1.6 * radiusM, kLampColors[kind], share, true);

@@ -110,6 +110,7 @@ export class SolidsPass implements Pass {
   draw({ renderer, camera, sizePx, shownS }: Picture): void {
     const bodies = this.boats && shownS !== undefined ? this.bodies.around(shownS) : undefined;
     if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
+    if (this.boats) this.buoys?.pushAside(this.boats.hulls());
     this.target.setSize(sizePx.x, sizePx.y);
     this.haze.value = isIndoors(this.greeting) ? 0 : hazeM(this.greeting);
     this.sky.follow(camera);
