@@ -80,20 +80,22 @@ describe.each(kRoomsAndQualities)("the passes of $name at $quality quality", ({ 
     });
   });
 
-  it("have names of their own, and only the caustics differ between the qualities", () => {
+  it("have names of their own, and only caustics and shadows differ between the qualities", () => {
     const names = passes.map(({ name }) => name);
     expect(new Set(names).size).toBe(names.length);
-    const isShared = (name: string): boolean => name !== "caustics";
+    const isShared = (name: string): boolean => !["caustics", "shadow", "flat shadow"].includes(name);
     expect(others.map(({ name }) => name).filter(isShared)).toEqual(names.filter(isShared));
     expect(names.includes("caustics")).toBe(quality === "high" && names.includes("field"));
+    expect(names.includes("shadow")).toBe(quality === "high");
+    expect(names.includes("flat shadow")).toBe(quality === "low" && names.includes("field"));
   });
 });
 
 describe("the list of passes", () => {
   it("holds only what the room needs", () => {
     const names = (change: Partial<GreetingInfo>): string[] => enter(change, "low").map(({ name }) => name);
-    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray", "lamps"]);
-    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
+    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "flat shadow", "water", "present", "spray", "lamps"]);
+    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "flat shadow", "water", "present", "spray"]);
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);
     expect(tank.at(-1)).toBe("glass");

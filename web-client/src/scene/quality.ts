@@ -33,6 +33,8 @@ export interface Quality {
   whitewater: WhitewaterQuality;
   /** Grid and texture of the sunlight focused by waves; undefined: an approximation. */
   caustics: { cellsCount: number; texelsCount: number } | undefined;
+  /** Texels along each side of the map of shadows; undefined: no such map. */
+  shadows: { texelsCount: number } | undefined;
 }
 
 export interface ChosenQuality extends Quality {
@@ -43,8 +45,8 @@ export interface ChosenQuality extends Quality {
   remark: string;
 }
 
-const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 }, caustics: { cellsCount: 192, texelsCount: 512 }, adaptive: true, maxPixelRatio: 2, remark: "" };
-const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 }, caustics: undefined, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
+const kHigh: ChosenQuality = { surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 }, caustics: { cellsCount: 192, texelsCount: 512 }, shadows: { texelsCount: 2048 }, adaptive: true, maxPixelRatio: 2, remark: "" };
+const kLow: ChosenQuality = { surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 }, caustics: undefined, shadows: undefined, adaptive: true, maxPixelRatio: 1, remark: "low quality" };
 
 export function chooseQuality(search: string, rendererName: string): ChosenQuality {
   const wanted = new URLSearchParams(search).get("quality");

@@ -9,6 +9,8 @@ import causticsVert from "./shaders/caustics.vert?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
 import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
+import flatShadowFrag from "./shaders/flat_shadow.frag?raw";
+import flatShadowVert from "./shaders/flat_shadow.vert?raw";
 import fluidDepthFrag from "./shaders/fluid_depth.frag?raw";
 import fluidEllipse from "./shaders/fluid_ellipse.glsl?raw";
 import fluidNormalFrag from "./shaders/fluid_normal.frag?raw";
@@ -30,6 +32,8 @@ import presentFrag from "./shaders/present.frag?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
 import seaTileFrag from "./shaders/sea_tile.frag?raw";
+import shadow from "./shaders/shadow.glsl?raw";
+import shadowFrag from "./shaders/shadow.frag?raw";
 import sky from "./shaders/sky.glsl?raw";
 import skyBakeFrag from "./shaders/sky_bake.frag?raw";
 import skyBakeVert from "./shaders/sky_bake.vert?raw";
@@ -49,6 +53,7 @@ const kPrograms = {
   caustics: [causticsVert, causticsFrag],
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
+  flatShadow: [flatShadowVert, flatShadowFrag],
   fluidDepth: [fluidParticleVert, fluidDepthFrag],
   fluidNormal: [fluidTileVert, fluidNormalFrag],
   fluidShadow: [fluidShadowVert, fluidShadowFrag],
@@ -62,6 +67,7 @@ const kPrograms = {
   present: [fullscreenVert, presentFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
+  shadow: [solidVert, shadowFrag],
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
   solid: [solidVert, solidFrag],
@@ -81,6 +87,7 @@ const kShared: Record<string, string> = {
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,
   sea_blend: seaBlend,
+  shadow,
   water_optics: waterOptics,
 };
 

@@ -3,10 +3,12 @@
 //   caustics   field -> sunlight that the waves focus on what is below them; not at low quality
 //   foam       frames -> foam
 //   sea        time -> the sea around the square, in an open sea
+//   shadow     frames, field -> what the sun sees of solids; not at low quality
 //   solids     sky, ground, rocks, boats -> solids (linear light, depth)
 //   particles  frames -> particles; their shadow -> solids (fluid/fluid.ts)
 //   whitewater frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
-//   water      field, foam, froth, sea, solids -> canvas
+//   flat shadow  frames -> froth; at low quality
+//   water      field, foam, froth, sea, shadow, solids -> canvas
 //   present    solids -> canvas where there is no water
 //   fluid      particles, solids -> canvas (fluid/fluid.ts)
 //   spray      drops, solids -> canvas
@@ -27,10 +29,12 @@ import { makeNoiseTexture } from "./noise_texture";
 import { CausticsPass } from "./passes/caustics_pass";
 import { FieldPass } from "./passes/field_pass";
 import { FoamPass } from "./passes/foam_pass";
+import { FlatShadowPass } from "./passes/flat_shadow_pass";
 import { GlassPass } from "./passes/glass_pass";
 import { LampsPass } from "./passes/lamps_pass";
 import type { Pass, Picture } from "./passes/pass";
 import { PresentPass } from "./passes/present_pass";
+import { ShadowPass } from "./passes/shadow_pass";
 import { SolidsPass } from "./passes/solids_pass";
 import { WaterPass } from "./passes/water_pass";
 import type { WaterShape } from "./pick";
@@ -193,15 +197,18 @@ export class WaterScene {
     const field = wave && new FieldPass(wave, frames.surfaces, quality.fieldCountMax);
     const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
     const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
-    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, caustics?.uniforms, frames.bodies, quality));
+    const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
+    const solids = (this.solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms }, frames.bodies, quality));
+    shadow?.setCasters(solids);
     solids.setOwnerColors(this.ownerColors);
     solids.darkness.value = this.darknessShare;
     const { sea, glass } = solids.surroundings;
     const white = (this.white = wave && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater));
     const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
+    const flatShadow = white && !shadow ? new FlatShadowPass(solids, sky, white.froth.target, sideM) : undefined;
     const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, sideM) : undefined;
-    const before = [field, caustics, foam, sea, solids, ...fluid.before, ...(white?.before ?? [])];
+    const before = [field, caustics, foam, sea, shadow, solids, ...fluid.before, ...(white?.before ?? []), flatShadow];
     const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
     const passes = [...before, water, ...after];
     return passes.filter((pass) => pass !== undefined);

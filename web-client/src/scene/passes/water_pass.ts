@@ -1,5 +1,5 @@
 // The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
-// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the sea around, and the solids, which are seen through the water
+// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the sea around, the shadow, and the solids, which are seen through the water
 // and in its mirror. Writes the canvas and its depth.
 import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
@@ -20,7 +20,7 @@ function hasSolids({ hasBoats, obstacles, beaches, setting }: GreetingInfo): boo
 
 export class WaterPass implements Pass {
   readonly name = "water";
-  readonly reads = ["field", "foam", "froth", "sea", "solids"] as const;
+  readonly reads = ["field", "foam", "froth", "sea", "shadow", "solids"] as const;
   readonly writes = ["canvas"] as const;
   private readonly scene = new Scene();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
@@ -35,6 +35,7 @@ export class WaterPass implements Pass {
     const { color, depth } = solids.textures;
     this.uniforms = {
       ...sky.uniforms,
+      ...solids.shadow,
       u_field: { value: field },
       u_behind: { value: color },
       u_behind_depth: { value: depth },
@@ -56,6 +57,7 @@ export class WaterPass implements Pass {
     if (beaches.length > 0) defines["BEACH"] = 1;
     if (foam) defines["FOAM"] = 1;
     if (hasSolids(greeting)) defines["MIRROR"] = 1;
+    if (solids.shadow) defines["SHADOWS"] = 1;
     const isSea = edge.kind === "sea";
     if (isSea) defines["OPEN_SEA"] = 1;
     const opens = (side: SideName): boolean => isSea && edge.sides[side] !== "closed";

@@ -12,6 +12,8 @@ export interface SurroundingsContext {
   field: Texture | undefined;
   /** Of caustics.glsl; undefined at low quality, and where there is no wave. */
   caustics: Uniforms | undefined;
+  /** Of shadow.glsl; undefined: no map of shadows. */
+  shadow: Uniforms | undefined;
   /** Shared by rocks, land and lawns; the caller disposes it. */
   solid: RawShaderMaterial;
   quality: Pick<Quality, "plain">;
