@@ -167,6 +167,7 @@ export class App {
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
     this.viewButtons.hasBoats = this.boats.available;
+    this.viewButtons.canDive = this.display.views.canDive;
     this.showRole();
     this.viewButtons.refresh();
     // The card's height has changed with the text.

@@ -2,6 +2,7 @@
 import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
 
 import bed from "./shaders/bed.glsl?raw";
+import below from "./shaders/below.glsl?raw";
 import bubblesFrag from "./shaders/bubbles.frag?raw";
 import caustics from "./shaders/caustics.glsl?raw";
 import causticsFrag from "./shaders/caustics.frag?raw";
@@ -28,6 +29,7 @@ import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
 import lampFrag from "./shaders/lamp.frag?raw";
 import lampVert from "./shaders/lamp.vert?raw";
+import presentBelowFrag from "./shaders/present_below.frag?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
@@ -43,6 +45,7 @@ import solidFrag from "./shaders/solid.frag?raw";
 import solidVert from "./shaders/solid.vert?raw";
 import sprayFrag from "./shaders/spray.frag?raw";
 import tilesFrag from "./shaders/tiles.frag?raw";
+import waterBelowFrag from "./shaders/water_below.frag?raw";
 import waterFrag from "./shaders/water.frag?raw";
 import waterOptics from "./shaders/water_optics.glsl?raw";
 import waterVert from "./shaders/water.vert?raw";
@@ -65,6 +68,7 @@ const kPrograms = {
   glass: [solidVert, glassFrag],
   lamp: [lampVert, lampFrag],
   present: [fullscreenVert, presentFrag],
+  presentBelow: [skyDomeVert, presentBelowFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
   shadow: [solidVert, shadowFrag],
@@ -74,6 +78,7 @@ const kPrograms = {
   spray: [whitewaterVert, sprayFrag],
   tiles: [solidVert, tilesFrag],
   water: [waterVert, waterFrag],
+  waterBelow: [waterVert, waterBelowFrag],
 } as const;
 
 // Samplers default to low precision in GLSL ES, which would round elevations on phones.
@@ -82,6 +87,7 @@ const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].ma
 const kShared: Record<string, string> = {
   sky,
   bed,
+  below,
   caustics,
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
@@ -91,8 +97,12 @@ const kShared: Record<string, string> = {
   water_optics: waterOptics,
 };
 
+function withIncludes(source: string): string {
+  return source.replace(/#include <(\w+)>/g, (_, name: string) => withIncludes(kShared[name]!));
+}
+
 function expand(source: string): string {
-  return kPrecision + source.replace(/#include <(\w+)>/g, (_, name: string) => kShared[name]!);
+  return kPrecision + withIncludes(source);
 }
 
 export type Uniforms = Record<string, IUniform>;

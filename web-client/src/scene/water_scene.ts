@@ -22,6 +22,7 @@ import type { Frame, SurfaceFrame } from "../net/messages";
 import type { BodyPose } from "./bodies";
 import { makeFluidPasses } from "./fluid/fluid";
 import type { ViewedBox } from "./framing";
+import { diveWater, type DiveWater } from "./dive";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { Daylight } from "./light/daylight";
 import { darknessOf, type Light } from "./light/light";
@@ -157,6 +158,11 @@ export class WaterScene {
     return frame && { ...view, sideM, widthM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
   }
 
+  /** Returns the water into which the camera may dive; undefined: none is deep enough. */
+  diveWater(): DiveWater | undefined {
+    return this.greeting && diveWater(this.greeting, this.camera.near);
+  }
+
   newestSurface(): SurfaceFrame | undefined {
     return this.frames.surfaces.newest();
   }
@@ -204,12 +210,12 @@ export class WaterScene {
     solids.darkness.value = this.darknessShare;
     const { sea, glass } = solids.surroundings;
     const white = (this.white = wave && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater));
-    const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, quality);
+    const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, solids, () => frames.surfaces.newest(), quality);
     const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, sideM, quality.fluid) : { before: [], after: [] };
     const flatShadow = white && !shadow ? new FlatShadowPass(solids, sky, white.froth.target, sideM) : undefined;
     const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, sideM) : undefined;
     const before = [field, caustics, foam, sea, shadow, solids, ...fluid.before, ...(white?.before ?? []), flatShadow];
-    const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
+    const after = [new PresentPass(sky, solids, water), ...fluid.after, ...(white?.after ?? []), lamps, glass && new GlassPass(glass)];
     const passes = [...before, water, ...after];
     return passes.filter((pass) => pass !== undefined);
   }

@@ -31,24 +31,24 @@ export class SolidsPass implements Pass {
   /** The uniform of the lamps: 0 by day, 1 at night. */
   readonly darkness = { value: 0 };
   readonly scene = new Scene();
-  /** Of shadow.glsl; undefined: no map of shadows. */
-  readonly shadow: Uniforms | undefined;
+  /** Uniforms of caustics.glsl and shadow.glsl; undefined: there is none. */
+  readonly sunlight: { caustics: Uniforms | undefined; shadow: Uniforms | undefined };
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
 
-  /** `field` undefined: the room has no wave. `caustics`, `shadow`: of caustics.glsl and shadow.glsl. */
+  /** `field` undefined: the room has no wave. */
   constructor(
     greeting: GreetingInfo,
     private readonly sky: Sky,
     noise: Texture,
     field: Texture | undefined,
-    { caustics, shadow }: { caustics: Uniforms | undefined; shadow: Uniforms | undefined },
+    sunlight: { caustics: Uniforms | undefined; shadow: Uniforms | undefined },
     private readonly bodies: FrameRing<BodiesState>,
     quality: Quality,
   ) {
     const { sideM } = greeting;
-    this.shadow = shadow;
+    const { caustics, shadow } = (this.sunlight = sunlight);
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
       ...sky.uniforms,

@@ -1,10 +1,12 @@
 // The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
 // goes on to the horizon and has no sides. Reads the field, the foam and the froth, the sea around, the shadow, and the solids, which are seen through the water
-// and in its mirror. Writes the canvas and its depth.
+// and in its mirror. Writes the canvas and its depth. A camera close to the surface sees it from below as well (below_surface.ts).
 import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
 import type { SideName } from "../../codec/scene_info";
+import type { SurfaceFrame } from "../../net/messages";
+import { BelowSurface } from "../below_surface";
 import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
@@ -25,17 +27,32 @@ export class WaterPass implements Pass {
   private readonly scene = new Scene();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
+  private readonly grid: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly underside: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly below: BelowSurface;
 
-  /** `foam` undefined: the room sends none. */
-  constructor(greeting: GreetingInfo, sky: Sky, noise: Texture, field: Texture, foam: Uniforms | undefined, froth: Texture, solids: SolidsPass, quality: Quality) {
+  /** `foam` undefined: the room sends none. `newest` returns the newest frame of the surface. */
+  constructor(
+    greeting: GreetingInfo,
+    sky: Sky,
+    noise: Texture,
+    field: Texture,
+    foam: Uniforms | undefined,
+    froth: Texture,
+    solids: SolidsPass,
+    newest: () => SurfaceFrame | undefined,
+    quality: Quality,
+  ) {
     const bed = bedOf(greeting);
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
     const { edge } = solids.surroundings;
     const { color, depth } = solids.textures;
+    const { caustics, shadow } = solids.sunlight;
     this.uniforms = {
       ...sky.uniforms,
-      ...solids.shadow,
+      ...caustics,
+      ...shadow,
       u_field: { value: field },
       u_behind: { value: color },
       u_behind_depth: { value: depth },
@@ -57,13 +74,16 @@ export class WaterPass implements Pass {
     if (beaches.length > 0) defines["BEACH"] = 1;
     if (foam) defines["FOAM"] = 1;
     if (hasSolids(greeting)) defines["MIRROR"] = 1;
-    if (solids.shadow) defines["SHADOWS"] = 1;
+    if (shadow) defines["SHADOWS"] = 1;
     const isSea = edge.kind === "sea";
     if (isSea) defines["OPEN_SEA"] = 1;
     const opens = (side: SideName): boolean => isSea && edge.sides[side] !== "closed";
     const cellsCount = quality.surfaceCellsCount;
     const grid = makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z")));
-    this.meshes = [new Mesh(grid, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }))];
+    this.grid = new Mesh(grid, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }));
+    this.below = new BelowSurface(greeting.setting, this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest);
+    this.underside = new Mesh(grid, this.below.surface);
+    this.meshes = [this.grid, this.underside];
     if (edge.kind === "cut")
       this.meshes.push(new Mesh(makeSkirt(cellsCount), makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
     for (const mesh of this.meshes) {
@@ -76,8 +96,15 @@ export class WaterPass implements Pass {
     (this.uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
     (this.uniforms["u_near_far_m"]!.value as Vector2).set(camera.near, camera.far);
     (this.uniforms["u_resolution"]!.value as Vector2).copy(sizePx);
+    const isBelow = (this.underside.visible = this.below.isSeen(camera));
+    this.grid.material.side = isBelow ? FrontSide : DoubleSide;
     renderer.setRenderTarget(null);
     renderer.render(this.scene, camera);
+  }
+
+  /** What is drawn where there is no surface, if the last picture shows the water from below. */
+  get solidsBelow(): RawShaderMaterial | undefined {
+    return this.underside.visible ? this.below.solids : undefined;
   }
 
   dispose(): void {
@@ -85,5 +112,6 @@ export class WaterPass implements Pass {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }
+    this.below.dispose();
   }
 }
