@@ -11,7 +11,7 @@ import { bedOf, groundHeightM } from "./terrain";
 const kLeastDepthNears = 4;
 const kClearNears = 1.6;
 /** Outside the square and over shallow water a camera stays above the still water by this many near planes. */
-const kAboveNears = 1;
+const kAboveNears = 3;
 /** A tank is seen from outside down to this share of its depth. */
 const kOutsideDepths = 0.5;
 

@@ -10,8 +10,8 @@ import type { Sky } from "../sky";
 import { bedOf } from "../terrain";
 import type { Pass, Picture } from "./pass";
 
-/** Size of the box whose shadows are drawn, in sides of the square: half its length, and its height over the water. */
-const kHalfSides = 0.64;
+/** Size of the box whose shadows are drawn, in sides of the square: half its length, with what stands around the water, and its height over the water. */
+const kHalfSides: Record<GreetingInfo["setting"], number> = { openSea: 0.64, pool: 1.35, glassTank: 0.92, flume: 0.7 };
 const kHighSides = 0.17;
 /** Direct light below which shadows cannot be seen. */
 const kLeastLight = 0.02;
@@ -41,7 +41,7 @@ export class ShadowPass implements Pass {
     const { sideM, widthM } = greeting;
     const { depthM } = bedOf(greeting);
     const longM = Math.max(sideM, widthM);
-    this.box = { halfM: kHalfSides * longM, lowM: -depthM, highM: (field ? 0 : depthM) + kHighSides * longM };
+    this.box = { halfM: kHalfSides[greeting.setting] * longM, lowM: -depthM, highM: (field ? 0 : depthM) + kHighSides * longM };
     this.light = sky.uniforms["u_sun_light"]!.value as Vector3;
     const depth = new DepthTexture(texelsCount, texelsCount, UnsignedIntType);
     depth.compareFunction = LessEqualCompare;

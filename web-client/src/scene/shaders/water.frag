@@ -266,7 +266,13 @@ void main() {
   }
 #endif
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
+  float narrow = 1500.0;
+#ifndef PLAIN
+  // A glint narrower than the turn of the mirror over a pixel would flicker: it is wider and dimmer instead (after Kaplanyan et al. 2016).
+  vec3 turn = fwidth(mirrored);
+  narrow /= 1.0 + narrow * min(0.1 * dot(turn, turn), 0.004);
+#endif
+  if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
 #ifndef SKIRT
   vec2 place = v_world.xz / u_side_m + 0.5;
