@@ -65,7 +65,7 @@ export class Landscape {
       // Down to the bed at the obstacle's middle, and deeper by a quarter of the depth for a sloping bed.
       const depthM = Math.min(depthAtM(bed, obstacle.xM, obstacle.zM) + 0.25 * bed.depthM, bed.depthM);
       if (obstacle.shape === "rock") {
-        castsShadow(this.add(makeRockGeometry(obstacle, depthM), material));
+        castsShadow(this.add(makeRockGeometry(obstacle, depthM, plain), material));
         continue;
       }
       const kind = obstacle.lengthM === longestM && this.lights.every((light) => light.kind !== "lighthouse") ? "lighthouse" : "beacon";

@@ -36,13 +36,12 @@ vec3 starLight(vec3 direction, float pixel_rad) {
 
 void main() {
   vec3 direction = normalize(v_direction);
-  float pixel_rad = length(fwidth(direction)) * 0.6;
   color = vec4(0.0, 0.0, 0.0, 1.0);
   if (direction.y < u_lowest) return;
   float sun = u_has_disc ? 12.0 * u_sun_sharp : 0.0;
   sun *= smoothstep(0.99988, 0.99994, dot(direction, u_sun_direction));
   vec4 sky = texture(u_sky, direction);
   sky.rgb += u_sun_light * sun;
-  if (u_stars > 0.0 && sky.a > 0.0) sky.rgb += u_stars * sky.a * starLight(direction, pixel_rad);
+  if (u_stars > 0.0) sky.rgb += u_stars * sky.a * starLight(direction, 0.6 * length(fwidth(direction)));
   color = vec4(sky.rgb, 1.0);
 }
