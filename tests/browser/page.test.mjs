@@ -175,6 +175,33 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     }
   });
 
+  step("sees the sky through Snell's window in still water, and the floor's reflection outside it", async () => {
+    await stillWater(page);
+    // Without a move of the camera.
+    await page.emulateMedia({ reducedMotion: "reduce" });
+    await page.getByTestId("view-below").click();
+    await waitFor(page, "the view from below", (stats) => stats.view === "below");
+    // The eye is below the middle, in 0.62 of the depth; light from the air arrives within 48.6 degrees of the vertical.
+    const radius_m = 0.62 * 1.5 * Math.tan(Math.asin(0.75));
+    const ahead = [-0.43, -0.9];
+    const places = () =>
+      page.evaluate(([radius, [x, z]]) => [0.9, 1.2].map((share) => window.spindrift.pixelOf(share * radius * x, share * radius * z)), [radius_m, ahead]);
+    // The first picture from there.
+    await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    const deadline_ms = Date.now() + WAIT_MS;
+    let pixels = await places();
+    while (!pixels.every(([x, y]) => x > 0 && x < 900 && y > 0 && y < 600)) {
+      assert.ok(Date.now() < deadline_ms, `${JSON.stringify(pixels)} are not in the picture`);
+      await sleep(100);
+      pixels = await places();
+    }
+    const [sky, floor] = await brightnessAt(page, await page.screenshot({ timeout: 120_000 }), pixels);
+    assert.ok(sky > 1.2 * floor, `brightness ${sky.toFixed(0)} in the window, ${floor.toFixed(0)} outside it`);
+    await page.getByTestId("view-above").click();
+    await page.emulateMedia({ reducedMotion: null });
+    assert.equal((await statsOf(page)).view, "above");
+  });
+
   step("pauses and resumes the room for every page, and moves the other page's slider", async () => {
     const other = await openPage();
     await acknowledged(page, () => page.getByTestId("pause").click());

@@ -6,13 +6,13 @@ import { QualityGovernor } from "../src/scene/quality_governor";
 
 /** Settings of a tier that cost time, as numbers that grow with it. */
 function costsOf(tier: TierName): number[] {
-  const { maxPixelRatio, surfaceCellsCount, samplesCount, plain, fieldCountMax, seaTexelsCount, mirrorStepsCount, fluid, whitewater, rain, caustics } = kTiers[tier];
+  const { maxPixelRatio, surfaceCellsCount, samplesCount, plain, fieldCountMax, seaTexelsCount, mirrorStepsCount, fluid, whitewater, rain, caustics, shadows } = kTiers[tier];
   return [
     ...[maxPixelRatio, surfaceCellsCount, samplesCount, Number(!plain), fieldCountMax, seaTexelsCount, mirrorStepsCount],
     ...Object.values(fluid),
     ...Object.values(whitewater),
     ...Object.values(rain),
-    ...[caustics?.cellsCount ?? 0, caustics?.texelsCount ?? 0],
+    ...[caustics?.cellsCount ?? 0, caustics?.texelsCount ?? 0, shadows?.texelsCount ?? 0],
   ];
 }
 

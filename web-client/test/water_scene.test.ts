@@ -100,13 +100,19 @@ describe.each(kLists)("the passes of %s in the look %s", (_, __, passes) => {
 const namesOf = (lists: Map<LookName, Pass[]>): [LookName, string[]][] => [...lists].map(([look, passes]) => [look, passes.map(({ name }) => name)]);
 
 describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
-  it("differ between the qualities by caustics and rings of rain alone", { timeout: kLongestMs }, () => {
+  it("differ between the qualities by caustics, shadows and rings of rain alone", { timeout: kLongestMs }, () => {
     const high = namesOf(passesOf(change, "high"));
-    const isShared = (name: string): boolean => name !== "caustics" && name !== "rain rings";
-    expect(high.map(([look, names]) => [look, names.filter(isShared)])).toEqual(namesOf(lists));
+    const isShared = (name: string): boolean => !["caustics", "rain rings", "shadow", "flat shadow"].includes(name);
+    expect(high.map(([look, names]) => [look, names.filter(isShared)])).toEqual(namesOf(lists).map(([look, names]) => [look, names.filter(isShared)]));
     for (const [, names] of high) {
+      expect(names).toContain("shadow");
+      expect(names).not.toContain("flat shadow");
       expect(names.includes("caustics")).toBe(names.includes("field"));
       expect(names.includes("rain rings")).toBe(names.includes("rain streaks"));
+    }
+    for (const [look, names] of namesOf(lists)) {
+      expect(names).not.toContain("shadow");
+      expect(names.includes("flat shadow")).toBe(look === "natural" && names.includes("field"));
     }
   });
 });
@@ -114,8 +120,8 @@ describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
 describe("the list of passes", () => {
   it("holds only what the room needs", { timeout: kLongestMs }, () => {
     const names = (change: Partial<GreetingInfo>): string[] => passesOf(change, "low").get("natural")!.map(({ name }) => name);
-    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray", "lamps"]);
-    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "water", "present", "spray"]);
+    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "flat shadow", "water", "present", "spray", "lamps"]);
+    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "flat shadow", "water", "present", "spray"]);
     expect(names(kRooms["a harbor with everything"]!)).toContain("rain streaks");
     expect(names(kRooms["a flume"]!)).not.toContain("rain streaks");
     const tank = names(kRooms["a tank of particles"]!);

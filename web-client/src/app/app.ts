@@ -185,6 +185,7 @@ export class App {
     this.tags.setBoats(greeting.boats);
     this.looks.enter(greeting);
     this.viewButtons.hasBoats = this.boats.available;
+    this.viewButtons.canDive = this.display.views.canDive;
     this.showRole();
     this.viewButtons.refresh();
     // The card's height has changed with the text.

@@ -97,7 +97,7 @@ export class Display {
     if (isSameWater) return;
     const box = this.scene.viewedBox();
     this.isBoxKnown = box !== undefined;
-    this.views.enter(box ?? { sideM: greeting.sideM, minYM: -0.25 * greeting.sideM, maxYM: 0 });
+    this.views.enter(box ?? { sideM: greeting.sideM, minYM: -0.25 * greeting.sideM, maxYM: 0 }, this.scene.diveWater());
   }
 
   take(frame: Frame): void {

@@ -9,6 +9,7 @@ import type { HullPlan } from "./buoys";
 import { makeBoatParts } from "./hull/boat_geometry";
 import { addBoatLamps } from "./hull/boat_lamps";
 import type { BoatLamp } from "./hull/fittings";
+import { castsShadow } from "./light/casters";
 import type { Lamps } from "./lamps";
 
 /** A boat as it is drawn. */
@@ -101,7 +102,9 @@ export class Boats {
     group.visible = false;
     const cover = new Mesh(lid, this.lidMaterial);
     cover.renderOrder = 1;
-    group.add(new Mesh(hull, this.material), cover);
+    const body = new Mesh(hull, this.material);
+    castsShadow(body);
+    group.add(body, cover);
     this.boats.set(detail.boatId, { detail, ownerColor, group, geometries: [hull, lid], lamps });
     this.scene.add(group);
   }

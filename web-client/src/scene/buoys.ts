@@ -6,6 +6,7 @@ import type { GreetingInfo } from "../codec/greeting";
 import type { BreakwaterInfo, SideName } from "../codec/scene_info";
 import { clearanceM } from "./clearance";
 import { addRod, addTurned } from "./hull/shapes";
+import { castsShadow } from "./light/casters";
 import { kLampColors, type Lamps } from "./lamps";
 import { MeshBuilder, type Paint } from "./mesh_builder";
 import { bedOf, depthAtM, insideM } from "./terrain";
@@ -132,6 +133,7 @@ export class Buoys {
       const mesh = new Mesh(geometry, material);
       mesh.position.set(place.xM, 0, place.zM);
       mesh.frustumCulled = false;
+      castsShadow(mesh, "float");
       this.geometries.push(geometry);
       this.group.add(mesh);
     }

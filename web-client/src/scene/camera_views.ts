@@ -3,17 +3,26 @@ import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { wrapAngle } from "./bodies";
+import { diveView, keepClear, type DiveWater } from "./dive";
 import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
-export type ViewName = "above" | "side" | "boat" | "overview";
+export type ViewName = "above" | "side" | "boat" | "overview" | "below";
 type FixedView = Exclude<ViewName, "boat">;
 
 /** Direction from the water to the camera. The distance follows from the box to be seen. */
-const kBackward: Record<FixedView, Vector3> = {
+const kBackward: Record<Exclude<FixedView, "below">, Vector3> = {
   above: new Vector3(0.43, 0.50, 1.22),
   side: new Vector3(0.20, 0.13, 1.30),
   overview: new Vector3(-0.30, 1.25, 0.80),
 };
+/** Where the view from below looks: toward the noon sun, with the edge of Snell's window in the picture. */
+const kBelowAhead = new Vector3(-0.42, 0.24, -0.88).normalize();
+/** Height of the picture as an angle; from below wide, for the window and the floor. */
+const kFovDegrees = 47;
+const kBelowFovDegrees = 72;
+/** Least angle between the line of sight and straight down, and straight up in water; between it and the level above the water only. */
+const kSteepestRad = 0.12;
+const kLowestRad = 0.03;
 const kTravelS = 0.9;
 /** The boat's view: distance behind and above in boat lengths, and the rates at which it follows position, heading and camera position. */
 const kBehindLengths = 2.5;
@@ -32,8 +41,14 @@ export interface Followed {
   lengthM: number;
 }
 
+function fovOf(view: ViewName | undefined): number {
+  return view === "below" ? kBelowFovDegrees : kFovDegrees;
+}
+
 export class CameraViews {
   private readonly controls: OrbitControls;
+  /** Undefined: the camera stays above the still water. */
+  private water: DiveWater | undefined;
   private extent: ViewedBox = { sideM: 16, minYM: -1, maxYM: 1 };
   private free: PixelRect = { leftPx: 0, topPx: 0, rightPx: 1, bottomPx: 1 };
   private widthPx = 1;
@@ -43,7 +58,7 @@ export class CameraViews {
   /** In the boat's view: the smoothed heading, and whether the user has turned the camera since. */
   private following: { headingRad: number; byHand: boolean; lastS: number } | undefined;
   private readonly scratchM = new Vector3();
-  private travel: { fromM: Vector3; toM: Vector3; fromTargetM: Vector3; toTargetM: Vector3; startedS: number } | undefined;
+  private travel: { fromM: Vector3; toM: Vector3; fromTargetM: Vector3; toTargetM: Vector3; fromFovDegrees: number; startedS: number } | undefined;
 
   constructor(
     private readonly camera: PerspectiveCamera,
@@ -54,9 +69,7 @@ export class CameraViews {
     this.controls.enablePan = false;
     this.controls.enableDamping = !reducedMotion();
     this.controls.dampingFactor = 0.09;
-    this.controls.minPolarAngle = 0.12;
-    // Stays above the still water: there is no under-water view.
-    this.controls.maxPolarAngle = Math.PI / 2 - 0.03;
+    this.controls.minPolarAngle = kSteepestRad;
     this.controls.listenToKeyEvents(canvas);
     this.controls.addEventListener("start", () => {
       if (this.following) this.following.byHand = true;
@@ -64,9 +77,11 @@ export class CameraViews {
     });
   }
 
-  /** New water: back to the first view. */
-  enter(extent: ViewedBox): void {
+  /** New water: back to the first view. `water` undefined: it is not deep enough for a camera. */
+  enter(extent: ViewedBox, water: DiveWater | undefined): void {
     this.extent = extent;
+    this.water = water;
+    this.controls.maxPolarAngle = water ? Math.PI - kSteepestRad : Math.PI / 2 - kLowestRad;
     this.jump("above");
   }
 
@@ -93,6 +108,10 @@ export class CameraViews {
     if (!same) this.frameAgain();
   }
 
+  get canDive(): boolean {
+    return this.water !== undefined;
+  }
+
   get view(): ViewName | undefined {
     return this.framed;
   }
@@ -100,6 +119,7 @@ export class CameraViews {
   go(name: ViewName, nowS: number): void {
     if (name === "boat") {
       this.framed = name;
+      this.setFov(fovOf(name));
       this.travel = undefined;
       this.following = { headingRad: Number.NaN, byHand: false, lastS: nowS };
       return;
@@ -109,6 +129,7 @@ export class CameraViews {
     const { positionM, targetM } = this.placed(name);
     this.framed = name;
     this.travel = {
+      fromFovDegrees: this.camera.fov,
       fromM: this.camera.position.clone(),
       toM: positionM,
       fromTargetM: this.controls.target.clone(),
@@ -125,9 +146,11 @@ export class CameraViews {
       const eased = done * done * (3 - 2 * done);
       this.camera.position.lerpVectors(this.travel.fromM, this.travel.toM, eased);
       this.controls.target.lerpVectors(this.travel.fromTargetM, this.travel.toTargetM, eased);
+      this.setFov(this.travel.fromFovDegrees + (fovOf(this.framed) - this.travel.fromFovDegrees) * eased);
       if (done >= 1) this.travel = undefined;
     }
     this.controls.update();
+    if (this.water && !this.travel && keepClear(this.water, this.camera.position)) this.camera.lookAt(this.controls.target);
   }
 
   private follow(following: NonNullable<CameraViews["following"]>, boat: Followed, nowS: number): void {
@@ -175,12 +198,24 @@ export class CameraViews {
     this.travel = undefined;
     this.camera.position.copy(positionM);
     this.controls.target.copy(targetM);
+    this.setFov(fovOf(name));
     this.controls.update();
   }
 
+  private setFov(degrees: number): void {
+    if (degrees === this.camera.fov) return;
+    this.camera.fov = degrees;
+    this.camera.updateProjectionMatrix();
+  }
+
   private placed(name: FixedView): Placement {
-    const { extent, camera } = this;
-    const tangents = freeTangents(camera.fov, this.heightPx, this.widthPx, this.free);
+    const { extent, water } = this;
+    if (name === "below" && water) {
+      this.controls.minDistance = water.nearM;
+      return diveView(water, kBelowAhead);
+    }
+    if (name === "below") return this.placed("above");
+    const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
     const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
     if (name === "above") backward.y *= raisedBy(extent, tangents);
     if (name === "side") backward.y *= extent.sideRaised ?? 1;

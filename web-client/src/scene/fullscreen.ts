@@ -19,7 +19,9 @@ export class FullscreenPass {
     this.scene.add(this.mesh);
   }
 
-  render(renderer: WebGLRenderer, target: RenderTarget | null): void {
+  /** `instead`: another material, which the caller disposes. */
+  render(renderer: WebGLRenderer, target: RenderTarget | null, instead?: RawShaderMaterial): void {
+    this.mesh.material = instead ?? this.material;
     renderer.setRenderTarget(target as never);
     renderer.render(this.scene, this.camera);
   }

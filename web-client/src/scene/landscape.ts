@@ -3,6 +3,7 @@ import { Group, Mesh, Vector3, type BufferGeometry, type RawShaderMaterial } fro
 
 import type { ObstacleInfo } from "../codec/scene_info";
 import { makeBreakwater, type LightKind } from "./breakwater_mesh";
+import { castsShadow } from "./light/casters";
 import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
 import { kLampColors, type Lamps } from "./lamps";
 import { makeRockGeometry } from "./obstacle_mesh";
@@ -64,12 +65,13 @@ export class Landscape {
       // Down to the bed at the obstacle's middle, and deeper by a quarter of the depth for a sloping bed.
       const depthM = Math.min(depthAtM(bed, obstacle.xM, obstacle.zM) + 0.25 * bed.depthM, bed.depthM);
       if (obstacle.shape === "rock") {
-        this.add(makeRockGeometry(obstacle, depthM), material);
+        castsShadow(this.add(makeRockGeometry(obstacle, depthM, plain), material));
         continue;
       }
       const kind = obstacle.lengthM === longestM && this.lights.every((light) => light.kind !== "lighthouse") ? "lighthouse" : "beacon";
       const { geometry, lamp } = makeBreakwater(obstacle, depthM, kind, plain);
       const mesh = this.add(geometry, material);
+      castsShadow(mesh);
       mesh.position.set(obstacle.xM, 0, obstacle.zM);
       mesh.rotation.y = -obstacle.headingRad;
       mesh.updateMatrixWorld();

@@ -5,8 +5,8 @@ import type { RockInfo } from "../codec/scene_info";
 import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
 import { overgrown, shaded } from "./overgrowth";
 
-const kRingsCount = 16;
-const kAroundCount = 26;
+/** Rows and columns of a boulder; the second for software renderers. */
+const kCounts = { full: { rings: 16, around: 26 }, plain: { rings: 9, around: 14 } } as const;
 const kCutsCount = 13;
 /** Colour of a rock, and the share of its height up to which weed grows over the still water. */
 const kStone: Paint = [0.30, 0.275, 0.25, 1];
@@ -41,15 +41,15 @@ function makeCuts(seed: number): [x: number, y: number, z: number, away: number]
 }
 
 /** Adds one boulder: a cut dome over the water, a widening foot under it. */
-function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed: number): void {
+function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed: number, { rings, around }: (typeof kCounts)["full" | "plain"]): void {
   const { radiusM, heightM } = rock;
   const cuts = makeCuts(seed);
   const rows: Point[][] = [];
-  for (let ring = 0; ring <= kRingsCount; ++ring) {
-    const share = ring / kRingsCount;
+  for (let ring = 0; ring <= rings; ++ring) {
+    const share = ring / rings;
     const row: Point[] = [];
-    for (let i = 0; i <= kAroundCount; ++i) {
-      const angle = (2 * Math.PI * (i % kAroundCount)) / kAroundCount;
+    for (let i = 0; i <= around; ++i) {
+      const angle = (2 * Math.PI * (i % around)) / around;
       const [c, s] = [Math.cos(angle), -Math.sin(angle)];
       // 0..0.4 under water, the rest above it.
       const under = Math.max(1 - share / 0.4, 0);
@@ -69,17 +69,18 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
   }
   const weedM = kWeedHeights * heightM;
   builder.grid(rows, (row, column) => {
-    const uneven = 0.8 + 0.4 * hash(row, column % kAroundCount, seed);
+    const uneven = 0.8 + 0.4 * hash(row, column % around, seed);
     return overgrown(shaded(kStone, uneven), rows[row]![column]![1], weedM * (0.7 + 0.6 * hash(row >> 1, column >> 1, seed + 3)));
   });
 }
 
 /** Returns a boulder of the scene's size with smaller ones beside it. `depthM`: water depth at the rock. */
-export function makeRockGeometry(rock: RockInfo, depthM: number): BufferGeometry {
+export function makeRockGeometry(rock: RockInfo, depthM: number, plain = false): BufferGeometry {
+  const counts = kCounts[plain ? "plain" : "full"];
   const builder = new MeshBuilder();
   const seed = Math.round(rock.xM * 131 + rock.zM * 977);
   const bottomM = -depthM - 0.1 * rock.radiusM;
-  addBoulder(builder, rock, bottomM, seed);
+  addBoulder(builder, rock, bottomM, seed, counts);
   for (let i = 0; i < 3; ++i) {
     const angle = 2 * Math.PI * (i / 3 + 0.25 * hash(i, 1, seed));
     const size = 0.3 + 0.2 * hash(i, 2, seed);
@@ -90,7 +91,7 @@ export function makeRockGeometry(rock: RockInfo, depthM: number): BufferGeometry
         shape: "rock", xM: rock.xM + away * Math.cos(angle), zM: rock.zM + away * Math.sin(angle),
         radiusM: size * rock.radiusM, heightM: rock.heightM * (0.25 + 0.35 * hash(i, 3, seed)),
       },
-      bottomM, seed + 7 * i + 1,
+      bottomM, seed + 7 * i + 1, counts,
     );
   }
   return builder.build(true);

@@ -3,11 +3,13 @@
 //   caustics   field -> sunlight that the waves focus on what is below them; in the tiers from high on
 //   foam       frames -> foam
 //   sea        time -> the sea around the square, in an open sea
+//   shadow     frames, field -> what the sun sees of solids; in the tiers from medium on
 //   solids     sky, ground, rocks, boats -> solids (linear light, depth)
 //   particles  frames -> particles; their shadow -> solids (fluid/fluid.ts)
 //   whitewater frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
+//   flat shadow  frames -> froth; in the tiers below
 //   rain rings time -> rings on the water, under the open sky; in the tiers from medium on
-//   water      field, foam, froth, rain, sea, solids -> canvas
+//   water      field, foam, froth, rain, sea, shadow, solids -> canvas
 //   present    solids -> canvas where there is no water
 //   fluid      particles, solids -> canvas (fluid/fluid.ts)
 //   spray      drops, solids -> canvas
@@ -21,11 +23,13 @@ import type { GreetingInfo } from "../codec/greeting";
 import { makeFluidPasses } from "./fluid/fluid";
 import { CausticsPass } from "./passes/caustics_pass";
 import { FieldPass } from "./passes/field_pass";
+import { FlatShadowPass } from "./passes/flat_shadow_pass";
 import { FoamPass } from "./passes/foam_pass";
 import { GlassPass } from "./passes/glass_pass";
 import { LampsPass } from "./passes/lamps_pass";
 import type { Pass } from "./passes/pass";
 import { PresentPass } from "./passes/present_pass";
+import { ShadowPass } from "./passes/shadow_pass";
 import { SolidsPass } from "./passes/solids_pass";
 import { WaterPass } from "./passes/water_pass";
 import type { Quality } from "./quality";
@@ -66,8 +70,10 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality }
   const field = wave && new FieldPass(wave, frames.surfaces, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
   const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
-  const solids = new SolidsPass(greeting, sky, noise, field?.texture, caustics?.uniforms, frames.bodies, quality);
-  return { field, foam, solids, passes: [field, caustics, foam, solids.surroundings.sea, solids].filter((pass) => pass !== undefined) };
+  const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
+  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms }, frames.bodies, quality);
+  shadow?.setCasters(solids);
+  return { field, foam, solids, passes: [field, caustics, foam, solids.surroundings.sea, shadow, solids].filter((pass) => pass !== undefined) };
 }
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {
@@ -77,11 +83,13 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const isRainedOn = field !== undefined && greeting.wind !== undefined && !isIndoors(greeting);
   const rings = isRainedOn && ringTexelsCount > 0 ? new RainRingsPass(greeting, ringTexelsCount) : undefined;
   const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
-  const water = field && white && new WaterPass(greeting, sky, noise, field.texture, foam?.uniforms, white.froth.texture, rings?.uniforms, solids, quality);
+  const inputs = field && white && { field: field.texture, foam: foam?.uniforms, froth: white.froth.texture, rain: rings?.uniforms, newest: () => frames.surfaces.newest() };
+  const water = inputs && new WaterPass(greeting, solids, { sky, noise, quality }, inputs);
   const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting.sideM, quality.fluid) : { before: [], after: [] };
+  const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting.sideM) : undefined;
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting.sideM) : undefined;
-  const before = [...fluid.before, ...(white?.before ?? []), rings];
-  const after = [new PresentPass(sky, solids), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass)];
+  const before = [...fluid.before, ...(white?.before ?? []), flatShadow, rings];
+  const after = [new PresentPass(sky, solids, water), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass)];
   const passes = [...before, water, ...after].filter((pass) => pass !== undefined);
   return { passes, white: white?.particles, dispose: () => passes.forEach((pass) => pass.dispose()) };
 }

@@ -2,6 +2,7 @@
 import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
 
 import bed from "./shaders/bed.glsl?raw";
+import below from "./shaders/below.glsl?raw";
 import bubblesFrag from "./shaders/bubbles.frag?raw";
 import caustics from "./shaders/caustics.glsl?raw";
 import causticsFrag from "./shaders/caustics.frag?raw";
@@ -9,6 +10,8 @@ import causticsVert from "./shaders/caustics.vert?raw";
 import cellHash from "./shaders/cell_hash.glsl?raw";
 import elevationFrag from "./shaders/elevation.frag?raw";
 import fieldFrag from "./shaders/field.frag?raw";
+import flatShadowFrag from "./shaders/flat_shadow.frag?raw";
+import flatShadowVert from "./shaders/flat_shadow.vert?raw";
 import fluidDepthFrag from "./shaders/fluid_depth.frag?raw";
 import fluidEllipse from "./shaders/fluid_ellipse.glsl?raw";
 import fluidNormalFrag from "./shaders/fluid_normal.frag?raw";
@@ -31,6 +34,7 @@ import lookParticleFrag from "./shaders/look_particle.frag?raw";
 import lookParticleVert from "./shaders/look_particle.vert?raw";
 import lookSurfaceFrag from "./shaders/look_surface.frag?raw";
 import lookValueFrag from "./shaders/look_value.frag?raw";
+import presentBelowFrag from "./shaders/present_below.frag?raw";
 import presentFrag from "./shaders/present.frag?raw";
 import rainRingFrag from "./shaders/rain_ring.frag?raw";
 import rainRingVert from "./shaders/rain_ring.vert?raw";
@@ -39,6 +43,8 @@ import rainStreakVert from "./shaders/rain_streak.vert?raw";
 import roomBakeFrag from "./shaders/room_bake.frag?raw";
 import seaBlend from "./shaders/sea_blend.glsl?raw";
 import seaTileFrag from "./shaders/sea_tile.frag?raw";
+import shadow from "./shaders/shadow.glsl?raw";
+import shadowFrag from "./shaders/shadow.frag?raw";
 import sky from "./shaders/sky.glsl?raw";
 import skyBakeFrag from "./shaders/sky_bake.frag?raw";
 import skyBakeVert from "./shaders/sky_bake.vert?raw";
@@ -48,6 +54,7 @@ import solidFrag from "./shaders/solid.frag?raw";
 import solidVert from "./shaders/solid.vert?raw";
 import sprayFrag from "./shaders/spray.frag?raw";
 import tilesFrag from "./shaders/tiles.frag?raw";
+import waterBelowFrag from "./shaders/water_below.frag?raw";
 import waterFrag from "./shaders/water.frag?raw";
 import waterOptics from "./shaders/water_optics.glsl?raw";
 import waterVert from "./shaders/water.vert?raw";
@@ -58,6 +65,7 @@ const kPrograms = {
   caustics: [causticsVert, causticsFrag],
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
+  flatShadow: [flatShadowVert, flatShadowFrag],
   fluidDepth: [fluidParticleVert, fluidDepthFrag],
   fluidNormal: [fluidTileVert, fluidNormalFrag],
   fluidShadow: [fluidShadowVert, fluidShadowFrag],
@@ -72,16 +80,19 @@ const kPrograms = {
   lookSurface: [waterVert, lookSurfaceFrag],
   lookValue: [fullscreenVert, lookValueFrag],
   present: [fullscreenVert, presentFrag],
+  presentBelow: [skyDomeVert, presentBelowFrag],
   rainRing: [rainRingVert, rainRingFrag],
   rainStreak: [rainStreakVert, rainStreakFrag],
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
+  shadow: [solidVert, shadowFrag],
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
   solid: [solidVert, solidFrag],
   spray: [whitewaterVert, sprayFrag],
   tiles: [solidVert, tilesFrag],
   water: [waterVert, waterFrag],
+  waterBelow: [waterVert, waterBelowFrag],
 } as const;
 
 // Samplers default to low precision in GLSL ES, which would round elevations on phones.
@@ -90,17 +101,23 @@ const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].ma
 const kShared: Record<string, string> = {
   sky,
   bed,
+  below,
   caustics,
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,
   look_map: lookMap,
   sea_blend: seaBlend,
+  shadow,
   water_optics: waterOptics,
 };
 
+function withIncludes(source: string): string {
+  return source.replace(/#include <(\w+)>/g, (_, name: string) => withIncludes(kShared[name]!));
+}
+
 function expand(source: string): string {
-  return kPrecision + source.replace(/#include <(\w+)>/g, (_, name: string) => kShared[name]!);
+  return kPrecision + withIncludes(source);
 }
 
 export type Uniforms = Record<string, IUniform>;

@@ -94,6 +94,7 @@ export class Sky {
       u_inverse_projection: { value: new Matrix4() },
       u_camera_world: { value: new Matrix4() },
       u_has_disc: { value: true },
+      u_stars: { value: 0 },
       u_lowest: { value: -1 },
     };
     this.dome = new Mesh(makeFullscreenGeometry(), makeMaterial("skyDome", this.domeUniforms, { depthWrite: false }));
@@ -138,6 +139,7 @@ export class Sky {
     set(this.bakeUniforms, "u_window_light", window);
     this.uniforms["u_sun_sharp"]!.value = light.sharp;
     this.domeUniforms["u_has_disc"]!.value = !this.isRoom;
+    this.domeUniforms["u_stars"]!.value = light.stars;
     this.isStale = true;
   }
 

@@ -6,6 +6,7 @@ import type { PersonInfo } from "../codec/people";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import type { BodyPose } from "./bodies";
 import type { ViewedBox } from "./framing";
+import { diveWater, type DiveWater } from "./dive";
 import { elevationAtM, elevationRangeM } from "./height_field";
 import { Daylight } from "./light/daylight";
 import { darknessOf, type Light } from "./light/light";
@@ -174,6 +175,11 @@ export class WaterScene {
     if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM };
     const frame = this.frames.particles.newest();
     return frame && { ...view, sideM, widthM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
+  }
+
+  /** Returns the water into which the camera may dive; undefined: none is deep enough. */
+  diveWater(): DiveWater | undefined {
+    return this.greeting && diveWater(this.greeting, this.camera.near);
   }
 
   newestSurface(): SurfaceFrame | undefined {

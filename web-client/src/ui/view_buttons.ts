@@ -2,10 +2,11 @@
 import type { CameraViews, ViewName } from "../scene/camera_views";
 import { byId } from "./dom";
 
-const kViewNames: readonly ViewName[] = ["above", "side", "overview", "boat"];
+const kViewNames: readonly ViewName[] = ["above", "side", "overview", "below", "boat"];
 
 export class ViewButtons {
   private readonly boat = byId<HTMLButtonElement>("view-boat");
+  private readonly below = byId<HTMLButtonElement>("view-below");
 
   constructor(
     private readonly views: CameraViews,
@@ -18,6 +19,10 @@ export class ViewButtons {
 
   set hasBoats(hasBoats: boolean) {
     this.boat.hidden = !hasBoats;
+  }
+
+  set canDive(canDive: boolean) {
+    this.below.hidden = !canDive;
   }
 
   /** Leaves the boat's view when there is no boat to follow. */

@@ -25,6 +25,8 @@ export interface Light {
   cloud: Rgb;
   cloudLit: Rgb;
   cloudCover: number;
+  /** Brightness of the stars: 0 by day, 1 at night. */
+  stars: number;
   /** Light of the sky on surfaces that face up and down. */
   ambientUp: Rgb;
   ambientDown: Rgb;
@@ -146,6 +148,7 @@ export function lightAt(hour: number, storm: number): Light {
     cloudLit: map(sky.cloudLit, moon, (cloud, light) => cloud + 0.6 * light),
     ambientUp: map(sky.ambientUp, moon, (ambient, light) => ambient + 0.1 * light),
     cloudCover: mix(kFairCover, 1, wild),
+    stars: smoothstep(...kStarSines, sunDirection[1]),
   };
 }
 
@@ -162,12 +165,16 @@ export function indoors(light: Light): Light {
     sunDirection: kNoon,
     keyDirection: kNoon,
     sharp: mix(light.sharp, 1, lamps),
+    stars: 0,
     key: from("key", kLampKey),
     ambientUp: from("ambientUp", kLampAmbientUp),
     ambientDown: from("ambientDown", kLampAmbientDown),
     exposure: mix(light.exposure, 1, lamps),
   };
 }
+
+/** Stars are seen when the sun is low: none above the first sine of its altitude, all below the second. */
+const kStarSines = [-0.10, -0.26] as const;
 
 /** Lamps are lit when the sun is low: none above the first sine of its altitude, all below the second. */
 const kLampSines = [0.12, -0.06] as const;

@@ -93,7 +93,7 @@ export class LookRoom {
     const surface = field && new LookSurfacePass(greeting, { sky, field: field.texture, solids, quality, paint, loweredM: this.loweredM, colour: this.surfaceColour(value) });
     const colour = this.colours && (name === "speed" || name === "density") ? { of: name, colours: this.colours } : undefined;
     const spheres = this.particles && new LookParticlesPass(this.particles, solids, sky, colour);
-    this.passes = [value, this.particles, surface, spheres, new PresentPass(sky, solids)].filter((pass) => pass !== undefined);
+    this.passes = [value, this.particles, surface, spheres, new PresentPass(sky, solids, undefined)].filter((pass) => pass !== undefined);
   }
 
   get legend(): Legend | undefined {

@@ -9,6 +9,8 @@ export type Resource =
   | "field"
   /** Sunlight that the waves focus below them. */
   | "caustics"
+  /** What the sun or the moon sees of solids. */
+  | "shadow"
   /** Foam of the simulated water. */
   | "foam"
   /** Drops, foam and bubbles that the page adds. */

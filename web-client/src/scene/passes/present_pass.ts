@@ -1,10 +1,11 @@
-// The solids on the canvas where there is no water. Reads the solids, and the canvas's depth: after the water it shades the other pixels
+// The solids on the canvas where there is no surface of water; seen through water if the camera is in it. Reads the solids, and the canvas's depth: after the water it shades the other pixels
 // only. Writes the canvas.
 import { FullscreenPass } from "../fullscreen";
 import { makeMaterial } from "../shaders";
 import type { Sky } from "../sky";
 import type { Pass, Picture } from "./pass";
 import type { SolidsPass } from "./solids_pass";
+import type { WaterPass } from "./water_pass";
 
 export class PresentPass implements Pass {
   readonly name = "present";
@@ -12,12 +13,13 @@ export class PresentPass implements Pass {
   readonly writes = ["canvas"] as const;
   private readonly screen: FullscreenPass;
 
-  constructor(sky: Sky, solids: SolidsPass) {
+  /** `water` undefined: the room has no wave. */
+  constructor(sky: Sky, solids: SolidsPass, private readonly water: WaterPass | undefined) {
     this.screen = new FullscreenPass(makeMaterial("present", { ...sky.uniforms, u_behind: { value: solids.textures.color } }, { depthWrite: false }));
   }
 
   draw({ renderer }: Picture): void {
-    this.screen.render(renderer, null);
+    this.screen.render(renderer, null, this.water?.solidsBelow);
   }
 
   dispose(): void {

@@ -1,5 +1,5 @@
-// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the caustics, and the frames of the
-// boats.
+// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the caustics, the shadow, and the frames of
+// the boats.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
@@ -24,33 +24,37 @@ const kWetDepths = 0.08;
 
 export class SolidsPass implements Pass {
   readonly name = "solids";
-  readonly reads = ["frames", "field", "caustics"] as const;
+  readonly reads = ["frames", "field", "caustics", "shadow"] as const;
   readonly writes = ["solids"] as const;
   readonly surroundings: Surroundings;
   readonly target: WebGLRenderTarget;
   /** The uniform of the lamps: 0 by day, 1 at night. */
   readonly darkness = { value: 0 };
   private readonly haze = { value: 0 };
-  private readonly scene = new Scene();
+  readonly scene = new Scene();
+  /** Uniforms of caustics.glsl and shadow.glsl; undefined: there is none. */
+  readonly sunlight: { caustics: Uniforms | undefined; shadow: Uniforms | undefined };
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
 
-  /** `greeting` is read in every picture, because its wind changes. `field` undefined: the room has no wave. `caustics`: of caustics.glsl. */
+  /** `greeting` is read in every picture, because its wind changes. `field` undefined: the room has no wave. */
   constructor(
     private readonly greeting: GreetingInfo,
     private readonly sky: Sky,
     noise: Texture,
     field: Texture | undefined,
-    caustics: Uniforms | undefined,
+    sunlight: { caustics: Uniforms | undefined; shadow: Uniforms | undefined },
     private readonly bodies: FrameRing<BodiesState>,
     quality: Quality,
   ) {
     const { sideM } = greeting;
+    const { caustics, shadow } = (this.sunlight = sunlight);
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
       ...sky.uniforms,
       ...caustics,
+      ...shadow,
       u_camera_m: { value: new Vector3() },
       u_field: { value: field ?? null },
       u_noise: { value: noise },
@@ -60,9 +64,9 @@ export class SolidsPass implements Pass {
       u_haze_m: this.haze,
       u_darkness: this.darkness,
     };
-    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }) };
+    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) };
     this.material = makeMaterial("solid", uniforms, { defines });
-    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, haze: this.haze, solid: this.material, quality });
+    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, haze: this.haze, solid: this.material, quality });
     this.scene.add(sky.dome, ...this.surroundings.solids);
     if (greeting.hasBoats) {
       this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
@@ -107,10 +111,15 @@ export class SolidsPass implements Pass {
     return this.boats?.drawn() ?? [];
   }
 
-  draw({ renderer, camera, sizePx, shownS }: Picture): void {
+  /** Moves the boats to where they are at a time of the scene. */
+  place(shownS: number | undefined): void {
     const bodies = this.boats && shownS !== undefined ? this.bodies.around(shownS) : undefined;
     if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
     if (this.boats) this.buoys?.pushAside(this.boats.hulls());
+  }
+
+  draw({ renderer, camera, sizePx, shownS }: Picture): void {
+    this.place(shownS);
     this.target.setSize(sizePx.x, sizePx.y);
     this.haze.value = isIndoors(this.greeting) ? 0 : hazeM(this.greeting);
     this.sky.follow(camera);

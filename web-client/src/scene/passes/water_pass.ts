@@ -1,9 +1,11 @@
 // The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
-// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the sea around, and the solids, which are seen through the water
-// and in its mirror. Writes the canvas and its depth.
+// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the sea around, the shadow, and the solids, which are seen through the water
+// and in its mirror. Writes the canvas and its depth. A camera close to the surface sees it from below as well (below_surface.ts).
 import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
+import type { SurfaceFrame } from "../../net/messages";
+import { BelowSurface } from "../below_surface";
 import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
@@ -17,23 +19,45 @@ function hasSolids({ hasBoats, obstacles, beaches, setting }: GreetingInfo): boo
   return hasBoats || obstacles.length > 0 || beaches.length > 0 || setting === "pool";
 }
 
+export interface WaterTools {
+  sky: Sky;
+  noise: Texture;
+  quality: Quality;
+}
+
+export interface WaterInputs {
+  field: Texture;
+  /** Undefined: the room sends none. */
+  foam: Uniforms | undefined;
+  froth: Texture;
+  /** Undefined: no rings of rain. */
+  rain: Uniforms | undefined;
+  /** Returns the newest frame of the surface. */
+  newest: () => SurfaceFrame | undefined;
+}
+
 export class WaterPass implements Pass {
   readonly name = "water";
-  readonly reads = ["field", "foam", "froth", "rain", "sea", "solids"] as const;
+  readonly reads = ["field", "foam", "froth", "rain", "sea", "shadow", "solids"] as const;
   readonly writes = ["canvas"] as const;
   private readonly scene = new Scene();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
+  private readonly grid: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly underside: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly below: BelowSurface;
 
-  /** `foam` undefined: the room sends none. `rain` undefined: no rings of rain. */
-  constructor(greeting: GreetingInfo, sky: Sky, noise: Texture, field: Texture, foam: Uniforms | undefined, froth: Texture, rain: Uniforms | undefined, solids: SolidsPass, quality: Quality) {
+  constructor(greeting: GreetingInfo, solids: SolidsPass, { sky, noise, quality }: WaterTools, { field, foam, froth, rain, newest }: WaterInputs) {
     const bed = bedOf(greeting);
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
     const { edge } = solids.surroundings;
     const { color, depth } = solids.textures;
+    const { caustics, shadow } = solids.sunlight;
     this.uniforms = {
       ...sky.uniforms,
+      ...caustics,
+      ...shadow,
       u_field: { value: field },
       u_behind: { value: color },
       u_behind_depth: { value: depth },
@@ -57,9 +81,13 @@ export class WaterPass implements Pass {
     if (foam) defines["FOAM"] = 1;
     if (rain) defines["RAIN"] = 1;
     if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;
+    if (shadow) defines["SHADOWS"] = 1;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
-    this.meshes = [new Mesh(top, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }))];
+    this.grid = new Mesh(top, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }));
+    this.below = new BelowSurface(greeting.setting, this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest);
+    this.underside = new Mesh(top, this.below.surface);
+    this.meshes = [this.grid, this.underside];
     if (sides) this.meshes.push(new Mesh(sides, makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;
@@ -71,8 +99,15 @@ export class WaterPass implements Pass {
     (this.uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
     (this.uniforms["u_near_far_m"]!.value as Vector2).set(camera.near, camera.far);
     (this.uniforms["u_resolution"]!.value as Vector2).copy(sizePx);
+    const isBelow = (this.underside.visible = this.below.isSeen(camera));
+    this.grid.material.side = isBelow ? FrontSide : DoubleSide;
     renderer.setRenderTarget(null);
     renderer.render(this.scene, camera);
+  }
+
+  /** What is drawn where there is no surface, if the last picture shows the water from below. */
+  get solidsBelow(): RawShaderMaterial | undefined {
+    return this.underside.visible ? this.below.solids : undefined;
   }
 
   dispose(): void {
@@ -80,5 +115,6 @@ export class WaterPass implements Pass {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }
+    this.below.dispose();
   }
 }

@@ -12,6 +12,8 @@ export interface SurroundingsContext {
   field: Texture | undefined;
   /** Of caustics.glsl; undefined below the tier high, and where there is no wave. */
   caustics: Uniforms | undefined;
+  /** Of shadow.glsl; undefined: no map of shadows. */
+  shadow: Uniforms | undefined;
   /** u_haze_m of the shaders: distance at which haze has half of the light; 0 without haze. */
   haze: IUniform<number>;
   /** Shared by rocks, land and lawns; the caller disposes it. */

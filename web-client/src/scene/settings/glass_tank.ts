@@ -3,6 +3,7 @@
 import { CustomBlending, DoubleSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
+import { castsShadow } from "../light/casters";
 import { MeshBuilder, type Paint } from "../mesh_builder";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { SurroundingsContext } from "./context";
@@ -112,6 +113,7 @@ export class GlassTank {
     );
     this.stand = new Mesh(makeStandGeometry(size), solid);
     for (const mesh of [this.glass, this.stand]) mesh.frustumCulled = false;
+    castsShadow(this.stand);
     this.group.add(this.stand);
     this.setFloorM(greeting.wave ? -greeting.waterExtents.depthM : 0);
   }

@@ -2,6 +2,7 @@
 import { Group, Mesh, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
+import { castsShadow } from "../light/casters";
 import { MeshBuilder, type Paint, type Point } from "../mesh_builder";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { SurroundingsContext } from "./context";
@@ -102,13 +103,14 @@ export class PoolBasin {
   private readonly material: RawShaderMaterial;
   private readonly uniforms: Uniforms;
 
-  constructor(greeting: GreetingInfo, { sky, field, caustics, solid, quality }: SurroundingsContext) {
+  constructor(greeting: GreetingInfo, { sky, field, caustics, shadow, solid, quality }: SurroundingsContext) {
     const { sideM, widthM, waterExtents } = greeting;
     const { depthM } = waterExtents;
     this.geometries = makeBasinGeometries(sideM, widthM, depthM);
     this.uniforms = {
       ...sky.uniforms,
       ...caustics,
+      ...shadow,
       u_camera_m: { value: new Vector3() },
       u_field: { value: field ?? null },
       u_side_m: { value: sideM },
@@ -116,9 +118,10 @@ export class PoolBasin {
       u_level_m: { value: 0 },
       u_has_water: { value: field !== undefined },
     };
-    this.material = makeMaterial("tiles", this.uniforms, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }) } });
+    this.material = makeMaterial("tiles", this.uniforms, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
     for (const mesh of [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, solid)]) {
       mesh.frustumCulled = false;
+      castsShadow(mesh);
       this.group.add(mesh);
     }
     this.setFloorM(-depthM);

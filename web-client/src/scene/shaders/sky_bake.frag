@@ -1,4 +1,4 @@
-// Bakes the dome into one face of the cube: the sky's colours, its glow around the sun, and clouds that cover a share of it (light/light.ts).
+// Bakes the dome into one face of the cube, and in its alpha where stars shine through: the sky's colours, its glow around the sun, and clouds that cover a share of it (light/light.ts).
 
 in vec3 v_direction;
 uniform vec3 u_sun_direction;  // also below the horizon
@@ -54,8 +54,10 @@ void main() {
   // A closed layer shows its thickness.
   lit *= mix(1.0, 0.45 + 1.1 * smoothstep(0.25, 0.75, cover), heavy);
   cover = smoothstep(0.46 - 0.56 * heavy, 0.80 - 0.30 * heavy, cover) * smoothstep(0.02, 0.22, up);
-  sky = mix(sky, lit, mix(0.75, 0.95, heavy) * cover);
+  cover *= mix(0.75, 0.95, heavy);
+  sky = mix(sky, lit, cover);
   vec3 ground = u_ambient_up * vec3(0.95, 0.79, 0.66);
   sky = mix(sky, ground, smoothstep(0.0, -0.08, direction.y));
-  color = vec4(sky, 1.0);
+  // Stars shine through where there are no clouds, and not through the haze at the horizon.
+  color = vec4(sky, (1.0 - cover) * smoothstep(0.0, 0.22, direction.y));
 }

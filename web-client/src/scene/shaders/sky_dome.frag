@@ -1,9 +1,38 @@
+// The sky with what is sharp in it: the sun or the moon, and stars.
 #include <sky>
+#include <cell_hash>
 
 in vec3 v_direction;
 uniform bool u_has_disc;
+uniform float u_stars;   // their brightness
 uniform float u_lowest;  // the sky is hidden below directions of this height
 layout(location = 0) out vec4 color;
+
+const float kStarCells = 34.0;    // along each side of a cube's face
+const float kStarsPerCell = 0.62;
+const float kStarRad = 0.0011;
+
+// A star in some of the cells of a cube's face. No smaller than a pixel, and dimmer instead, so that it does not flicker as the view turns.
+vec3 starLight(vec3 direction, float pixel_rad) {
+  vec3 size = abs(direction);
+  float side = max(size.x, max(size.y, size.z));
+  int axis = side == size.x ? 0 : side == size.y ? 1 : 2;
+  vec2 face = (axis == 0 ? direction.yz : axis == 1 ? direction.zx : direction.xy) / side;
+  float toward = direction[axis] > 0.0 ? 3.0 : 0.0;
+  vec2 at = (0.5 * face + 0.5) * kStarCells;
+  vec2 cell = floor(at) + 71.0 * (float(axis) + toward);
+  if (cellHash(cell) > kStarsPerCell) return vec3(0.0);
+  vec2 place = 0.15 + 0.7 * vec2(cellHash(cell + 17.0), cellHash(cell + 31.0));
+  // Angle to the star; cells are smaller toward the corners of a face.
+  float away_rad = length(fract(at) - place) * (2.0 / kStarCells) * side * side;
+  float radius_rad = max(kStarRad, 1.1 * pixel_rad);
+  float shown = 1.0 - smoothstep(0.0, radius_rad, away_rad);
+  float bright = cellHash(cell + 47.0);
+  bright *= bright;
+  bright = 0.03 + 0.9 * bright * bright * bright;
+  vec3 tint = mix(vec3(1.0, 0.82, 0.62), vec3(0.72, 0.84, 1.0), cellHash(cell + 59.0));
+  return tint * (bright * shown * kStarRad * kStarRad / (radius_rad * radius_rad));
+}
 
 void main() {
   vec3 direction = normalize(v_direction);
@@ -11,5 +40,8 @@ void main() {
   if (direction.y < u_lowest) return;
   float sun = u_has_disc ? 12.0 * u_sun_sharp : 0.0;
   sun *= smoothstep(0.99988, 0.99994, dot(direction, u_sun_direction));
-  color = vec4(skyLight(direction) + u_sun_light * sun, 1.0);
+  vec4 sky = texture(u_sky, direction);
+  sky.rgb += u_sun_light * sun;
+  if (u_stars > 0.0) sky.rgb += u_stars * sky.a * starLight(direction, 0.6 * length(fwidth(direction)));
+  color = vec4(sky.rgb, 1.0);
 }

@@ -15,6 +15,9 @@ uniform float u_darkness; // 0 by day, 1 at night
 #ifdef CAUSTICS
 #include <caustics>
 #endif
+#ifdef SHADOWS
+#include <shadow>
+#endif
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -31,13 +34,23 @@ void main() {
     albedo *= 1.0 - 0.42 * min(grain, 1.0) * wet;
   }
   float sun = max(dot(normal, u_sun_direction), 0.0);
+  vec3 lit_at = v_world;
+  vec3 lit_normal = normal;
+  float soft_m = 0.0;
 #ifdef CAUSTICS
   if (v_world.y < 0.0) {
     // Sunlight on this point crossed the surface further toward the sun and was refracted to a steeper path; some was reflected.
     vec3 level = refract(-u_sun_direction, vec3(0.0, 1.0, 0.0), 0.75);
     vec2 crossed = v_world.xz - level.xz / level.y * v_world.y;
     sun *= 0.96 * mix(1.0, focusedLight(crossed, -v_world.y), 0.85 * u_sun_sharp);
+    lit_at = vec3(crossed.x, 0.0, crossed.y);
+    lit_normal = vec3(0.0, 1.0, 0.0);
+    // Waves scatter the light on its way down.
+    soft_m = 0.12 * -v_world.y;
   }
+#endif
+#ifdef SHADOWS
+  if (sun > 0.0) sun *= sunShare(lit_at, lit_normal, soft_m);
 #endif
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
   // Lamps are painted brighter than white.

@@ -6,6 +6,9 @@
 #ifdef CAUSTICS
 #include <caustics>
 #endif
+#ifdef SHADOWS
+#include <shadow>
+#endif
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -59,11 +62,18 @@ void main() {
     vec2 crossed = v_world.xz + toward_sun.xz / toward_sun.y * deep_m;
     vec2 over_m = u_half_m - abs(crossed);
     float lit = smoothstep(-0.1, 0.1, min(over_m.x, over_m.y) / (0.2 * deep_m + 0.02 * u_side_m) + 0.05);
+#ifdef SHADOWS
+    // What is above the water; the walls' own shade is softer than the map's.
+    lit *= sunShare(vec3(crossed.x, u_level_m, crossed.y), vec3(0.0, 1.0, 0.0), 0.12 * deep_m);
+#endif
     // Walls take part of the light that the water scatters.
     sun = lit * (max(dot(normal, toward_sun), 0.0) * 0.9 + 0.1) * 0.96 * mix(1.0, focusedLight(crossed, deep_m), 0.88 * u_sun_sharp);
     ambient *= vec3(0.75, 0.95, 1.0) * (1.0 - 0.25 * smoothstep(0.0, 1.0, deep_m / (0.12 * u_side_m)));
   } else {
     sun = max(dot(normal, toward_sun), 0.0);
+#ifdef SHADOWS
+    if (sun > 0.0) sun *= sunShare(v_world, normal, 0.0);
+#endif
     // The rim's shade on the inner walls.
     if (steep.y < 0.5) ambient *= 0.85;
   }

@@ -46,6 +46,9 @@ uniform float u_rain_share;
 uniform sampler2D u_froth;
 uniform sampler2D u_noise;
 uniform float u_lace_m;
+#ifdef SHADOWS
+#include <shadow>
+#endif
 layout(location = 0) out vec4 color;
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
@@ -224,8 +227,14 @@ void main() {
   vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = waterScattered(lifted) * u_water_light;
+  float sunlit_share = 1.0;
+#ifdef SHADOWS
+  sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.12);
+  // The sky still lights the water in the shade, but less of it near what casts the shadow.
+  scattered *= mix(0.65 * u_ambient_up.g / (u_ambient_up.g + 1.25 * u_sun_direction.y * u_sun_light.g), 1.0, sunlit_share);
+#endif
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
-  against_sun *= against_sun;
+  against_sun *= against_sun * sunlit_share;
   scattered += vec3(0.02, 0.289, 0.324) * u_sun_light * against_sun * max(v_top_m, 0.0) * 1.6;
   vec3 under = behind * passed + scattered * (1.0 - fading(vec3(kScatteringPerM * path_m)).x);
 
@@ -266,7 +275,13 @@ void main() {
   }
 #endif
   float at_sun = dot(mirrored, u_sun_direction);
-  if (at_sun > 0.95) water += u_sun_light * u_sun_sharp * (pow(at_sun, 1500.0) * 13.0 + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
+  float narrow = 1500.0;
+#ifndef PLAIN
+  // A glint narrower than the turn of the mirror over a pixel would flicker: it is wider and dimmer instead (after Kaplanyan et al. 2016).
+  vec3 turn = fwidth(mirrored);
+  narrow /= 1.0 + narrow * min(0.1 * dot(turn, turn), 0.004);
+#endif
+  if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
 #ifndef SKIRT
   vec2 place = v_world.xz / u_side_m + 0.5;
@@ -274,7 +289,9 @@ void main() {
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
 #endif
-    foam = textureLod(u_froth, place, 0.0).r;
+    vec2 foam_shade = textureLod(u_froth, place, 0.0).rg;
+    foam = foam_shade.r;
+    water *= 1.0 - foam_shade.g;
 #ifdef FOAM
     foam = max(foam, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
 #endif
@@ -298,7 +315,7 @@ void main() {
     float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
     water = mix(water, vec3(0.16, 0.42, 0.46) * u_water_light, 0.45 * foam);
-    float sunlit = clamp(dot(normal, u_sun_direction), 0.0, 1.0);
+    float sunlit = sunlit_share * clamp(dot(normal, u_sun_direction), 0.0, 1.0);
     vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.80 + 0.28 * lace);
     water = mix(water, froth, 0.94 * white);
   }

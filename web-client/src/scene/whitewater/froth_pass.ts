@@ -1,6 +1,6 @@
 // Foam as a texture over the square, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
-// from above: 0 none, 1 white; u along x, v along z.
-import { ClampToEdgeWrapping, CustomBlending, LinearFilter, MaxEquation, OneFactor, RedFormat, UnsignedByteType, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+// from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (passes/flat_shadow_pass.ts).
+import { ClampToEdgeWrapping, CustomBlending, LinearFilter, MaxEquation, OneFactor, RGFormat, UnsignedByteType, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../passes/pass";
 import { makeMaterial } from "../shaders";
@@ -10,7 +10,7 @@ export class FrothPass implements Pass {
   readonly name = "froth";
   readonly reads = ["whitewater"] as const;
   readonly writes = ["froth"] as const;
-  private readonly target: WebGLRenderTarget;
+  readonly target: WebGLRenderTarget;
   private readonly material: RawShaderMaterial;
 
   /** `texelsCount`: along each side of the square. */
@@ -20,7 +20,7 @@ export class FrothPass implements Pass {
     texelsCount: number,
   ) {
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
-      format: RedFormat,
+      format: RGFormat,
       type: UnsignedByteType,
       minFilter: LinearFilter,
       magFilter: LinearFilter,
