@@ -88,6 +88,11 @@ describe("the light", () => {
       }
   });
 
+  it("has stars in a fair night only", () => {
+    expect(lightAt(0, 0).stars).toBe(1);
+    for (const light of [lightAt(12, 0), lightAt(18.35, 0), lightAt(0, 1), indoors(lightAt(0, 0))]) expect(light.stars).toBe(0);
+  });
+
   it("in a room does not get darker than its lamps", () => {
     expect(Math.min(...kHours.map((hour) => lightOnWhite(indoors(lightAt(hour, 0)))))).toBeGreaterThan(0.3);
     expect(indoors(lightAt(12, 0)).ambientUp).toEqual(lightAt(12, 0).ambientUp);

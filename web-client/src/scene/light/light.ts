@@ -148,7 +148,7 @@ export function lightAt(hour: number, storm: number): Light {
     cloudLit: map(sky.cloudLit, moon, (cloud, light) => cloud + 0.6 * light),
     ambientUp: map(sky.ambientUp, moon, (ambient, light) => ambient + 0.1 * light),
     cloudCover: mix(kFairCover, 1, wild),
-    stars: smoothstep(...kStarSines, sunDirection[1]),
+    stars: smoothstep(...kStarSines, sunDirection[1]) * (1 - wild),
   };
 }
 

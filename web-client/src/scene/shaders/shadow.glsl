@@ -20,7 +20,7 @@ float sunShare(vec3 world, vec3 normal, float soft_m) {
   vec3 across = vec3(u_shadow_matrix[0].x, u_shadow_matrix[1].x, u_shadow_matrix[2].x);
   vec3 upward = vec3(u_shadow_matrix[0].y, u_shadow_matrix[1].y, u_shadow_matrix[2].y);
   vec3 away = vec3(u_shadow_matrix[0].z, u_shadow_matrix[1].z, u_shadow_matrix[2].z);
-  float facing = max(-dot(normal, normalize(away)), 0.15);
+  float facing = max(-dot(normal, normalize(away)), 0.06);
   vec2 slope = vec2(dot(normal, across) / dot(across, across), dot(normal, upward) / dot(upward, upward)) * length(away) / facing;
   float sum = 0.0;
   for (int i = 0; i < kShadowSamples; ++i) {

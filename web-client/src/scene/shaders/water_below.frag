@@ -15,6 +15,14 @@ uniform vec2 u_resolution;
 #ifdef OPEN_SEA
 in vec2 v_share_away;
 #endif
+#ifdef FOAM
+uniform sampler2D u_foam_from;
+uniform sampler2D u_foam_to;
+uniform float u_foam_mix;
+#endif
+uniform sampler2D u_froth;
+uniform sampler2D u_noise;
+uniform float u_lace_m;
 layout(location = 0) out vec4 color;
 
 const float kWaterPerAir = 1.0 / 0.75;
@@ -37,6 +45,21 @@ float fresnelBelow(float facing) {
   float across = (kWaterPerAir * facing - leaving) / (kWaterPerAir * facing + leaving);
   float along = (kWaterPerAir * leaving - facing) / (kWaterPerAir * leaving + facing);
   return 0.5 * (across * across + along * along);
+}
+
+// Share of the surface that is covered by foam, as in water.frag.
+float foamCover() {
+  vec2 place = v_world.xz / u_side_m + 0.5;
+  float foam = textureLod(u_froth, place, 0.0).r;
+#ifdef FOAM
+  foam = max(foam, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
+#endif
+#ifdef OPEN_SEA
+  foam *= v_share_away.x;
+#endif
+  if (foam < 0.01) return 0.0;
+  float strength = min(1.1 * foam * sqrt(foam) + 0.1, 1.0);
+  return smoothstep(1.0 - strength, 1.16 - 0.7 * strength, texture(u_noise, v_world.xz / u_lace_m).r) * smoothstep(0.0, 0.35, foam);
 }
 
 // Place on the screen, and whether it is there.
@@ -106,5 +129,7 @@ void main() {
   vec3 light = vec3(0.0);
   if (fresnel < 1.0) light = (1.0 - fresnel) * airLight(refract(ray, -up, kWaterPerAir));
   if (fresnel > 0.02) light += fresnel * mirroredLight(reflect(ray, -up));
+  // Foam lets through a part of the light that falls on it.
+  light = mix(light, vec3(0.42, 0.50, 0.52) * (0.45 * u_sun_below + u_ambient_up), 0.85 * foamCover());
   color = vec4(toDisplay(throughWater(light, u_camera_m, ray, distance_m, shaftsAlong(u_camera_m, ray, distance_m))), 1.0);
 }
