@@ -49,7 +49,8 @@ export class RainStreaksPass implements Pass {
   draw({ renderer, camera, sizePx, shownS }: Picture): void {
     const { wind } = this.greeting;
     const count = Math.round(rainShare(wind) * this.streaksCount);
-    if (!wind || shownS === undefined || count === 0) return;
+    // Below the still water there is no rain in the air.
+    if (!wind || shownS === undefined || count === 0 || camera.position.y < 0) return;
     const { uniforms } = this.lines.material;
     const angle = (wind.directionDeg * Math.PI) / 180;
     const blowsMps = kWindShare * wind.levelRatio * wind.speedMps;
