@@ -21,7 +21,8 @@ import { RoomPanel } from "../ui/room_panel";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
 import { CommandSender } from "./command_sender";
-import { Display, nowS } from "./display";
+import { Display } from "./display";
+import { nowS } from "./picture_clock";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water goes on at another fidelity.", other: "Something happened in the room." };
@@ -77,9 +78,10 @@ export class App {
     this.answerListeners = [this.parameters, this.room, this.boats];
   }
 
-  start(): void {
+  /** `isDrawing`: at display rate. */
+  start(isDrawing: boolean): void {
     this.hud.connection(this.state);
-    this.display.start();
+    this.display.start(isDrawing);
     this.client.start(this.url, this.identity);
   }
 

@@ -2,6 +2,7 @@
 import type { WebGLRenderer } from "three";
 
 import type { GreetingInfo } from "../codec/greeting";
+import type { FrameLayer } from "../codec/layers";
 import type { Frame } from "../net/messages";
 import { CameraViews, type Followed } from "../scene/camera_views";
 import type { PixelRect } from "../scene/framing";
@@ -10,8 +11,8 @@ import type { ChosenQuality } from "../scene/quality";
 import { WaterScene } from "../scene/water_scene";
 import { DisplayLoop } from "./display_loop";
 import { PageLayout } from "./page_layout";
+import { nowS } from "./picture_clock";
 
-export const nowS = (): number => performance.now() / 1000;
 const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export interface DisplayHooks {
@@ -31,6 +32,8 @@ export class Display {
   readonly views: CameraViews;
   /** The parts of the page that panels cover. */
   covered: readonly PixelRect[] = [];
+  /** Chooses the frames that are taken; the others are dropped. */
+  accepts: (frame: Frame) => boolean = () => true;
   private readonly governor: FrameGovernor;
   private readonly layout: PageLayout;
   private readonly loop: DisplayLoop;
@@ -50,7 +53,10 @@ export class Display {
     this.governor = new FrameGovernor(Math.min(window.devicePixelRatio || 1, quality.maxPixelRatio), quality.adaptive);
     this.layout = new PageLayout(() => this.resize());
     this.loop = new DisplayLoop(renderer, {
-      draw: (frameMs) => this.draw(frameMs),
+      draw: (frameMs) => {
+        if (this.governor.note(frameMs)) this.resize();
+        this.draw();
+      },
       measured: (framesPerS) =>
         hooks.measured(framesPerS, this.scene.clock.delayS(), [quality.remark, this.governor.remark()].filter(Boolean).join("; ")),
       contextRestored: () => this.scene.contextRestored(),
@@ -65,9 +71,15 @@ export class Display {
     return this.governor.pixelRatio;
   }
 
-  start(): void {
+  /** The layers of frames that the room sends. */
+  get layers(): FrameLayer[] {
+    return (this.greeting?.layers ?? []).filter((layer) => layer !== "diagnostics");
+  }
+
+  /** `isRunning`: draws at display rate; otherwise only when draw() is called. */
+  start(isRunning: boolean): void {
     this.resize();
-    this.loop.start();
+    if (isRunning) this.loop.start();
   }
 
   /** The camera keeps its view if only the scene's parameters changed. */
@@ -83,6 +95,7 @@ export class Display {
   }
 
   take(frame: Frame): void {
+    if (!this.accepts(frame)) return this.hooks.release(frame);
     this.scene.take(frame, nowS());
     if (this.isBoxKnown) return;
     const box = this.scene.viewedBox();
@@ -125,8 +138,8 @@ export class Display {
     return Object.fromEntries([...sumsMs].map(([name, sumMs]) => [name, sumMs / picturesCount]));
   }
 
-  private draw(frameMs: number): void {
-    if (this.governor.note(frameMs)) this.resize();
+  /** Draws one picture at the time of the pictures' clock. */
+  draw(): void {
     const now = nowS();
     this.views.update(now, this.hooks.update(now));
     this.scene.render(now);
