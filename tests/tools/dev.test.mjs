@@ -6,7 +6,7 @@ import { afterEach, beforeEach, describe, it } from "node:test";
 
 import { repository, Workshop } from "./workshop.mjs";
 
-const COMMANDS = ["run", "test", "build", "bench", "study", "charts", "animate", "fuzz", "fmt", "lint", "bundle", "clean"];
+const COMMANDS = ["run", "test", "build", "bench", "study", "charts", "gallery", "fuzz", "fmt", "lint", "bundle", "clean"];
 
 describe("./dev", () => {
   let shop;
@@ -28,7 +28,7 @@ describe("./dev", () => {
   });
 
   it("refuses unknown commands, parts, options and presets with one line and exit code 2", () => {
-    for (const args of [["swim"], ["test", "everything"], ["build", "--fast"], ["run", "--preset", "quick"], ["clean", "x"], ["fmt", "-x"], ["bundle", "-x"], ["fuzz", "water"], ["charts"], ["charts", "a", "b"], ["animate", "harbor"]]) {
+    for (const args of [["swim"], ["test", "everything"], ["build", "--fast"], ["run", "--preset", "quick"], ["clean", "x"], ["fmt", "-x"], ["bundle", "-x"], ["fuzz", "water"], ["charts"], ["charts", "a", "b"], ["gallery", "harbor"]]) {
       const refused = shop.dev(args);
       assert.equal(refused.code, 2, args.join(" "));
       assert.match(refused.stderr, /^dev: .*\n$/, args.join(" "));

@@ -79,8 +79,8 @@ const kPicturesPerS = (film) => kTickRateHz / film.ticksPerPicture;
 const gallery = (path) => join(repository, "build/gallery", path);
 
 /** Returns what the pictures depend on. */
-function digest(film) {
-  const hash = createHash("sha256").update(JSON.stringify(film));
+function digest(film, quality) {
+  const hash = createHash("sha256").update(JSON.stringify([film, quality]));
   const add = (folder) => {
     for (const entry of readdirSync(folder, { withFileTypes: true }).sort((a, b) => (a.name < b.name ? -1 : 1)))
       if (entry.isDirectory()) add(join(folder, entry.name));
@@ -97,10 +97,10 @@ function between({ from, to = from }, share) {
 }
 
 /** Shoots the pictures of a film that are not there yet. @returns {Promise<string>} their folder */
-async function shoot(context, film) {
+async function shoot(context, film, quality) {
   const folder = gallery(film.name);
   const stamp = join(folder, "made-of");
-  const wanted = digest(film);
+  const wanted = digest(film, quality);
   if (!existsSync(stamp) || readFileSync(stamp, "utf8") !== wanted) rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
   writeFileSync(stamp, wanted);
@@ -108,13 +108,13 @@ async function shoot(context, film) {
   for (const segment of film.segments) {
     const paths = Array.from({ length: segment.picturesCount }, (_, n) => join(folder, `${String(first + n).padStart(4, "0")}.png`));
     first += segment.picturesCount;
-    if (!paths.every((path) => existsSync(path))) await shootSegment(context, film, segment, paths);
+    if (!paths.every((path) => existsSync(path))) await shootSegment(context, { ...film, quality }, segment, paths);
   }
   return folder;
 }
 
-async function shootSegment(context, { size, ticksPerPicture: stride }, { scene, light, startTick, commands = [], ...camera }, paths) {
-  const page = await DrivenPage.open(context, { scene, quality: "high", light, size });
+async function shootSegment(context, { size, quality, ticksPerPicture: stride }, { scene, light, startTick, commands = [], ...camera }, paths) {
+  const page = await DrivenPage.open(context, { scene, quality, light, size });
   try {
     const before = startTick - stride;
     await page.skipTo(before % stride);
@@ -144,13 +144,13 @@ const encode = (film, folder, options, path) => {
 };
 
 /** Makes the animated picture of the README. @returns {Promise<string>} its path and size */
-export async function shootAnimation(context) {
-  const folder = await shoot(context, kAnimation);
+export async function shootAnimation(context, qualities) {
+  const folder = await shoot(context, kAnimation, qualities.at(-1));
   return encode(kAnimation, folder, ["-c:v", "libwebp_anim", "-quality", "55", "-compression_level", "6", "-loop", "0"], join(repository, "web-client/screenshots/harbor.webp"));
 }
 
 /** Makes the tour, 20 s of video. @returns {Promise<string>} its path and size */
-export async function shootTour(context) {
-  const folder = await shoot(context, kTour);
+export async function shootTour(context, qualities) {
+  const folder = await shoot(context, kTour, qualities.at(-1));
   return encode(kTour, folder, ["-c:v", "libx264", "-crf", "20", "-preset", "slow", "-pix_fmt", "yuv420p", "-movflags", "+faststart"], gallery("tour.mp4"));
 }

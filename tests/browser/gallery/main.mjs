@@ -9,7 +9,7 @@ import { described } from "./compare.mjs";
 import { shootAnimation, shootTour } from "./films.mjs";
 import { check, keptPath, kMade, differencePath, madePath, makePictures, write } from "./pictures.mjs";
 import { writeSheet } from "./sheet.mjs";
-import { lowLightsOf, shippedScenes } from "./shots.mjs";
+import { lightsOf, shippedScenes } from "./shots.mjs";
 
 const kUsage = "usage: main.mjs [pictures|animation|tour|all] [--scenes A,B] [--lights NOON,DUSK] [--qualities low,high] [--update]";
 
@@ -34,7 +34,7 @@ async function shootPictures(context, { scenes, lights, qualities, isUpdate }) {
   const counts = { made: 0, failed: 0, updated: 0 };
   for (const quality of qualities)
     for (const scene of scenes)
-      for await (const { name, file } of makePictures(context, { scene, quality, lights: lights ?? (quality === "low" ? lowLightsOf(scene) : undefined) })) {
+      for await (const { name, file } of makePictures(context, { scene, quality, lights: lights ?? lightsOf(scene, quality) })) {
         ++counts.made;
         const difference = await check(scratch, name, file);
         console.log(`${name}: ${difference ? described(difference) : "none is kept"}`);
@@ -67,8 +67,8 @@ try {
     if ((await shootPictures(context, options)) > 0) process.exitCode = 1;
     for (const path of await writeSheet(context)) console.log(path);
   }
-  if (does("animation")) console.log(await shootAnimation(context));
-  if (does("tour")) console.log(await shootTour(context));
+  if (does("animation")) console.log(await shootAnimation(context, options.qualities));
+  if (does("tour")) console.log(await shootTour(context, options.qualities));
 } finally {
   await browser.close();
 }

@@ -38,7 +38,7 @@ const kShots = {
 export const kSize = { width: 400, height: 225 };
 /** White water lives for some seconds: it is computed over this many ticks before the picture, in steps of kStride. */
 const kHistoryTicks = 120;
-const kStride = 4;
+const kStride = 6;
 
 /** Returns the names of the shipped scenes. */
 export function shippedScenes() {
@@ -58,5 +58,9 @@ export async function setUp(page, { tick, camera }) {
   if (camera) await page.look(camera);
 }
 
-/** Returns the lights of a scene's pictures at low quality, which the test part `browser` makes; at high quality there are all. */
-export const lowLightsOf = (scene) => (scene === "harbor" ? undefined : ["noon"]);
+/** At high quality, and in the test part `browser`, only these scenes are shown in every light; the others at noon. */
+const kInEveryLight = ["harbor"];
+
+/** Returns the lights of a scene's pictures; undefined: all. */
+export const fewLightsOf = (scene) => (kInEveryLight.includes(scene) ? undefined : ["noon"]);
+export const lightsOf = (scene, quality) => (quality === "low" ? undefined : fewLightsOf(scene));
