@@ -4,6 +4,7 @@ import { basename, dirname, join, relative } from "node:path";
 import { pathToFileURL } from "node:url";
 
 import { differencePath, keptPath, kMade } from "./pictures.mjs";
+import { sceneOf } from "./shots.mjs";
 
 const kColumnsCount = 5;
 const kColumnPx = 404;
@@ -22,8 +23,11 @@ function figure(folder, name) {
 export async function writeSheet(context) {
   const folder = dirname(kMade);
   const parts = readdirSync(kMade).sort().reverse().map((quality) => {
-    const names = readdirSync(join(kMade, quality)).filter((file) => file.endsWith(".webp")).sort();
-    return `<h2>${quality} quality, ${names.length} pictures</h2><main>${names.map((file) => figure(folder, `${quality}/${file.slice(0, -".webp".length)}`)).join("\n")}</main>`;
+    const names = readdirSync(join(kMade, quality)).filter((file) => file.endsWith(".webp")).map((file) => file.slice(0, -".webp".length)).sort();
+    const rows = new Map();
+    for (const name of names) rows.set(sceneOf(name), [...(rows.get(sceneOf(name)) ?? []), name]);
+    const row = (scene) => `<main>${rows.get(scene).map((name) => figure(folder, `${quality}/${name}`)).join("\n")}</main>`;
+    return `<h2>${quality} quality, ${names.length} pictures</h2>${[...rows.keys()].sort().map(row).join("\n")}`;
   });
   const html = join(folder, "index.html");
   writeFileSync(html, `<!doctype html><meta charset="utf-8"><title>Spindrift gallery</title><style>${kStyle}</style>${parts.join("")}`);

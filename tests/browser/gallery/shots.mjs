@@ -48,6 +48,11 @@ export function shippedScenes() {
     .sort();
 }
 
+/** Returns the scene of a picture named SCENE_LIGHT; a scene's name may begin with another's. */
+export function sceneOf(name) {
+  return shippedScenes().filter((scene) => name.startsWith(`${scene}_`)).sort((a, b) => b.length - a.length)[0];
+}
+
 export const shotOf = (scene) => kShots[scene] ?? kDefault;
 
 /** Brings a scene to the tick of its picture and places the camera. @param {import("./driven_page.mjs").DrivenPage} page */
