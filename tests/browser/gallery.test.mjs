@@ -13,7 +13,7 @@ import { DrivenPage } from "./gallery/driven_page.mjs";
 import { check, differencePath, kFile, keptPath, kKept, madePath, makePictures, nameOf } from "./gallery/pictures.mjs";
 import { fewLightsOf, kSize, sceneOf, setUp, shippedScenes, shotOf } from "./gallery/shots.mjs";
 
-const kWaitMs = 240_000;
+const kWaitMs = 600_000;
 const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 
 /** Returns a picture with its red, green and blue multiplied. */

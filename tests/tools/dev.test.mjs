@@ -104,6 +104,18 @@ describe("./dev", () => {
     for (const version of ["v18.20.4", "v20.18.3", "v21.7.3", "v22.11.0", "v23.3.0", "", "nonsense"]) assert.ok(!accepts(version), version);
   });
 
+  it("installs a browser for pictures, and for films what encodes them", () => {
+    shop.missing("chromium ffmpeg");
+    const pictures = shop.dev(["gallery", "--scenes", "harbor"]);
+    assert.equal(pictures.code, 0, pictures.stderr);
+    assert.match(pictures.calls.join("\n"), /^apt-get install .*--no-install-recommends chromium$/m);
+    assert.ok(pictures.calls.includes("npm ci --prefix tests/browser --no-fund --no-audit"), pictures.calls.join("\n"));
+    shop.missing("ffmpeg");
+    const film = shop.dev(["gallery", "tour", "--qualities", "low"]);
+    assert.equal(film.code, 0, film.stderr);
+    assert.match(film.calls.join("\n"), /^apt-get install .*--no-install-recommends ffmpeg$/m);
+  });
+
   it("shows the end of the log and its path when a step fails", () => {
     shop.breakCompiler();
     const failed = shop.dev(["run"]);
