@@ -14,7 +14,7 @@ declare -rA package_groups=(
   [fuzz]="clang libclang-rt-dev"
   [bundle]="patchelf binutils"
   [charts]="python3 python3-matplotlib"
-  [animation]="webp"
+  [video]="ffmpeg"
   [npm]="nodejs npm"
   [wasm]="clang lld libc++-14-dev-wasm32"
 )
@@ -29,7 +29,7 @@ declare -rA package_reasons=(
   [fuzz]="fuzzing"
   [bundle]="packing libraries"
   [charts]="drawing charts"
-  [animation]="the animated picture"
+  [video]="the animated picture and the tour"
   [npm]="fetching the web client's libraries and a newer Node"
   [wasm]="compiling the page's reader of frames to WebAssembly"
 )

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# bench, study, charts, animate, fmt, lint, clean. Sourced by ./dev.
+# bench, study, charts, fmt, lint, clean. Sourced by ./dev.
 
 command_bench() {
   if wants_help "$@"; then
@@ -51,32 +51,6 @@ TEXT
   local python=/usr/bin/python3
   [[ -x "$python" ]] || python=python3
   exec "$python" "$root/server/study/draw_charts.py" "$1"
-}
-
-command_animate() {
-  if wants_help "$@"; then
-    cat <<'TEXT'
-usage: ./dev animate
-
-Shoots web-client/screenshots/harbor.webp, the animated picture of the README: the page in Chromium, at even steps of simulated
-time (minutes without a GPU).
-TEXT
-    return
-  fi
-  (($# == 0)) || fail 2 "animate takes nothing; see ./dev animate --help"
-  need_packages server driver browser animation
-  lock_build
-  need_web
-  build_server release spindrift
-  build_web
-  npm_install tests/browser browser
-  unlock_build
-  local folder=build/animation picture=web-client/screenshots/harbor.webp
-  rm -rf "$folder"
-  step animate "shooting the pictures" env "SPINDRIFT_BINARY=$(binary_of release)" node tests/browser/animate.mjs "$folder"
-  # 67 ms: 4 ticks of 60 per second.
-  img2webp -loop 0 -lossy -q 55 -m 4 -d 67 "$folder"/*.png -o "$picture" >build/logs/img2webp.log
-  say "the picture: $picture ($(du --human-readable --apparent-size "$picture" | cut -f 1))"
 }
 
 # Our C++ sources, committed or new. Without shaders/shared: one of its two compilers reads its blocks as GLSL.

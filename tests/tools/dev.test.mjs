@@ -6,7 +6,7 @@ import { afterEach, beforeEach, describe, it } from "node:test";
 
 import { repository, Workshop } from "./workshop.mjs";
 
-const COMMANDS = ["run", "test", "build", "bench", "study", "charts", "animate", "fuzz", "fmt", "lint", "bundle", "clean"];
+const COMMANDS = ["run", "test", "build", "bench", "study", "charts", "gallery", "fuzz", "fmt", "lint", "bundle", "clean"];
 
 describe("./dev", () => {
   let shop;
@@ -28,7 +28,7 @@ describe("./dev", () => {
   });
 
   it("refuses unknown commands, parts, options and presets with one line and exit code 2", () => {
-    for (const args of [["swim"], ["test", "everything"], ["build", "--fast"], ["run", "--preset", "quick"], ["clean", "x"], ["fmt", "-x"], ["bundle", "-x"], ["fuzz", "water"], ["charts"], ["charts", "a", "b"], ["animate", "harbor"]]) {
+    for (const args of [["swim"], ["test", "everything"], ["build", "--fast"], ["run", "--preset", "quick"], ["clean", "x"], ["fmt", "-x"], ["bundle", "-x"], ["fuzz", "water"], ["charts"], ["charts", "a", "b"], ["gallery", "harbor"]]) {
       const refused = shop.dev(args);
       assert.equal(refused.code, 2, args.join(" "));
       assert.match(refused.stderr, /^dev: .*\n$/, args.join(" "));
@@ -102,6 +102,18 @@ describe("./dev", () => {
       spawnSync("bash", ["-c", 'source "$1"; node_is_new_enough "$2"', "bash", join(repository, ".ci/lib/node.sh"), version]).status === 0;
     for (const version of ["v20.19.0", "v20.20.2", "v22.12.0", "v24.0.0", "v26.1.0"]) assert.ok(accepts(version), version);
     for (const version of ["v18.20.4", "v20.18.3", "v21.7.3", "v22.11.0", "v23.3.0", "", "nonsense"]) assert.ok(!accepts(version), version);
+  });
+
+  it("installs a browser for pictures, and for films what encodes them", () => {
+    shop.missing("chromium ffmpeg");
+    const pictures = shop.dev(["gallery", "--scenes", "harbor"]);
+    assert.equal(pictures.code, 0, pictures.stderr);
+    assert.match(pictures.calls.join("\n"), /^apt-get install .*--no-install-recommends chromium$/m);
+    assert.ok(pictures.calls.includes("npm ci --prefix tests/browser --no-fund --no-audit"), pictures.calls.join("\n"));
+    shop.missing("ffmpeg");
+    const film = shop.dev(["gallery", "tour", "--qualities", "low"]);
+    assert.equal(film.code, 0, film.stderr);
+    assert.match(film.calls.join("\n"), /^apt-get install .*--no-install-recommends ffmpeg$/m);
   });
 
   it("shows the end of the log and its path when a step fails", () => {

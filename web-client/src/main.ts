@@ -3,6 +3,7 @@ import "./style.css";
 import { App } from "./app/app";
 import { connectInput } from "./app/input";
 import { installTestHooks } from "./app/test_hooks";
+import { wantsSteppedPictures } from "./app/stepped_pictures";
 import { makeRenderer } from "./scene/renderer";
 import { byId } from "./ui/dom";
 import { showNotice } from "./ui/notice";
@@ -11,8 +12,9 @@ const made = makeRenderer(byId<HTMLCanvasElement>("view"));
 if (made) {
   const app = new App(made);
   connectInput(app);
-  installTestHooks(app);
-  app.start();
+  const isStepped = wantsSteppedPictures(location.search);
+  installTestHooks(app, isStepped);
+  app.start(!isStepped);
 } else {
   showNotice(
     "This page needs WebGL 2 with floating-point targets, and this browser offers none. Turn on hardware acceleration, or try a current Firefox, Chrome, Edge or Safari.",

@@ -2,6 +2,16 @@ import { describe, expect, it } from "vitest";
 
 import { PlayoutClock } from "../src/scene/playout_clock";
 
+describe("a held playout clock", () => {
+  it("shows the held time, whatever arrives", () => {
+    const clock = new PlayoutClock();
+    clock.noteFrame(1, 1, 1);
+    clock.hold(0.5);
+    clock.noteFrame(2, 2, 2);
+    expect(clock.displayTimeS(9)).toBe(0.5);
+  });
+});
+
 interface Stream {
   frameRateHz: number;
   /** Transit time of a frame, by its number [s]. */

@@ -22,8 +22,9 @@ import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
 import { setAddressParameter } from "./address";
 import { CommandSender } from "./command_sender";
-import { Display, nowS } from "./display";
+import { Display } from "./display";
 import { LookControls } from "./look_controls";
+import { nowS } from "./picture_clock";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water goes on at another fidelity.", other: "Something happened in the room." };
@@ -94,9 +95,10 @@ export class App {
     this.answerListeners = [this.parameters, this.room, this.boats];
   }
 
-  start(): void {
+  /** `isDrawing`: at display rate. */
+  start(isDrawing: boolean): void {
     this.hud.connection(this.state);
-    this.display.start();
+    this.display.start(isDrawing);
     this.client.start(this.url, this.identity);
   }
 

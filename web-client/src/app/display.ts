@@ -2,6 +2,7 @@
 import { HalfFloatType, type WebGLRenderer } from "three";
 
 import type { GreetingInfo } from "../codec/greeting";
+import type { FrameLayer } from "../codec/layers";
 import type { Frame } from "../net/messages";
 import { CameraViews, type Followed } from "../scene/camera_views";
 import type { PixelRect } from "../scene/framing";
@@ -10,8 +11,8 @@ import { QualityGovernor } from "../scene/quality_governor";
 import { WaterScene } from "../scene/water_scene";
 import { DisplayLoop } from "./display_loop";
 import { PageLayout } from "./page_layout";
+import { nowS } from "./picture_clock";
 
-export const nowS = (): number => performance.now() / 1000;
 const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export interface DisplayHooks {
@@ -33,6 +34,8 @@ export class Display {
   readonly views: CameraViews;
   /** The parts of the page that panels cover. */
   covered: readonly PixelRect[] = [];
+  /** Chooses the frames that are taken; the others are dropped. */
+  accepts: (frame: Frame) => boolean = () => true;
   private readonly governor: QualityGovernor;
   private drawnTier: TierName;
   private readonly layout: PageLayout;
@@ -53,7 +56,13 @@ export class Display {
     this.views = new CameraViews(this.scene.camera, this.canvas, reducedMotion);
     this.layout = new PageLayout(() => this.resize());
     this.loop = new DisplayLoop(renderer, {
-      draw: (frameMs) => this.draw(frameMs),
+      draw: (frameMs) => {
+        if (this.governor.note(frameMs)) {
+          this.applyQuality();
+          this.hooks.qualityChanged();
+        }
+        this.draw();
+      },
       measured: (framesPerS) => hooks.measured(framesPerS, this.scene.clock.delayS()),
       contextRestored: () => this.scene.contextRestored(),
     });
@@ -83,9 +92,15 @@ export class Display {
     return this.layout.freePart();
   }
 
-  start(): void {
+  /** The layers of frames that the room sends. */
+  get layers(): FrameLayer[] {
+    return (this.greeting?.layers ?? []).filter((layer) => layer !== "diagnostics");
+  }
+
+  /** `isRunning`: draws at display rate; otherwise only when draw() is called. */
+  start(isRunning: boolean): void {
     this.applyQuality();
-    this.loop.start();
+    if (isRunning) this.loop.start();
   }
 
   /** The camera keeps its view if only the scene's parameters changed. */
@@ -101,6 +116,7 @@ export class Display {
   }
 
   take(frame: Frame): void {
+    if (!this.accepts(frame)) return this.hooks.release(frame);
     this.scene.take(frame, nowS());
     if (this.isBoxKnown) return;
     const box = this.scene.viewedBox();
@@ -143,6 +159,14 @@ export class Display {
     return Object.fromEntries([...sumsMs].map(([name, sumMs]) => [name, sumMs / picturesCount]));
   }
 
+  /** Draws one picture at the time of the pictures' clock. */
+  draw(): void {
+    const now = nowS();
+    this.views.update(now, this.hooks.update(now));
+    this.scene.render(now);
+    this.hooks.drawn(now);
+  }
+
   private qualityOf(tier: TierName): Quality {
     // Targets of floats cannot be counted on to have several samples per pixel and mip levels.
     return { ...kTiers[tier], texelType: kTiers[tier].plain ? this.qualities.texelType : HalfFloatType };
@@ -154,16 +178,5 @@ export class Display {
     if (tier !== this.drawnTier) this.scene.setQuality(this.qualityOf(tier));
     this.drawnTier = tier;
     this.resize();
-  }
-
-  private draw(frameMs: number): void {
-    if (this.governor.note(frameMs)) {
-      this.applyQuality();
-      this.hooks.qualityChanged();
-    }
-    const now = nowS();
-    this.views.update(now, this.hooks.update(now));
-    this.scene.render(now);
-    this.hooks.drawn(now);
   }
 }

@@ -1,16 +1,19 @@
-// window.spindrift: measured values of the running page, read-only, for tests and the browser's console.
+// window.spindrift: measured values of the running page, read-only, for tests and the browser's console; and pictures on request.
 import { Vector3 } from "three";
 
 import { kLayerNames, type LayerName } from "../codec/layers";
 import { elevationRangeM } from "../scene/height_field";
 import { describeState } from "../ui/hud";
 import type { App } from "./app";
+import { SteppedPictures } from "./stepped_pictures";
 
-export function installTestHooks(app: App): void {
+/** `isStepped`: pictures are drawn on request. */
+export function installTestHooks(app: App, isStepped: boolean): void {
   const hooks = {
     stats: () => stats(app),
     pixelOf: (xM: number, zM: number) => pixelOf(app, xM, zM),
     passTimesMs: (picturesCount: number) => app.display.passTimesMs(picturesCount),
+    stepped: isStepped ? new SteppedPictures(app) : undefined,
   };
   Object.defineProperty(window, "spindrift", { value: Object.freeze(hooks) });
 }

@@ -138,6 +138,15 @@ export class CameraViews {
     };
   }
 
+  /** Leaves the view for another place of the camera, which may be nearer than the user can go. */
+  place(eyeM: readonly [number, number, number], targetM: readonly [number, number, number]): void {
+    this.framed = this.following = this.travel = undefined;
+    this.controls.minDistance = 0;
+    this.camera.position.set(...eyeM);
+    this.controls.target.set(...targetM);
+    this.controls.update();
+  }
+
   /** `followed`: the boat of the boat's view; without one the camera does not move. */
   update(nowS: number, followed?: Followed): void {
     if (this.following && followed) this.follow(this.following, followed, nowS);

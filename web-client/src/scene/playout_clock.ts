@@ -27,6 +27,12 @@ export class PlayoutClock {
   private leadS = 0;
   /** Time from the server's stamp to the picture [client s]. */
   private behindS = 0;
+  private heldS: number | undefined;
+
+  /** Shows this time from now on, whatever time it is. */
+  hold(timeS: number): void {
+    this.heldS = timeS;
+  }
 
   /** The server's clock minus the client's. */
   sync(leadS: number): void {
@@ -71,6 +77,7 @@ export class PlayoutClock {
 
   /** Returns the simulation time to show at client time `nowS`; it never runs back and never ahead of the newest frame. */
   displayTimeS(nowS: number): number | undefined {
+    if (this.heldS !== undefined) return this.heldS;
     const newest = this.arrivals.at(-1);
     if (!newest) return this.shownS;
     const rate = this.rate();

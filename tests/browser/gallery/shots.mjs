@@ -1,0 +1,71 @@
+// What the gallery shows: a picture per shipped scene and light preset. A scene that is not listed is shown at kDefault.
+import { readdirSync } from "node:fs";
+
+import { repository } from "../server.mjs";
+
+/**
+ * @typedef {object} Shot
+ * @property {number} tick the water shown
+ * @property {{view?: string, eyeM?: number[], targetM?: number[]}} [camera] a view of the page (by default the first one), or a place
+ */
+
+/** @type {Shot} */
+const kDefault = { tick: 180 };
+/** Ticks at which something is to be seen: a crown, a crest about to break, a wake. @type {Record<string, Shot>} */
+const kShots = {
+  boat_wake: { tick: 300 },
+  boat_wake_particles: { tick: 240 },
+  boat_wake_wave: { tick: 300 },
+  breaking_wave: { tick: 138 },
+  breaking_wave_particles: { tick: 96 },
+  breaking_wave_wave: { tick: 120 },
+  dam_break: { tick: 84 },
+  harbor: { tick: 330 },
+  kelvin: { tick: 840, camera: { view: "overview" } },
+  open_water: { tick: 240 },
+  particles_only: { tick: 60 },
+  pool: { tick: 102 },
+  rain_rings: { tick: 420, camera: { eyeM: [0.4, 2.2, 4.6], targetM: [0, 0, 0] } },
+  splash: { tick: 84 },
+  splash_particles: { tick: 84 },
+  splash_wave: { tick: 102 },
+  still_pool: { tick: 60 },
+  thesis: { tick: 102 },
+  wave_only: { tick: 180 },
+};
+
+/** Pictures of both qualities have this size. */
+export const kSize = { width: 400, height: 225 };
+/** White water lives for some seconds: it is computed over this many ticks before the picture, in steps of kStride. */
+const kHistoryTicks = 120;
+const kStride = 6;
+
+/** Returns the names of the shipped scenes. */
+export function shippedScenes() {
+  return readdirSync(`${repository}/server/scenes`)
+    .filter((name) => name.endsWith(".textproto"))
+    .map((name) => name.slice(0, -".textproto".length))
+    .sort();
+}
+
+/** Returns the scene of a picture named SCENE_LIGHT; a scene's name may begin with another's. */
+export function sceneOf(name) {
+  return shippedScenes().filter((scene) => name.startsWith(`${scene}_`)).sort((a, b) => b.length - a.length)[0];
+}
+
+export const shotOf = (scene) => kShots[scene] ?? kDefault;
+
+/** Brings a scene to the tick of its picture and places the camera. @param {import("./driven_page.mjs").DrivenPage} page */
+export async function setUp(page, { tick, camera }) {
+  await page.skipTo(tick % kStride);
+  await page.skipTo(Math.max(tick - kHistoryTicks, tick % kStride));
+  await page.showTo(tick, kStride);
+  if (camera) await page.look(camera);
+}
+
+/** At high quality, and in the test part `browser`, only these scenes are shown in every light; the others at noon. */
+const kInEveryLight = ["harbor"];
+
+/** Returns the lights of a scene's pictures; undefined: all. */
+export const fewLightsOf = (scene) => (kInEveryLight.includes(scene) ? undefined : ["noon"]);
+export const lightsOf = (scene, quality) => (quality === "low" ? undefined : fewLightsOf(scene));
