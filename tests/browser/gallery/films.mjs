@@ -2,7 +2,7 @@
 // Both go on where they were interrupted, unless page, server or film have changed since.
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { join, relative } from "node:path";
 
 import { repository } from "../server.mjs";
@@ -121,7 +121,8 @@ async function shootSegment(context, { size, quality, ticksPerPicture: stride },
     await page.skipTo(Math.max(before - kHistoryTicks + (kHistoryTicks % stride), before % stride));
     if (before > 0) await page.showTo(before, stride);
     else await page.skipTo(stride);
-    for (const [n, path] of paths.entries()) {
+    const last = paths.findLastIndex((path) => !existsSync(path));
+    for (const [n, path] of paths.slice(0, last + 1).entries()) {
       for (const { action } of commands.filter(({ atPicture }) => atPicture === n)) await page.command(action);
       // The water goes on in small pictures where this one is there already.
       if (existsSync(path)) {
@@ -130,7 +131,9 @@ async function shootSegment(context, { size, quality, ticksPerPicture: stride },
       }
       await page.goOn(stride);
       await page.look(between(camera, n / Math.max(paths.length - 1, 1)));
-      writeFileSync(path, await page.picture());
+      // Whole or not there at all, wherever it is interrupted.
+      writeFileSync(`${path}.part`, await page.picture());
+      renameSync(`${path}.part`, path);
       console.log(relative(repository, path));
     }
   } finally {
