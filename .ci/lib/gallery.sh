@@ -5,11 +5,12 @@ command_gallery() {
   if wants_help "$@"; then
     cat <<'TEXT'
 usage: ./dev gallery [pictures] [--scenes A,B] [--lights A,B] [--qualities low,high] [--update]
-       ./dev gallery animation|tour|all [--qualities low|high]
+       ./dev gallery readme|animation|tour|all [--qualities low|high]
 
 pictures   one of every shipped scene at a fixed tick in every light at low quality, and at noon at high quality (the harbor in
            every light), into build/gallery; compares each with the one in tests/browser/gallery/kept, and makes a contact
            sheet (index.html, contact_sheet.png). --update keeps the new ones. Fails when one differs.
+readme     web-client/screenshots/SCENE.webp, the pictures in the README
 animation  web-client/screenshots/harbor.webp, the animated picture of the README
 tour       build/gallery/tour.mp4, 20 s of several scenes and lights
 all        all of these
@@ -22,7 +23,7 @@ TEXT
   local part="${1:-pictures}"
   [[ "$part" == --* ]] && part=pictures
   case "$part" in
-    pictures | animation | tour | all) ;;
+    pictures | readme | animation | tour | all) ;;
     *) fail 2 "gallery does not know '$part'; see ./dev gallery --help" ;;
   esac
   local groups=(server driver browser)

@@ -62,6 +62,28 @@ describe("the level of detail", () => {
     expect(ofParticles()).toBe(Packing.PACKED);
   });
 
+  it("leaves the frame rate to the page, also after a reconnection, but not that of a hidden page", () => {
+    const rig = liveRig();
+    const rateHz = (): number | undefined => rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.SURFACE).at(-1)?.value.maxRateHz;
+    const offeredHz = rateHz()!;
+    expect(offeredHz).toBeGreaterThan(15);
+    rig.connection.setFrameRate(15);
+    expect(rateHz()).toBe(15);
+    const { length } = rig.socket.sent;
+    rig.connection.setFrameRate(15);
+    expect(rig.socket.sent).toHaveLength(length);
+    rig.socket.drop();
+    rig.time.advance(1000);
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    expect(rateHz()).toBe(15);
+    rig.connection.setVisible(false);
+    expect(rateHz()).toBe(0);
+    rig.connection.setVisible(true);
+    rig.connection.setFrameRate(1000);
+    expect(rateHz()).toBe(offeredHz);
+  });
+
   it("is unlimited again after a reconnection", () => {
     const rig = liveRig();
     rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });

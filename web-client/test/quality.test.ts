@@ -6,9 +6,9 @@ import { QualityGovernor } from "../src/scene/quality_governor";
 
 /** Settings of a tier that cost time, as numbers that grow with it. */
 function costsOf(tier: TierName): number[] {
-  const { maxPixelRatio, surfaceCellsCount, samplesCount, plain, fieldCountMax, seaTexelsCount, mirrorStepsCount, fluid, whitewater, rain, caustics, shadows } = kTiers[tier];
+  const { maxPixelRatio, frameRateMaxHz, surfaceCellsCount, samplesCount, plain, fieldCountMax, seaTexelsCount, mirrorStepsCount, fluid, whitewater, rain, caustics, shadows } = kTiers[tier];
   return [
-    ...[maxPixelRatio, surfaceCellsCount, samplesCount, Number(!plain), fieldCountMax, seaTexelsCount, mirrorStepsCount],
+    ...[maxPixelRatio, frameRateMaxHz, surfaceCellsCount, samplesCount, Number(!plain), fieldCountMax, seaTexelsCount, mirrorStepsCount],
     ...Object.values(fluid),
     ...Object.values(whitewater),
     ...Object.values(rain),

@@ -24,7 +24,7 @@ describe("the rain in the picture", () => {
   });
 
   it("follows the room's parameters", () => {
-    expect(rainShare(withParameter(storm, "storm.drops_per_m2_s", 0.04))).toBeCloseTo(1 / 3, 9);
+    expect(rainShare(withParameter(storm, "storm.drops_per_m2_s", 0.04))).toBeCloseTo(0.15 / 0.65, 9);
     expect(rainShare(withParameter(storm, "storm.level_ratio", 0))).toBe(0);
   });
 

@@ -5,7 +5,7 @@ import type { RoleName } from "../codec/people";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { socketUrl, WaterClient } from "../net/water_client";
-import { chooseQuality, firstTier } from "../scene/quality";
+import { chooseQuality, firstTier, kTiers } from "../scene/quality";
 import type { MadeRenderer } from "../scene/renderer";
 import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
 import { BoatTags } from "../ui/boat_tags";
@@ -186,6 +186,8 @@ export class App {
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
     this.looks.enter(greeting);
+    // Sent when it is known that the worker has begun.
+    this.showQuality();
     this.viewButtons.hasBoats = this.boats.available;
     this.viewButtons.canDive = this.display.views.canDive;
     this.showRole();
@@ -195,7 +197,9 @@ export class App {
   }
 
   private showQuality(): void {
-    this.qualityRow.show(this.display.quality);
+    const { quality } = this.display;
+    this.qualityRow.show(quality);
+    this.client.call("setFrameRate", kTiers[quality.tier].frameRateMaxHz);
   }
 
   private showTags(): void {

@@ -29,7 +29,6 @@ const kSilenceMs = 10_000;
 const kAnswerTimeoutMs = 10_000;
 const kMaxUnsentBytes = 256 * 1024;
 const kDiagnosticsRateHz = 10;
-const kFrameRateHz = 60;
 /** Shortest interval between two requests for a keyframe. */
 const kKeyframeEveryMs = 1000;
 /** After this long in state "live" the next loss starts with the shortest backoff again. */
@@ -77,6 +76,7 @@ export class Connection implements ConnectionCalls {
   private tickTimer: number | undefined;
   private greeting: GreetingInfo | undefined;
   private visible = true;
+  private frameRateMaxHz = 60;
   private exactParticles = false;
   private readonly pending = new PendingCommands();
   private readonly meter: LinkMeter;
@@ -133,6 +133,12 @@ export class Connection implements ConnectionCalls {
   setExactParticles(exact: boolean): void {
     if (exact === this.exactParticles) return;
     this.exactParticles = exact;
+    if (this.state.name === "live") this.subscribe();
+  }
+
+  setFrameRate(maxHz: number): void {
+    if (maxHz === this.frameRateMaxHz) return;
+    this.frameRateMaxHz = maxHz;
     if (this.state.name === "live") this.subscribe();
   }
 
@@ -276,7 +282,7 @@ export class Connection implements ConnectionCalls {
   private subscribe(): void {
     if (!this.greeting) return;
     const offered = this.greeting.frameRateMaxHz;
-    const frameRateHz = offered > 0 ? Math.min(offered, kFrameRateHz) : kFrameRateHz;
+    const frameRateHz = offered > 0 ? Math.min(offered, this.frameRateMaxHz) : this.frameRateMaxHz;
     const adapts = this.detail === "auto";
     const level = wireLevel(this.detail === "auto" ? this.governor.level : this.detail);
     for (const layer of this.greeting.layers) {

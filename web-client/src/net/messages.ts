@@ -85,6 +85,8 @@ export interface ConnectionCalls {
   setDetail(detail: DetailChoice): void;
   /** Particles in the plain packing: finer velocities and densities, and more bytes. */
   setExactParticles(exact: boolean): void;
+  /** Frames of each layer per second, at most. */
+  setFrameRate(maxHz: number): void;
   /** A hidden page gets no frames; showing it again subscribes to them again. */
   setVisible(visible: boolean): void;
   /** Connects now: after a refusal, or instead of waiting. */

@@ -3,8 +3,8 @@ import type { GreetingInfo } from "../../codec/greeting";
 
 /** Drops of the server per m^2 and s at which the rain in the picture is hardest: a full storm's by default. */
 const kHardestPerM2S = 0.08;
-/** Below this share of it single drops make the rings that the server computes, and no other rain is drawn. */
-const kLeastShare = 0.25;
+/** Below this share of it single drops make the rings that the server computes, and no other rain is drawn: the sky is still fair then. */
+const kLeastShare = 0.35;
 
 /**
  * Returns how hard it rains, 0..1. The server computes a few large drops, whose rings spread as waves; the page adds the many small ones
