@@ -16,6 +16,7 @@ const kWaitMs = 120_000;
 /** Programs are compiled, and the water begins to move. */
 const kSettleMs = 5000;
 const kSamplesPerS = 2;
+const kTiers = ["minimal", "low", "medium", "high", "highest"];
 const kPassPictures = 12;
 
 const { values } = parseArgs({
@@ -28,7 +29,10 @@ const { values } = parseArgs({
 });
 const seconds = Number(values.seconds);
 const [width, height] = values.size.split("x").map(Number);
-if (!(seconds > 0 && width > 0 && height > 0)) {
+const qualities = values.qualities.split(",");
+const unknown = qualities.find((quality) => !kTiers.includes(quality));
+if (unknown !== undefined) console.error(`there is no quality "${unknown}": ${kTiers.join(", ")}`);
+if (unknown !== undefined || !(seconds > 0 && width > 0 && height > 0)) {
   console.error("usage: bench_page.mjs [--scenes A,B] [--qualities minimal,high] [--seconds S] [--size WIDTHxHEIGHT]");
   process.exit(2);
 }
@@ -36,7 +40,7 @@ if (!(seconds > 0 && width > 0 && height > 0)) {
 for (const scene of values.scenes.split(",")) {
   const server = await startServer(0, ["--scene", scene]);
   try {
-    for (const quality of values.qualities.split(",")) await measure(scene, quality, server.url);
+    for (const quality of qualities) await measure(scene, quality, server.url);
   } finally {
     await server.stop("SIGTERM");
   }

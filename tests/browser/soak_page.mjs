@@ -21,9 +21,9 @@ const kPictures = 3;
 const kSceneMs = 1100;
 const kMostGrowthMB = 3;
 
-const { values } = parseArgs({ options: { minutes: { type: "string", default: "30" }, scenes: { type: "string", default: "" } } });
+const { values } = parseArgs({ strict: false, options: { minutes: { type: "string", default: "30" }, scenes: { type: "string", default: "" } } });
 const minutes = Number(values.minutes);
-if (!(minutes > 0)) {
+if (!(minutes > 0) || Object.keys(values).length > 2) {
   console.error("usage: soak_page.mjs [--minutes M] [--scenes A,B]");
   process.exit(2);
 }

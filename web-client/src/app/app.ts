@@ -90,7 +90,7 @@ export class App {
       this.display.chooseQuality(choice);
       this.showQuality();
     });
-    this.showQuality();
+    this.qualityRow.show(this.display.quality);
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
   }
@@ -186,7 +186,7 @@ export class App {
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
     this.looks.enter(greeting);
-    // Sent when it is known that the worker has begun.
+    // Not before: the connection exists from now on.
     this.showQuality();
     this.viewButtons.hasBoats = this.boats.available;
     this.viewButtons.canDive = this.display.views.canDive;
@@ -196,6 +196,7 @@ export class App {
     this.display.resize();
   }
 
+  /** Shows the quality that is drawn, and asks for as many frames as it needs. */
   private showQuality(): void {
     const { quality } = this.display;
     this.qualityRow.show(quality);

@@ -1,21 +1,21 @@
 // The passes of one room, each with what it reads and writes, in the order in which they are drawn.
-//   field      frames -> field (elevation, slopes, curvature of the water)
-//   caustics   field -> sunlight that the waves focus on what is below them; in the tiers from high on
-//   foam       frames -> foam
-//   sea        time -> the sea around the square, in an open sea
-//   shadow     frames, field -> what the sun sees of solids; in the tiers from medium on
-//   solids     sky, ground, rocks, boats -> solids (linear light, depth)
-//   particles  frames -> particles; their shadow -> solids (fluid/fluid.ts)
-//   whitewater frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
-//   flat shadow  frames -> froth; in the tiers below
-//   rain rings time -> rings on the water, under the open sky; in the tiers from medium on
-//   water      field, foam, froth, rain, sea, shadow, solids -> canvas
-//   present    solids -> canvas where there is no water
-//   fluid      particles, solids -> canvas (fluid/fluid.ts)
-//   spray      drops, solids -> canvas
+//   field        frames -> field (elevation, slopes, curvature of the water)
+//   caustics     field -> sunlight that the waves focus on what is below them; in the tiers from high on
+//   foam         frames -> foam
+//   sea          time -> the sea around the square, in an open sea
+//   shadow       frames, field -> what the sun sees of solids; in the tiers from medium on
+//   solids       sky, ground, rocks, boats -> solids (linear light, depth)
+//   particles    frames -> particles; their shadow -> solids (fluid/fluid.ts)
+//   whitewater   frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
+//   flat shadow  solids -> froth; in the tiers below
+//   rain rings   time -> rings on the water, under the open sky; in the tiers from medium on
+//   water        field, foam, froth, rain, sea, shadow, solids -> canvas
+//   present      solids -> canvas where there is no water
+//   fluid        particles, solids -> canvas (fluid/fluid.ts)
+//   spray        drops, solids -> canvas
 //   rain streaks solids -> canvas
-//   lamps      solids, field -> canvas, in the dark
-//   glass      panes of a tank -> canvas
+//   lamps        solids, field -> canvas, in the dark
+//   glass        panes of a tank -> canvas
 // Other looks than the natural one draw the water with passes of their own (looks/look_room.ts).
 import type { DataTexture } from "three";
 

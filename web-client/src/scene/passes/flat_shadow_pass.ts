@@ -1,5 +1,6 @@
 // Shadows on the water without a map of shadows: boats, rocks and walls projected onto the still water, in the second channel of the froth,
-// which the water reads anyway. Reads the frames, which move boats, and the froth. Writes the froth: 0 lit, above it the share of light that is missing.
+// which the water reads anyway. Reads the solids as they were placed for this picture, and the froth. Writes the froth: 0 lit, above it the
+// share of light that is missing.
 import { Camera, CustomBlending, DoubleSide, MaxEquation, OneFactor, type RawShaderMaterial, type Vector3, type WebGLRenderTarget } from "three";
 
 import { kCasterLayers } from "../light/casters";
@@ -15,14 +16,14 @@ const kHalfLight = 0.12;
 
 export class FlatShadowPass implements Pass {
   readonly name = "flat shadow";
-  readonly reads = ["frames", "froth"] as const;
+  readonly reads = ["solids", "froth"] as const;
   readonly writes = ["froth"] as const;
   private readonly camera = new Camera();
   private readonly material: RawShaderMaterial;
   private readonly light: Vector3;
 
   /** `target`: of the froth. */
-  constructor(private readonly casters: Casters, private readonly sky: Sky, private readonly target: WebGLRenderTarget, sideM: number) {
+  constructor(private readonly casters: Pick<Casters, "scene">, private readonly sky: Sky, private readonly target: WebGLRenderTarget, sideM: number) {
     this.light = sky.uniforms["u_sun_light"]!.value as Vector3;
     // Three's culling uses it, too, so that height needs a place in it.
     this.camera.projectionMatrix.set(2 / sideM, 0, 0, 0, 0, 0, 2 / sideM, 0, 0, 1e-3 / sideM, 0, 0, 0, 0, 0, 1);
@@ -40,12 +41,11 @@ export class FlatShadowPass implements Pass {
     });
   }
 
-  draw({ renderer, shownS }: Picture): void {
+  draw({ renderer }: Picture): void {
     const { camera, casters, light, material, sky, target } = this;
     const directLight = Math.max(light.x, light.y, light.z) * (sky.uniforms["u_sun_sharp"]!.value as number);
     if (directLight < kHalfLight / 10) return;
     material.uniforms["u_shade"]!.value = (kShade * directLight) / (directLight + kHalfLight);
-    casters.place(shownS);
     renderer.setRenderTarget(target);
     casters.scene.overrideMaterial = material;
     renderer.render(casters.scene, camera);

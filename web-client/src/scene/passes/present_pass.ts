@@ -1,5 +1,5 @@
-// The solids on the canvas where there is no surface of water; seen through water if the camera is in it. Reads the solids, and the canvas's depth: after the water it shades the other pixels
-// only. Writes the canvas.
+// The solids on the canvas where there is no surface of water; seen through water if the camera is in it. Reads the solids, and the
+// canvas's depth: after the water it shades the other pixels only. Writes the canvas.
 import { FullscreenPass } from "../fullscreen";
 import { makeMaterial } from "../shaders";
 import type { Sky } from "../sky";

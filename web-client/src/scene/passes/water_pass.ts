@@ -1,6 +1,7 @@
 // The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
-// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the sea around, the shadow, and the solids, which are seen through the water
-// and in its mirror. Writes the canvas and its depth. A camera close to the surface sees it from below as well (below_surface.ts).
+// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the rain, the sea around, the
+// shadow, and the solids, which are seen through the water and in its mirror. Writes the canvas and its depth.
+// A camera close to the surface sees it from below as well (below_surface.ts).
 import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
