@@ -6,6 +6,7 @@
 #include <shared/effects.h>
 
 #include <spindrift/sim_setup/basin.h>
+#include <spindrift/sim_setup/fill_up.h>
 
 namespace spindrift::sim {
 namespace {
@@ -124,6 +125,23 @@ double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
   return nearest_m;
 }
 
+double groundDepth(const core::Scene& scene, double x_m, double z_m) {
+  double depth_m = bedDepth(scene, x_m, z_m);
+  for (const core::Obstacle& obstacle : scene.obstacles) {
+    if (std::visit([&](const auto& o) { return distance(o, x_m, z_m); }, obstacle) < 0)
+      depth_m = std::min(depth_m, -heightOf(obstacle));
+  }
+  return depth_m;
+}
+
+std::vector<std::int32_t> restingElevation(const Basin& basin) {
+  std::vector<std::int32_t> out(basin.bed.size());
+  std::ranges::transform(basin.bed, out.begin(), [](const std::array<float, 4>& cell) {
+    return static_cast<std::int32_t>(std::max<std::int64_t>(-bedUnits(cell[2]), 0));
+  });
+  return out;
+}
+
 namespace {
 
 /// Shares of the displacement of effects (Basin::conductance_m), from the number of faces to the next closed one.
@@ -171,6 +189,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
                                                        {core::Side::kMinusZ, w.boundary_minus_z},
                                                        {core::Side::kPlusZ, w.boundary_plus_z}};
   const bool is_matched = hasMatchedLayer(scene);
+  const bool is_nonlinear = isNonlinear(scene);
   const double matched_max = matchedLossMax(scene, layout);
   const double along_share = scene.obstacles.empty() && scene.beaches.empty() ? kAlongShareFlat : kAlongShareUneven;
   for (int z = 0; z < n; ++z) {
@@ -190,15 +209,17 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       for (const core::Beach& beach : scene.beaches) {
         if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
         const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
-        if (shallow > 0) fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
+        if (shallow > 0 && !is_nonlinear)
+          fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
       }
+      const float ground_m = is_nonlinear ? static_cast<float>(groundDepth(scene, place(x), place(z))) : out.depth_m[i];
       if (is_matched) {
         const AxisLoss loss = matchedLoss(w, matched_max, along_share, place(x), place(z));
-        out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), out.depth_m[i],
+        out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), ground_m,
                       static_cast<float>(loss.z_per_s)};
         continue;
       }
-      out.bed[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma), out.depth_m[i], 0.0f};
+      out.bed[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma), ground_m, 0.0f};
     }
   }
 
@@ -262,7 +283,7 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
       const double dx = (distanceAt(place(x) + step_m, place(z)) - distanceAt(place(x) - step_m, place(z)));
       const double dz = (distanceAt(place(x), place(z) + step_m) - distanceAt(place(x), place(z) - step_m));
       const double size = std::max(std::hypot(dx, dz), 1e-12);
-      double depth_m = basin.depth_m[static_cast<std::size_t>(x + n * z)];
+      double depth_m = basin.bed[static_cast<std::size_t>(x + n * z)][2];
       if (d < 0) {
         for (const core::Obstacle& obstacle : scene.obstacles) {
           const double here = std::visit([&](const auto& o) { return distance(o, place(x), place(z)); }, obstacle);

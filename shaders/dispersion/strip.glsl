@@ -8,6 +8,7 @@
 // sweeps at once, each a row behind the one before it, and computes the neighbours that they need itself: that costs less
 // than fetching them.
 // FINEST: 1 for the grid of the wave, whose right side r is the slope of the surface.
+// NONLINEAR: wave/shallow_slope.comp has computed that slope; elsewhere it follows from ELEVATION and PRESSURE_HEAD.
 // FLAT: 1 if there are no obstacles or beaches: m, e and c are the same in all cells, and only faces at sides are closed.
 #ifndef SPINDRIFT_DISPERSION_STRIP
 #define SPINDRIFT_DISPERSION_STRIP
@@ -25,7 +26,9 @@ layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;
 layout(binding = DISPERSION_COEFFICIENTS) uniform usamplerBuffer coefficients;
 #endif
 
-#if FINEST
+#if FINEST && NONLINEAR
+layout(binding = SURFACE_RISE) uniform samplerBuffer surface_rise;
+#elif FINEST
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 #if HEAD
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
@@ -84,7 +87,9 @@ vec2 flat_spread;
 #else
 uvec4 coefficients_ahead[WIDTH + 1];  // of the next row
 #endif
-#if FINEST
+#if FINEST && NONLINEAR
+vec2 rise_ahead[WIDTH];      // of the next row [units]
+#elif FINEST
 int level_ahead[WIDTH + 1];  // of the next row [units]
 
 int levelAt(int i) {
@@ -126,7 +131,9 @@ vec2 spreadOf(Row row, int c) {
 void fetchAhead(int z) {
   const int row = side_count * z;
   const int beyond = wrapped(column[WIDTH - 1] + 1, side_count);
-#if FINEST
+#if FINEST && NONLINEAR
+  for (int c = 0; c < WIDTH; ++c) rise_ahead[c] = texelFetch(surface_rise, column[c] + row).xy;
+#elif FINEST
   for (int c = 0; c < WIDTH; ++c) level_ahead[c] = levelAt(column[c] + row);
   level_ahead[WIDTH] = levelAt(beyond + row);
 #endif
@@ -166,7 +173,9 @@ void begin(int first_column, int first_row) {
 Row fetchRow(int z) {
   Row row;
   const int first = side_count * z;
-#if FINEST
+#if FINEST && NONLINEAR
+  const vec2 rise[WIDTH] = rise_ahead;
+#elif FINEST
   int level[WIDTH + 1] = level_ahead;
 #endif
 #if !FLAT
@@ -175,7 +184,11 @@ Row fetchRow(int z) {
   fetchAhead(wrapped(z + 1, side_count));
   for (int c = 0; c < WIDTH; ++c) {
 #if FINEST
+#if NONLINEAR
+    const vec2 slope = rise[c];
+#else
     const vec2 slope = vec2(level[c + 1] - level[c], level_ahead[c] - level[c]);
+#endif
 #if FLAT
     row.right[c] = flat_root_c * slope.xxyy;
 #else
