@@ -57,7 +57,9 @@ void main() {
   const vec2 there_m = vec2(metresOf(heldUnits(texelFetch(elevation, next.x).x, stillDepth(next.x))),
                             metresOf(heldUnits(texelFetch(elevation, next.y).x, stillDepth(next.y))));
   // Thin water takes the speed of water as deep as a tenth of the scene's: it would fly.
-  stored_flow[i] += vec4(flow / max(0.5 * (water_m + there_m), vec2(0.1 * sim.wave_depth_m)), flow);
+  const vec2 gained_mps = flow / max(0.5 * (water_m + there_m), vec2(0.1 * sim.wave_depth_m));
+  const float max_mps = cell_m / sim.wave_dt_s;
+  stored_flow[i] = vec4(clamp(stored_flow[i].xy + gained_mps, -max_mps, max_mps), stored_flow[i].zw + flow);
 #else
   stored_flow[i] += flow;
 #endif

@@ -38,7 +38,7 @@ void main() {
   for (uint k = 0u; k < OWNED_FACES; ++k) moved[k] = share[k] < 1.0 ? int(float(moved[k]) * share[k]) : moved[k];
   transfer[i] = moved;
 #if NONLINEAR
-  stored_flow[i].zw *= share;  // a face with little water keeps its speed
+  stored_flow[i] *= share.xyxy;
 #else
   stored_flow[i] *= share;
 #endif

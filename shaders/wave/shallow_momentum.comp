@@ -32,8 +32,15 @@ layout(std430, binding = FLOW) restrict writeonly buffer NextFlow { vec4 next_fl
 layout(std430, binding = TRANSFER) restrict writeonly buffer Transfer { ivec2 transfer[]; };
 layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
 
-/// Share of the speed difference across a cell that its pressure may take in a step.
-#define MAX_PRESSED 0.2
+/// Share of the speed difference across a cell that its pressure may take from a face in a step; both faces together take
+/// less than all.
+#define MAX_PRESSED 0.45
+/// A face drives no more than a step can bear: water may be this many times (dx/dt)^2/g high (the limit of the step is 1/2),
+/// and where slopes are dispersed this many times its static depth. Higher piles of water fall as slowly as if they were lower.
+#define STABLE_HEIGHT 0.4
+/// Loss of velocity in a step where columns alternate between high and empty from cell to cell.
+#define ALTERNATING_LOSS 4.0
+#define STABLE_DISPERSED 1.6
 
 int headAt(int i) {
 #if HEAD
@@ -41,6 +48,16 @@ int headAt(int i) {
 #else
   return 0;
 #endif
+}
+
+/// How much four columns in a row alternate, 0 to 1: the square of their least difference over their water, and 0 if their levels do not go up and down from one to the next. Such a pattern
+/// is not a wave: water would be thrown from each cell into its neighbours and back in every step.
+float alternates(Column behind, Column here, Column there, Column beyond) {
+  const vec3 rises = vec3(here.eta - behind.eta, there.eta - here.eta, beyond.eta - there.eta) * ELEVATION_UNIT_M;
+  const bool turns = rises.x * rises.y < 0.0 && rises.y * rises.z < 0.0;
+  const vec3 size_m = abs(rises);
+  const float share = min(size_m.y / max(max(here.water_m, there.water_m), 1e-6), 1.0);
+  return turns ? share * share * min(4.0 * min(size_m.x, size_m.z) / size_m.y, 1.0) : 0.0;
 }
 
 float vanLeer(float a, float b) { return a * b > 0.0 ? 2.0 * a * b / (a + b) : 0.0; }
@@ -62,9 +79,15 @@ float advected(Face f, Column here, Column there) {
   const float weight = per_m / mean_m;
   const vec4 inflow = weight * max(vec4(f.in_before, -f.in_after, f.in_left, -f.in_right), vec4(0.0));
   const float change = dot(inflow, vec4(f.before, f.after, f.left, f.right) - f.own);
-  const vec2 closing = max(vec2(f.before - f.own, f.own - f.after), vec2(0.0));
-  const vec2 press = min(closing * per_m, vec2(MAX_PRESSED)) * closing * vec2(here.water_m, there.water_m);
-  return change / max(dot(inflow, vec4(1.0)), 1.0) - (press.y - press.x) / mean_m;
+  const vec2 differs = vec2(f.before, f.after) - f.own;
+  const vec2 closing = max(vec2(differs.x, -differs.y), vec2(0.0));
+  const vec2 pressed = min(closing * per_m * vec2(here.water_m, there.water_m) / mean_m, vec2(MAX_PRESSED)) * closing;
+  return change / max(dot(inflow, vec4(1.0)), 1.0) + pressed.x - pressed.y;
+}
+
+float stableHeight_m() {
+  const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
+  return STABLE_HEIGHT * max_mps * max_mps / max(sim.gravity_mps2, 1e-6);
 }
 
 #if DISPERSE
@@ -74,27 +97,29 @@ float dispersedShare(float depth_m, Column here, Column there, float breaks) {
   if (depth_m <= 0.0 || min(here.water_m, there.water_m) <= 0.0) return 0.0;
   const float high = 0.5 * (here.water_m + there.water_m) / depth_m;
   const float share = (1.0 - smoothstep(1.6, 1.9, high)) * smoothstep(0.2, 0.5, high) * (1.0 - breaks);
-  const float crossed_m = sim.wave_cell_m / sim.wave_dt_s;
-  return max(share, 1.0 - 0.45 * crossed_m * crossed_m / (sim.gravity_mps2 * depth_m));
+  return max(share, 1.0 - stableHeight_m() / depth_m);
 }
 #endif
 
 /// Velocity [m/s] and water [m^2/s] at a face after the step. `driving` is g dt times the slope; `a` the share of the
-/// velocity that losses take in half a step; `gained` what an incoming sea adds.
-vec2 movedFlow(Face f, Column here, Column there, float driving, float a, float gained, float behind_m, float beyond_m) {
+/// velocity that losses take in half a step; `gained` what an incoming sea adds. Columns higher than
+/// `borne_m`, which a step can bear, keep a part of their water in every step.
+vec2 movedFlow(Face f, Column behind, Column here, Column there, Column beyond, float driving, float a, float gained, float borne_m) {
   const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
   float u = ((1.0 - a) * f.own + advected(f, here, there) - driving + gained) / (1.0 + a);
+  u /= 1.0 + ALTERNATING_LOSS * alternates(behind, here, there, beyond);
   const bool forward = u > 0.0;
   const Column from = forward ? here : there;
   const Column to = forward ? there : here;
   float passing_m = passingWater_m(from, to);
   if (passing_m <= 0.0) return vec2(0.0);
   u /= 1.0 + sim.wave_dt_s * sim.wave_friction * sqrt(u * u + f.across * f.across) * exp2(-1.3333333 * log2(passing_m));
-  u = clamp(u, -max_mps, max_mps);
+  const float borne_mps = max_mps * min(borne_m / from.water_m, 1.0);
+  u = clamp(u, -borne_mps, borne_mps);
   // No sill between: the height at the face follows the slope of the water behind it.
   if (passing_m >= from.water_m) {
-    const float behind = forward ? behind_m : beyond_m;
-    passing_m += 0.5 * (1.0 - abs(u) / max_mps) * vanLeer(to.water_m - from.water_m, from.water_m - behind);
+    const float before_m = forward ? behind.water_m : beyond.water_m;
+    passing_m += 0.5 * (1.0 - abs(u) / max_mps) * vanLeer(to.water_m - from.water_m, from.water_m - before_m);
   }
   return vec2(u, u * passing_m);
 }
@@ -136,20 +161,26 @@ void main() {
   const int mirrored_before_z = cell.x + n * waveNeighbourZ(cell.y - 1, n);
   const int mirrored_beyond_x = waveNeighbourX(cell.x + 2, n) + row;
   const int mirrored_beyond_z = cell.x + n * waveNeighbourZ(cell.y + 2, n);
-  const vec2 behind_m = vec2(columnOf(mirrored_before_x, texelFetch(elevation, mirrored_before_x).x).water_m,
-                             columnOf(mirrored_before_z, texelFetch(elevation, mirrored_before_z).x).water_m);
-  const vec2 beyond_m = vec2(columnOf(mirrored_beyond_x, texelFetch(elevation, mirrored_beyond_x).x).water_m,
-                             columnOf(mirrored_beyond_z, texelFetch(elevation, mirrored_beyond_z).x).water_m);
+  const Column behind_x = columnOf(mirrored_before_x, texelFetch(elevation, mirrored_before_x).x);
+  const Column behind_z = columnOf(mirrored_before_z, texelFetch(elevation, mirrored_before_z).x);
+  const Column beyond_x = columnOf(mirrored_beyond_x, texelFetch(elevation, mirrored_beyond_x).x);
+  const Column beyond_z = columnOf(mirrored_beyond_z, texelFetch(elevation, mirrored_beyond_z).x);
 
   const int head = headAt(i);
   vec2 rise = vec2(drivingRise(here, there_x, there_x.eta - here.eta + headAt(i_x) - head),
                    drivingRise(here, there_z, there_z.eta - here.eta + headAt(i_z) - head));
+  const vec2 there_m = vec2(there_x.water_m, there_z.water_m);
+  const vec2 tallest_m = max(vec2(here.water_m), there_m);
+  vec2 borne_m = vec2(stableHeight_m());
+  rise *= min(borne_m / max(tallest_m, vec2(1e-6)), vec2(1.0));
 #if DISPERSE
   const vec2 depth_m = texelFetch(basin, i).xy;
   const float breaks = texelFetch(breaking, i).y;
   const vec2 share = vec2(dispersedShare(depth_m.x, here, there_x, max(breaks, texelFetch(breaking, i_x).y)),
                           dispersedShare(depth_m.y, here, there_z, max(breaks, texelFetch(breaking, i_z).y)));
-  rise = mix(rise, texelFetch(dispersed, i).xy / max(depth_m, vec2(1e-6)), share);
+  const vec2 dispersed_borne_m = STABLE_DISPERSED * depth_m;
+  borne_m = max(borne_m, dispersed_borne_m);
+  rise = mix(rise, min(dispersed_borne_m / max(tallest_m, vec2(1e-6)), vec2(1.0)) * texelFetch(dispersed, i).xy / max(depth_m, vec2(1e-6)), share);
 #endif
   const vec2 driving = sim.wave_pull * rise;
 
@@ -163,13 +194,13 @@ void main() {
 #endif
   const vec2 a = 0.5 * sim.wave_dt_s * (sim.wave_damping_per_s + layer_loss);
 #if SEA
-  const vec2 mean_m = 0.5 * (here.water_m + vec2(there_x.water_m, there_z.water_m));
+  const vec2 mean_m = 0.5 * (here.water_m + there_m);
   const vec2 gained = sim.wave_dt_s * layer_loss * incidentFlow(i) / max(mean_m, vec2(0.05 * sim.wave_depth_m));
 #else
   const vec2 gained = vec2(0.0);
 #endif
-  vec2 flow_x = movedFlow(face_x, here, there_x, driving.x, a.x, gained.x, behind_m.x, beyond_m.x);
-  vec2 flow_z = movedFlow(face_z, here, there_z, driving.y, a.y, gained.y, behind_m.y, beyond_m.y);
+  vec2 flow_x = movedFlow(face_x, behind_x, here, there_x, beyond_x, driving.x, a.x, gained.x, borne_m.x);
+  vec2 flow_z = movedFlow(face_z, behind_z, here, there_z, beyond_z, driving.y, a.y, gained.y, borne_m.y);
 #if !WAVE_PERIODIC_X
   if (cell.x == n - 1) flow_x = vec2(0.0);
 #endif
