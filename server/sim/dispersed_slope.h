@@ -21,14 +21,14 @@ class DispersedSlope {
   void upload(const WaveLayout& layout, const Basin& basin);
 
   /// Computes texels() from the slopes of the surface, which the caller has bound for lookups: ELEVATION and, if the
-  /// scene has one, PRESSURE_HEAD, n x n [units]; with a nonlinear bulk SURFACE_RISE, n x n x 2 [units per cell].
+  /// scene has one, PRESSURE_HEAD, nx x nz [units]; with a nonlinear bulk SURFACE_RISE, nx x nz x 2 [units per cell].
   void compute();
-  /// n x n x 2: F grad(eta) at the faces that a cell owns [m * units per cell].
+  /// nx x nz x 2: F grad(eta) at the faces that a cell owns [m * units per cell].
   [[nodiscard]] const gpu::TexelBuffer& texels() const { return dispersed_; }
 
  private:
   struct Grid {
-    std::uint32_t side_count = 0;
+    CellCounts count;
     gpu::TexelBuffer coefficients, weights;  ///< none in the last grid; no weights in a flat basin
     gpu::TexelBuffer right, faces;           ///< except on the finest grid
   };
@@ -45,7 +45,7 @@ class DispersedSlope {
   void descend(std::size_t level);
   void solveBottom();
   void ascend(std::size_t level);
-  void dispatch(gpu::Program& pass, const Grid& grid);
+  void dispatch(gpu::Program& pass, std::size_t level);
 
   gpu::Context& ctx_;
   std::vector<Grid> grids_;  ///< finest first; the last one is the first of the bottom

@@ -15,7 +15,7 @@ core::Result<std::unique_ptr<ShallowFlow>> ShallowFlow::create(gpu::Context& ctx
                                                                const WaveLayout& layout, const gpu::Defines& defines) {
   using gpu::TexelBuffer;
   auto out = std::unique_ptr<ShallowFlow>(new ShallowFlow(ctx, layout));
-  const std::size_t cells = std::size_t{layout.resolution_count} * layout.resolution_count;
+  const std::size_t cells = layout.counts().total();
   Creation create;
   create(out->next_flow_, TexelBuffer::create(ctx, "next flow", cells, gpu::TexelFormat::kRGBA32F));
   for (const bool sea : {false, true}) {
@@ -35,7 +35,7 @@ core::Result<std::unique_ptr<ShallowFlow>> ShallowFlow::create(gpu::Context& ctx
 
 const gpu::TexelBuffer& ShallowFlow::findRise() {
   rise_.bindStorage(SURFACE_RISE);
-  slope_.dispatch(n_, n_);
+  slope_.dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   return rise_;
 }
@@ -43,7 +43,7 @@ const gpu::TexelBuffer& ShallowFlow::findRise() {
 void ShallowFlow::advance(gpu::TexelBuffer& flow, bool sea) {
   flow.bindTexel(FLOW);
   next_flow_.bindStorage(FLOW);
-  momentum_[sea].dispatch(n_, n_);
+  momentum_[sea].dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   std::swap(flow, next_flow_);
 }

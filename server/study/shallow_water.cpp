@@ -36,9 +36,10 @@ std::vector<double> groundDepths(const core::Scene& scene, const sim::WaveLayout
 void setShallowState(sim::WaterSim& water, const Field2& eta_m, const Field2& u_mps, const Field2& w_mps) {
   const sim::WaveLayout& layout = *water.derived().wave;
   const std::vector<double> depth_m = groundDepths(water.scene(), layout);
-  const std::size_t n = layout.resolution_count;
+  const std::size_t nx = layout.count_x, nz = layout.count_z;
   const double cell_m = layout.cell_m;
-  const double half_m = layout.side_m / 2;
+  const auto placeX = [&](std::size_t x) { return (static_cast<double>(x) + 0.5) * cell_m - layout.length_m / 2; };
+  const auto placeZ = [&](std::size_t z) { return (static_cast<double>(z) + 0.5) * cell_m - layout.width_m / 2; };
   sim::StateCopy state = water.copyState();
   const std::vector<double> ground_m = [&] {
     std::vector<double> out(depth_m.size());
@@ -46,8 +47,8 @@ void setShallowState(sim::WaterSim& water, const Field2& eta_m, const Field2& u_
     return out;
   }();
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
-    const double x_m = (static_cast<double>(i % n) + 0.5) * cell_m - half_m;
-    const double z_m = (static_cast<double>(i / n) + 0.5) * cell_m - half_m;
+    const double x_m = placeX(i % nx);
+    const double z_m = placeZ(i / nx);
     // The resting state has the ground in whole units; only water above it is set.
     if (eta_m(x_m, z_m) > ground_m[i]) {
       state.elevation_m[i] = eta_m(x_m, z_m);
@@ -57,17 +58,17 @@ void setShallowState(sim::WaterSim& water, const Field2& eta_m, const Field2& u_
   }
   const auto water_m = [&](std::size_t i) { return std::max(state.elevation_m[i] - ground_m[i], 0.0); };
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
-    const std::size_t x = i % n, z = i / n;
-    const double x_m = (static_cast<double>(x) + 0.5) * cell_m - half_m;
-    const double z_m = (static_cast<double>(z) + 0.5) * cell_m - half_m;
+    const std::size_t x = i % nx, z = i / nx;
+    const double x_m = placeX(x);
+    const double z_m = placeZ(z);
     const auto set = [&](std::size_t axis, bool is_inside, std::size_t to, double speed_mps) {
       const double carried_m = speed_mps > 0 ? water_m(i) : is_inside ? water_m(to) : 0.0;
       const double u = is_inside && carried_m > 0 ? speed_mps : 0.0;
       state.flow_m2ps[4 * i + axis] = static_cast<float>(u);
       state.flow_m2ps[4 * i + 2 + axis] = static_cast<float>(u * carried_m);
     };
-    set(0, x + 1 < n, i + 1, u_mps ? u_mps(x_m + cell_m / 2, z_m) : 0.0);
-    set(1, z + 1 < n, i + n, w_mps ? w_mps(x_m, z_m + cell_m / 2) : 0.0);
+    set(0, x + 1 < nx, i + 1, u_mps ? u_mps(x_m + cell_m / 2, z_m) : 0.0);
+    set(1, z + 1 < nz, i + nx, w_mps ? w_mps(x_m, z_m + cell_m / 2) : 0.0);
   }
   water.setState(state);
 }

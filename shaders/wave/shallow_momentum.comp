@@ -1,7 +1,7 @@
 // First half of a wave step of nonlinear shallow water (BULK_NONLINEAR): velocities at the faces, and the water that moves.
-// Reads ELEVATION [n x n, units], FLOW [n x n: velocity toward +x and +z, m/s; the water they carried, m^2/s], BED,
+// Reads ELEVATION [nx x nz, units], FLOW [nx x nz: velocity toward +x and +z, m/s; the water they carried, m^2/s], BED,
 // PRESSURE_HEAD; with DISPERSE the static depth of faces (BASIN), DISPERSED and BREAKING.
-// Writes FLOW of the next step, and TRANSFER [n x n, units], which wave/continuity.comp moves.
+// Writes FLOW of the next step, and TRANSFER [nx x nz, units], which wave/continuity.comp moves.
 // Raises LIMIT_ARGS if a transfer could empty a cell, so that wave/given_share.comp runs over all cells.
 // Equation: u_t + (u grad) u = -g grad(eta + head) - g n^2 |u| u / h^(4/3) - (kappa + sigma) u.
 //   Advection conserves momentum (Stelling & Duinmeijer 2003): du = sum of inflow (u_there - u) over the mean water of both
@@ -125,15 +125,15 @@ vec2 movedFlow(Face f, Column behind, Column here, Column there, Column beyond, 
 }
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
+  if (any(greaterThanEqual(cell, n))) return;
   // Flow reaches across every side, because it is 0 at closed ones; water is mirrored there.
-  const int row = n * cell.y;
-  const int row_before = n * wrapped(cell.y - 1, n);
-  const int row_after = n * wrapped(cell.y + 1, n);
-  const int x_before = wrapped(cell.x - 1, n);
-  const int x_after = wrapped(cell.x + 1, n);
+  const int row = n.x * cell.y;
+  const int row_before = n.x * wrapped(cell.y - 1, n.y);
+  const int row_after = n.x * wrapped(cell.y + 1, n.y);
+  const int x_before = wrapped(cell.x - 1, n.x);
+  const int x_after = wrapped(cell.x + 1, n.x);
   const int i = cell.x + row;
   const int i_x = x_after + row;
   const int i_z = cell.x + row_after;
@@ -157,10 +157,10 @@ void main() {
   const Column here = columnOf(i, texelFetch(elevation, i).x);
   const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
   const Column there_z = columnOf(i_z, texelFetch(elevation, i_z).x);
-  const int mirrored_before_x = waveNeighbourX(cell.x - 1, n) + row;
-  const int mirrored_before_z = cell.x + n * waveNeighbourZ(cell.y - 1, n);
-  const int mirrored_beyond_x = waveNeighbourX(cell.x + 2, n) + row;
-  const int mirrored_beyond_z = cell.x + n * waveNeighbourZ(cell.y + 2, n);
+  const int mirrored_before_x = waveNeighbourX(cell.x - 1, n.x) + row;
+  const int mirrored_before_z = cell.x + n.x * waveNeighbourZ(cell.y - 1, n.y);
+  const int mirrored_beyond_x = waveNeighbourX(waveNeighbourX(cell.x + 1, n.x) + 1, n.x) + row;
+  const int mirrored_beyond_z = cell.x + n.x * waveNeighbourZ(waveNeighbourZ(cell.y + 1, n.y) + 1, n.y);
   const Column behind_x = columnOf(mirrored_before_x, texelFetch(elevation, mirrored_before_x).x);
   const Column behind_z = columnOf(mirrored_before_z, texelFetch(elevation, mirrored_before_z).x);
   const Column beyond_x = columnOf(mirrored_beyond_x, texelFetch(elevation, mirrored_beyond_x).x);
@@ -202,10 +202,10 @@ void main() {
   vec2 flow_x = movedFlow(face_x, behind_x, here, there_x, beyond_x, driving.x, a.x, gained.x, borne_m.x);
   vec2 flow_z = movedFlow(face_z, behind_z, here, there_z, beyond_z, driving.y, a.y, gained.y, borne_m.y);
 #if !WAVE_PERIODIC_X
-  if (cell.x == n - 1) flow_x = vec2(0.0);
+  if (cell.x == n.x - 1) flow_x = vec2(0.0);
 #endif
 #if !WAVE_PERIODIC_Z
-  if (cell.y == n - 1) flow_z = vec2(0.0);
+  if (cell.y == n.y - 1) flow_z = vec2(0.0);
 #endif
   next_flow[i] = vec4(flow_x.x, flow_z.x, flow_x.y, flow_z.y);
 

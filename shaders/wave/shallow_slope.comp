@@ -1,6 +1,6 @@
 // The slopes that the dispersion filters in nonlinear shallow water: of the surface, the pressure heads, and the pressure of
 // water that rises or falls faster below than a hydrostatic column would.
-// Reads ELEVATION [n x n, units], FLOW [velocities, m/s], PRESSURE_HEAD, BED. Writes SURFACE_RISE [n x n x 2, units per
+// Reads ELEVATION [nx x nz, units], FLOW [velocities, m/s], PRESSURE_HEAD, BED. Writes SURFACE_RISE [nx x nz x 2, units per
 // cell] at the faces toward +x and +z of each cell.
 // Equation: head_q = h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h. The equations of Serre (1953; Green & Naghdi 1976) have
 // this term with the factor 2/3, and dispersion by the real depth where ours takes the still one; with the factor 1 solitary waves
@@ -35,14 +35,14 @@ float dynamicHead(Column water, vec4 u_mps) {
 }
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int row = n * cell.y;
-  const int row_before = n * wrapped(cell.y - 1, n);
-  const int row_after = n * wrapped(cell.y + 1, n);
-  const int x_before = wrapped(cell.x - 1, n);
-  const int x_after = wrapped(cell.x + 1, n);
+  if (any(greaterThanEqual(cell, n))) return;
+  const int row = n.x * cell.y;
+  const int row_before = n.x * wrapped(cell.y - 1, n.y);
+  const int row_after = n.x * wrapped(cell.y + 1, n.y);
+  const int x_before = wrapped(cell.x - 1, n.x);
+  const int x_after = wrapped(cell.x + 1, n.x);
   const int i = cell.x + row;
   const int i_x = x_after + row;
   const int i_z = cell.x + row_after;
