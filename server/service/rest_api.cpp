@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/rest_api.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/api_message.h>
@@ -195,7 +196,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
   }
   if (part != "scene" && part != "parameters" && part != "people") return respond(std::nullopt);
   if (method != "GET") return respond(wrongMethod("GET"));
-  if (part == "scene") return respond(json(200, room->snapshot()->scene));
+  if (part == "scene") return respond(json(200, scene::forClients(room->snapshot()->scene)));
   if (part == "people") return respond(json(200, room->roster().people()));
   v1::ParameterList out;
   for (v1::ParameterDescription& known : scene::describeParameters(room->snapshot()->scene)) {

@@ -108,11 +108,16 @@ void WaterSim::uploadBasin() {
 }
 
 BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
-    : wave(*scene.wave), speed_mps(layout.speed_mps), obstacles(scene.obstacles), beaches(scene.beaches) {
+    : wave(*scene.wave),
+      speed_mps(layout.speed_mps),
+      obstacles(scene.obstacles),
+      beaches(scene.beaches),
+      bed(scene.bed) {
   // Parameters that may change while running and that no table contains.
   wave.damping_per_s = 0.0;
   wave.steepening_ratio = 0.0;
   wave.fixed_substeps_count = 0;
+  if (bed) bed->manning_spm13 = 0.0;
 }
 
 }  // namespace spindrift::sim

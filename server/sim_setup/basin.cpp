@@ -6,6 +6,7 @@
 #include <shared/effects.h>
 
 #include <spindrift/sim_setup/basin.h>
+#include <spindrift/sim_setup/ground.h>
 
 namespace spindrift::sim {
 namespace {
@@ -106,16 +107,6 @@ double heightOf(const core::Obstacle& obstacle) {
 
 }  // namespace
 
-double bedDepth(const core::Scene& scene, double x_m, double z_m) {
-  double depth_m = scene.wave->depth_m;
-  for (const core::Beach& beach : scene.beaches) {
-    const double from_side_m = distanceTo(beach.side, scene.wave->side_m / 2, x_m, z_m);
-    const double share = std::clamp(from_side_m / beach.width_m, 0.0, 1.0);
-    depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, scene.wave->depth_m, share));
-  }
-  return depth_m;
-}
-
 double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const core::Obstacle& obstacle : scene.obstacles) {
@@ -160,7 +151,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); };
 
   Basin out;
-  out.is_flat = scene.obstacles.empty() && scene.beaches.empty();
+  out.is_flat = scene.obstacles.empty() && scene.beaches.empty() && !scene.bed;
   out.depth_m.resize(cells);
   out.conductance_m.resize(cells);
   out.bed.resize(cells);
@@ -172,7 +163,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
                                                        {core::Side::kPlusZ, w.boundary_plus_z}};
   const bool is_matched = hasMatchedLayer(scene);
   const double matched_max = matchedLossMax(scene, layout);
-  const double along_share = scene.obstacles.empty() && scene.beaches.empty() ? kAlongShareFlat : kAlongShareUneven;
+  const double along_share = out.is_flat ? kAlongShareFlat : kAlongShareUneven;
   for (int z = 0; z < n; ++z) {
     for (int x = 0; x < n; ++x) {
       const std::size_t i = index(x, z);
@@ -191,6 +182,13 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
         if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
         const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
         if (shallow > 0) fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
+      }
+      if (scene.bed && depth_m < kFadeShare * w.depth_m) {
+        // The same where the bed of the scene rises to land, with the width of a beach of its slope.
+        if (const auto slope = shoreSlope(scene, place(x), place(z))) {
+          const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
+          fade = std::max(fade, 4 * layout.speed_mps * *slope / w.depth_m * shallow * shallow);
+        }
       }
       if (is_matched) {
         const AxisLoss loss = matchedLoss(w, matched_max, along_share, place(x), place(z));
@@ -262,7 +260,9 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
       const double dx = (distanceAt(place(x) + step_m, place(z)) - distanceAt(place(x) - step_m, place(z)));
       const double dz = (distanceAt(place(x), place(z) + step_m) - distanceAt(place(x), place(z) - step_m));
       const double size = std::max(std::hypot(dx, dz), 1e-12);
-      double depth_m = basin.depth_m[static_cast<std::size_t>(x + n * z)];
+      // Land is as high as it is; ground that is dry only because it is too shallow is at the rest level.
+      const double land_m = std::min(groundDepth(scene, place(x), place(z)), 0.0);
+      double depth_m = land_m < 0 ? land_m : basin.depth_m[static_cast<std::size_t>(x + n * z)];
       if (d < 0) {
         for (const core::Obstacle& obstacle : scene.obstacles) {
           const double here = std::visit([&](const auto& o) { return distance(o, place(x), place(z)); }, obstacle);
