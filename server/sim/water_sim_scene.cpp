@@ -91,6 +91,7 @@ void WaterSim::reset() {
   start_tick_ = tick_;
   abandoned_until_tick_ = tick_;
   health_ = {};
+  if (gauges_) gauges_->clear();
   setCareful(false);
   uploadStartingState();
   parts_->checkpoints->forget();
