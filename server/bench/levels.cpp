@@ -52,7 +52,7 @@ void LevelMeter::add(const core::FrameView& frame) {
     const auto bytes = [&](v1::Layer layer) {
       const core::Level effective = core::effectiveLevel(level, codec::reducedCountOf(layer, counts_));
       const core::LevelView& view = frame.at(effective);
-      if (layer == v1::LAYER_SURFACE && view.surface) row.resolution_count = view.surface->resolution_count;
+      if (layer == v1::LAYER_SURFACE && view.surface) row.surface = view.surface->count;
       if (layer == v1::LAYER_PARTICLES && view.particles) row.particle_sum += view.particles->count;
       const auto [known, is_new] = encoded_bytes.try_emplace({layer, effective}, 0.0);
       if (is_new) {
@@ -122,17 +122,18 @@ boost::json::array LevelMeter::print(std::FILE* out) const {
     double budget_mbitps = 0.0;
     for (std::size_t b = core::kLevelCount; b-- > 0;) {
       const core::LevelBudget& budget = core::kLevelBudgets[b];
-      if (row.resolution_count <= budget.surface_resolution_count && particle_count <= budget.particle_count)
-        budget_mbitps = kBudgets_mbitps[b];
+      const bool surface_fits = core::surfaceSamples(row.surface, core::kLevels[b]) == row.surface;
+      if (surface_fits && particle_count <= budget.particle_count) budget_mbitps = kBudgets_mbitps[b];
     }
     fmt::print(out,
                "{:<8} {:>8} {:>10.0f} {:>5.0f} {:>9.2f} {:>10.2f} {:>6.2f} {:>8.2f} {:>8} {:>10.3f} {:>15.2f} {:>14}\n",
-               codec::nameOf(level), fmt::format("{0}^2", row.resolution_count), particle_count, rate_hz,
+               codec::nameOf(level), fmt::format("{}x{}", row.surface.x, row.surface.z), particle_count, rate_hz,
                mbitps(row.surface_bytes), mbitps(row.particle_bytes), mbitps(row.foam_bytes), sum_mbitps,
                budget_mbitps > 0 ? fmt::format("{:.0f}", budget_mbitps) : std::string("-"), row.encode_ms / frames,
                bits, part_bits > 0 ? fmt::format("{:.2f}", part_bits) : std::string("-"));
     json.push_back({{"level", codec::nameOf(level)},
-                    {"resolution_count", row.resolution_count},
+                    {"resolution_count", row.surface.x},
+                    {"count_z", row.surface.z},
                     {"particle_count", particle_count},
                     {"rate_hz", rate_hz},
                     {"mbit_per_s", sum_mbitps},

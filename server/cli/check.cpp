@@ -123,9 +123,9 @@ void print(const std::string& file, const v1::Scene& scene, const core::Scene& i
              scene::fidelityName(scene.fidelity()), scene::settingName(scene.setting()));
   fmt::print("  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", d.tick_s * 1e3, d.substeps_count, d.dt_s * 1e3);
   if (d.wave) {
-    fmt::print(
-        "  wave       {0} x {0} cells of {1:.3f} m, speed {2:.2f} m/s, {3} steps a tick, Courant number {4:.3f}\n",
-        d.wave->resolution_count, d.wave->cell_m, d.wave->speed_mps, d.wave->substeps_count, d.wave->courant);
+    fmt::print("  wave       {} x {} cells of {:.3f} m, speed {:.2f} m/s, {} steps a tick, Courant number {:.3f}\n",
+               d.wave->count_x, d.wave->count_z, d.wave->cell_m, d.wave->speed_mps, d.wave->substeps_count,
+               d.wave->courant);
     printWave(in);
   }
   if (d.particles) {

@@ -23,10 +23,17 @@ std::optional<core::Error> checkRange(const char* name, double value, double min
                  core::formatNumber(min) + " to " + core::formatNumber(kMaxMagnitude) + "; the frame is damaged");
 }
 
-std::optional<core::Error> checkResolution(std::uint32_t resolution_count) {
-  if (resolution_count >= 1 && resolution_count <= kSurfaceMaxResolutionCount) return std::nullopt;
-  return invalid("resolution_count: " + std::to_string(resolution_count) + " is not from 1 to " +
-                 std::to_string(kSurfaceMaxResolutionCount));
+std::optional<core::Error> checkExtents(const PlaneExtents& extents) {
+  const auto check = [](const char* name, std::uint32_t count) -> std::optional<core::Error> {
+    if (count >= 1 && count <= kSurfaceMaxResolutionCount) return std::nullopt;
+    return invalid(std::string(name) + ": " + std::to_string(count) + " is not from 1 to " +
+                   std::to_string(kSurfaceMaxResolutionCount));
+  };
+  if (auto error = check("resolution_count", extents.count.x)) return error;
+  if (auto error = check("count_z", extents.count.z)) return error;
+  // With an extent of 0 all samples would be in one place.
+  if (auto error = checkRange("side_m", extents.length_m, 1e-6)) return error;
+  return checkRange("width_m", extents.width_m, 1e-6);
 }
 
 std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <spindrift/core/bytes.h>
+#include <spindrift/core/cell_counts.h>
 #include <spindrift/core/result.h>
 #include <spindrift/v1/wire.pb.h>
 
@@ -20,8 +21,32 @@ core::ByteView viewOf(const std::string& bytes);
 /// Requires min <= value <= kMaxMagnitude; NaN is out of range too.
 std::optional<core::Error> checkRange(const char* name, double value, double min);
 
-/// Requires 1 to kSurfaceMaxResolutionCount samples along each side.
-std::optional<core::Error> checkResolution(std::uint32_t resolution_count);
+/// Samples and extent of a plane, as the headers of all planes have them: what is left out along z is as along x.
+struct PlaneExtents {
+  core::CellCounts count;
+  double length_m = 0.0;
+  double width_m = 0.0;
+
+  bool operator==(const PlaneExtents&) const = default;
+};
+template <typename Header>
+PlaneExtents extentsOf(const Header& header) {
+  return {.count = {header.resolution_count(), header.count_z() > 0 ? header.count_z() : header.resolution_count()},
+          .length_m = header.side_m(),
+          .width_m = header.width_m() != 0.0 ? header.width_m() : header.side_m()};
+}
+/// Writes them into a header; nothing along z for a square with as many samples along both axes.
+template <typename Header>
+void setExtents(const PlaneExtents& extents, Header& header) {
+  header.set_resolution_count(extents.count.x);
+  header.set_side_m(extents.length_m);
+  if (extents.count.z == extents.count.x && extents.width_m == extents.length_m) return;
+  header.set_count_z(extents.count.z);
+  header.set_width_m(extents.width_m);
+}
+
+/// Requires 1 to kSurfaceMaxResolutionCount samples along each axis, and an extent.
+std::optional<core::Error> checkExtents(const PlaneExtents& extents);
 
 /// Checks layer, time and checksum.
 std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer);

@@ -31,12 +31,11 @@ Integer load(const std::uint8_t* at) {
 std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
   if (!frame.has_surface_fixed16()) return invalid("codec: not surface_fixed16, the only surface codec known here");
   const v1::SurfaceFixed16& header = frame.surface_fixed16();
-  const std::size_t n = header.resolution_count();
-  if (auto error = checkResolution(header.resolution_count())) return error;
-  // With bounds of 0 all samples would be in one place, or flat whatever the payload.
-  if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
+  const PlaneExtents extents = extentsOf(header);
+  if (auto error = checkExtents(extents)) return error;
+  // With a quantum of 0 all samples would be flat whatever the payload.
   if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return error;
-  return checkPlainFrame(frame, v1::LAYER_SURFACE, n * n * kSampleBytes);
+  return checkPlainFrame(frame, v1::LAYER_SURFACE, extents.count.total() * kSampleBytes);
 }
 
 std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
@@ -61,10 +60,9 @@ std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
 std::optional<core::Error> checkFoam(const v1::LayerFrame& frame) {
   if (!frame.has_foam_fixed8()) return invalid("codec: not foam_fixed8, the only foam codec known here");
   const v1::FoamFixed8& header = frame.foam_fixed8();
-  const std::size_t n = header.resolution_count();
-  if (auto error = checkResolution(header.resolution_count())) return error;
-  if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
-  return checkPlainFrame(frame, v1::LAYER_FOAM, n * n);
+  const PlaneExtents extents = extentsOf(header);
+  if (auto error = checkExtents(extents)) return error;
+  return checkPlainFrame(frame, v1::LAYER_FOAM, extents.count.total());
 }
 
 std::optional<core::Error> checkBodies(const v1::LayerFrame& frame) {
@@ -97,9 +95,11 @@ core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes) {
 core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame) {
   if (auto error = checkSurface(frame)) return *error;
   const v1::SurfaceFixed16& header = frame.surface_fixed16();
+  const PlaneExtents extents = extentsOf(header);
   SurfaceSamples out;
-  out.resolution_count = header.resolution_count();
-  out.side_m = header.side_m();
+  out.count = extents.count;
+  out.length_m = extents.length_m;
+  out.width_m = extents.width_m;
   out.quantum_m = header.quantum_m();
   const core::ByteView payload = viewOf(frame.payload());
   out.elevation_m.resize(payload.size() / kSampleBytes);
@@ -141,9 +141,11 @@ core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame) {
 
 core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame) {
   if (auto error = checkFoam(frame)) return *error;
+  const PlaneExtents extents = extentsOf(frame.foam_fixed8());
   FoamSamples out;
-  out.resolution_count = frame.foam_fixed8().resolution_count();
-  out.side_m = frame.foam_fixed8().side_m();
+  out.count = extents.count;
+  out.length_m = extents.length_m;
+  out.width_m = extents.width_m;
   const core::ByteView payload = viewOf(frame.payload());
   out.foam.assign(payload.begin(), payload.end());
   return out;

@@ -8,6 +8,7 @@
 
 #include <spindrift/codec/frame_encoder.h>
 
+#include "frame_checks.h"
 #include "frame_message.h"
 #include "layer_codec.h"
 
@@ -16,11 +17,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "packed words are sent as they lie in memory");
 
-/// Returns a keyframe with the words as its payload.
+/// Returns a keyframe with the first bytes of the words as its payload.
 EncodedFrame plain(const core::FrameView& frame, v1::Layer layer, core::Level level, const v1::LayerFrame& codec,
-                   std::span<const std::uint32_t> words) {
+                   std::span<const std::uint32_t> words, std::size_t byte_count) {
+  assert(byte_count <= words.size_bytes() && byte_count + 4 > words.size_bytes());
   const auto* payload = reinterpret_cast<const std::uint8_t*>(words.data());
-  return {.keyframe = serializeFrame(frame, layer, level, std::nullopt, codec, {payload, words.size_bytes()}),
+  return {.keyframe = serializeFrame(frame, layer, level, std::nullopt, codec, {payload, byte_count}),
           .delta = nullptr};
 }
 
@@ -29,13 +31,11 @@ class SurfaceFixed16Codec final : public LayerCodec {
   EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
     if (!frame.at(level).surface) return {};
     const core::SurfaceView& surface = *frame.at(level).surface;
-    assert(surface.words.size() * 2 == std::size_t{surface.resolution_count} * surface.resolution_count);
     v1::LayerFrame codec;
     v1::SurfaceFixed16& header = *codec.mutable_surface_fixed16();
-    header.set_resolution_count(surface.resolution_count);
-    header.set_side_m(surface.side_m);
+    setExtents({surface.count, surface.length_m, surface.width_m}, header);
     header.set_quantum_m(surface.quantum_m);
-    return plain(frame, v1::LAYER_SURFACE, level, codec, surface.words);
+    return plain(frame, v1::LAYER_SURFACE, level, codec, surface.words, 2 * surface.count.total());
   }
 };
 
@@ -56,7 +56,7 @@ class ParticlesFixed12Codec final : public LayerCodec {
     header.set_max_z_m(particles.max_m[2]);
     header.set_max_speed_mps(particles.max_speed_mps);
     header.set_radius_m(particles.radius_m);
-    return plain(frame, v1::LAYER_PARTICLES, level, codec, particles.words);
+    return plain(frame, v1::LAYER_PARTICLES, level, codec, particles.words, particles.words.size_bytes());
   }
 };
 
@@ -65,11 +65,9 @@ class FoamFixed8Codec final : public LayerCodec {
   EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
     if (!frame.at(level).foam) return {};
     const core::FoamView& foam = *frame.at(level).foam;
-    assert(foam.words.size() * 4 == std::size_t{foam.resolution_count} * foam.resolution_count);
     v1::LayerFrame codec;
-    codec.mutable_foam_fixed8()->set_resolution_count(foam.resolution_count);
-    codec.mutable_foam_fixed8()->set_side_m(foam.side_m);
-    return plain(frame, v1::LAYER_FOAM, level, codec, foam.words);
+    setExtents({foam.count, foam.length_m, foam.width_m}, *codec.mutable_foam_fixed8());
+    return plain(frame, v1::LAYER_FOAM, level, codec, foam.words, foam.count.total());
   }
 };
 
@@ -80,7 +78,7 @@ class BodiesFixed28Codec final : public LayerCodec {
     assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
     v1::LayerFrame codec;
     codec.mutable_bodies_fixed28()->set_count(frame.bodies->count);
-    return plain(frame, v1::LAYER_BODIES, level, codec, frame.bodies->words);
+    return plain(frame, v1::LAYER_BODIES, level, codec, frame.bodies->words, frame.bodies->words.size_bytes());
   }
 };
 

@@ -31,11 +31,11 @@ class PackedPayload {
 /// A PlaneRow with its memory.
 class PlaneMemory {
  public:
-  /// A change of size forgets the planes. 1 <= resolution_count <= PlaneRow::kMaxResolutionCount.
-  void resize(std::size_t resolution_count) {
-    if (resolution_count == row_.resolution()) return;
-    blocks_.resize(PlaneRow::bytesFor(resolution_count) / sizeof(Block));
-    row_.place(blocks_.data()->bytes, resolution_count);
+  /// A change of size forgets the planes. 1 <= count.x, count.z <= PlaneRow::kMaxResolutionCount.
+  void resize(core::CellCounts count) {
+    if (row_.hasSize(count.x, count.z)) return;
+    blocks_.resize(PlaneRow::bytesFor(count.x, count.z) / sizeof(Block));
+    row_.place(blocks_.data()->bytes, count.x, count.z);
   }
   [[nodiscard]] PlaneRow& row() { return row_; }
 

@@ -51,17 +51,17 @@ class SurfacePredictedCodec final : public LayerCodec {
   EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe) override {
     if (!frame.at(level).surface) return {};
     const core::SurfaceView& surface = *frame.at(level).surface;
-    if (side_m_ != surface.side_m || quantum_m_ != surface.quantum_m) messages_.restart();
-    side_m_ = surface.side_m;
+    const PlaneExtents extents{surface.count, surface.length_m, surface.width_m};
+    if (extents_ != extents || quantum_m_ != surface.quantum_m) messages_.restart();
+    extents_ = extents;
     quantum_m_ = surface.quantum_m;
-    messages_.plane().resize(surface.resolution_count);
+    messages_.plane().resize(surface.count);
     messages_.plane().assign(
-        std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), 2 * surface.words.size()));
+        std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), surface.count.total()));
     return messages_.encode(frame, v1::LAYER_SURFACE, level, wants_keyframe,
                             [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
                               v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
-                              header.set_resolution_count(surface.resolution_count);
-                              header.set_side_m(surface.side_m);
+                              setExtents(extents, header);
                               header.set_quantum_m(surface.quantum_m);
                               return header;
                             });
@@ -69,7 +69,7 @@ class SurfacePredictedCodec final : public LayerCodec {
 
  private:
   PlaneMessages messages_;
-  double side_m_ = 0.0;
+  PlaneExtents extents_;
   double quantum_m_ = 0.0;
 };
 
@@ -78,23 +78,22 @@ class FoamPredictedCodec final : public LayerCodec {
   EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe) override {
     if (!frame.at(level).foam) return {};
     const core::FoamView& foam = *frame.at(level).foam;
-    if (side_m_ != foam.side_m) messages_.restart();
-    side_m_ = foam.side_m;
-    messages_.plane().resize(foam.resolution_count);
-    messages_.plane().assign(
-        std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.words.size_bytes()));
+    const PlaneExtents extents{foam.count, foam.length_m, foam.width_m};
+    if (extents_ != extents) messages_.restart();
+    extents_ = extents;
+    messages_.plane().resize(foam.count);
+    messages_.plane().assign(std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.count.total()));
     return messages_.encode(frame, v1::LAYER_FOAM, level, wants_keyframe,
                             [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
                               v1::FoamPredicted& header = *codec.mutable_foam_predicted();
-                              header.set_resolution_count(foam.resolution_count);
-                              header.set_side_m(foam.side_m);
+                              setExtents(extents, header);
                               return header;
                             });
   }
 
  private:
   PlaneMessages messages_;
-  double side_m_ = 0.0;
+  PlaneExtents extents_;
 };
 
 /// False: the number of weights is wrong.
@@ -117,7 +116,7 @@ std::unique_ptr<LayerCodec> makeFoamPredictedCodec() {
 /// The planes that a client has decoded, and their header values.
 struct PackedPlaneDecoder::History {
   PlaneMemory memory;
-  double side_m = 0.0;
+  PlaneExtents extents;
   double quantum_m = 0.0;
   std::uint64_t tick = 0;
 
@@ -127,7 +126,7 @@ struct PackedPlaneDecoder::History {
                                   double header_quantum_m) {
     auto error = check(frame, layer, header, header_quantum_m);
     if (error) memory.row().forget();
-    side_m = header.side_m();
+    extents = extentsOf(header);
     quantum_m = header_quantum_m;
     tick = frame.tick();
     return error;
@@ -137,8 +136,8 @@ struct PackedPlaneDecoder::History {
   template <typename Header>
   std::optional<core::Error> check(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
                                    double header_quantum_m) {
-    if (auto error = checkResolution(header.resolution_count())) return error;
-    if (auto error = checkRange("side_m", header.side_m(), 1e-6)) return error;
+    const PlaneExtents header_extents = extentsOf(header);
+    if (auto error = checkExtents(header_extents)) return error;
     if (auto error = checkRange("quantum_m", header_quantum_m, 1e-9)) return error;
     if (auto error = checkFrame(frame, layer)) return error;
     SurfaceWeights weights, earlier_weights;
@@ -150,11 +149,10 @@ struct PackedPlaneDecoder::History {
     if (frame.keyframe()) {
       if (!takeWeights(header.earlier_weights(), earlier_weights))
         return invalid("earlier_weights: " + std::to_string(header.earlier_weights_size()) + ", there have to be 10");
-      memory.resize(header.resolution_count());
+      memory.resize(header_extents.count);
       is_read = row.readKeyframe(payload.data(), payload.size(), weights, earlier_weights);
     } else {
-      if (!row.hasRow() || row.resolution() != header.resolution_count() || frame.base_tick() != tick ||
-          header.side_m() != side_m || header_quantum_m != quantum_m) {
+      if (!row.hasRow() || frame.base_tick() != tick || header_extents != extents || header_quantum_m != quantum_m) {
         return core::Error{core::ErrorCode::kUnavailable, "base_tick: the frame builds on tick " +
                                                               std::to_string(frame.base_tick()) +
                                                               ", which is not here: subscribe again for a keyframe"};
@@ -173,16 +171,14 @@ core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& 
   if (!frame.has_surface_predicted()) return invalid("codec: not surface_predicted");
   const v1::SurfacePredicted& header = frame.surface_predicted();
   if (auto error = history_->read(frame, v1::LAYER_SURFACE, header, header.quantum_m())) return *error;
-  SurfaceSamples out;
-  out.resolution_count = header.resolution_count();
-  out.side_m = header.side_m();
-  out.quantum_m = header.quantum_m();
+  const PlaneExtents& extents = history_->extents;
+  SurfaceSamples out{extents.count, extents.length_m, extents.width_m, header.quantum_m(), {}};
   const PlaneRow& plane = history_->memory.row();
-  const std::size_t n = plane.resolution();
+  const std::size_t nx = out.count.x;
   const double quantum_m = header.quantum_m();
-  out.elevation_m.resize(n * n);
-  for (std::size_t z = 0; z < n; ++z) {
-    std::transform(plane.row(z), plane.row(z) + n, out.elevation_m.begin() + static_cast<std::ptrdiff_t>(z * n),
+  out.elevation_m.resize(out.count.total());
+  for (std::size_t z = 0; z < out.count.z; ++z) {
+    std::transform(plane.row(z), plane.row(z) + nx, out.elevation_m.begin() + static_cast<std::ptrdiff_t>(z * nx),
                    [quantum_m](std::int16_t sample) { return static_cast<float>(sample * quantum_m); });
   }
   return out;
@@ -193,14 +189,13 @@ core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame)
   const v1::FoamPredicted& header = frame.foam_predicted();
   constexpr double kQuantum = 1.0;
   if (auto error = history_->read(frame, v1::LAYER_FOAM, header, kQuantum)) return *error;
-  FoamSamples out;
-  out.resolution_count = header.resolution_count();
-  out.side_m = header.side_m();
+  const PlaneExtents& extents = history_->extents;
+  FoamSamples out{extents.count, extents.length_m, extents.width_m, {}};
   const PlaneRow& plane = history_->memory.row();
-  const std::size_t n = plane.resolution();
-  out.foam.resize(n * n);
-  for (std::size_t z = 0; z < n; ++z) {
-    std::transform(plane.row(z), plane.row(z) + n, out.foam.begin() + static_cast<std::ptrdiff_t>(z * n),
+  const std::size_t nx = out.count.x;
+  out.foam.resize(out.count.total());
+  for (std::size_t z = 0; z < out.count.z; ++z) {
+    std::transform(plane.row(z), plane.row(z) + nx, out.foam.begin() + static_cast<std::ptrdiff_t>(z * nx),
                    [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); });
   }
   return out;

@@ -24,8 +24,7 @@ TickWork workOf(const core::Scene& scene, const sim::Derived& derived) {
     out.particle_step_count = passes_count * static_cast<double>(derived.particles->count) * derived.substeps_count;
   }
   if (derived.wave) {
-    const double side_count = derived.wave->resolution_count;
-    out.wave_step_count = side_count * side_count * derived.wave->substeps_count;
+    out.wave_step_count = static_cast<double>(derived.wave->counts().total()) * derived.wave->substeps_count;
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
 
 namespace spindrift::scene {
 namespace {
@@ -41,6 +42,40 @@ void scaleNumber(google::protobuf::Message& message, const char* name, double fa
   const double step = options.multiple_of() > 0 ? options.multiple_of() : options.step();
   double value = std::round(numberOf(message, field) * factor / step) * step;
   setNumber(message, field, std::clamp(value, options.min(), options.max()));
+}
+
+/// Scales the number of cells. The cells of a rectangle have to fit its width, too: a number of cells near the wanted
+/// one that fits, or the width is rounded to whole cells. Counts that are multiples of 16 stay so.
+void scaleCells(v1::WaveScene& wave, double factor) {
+  if (factor == 1.0) return;
+  const core::WaveCells before = waveCellsOf(wave);
+  constexpr double kMultiple = 16.0;
+  constexpr double kNearShare = 0.1;
+  constexpr double kLeastCount = 32.0;  // along the longer side, unless the scene has fewer
+  constexpr double kRounding = 1e-9;
+  const double step = before.count.x % 16 == 0 ? kMultiple : 1.0;
+  const double total = static_cast<double>(before.count.total());
+  const double most = std::min({double{core::kWaveMaxSideCount} / std::max(before.count.x, before.count.z),
+                                std::sqrt(static_cast<double>(core::kWaveMaxCellCount) / total)});
+  const double longer = std::max(before.count.x, before.count.z);
+  const double least = before.count.x * std::min(1.0, kLeastCount / longer);
+  const double wanted = std::max(std::round(before.count.x * factor / step) * step, std::ceil(least - kRounding));
+  const double limit = std::max(std::floor(before.count.x * most / step + kRounding) * step, 1.0);
+  auto count = static_cast<std::uint32_t>(std::min(wanted, limit));
+  if (wave.width_m() > 0.0) {
+    const auto fits = [&](std::uint32_t n) {
+      return n > 0 && n <= limit &&
+             core::widthFits(core::waveCellsOf(n, before.length_m, before.width_m), before.width_m);
+    };
+    const auto reach = static_cast<std::uint32_t>(kNearShare * count);
+    for (std::uint32_t off = 0; off <= reach; ++off) {
+      if (!fits(count + off) && !fits(count - off)) continue;
+      count = fits(count + off) ? count + off : count - off;
+      break;
+    }
+    wave.set_width_m(core::waveCellsOf(count, before.length_m, before.width_m).width_m);
+  }
+  wave.set_resolution_count(count);
 }
 
 double layersOf(const v1::ParticleScene& particles) {
@@ -83,7 +118,7 @@ void applyFidelity(v1::Scene& scene) {
   scaleNumber(scene, "tick_rate_hz", level.tick_scale);
   if (scene.has_wave()) {
     v1::WaveScene& wave = *scene.mutable_wave();
-    scaleNumber(wave, "resolution_count", level.wave_scale);
+    scaleCells(wave, level.wave_scale);
     // At every level: rings of the 9-point stencil are 1.3 to 1.5 times as far off at the same step, as far off at each
     // stencil's own largest step, and carry twice the faces (`spindrift study --suite accuracy --case round-hump`).
     if (wave.stencil() == v1::STENCIL_UNSPECIFIED) wave.set_stencil(v1::STENCIL_FIVE_POINT);

@@ -106,6 +106,7 @@ core::WaveScene toCore(const v1::WaveScene& in) {
   core::WaveScene out;
   out.resolution_count = in.resolution_count();
   out.side_m = in.side_m();
+  out.width_m = in.width_m();
   out.depth_m = in.depth_m();
   out.damping_per_s = in.damping_per_s();
   out.stencil = toCore(in.stencil());

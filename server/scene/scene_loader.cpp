@@ -231,6 +231,8 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
 
   std::vector<FieldIssue> issues;
   checkFields(scene, "", issues);
+  // A level rounds the width to its own cells.
+  if (text_is_fine && issues.empty() && scene.has_wave()) checkCells(scene.wave(), issues);
   if (text_is_fine) {
     const bool numbers_are_fine = issues.empty();
     if (fidelity) scene.set_fidelity(*fidelity);

@@ -158,7 +158,10 @@ double sideAlong(core::Side side, const WaterExtents& water) {
 }  // namespace
 
 WaterExtents waterExtentsOf(const v1::Scene& scene) {
-  if (scene.has_wave()) return {scene.wave().side_m(), scene.wave().side_m(), scene.wave().depth_m()};
+  if (scene.has_wave()) {
+    const core::WaveCells cells = waveCellsOf(scene.wave());
+    return {cells.length_m, cells.width_m, scene.wave().depth_m()};
+  }
   const v1::ParticleScene& p = scene.particles();
   const double width_m = p.box_width_m() > 0 ? p.box_width_m() : p.box_side_m();
   const double area_m2 = p.box_side_m() * p.fill_x_ratio() * width_m * p.fill_z_ratio();
@@ -228,9 +231,10 @@ std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
   if (scene.coupling().lattice_count() == 4) addRange(issues, "coupling.lattice_count", "4 is even; choose 3 or 5");
   if (scene.has_particles()) {
     const v1::ParticleScene& particles = scene.particles();
-    const double side_m = scene.has_wave() ? scene.wave().side_m() : particles.box_side_m();
-    checkPatch(particles.patch_shift_x_m(), particles.patch_scale(), side_m, "particles.patch_shift_x_m", issues);
-    checkPatch(particles.patch_shift_z_m(), particles.patch_scale(), side_m, "particles.patch_shift_z_m", issues);
+    const double side_x_m = scene.has_wave() ? waveCellsOf(scene.wave()).length_m : particles.box_side_m();
+    const double side_z_m = scene.has_wave() ? waveCellsOf(scene.wave()).width_m : particles.box_side_m();
+    checkPatch(particles.patch_shift_x_m(), particles.patch_scale(), side_x_m, "particles.patch_shift_x_m", issues);
+    checkPatch(particles.patch_shift_z_m(), particles.patch_scale(), side_z_m, "particles.patch_shift_z_m", issues);
   }
   for (FieldIssue& issue : checkWater(scene)) issues.push_back(std::move(issue));
   for (int i = 0; i < scene.events_size(); ++i) checkEventNumbers(scene.events(i), scene, eventPrefix(i), issues);

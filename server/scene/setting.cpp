@@ -4,13 +4,18 @@
 namespace spindrift::scene {
 namespace {
 
-/// A box of particles that is at least this many times as long as wide is a flume.
+/// Water that is at least this many times as long as wide is a flume.
 constexpr double kFlumeAspect = 2.0;
-/// Walled water with a side up to this length is in a glass tank, larger water in a pool. [m]
+/// Walled water with sides up to this length is in a glass tank, larger water in a pool; a channel up to this wide is a
+/// flume. [m]
 constexpr double kTankMaxSide_m = 6.0;
 
 bool isPeriodic(v1::WaveBoundary side) {
   return side == v1::WAVE_BOUNDARY_UNSPECIFIED || side == v1::WAVE_BOUNDARY_PERIODIC;
+}
+
+bool isWall(v1::WaveBoundary side) {
+  return side == v1::WAVE_BOUNDARY_REFLECT;
 }
 
 bool isPeriodic(v1::Boundary side) {
@@ -22,6 +27,15 @@ v1::Setting walledSetting(double side_m) {
 }
 
 v1::Setting ofWave(const v1::WaveScene& wave) {
+  const core::WaveCells cells = waveCellsOf(wave);
+  const double longer_m = std::max(cells.length_m, cells.width_m);
+  const double shorter_m = std::min(cells.length_m, cells.width_m);
+  // Walls along a narrow channel, whatever its ends are.
+  const bool has_long_walls =
+      longer_m >= kFlumeAspect * shorter_m && shorter_m <= kTankMaxSide_m &&
+      (cells.length_m > cells.width_m ? isWall(wave.boundary_minus_z()) && isWall(wave.boundary_plus_z())
+                                      : isWall(wave.boundary_minus_x()) && isWall(wave.boundary_plus_x()));
+  if (has_long_walls) return v1::SETTING_FLUME;
   const auto absorbs = [](v1::WaveBoundary side) { return side == v1::WAVE_BOUNDARY_ABSORB; };
   if (absorbs(wave.boundary_minus_x()) || absorbs(wave.boundary_plus_x()) || absorbs(wave.boundary_minus_z()) ||
       absorbs(wave.boundary_plus_z()))
@@ -31,7 +45,7 @@ v1::Setting ofWave(const v1::WaveScene& wave) {
   if (is_periodic_x && is_periodic_z) return v1::SETTING_OPEN_SEA;
   // Walls at two ends only: the waves do not depend on the width, as in a flume.
   if (is_periodic_x != is_periodic_z) return v1::SETTING_FLUME;
-  return walledSetting(wave.side_m());
+  return walledSetting(longer_m);
 }
 
 v1::Setting ofBox(const v1::Scene& scene) {

@@ -1,6 +1,5 @@
 // Rules between the water and the objects in it: sides, sponge, obstacles, beaches, boats.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -14,8 +13,9 @@
 namespace spindrift::scene {
 namespace {
 
-/// Maximum length of a boat over the water's side; a longer one would have no room to sail.
+/// Maximum length of a boat over the water's longer and over its shorter side; a longer one would have no room to sail.
 constexpr double kMaxBoatSideRatio = 0.25;
+constexpr double kMaxBoatWidthRatio = 0.5;
 /// Allows for rounding of positions exactly on an edge.
 constexpr double kEdgeToleranceRatio = 1e-9;
 
@@ -119,18 +119,25 @@ void checkPair(v1::WaveBoundary minus, v1::WaveBoundary plus, const char* minus_
 void checkSides(const v1::WaveScene& wave, std::vector<FieldIssue>& issues) {
   checkPair(wave.boundary_minus_x(), wave.boundary_plus_x(), "boundary_minus_x", "boundary_plus_x", issues);
   checkPair(wave.boundary_minus_z(), wave.boundary_plus_z(), "boundary_minus_z", "boundary_plus_z", issues);
-  const bool absorbs =
-      std::ranges::any_of(std::array{v1::SIDE_PLUS_X, v1::SIDE_MINUS_X, v1::SIDE_PLUS_Z, v1::SIDE_MINUS_Z},
-                          [&](v1::Side side) { return boundaryOf(wave, side) == v1::WAVE_BOUNDARY_ABSORB; });
-  if (absorbs && wave.sponge_width_m() > 0.5 * wave.side_m()) {
+  // A layer lies along the normal of its side.
+  const core::WaveCells cells = waveCellsOf(wave);
+  const bool absorbs_x =
+      wave.boundary_minus_x() == v1::WAVE_BOUNDARY_ABSORB || wave.boundary_plus_x() == v1::WAVE_BOUNDARY_ABSORB;
+  const bool absorbs_z =
+      wave.boundary_minus_z() == v1::WAVE_BOUNDARY_ABSORB || wave.boundary_plus_z() == v1::WAVE_BOUNDARY_ABSORB;
+  const double side_m = absorbs_x && absorbs_z ? std::min(cells.length_m, cells.width_m)
+                        : absorbs_x            ? cells.length_m
+                                               : cells.width_m;
+  if ((absorbs_x || absorbs_z) && wave.sponge_width_m() > 0.5 * side_m) {
     addRange(issues, "wave.sponge_width_m",
-             metres(wave.sponge_width_m()) + " is more than half the side of the water of " + metres(wave.side_m()) +
-                 "; choose at most " + metres(0.5 * wave.side_m()));
+             metres(wave.sponge_width_m()) + " is more than half the side of the water of " + metres(side_m) +
+                 "; choose at most " + metres(0.5 * side_m));
   }
 }
 
 void checkObstacles(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
-  const double side_m = scene.wave().side_m();
+  const core::WaveCells cells = waveCellsOf(scene.wave());
+  const double side_m = std::min(cells.length_m, cells.width_m);
   for (int i = 0; i < scene.obstacles_size(); ++i) {
     const v1::Obstacle& obstacle = scene.obstacles(i);
     if (obstacle.has_rock()) {
@@ -141,13 +148,13 @@ void checkObstacles(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
                      metres(0.5 * side_m));
         continue;
       }
-      checkInside(obstacle.rock().x_m(), obstacle.rock().radius_m(), side_m, prefix + "x_m", issues);
-      checkInside(obstacle.rock().z_m(), obstacle.rock().radius_m(), side_m, prefix + "z_m", issues);
+      checkInside(obstacle.rock().x_m(), obstacle.rock().radius_m(), cells.length_m, prefix + "x_m", issues);
+      checkInside(obstacle.rock().z_m(), obstacle.rock().radius_m(), cells.width_m, prefix + "z_m", issues);
     } else if (obstacle.has_breakwater()) {
       const std::string prefix = indexed("obstacles", i) + ".breakwater.";
       const Footprint wall = footprintOf(obstacle.breakwater());
-      checkInside(wall.x_m, wall.reachX_m(), side_m, prefix + "x_m", issues);
-      checkInside(wall.z_m, wall.reachZ_m(), side_m, prefix + "z_m", issues);
+      checkInside(wall.x_m, wall.reachX_m(), cells.length_m, prefix + "x_m", issues);
+      checkInside(wall.z_m, wall.reachZ_m(), cells.width_m, prefix + "z_m", issues);
     }
   }
 }
@@ -172,10 +179,12 @@ void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
       addRange(issues, prefix + "side",
                v1::Side_Name(beach.side()) + " has " + indexed("beaches", k) + " already; one a side");
     }
-    if (beach.width_m() > wave.side_m()) {
-      addRange(
-          issues, prefix + "width_m",
-          metres(beach.width_m()) + " is more than the side of the water; choose at most " + metres(wave.side_m()));
+    const core::WaveCells cells = waveCellsOf(wave);
+    const bool along_x = beach.side() != v1::SIDE_PLUS_Z && beach.side() != v1::SIDE_MINUS_Z;
+    const double side_m = along_x ? cells.length_m : cells.width_m;
+    if (beach.width_m() > side_m) {
+      addRange(issues, prefix + "width_m",
+               metres(beach.width_m()) + " is more than the side of the water; choose at most " + metres(side_m));
     }
     if (beach.shore_depth_m() > wave.depth_m()) {
       addRange(issues, prefix + "shore_depth_m",
@@ -187,11 +196,12 @@ void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
 
 void checkHull(const core::Boat& boat, const WaterExtents& water, const std::string& prefix,
                std::vector<FieldIssue>& issues) {
-  const double max_length_m = kMaxBoatSideRatio * water.shorterSide_m();
+  const double max_length_m = std::min(kMaxBoatSideRatio * std::max(water.side_x_m, water.side_z_m),
+                                       kMaxBoatWidthRatio * water.shorterSide_m());
   if (boat.length_m > max_length_m) {
     addRange(issues, prefix + "length_m",
-             metres(boat.length_m) + " is more than a quarter of the water's side of " + metres(water.shorterSide_m()) +
-                 "; choose at most " + metres(max_length_m));
+             metres(boat.length_m) + " is more than a quarter of the water's length or half of its width of " +
+                 metres(water.side_x_m) + " x " + metres(water.side_z_m) + "; choose at most " + metres(max_length_m));
   }
   if (boat.beam_m > boat.length_m) {
     addRange(issues, prefix + "beam_m",
@@ -229,6 +239,31 @@ void checkBoats(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
 
 }  // namespace
 
+core::WaveCells waveCellsOf(const v1::WaveScene& wave) {
+  const google::protobuf::Descriptor& type = *v1::WaveScene::descriptor();
+  const auto number = [&](const char* name) { return numberOf(wave, *type.FindFieldByName(name)); };
+  return core::waveCellsOf(static_cast<std::uint32_t>(number("resolution_count")), number("side_m"), number("width_m"));
+}
+
+void checkCells(const v1::WaveScene& wave, std::vector<FieldIssue>& issues) {
+  const core::WaveCells cells = waveCellsOf(wave);
+  const double width_m = wave.width_m();
+  if (!core::widthFits(cells, width_m)) {
+    const double whole = std::floor(width_m / cells.cell_m);
+    const std::string less = whole > 0 ? metres(whole * cells.cell_m) + " or " : "";
+    addRange(issues, "wave.width_m",
+             metres(width_m) + " is no whole number of cells: side_m and resolution_count make them " +
+                 metres(cells.cell_m) + " wide; choose " + less + metres((whole + 1) * cells.cell_m) +
+                 ", or another resolution_count");
+  }
+  if (cells.count.z > core::kWaveMaxSideCount || cells.count.total() > core::kWaveMaxCellCount) {
+    addRange(issues, "wave.resolution_count",
+             std::to_string(cells.count.x) + " x " + std::to_string(cells.count.z) + " cells are more than " +
+                 std::to_string(core::kWaveMaxSideCount) + " along z or " + std::to_string(core::kWaveMaxCellCount) +
+                 " in all; choose fewer, or a smaller width_m");
+  }
+}
+
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix) {
   std::vector<FieldIssue> issues;
   const WaterExtents water = waterExtentsOf(scene);
@@ -252,6 +287,7 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
 std::vector<FieldIssue> checkWater(const v1::Scene& scene) {
   std::vector<FieldIssue> issues;
   if (scene.has_wave()) {
+    checkCells(scene.wave(), issues);
     checkSides(scene.wave(), issues);
     checkObstacles(scene, issues);
     checkBeaches(scene, issues);

@@ -200,14 +200,13 @@ class Runner {
   static std::optional<double> elevation_m(const v1::LayerFrame& frame, double x_m, double z_m) {
     const auto surface = codec::decodeSurface(frame);
     if (!surface) return std::nullopt;
-    const double n = surface->resolution_count;
-    const auto index = [&](double at_m) {
-      return static_cast<std::int64_t>(std::floor((at_m / surface->side_m + 0.5) * n));
+    const auto index = [](double at_m, double side_m, std::uint32_t count) {
+      return static_cast<std::int64_t>(std::floor((at_m / side_m + 0.5) * count));
     };
-    const std::int64_t i = index(x_m);
-    const std::int64_t k = index(z_m);
-    if (i < 0 || k < 0 || i >= surface->resolution_count || k >= surface->resolution_count) return std::nullopt;
-    return surface->elevation_m[static_cast<std::size_t>(k * surface->resolution_count + i)];
+    const std::int64_t i = index(x_m, surface->length_m, surface->count.x);
+    const std::int64_t k = index(z_m, surface->width_m, surface->count.z);
+    if (i < 0 || k < 0 || i >= surface->count.x || k >= surface->count.z) return std::nullopt;
+    return surface->elevation_m[static_cast<std::size_t>(k * surface->count.x + i)];
   }
 
   Outcome expectGauge(const v1::ExpectGauge& step, ScriptClient& client) {

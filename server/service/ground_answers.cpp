@@ -18,26 +18,23 @@ constexpr std::size_t kKeptMaxCount = 64;
 }  // namespace
 
 v1::Ground groundOf(const core::Scene& scene) {
-  const core::WaveScene& water = *scene.wave;
-  const std::uint32_t count_x = water.resolution_count;
-  const std::uint32_t count_z = water.resolution_count;
-  const double length_m = water.side_m;
-  const double width_m = water.side_m;
+  const core::WaveCells water = scene.wave->cells();
+  const auto [count_x, count_z] = water.count;
   std::vector<double> rise_m;
-  rise_m.reserve(std::size_t{count_x} * count_z);
+  rise_m.reserve(water.count.total());
   double largest_m = 0.0;
   for (std::uint32_t z = 0; z < count_z; ++z) {
     for (std::uint32_t x = 0; x < count_x; ++x) {
-      rise_m.push_back(
-          -sim::groundDepth(scene, ((x + 0.5) / count_x - 0.5) * length_m, ((z + 0.5) / count_z - 0.5) * width_m));
+      rise_m.push_back(-sim::groundDepth(scene, (x + 0.5) * water.cell_m - water.length_m / 2,
+                                         (z + 0.5) * water.cell_m - water.width_m / 2));
       largest_m = std::max(largest_m, std::abs(rise_m.back()));
     }
   }
   v1::Ground out;
   out.set_count_x(count_x);
   out.set_count_z(count_z);
-  out.set_length_m(length_m);
-  out.set_width_m(width_m);
+  out.set_length_m(water.length_m);
+  out.set_width_m(water.width_m);
   out.set_quantum_m(std::max(kFinestQuantum_m, largest_m / kLargestStep));
   out.mutable_rise()->Reserve(static_cast<int>(rise_m.size()));
   const auto quantized = [&](std::size_t i) {

@@ -9,7 +9,7 @@ namespace spindrift::sim {
 core::Result<std::unique_ptr<Breakers>> Breakers::create(gpu::Context& ctx, const WaveLayout& layout,
                                                          const gpu::Defines& defines) {
   auto out = std::unique_ptr<Breakers>(new Breakers(ctx, layout));
-  const std::size_t cells = std::size_t{layout.resolution_count} * layout.resolution_count;
+  const std::size_t cells = layout.counts().total();
   Creation create;
   create(out->now_, gpu::TexelBuffer::create(ctx, "breaking", cells, gpu::TexelFormat::kRGBA32F));
   create(out->before_, gpu::TexelBuffer::create(ctx, "breaking before", cells, gpu::TexelFormat::kRGBA32F,
@@ -38,7 +38,7 @@ void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t 
     pool->emitters().bindStorage(EMITTER);
     program_.setUniform("tick", tick);
   }
-  program_.dispatch(n_, n_);
+  program_.dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

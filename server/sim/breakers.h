@@ -28,10 +28,10 @@ class Breakers {
   [[nodiscard]] gpu::TexelBuffer& state() { return now_; }
 
  private:
-  Breakers(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count) {}
+  Breakers(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.counts()) {}
 
   gpu::Context& ctx_;
-  std::uint32_t n_;
+  core::CellCounts count_;
   gpu::TexelBuffer now_, before_;
   gpu::Program program_;
 };

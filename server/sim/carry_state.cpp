@@ -27,16 +27,16 @@ constexpr std::array<std::array<double, 2>, 4> kFaceShifts = {{{0.5, 0.0}, {0.0,
 /// A wave's grid with its basin.
 struct Grid {
   Grid(const core::Scene& scene, const WaveLayout& layout)
-      : n(layout.resolution_count), basin(layOutBasin(scene, layout)) {
+      : count(layout.counts()), foam_count(layout.foamCounts()), basin(layOutBasin(scene, layout)) {
     wet.reserve(basin.depth_m.size());
     for (const float depth_m : basin.depth_m) {
       bed_units.push_back(bedUnits(depth_m));
       wet.push_back(depth_m > 0 ? 1 : 0);
     }
   }
-  [[nodiscard]] std::size_t cellCount() const { return std::size_t{n} * n; }
+  [[nodiscard]] std::size_t cellCount() const { return count.total(); }
 
-  std::uint32_t n;
+  core::CellCounts count, foam_count;
   Basin basin;
   std::vector<char> wet;
   std::vector<std::int64_t> bed_units;
@@ -53,7 +53,9 @@ class SurfaceCarrier {
         z_{.shift_cells = 0.0, .is_periodic = isPeriodicZ(*scene.wave)} {}
 
   /// Units of a new cell per unit of an old cell, by their areas.
-  [[nodiscard]] double unitRatio() const { return std::pow(static_cast<double>(to_.n) / from_.n, 2); }
+  [[nodiscard]] double unitRatio() const {
+    return static_cast<double>(to_.cellCount()) / static_cast<double>(from_.cellCount());
+  }
 
   /// `extra_units`: volume that is added, in units of the new cells.
   [[nodiscard]] std::vector<std::int32_t> elevation(std::int64_t extra_units) const {
@@ -91,7 +93,7 @@ class SurfaceCarrier {
       SampleAxis x = x_, z = z_;
       x.shift_cells = kFaceShifts[c][0];
       z.shift_cells = kFaceShifts[c][1];
-      const Field moved = resample(field, from_.n, to_.n, x, z);
+      const Field moved = resample(field, from_.count, to_.count, x, z);
       for (std::size_t i = 0; i < moved.mean.size(); ++i) {
         if (to_.basin.conductance_m[i][c] > 0) out[components * i + c] = static_cast<float>(moved.mean[i]);
       }
@@ -102,14 +104,16 @@ class SurfaceCarrier {
   /// Texels of 4 floats, one per cell; the nearest one.
   [[nodiscard]] std::vector<float> nearest(std::span<const float> texels) const {
     std::vector<float> out(4 * to_.cellCount());
-    const auto from = [&](std::uint32_t k) {
-      return std::min(static_cast<std::size_t>((k + 0.5) * from_.n / to_.n), std::size_t{from_.n} - 1);
+    const auto from = [](std::uint32_t k, std::uint32_t from_count, std::uint32_t to_count) {
+      return std::min(static_cast<std::size_t>((k + 0.5) * from_count / to_count), std::size_t{from_count} - 1);
     };
-    for (std::uint32_t z = 0; z < to_.n; ++z) {
-      for (std::uint32_t x = 0; x < to_.n; ++x) {
-        const std::size_t i = x + std::size_t{to_.n} * z;
+    for (std::uint32_t z = 0; z < to_.count.z; ++z) {
+      const std::size_t row = from_.count.x * from(z, from_.count.z, to_.count.z);
+      for (std::uint32_t x = 0; x < to_.count.x; ++x) {
+        const std::size_t i = x + std::size_t{to_.count.x} * z;
         if (!to_.wet[i]) continue;
-        std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(4 * (from(x) + from_.n * from(z))), 4,
+        const std::size_t at = row + from(x, from_.count.x, to_.count.x);
+        std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(4 * at), 4,
                     out.begin() + static_cast<std::ptrdiff_t>(4 * i));
       }
     }
@@ -118,13 +122,12 @@ class SurfaceCarrier {
 
   /// Texels of 4 floats, one per two cells along each axis.
   [[nodiscard]] std::vector<float> meansOfFoam(std::span<const float> texels) const {
-    const std::uint32_t from_count = from_.n / 2, to_count = to_.n / 2;
-    const std::size_t count = std::size_t{from_count} * from_count;
-    std::vector<float> out(4 * std::size_t{to_count} * to_count);
+    const std::size_t count = from_.foam_count.total();
+    std::vector<float> out(4 * to_.foam_count.total());
     for (std::size_t c = 0; c < 4; ++c) {
       Field field{std::vector<double>(count), std::vector<double>(count, 1.0)};
       for (std::size_t i = 0; i < count; ++i) field.mean[i] = texels[4 * i + c];
-      const Field moved = resample(field, from_count, to_count, x_, z_);
+      const Field moved = resample(field, from_.foam_count, to_.foam_count, x_, z_);
       for (std::size_t i = 0; i < moved.mean.size(); ++i) out[4 * i + c] = static_cast<float>(moved.mean[i]);
     }
     return out;
@@ -135,8 +138,8 @@ class SurfaceCarrier {
     Field field{std::move(values), std::vector<double>(from_.wet.begin(), from_.wet.end())};
     for (std::size_t i = 0; i < field.mean.size(); ++i)
       if (!from_.wet[i]) field.mean[i] = 0.0;
-    Field moved = resample(field, from_.n, to_.n, x_, z_);
-    settleOn(to_.wet, to_.n, x_.is_periodic, z_.is_periodic, moved);
+    Field moved = resample(field, from_.count, to_.count, x_, z_);
+    settleOn(to_.wet, to_.count, x_.is_periodic, z_.is_periodic, moved);
     return moved;
   }
 
@@ -194,11 +197,17 @@ Spray resampleSpray(const CarriedState& before, const core::Scene& scene, const 
 core::WaveScene fixedPart(core::WaveScene wave) {
   const core::WaveScene any;
   wave.resolution_count = any.resolution_count;
+  wave.width_m = any.width_m;  // isSameWater() compares it
   wave.depth_m = any.depth_m;
   wave.damping_per_s = any.damping_per_s;
   wave.steepening_ratio = any.steepening_ratio;
   wave.fixed_substeps_count = any.fixed_substeps_count;
   return wave;
+}
+
+/// Levels round the width to whole cells of their own.
+bool hasSameWidth(const core::WaveCells& a, const core::WaveCells& b) {
+  return std::abs(a.width_m - b.width_m) <= std::max(a.cell_m, b.cell_m);
 }
 
 bool hasSameParticles(const core::ParticleScene& a, const core::ParticleScene& b) {
@@ -215,7 +224,8 @@ bool isSameWater(const core::Scene& a, const core::Scene& b) {
       !same_presence(a.storm, b.storm)) {
     return false;
   }
-  if (a.wave && !(fixedPart(*a.wave) == fixedPart(*b.wave))) return false;
+  if (a.wave && !(fixedPart(*a.wave) == fixedPart(*b.wave) && hasSameWidth(a.wave->cells(), b.wave->cells())))
+    return false;
   if (a.particles && !hasSameParticles(*a.particles, *b.particles)) return false;
   if (a.coupling && a.coupling->mode != b.coupling->mode) return false;
   if (a.wave && hasSurfaceFoam(a) != hasSurfaceFoam(b)) return false;

@@ -80,7 +80,7 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
     create(out->particle_program_, gpu::Program::create(ctx, "diagnostics/particles.comp", defines));
   }
   if (derived.wave) {
-    out->cells_ = derived.wave->resolution_count * derived.wave->resolution_count;
+    out->cells_ = static_cast<std::uint32_t>(derived.wave->counts().total());
     create(out->surface_program_, gpu::Program::create(ctx, "diagnostics/surface.comp", defines));
     if (create.error()) return *create.error();
     out->surface_shares_ = sharesFor(out->cells_, out->surface_program_);

@@ -26,16 +26,6 @@ Floats floatsOf(const Four& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])};
 }
 
-Four padded(const std::array<double, kPoleCount>& v) {
-  return {v[0], v[1], 0.0, 0.0};
-}
-
-std::vector<Four> padded(const std::vector<std::array<double, kPoleCount>>& values) {
-  std::vector<Four> out;
-  for (const auto& v : values) out.push_back(padded(v));
-  return out;
-}
-
 /// One texel per cell: the halves of both tables.
 std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four>& second) {
   std::vector<Words> out(first.size());
@@ -47,12 +37,8 @@ std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four
   return out;
 }
 
-/// Index of the first grid of the bottom. One work group takes fewer dispatches for it, but has only one core.
-std::size_t bottomOf(const Dispersion& dispersion) {
-  std::size_t k = 1;
-  while (k + 1 < dispersion.levels.size() && dispersion.levels[k].side_count > kBottomSide) ++k;
-  return k;
-}
+/// The halo of a strip (shaders/dispersion/strip.glsl) goes around a grid with fewer cells more than once.
+constexpr std::uint32_t kNarrowCount = 2 * DISPERSION_COLUMNS;
 
 }  // namespace
 
@@ -62,18 +48,25 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   using gpu::TexelBuffer;
   constexpr auto kScratch = gpu::BufferContent::kScratch;
   const Dispersion dispersion = layOutDispersion(layout, basin);
-  const std::size_t bottom = bottomOf(dispersion);
+  // One work group takes fewer dispatches for the bottom, but has only one core.
+  const std::size_t bottom = bottomOf(dispersionGrids(layout));
+  bool is_narrow[2] = {false, false};
   auto out = std::unique_ptr<DispersedSlope>(new DispersedSlope(ctx));
   Creation create;
   for (std::size_t k = 0; k <= bottom; ++k) {
     const std::size_t cells = dispersion.levels[k].stiffness.size();
     Grid& grid = out->grids_.emplace_back();
-    grid.side_count = dispersion.levels[k].side_count;
+    grid.count = dispersion.levels[k].count;
     if (k > 0) {
-      create(grid.right, TexelBuffer::create(ctx, "dispersion right side", cells, kFloats, kScratch));
+      const CellCounts finer = dispersion.levels[k - 1].count;
+      const bool is_exact = grid.count == CellCounts{finer.x / 2, finer.z / 2};
+      // No pass writes the cells beyond the water: they stay 0.
+      create(grid.right, TexelBuffer::create(ctx, "dispersion right side", cells, kFloats,
+                                             is_exact ? kScratch : gpu::BufferContent::kZero));
       create(grid.faces, TexelBuffer::create(ctx, "dispersion faces", cells, kFloats, kScratch));
     }
     if (k == bottom) break;
+    is_narrow[k == 0] = is_narrow[k == 0] || std::min(grid.count.x, grid.count.z) < kNarrowCount;
     if (dispersion.is_flat) {
       create(grid.coefficients, TexelBuffer::create(ctx, "dispersion coefficients", 2, kFloats));
     } else {
@@ -85,21 +78,25 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   std::size_t bottom_cells = 0;
   for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) bottom_cells += dispersion.levels[k].stiffness.size();
   create(tables.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", bottom_cells, kFloats));
-  create(tables.spread, TexelBuffer::create(ctx, "dispersion spread", bottom_cells, gpu::TexelFormat::kRG32F));
+  create(tables.spread, TexelBuffer::create(ctx, "dispersion spread", bottom_cells, kFloats));
   create(tables.sweep, TexelBuffer::create(ctx, "dispersion sweep weights", bottom_cells, kFloats));
   create(tables.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", bottom_cells, kFloats));
   create(tables.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", bottom_cells, kFloats));
   create(out->dispersed_,
-         TexelBuffer::create(ctx, "dispersed slope", dispersion.root_c.size(), gpu::TexelFormat::kRG32F, kScratch));
+         TexelBuffer::create(ctx, "dispersed slope", layout.counts().total(), gpu::TexelFormat::kRG32F, kScratch));
   for (std::size_t finest = 0; finest < 2; ++finest) {
     gpu::Defines of_grid = defines;
     of_grid.emplace_back("FINEST", std::to_string(finest));
     of_grid.emplace_back("FLAT", dispersion.is_flat ? "1" : "0");
+    of_grid.emplace_back("NARROW", is_narrow[finest] ? "1" : "0");
     create(out->descend_[finest], Program::create(ctx, "dispersion/descend.comp", of_grid));
     create(out->ascend_[finest], Program::create(ctx, "dispersion/ascend.comp", of_grid));
   }
   create(tables.solve, Program::create(ctx, "dispersion/bottom.comp"));
   if (create.error()) return *create.error();
+  tables.solve.setUniform("grid_count", static_cast<std::uint32_t>(dispersion.levels.size() - bottom));
+  tables.solve.setUniform("grid_nx", out->grids_.back().count.x);
+  tables.solve.setUniform("grid_nz", out->grids_.back().count.z);
   out->upload(dispersion);
   return out;
 }
@@ -115,19 +112,17 @@ void DispersedSlope::upload(const Dispersion& dispersion) {
     if (dispersion.is_flat) {
       // The first cell is wet and its faces are open.
       grids_[k].coefficients.upload(
-          std::array{floatsOf(level.stiffness[0]), floatsOf(k == 0 ? dispersion.root_c[0] : padded(level.spread[0]))});
+          std::array{floatsOf(level.stiffness[0]), floatsOf(k == 0 ? dispersion.root_c[0] : level.spread[0])});
     } else {
-      grids_[k].coefficients.upload(packed(level.stiffness, k == 0 ? dispersion.root_c : padded(level.spread)));
+      grids_[k].coefficients.upload(packed(level.stiffness, k == 0 ? dispersion.root_c : level.spread));
       grids_[k].weights.upload(packed(level.from_coarse_x, level.from_coarse_z));
     }
   }
-  std::vector<Floats> stiffness, sweep, from_x, from_z;
-  std::vector<std::array<float, kPoleCount>> spread;
+  std::vector<Floats> stiffness, spread, sweep, from_x, from_z;
   for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) {
     const DispersionLevel& level = dispersion.levels[k];
     std::ranges::transform(level.stiffness, std::back_inserter(stiffness), floatsOf);
-    for (const auto& [first, second] : level.spread)
-      spread.push_back({static_cast<float>(first), static_cast<float>(second)});
+    std::ranges::transform(level.spread, std::back_inserter(spread), floatsOf);
     std::ranges::transform(sweepWeights(level), std::back_inserter(sweep), floatsOf);
     std::ranges::transform(level.from_coarse_x, std::back_inserter(from_x), floatsOf);  // none in the coarsest grid
     std::ranges::transform(level.from_coarse_z, std::back_inserter(from_z), floatsOf);
@@ -158,7 +153,7 @@ void DispersedSlope::bindTables(std::size_t level) {
 void DispersedSlope::descend(std::size_t level) {
   bindTables(level);
   grids_[level + 1].right.bindStorage(DISPERSION_COARSE_RIGHT);
-  dispatch(descend_[level == 0], grids_[level]);
+  dispatch(descend_[level == 0], level);
 }
 
 void DispersedSlope::solveBottom() {
@@ -180,12 +175,16 @@ void DispersedSlope::ascend(std::size_t level) {
     dispersed_.bindStorage(DISPERSED);
   else
     grids_[level].faces.bindStorage(DISPERSION_FACES);
-  dispatch(ascend_[level == 0], grids_[level]);
+  dispatch(ascend_[level == 0], level);
 }
 
-void DispersedSlope::dispatch(gpu::Program& pass, const Grid& grid) {
-  const auto over = [&](std::uint32_t count) { return (grid.side_count + count - 1) / count; };
-  pass.dispatch(over(DISPERSION_COLUMNS), over(DISPERSION_STRIP));
+void DispersedSlope::dispatch(gpu::Program& pass, std::size_t level) {
+  const CellCounts count = grids_[level].count;
+  pass.setUniform("grid_nx", count.x);
+  pass.setUniform("grid_nz", count.z);
+  pass.setUniform("coarse_nx", grids_[level + 1].count.x);
+  pass.dispatch((count.x + DISPERSION_COLUMNS - 1) / DISPERSION_COLUMNS,
+                (count.z + DISPERSION_STRIP - 1) / DISPERSION_STRIP);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

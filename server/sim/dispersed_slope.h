@@ -20,14 +20,14 @@ class DispersedSlope {
   /// Uploads the tables for a changed depth.
   void upload(const WaveLayout& layout, const Basin& basin);
 
-  /// Computes texels() from the elevation and the pressure head (null: none), n x n [units].
+  /// Computes texels() from the elevation and the pressure head (null: none), nx x nz [units].
   void compute(const gpu::TexelBuffer& elevation, const gpu::TexelBuffer* pressure_head);
-  /// n x n x 2: F grad(eta) at the faces that a cell owns [m * units per cell].
+  /// nx x nz x 2: F grad(eta) at the faces that a cell owns [m * units per cell].
   [[nodiscard]] const gpu::TexelBuffer& texels() const { return dispersed_; }
 
  private:
   struct Grid {
-    std::uint32_t side_count = 0;
+    CellCounts count;
     gpu::TexelBuffer coefficients, weights;  ///< none in the last grid; no weights in a flat basin
     gpu::TexelBuffer right, faces;           ///< except on the finest grid
   };
@@ -44,7 +44,7 @@ class DispersedSlope {
   void descend(std::size_t level);
   void solveBottom();
   void ascend(std::size_t level);
-  void dispatch(gpu::Program& pass, const Grid& grid);
+  void dispatch(gpu::Program& pass, std::size_t level);
 
   gpu::Context& ctx_;
   std::vector<Grid> grids_;  ///< finest first; the last one is the first of the bottom

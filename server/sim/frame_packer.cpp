@@ -21,11 +21,11 @@ constexpr std::size_t kWordsPerParticle = 3;
 constexpr std::size_t kWordsPerBoat = 7;
 constexpr std::size_t kBodyWords = std::size_t{MAX_BOATS} * kWordsPerBoat;
 
-std::size_t surfaceWords(std::uint32_t resolution_count) {
-  return std::size_t{resolution_count} * resolution_count / 2;
+std::size_t surfaceWords(core::CellCounts count) {
+  return (count.total() + 1) / 2;
 }
-std::size_t foamWords(std::uint32_t resolution_count) {
-  return std::size_t{resolution_count} * resolution_count / 4;
+std::size_t foamWords(core::CellCounts count) {
+  return (count.total() + 3) / 4;
 }
 std::size_t particleWords(std::uint32_t count) {
   return kParticleHeaderWords + std::size_t{count} * kWordsPerParticle;
@@ -38,7 +38,7 @@ core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx
   auto out = std::unique_ptr<FramePacker>(new FramePacker(ctx));
   Creation create;
   if (derived.wave) {
-    out->resolution_ = derived.wave->resolution_count;
+    out->surface_ = derived.wave->counts();
     create(out->pack_surface_, gpu::Program::create(ctx, "stream/pack_surface.comp", defines));
   }
   if (derived.particles) create(out->pack_particles_, gpu::Program::create(ctx, "stream/pack_particles.comp", defines));
@@ -54,12 +54,12 @@ core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx
 
 core::Result<void> FramePacker::resize(const Derived& derived) {
   const std::uint32_t particles = derived.particles ? derived.particles->count : 0;
-  const core::ReducedCounts reduced_counts = core::reducedCounts(resolution_, particles);
+  const core::ReducedCounts reduced_counts = core::reducedCounts(surface_, particles);
   // The slot has room for all levels at once.
   std::size_t words = pack_bodies_ ? kBodyWords : 0;
   for (const core::Level level : core::kLevels) {
     if (isSent(level, reduced_counts.planes)) {
-      words += surfaceWords(surfaceResolution(level)) + (has_foam_ ? foamWords(foamResolution(level)) : 0);
+      words += surfaceWords(surfaceCount(level)) + (has_foam_ ? foamWords(foamCount(level)) : 0);
     }
     if (particles > 0 && isSent(level, reduced_counts.particles)) {
       words += particleWords(std::min(particles, core::budgetOf(level).particle_count));
@@ -81,12 +81,12 @@ core::Result<void> FramePacker::resize(const Derived& derived) {
   return {};
 }
 
-std::uint32_t FramePacker::surfaceResolution(core::Level level) const {
-  return std::min(resolution_, core::budgetOf(level).surface_resolution_count);
+core::CellCounts FramePacker::surfaceCount(core::Level level) const {
+  return core::surfaceSamples(surface_, level);
 }
 
-std::uint32_t FramePacker::foamResolution(core::Level level) const {
-  return surfaceResolution(level) / 2;
+core::CellCounts FramePacker::foamCount(core::Level level) const {
+  return core::foamSamples(surfaceCount(level));
 }
 
 std::uint32_t FramePacker::particleBudget(core::Level level) const {
@@ -129,16 +129,16 @@ FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest
   const auto take = [&at](std::size_t words) { return std::exchange(at, at + words); };
   const bool has_planes = isSent(level, reduced_counts_.planes);
   if (parts.wave && wanted.surface && has_planes) {
-    const std::size_t words = surfaceWords(surfaceResolution(level));
+    const std::size_t words = surfaceWords(surfaceCount(level));
     places.surface = take(words);
     parts.wave->elevation().bindTexel(ELEVATION);
-    packPlane(pack_surface_, *places.surface, surfaceResolution(level), words);
+    packPlane(pack_surface_, *places.surface, surfaceCount(level), words);
   }
   if (parts.foam && wanted.foam && has_planes) {
-    const std::size_t words = foamWords(foamResolution(level));
+    const std::size_t words = foamWords(foamCount(level));
     places.foam = take(words);
     parts.foam->field().bindTexel(FOAM_FIELD);
-    packPlane(pack_foam_, *places.foam, foamResolution(level), words);
+    packPlane(pack_foam_, *places.foam, foamCount(level), words);
   }
   if (parts.particles && wanted.particles && isSent(level, reduced_counts_.particles)) {
     places.particles = take(particleWords(particleBudget(level)));
@@ -154,10 +154,10 @@ FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest
   return places;
 }
 
-void FramePacker::packPlane(gpu::Program& program, std::size_t at, std::uint32_t resolution_count,
-                            std::size_t word_count) {
+void FramePacker::packPlane(gpu::Program& program, std::size_t at, core::CellCounts count, std::size_t word_count) {
   program.setUniform("first_word", static_cast<std::uint32_t>(at));
-  program.setUniform("target_count", resolution_count);
+  program.setUniform("target_nx", count.x);
+  program.setUniform("target_nz", count.z);
   program.dispatch(static_cast<std::uint32_t>(word_count));
 }
 
@@ -194,17 +194,21 @@ std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const D
 
 core::SurfaceView FramePacker::surfaceView(std::span<const std::uint32_t> words, core::Level level,
                                            const core::Scene& scene, const Derived& derived) const {
-  const std::uint32_t n = surfaceResolution(level);
-  return {.resolution_count = n,
-          .side_m = derived.wave->side_m,
+  const core::CellCounts count = surfaceCount(level);
+  return {.count = count,
+          .length_m = derived.wave->length_m,
+          .width_m = derived.wave->width_m,
           .quantum_m = scene.stream.surface_quantum_m,
-          .words = words.first(surfaceWords(n))};
+          .words = words.first(surfaceWords(count))};
 }
 
 core::FoamView FramePacker::foamView(std::span<const std::uint32_t> words, core::Level level,
                                      const Derived& derived) const {
-  const std::uint32_t n = foamResolution(level);
-  return {.resolution_count = n, .side_m = derived.wave->side_m, .words = words.first(foamWords(n))};
+  const core::CellCounts count = foamCount(level);
+  return {.count = count,
+          .length_m = derived.wave->length_m,
+          .width_m = derived.wave->width_m,
+          .words = words.first(foamWords(count))};
 }
 
 core::ParticleView FramePacker::particleView(std::span<const std::uint32_t> words, core::Level level,

@@ -69,11 +69,11 @@ class FramePacker {
     std::uint32_t boat_count = 0;
   };
 
-  [[nodiscard]] std::uint32_t surfaceResolution(core::Level level) const;
-  [[nodiscard]] std::uint32_t foamResolution(core::Level level) const;
+  [[nodiscard]] core::CellCounts surfaceCount(core::Level level) const;
+  [[nodiscard]] core::CellCounts foamCount(core::Level level) const;
   [[nodiscard]] std::uint32_t particleBudget(core::Level level) const;
   Places packLevel(core::Level level, const LayerRequest& wanted, const Parts& parts, std::size_t& at);
-  void packPlane(gpu::Program& program, std::size_t at, std::uint32_t resolution_count, std::size_t word_count);
+  void packPlane(gpu::Program& program, std::size_t at, core::CellCounts count, std::size_t word_count);
 
   core::SurfaceView surfaceView(std::span<const std::uint32_t> words, core::Level level, const core::Scene& scene,
                                 const Derived& derived) const;
@@ -82,7 +82,7 @@ class FramePacker {
   core::FoamView foamView(std::span<const std::uint32_t> words, core::Level level, const Derived& derived) const;
 
   gpu::Context& ctx_;
-  std::uint32_t resolution_ = 0;  ///< of the surface; 0 without one
+  core::CellCounts surface_;  ///< cells of the surface; 0 without one
   bool has_foam_ = false;
   std::uint32_t particles_ = 0;
   core::ReducedCounts reduced_counts_;

@@ -24,8 +24,8 @@ core::Result<std::unique_ptr<Gauges>> Gauges::create(gpu::Context& ctx, const co
   uniforms.gauge_count = out->count_;
   for (std::size_t k = 0; k < scene.gauges.size(); ++k) {
     const core::Gauge& gauge = scene.gauges[k];
-    uniforms.gauges[k].column = static_cast<float>((gauge.x_m + layout.side_m / 2) / layout.cell_m - 0.5);
-    uniforms.gauges[k].row = static_cast<float>((gauge.z_m + layout.side_m / 2) / layout.cell_m - 0.5);
+    uniforms.gauges[k].column = static_cast<float>((gauge.x_m + layout.length_m / 2) / layout.cell_m - 0.5);
+    uniforms.gauges[k].row = static_cast<float>((gauge.z_m + layout.width_m / 2) / layout.cell_m - 0.5);
   }
   Creation create;
   create(out->places_, gpu::Buffer::create(ctx, "gauges", sizeof uniforms, gpu::BufferUse::kUpdatable));

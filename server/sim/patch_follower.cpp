@@ -8,7 +8,8 @@ namespace spindrift::sim {
 
 PatchFollower::PatchFollower(gpu::Context& ctx, const core::Scene& scene)
     : ctx_(ctx),
-      wave_side_m_(scene.wave->side_m),
+      length_m_(scene.wave->cells().length_m),
+      width_m_(scene.wave->cells().width_m),
       x_m_(scene.particles->patch_shift_x_m),
       z_m_(scene.particles->patch_shift_z_m) {}
 
@@ -29,7 +30,8 @@ void PatchFollower::goTo(double x_m, double z_m) {
 void PatchFollower::move(const gpu::Buffer& sim_uniforms, const Boats* boats) {
   if (boats) boats->bind();
   sim_uniforms.bindStorage(SIM_UNIFORMS_STORAGE);
-  program_.setUniform("wave_side_m", static_cast<float>(wave_side_m_));
+  program_.setUniform("wave_length_m", static_cast<float>(length_m_));
+  program_.setUniform("wave_width_m", static_cast<float>(width_m_));
   program_.setUniform("place_x_m", static_cast<float>(x_m_));
   program_.setUniform("place_z_m", static_cast<float>(z_m_));
   program_.dispatchGroups(1);

@@ -30,7 +30,8 @@ class PatchFollower {
   PatchFollower(gpu::Context& ctx, const core::Scene& scene);
 
   gpu::Context& ctx_;
-  double wave_side_m_;
+  double length_m_;  ///< of the water
+  double width_m_;
   double x_m_;
   double z_m_;
   gpu::Program program_;

@@ -134,11 +134,11 @@ class OldParticles {
 
 /// Elevation of the nearest wave cell.
 double elevationAt(const WaveLayout& wave, const std::vector<double>& eta, double x_m, double z_m) {
-  const auto nearest = [&](double at_m) {
-    const double cell = std::floor((at_m + wave.side_m / 2) / wave.cell_m);
-    return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(wave.resolution_count - 1)));
+  const auto nearest = [&](double at_m, double side_m, std::uint32_t count) {
+    const double cell = std::floor((at_m + side_m / 2) / wave.cell_m);
+    return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
   };
-  return eta[nearest(x_m) + wave.resolution_count * nearest(z_m)];
+  return eta[nearest(x_m, wave.length_m, wave.count_x) + wave.count_x * nearest(z_m, wave.width_m, wave.count_z)];
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ core::Result<std::unique_ptr<SurfaceFoam>> SurfaceFoam::create(gpu::Context& ctx
                                                                const WaveLayout& layout, const gpu::Defines& defines) {
   auto out = std::unique_ptr<SurfaceFoam>(new SurfaceFoam(ctx, layout));
   out->has_landings_ = scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay;
-  const std::size_t cells = std::size_t{out->n_} * out->n_;
+  const std::size_t cells = out->count_.total();
   Creation create;
   create(out->now_, gpu::TexelBuffer::create(ctx, "foam", cells, gpu::TexelFormat::kRGBA32F));
   create(out->before_,
@@ -36,7 +36,7 @@ void SurfaceFoam::advance(const Wave& wave, Breakers& breakers, const Boats* boa
   now_.bindStorage(FOAM_FIELD);
   if (has_landings_) landed_.bindStorage(LANDED);
   if (boats) boats->bind();
-  advance_.dispatch(n_, n_);
+  advance_.dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

@@ -29,10 +29,10 @@ class SurfaceFoam {
   [[nodiscard]] gpu::TexelBuffer& field() { return now_; }
 
  private:
-  SurfaceFoam(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count / 2) {}
+  SurfaceFoam(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.foamCounts()) {}
 
   gpu::Context& ctx_;
-  std::uint32_t n_;
+  core::CellCounts count_;
   bool has_landings_ = false;
   gpu::TexelBuffer now_, before_, landed_;
   gpu::Program advance_;

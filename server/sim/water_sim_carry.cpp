@@ -12,12 +12,11 @@ namespace spindrift::sim {
 CarriedState WaterSim::carriedState() {
   CarriedState out{.scene = scene_, .derived = derived_, .time_s = time_s(), .state = copyState()};
   if (parts_->breakers) {
-    const std::size_t cells = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
+    const std::size_t cells = derived_.wave->counts().total();
     out.breaking = parts_->breakers->state().downloadVector<float>(4 * cells);
   }
   if (parts_->foam) {
-    const std::size_t side_count = derived_.wave->resolution_count / 2;
-    out.foam = parts_->foam->field().downloadVector<float>(4 * side_count * side_count);
+    out.foam = parts_->foam->field().downloadVector<float>(4 * derived_.wave->foamCounts().total());
   }
   out.effects = parts_->effects;
   if (parts_->boats) out.boats = parts_->boats->carried();

@@ -117,7 +117,7 @@ bool WaterSim::requestFrame(const FrameRequest& request) {
 }
 
 core::ReducedCounts WaterSim::reducedCounts() const {
-  return core::reducedCounts(derived_.wave ? derived_.wave->resolution_count : 0,
+  return core::reducedCounts(derived_.wave ? derived_.wave->counts() : core::CellCounts{},
                              derived_.particles ? derived_.particles->count : 0);
 }
 
@@ -132,7 +132,7 @@ std::vector<core::FrameView> WaterSim::takeFrames() {
 // State
 
 std::vector<double> WaterSim::copyElevation() {
-  const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
+  const std::size_t n = derived_.wave->counts().total();
   std::vector<double> out;
   out.reserve(n);
   for (const std::int32_t units : parts_->wave->elevation().downloadVector<std::int32_t>(n))
@@ -156,7 +156,7 @@ StateCopy WaterSim::copyState() {
   }
   if (parts_->boats) out.boats = parts_->boats->state().downloadVector<float>(std::size_t{MAX_BOATS} * BOAT_TEXELS * 4);
   if (parts_->wave) {
-    const std::size_t n = std::size_t{derived_.wave->resolution_count} * derived_.wave->resolution_count;
+    const std::size_t n = derived_.wave->counts().total();
     out.elevation_m = copyElevation();
     out.flow_m2ps = parts_->wave->flow().downloadVector<float>(n * parts_->wave->flowComponents());
     if (auto* elevation_x = parts_->wave->elevationX())

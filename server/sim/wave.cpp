@@ -19,7 +19,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   using gpu::TexelBuffer;
   using gpu::TexelFormat;
   auto wave = std::unique_ptr<Wave>(new Wave(ctx, layout));
-  const std::size_t cells = std::size_t{layout.resolution_count} * layout.resolution_count;
+  const std::size_t cells = layout.counts().total();
   const bool nine = scene.wave->stencil == core::Stencil::kNinePoint;
   wave->flow_components_ = nine ? 4 : 2;
   wave->is_varied_ = isVaried(scene);
@@ -74,7 +74,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     wave->dispersed_slope_ = *std::move(dispersed);
   }
   // Rows are one group high. Momentum sets the first word if transfers have to be limited; continuity clears it.
-  wave->limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.resolution_count, 1});
+  wave->limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.count_z, 1});
   wave->uploadBasin(scene, layout);
   return wave;
 }
@@ -109,13 +109,13 @@ void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
 }
 
 void Wave::scaleFlow(double ratio) {
-  auto flow_m2ps = flow_.downloadVector<float>(std::size_t{n_} * n_ * flow_components_);
+  auto flow_m2ps = flow_.downloadVector<float>(count_.total() * flow_components_);
   for (float& q : flow_m2ps) q *= static_cast<float>(ratio);
   flow_.upload(flow_m2ps);
 }
 
 void Wave::fillUpToBed(const core::Scene& scene, const WaveLayout& layout) {
-  const std::size_t cells = std::size_t{n_} * n_;
+  const std::size_t cells = count_.total();
   std::vector<std::int64_t> bed_units(cells, bedUnits(scene.wave->depth_m));
   if (is_varied_)
     std::ranges::transform(layOutBasin(scene, layout).depth_m, bed_units.begin(), [](float m) { return bedUnits(m); });
@@ -166,7 +166,7 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   transfer_.bindStorage(TRANSFER);
   limit_args_.bindStorage(LIMIT_ARGS);
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);
-  momentum_[sea].dispatch(n_, n_);
+  momentum_[sea].dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   displace(events);
   limit();
@@ -176,7 +176,7 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   if (has_outflow_) outflow_.bindStorage(OUTFLOW);
   if (has_matched_layer_) elevation_x_.bindStorage(ELEVATION_X);
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);  // other passes use its unit
-  continuity_[sea].dispatch(n_, n_);
+  continuity_[sea].dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
@@ -190,20 +190,20 @@ void Wave::displace(shared::EventUniforms events) {
   for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
   const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
   // wave/splash.comp has two ways; the one with fewer invocations is faster.
-  const bool every_cell = std::uint64_t{across} * across * events.splash_count > std::uint64_t{n_} * n_;
+  const bool every_cell = std::uint64_t{across} * across * events.splash_count > count_.total();
   events.every_cell = every_cell;
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   if (events.splash_count > 0) {
     if (every_cell) {
-      splash_.dispatch(n_, n_);
+      splash_.dispatch(count_.x, count_.z);
     } else {
       splash_.dispatch(across, across, events.splash_count);
     }
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
   if (events.crest_count > 0) {
-    crest_.dispatch(n_, n_);
+    crest_.dispatch(count_.x, count_.z);
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
 }
@@ -227,7 +227,7 @@ void Wave::sampleSurface() {
   flow_.bindTexel(FLOW);
   surface_.bindStorage(SURFACE);
   surface_flow_.bindStorage(SURFACE_FLOW);
-  sample_surface_.dispatch(n_, n_);
+  sample_surface_.dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

@@ -52,13 +52,13 @@ class Wave {
   /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
 
-  [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< n x n [units]
-  [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }            ///< n x n x 2 (9-point: 4) [m^2/s]
+  [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< nx x nz [units]
+  [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }            ///< nx x nz x 2 (9-point: 4) [m^2/s]
   [[nodiscard]] gpu::TexelBuffer* outflow() {
     return has_outflow_ ? &outflow_ : nullptr;
-  }  ///< n x n [units: low 24 bits, the rest]
-  /// n x n [units]: the part of the elevation that came through x faces, inside a matched layer (wave/continuity.comp);
-  /// null in scenes without one. 0 outside the layer.
+  }  ///< nx x nz [units: low 24 bits, the rest]
+  /// nx x nz [units]: the part of the elevation that came through x faces, inside a matched layer
+  /// (wave/continuity.comp); null in scenes without one. 0 outside the layer.
   [[nodiscard]] gpu::TexelBuffer* elevationX() { return has_matched_layer_ ? &elevation_x_ : nullptr; }
   /// 2, or 4 with the 9-point stencil.
   [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
@@ -70,17 +70,17 @@ class Wave {
   void bindBasin() const;
   /// Binds TERRAIN and LANDING if the scene has a terrain.
   void bindTerrain() const;
-  /// n x n [units]: pressure of hulls and falling particles. Only in scenes with boats or two-way coupling.
+  /// nx x nz [units]: pressure of hulls and falling particles. Only in scenes with boats or two-way coupling.
   [[nodiscard]] gpu::TexelBuffer& pressureHead() { return pressure_head_; }
 
  private:
-  Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), n_(layout.resolution_count), cell_m_(layout.cell_m) {}
+  Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.counts()), cell_m_(layout.cell_m) {}
   void displace(shared::EventUniforms events);
   void uploadOutflow(std::int64_t units);
   void limit();
 
   gpu::Context& ctx_;
-  std::uint32_t n_;
+  core::CellCounts count_;
   double cell_m_;
   std::size_t flow_components_ = 2;
   bool is_varied_ = false;
@@ -90,8 +90,8 @@ class Wave {
   bool has_head_ = false;
   bool has_terrain_ = false;
   gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_, elevation_x_;
-  gpu::TexelBuffer transfer_;     ///< n x n x 2 (9-point: 4) [units]
-  gpu::TexelBuffer given_share_;  ///< n x n; written in steps that limit transfers
+  gpu::TexelBuffer transfer_;     ///< nx x nz x 2 (9-point: 4) [units]
+  gpu::TexelBuffer given_share_;  ///< nx x nz; written in steps that limit transfers
   gpu::Buffer limit_args_;        ///< groups of the two passes of the limit; 0 in most steps
   gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;

@@ -45,13 +45,17 @@ std::vector<std::array<std::uint32_t, 4>> layerBlocks(const core::WaveScene& wav
   const auto depth_in = [&](core::WaveBoundary side, std::uint32_t cells_before) {
     return side == core::WaveBoundary::kAbsorb && (cells_before + 0.5) * layout.cell_m < wave.sponge_width_m;
   };
-  for (std::uint32_t z = 0; z < layout.resolution_count; z += SEA_BLOCK) {
-    for (std::uint32_t x = 0; x < layout.resolution_count; x += SEA_BLOCK) {
+  // The last block of a row may reach beyond the water.
+  const auto behind = [](std::uint32_t count, std::uint32_t first) {
+    return count > first + SEA_BLOCK ? count - first - SEA_BLOCK : 0;
+  };
+  for (std::uint32_t z = 0; z < layout.count_z; z += SEA_BLOCK) {
+    for (std::uint32_t x = 0; x < layout.count_x; x += SEA_BLOCK) {
       std::uint32_t sides = 0;
       if (depth_in(wave.boundary_minus_x, x)) sides |= kMinusXBit;
-      if (depth_in(wave.boundary_plus_x, layout.resolution_count - x - SEA_BLOCK)) sides |= kPlusXBit;
+      if (depth_in(wave.boundary_plus_x, behind(layout.count_x, x))) sides |= kPlusXBit;
       if (depth_in(wave.boundary_minus_z, z)) sides |= kMinusZBit;
-      if (depth_in(wave.boundary_plus_z, layout.resolution_count - z - SEA_BLOCK)) sides |= kPlusZBit;
+      if (depth_in(wave.boundary_plus_z, behind(layout.count_z, z))) sides |= kPlusZBit;
       if (sides != 0) out.push_back({x, z, sides, 0});
     }
   }
@@ -65,14 +69,15 @@ core::Result<std::unique_ptr<WindSea>> WindSea::create(gpu::Context& ctx, const 
   using gpu::TexelBuffer;
   using gpu::TexelFormat;
   auto out = std::unique_ptr<WindSea>(new WindSea(ctx, layout));
-  const std::size_t n = layout.resolution_count;
   const auto blocks = layerBlocks(*scene.wave, layout);
   out->block_count_ = static_cast<std::uint32_t>(blocks.size());
   Creation create;
   create(out->blocks_, TexelBuffer::create(ctx, "sea blocks", blocks.size(), TexelFormat::kRGBA32UI));
-  create(out->columns_, TexelBuffer::create(ctx, "sea columns", n * MAX_SEA_WAVES, TexelFormat::kRG32F));
-  create(out->rows_, TexelBuffer::create(ctx, "sea rows", n / SEA_STRIP * MAX_SEA_WAVES, TexelFormat::kRG32F));
-  create(out->incident_, TexelBuffer::create(ctx, "incident sea", n * n, TexelFormat::kRGBA32F));
+  create(out->columns_,
+         TexelBuffer::create(ctx, "sea columns", std::size_t{layout.count_x} * MAX_SEA_WAVES, TexelFormat::kRG32F));
+  const std::size_t strip_count = (layout.count_z + SEA_STRIP - 1) / SEA_STRIP;
+  create(out->rows_, TexelBuffer::create(ctx, "sea rows", strip_count * MAX_SEA_WAVES, TexelFormat::kRG32F));
+  create(out->incident_, TexelBuffer::create(ctx, "incident sea", layout.counts().total(), TexelFormat::kRGBA32F));
   create(out->uniforms_,
          gpu::Buffer::create(ctx, "sea uniforms", sizeof(shared::SeaUniforms), gpu::BufferUse::kUpdatable));
   create(out->compute_, gpu::Program::create(ctx, "wave/incident_sea.comp", defines));
@@ -137,15 +142,16 @@ const gpu::TexelBuffer* WindSea::advance(double begin_s, double dt_s) {
 
 void WindSea::uploadTables() {
   std::vector<std::array<float, 2>> columns, rows;
-  columns.reserve(std::size_t{MAX_SEA_WAVES} * n_);
+  columns.reserve(std::size_t{MAX_SEA_WAVES} * layout_.count_x);
   for (const SeaState* sea : {&shown_, &next_}) {
     for (const PlaneWave& wave : sea->waves) {
       const double k = std::hypot(wave.kx_radpm, wave.kz_radpm);
-      const auto centre_m = [&](std::uint32_t cell) { return (cell + 0.5) * cell_m_ - side_m_ / 2; };
-      for (std::uint32_t x = 0; x < n_; ++x)
-        columns.push_back(texelOf(factorAt(wave.kx_radpm, wave.decay_pm, wave.kx_radpm / k, centre_m(x), side_m_)));
-      for (std::uint32_t z = 0; z < n_; z += SEA_STRIP)
-        rows.push_back(texelOf(factorAt(wave.kz_radpm, wave.decay_pm, wave.kz_radpm / k, centre_m(z), side_m_)));
+      const auto factor = [&](double k_radpm, std::uint32_t cell, double side_m) {
+        return texelOf(factorAt(k_radpm, wave.decay_pm, k_radpm / k, (cell + 0.5) * cell_m_ - side_m / 2, side_m));
+      };
+      for (std::uint32_t x = 0; x < layout_.count_x; ++x) columns.push_back(factor(wave.kx_radpm, x, layout_.length_m));
+      for (std::uint32_t z = 0; z < layout_.count_z; z += SEA_STRIP)
+        rows.push_back(factor(wave.kz_radpm, z, layout_.width_m));
     }
   }
   if (columns.empty()) return;

@@ -40,14 +40,12 @@ class WindSea {
   const gpu::TexelBuffer* advance(double begin_s, double dt_s);
 
  private:
-  WindSea(gpu::Context& ctx, const WaveLayout& layout)
-      : ctx_(ctx), n_(layout.resolution_count), side_m_(layout.side_m), cell_m_(layout.cell_m) {}
+  WindSea(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), layout_(layout), cell_m_(layout.cell_m) {}
   void uploadTables();
   shared::SeaUniforms uniformsAt(double begin_s, double dt_s, double faded_ratio) const;
 
   gpu::Context& ctx_;
-  std::uint32_t n_;
-  double side_m_;
+  WaveLayout layout_;
   double cell_m_;
   SeaState shown_;   ///< the sea, and while fading the one before
   SeaState next_;    ///< while fading

@@ -41,17 +41,23 @@ struct AxisLoss {
   double z_per_s = 0.0;
 };
 
+/// Half the length and half the width of the water.
+struct Halves {
+  double x_m = 0.0;
+  double z_m = 0.0;
+};
+
 /// Distance from a place to a side. [m]
-double distanceTo(core::Side side, double half_m, double x_m, double z_m) {
+double distanceTo(core::Side side, const Halves& half, double x_m, double z_m) {
   switch (side) {
     case core::Side::kMinusX:
-      return x_m + half_m;
+      return x_m + half.x_m;
     case core::Side::kPlusZ:
-      return half_m - z_m;
+      return half.z_m - z_m;
     case core::Side::kMinusZ:
-      return z_m + half_m;
+      return z_m + half.z_m;
     default:
-      return half_m - x_m;
+      return half.x_m - x_m;
   }
 }
 
@@ -74,8 +80,8 @@ double faceDepth(double a_m, double b_m) {
 }
 
 /// How far inside the layer of a side a place is: 0 at its edge, 1 at the side, negative outside.
-double insideLayer(const core::WaveScene& w, core::Side side, double x_m, double z_m) {
-  return 1 - distanceTo(side, w.side_m / 2, x_m, z_m) / w.sponge_width_m;
+double insideLayer(const core::WaveScene& w, const Halves& half, core::Side side, double x_m, double z_m) {
+  return 1 - distanceTo(side, half, x_m, z_m) / w.sponge_width_m;
 }
 
 /// Largest loss rate of a matched layer. [1/s]
@@ -89,9 +95,10 @@ double matchedLossMax(const core::Scene& scene, const WaveLayout& layout) {
   return (kMatchedPower + 1) * speed_mps * std::log(1 / kMatchedReturn) / (2 * width_m);
 }
 
-AxisLoss matchedLoss(const core::WaveScene& w, double sigma_max_per_s, double along_share, double x_m, double z_m) {
+AxisLoss matchedLoss(const core::WaveScene& w, const Halves& half, double sigma_max_per_s, double along_share,
+                     double x_m, double z_m) {
   const auto sigma = [&](core::Side side, WaveBoundary boundary) {
-    const double inside = boundary == WaveBoundary::kAbsorb ? insideLayer(w, side, x_m, z_m) : 0.0;
+    const double inside = boundary == WaveBoundary::kAbsorb ? insideLayer(w, half, side, x_m, z_m) : 0.0;
     return inside > 0 ? sigma_max_per_s * std::pow(inside, kMatchedPower) : 0.0;
   };
   const double x_per_s =
@@ -119,18 +126,20 @@ namespace {
 
 /// Shares of the displacement of effects (Basin::conductance_m), from the number of faces to the next closed one.
 void layOutEffectShares(const WaveLayout& layout, Basin& basin) {
-  const auto n = static_cast<int>(layout.resolution_count);
-  const auto cellOf = [&](std::size_t axis, int line, int k) {
-    const int along = (k + n) % n;
-    return static_cast<std::size_t>(axis == 0 ? along + n * line : line + n * along);
-  };
+  const auto nx = static_cast<int>(layout.count_x);
+  const auto nz = static_cast<int>(layout.count_z);
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    for (int line = 0; line < n; ++line) {
+    const int n = axis == 0 ? nx : nz;
+    const auto cellOf = [&](int line, int k) {
+      const int along = (k + n) % n;
+      return static_cast<std::size_t>(axis == 0 ? along + nx * line : line + nx * along);
+    };
+    for (int line = 0; line < (axis == 0 ? nz : nx); ++line) {
       // Twice around the axis, which may be periodic: the last closed face counts for the first cells.
       for (const int step : {1, -1}) {
         int open_count = EFFECT_TAPER_CELLS;
         for (int k = 0; k < 2 * n; ++k) {
-          std::array<float, 4>& face = basin.conductance_m[cellOf(axis, line, (step * k) % n)];
+          std::array<float, 4>& face = basin.conductance_m[cellOf(line, (step * k) % n)];
           open_count = face[axis] > 0.0F ? std::min(open_count + 1, EFFECT_TAPER_CELLS) : 0;
           const float share = static_cast<float>(open_count) / static_cast<float>(EFFECT_TAPER_CELLS);
           face[2 + axis] = step == 1 ? share : std::min(face[2 + axis], share);
@@ -144,11 +153,13 @@ void layOutEffectShares(const WaveLayout& layout, Basin& basin) {
 
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const core::WaveScene& w = *scene.wave;
-  const auto n = static_cast<int>(layout.resolution_count);
-  const auto cells = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-  const double half_m = w.side_m / 2;
-  const auto place = [&](int i) { return (i + 0.5) * layout.cell_m - half_m; };
-  const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); };
+  const auto nx = static_cast<int>(layout.count_x);
+  const auto nz = static_cast<int>(layout.count_z);
+  const std::size_t cells = layout.counts().total();
+  const Halves half{layout.length_m / 2, layout.width_m / 2};
+  const auto placeX = [&](int i) { return (i + 0.5) * layout.cell_m - half.x_m; };
+  const auto placeZ = [&](int i) { return (i + 0.5) * layout.cell_m - half.z_m; };
+  const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz)); };
 
   Basin out;
   out.is_flat = scene.obstacles.empty() && scene.beaches.empty() && !scene.bed;
@@ -164,16 +175,16 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const bool is_matched = hasMatchedLayer(scene);
   const double matched_max = matchedLossMax(scene, layout);
   const double along_share = out.is_flat ? kAlongShareFlat : kAlongShareUneven;
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
       const std::size_t i = index(x, z);
-      double depth_m = bedDepth(scene, place(x), place(z));
-      if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, place(x), place(z)) < 0) depth_m = 0.0;
+      double depth_m = bedDepth(scene, placeX(x), placeZ(z));
+      if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, placeX(x), placeZ(z)) < 0) depth_m = 0.0;
       out.depth_m[i] = static_cast<float>(depth_m);
       double sigma = 0.0;
       for (const auto& [side, boundary] : sides) {
         if (boundary != WaveBoundary::kAbsorb) continue;
-        const double inside = 1 - distanceTo(side, half_m, place(x), place(z)) / sponge_m;
+        const double inside = 1 - distanceTo(side, half, placeX(x), placeZ(z)) / sponge_m;
         if (inside > 0) sigma = std::max(sigma, sigma_max * std::pow(inside, kSpongePower));
       }
       // Beach that runs dry: damp the flow within the time that a long wave needs to cross the shallow part.
@@ -185,13 +196,13 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       }
       if (scene.bed && depth_m < kFadeShare * w.depth_m) {
         // The same where the bed of the scene rises to land, with the width of a beach of its slope.
-        if (const auto slope = shoreSlope(scene, place(x), place(z))) {
+        if (const auto slope = shoreSlope(scene, placeX(x), placeZ(z))) {
           const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
           fade = std::max(fade, 4 * layout.speed_mps * *slope / w.depth_m * shallow * shallow);
         }
       }
       if (is_matched) {
-        const AxisLoss loss = matchedLoss(w, matched_max, along_share, place(x), place(z));
+        const AxisLoss loss = matchedLoss(w, half, matched_max, along_share, placeX(x), placeZ(z));
         out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), out.depth_m[i],
                       static_cast<float>(loss.z_per_s)};
         continue;
@@ -203,7 +214,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const bool nine = w.stencil == core::Stencil::kNinePoint;
   const auto depthAt = [&](int x, int z) { return static_cast<double>(out.depth_m[index(x, z)]); };
   const auto isInside = [&](int x, int z) {
-    return (isPeriodicX(w) || (x >= 0 && x < n)) && (isPeriodicZ(w) || (z >= 0 && z < n)) && depthAt(x, z) > 0;
+    return (isPeriodicX(w) || (x >= 0 && x < nx)) && (isPeriodicZ(w) || (z >= 0 && z < nz)) && depthAt(x, z) > 0;
   };
   // The square of (x, z) and its neighbours has diagonal faces only if none of its four cells is dry.
   const auto isSquareOpen = [&](int x, int z) {
@@ -214,8 +225,8 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const auto axisWeight = [&](bool one_open, bool other_open) {
     return nine ? 2.0 / 3.0 + (one_open ? 0.0 : 1.0 / 6.0) + (other_open ? 0.0 : 1.0 / 6.0) : 1.0;
   };
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
       std::array<float, 4>& c = out.conductance_m[index(x, z)];
       c = {0, 0, 0, 0};
       if (!isInside(x, z)) continue;
@@ -232,8 +243,8 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   }
   if (disperses(scene)) layOutEffectShares(layout, out);
   if (!nine) return out;
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
       if (!isSquareOpen(x, z)) continue;
       std::array<float, 4>& c = out.conductance_m[index(x, z)];
       c[2] = static_cast<float>(faceDepth(depthAt(x, z), depthAt(x + 1, z + 1)) / 6);
@@ -244,28 +255,29 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
 }
 
 Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const Basin& basin) {
-  const auto n = static_cast<int>(layout.resolution_count);
-  const double half_m = layout.side_m / 2;
+  const auto nx = static_cast<int>(layout.count_x);
+  const auto nz = static_cast<int>(layout.count_z);
   const double step_m = 0.25 * layout.cell_m;
   /// Replaces "no obstacle": beyond the range of every lookup, and finite, because infinity would become NaN in
   /// interpolation.
-  const double far_m = 4 * layout.side_m;
-  const auto place = [&](int i) { return (i + 0.5) * layout.cell_m - half_m; };
+  const double far_m = 4 * layout.longerSide_m();
+  const auto placeX = [&](int i) { return (i + 0.5) * layout.cell_m - layout.length_m / 2; };
+  const auto placeZ = [&](int i) { return (i + 0.5) * layout.cell_m - layout.width_m / 2; };
   const auto distanceAt = [&](double x, double z) { return std::min(obstacleDistance(scene, x, z), far_m); };
   Terrain out;
   out.ground.reserve(basin.depth_m.size());
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
-      const double d = distanceAt(place(x), place(z));
-      const double dx = (distanceAt(place(x) + step_m, place(z)) - distanceAt(place(x) - step_m, place(z)));
-      const double dz = (distanceAt(place(x), place(z) + step_m) - distanceAt(place(x), place(z) - step_m));
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
+      const double d = distanceAt(placeX(x), placeZ(z));
+      const double dx = (distanceAt(placeX(x) + step_m, placeZ(z)) - distanceAt(placeX(x) - step_m, placeZ(z)));
+      const double dz = (distanceAt(placeX(x), placeZ(z) + step_m) - distanceAt(placeX(x), placeZ(z) - step_m));
       const double size = std::max(std::hypot(dx, dz), 1e-12);
       // Land is as high as it is; ground that is dry only because it is too shallow is at the rest level.
-      const double land_m = std::min(groundDepth(scene, place(x), place(z)), 0.0);
-      double depth_m = land_m < 0 ? land_m : basin.depth_m[static_cast<std::size_t>(x + n * z)];
+      const double land_m = std::min(groundDepth(scene, placeX(x), placeZ(z)), 0.0);
+      double depth_m = land_m < 0 ? land_m : basin.depth_m[static_cast<std::size_t>(x + nx * z)];
       if (d < 0) {
         for (const core::Obstacle& obstacle : scene.obstacles) {
-          const double here = std::visit([&](const auto& o) { return distance(o, place(x), place(z)); }, obstacle);
+          const double here = std::visit([&](const auto& o) { return distance(o, placeX(x), placeZ(z)); }, obstacle);
           if (here < 0) depth_m = std::min(depth_m, -heightOf(obstacle));
         }
       }
@@ -285,12 +297,12 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
   while (!front.empty()) {
     std::vector<std::int32_t> next;
     for (const std::int32_t from : front) {
-      const int x = from % n;
-      const int z = from / n;
-      for (const auto& [nx, nz] :
+      const int x = from % nx;
+      const int z = from / nx;
+      for (const auto& [to_x, to_z] :
            {std::pair{x - 1, z}, std::pair{x + 1, z}, std::pair{x, z - 1}, std::pair{x, z + 1}}) {
-        if (nx < 0 || nz < 0 || nx >= n || nz >= n) continue;
-        const auto to = static_cast<std::size_t>(nx + n * nz);
+        if (to_x < 0 || to_z < 0 || to_x >= nx || to_z >= nz) continue;
+        const auto to = static_cast<std::size_t>(to_x + nx * to_z);
         if (out.landing[to] >= 0) continue;
         out.landing[to] = out.landing[static_cast<std::size_t>(from)];
         next.push_back(static_cast<std::int32_t>(to));

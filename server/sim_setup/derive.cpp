@@ -78,23 +78,61 @@ void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, st
   }
 }
 
+/// Says which periodic side has a number of cells without grids for the dispersion, and which numbers have some.
+std::string whyNoGrids(const WaveLayout& layout) {
+  const auto hasGrids = [&](bool along_x, std::uint32_t count) {
+    WaveLayout alone = layout;
+    (along_x ? alone.is_periodic_z : alone.is_periodic_x) = false;
+    (along_x ? alone.count_x : alone.count_z) = count;
+    return canDisperse(alone);
+  };
+  for (const bool along_x : {true, false}) {
+    const std::uint32_t count = along_x ? layout.count_x : layout.count_z;
+    if (hasGrids(along_x, count)) continue;
+    std::uint32_t fewer = count, more = count;
+    while (fewer > 1 && !hasGrids(along_x, fewer)) --fewer;
+    while (!hasGrids(along_x, more)) ++more;
+    return fmt::format(
+        "wave.resolution_count: {} cells along {} between periodic sides cannot be halved often enough for "
+        "DISPERSION_AIRY: use {} or {}, or sides that are not periodic",
+        count, along_x ? "x" : "z", fewer, more);
+  }
+  return fmt::format(
+      "wave.resolution_count: {} x {} cells between periodic sides cannot be halved often enough for DISPERSION_AIRY: "
+      "use powers of two",
+      layout.count_x, layout.count_z);
+}
+
 core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   const core::WaveScene& w = *scene.wave;
+  const core::WaveCells cells = w.cells();
+  if (!core::widthFits(cells, w.width_m))
+    return invalid(fmt::format(
+        "wave.width_m: {:.6g} m is no whole number of the cells of {:.6g} m that side_m and resolution_count make: use "
+        "{:.6g} or {:.6g} m, or another resolution_count",
+        w.width_m, cells.cell_m, std::max(std::floor(w.width_m / cells.cell_m), 1.0) * cells.cell_m,
+        (std::floor(w.width_m / cells.cell_m) + 1) * cells.cell_m));
+  if (cells.count.z > core::kWaveMaxSideCount || cells.count.total() > core::kWaveMaxCellCount)
+    return invalid(fmt::format(
+        "wave.resolution_count: {} x {} cells are more than {} along an axis or {} in all: use fewer, or a smaller "
+        "width_m",
+        cells.count.x, cells.count.z, core::kWaveMaxSideCount, core::kWaveMaxCellCount));
   WaveLayout out;
+  out.count_x = cells.count.x;
+  out.count_z = cells.count.z;
+  out.length_m = cells.length_m;
+  out.width_m = cells.width_m;
+  out.cell_m = cells.cell_m;
+  out.is_periodic_x = isPeriodicX(w);
+  out.is_periodic_z = isPeriodicZ(w);
   if (disperses(scene)) {
     if (w.stencil == core::Stencil::kNinePoint)
       return invalid("wave.dispersion: DISPERSION_AIRY needs STENCIL_FIVE_POINT; remove wave.stencil");
-    if (!canDisperse(w.resolution_count))
-      return invalid(fmt::format(
-          "wave.resolution_count: {} cells cannot be halved to {} or fewer, as DISPERSION_AIRY needs: use {} or {}",
-          w.resolution_count, kBottomSideMax, w.resolution_count / 32 * 32, (w.resolution_count / 32 + 1) * 32));
+    if (!canDisperse(out)) return invalid(whyNoGrids(out));
   }
   if (hasMatchedLayer(scene) && w.stencil == core::Stencil::kNinePoint)
     return invalid(
         "wave.absorption: ABSORPTION_PML needs STENCIL_FIVE_POINT; remove wave.stencil or choose ABSORPTION_SPONGE");
-  out.resolution_count = w.resolution_count;
-  out.side_m = w.side_m;
-  out.cell_m = w.side_m / w.resolution_count;
   out.speed_mps = std::sqrt(scene.gravity_mps2 * w.depth_m);
   if (disperses(scene)) out.dispersing_depth_m = w.depth_m;
   return out;
@@ -149,9 +187,9 @@ std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
     bytes += std::uint64_t{d.particles->count} * (7 * 16 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0)) +
              std::uint64_t{d.particles->cell_count} * 8 + 12;
   }
-  if (d.wave) bytes += std::uint64_t{d.wave->resolution_count} * d.wave->resolution_count * waveCellBytes(scene);
-  if (disperses(scene)) bytes += dispersionBytes(d.wave->resolution_count);
-  if (hasWindSea(scene)) bytes += windSeaBytes(d.wave->resolution_count);
+  if (d.wave) bytes += d.wave->counts().total() * waveCellBytes(scene);
+  if (disperses(scene)) bytes += dispersionBytes(*d.wave);
+  if (hasWindSea(scene)) bytes += windSeaBytes(d.wave->counts());
   return bytes;
 }
 
@@ -193,15 +231,16 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.max_speed_mps = f(p.max_speed_mps);
     if (!scene.wave) {
       // The lengths by which boats and effects are measured.
-      u.wave_side_m = f(std::min(l.max_m[0] - l.min_m[0], l.max_m[2] - l.min_m[2]));
+      u.wave_length_m = u.wave_width_m = f(std::min(l.max_m[0] - l.min_m[0], l.max_m[2] - l.min_m[2]));
       u.wave_cell_m = f(l.spacing_m);
     }
     const bool follows = scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing;
-    const double half_m = follows ? scene.wave->side_m / 2 : 0.0;
-    u.frame_min_x_m = f(follows ? -half_m : l.min_m[0]);
-    u.frame_max_x_m = f(follows ? half_m : l.max_m[0]);
-    u.frame_min_z_m = f(follows ? -half_m : l.min_m[2]);
-    u.frame_max_z_m = f(follows ? half_m : l.max_m[2]);
+    const double half_x_m = follows ? d.wave->length_m / 2 : 0.0;
+    const double half_z_m = follows ? d.wave->width_m / 2 : 0.0;
+    u.frame_min_x_m = f(follows ? -half_x_m : l.min_m[0]);
+    u.frame_max_x_m = f(follows ? half_x_m : l.max_m[0]);
+    u.frame_min_z_m = f(follows ? -half_z_m : l.min_m[2]);
+    u.frame_max_z_m = f(follows ? half_z_m : l.max_m[2]);
     u.density_norm = f(densityNorm(p.kernel_set, H));
     u.slope_norm = f(slopeNorm(p.kernel_set, H));
     u.viscosity_norm = f(viscosityNorm(H));
@@ -241,8 +280,10 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
   }
   if (d.wave) {
     const WaveLayout& w = *d.wave;
-    u.wave_n = w.resolution_count;
-    u.wave_side_m = f(w.side_m);
+    u.wave_nx = w.count_x;
+    u.wave_nz = w.count_z;
+    u.wave_length_m = f(w.length_m);
+    u.wave_width_m = f(w.width_m);
     u.wave_cell_m = f(w.cell_m);
     u.wave_dt_s = f(w.dt_s);
     u.wave_depth_m = f(scene.wave->depth_m);
@@ -353,8 +394,8 @@ bool needsRestart(const Derived& before, const Derived& after) {
         a.layers_count != b.layers_count || a.support_radius_m != b.support_radius_m || a.volume_m3 != b.volume_m3)
       return true;
   }
-  return before.wave &&
-         (before.wave->resolution_count != after.wave->resolution_count || before.wave->side_m != after.wave->side_m);
+  return before.wave && (before.wave->counts() != after.wave->counts() ||
+                         before.wave->length_m != after.wave->length_m || before.wave->width_m != after.wave->width_m);
 }
 
 }  // namespace spindrift::sim

@@ -83,19 +83,28 @@ std::vector<Four> stiffnessOf(const DispersionGrid& grid, std::size_t k, double 
 }
 
 /// DispersionLevel::spread of grid k, a coarse one. In a flat basin, whose only closed faces are its sides, all cells
-/// have the same. In others the cells beside closed faces have none: the fitted resistances there stand for the flow as
-/// it is.
-std::vector<std::array<double, kPoleCount>> layOutSpread(const DispersionLevel& level, std::size_t k, bool is_flat) {
-  std::vector<std::array<double, kPoleCount>> out(level.stiffness.size());
-  const int n = static_cast<int>(level.side_count);
+/// have the same; except cells that are in part beyond the water, which count as cut along an axis: waves along a
+/// channel must be equally fast in all of its width. In other basins the cells beside closed faces have none: the
+/// fitted resistances there stand for the flow as it is.
+std::vector<Four> layOutSpread(const DispersionLevel& level, std::size_t k, bool is_flat, bool is_exact) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::vector<Four> out(level.stiffness.size());
+  const int nx = static_cast<int>(level.count.x);
+  const int nz = static_cast<int>(level.count.z);
   const auto massOf = [&](int x, int z, int axis) {
     const double mass = level.stiffness[level.index(x, z)][axis];
-    return is_flat && mass == 0.0 ? std::numeric_limits<double>::infinity() : mass;
+    return is_flat && mass == 0.0 ? kNone : mass;
   };
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
-      const double smallest = std::min({massOf(x, z, 0), massOf(x, z, 1), massOf(x - 1, z, 0), massOf(x, z - 1, 1)});
-      for (std::size_t j = 0; j < kPoleCount; ++j) out[level.index(x, z)][j] = spreadOf(k)[j] * smallest;
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
+      std::array<double, 2> smallest{std::min(massOf(x, z, 0), massOf(x - 1, z, 0)),
+                                     std::min(massOf(x, z, 1), massOf(x, z - 1, 1))};
+      if (!is_flat || is_exact) smallest[0] = smallest[1] = std::min(smallest[0], smallest[1]);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        if (smallest[axis] == kNone) continue;  // nothing flows along this axis
+        for (std::size_t j = 0; j < kPoleCount; ++j)
+          out[level.index(x, z)][2 * axis + j] = spreadOf(k)[j] * smallest[axis];
+      }
     }
   }
   return out;
@@ -114,22 +123,49 @@ Poles polesAt(double depth_cells) {
   return out;
 }
 
-bool canDisperse(std::uint32_t resolution_count) {
-  while (resolution_count > kBottomSideMax && resolution_count % 2 == 0) resolution_count /= 2;
-  return resolution_count <= kBottomSideMax;
+std::vector<CellCounts> dispersionGrids(const WaveLayout& layout) {
+  constexpr std::size_t kLeastOdd = 4;
+  constexpr std::size_t kBottomCells = (DISPERSION_BOTTOM_SIDE_MAX - 1) * (DISPERSION_BOTTOM_SIDE_MAX - 1);
+  const auto isOdd = [](std::uint32_t n) { return n > 1 && n % 2 != 0; };
+  std::vector<CellCounts> out;
+  CellCounts n = layout.counts();
+  while (true) {
+    const bool is_small = n.x <= kCoarsestSideCount && n.z <= kCoarsestSideCount;
+    const bool ends_odd = out.size() >= kLeastOdd && (isOdd(n.x) || isOdd(n.z)) && n.total() <= kBottomCells;
+    if (!out.empty() && (is_small || ends_odd)) {
+      out.push_back(n);
+      return out;
+    }
+    if ((layout.is_periodic_x && isOdd(n.x)) || (layout.is_periodic_z && isOdd(n.z))) return {};
+    n = {n.x + n.x % 2, n.z + n.z % 2};
+    out.push_back(n);
+    n = {n.x / 2, n.z / 2};
+  }
 }
 
-std::uint64_t dispersionBytes(std::uint32_t resolution_count) {
+std::size_t bottomOf(const std::vector<CellCounts>& grids) {
+  constexpr std::size_t kCells = DISPERSION_BOTTOM_SIDE * DISPERSION_BOTTOM_SIDE;
+  constexpr std::size_t kSmallerCells = kCells / 3 + 1;
+  std::size_t k = grids.size() - 1;
+  std::size_t smaller = 0;
+  while (k > 1) {
+    smaller += grids[k].total();
+    if (grids[k - 1].total() > kCells || smaller > kSmallerCells) break;
+    --k;
+  }
+  return k;
+}
+
+std::uint64_t dispersionBytes(const WaveLayout& layout) {
   constexpr std::uint64_t kCoefficients = 16;
   constexpr std::uint64_t kWeights = 16;
   constexpr std::uint64_t kFaces = 2 * 16;  // and their right side
   constexpr std::uint64_t kBottom = 4 * 16 + 8;
-  const auto cells = [](std::uint32_t n) { return std::uint64_t{n} * n; };
-  std::uint32_t n = resolution_count;
-  std::uint64_t bytes = cells(n) * (kCoefficients + kWeights + 8);
-  while (n > kCoarsestSideCount && n % 2 == 0) {
-    n /= 2;
-    bytes += cells(n) * (kCoefficients + kWeights + kFaces + (n <= kBottomSideMax ? kBottom : 0));
+  const std::vector<CellCounts> grids = dispersionGrids(layout);
+  const std::size_t bottom = bottomOf(grids);
+  std::uint64_t bytes = layout.counts().total() * 8;
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    bytes += grids[k].total() * (kCoefficients + kWeights + (k > 0 ? kFaces : 0) + (k >= bottom ? kBottom : 0));
   }
   return bytes;
 }
@@ -153,19 +189,28 @@ double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m) {
 
 Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
   Dispersion out;
+  const std::vector<CellCounts> counts = dispersionGrids(layout);
+  // The coarsest grid has no cells beyond the water.
+  const auto isExact = [&](std::size_t k) {
+    return k == 0 ? counts[0] == layout.counts()
+                  : counts[k].x * 2 == counts[k - 1].x && counts[k].z * 2 == counts[k - 1].z;
+  };
   out.is_flat = basin.is_flat;
+  for (std::size_t k = 0; k < counts.size(); ++k) out.is_flat = out.is_flat && isExact(k);
   out.depth_m = layout.dispersing_depth_m;
   out.cell_m = layout.cell_m;
-  DispersionGrid grid(static_cast<int>(layout.resolution_count));
+  out.water = layout.counts();
+  DispersionGrid grid(counts[0]);
   out.root_c.resize(grid.wet.size());
-  for (std::size_t i = 0; i < grid.wet.size(); ++i) {
-    const double depth_m = basin.depth_m[i];
+  for (std::size_t cell = 0; cell < basin.depth_m.size(); ++cell) {
+    const double depth_m = basin.depth_m[cell];
     if (depth_m <= 0.0) continue;
+    const std::size_t i = cell % layout.count_x + counts[0].x * (cell / layout.count_x);
     grid.wet[i] = 1.0;
     grid.depth_m[i] = depth_m;
     for (int axis = 0; axis < 2; ++axis) {
-      const double face_m = basin.conductance_m[i][axis];
-      if (face_m <= 0.0) continue;
+      const double face_m = basin.conductance_m[cell][axis];
+      if (face_m <= 0.0 || (axis == 0 ? layout.count_x : layout.count_z) == 1) continue;
       grid.open[i][axis] = 1.0;
       grid.resistance_pm[i][axis] = 1.0 / face_m;
       const auto c = cAt(face_m / layout.cell_m);
@@ -175,18 +220,17 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
   if (!out.is_flat) roundToHalves(out.root_c);
   std::vector<DispersionGrid> grids{std::move(grid)};
   std::vector<CellOwners> owners;
-  while (true) {
+  for (std::size_t k = 0; k < counts.size(); ++k) {
     DispersionLevel& level = out.levels.emplace_back();
-    const auto side_count = static_cast<std::uint32_t>(grids.back().n);
-    level.side_count = side_count;
-    if (out.levels.size() > 1 && (side_count <= kCoarsestSideCount || side_count % 2 != 0)) break;
-    Coarsened coarser = coarsen(grids.back());
+    level.count = counts[k];
+    if (k + 1 == counts.size()) break;
+    Coarsened coarser = coarsen(grids.back(), counts[k + 1]);
     level.from_coarse_x = std::move(coarser.from_coarse_x);
     level.from_coarse_z = std::move(coarser.from_coarse_z);
     owners.push_back(std::move(coarser.owner));
     grids.push_back(std::move(coarser.grid));
   }
-  if (!out.is_flat) fitResistances(grids, owners);
+  if (!basin.is_flat) fitResistances(grids, owners);
   for (std::size_t k = 0; k < grids.size(); ++k) {
     DispersionLevel& level = out.levels[k];
     level.stiffness = stiffnessOf(grids[k], k, layout.cell_m, out.depth_m);
@@ -194,7 +238,7 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
       for (auto* table : {&level.stiffness, &level.from_coarse_x, &level.from_coarse_z}) roundToHalves(*table);
     }
     if (k == 0) continue;
-    level.spread = layOutSpread(level, k, out.is_flat);
+    level.spread = layOutSpread(level, k, basin.is_flat, out.is_flat);
     if (!out.is_flat) roundToHalves(level.spread);
   }
   return out;
@@ -202,9 +246,10 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
 
 std::vector<Four> sweepWeights(const DispersionLevel& level) {
   std::vector<Four> out(level.stiffness.size(), Four{});
-  const int n = static_cast<int>(level.side_count);
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
+  const int nx = static_cast<int>(level.count.x);
+  const int nz = static_cast<int>(level.count.z);
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
       const Four& here = level.stiffness[level.index(x, z)];
       const std::array there{level.stiffness[level.index(x + 1, z)], level.stiffness[level.index(x, z + 1)]};
       for (int axis = 0; axis < 2; ++axis) {

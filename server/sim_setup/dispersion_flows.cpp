@@ -155,7 +155,8 @@ std::vector<Cells> slowest(const DispersionGrid& grid) {
     std::ranges::generate(level, [&] { return static_cast<double>(random()) / 0x1p31 - 1.0; });
   orthonormalize(laplacian, levels);
   // Below the lowest eigenvalue of an open square, and enough for parts without any outflow.
-  const double shift = laplacian.meanConductance() / (static_cast<double>(grid.n) * grid.n);
+  const double shift =
+      laplacian.meanConductance() / (static_cast<double>(std::max(grid.nx, grid.nz)) * std::max(grid.nx, grid.nz));
   for (int round = 0; round < kBaseRounds && shift > 0.0; ++round) {
     for (Cells& level : levels) {
       const Cells right = laplacian.weighted(level);
@@ -210,8 +211,8 @@ void addFlux(const DispersionGrid& grid, std::size_t from, std::size_t to, doubl
     return;
   }
   // Where a strip behind a wall ends, cells meet that have no common face: by way of a neighbour of both.
-  const int x = static_cast<int>(from) % grid.n;
-  const int z = static_cast<int>(from) / grid.n;
+  const int x = static_cast<int>(from) % grid.nx;
+  const int z = static_cast<int>(from) / grid.nx;
   for (const std::size_t by : {grid.at(x + 1, z), grid.at(x - 1, z), grid.at(x, z + 1), grid.at(x, z - 1)}) {
     const auto first = faceBetween(grid, from, by);
     const auto second = faceBetween(grid, by, to);
@@ -239,8 +240,8 @@ Motion coarser(const DispersionGrid& fine, const DispersionGrid& coarse, const C
 
 /// Whether a face is at least partly closed by something else than a side of the water.
 bool isObstructed(const DispersionGrid& grid, std::size_t cell, int axis) {
-  const int n = grid.n;
-  const int along = axis == 0 ? static_cast<int>(cell) % n : static_cast<int>(cell) / n;
+  const int n = axis == 0 ? grid.nx : grid.nz;
+  const int along = axis == 0 ? static_cast<int>(cell) % grid.nx : static_cast<int>(cell) / grid.nx;
   return grid.open[cell][static_cast<std::size_t>(axis)] < 1.0 && along != n - 1;
 }
 
@@ -248,8 +249,8 @@ bool isObstructed(const DispersionGrid& grid, std::size_t cell, int axis) {
 std::vector<bool> besideWalls(const DispersionGrid& grid) {
   std::vector<bool> out(grid.wet.size(), false);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const int x = static_cast<int>(i) % grid.n;
-    const int z = static_cast<int>(i) / grid.n;
+    const int x = static_cast<int>(i) % grid.nx;
+    const int z = static_cast<int>(i) / grid.nx;
     for (int along = -1; along <= 1; ++along) {
       for (int across = 0; across <= 1; ++across) {
         if (isObstructed(grid, i, 0)) out[grid.at(x + across, z + along)] = true;
@@ -313,7 +314,7 @@ void fitResistances(std::vector<DispersionGrid>& grids, const std::vector<CellOw
   });
   if (!has_walls) return;
   std::size_t base = 0;
-  while (base + 1 < grids.size() && grids[base].n > kBaseSide) ++base;
+  while (base + 1 < grids.size() && std::max(grids[base].nx, grids[base].nz) > kBaseSide) ++base;
   std::vector<Cells> levels = slowest(grids[base]);
   for (std::size_t k = base; k-- > 0;) {
     const Laplacian fine(grids[k]);

@@ -11,19 +11,22 @@
 
 namespace spindrift::sim {
 
-/// A grid in doubles, n x n cells, x fastest. Each cell owns the faces toward +x and +z.
+/// A grid in doubles, nx x nz cells, x fastest. Each cell owns the faces toward +x and +z.
 struct DispersionGrid {
-  int n = 0;
+  int nx = 0;
+  int nz = 0;
   std::vector<std::array<double, 2>> open;           ///< open share of the x and z face; 0 where closed
   std::vector<std::array<double, 2>> resistance_pm;  ///< mean of 1/d over the open part [1/m]
   std::vector<double> wet;      ///< wet area over that of a cell; above 1 with a strip of a neighbour
   std::vector<double> depth_m;  ///< mean over the wet area; 0 where dry
 
-  explicit DispersionGrid(int side_count);
-  [[nodiscard]] std::size_t at(int x, int z) const { return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n)); }
+  explicit DispersionGrid(CellCounts counts);
+  [[nodiscard]] std::size_t at(int x, int z) const {
+    return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz));
+  }
   [[nodiscard]] std::size_t behind(std::size_t cell, int axis) const {
-    const int x = static_cast<int>(cell) % n;
-    const int z = static_cast<int>(cell) / n;
+    const int x = static_cast<int>(cell) % nx;
+    const int z = static_cast<int>(cell) / nx;
     return axis == 0 ? at(x + 1, z) : at(x, z + 1);
   }
 };
@@ -33,7 +36,7 @@ struct DispersionGrid {
 /// there. None where dry, and for the few parts that lie otherwise.
 using CellOwners = std::vector<std::optional<std::size_t>>;
 
-/// A grid of half as many cells per side.
+/// A grid of half as many cells along each axis; `counts` of coarsen() may add a row or a column of dry cells.
 struct Coarsened {
   DispersionGrid grid;
   CellOwners owner;
@@ -44,7 +47,7 @@ struct Coarsened {
 
 /// Returns the next coarser grid and the weights of the fine faces in the coarse ones. A coarse flux passes the open
 /// part of its face evenly; inside the area of its cell it goes where every fine cell gains the same height.
-/// Precondition: an even number of cells per side.
-[[nodiscard]] Coarsened coarsen(const DispersionGrid& fine);
+/// Precondition: an even number of cells along each axis, of which `counts` has at least half.
+[[nodiscard]] Coarsened coarsen(const DispersionGrid& fine, CellCounts counts);
 
 }  // namespace spindrift::sim

@@ -105,7 +105,7 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
 }  // namespace
 
 EffectDomain domainOf(const WaveLayout& wave) {
-  return {wave.side_m, wave.side_m, wave.cell_m, wave.speed_mps, wave.dt_s, wave.dispersing_depth_m};
+  return {wave.length_m, wave.width_m, wave.cell_m, wave.speed_mps, wave.dt_s, wave.dispersing_depth_m};
 }
 
 double pulse(double phase) {

@@ -19,13 +19,6 @@ constexpr double kDepthTolerance = 1e-6;
 /// The ground above a place counts as land on the way to shore if it is shallower than this share of the depth there.
 constexpr double kLandShare = 0.01;
 
-double lengthOf(const core::WaveScene& water) {
-  return water.side_m;
-}
-double widthOf(const core::WaveScene& water) {
-  return water.side_m;
-}
-
 /// A place relative to a centre: along a heading, and across it to the right. [m]
 struct Place {
   double along_m, across_m;
@@ -39,16 +32,16 @@ Place placeFrom(double centre_x_m, double centre_z_m, double heading_deg, double
 }
 
 /// Distance of a place from a side. [m]
-double distanceTo(core::Side side, const core::WaveScene& water, double x_m, double z_m) {
+double distanceTo(core::Side side, const core::WaveCells& water, double x_m, double z_m) {
   switch (side) {
     case core::Side::kMinusX:
-      return x_m + lengthOf(water) / 2;
+      return x_m + water.length_m / 2;
     case core::Side::kPlusZ:
-      return widthOf(water) / 2 - z_m;
+      return water.width_m / 2 - z_m;
     case core::Side::kMinusZ:
-      return z_m + widthOf(water) / 2;
+      return z_m + water.width_m / 2;
     default:
-      return lengthOf(water) / 2 - x_m;
+      return water.length_m / 2 - x_m;
   }
 }
 
@@ -58,9 +51,9 @@ double floorDepth(const core::Scene& scene) {
 }
 
 /// Returns the depth that the grid gives; nullopt outside of its rectangle.
-std::optional<double> gridDepth(const core::DepthGrid& grid, const core::WaveScene& water, double x_m, double z_m) {
-  const double length_m = grid.length_m > 0 ? grid.length_m : lengthOf(water);
-  const double width_m = grid.width_m > 0 ? grid.width_m : widthOf(water);
+std::optional<double> gridDepth(const core::DepthGrid& grid, const core::WaveCells& water, double x_m, double z_m) {
+  const double length_m = grid.length_m > 0 ? grid.length_m : water.length_m;
+  const double width_m = grid.width_m > 0 ? grid.width_m : water.width_m;
   const double column = ((x_m - grid.x_m) / length_m + 0.5) * (grid.columns_count - 1);
   const double row = ((z_m - grid.z_m) / width_m + 0.5) * (grid.rows_count - 1);
   if (column < 0 || row < 0 || column > grid.columns_count - 1 || row > grid.rows_count - 1) return std::nullopt;
@@ -118,8 +111,9 @@ double deepestPossible(const core::Scene& scene) {
   if (scene.bed->grid) {
     for (const float depth_m : *scene.bed->grid->depths_m) deepest_m = std::max(deepest_m, double{depth_m});
   }
+  const core::WaveCells water = scene.wave->cells();
+  const double reach_m = std::hypot(water.length_m, water.width_m);
   for (const core::BedShape& shape : scene.bed->shapes) {
-    const double reach_m = std::hypot(lengthOf(*scene.wave), widthOf(*scene.wave));
     deepest_m += std::visit(core::Overloaded{
                                 [](const core::BedCone& cone) { return std::max(-cone.height_m, 0.0); },
                                 [&](const core::BedSlope& slope) {
@@ -151,12 +145,14 @@ double obstacleDepth(const core::Breakwater& wall, double x_m, double z_m) {
 double groundDepth(const core::Scene& scene, double x_m, double z_m) {
   const double floor_m = floorDepth(scene);
   double depth_m = floor_m;
+  if (scene.beaches.empty() && !scene.bed) return depth_m;
+  const core::WaveCells water = scene.wave->cells();
   for (const core::Beach& beach : scene.beaches) {
-    const double share = std::clamp(distanceTo(beach.side, *scene.wave, x_m, z_m) / beach.width_m, 0.0, 1.0);
+    const double share = std::clamp(distanceTo(beach.side, water, x_m, z_m) / beach.width_m, 0.0, 1.0);
     depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, floor_m, share));
   }
   if (!scene.bed) return depth_m;
-  if (scene.bed->grid) depth_m = gridDepth(*scene.bed->grid, *scene.wave, x_m, z_m).value_or(depth_m);
+  if (scene.bed->grid) depth_m = gridDepth(*scene.bed->grid, water, x_m, z_m).value_or(depth_m);
   for (const core::BedShape& shape : scene.bed->shapes) depth_m -= rise_m(shape, x_m, z_m);
   return depth_m;
 }
@@ -176,7 +172,7 @@ double bedDepth(const core::Scene& scene, double x_m, double z_m) {
 std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_m) {
   const double here_m = groundDepth(scene, x_m, z_m);
   if (!scene.bed || here_m <= 0) return std::nullopt;
-  const double step_m = 0.5 * lengthOf(*scene.wave) / scene.wave->resolution_count;
+  const double step_m = 0.5 * scene.wave->cells().cell_m;
   const double rise_x = (groundDepth(scene, x_m - step_m, z_m) - groundDepth(scene, x_m + step_m, z_m)) / (2 * step_m);
   const double rise_z = (groundDepth(scene, x_m, z_m - step_m) - groundDepth(scene, x_m, z_m + step_m)) / (2 * step_m);
   const double slope = std::hypot(rise_x, rise_z);
@@ -189,7 +185,6 @@ std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_
 
 core::Result<void> checkGround(const core::Scene& scene) {
   if (!scene.wave || !scene.bed) return {};
-  const core::WaveScene& water = *scene.wave;
   if (const auto& grid = scene.bed->grid) {
     const std::size_t wanted = std::size_t{grid->columns_count} * grid->rows_count;
     if (grid->columns_count < 2 || grid->rows_count < 2 || !grid->depths_m || grid->depths_m->size() != wanted)
@@ -198,14 +193,14 @@ core::Result<void> checkGround(const core::Scene& scene) {
                                "2 x 2 points",
                                grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0)};
   }
-  const double limit_m = water.depth_m * (1 + kDepthTolerance);
+  const double limit_m = scene.wave->depth_m * (1 + kDepthTolerance);
   if (deepestPossible(scene) <= limit_m) return {};
-  const auto n = static_cast<int>(water.resolution_count);
+  const core::WaveCells water = scene.wave->cells();
   double deepest_m = limit_m, deepest_x_m = 0.0, deepest_z_m = 0.0;
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
-      const double x_m = ((x + 0.5) / n - 0.5) * lengthOf(water);
-      const double z_m = ((z + 0.5) / n - 0.5) * widthOf(water);
+  for (std::uint32_t z = 0; z < water.count.z; ++z) {
+    for (std::uint32_t x = 0; x < water.count.x; ++x) {
+      const double x_m = (x + 0.5) * water.cell_m - water.length_m / 2;
+      const double z_m = (z + 0.5) * water.cell_m - water.width_m / 2;
       const double depth_m = groundDepth(scene, x_m, z_m);
       if (depth_m > deepest_m) {
         deepest_m = depth_m;
@@ -219,7 +214,7 @@ core::Result<void> checkGround(const core::Scene& scene) {
                fmt::format("bed: {:.4g} m at x {:.4g} m, z {:.4g} m is deeper than wave.depth_m of {:.4g} m, the bound "
                            "by which steps are chosen: choose wave.depth_m of at least {:.4g} m (and "
                            "bed.floor_depth_m for the depth of the level floor)",
-                           deepest_m, deepest_x_m, deepest_z_m, water.depth_m, deepest_m)};
+                           deepest_m, deepest_x_m, deepest_z_m, scene.wave->depth_m, deepest_m)};
 }
 
 }  // namespace spindrift::sim

@@ -1,6 +1,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -49,17 +50,40 @@ core::Result<void> countCells(ParticleLayout& out) {
   return {};
 }
 
+/// Support radius for two periodic sides of different length: that of the finest cells that tile both, at most a fifth
+/// larger than wanted. None where no such cells exist.
+std::optional<double> tilingRadius(double wanted_m, double shorter_m, double longer_m) {
+  const double ratio = longer_m / shorter_m;
+  for (int k = static_cast<int>(std::floor(shorter_m / wanted_m + 1e-9)); k >= 3 && shorter_m / k <= 1.2 * wanted_m;
+       --k) {
+    if (std::abs(k * ratio - std::round(k * ratio)) < 1e-6) return shorter_m / k;
+  }
+  return std::nullopt;
+}
+
 /// Layout of a two-way scene: particles of a given volume anywhere over the water, none at the start. It has the wave's
 /// sides.
 core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
-  const double side_m = scene.wave->side_m;
+  const core::WaveCells cells = scene.wave->cells();
   out.count = p.count;
   out.spacing_m = scene.coupling->droplet_spacing_m;
   out.support_radius_m = p.support_ratio * out.spacing_m;
-  if (isPeriodicX(*scene.wave) || isPeriodicZ(*scene.wave)) {
-    // The grid's cells have edge H, and a whole number of them must span a periodic side.
+  // The grid's cells have edge H, and a whole number of them must span a periodic side.
+  const bool along_x = isPeriodicX(*scene.wave);
+  const bool along_z = isPeriodicZ(*scene.wave);
+  if (along_x && along_z && cells.length_m != cells.width_m) {
+    const double shorter_m = std::min(cells.length_m, cells.width_m);
+    const auto tiled = tilingRadius(out.support_radius_m, shorter_m, std::max(cells.length_m, cells.width_m));
+    if (!tiled)
+      return invalid(fmt::format(
+          "wave.width_m: no support radius near {:.3g} m tiles periodic sides of {:.4g} and {:.4g} m: use a width in a "
+          "simple ratio to the length, another droplet_spacing_m, or sides that are not periodic",
+          out.support_radius_m, cells.length_m, cells.width_m));
+    out.support_radius_m = *tiled;
+  } else if (along_x || along_z) {
+    const double side_m = along_x ? cells.length_m : cells.width_m;
     out.support_radius_m = side_m / std::max(std::floor(side_m / out.support_radius_m + 1e-9), 3.0);
   }
   out.neighbours_count = latticeNeighbours(out.spacing_m, out.support_radius_m);
@@ -69,7 +93,7 @@ core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   out.constraint_softness_pm2 =
       kConstraintSoftness *
       latticeConstraintSlope2(p.kernel_set, out.spacing_m, out.support_radius_m, p.rest_density_kgpm3, out.mass_kg);
-  const double cell_m = side_m / scene.wave->resolution_count;
+  const double cell_m = cells.cell_m;
   const double droplet_height_m = out.spacing_m * out.spacing_m * out.spacing_m / (cell_m * cell_m);
   if (droplet_height_m > kMaxDropletHeight * scene.wave->depth_m) {
     return invalid(
@@ -88,8 +112,8 @@ core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
                     "smaller droplets or a coarser wave",
                     out.spacing_m, spread_m, spread_m / cell_m, splatWidth(kMaxSplatReach)));
   }
-  out.min_m = {-side_m / 2, -scene.wave->depth_m, -side_m / 2};
-  out.max_m = {side_m / 2, p.headroom_m, side_m / 2};
+  out.min_m = {-cells.length_m / 2, -scene.wave->depth_m, -cells.width_m / 2};
+  out.max_m = {cells.length_m / 2, p.headroom_m, cells.width_m / 2};
   if (auto counted = countCells(out); !counted) return counted.error();
   return out;
 }
@@ -111,11 +135,7 @@ core::Result<double> supportRadius(const core::Scene& scene, double spacing_m, d
         p.count, layers_count, cells, wanted_m, shorter_m));
   }
   if (!along_x || !along_z || side_x_m == side_z_m) return shorter_m / cells;
-  // Two periodic sides of different length: the coarsest cells that tile both and widen the support by at most a fifth.
-  const double ratio = std::max(side_x_m, side_z_m) / shorter_m;
-  for (int k = static_cast<int>(cells); k >= 3 && shorter_m / k <= 1.2 * wanted_m; --k) {
-    if (std::abs(k * ratio - std::round(k * ratio)) < 1e-6) return shorter_m / k;
-  }
+  if (const auto tiled = tilingRadius(wanted_m, shorter_m, std::max(side_x_m, side_z_m))) return *tiled;
   return invalid(
       fmt::format("particles.box_width_m: no support radius between {:.3g} and {:.3g} m tiles periodic sides of {:.4g} "
                   "and {:.4g} m: "
@@ -154,8 +174,11 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   if (isTwoWay(scene)) return layOutPool(scene);
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
-  const double side_x_m = (scene.wave ? scene.wave->side_m : p.box_side_m) * (scene.wave ? p.patch_scale : 1.0);
-  const double side_z_m = !scene.wave && p.box_width_m > 0 ? p.box_width_m : side_x_m;
+  const core::WaveCells water = scene.wave ? scene.wave->cells() : core::WaveCells{};
+  const double side_x_m = scene.wave ? water.length_m * p.patch_scale : p.box_side_m;
+  const double side_z_m = scene.wave            ? water.width_m * p.patch_scale
+                          : p.box_width_m > 0.0 ? p.box_width_m
+                                                : p.box_side_m;
   const double fill_x_m = p.fill_x_ratio * side_x_m;
   const double fill_z_m = p.fill_z_ratio * side_z_m;
   const double area_m2 = fill_x_m * fill_z_m;
@@ -225,12 +248,13 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   out.max_m = {centre_x + side_x_m / 2, p.periodic_y ? 0.0 : p.headroom_m, centre_z + side_z_m / 2};
   out.mass_kg *= p.fill_density_ratio;
   if (scene.wave) {
-    const double half_m = scene.wave->side_m / 2 * (1 + 1e-9);
-    if (out.min_m[0] < -half_m || out.max_m[0] > half_m || out.min_m[2] < -half_m || out.max_m[2] > half_m) {
+    const double half_x_m = water.length_m / 2 * (1 + 1e-9);
+    const double half_z_m = water.width_m / 2 * (1 + 1e-9);
+    if (out.min_m[0] < -half_x_m || out.max_m[0] > half_x_m || out.min_m[2] < -half_z_m || out.max_m[2] > half_z_m) {
       return invalid(fmt::format(
-          "particles.patch_shift_x_m, patch_shift_z_m: a patch of {:.3g} m centred at ({:.3g}, {:.3g}) m leaves the "
-          "water of {:.3g} m: move it inside or make patch_scale smaller",
-          side_x_m, centre_x, centre_z, scene.wave->side_m));
+          "particles.patch_shift_x_m, patch_shift_z_m: a patch of {:.3g} x {:.3g} m centred at ({:.3g}, {:.3g}) m "
+          "leaves the water of {:.3g} x {:.3g} m: move it inside or make patch_scale smaller",
+          side_x_m, side_z_m, centre_x, centre_z, water.length_m, water.width_m));
     }
   }
   if (auto counted = countCells(out); !counted) return counted.error();

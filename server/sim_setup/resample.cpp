@@ -117,12 +117,13 @@ Field pass(const Field& from, std::uint32_t from_count, std::uint32_t to_count, 
 
 }  // namespace
 
-Field resample(const Field& from, std::uint32_t from_count, std::uint32_t to_count, SampleAxis x, SampleAxis z) {
-  return pass(pass(from, from_count, to_count, x), from_count, to_count, z);
+Field resample(const Field& from, core::CellCounts from_count, core::CellCounts to, SampleAxis x, SampleAxis z) {
+  return pass(pass(from, from_count.x, to.x, x), from_count.z, to.z, z);
 }
 
-void settleOn(std::span<const char> wet, std::uint32_t side_count, bool periodic_x, bool periodic_z, Field& field) {
-  const auto n = static_cast<int>(side_count);
+void settleOn(std::span<const char> wet, core::CellCounts count, bool periodic_x, bool periodic_z, Field& field) {
+  const auto nx = static_cast<int>(count.x);
+  const auto nz = static_cast<int>(count.z);
   std::vector<std::size_t> empty;
   for (std::size_t i = 0; i < wet.size(); ++i) {
     const bool has_water = field.share[i] > kNoShare;
@@ -131,27 +132,27 @@ void settleOn(std::span<const char> wet, std::uint32_t side_count, bool periodic
     if (wet[i] && !has_water) empty.push_back(i);
   }
   const auto neighbour = [&](std::size_t i, int dx, int dz) -> std::optional<std::size_t> {
-    int x = static_cast<int>(i) % n + dx;
-    int z = static_cast<int>(i) / n + dz;
-    if (periodic_x) x = (x + n) % n;
-    if (periodic_z) z = (z + n) % n;
-    if (x < 0 || x >= n || z < 0 || z >= n) return std::nullopt;
-    return static_cast<std::size_t>(x + n * z);
+    int x = static_cast<int>(i) % nx + dx;
+    int z = static_cast<int>(i) / nx + dz;
+    if (periodic_x) x = (x + nx) % nx;
+    if (periodic_z) z = (z + nz) % nz;
+    if (x < 0 || x >= nx || z < 0 || z >= nz) return std::nullopt;
+    return static_cast<std::size_t>(x + nx * z);
   };
   while (!empty.empty()) {
     std::vector<std::pair<std::size_t, double>> found;
     std::vector<std::size_t> still;
     for (const std::size_t i : empty) {
       double sum = 0.0;
-      int count = 0;
+      int found_count = 0;
       for (const auto& [dx, dz] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
         const auto at = neighbour(i, dx, dz);
         if (!at || field.share[*at] == 0.0) continue;
         sum += field.mean[*at];
-        ++count;
+        ++found_count;
       }
-      if (count > 0) {
-        found.emplace_back(i, sum / count);
+      if (found_count > 0) {
+        found.emplace_back(i, sum / found_count);
       } else {
         still.push_back(i);
       }

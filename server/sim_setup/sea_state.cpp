@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Longest wave, as a share of the water's side.
+/// Longest wave, as a share of the water's longer side.
 constexpr double kLongestWaveShare = 0.5;
 /// Significant height over depth, at most. Waves of the sea break beyond it.
 constexpr double kLargestHeightShare = 0.5;
@@ -141,11 +141,11 @@ double WindSeaSpectrum::density(double omega_radps) const {
   return deep * t * t / (kd > 300 ? 1.0 : 1 + 2 * kd / std::sinh(2 * kd));
 }
 
-std::uint64_t windSeaBytes(std::uint32_t resolution_count) {
-  const std::uint64_t n = resolution_count;
-  const std::uint64_t tables = MAX_SEA_WAVES * 8 * (n + n / SEA_STRIP);
-  const std::uint64_t blocks = 16 * (n / SEA_BLOCK) * (n / SEA_BLOCK);
-  return n * n * 16 + tables + blocks + sizeof(shared::SeaUniforms);
+std::uint64_t windSeaBytes(core::CellCounts cells) {
+  const auto over = [](std::uint64_t count, std::uint64_t per) { return (count + per - 1) / per; };
+  const std::uint64_t tables = MAX_SEA_WAVES * 8 * (cells.x + over(cells.z, SEA_STRIP));
+  const std::uint64_t blocks = 16 * over(cells.x, SEA_BLOCK) * over(cells.z, SEA_BLOCK);
+  return cells.total() * 16 + tables + blocks + sizeof(shared::SeaUniforms);
 }
 
 SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
@@ -160,7 +160,7 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
   const auto spectrum = WindSeaSpectrum::of(out.wind_speed_mps, storm.fetch_m, g, d);
   out.peak_period_s = 2 * pi / spectrum.peak_radps;
   out.peak_length_m = 2 * pi / waveNumber(spectrum.peak_radps, g, d);
-  const double lowest = waveFrequency(2 * pi / (kLongestWaveShare * layout.side_m), g, d);
+  const double lowest = waveFrequency(2 * pi / (kLongestWaveShare * layout.longerSide_m()), g, d);
   const double highest = waveFrequency(2 * pi / (kShortestWave_cells * layout.cell_m), g, d);
   const Distribution energy(lowest, highest, [&](double omega) { return spectrum.density(omega); });
   const double cap_m = storm.level_ratio * std::min(storm.wave_height_m, kLargestHeightShare * d);
@@ -183,9 +183,12 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
     each.kx_radpm = k * std::cos(angle);
     each.kz_radpm = k * std::sin(angle);
     // A whole number of waves between periodic sides.
-    const double whole = 2 * pi / layout.side_m;
-    if (isPeriodicX(wave)) each.kx_radpm = whole * std::round(each.kx_radpm / whole);
-    if (isPeriodicZ(wave)) each.kz_radpm = whole * std::round(each.kz_radpm / whole);
+    const auto wholeWaves = [](double k_radpm, double side_m) {
+      const double whole = 2 * pi / side_m;
+      return whole * std::round(k_radpm / whole);
+    };
+    if (isPeriodicX(wave)) each.kx_radpm = wholeWaves(each.kx_radpm, layout.length_m);
+    if (isPeriodicZ(wave)) each.kz_radpm = wholeWaves(each.kz_radpm, layout.width_m);
     k = std::hypot(each.kx_radpm, each.kz_radpm);
     each.phase_rad = 2 * pi * random.unit();
     if (k <= 0) continue;

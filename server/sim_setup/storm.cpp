@@ -18,7 +18,7 @@ constexpr double kDropDepthShare = 0.1;  ///< of the water's depth, at most
 /// Gusts at full storm: mean interval of the groups, their length, and the spread of their direction about the
 /// wind.
 constexpr double kGroupInterval_s = 1.6;
-constexpr double kGroupLengthShare = 0.09;  ///< of the side of the water
+constexpr double kGroupLengthShare = 0.09;  ///< of the shorter side of the water
 constexpr double kGroupSpread_deg = 25.0;
 constexpr double kWaveDepthShare = 0.5;  ///< of the water's depth, at most
 
@@ -31,15 +31,15 @@ std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayou
   const core::StormScene& storm = *scene.storm;
   SplitMix64 random(scene.seed * 0x2545f4914f6cdd1dull + tick);
 
-  const double drops = storm.level_ratio * storm.drops_per_m2_s * wave.side_m * wave.side_m * tick_s;
+  const double drops = storm.level_ratio * storm.drops_per_m2_s * wave.length_m * wave.width_m * tick_s;
   auto count = static_cast<std::size_t>(drops);
   if (random.unit() < drops - static_cast<double>(count)) ++count;
   count = std::min(count, static_cast<std::size_t>(MAX_SPLASHES) - kSpareSplashes);
   const double depth_m = std::min(storm.drop_depth_m, kDropDepthShare * scene.wave->depth_m);
   for (std::size_t k = 0; k < count; ++k) {
     core::Splash drop;
-    drop.x_m = 0.5 * wave.side_m * random.symmetric();
-    drop.z_m = 0.5 * wave.side_m * random.symmetric();
+    drop.x_m = 0.5 * wave.length_m * random.symmetric();
+    drop.z_m = 0.5 * wave.width_m * random.symmetric();
     drop.radius_m = kDropRadius_cells * wave.cell_m;
     drop.depth_m = depth_m * (0.5 + 0.5 * random.unit());
     drop.duration_s = kDropDuration_s;
@@ -53,7 +53,7 @@ std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayou
     gust.direction_deg = storm.wind_direction_deg + kGroupSpread_deg * random.symmetric();
     gust.amplitude_m = storm.level_ratio * std::min(storm.wave_height_m, kWaveDepthShare * scene.wave->depth_m) *
                        (0.4 + 0.6 * random.unit());
-    gust.length_m = kGroupLengthShare * wave.side_m * (0.7 + 0.6 * random.unit());
+    gust.length_m = kGroupLengthShare * wave.shorterSide_m() * (0.7 + 0.6 * random.unit());
     gust.duration_s = 0.4;
     out.emplace_back(gust);
   }

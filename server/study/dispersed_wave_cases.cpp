@@ -70,7 +70,7 @@ std::vector<StandingWave> standingWaves(std::uint32_t resolution_count, bool few
 core::Result<double> frequencyOf(sim::WaterSim& water, const StandingWave& wave, double expected_radps,
                                  int most_steps) {
   const sim::WaveLayout& layout = *water.derived().wave;
-  const double k_radpm = pi * wave.half_waves / layout.side_m;
+  const double k_radpm = pi * wave.half_waves / layout.length_m;
   const auto mode = [&](double x, double z) {
     return std::cos(k_radpm * x) * (wave.is_diagonal ? std::cos(k_radpm * z) : 1.0);
   };
@@ -171,7 +171,7 @@ namespace {
 /// Speed of the middle of eta^2 over `ticks`: the middle is the phase of its longest wave on the periodic side.
 core::Result<double> speedOfMiddle(sim::WaterSim& water, int ticks) {
   const sim::WaveLayout& layout = *water.derived().wave;
-  const std::size_t n = layout.resolution_count;
+  const std::size_t n = layout.count_x;
   double sum_t = 0.0, sum_p = 0.0, sum_tt = 0.0, sum_tp = 0.0;
   double before = 0.0;
   for (int k = 0; k < ticks; ++k) {
@@ -188,7 +188,7 @@ core::Result<double> speedOfMiddle(sim::WaterSim& water, int ticks) {
     if (auto done = tick(water); !done) return done.error();
   }
   const double slope = (ticks * sum_tp - sum_t * sum_p) / (ticks * sum_tt - sum_t * sum_t);
-  return slope * layout.side_m / (2 * pi * layout.dt_s);
+  return slope * layout.length_m / (2 * pi * layout.dt_s);
 }
 
 }  // namespace

@@ -70,13 +70,13 @@ struct Samples {
 /// Samples of the square around (x, z) from the time at which the sea has filled the water.
 core::Result<Samples> sample(sim::WaterSim& water, double x_m, double z_m, double half_m, double for_s) {
   const sim::WaveLayout& layout = *water.derived().wave;
-  const std::size_t n = layout.resolution_count;
+  const std::size_t nx = layout.count_x;
   Samples out;
-  for (std::size_t z = 0; z < n; z += kSampleCells) {
-    for (std::size_t x = 0; x < n; x += kSampleCells) {
-      const double px = (static_cast<double>(x) + 0.5) * layout.cell_m - layout.side_m / 2;
-      const double pz = (static_cast<double>(z) + 0.5) * layout.cell_m - layout.side_m / 2;
-      if (std::abs(px - x_m) < half_m && std::abs(pz - z_m) < half_m) out.places.push_back({px, pz, x + n * z});
+  for (std::size_t z = 0; z < layout.count_z; z += kSampleCells) {
+    for (std::size_t x = 0; x < nx; x += kSampleCells) {
+      const double px = (static_cast<double>(x) + 0.5) * layout.cell_m - layout.length_m / 2;
+      const double pz = (static_cast<double>(z) + 0.5) * layout.cell_m - layout.width_m / 2;
+      if (std::abs(px - x_m) < half_m && std::abs(pz - z_m) < half_m) out.places.push_back({px, pz, x + nx * z});
     }
   }
   if (auto done = runTo(water, kFilled_s); !done) return done.error();

@@ -131,11 +131,12 @@ sim::StateCopy stirredState(sim::WaterSim& water) {
     }
   }
   if (water.derived().wave) {
-    const int n = static_cast<int>(water.derived().wave->resolution_count);
-    const double k = 2 * std::numbers::pi / n;
-    for (int z = 0; z < n; ++z) {
-      for (int x = 0; x < n; ++x) {
-        const auto i = static_cast<std::size_t>(x + n * z);
+    const int nx = static_cast<int>(water.derived().wave->count_x);
+    const int nz = static_cast<int>(water.derived().wave->count_z);
+    const double k = 2 * std::numbers::pi / nx;
+    for (int z = 0; z < nz; ++z) {
+      for (int x = 0; x < nx; ++x) {
+        const auto i = static_cast<std::size_t>(x + nx * z);
         state.elevation_m[i] = 0.1 * std::sin(k * x) * std::cos(2 * k * z);
         state.flow_m2ps[2 * i] = static_cast<float>(0.2 * std::sin(k * (x - 0.2)) * std::cos(2 * k * z));
         state.flow_m2ps[2 * i + 1] = static_cast<float>(0.1 * std::cos(k * x));

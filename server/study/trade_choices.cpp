@@ -39,7 +39,14 @@ core::Scene withResolution(core::Scene scene, double scale) {
   const double cells = std::round(scene.wave->resolution_count * scale / 16) * 16;
   scene.wave->resolution_count = std::min(static_cast<std::uint32_t>(cells), kMaxResolution);
   // Dispersion needs a number of cells that can be halved often enough; the largest one can.
-  while (scene.wave->dispersion != core::Dispersion::kNone && !sim::canDisperse(scene.wave->resolution_count))
+  const auto layout = [&] {
+    sim::WaveLayout out;
+    out.count_x = out.count_z = scene.wave->resolution_count;
+    out.is_periodic_x = sim::isPeriodicX(*scene.wave);
+    out.is_periodic_z = sim::isPeriodicZ(*scene.wave);
+    return out;
+  };
+  while (scene.wave->dispersion != core::Dispersion::kNone && !sim::canDisperse(layout()))
     scene.wave->resolution_count += 16;
   return scene;
 }

@@ -250,11 +250,13 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   if (!made) return made.error();
   sim::WaterSim& water = **made;
   const sim::Derived& d = water.derived();
+  if (d.wave && d.wave->count_x != d.wave->count_z)
+    return core::Error{core::ErrorCode::kInvalidInput, "wave.width_m: the trade suite compares square water only"};
   WaterRecord out;
   out.device_bytes = d.device_bytes;
   out.substeps_per_s_count = static_cast<std::uint32_t>(std::lround(d.substeps_count / d.tick_s));
   if (d.particles) out.particle_count = d.particles->count;
-  if (d.wave) out.wave_cells_count = d.wave->resolution_count * d.wave->resolution_count;
+  if (d.wave) out.wave_cells_count = static_cast<std::uint32_t>(d.wave->counts().total());
 
   EnergySeries energy;
   std::vector<std::uint64_t> sample_ticks;

@@ -60,31 +60,34 @@ int wrap(int i, int n, bool periodic) {
   return periodic ? (i % n + n) % n : std::clamp(i, 0, n - 1);
 }
 
+/// The cell at (x, z); beyond a side the one across or beside it.
+std::size_t cellAt(const sim::WaveLayout& wave, int x, int z) {
+  const int nx = static_cast<int>(wave.count_x);
+  const int nz = static_cast<int>(wave.count_z);
+  return static_cast<std::size_t>(wrap(x, nx, wave.is_periodic_x) + nx * wrap(z, nz, wave.is_periodic_z));
+}
+
 struct Floor {
   const core::Scene& scene;
   const sim::Derived& d;
   const ReferenceSurface& s;
 
   bool flat() const { return s.eta_m.empty(); }
-  int n() const { return static_cast<int>(d.wave->resolution_count); }
-  bool periodic() const { return scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic; }
-  std::size_t at(int x, int z) const {
-    return static_cast<std::size_t>(wrap(x, n(), periodic()) + n() * wrap(z, n(), periodic()));
-  }
+  std::size_t at(int x, int z) const { return cellAt(*d.wave, x, z); }
 
   /// Value of the nearest cell, extrapolated along its gradient.
   double height(double x, double z) const {
     if (flat()) return -d.particles->band_m;
-    const double u = (x + d.wave->side_m / 2) / d.wave->cell_m;
-    const double w = (z + d.wave->side_m / 2) / d.wave->cell_m;
+    const double u = (x + d.wave->length_m / 2) / d.wave->cell_m;
+    const double w = (z + d.wave->width_m / 2) / d.wave->cell_m;
     const std::size_t i = at(static_cast<int>(std::floor(u)), static_cast<int>(std::floor(w)));
     return s.eta_m[i] + s.slope_x[i] * (u - std::floor(u) - 0.5) * d.wave->cell_m +
            s.slope_z[i] * (w - std::floor(w) - 0.5) * d.wave->cell_m - d.particles->band_m;
   }
 
   double bilinear(const std::vector<double>& field, double x, double z) const {
-    const double u = (x + d.wave->side_m / 2) / d.wave->cell_m - 0.5;
-    const double w = (z + d.wave->side_m / 2) / d.wave->cell_m - 0.5;
+    const double u = (x + d.wave->length_m / 2) / d.wave->cell_m - 0.5;
+    const double w = (z + d.wave->width_m / 2) / d.wave->cell_m - 0.5;
     const int i = static_cast<int>(std::floor(u));
     const int k = static_cast<int>(std::floor(w));
     const double a = u - i;
@@ -222,18 +225,17 @@ Vec3 boundaryGradient(const core::Scene& scene, const sim::Derived& d, const Flo
 
 ReferenceSurface surfaceFrom(const core::Scene& scene, const sim::Derived& d, const std::vector<double>& eta,
                              const std::vector<float>& flow) {
-  const int n = static_cast<int>(d.wave->resolution_count);
-  const bool periodic = scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic;
-  const auto at = [&](int x, int z) {
-    return static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic));
-  };
+  const int nx = static_cast<int>(d.wave->count_x);
+  const int nz = static_cast<int>(d.wave->count_z);
+  const auto at = [&](int x, int z) { return cellAt(*d.wave, x, z); };
   // Closed faces carry no flow, so wrapping is correct for walls, too.
   const auto flowAt = [&](int x, int z, int axis) -> double {
-    return flow[2 * static_cast<std::size_t>(wrap(x, n, true) + n * wrap(z, n, true)) + static_cast<std::size_t>(axis)];
+    return flow[2 * static_cast<std::size_t>(wrap(x, nx, true) + nx * wrap(z, nz, true)) +
+                static_cast<std::size_t>(axis)];
   };
   ReferenceSurface s;
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
       s.eta_m.push_back(eta[at(x, z)]);
       s.rate_mps.push_back((flowAt(x - 1, z, 0) - flowAt(x, z, 0) + flowAt(x, z - 1, 1) - flowAt(x, z, 1)) /
                            d.wave->cell_m);
@@ -350,24 +352,23 @@ ReferenceProjection referenceProjection(const core::Scene& scene, const sim::Der
 
 std::vector<double> referenceWaveStep(const core::Scene& scene, const sim::Derived& d, const std::vector<double>& eta,
                                       const std::vector<double>& eta_previous) {
-  const int n = static_cast<int>(d.wave->resolution_count);
-  const bool periodic = scene.wave->boundary_minus_x == core::WaveBoundary::kPeriodic;
-  const auto at = [&](int x, int z) {
-    return eta[static_cast<std::size_t>(wrap(x, n, periodic) + n * wrap(z, n, periodic))];
-  };
+  const int nx = static_cast<int>(d.wave->count_x);
+  const int nz = static_cast<int>(d.wave->count_z);
+  const auto at = [&](int x, int z) { return eta[cellAt(*d.wave, x, z)]; };
   const double s2 = std::pow(d.wave->speed_mps * d.wave->dt_s / d.wave->cell_m, 2);
   const double damping = 0.5 * scene.wave->damping_per_s * d.wave->dt_s;
   std::vector<double> next;
-  for (int z = 0; z < n; ++z) {
-    for (int x = 0; x < n; ++x) {
+  for (int z = 0; z < nz; ++z) {
+    for (int x = 0; x < nx; ++x) {
       const double centre = at(x, z);
       const double sides = at(x - 1, z) + at(x + 1, z) + at(x, z - 1) + at(x, z + 1);
       const double corners = at(x - 1, z - 1) + at(x + 1, z - 1) + at(x - 1, z + 1) + at(x + 1, z + 1);
       const double laplacian = scene.wave->stencil == core::Stencil::kNinePoint
                                    ? (4 * sides + corners - 20 * centre) / 6
                                    : sides - 4 * centre;
-      next.push_back((2 * centre - (1 - damping) * eta_previous[static_cast<std::size_t>(x + n * z)] + s2 * laplacian) /
-                     (1 + damping));
+      next.push_back(
+          (2 * centre - (1 - damping) * eta_previous[static_cast<std::size_t>(x + nx * z)] + s2 * laplacian) /
+          (1 + damping));
     }
   }
   return next;

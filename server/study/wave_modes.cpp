@@ -43,10 +43,10 @@ core::Scene dispersiveScene(std::uint32_t resolution_count, double cell_m, doubl
 void setSurface(sim::WaterSim& water, const std::function<double(double, double)>& eta_m) {
   sim::StateCopy state = water.copyState();
   const sim::WaveLayout wave = *water.derived().wave;
-  const std::size_t n = wave.resolution_count;
-  for (std::size_t z = 0; z < n; ++z) {
-    for (std::size_t x = 0; x < n; ++x)
-      state.elevation_m[x + n * z] =
+  const std::size_t nx = wave.count_x;
+  for (std::size_t z = 0; z < wave.count_z; ++z) {
+    for (std::size_t x = 0; x < nx; ++x)
+      state.elevation_m[x + nx * z] =
           eta_m((static_cast<double>(x) + 0.5) * wave.cell_m, (static_cast<double>(z) + 0.5) * wave.cell_m);
   }
   std::ranges::fill(state.flow_m2ps, 0.0f);
@@ -56,12 +56,12 @@ void setSurface(sim::WaterSim& water, const std::function<double(double, double)
 core::Result<std::vector<double>> amplitudes(sim::WaterSim& water, const std::function<double(double, double)>& mode,
                                              int steps) {
   const sim::WaveLayout wave = *water.derived().wave;
-  const std::size_t n = wave.resolution_count;
-  std::vector<double> shape(n * n);
+  const std::size_t nx = wave.count_x;
+  std::vector<double> shape(wave.counts().total());
   double norm = 0.0;
-  for (std::size_t z = 0; z < n; ++z) {
-    for (std::size_t x = 0; x < n; ++x) {
-      double& value = shape[x + n * z];
+  for (std::size_t z = 0; z < wave.count_z; ++z) {
+    for (std::size_t x = 0; x < nx; ++x) {
+      double& value = shape[x + nx * z];
       value = mode((static_cast<double>(x) + 0.5) * wave.cell_m, (static_cast<double>(z) + 0.5) * wave.cell_m);
       norm += value * value;
     }

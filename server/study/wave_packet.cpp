@@ -31,18 +31,18 @@ double WavePacket::sum(double x_m, double time_s, bool is_flow) const {
 
 void setPacket(sim::WaterSim& water, const WavePacket& packet, double amplitude_m, double middle_m) {
   const sim::WaveLayout& layout = *water.derived().wave;
-  const std::size_t n = layout.resolution_count;
+  const std::size_t nx = layout.count_x;
   sim::StateCopy state = water.copyState();
-  for (std::size_t x = 0; x < n; ++x) {
+  for (std::size_t x = 0; x < nx; ++x) {
     const double x_m = (static_cast<double>(x) + 0.5) * layout.cell_m - middle_m;
     const double elevation_m = amplitude_m * packet.elevationAt(x_m, 0.0);
     // The flow of the face toward +x, half a step earlier.
     const auto flow =
         static_cast<float>(amplitude_m * packet.flowAt_mps(x_m + 0.5 * layout.cell_m, -0.5 * layout.dt_s));
-    for (std::size_t z = 0; z < n; ++z) {
-      state.elevation_m[x + n * z] = elevation_m;
-      state.flow_m2ps[2 * (x + n * z)] = flow;
-      state.flow_m2ps[2 * (x + n * z) + 1] = 0.0F;
+    for (std::size_t z = 0; z < layout.count_z; ++z) {
+      state.elevation_m[x + nx * z] = elevation_m;
+      state.flow_m2ps[2 * (x + nx * z)] = flow;
+      state.flow_m2ps[2 * (x + nx * z) + 1] = 0.0F;
     }
   }
   water.setState(state);

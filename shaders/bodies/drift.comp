@@ -82,7 +82,7 @@ void meetGround(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
 
 void meetSides(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
 #if WAVE
-  const vec2 inside_m = vec2(0.5 * sim.wave_side_m - 0.5 * b.hull_m.y);
+  const vec2 inside_m = waveHalf_m() - 0.5 * b.hull_m.y;
 #else
   const vec2 inside_m = vec2(sim.max_x_m, sim.max_z_m) - 0.5 * b.hull_m.y;
 #endif

@@ -53,15 +53,15 @@ vec2 inHull(BoatState b, vec2 d) { return vec2(dot(d, forwardOf(b.heading)), dot
 /// Index of a cell, or -1 if it is outside or dry.
 int wetCell(ivec2 cell) {
 #if WAVE
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
 #if WAVE_PERIODIC_X
-  cell.x = wrapped(cell.x, n);
+  cell.x = wrapped(cell.x, n.x);
 #endif
 #if WAVE_PERIODIC_Z
-  cell.y = wrapped(cell.y, n);
+  cell.y = wrapped(cell.y, n.y);
 #endif
-  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return -1;
-  const int i = cell.x + n * cell.y;
+  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, n))) return -1;
+  const int i = cell.x + n.x * cell.y;
 #if VARIED
   if (texelFetch(terrain, i).w <= 0.0) return -1;
 #endif
@@ -121,10 +121,10 @@ HullSums shareOf(BoatState b, vec2 half_m, float peak_m) {
   HullSums sums = HullSums(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec3(0.0));
   ivec2 across = hullCells(b, half_m) + 4;  // differences reach two cells further
 #if WAVE
-  across = min(across, ivec2(int(sim.wave_n)));
+  across = min(across, waveCounts());
 #endif
   // Clamped, because a non-finite place becomes an index.
-  const vec2 middle = clamp((b.centre_m.xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m, vec2(-1e6), vec2(1e6));
+  const vec2 middle = clamp((b.centre_m.xz + waveHalf_m()) / sim.wave_cell_m, vec2(-1e6), vec2(1e6));
   const ivec2 first = ivec2(floor(middle)) - across / 2;
   const BoatState before = drifted(b, -0.5 * sim.wave_dt_s);
   for (int k = int(gl_LocalInvocationID.x); k < across.x * across.y; k += int(kGroup))

@@ -1,5 +1,5 @@
 // Pressure of hulls on the water: invocations (x, y) cover the square around a boat, z is its slot.
-// Reads BOATS. Adds to PRESSURE_HEAD [n x n, units] (cleared before).
+// Reads BOATS. Adds to PRESSURE_HEAD [nx x nz, units] (cleared before).
 // A moving pressure disc of the hull's size (the thesis, 3.6.4, uses a point). With dispersion it leaves a Kelvin wake.
 // Without, a boat slower than the waves carries a dent, a faster one drags a Mach wedge of half angle asin(c/U).
 // A wave step takes the pressure at its start, as it takes the elevation. One field serves all wave steps of the next
@@ -20,22 +20,22 @@ void main() {
   const BoatState now = unpackBoat(t);
   if (now.age_s < 0.0) return;
   const BoatState b = drifted(now, 0.5 * (sim.tick_s - sim.wave_dt_s));
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const float cell_m = sim.wave_cell_m;
   const vec2 half_m = hullHalf(b);
-  const ivec2 across = min(hullCells(b, half_m), ivec2(n));
+  const ivec2 across = min(hullCells(b, half_m), n);
   if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), across))) return;
-  ivec2 cell = ivec2(floor((b.centre_m.xz + 0.5 * sim.wave_side_m) / cell_m)) - across / 2 + ivec2(gl_GlobalInvocationID.xy);
+  ivec2 cell = ivec2(floor((b.centre_m.xz + waveHalf_m()) / cell_m)) - across / 2 + ivec2(gl_GlobalInvocationID.xy);
   const vec2 d = waveCellCentre(cell) - b.centre_m.xz;
 #if WAVE_PERIODIC_X
-  cell.x = wrapped(cell.x, n);
+  cell.x = wrapped(cell.x, n.x);
 #endif
 #if WAVE_PERIODIC_Z
-  cell.y = wrapped(cell.y, n);
+  cell.y = wrapped(cell.y, n.y);
 #endif
-  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return;
+  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, n))) return;
   const float head_m = hullPeak(b, half_m) * hullShape(half_m, vec2(dot(d, forwardOf(b.heading)), dot(d, starboardOf(b.heading))));
   // Skip a boat with a non-finite state; diagnostics count it.
   const int units = head_m * ELEVATION_UNITS_PER_M < TRANSFER_MAX_UNITS ? int(round(head_m * ELEVATION_UNITS_PER_M)) : 0;
-  if (units != 0) atomicAdd(pressure_head[cell.x + n * cell.y], units);
+  if (units != 0) atomicAdd(pressure_head[cell.x + n.x * cell.y], units);
 }

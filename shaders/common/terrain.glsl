@@ -8,10 +8,10 @@
 /// Returns the signed distance, its gradient and the still depth (inside an obstacle: minus its height above the water)
 /// at a place. The distance is extrapolated from the cell's centre along the gradient.
 vec4 terrainAt(vec2 xz) {
-  const int n = int(sim.wave_n);
-  const vec2 u = (xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m;
+  const ivec2 n = waveCounts();
+  const vec2 u = (xz + waveHalf_m()) / sim.wave_cell_m;
   const vec2 c = floor(u);
-  vec4 t = texelFetch(terrain, waveNeighbourX(int(c.x), n) + n * waveNeighbourZ(int(c.y), n));
+  vec4 t = texelFetch(terrain, waveNeighbourX(int(c.x), n.x) + n.x * waveNeighbourZ(int(c.y), n.y));
   t.x += dot(t.yz, (u - c - 0.5) * sim.wave_cell_m);
   return t;
 }

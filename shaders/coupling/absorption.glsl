@@ -4,6 +4,7 @@
 #define SPINDRIFT_ABSORPTION
 
 #include "coupling/splat.glsl"
+#include "foam/foam_cell.glsl"
 #include "wave/transfer.glsl"
 #include "shared/pool.h"
 
@@ -20,9 +21,9 @@ layout(std430, binding = LANDED) restrict buffer Landed { uint landed[]; };
 /// impulse is reduced in that ratio.
 /// Invariant: ELEVATION gains exactly droplet_units.
 void absorb(vec2 xz, float impact_mps) {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 middle = wetCellAt(xz, n);
-  const int i = middle.x + n * middle.y;
+  const int i = middle.x + n.x * middle.y;
   const int amount = int(sim.droplet_units);
   const float reached = min(2.0 * sim.splat_width_m / sim.wave_depth_m, 1.0);
   const float head = reached * float(amount) * impact_mps / max(sim.gravity_mps2 * sim.tick_s, 1e-6);
@@ -42,7 +43,7 @@ void absorb(vec2 xz, float impact_mps) {
   if (rest != 0) atomicAdd(elevation[i], rest);
   atomicAdd(pool_words[POOL_ABSORBED], 1u);
 #if SURFACE_FOAM
-  atomicAdd(landed[middle.x / 2 + n / 2 * (middle.y / 2)], 1u);
+  atomicAdd(landed[foamIndexOf(foamCellOf(middle, n), n)], 1u);
 #endif
 }
 

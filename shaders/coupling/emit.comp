@@ -23,10 +23,10 @@ layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[];
 uniform uint tick;
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   if (gl_GlobalInvocationID.x >= pool[POOL_EMITTING]) return;
   const int i = int(texelFetch(emitter, int(gl_GlobalInvocationID.x)).x);
-  const ivec2 cell = ivec2(i % n, i / n);
+  const ivec2 cell = ivec2(i % n.x, i / n.x);
   const vec4 surface = texelFetch(surface_texels, i);
   const vec4 broken = texelFetch(breaking, i);
   const float crown_mps = length(broken.zw);

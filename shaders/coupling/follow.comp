@@ -18,7 +18,8 @@ layout(std430, binding = SIM_UNIFORMS_STORAGE) restrict buffer MovableUniforms {
   float max_y_m;
   float max_z_m;
 };
-uniform float wave_side_m;
+uniform float wave_length_m;
+uniform float wave_width_m;
 uniform float place_x_m;
 uniform float place_z_m;
 #if FOLLOW == FOLLOW_BOAT
@@ -34,7 +35,7 @@ void main() {
   }
 #endif
   const vec2 half_m = 0.5 * vec2(max_x_m - min_x_m, max_z_m - min_z_m);
-  const vec2 room_m = max(vec2(0.5 * wave_side_m) - half_m, vec2(0.0));
+  const vec2 room_m = max(0.5 * vec2(wave_length_m, wave_width_m) - half_m, vec2(0.0));
   const vec2 before_m = vec2(min_x_m, min_z_m) + half_m;
   place_m = isnan(place_m.x + place_m.y) ? before_m : clamp(place_m, -room_m, room_m);
   min_x_m = place_m.x - half_m.x;

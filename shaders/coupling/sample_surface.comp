@@ -1,6 +1,6 @@
 // Prepares the surface for particles and boats: one texel with all values of a lookup, and the wave's horizontal
 // velocity.
-// Reads ELEVATION [n x n, units], FLOW, BASIN. Writes SURFACE (eta, d eta/dt, d eta/dx, d eta/dz) and SURFACE_FLOW [m/s].
+// Reads ELEVATION [nx x nz, units], FLOW, BASIN. Writes SURFACE (eta, d eta/dt, d eta/dx, d eta/dz) and SURFACE_FLOW [m/s].
 // Equations: differences in metres (thesis, algorithm 9); d eta/dt = -div q; velocity = q / d, from the faces around a cell.
 #include "shared/groups.h"
 #include "wave/transfer.glsl"
@@ -16,24 +16,24 @@ layout(std430, binding = SURFACE_FLOW) restrict writeonly buffer SurfaceFlow { v
 int at(int x, int row) { return texelFetch(elevation, x + row).x; }
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int row = n * cell.y;
+  if (any(greaterThanEqual(cell, n))) return;
+  const int row = n.x * cell.y;
   const int i = cell.x + row;
-  const ivec2 left = ivec2(wrapped(cell.x - 1, n), cell.y);
-  const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n));
+  const ivec2 left = ivec2(wrapped(cell.x - 1, n.x), cell.y);
+  const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n.y));
 
   const float inverse_dx = 1.0 / sim.wave_cell_m;
   const int here = at(cell.x, row);
-  int right_eta = at(waveNeighbourX(cell.x + 1, n), row);
-  int left_eta = at(waveNeighbourX(cell.x - 1, n), row);
-  int after_eta = at(cell.x, n * waveNeighbourZ(cell.y + 1, n));
-  int before_eta = at(cell.x, n * waveNeighbourZ(cell.y - 1, n));
+  int right_eta = at(waveNeighbourX(cell.x + 1, n.x), row);
+  int left_eta = at(waveNeighbourX(cell.x - 1, n.x), row);
+  int after_eta = at(cell.x, n.x * waveNeighbourZ(cell.y + 1, n.y));
+  int before_eta = at(cell.x, n.x * waveNeighbourZ(cell.y - 1, n.y));
 
   const Flow own_flow = asFlow(texelFetch(flow, i));
   const Flow left_flow = asFlow(texelFetch(flow, left.x + row));
-  const Flow before_flow = asFlow(texelFetch(flow, cell.x + n * before.y));
+  const Flow before_flow = asFlow(texelFetch(flow, cell.x + n.x * before.y));
 #if VARIED
   // A closed face is a wall: the elevation continues level behind it.
   const Flow open = conductanceOf(cell, n);
@@ -49,7 +49,7 @@ void main() {
 #endif
   float rate_mps = left_flow.x - own_flow.x + before_flow.y - own_flow.y;
 #if STENCIL == 9
-  rate_mps += texelFetch(flow, left.x + n * before.y).z - own_flow.z + before_flow.w - left_flow.w;
+  rate_mps += texelFetch(flow, left.x + n.x * before.y).z - own_flow.z + before_flow.w - left_flow.w;
 #endif
   const vec2 slope = ELEVATION_UNIT_M * vec2(right_eta - left_eta, after_eta - before_eta) * (0.5 * inverse_dx);
   surface[i] = vec4(metres(here), rate_mps * inverse_dx, slope);

@@ -13,28 +13,29 @@ layout(binding = LANDING) uniform isamplerBuffer landing;
 #endif
 
 /// The cell at a position; if it is dry, the wet cell that its water runs to.
-ivec2 wetCellAt(vec2 xz, int n) {
-  const vec2 u = floor((xz + 0.5 * sim.wave_side_m) / sim.wave_cell_m);
-  const ivec2 cell = ivec2(waveNeighbourX(int(u.x), n), waveNeighbourZ(int(u.y), n));
+ivec2 wetCellAt(vec2 xz, ivec2 n) {
+  const vec2 u = floor((xz + waveHalf_m()) / sim.wave_cell_m);
+  const ivec2 cell = ivec2(waveNeighbourX(int(u.x), n.x), waveNeighbourZ(int(u.y), n.y));
 #if VARIED
-  const int at = texelFetch(landing, cell.x + n * cell.y).x;
-  return ivec2(at % n, at / n);
+  const int at = texelFetch(landing, cell.x + n.x * cell.y).x;
+  return ivec2(at % n.x, at / n.x);
 #else
   return cell;
 #endif
 }
 
 /// Index of the cell at an offset from a wet one that receives its share; -1 if the middle receives it.
-int splatTarget(ivec2 middle, ivec2 offset, int n) {
+int splatTarget(ivec2 middle, ivec2 offset, ivec2 n) {
   ivec2 cell = middle + offset;
+  // The splat may be wider than narrow water, by up to 16 cells (kMaxSplatReach); % of negative numbers is undefined.
 #if WAVE_PERIODIC_X
-  cell.x = wrapped(cell.x, n);
+  cell.x = (cell.x + 16 * n.x) % n.x;
 #endif
 #if WAVE_PERIODIC_Z
-  cell.y = wrapped(cell.y, n);
+  cell.y = (cell.y + 16 * n.y) % n.y;
 #endif
-  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(n)))) return -1;
-  const int i = cell.x + n * cell.y;
+  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, n))) return -1;
+  const int i = cell.x + n.x * cell.y;
 #if VARIED
   if (texelFetch(terrain, i).w <= 0.0) return -1;
 #endif

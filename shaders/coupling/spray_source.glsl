@@ -19,13 +19,13 @@ bool givesSpray(int i) { return heldBeforeSpray(i) > sim.spray_taken_m; }
 
 /// Units that the cell at `offset` gives to a particle emitted at `middle`, and the cell's index; 0 if the cell is dry
 /// or has too little.
-int sprayFrom(ivec2 middle, ivec2 offset, int n, out int at) {
+int sprayFrom(ivec2 middle, ivec2 offset, ivec2 n, out int at) {
   at = splatTarget(middle, offset, n);
   return at >= 0 && givesSpray(at) ? splatShare(int(sim.droplet_units), offset, int(sim.splat_reach_count)) : 0;
 }
 
 /// Returns whether a cell can emit a particle: it holds its own part plus the parts that other cells lack.
-bool canEmit(ivec2 cell, int n) {
+bool canEmit(ivec2 cell, ivec2 n) {
   int rest = int(sim.droplet_units);
   const int reach = int(sim.splat_reach_count);
   for (int dz = -2 * reach; dz <= 2 * reach; ++dz) {
@@ -34,7 +34,7 @@ bool canEmit(ivec2 cell, int n) {
       rest -= sprayFrom(cell, ivec2(dx, dz), n, at);
     }
   }
-  return heldBeforeSpray(cell.x + n * cell.y) > sim.spray_taken_m + float(rest) * ELEVATION_UNIT_M;
+  return heldBeforeSpray(cell.x + n.x * cell.y) > sim.spray_taken_m + float(rest) * ELEVATION_UNIT_M;
 }
 
 #endif

@@ -1,5 +1,5 @@
 // What the gauges of the scene read after a tick, one invocation per gauge.
-// Reads ELEVATION [n x n, units], FLOW, BASIN, BED. Writes PARTIAL_SUM, 4 words per gauge: elevation [m], velocity along
+// Reads ELEVATION [cells, units], FLOW, BASIN, BED. Writes PARTIAL_SUM, 4 words per gauge: elevation [m], velocity along
 // x and z [m/s], share of wet cells around the gauge.
 // Equations: bilinear between the centres of the four cells around the place. Dry cells do not count: their weight goes
 // to the wet ones; among dry cells alone all values are 0. Velocity of a cell: mean of flow over still depth at its two
@@ -17,22 +17,22 @@ layout(binding = BED) uniform samplerBuffer bed;
 #endif
 layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer GaugeReading { vec4 gauge_reading[]; };
 
-bool isWet(ivec2 cell, int n) {
+bool isWet(ivec2 cell, ivec2 n) {
 #if VARIED
-  return texelFetch(bed, cell.x + n * cell.y).z > 0.0;
+  return texelFetch(bed, cell.x + n.x * cell.y).z > 0.0;
 #else
   return true;
 #endif
 }
 
 /// Elevation [m] and velocity [m/s] of a wet cell.
-vec3 readingOf(ivec2 cell, int n) {
-  const int row = n * cell.y;
-  const ivec2 left = ivec2(wrapped(cell.x - 1, n), cell.y);
-  const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n));
+vec3 readingOf(ivec2 cell, ivec2 n) {
+  const int row = n.x * cell.y;
+  const ivec2 left = ivec2(wrapped(cell.x - 1, n.x), cell.y);
+  const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n.y));
   const Flow own = asFlow(texelFetch(flow, cell.x + row));
   const Flow from_left = asFlow(texelFetch(flow, left.x + row));
-  const Flow from_before = asFlow(texelFetch(flow, cell.x + n * before.y));
+  const Flow from_before = asFlow(texelFetch(flow, cell.x + n.x * before.y));
   const float least_m = 0.05 * sim.wave_depth_m;
   const vec2 after_mps = own.xy / max(conductanceOf(cell, n).xy, least_m);
   const vec2 before_mps = vec2(from_left.x / max(conductanceOf(left, n).x, least_m),
@@ -43,7 +43,7 @@ vec3 readingOf(ivec2 cell, int n) {
 void main() {
   const uint k = gl_GlobalInvocationID.x;
   if (k >= gauge_count) return;
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const vec2 place = gauge_places[k].xy;
   const vec2 first = floor(place);
   const vec2 share = place - first;
@@ -52,7 +52,7 @@ void main() {
   for (int corner = 0; corner < 4; ++corner) {
     const ivec2 offset = ivec2(corner & 1, corner >> 1);
     const ivec2 at = ivec2(first) + offset;
-    const ivec2 cell = ivec2(waveNeighbourX(at.x, n), waveNeighbourZ(at.y, n));
+    const ivec2 cell = ivec2(waveNeighbourX(at.x, n.x), waveNeighbourZ(at.y, n.y));
     const vec2 weights = mix(1.0 - share, share, vec2(offset));
     const float weight = weights.x * weights.y;
     if (weight == 0.0 || !isWet(cell, n)) continue;

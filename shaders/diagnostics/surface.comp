@@ -1,5 +1,5 @@
 // Health of the wave: one partial result per invocation, summed on the host in double and 64-bit integer precision.
-// Reads ELEVATION [n x n, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words per invocation, floats
+// Reads ELEVATION [nx x nz, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words per invocation, floats
 // as their bits: breaches (flows not finite or out of range, elevations out of range, non-finite boats), 0, max |eta|,
 // number of breaking cells; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0; sum of ELEVATION >> 16, sum
 // of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers, so the volume is exact).
@@ -26,19 +26,19 @@ layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer PartialSum { uve
 void main() {
   const uint share = gl_GlobalInvocationID.x;
   const uint shares = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const float dt_over_dx = sim.wave_dt_s / sim.wave_cell_m;
   vec4 worst = vec4(0.0);
   vec4 sum = vec4(0.0);
   uvec4 volume = uvec4(0u);
-  for (uint at = share; at < uint(n * n); at += shares) {
+  for (uint at = share; at < uint(n.x * n.y); at += shares) {
     const int i = int(at);
-    const ivec2 cell = ivec2(i % n, i / n);
-    const int left = wrapped(cell.x - 1, n);
-    const int last_row = n * wrapped(cell.y - 1, n);
+    const ivec2 cell = ivec2(i % n.x, i / n.x);
+    const int left = wrapped(cell.x - 1, n.x);
+    const int last_row = n.x * wrapped(cell.y - 1, n.y);
     const int units = texelFetch(elevation, i).x;
     const Flow own = asFlow(texelFetch(flow, i));
-    const Flow from_left = asFlow(texelFetch(flow, left + n * cell.y));
+    const Flow from_left = asFlow(texelFetch(flow, left + n.x * cell.y));
     const Flow from_before = asFlow(texelFetch(flow, cell.x + last_row));
     float inflow = from_left.x - own.x + from_before.y - own.y;
 #if STENCIL == 9

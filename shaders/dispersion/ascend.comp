@@ -20,9 +20,8 @@ const int kBefore = 3;
 
 /// Adds P coarse to row z. Blocks begin at the odd columns of the row, because first_x - kBefore is odd.
 void correct(int z, int block_column[WIDTH / 2 + 1], inout vec4 faces[WIDTH]) {
-  const int half_n = side_count / 2;
-  const int row = half_n * (z / 2);
-  const int row_before = half_n * wrapped(z / 2 - 1, half_n);
+  const int row = int(coarse_nx) * (z / 2);
+  const int row_before = int(coarse_nx) * wrapped(z / 2 - 1, counts.y / 2);
   vec4 here[WIDTH / 2 + 1];
   vec2 south[WIDTH / 2 + 1];
   for (int k = 0; k <= WIDTH / 2; ++k) {
@@ -43,16 +42,21 @@ void main() {
   // Three sweeps, each of which needs a row before.
   const int begin_z = first_z - 3;
   begin(first_x - kBefore, begin_z);
-  const int n = side_count;
-  if (first_x >= n || first_z >= n) return;
-  const int end_z = min(first_z + DISPERSION_STRIP, n);
+  const ivec2 n = counts;
+  if (first_x >= n.x || first_z >= n.y) return;
+  const int end_z = min(first_z + DISPERSION_STRIP, n.y);
+#if FINEST
+  const ivec2 owned = waveCounts();
+#else
+  const ivec2 owned = n;
+#endif
   int block_column[WIDTH / 2 + 1];
-  for (int k = 0; k <= WIDTH / 2; ++k) block_column[k] = wrapped(first_x / 2 - 2 + k, n / 2);
+  for (int k = 0; k <= WIDTH / 2; ++k) block_column[k] = around(first_x / 2 - 2 + k, n.x / 2);
   Row rows[4];
   Swept first_sweep;
   Swept second_sweep;
   Swept third_sweep;
-  rows[0] = rows[1] = rows[2] = fetchRow(wrapped(begin_z, n));
+  rows[0] = rows[1] = rows[2] = fetchRow(around(begin_z, n.y));
   start(rows[0], first_sweep.faces);
   for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = Pressed(0.0);
   third_sweep = second_sweep = first_sweep;
@@ -60,25 +64,25 @@ void main() {
     rows[3] = rows[2];
     rows[2] = rows[1];
     rows[1] = rows[0];
-    rows[0] = fetchRow(wrapped(z, n));
+    rows[0] = fetchRow(around(z, n.y));
     vec4 faces[WIDTH];
     vec4 swept[WIDTH];
     start(rows[0], faces);
     sweepRow(0, first_sweep, rows[1], rows[0], faces, swept);
-    correct(wrapped(z - 1, n), block_column, swept);
+    correct(around(z - 1, n.y), block_column, swept);
     sweepRow(1, second_sweep, rows[2], rows[1], swept, faces);
     sweepRow(2, third_sweep, rows[3], rows[2], faces, swept);
     const int done = z - 3;
     if (done < first_z) continue;
     for (int k = 0; k < DISPERSION_COLUMNS; ++k) {
       const int c = kBefore + k;
-      const int i = first_x + k + n * done;
-      if (first_x + k >= n) continue;
+      const int i = first_x + k + owned.x * done;
+      if (first_x + k >= owned.x || done >= owned.y) continue;
 #if FINEST
 #if FLAT
       const vec4 root_c = flat_root_c;
 #else
-      const vec4 root_c = halves(texelFetch(coefficients, i).zw);
+      const vec4 root_c = halves(texelFetch(coefficients, first_x + k + n.x * done).zw);
 #endif
       const vec4 shares = root_c * swept[c];
       const bvec2 is_open = greaterThan(rows[3].weight[c].xz, vec2(0.0));

@@ -15,9 +15,13 @@ layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
 layout(binding = DISPERSION_FROM_X) uniform samplerBuffer from_x;
 layout(binding = DISPERSION_FROM_Z) uniform samplerBuffer from_z;
 layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec4 faces[]; };
+// Of the largest grid.
+uniform uint grid_nx;
+uniform uint grid_nz;
+uniform uint grid_count;
 
-/// A grid of less than DISPERSION_BOTTOM_SIDE_MAX cells per side, an odd number that cannot be halved, or all grids from
-/// DISPERSION_BOTTOM_SIDE down.
+/// As large as a square grid of less than DISPERSION_BOTTOM_SIDE_MAX cells per side, an odd number that cannot be halved, or all
+/// grids from one as large as DISPERSION_BOTTOM_SIDE squared down (sim_setup/dispersion.h, bottomOf()).
 #define MAX_CELLS ((DISPERSION_BOTTOM_SIDE_MAX - 1) * (DISPERSION_BOTTOM_SIDE_MAX - 1))
 #define MAX_SMALLER_CELLS (DISPERSION_BOTTOM_SIDE * DISPERSION_BOTTOM_SIDE / 3 + 1)
 
@@ -32,83 +36,88 @@ shared vec4 pressed[MAX_CELLS];
 int after(int x, int n) { return x + 1 == n ? 0 : x + 1; }
 int before(int x, int n) { return x == 0 ? n - 1 : x - 1; }
 
+/// The next coarser grid. All but the coarsest have an even number of cells along each axis; one more may be dry.
+ivec2 coarserThan(ivec2 n, bool is_coarsest) { return is_coarsest ? n / 2 : (n / 2 + 1) / 2 * 2; }
+
 vec4 rightAt(int first, int i) { return first == 0 ? texelFetch(right_side, i) : right_of_smaller[first - textureSize(right_side) + i]; }
 
 /// pressed = e div phi - f D phi. Other invocations may read it after a barrier.
-void press(int first, int n) {
+void press(int first, ivec2 n) {
   barrier();
-  FOR_EACH(i, n * n) {
-    const int x = i % n;
-    const int z = i / n;
-    const vec4 across = phi[first + i] - vec4(phi[first + before(x, n) + n * z].xy, phi[first + x + n * before(z, n)].zw);
-    pressed[i] = (texelFetch(stiffness, first + i).zw * (across.xy + across.zw)).xyxy - texelFetch(spread, first + i).xyxy * across;
+  FOR_EACH(i, n.x * n.y) {
+    const int x = i % n.x;
+    const int z = i / n.x;
+    const vec4 across = phi[first + i] - vec4(phi[first + before(x, n.x) + n.x * z].xy, phi[first + x + n.x * before(z, n.y)].zw);
+    pressed[i] = (texelFetch(stiffness, first + i).zw * (across.xy + across.zw)).xyxy - texelFetch(spread, first + i) * across;
   }
   barrier();
 }
 
 /// r - K phi at the faces of a cell, after press().
-vec4 leftAt(int first, int n, int x, int z) {
-  const int i = x + n * z;
+vec4 leftAt(int first, ivec2 n, int x, int z) {
+  const int i = x + n.x * z;
   const vec4 here = pressed[i];
   return rightAt(first, i) - texelFetch(stiffness, first + i).xxyy * phi[first + i] +
-         vec4(pressed[after(x, n) + n * z].xy, pressed[x + n * after(z, n)].zw) - here;
+         vec4(pressed[after(x, n.x) + n.x * z].xy, pressed[x + n.x * after(z, n.y)].zw) - here;
 }
 
-void sweep(int first, int n) {
+void sweep(int first, ivec2 n) {
   press(first, n);
-  FOR_EACH(i, n * n) phi[first + i] += texelFetch(sweep_weight, first + i) * leftAt(first, n, i % n, i / n);
+  FOR_EACH(i, n.x * n.y) phi[first + i] += texelFetch(sweep_weight, first + i) * leftAt(first, n, i % n.x, i / n.x);
 }
 
 /// What the inner faces of a block have left for its coarse face `side` (0 E, 1 W, 2 N, 3 S).
-vec2 innerShare(int first, int n, int x, int z, int side) {
-  const int i = first + x + n * z;
+vec2 innerShare(int first, ivec2 n, int x, int z, int side) {
+  const int i = first + x + n.x * z;
   const vec4 corner = leftAt(first, n, x, z);
-  return texelFetch(from_x, i)[side] * corner.xy + texelFetch(from_x, i + n)[side] * leftAt(first, n, x, z + 1).xy +
+  return texelFetch(from_x, i)[side] * corner.xy + texelFetch(from_x, i + n.x)[side] * leftAt(first, n, x, z + 1).xy +
          texelFetch(from_z, i)[side] * corner.zw + texelFetch(from_z, i + 1)[side] * leftAt(first, n, x + 1, z).zw;
 }
 
 /// The same for the outer faces of the block toward +x and +z, except those that the coarse face covers: they lead to a strip
 /// behind a wall, which belongs to the block.
-vec2 stripShare(int first, int n, int x, int z, int side) {
-  const int i = first + x + n * z;
+vec2 stripShare(int first, ivec2 n, int x, int z, int side) {
+  const int i = first + x + n.x * z;
   const vec4 both = leftAt(first, n, x + 1, z + 1);
   vec2 sum = vec2(0.0);
-  if (side != 0) sum += texelFetch(from_x, i + 1)[side] * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n + 1)[side] * both.xy;
-  if (side != 2) sum += texelFetch(from_z, i + n)[side] * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n + 1)[side] * both.zw;
+  if (side != 0) sum += texelFetch(from_x, i + 1)[side] * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n.x + 1)[side] * both.xy;
+  if (side != 2) sum += texelFetch(from_z, i + n.x)[side] * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n.x + 1)[side] * both.zw;
   return sum;
 }
 
-void restrictToCoarse(int first, int n) {
-  const int coarse_n = n / 2;
-  const int coarse_right = first + n * n - textureSize(right_side);
+void restrictToCoarse(int first, ivec2 n, ivec2 coarse_n) {
+  const int coarse_right = first + n.x * n.y - textureSize(right_side);
   press(first, n);
-  FOR_EACH(k, coarse_n * coarse_n) {
-    const int x = 2 * (k % coarse_n);
-    const int z = 2 * (k / coarse_n);
-    const int next_x = after(x + 1, n);
-    const int next_z = after(z + 1, n);
-    const int i = first + x + n * z;
+  FOR_EACH(k, coarse_n.x * coarse_n.y) {
+    const int x = 2 * (k % coarse_n.x);
+    const int z = 2 * (k / coarse_n.x);
+    if (x >= n.x || z >= n.y) {
+      right_of_smaller[coarse_right + k] = vec4(0.0);
+      continue;
+    }
+    const int next_x = after(x + 1, n.x);
+    const int next_z = after(z + 1, n.y);
+    const int i = first + x + n.x * z;
     const vec4 both = leftAt(first, n, x + 1, z + 1);
-    const vec2 sum_x = texelFetch(from_x, i + 1).x * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n + 1).x * both.xy +
+    const vec2 sum_x = texelFetch(from_x, i + 1).x * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n.x + 1).x * both.xy +
                        innerShare(first, n, x, z, 0) + innerShare(first, n, next_x, z, 1) +
                        (stripShare(first, n, x, z, 0) + stripShare(first, n, next_x, z, 1));
-    const vec2 sum_z = texelFetch(from_z, i + n).z * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n + 1).z * both.zw +
+    const vec2 sum_z = texelFetch(from_z, i + n.x).z * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n.x + 1).z * both.zw +
                        innerShare(first, n, x, z, 2) + innerShare(first, n, x, next_z, 3) +
                        (stripShare(first, n, x, z, 2) + stripShare(first, n, x, next_z, 3));
     right_of_smaller[coarse_right + k] = 0.25 * vec4(sum_x, sum_z);
   }
 }
 
-void correct(int first, int n) {
-  const int coarse = first + n * n;
-  const int coarse_n = n / 2;
+void correct(int first, ivec2 n, ivec2 coarse_n) {
+  const int coarse = first + n.x * n.y;
   barrier();
-  FOR_EACH(i, n * n) {
-    const int x = (i % n) / 2;
-    const int z = (i / n) / 2;
-    const vec4 here = phi[coarse + x + coarse_n * z];
-    const vec2 west = phi[coarse + before(x, coarse_n) + coarse_n * z].xy;
-    const vec2 south = phi[coarse + x + coarse_n * before(z, coarse_n)].zw;
+  FOR_EACH(i, n.x * n.y) {
+    const int x = (i % n.x) / 2;
+    const int z = (i / n.x) / 2;
+    const vec4 here = phi[coarse + x + coarse_n.x * z];
+    const vec2 west = phi[coarse + before(x, n.x / 2) + coarse_n.x * z].xy;
+    const vec2 south = phi[coarse + x + coarse_n.x * before(z, n.y / 2)].zw;
     const vec4 wx = texelFetch(from_x, first + i);
     const vec4 wz = texelFetch(from_z, first + i);
     phi[first + i] += vec4(wx.x * here.xy + wx.y * west + wx.z * here.zw + wx.w * south,
@@ -117,34 +126,39 @@ void correct(int first, int n) {
 }
 
 /// phi = w r
-void start(int first, int n) {
+void start(int first, ivec2 n) {
   barrier();
-  FOR_EACH(i, n * n) phi[first + i] = texelFetch(sweep_weight, first + i) * rightAt(first, i);
+  FOR_EACH(i, n.x * n.y) phi[first + i] = texelFetch(sweep_weight, first + i) * rightAt(first, i);
 }
 
 // Each step down or up is one turn of the same loop, and its bounds are no constants: otherwise the compiler repeats all of
 // the above for each grid.
 void main() {
   int first = 0;
-  int n = int(sqrt(float(textureSize(right_side))) + 0.5);
-  int grids = 0;
-  for (int cells = 0; cells < textureSize(stiffness); cells += (n >> grids) * (n >> grids), ++grids) {}
+  ivec2 n = ivec2(int(grid_nx), int(grid_nz));
+  const int grids = int(grid_count);
+  ivec2 counts[DISPERSION_BOTTOM_GRIDS_MAX];
+  counts[0] = n;
+  for (int k = 1; k < grids; ++k) counts[k] = coarserThan(counts[k - 1], k == grids - 1);
+  int grid = 0;
   for (int turn = 0; turn < 2 * grids - 1; ++turn) {
     const bool descends = turn < grids;
     const bool is_coarsest = turn == grids - 1;
     if (descends) {
       start(first, n);
     } else {
-      n *= 2;
-      first -= n * n;
-      correct(first, n);
+      const ivec2 coarse_n = n;
+      n = counts[--grid];
+      first -= n.x * n.y;
+      correct(first, n, coarse_n);
     }
     const int sweeps = is_coarsest ? DISPERSION_COARSEST_SWEEPS - 1 : (descends ? 1 : 2);
     for (int k = 0; k < sweeps; ++k) sweep(first, n);
     if (descends && !is_coarsest) {
-      restrictToCoarse(first, n);
-      first += n * n;
-      n /= 2;
+      const ivec2 coarse_n = counts[++grid];
+      restrictToCoarse(first, n, coarse_n);
+      first += n.x * n.y;
+      n = coarse_n;
     }
   }
   barrier();

@@ -18,13 +18,13 @@ void main() {
   // Two sweeps, and the row before the first.
   const int begin_z = first_z - 2;
   begin(first_x - kBefore, begin_z);
-  const int n = side_count;
-  if (first_x >= n || first_z >= n) return;
-  const int end_z = min(first_z + DISPERSION_STRIP, n);
+  const ivec2 n = counts;
+  if (first_x >= n.x || first_z >= n.y) return;
+  const int end_z = min(first_z + DISPERSION_STRIP, n.y);
   Row rows[3];
   Swept first_sweep;
   Swept second_sweep;
-  rows[0] = rows[1] = fetchRow(wrapped(begin_z, n));
+  rows[0] = rows[1] = fetchRow(around(begin_z, n.y));
   start(rows[0], first_sweep.faces);
   for (int c = 0; c < WIDTH; ++c) first_sweep.pressed[c] = Pressed(0.0);
   second_sweep = first_sweep;
@@ -36,7 +36,7 @@ void main() {
   for (int z = begin_z + 1; z <= end_z + 3; ++z) {
     rows[2] = rows[1];
     rows[1] = rows[0];
-    rows[0] = fetchRow(wrapped(z, n));
+    rows[0] = fetchRow(around(z, n.y));
     vec4 faces[WIDTH];
     vec4 swept[WIDTH];
     vec4 left[WIDTH];
@@ -49,7 +49,7 @@ void main() {
       if (done % 2 == 0) own_side[k] = other_side[k] = vec4(0.0);
       for (int odd = 0; odd < 2; ++odd) {
         const int c = kBefore + 2 * k + odd;
-        const Weights w = weightsAt(c, odd == 1, wrapped(done, n));
+        const Weights w = weightsAt(c, odd == 1, around(done, n.y));
         own_side[k] += vec4(w.x.x * left[c].xy + w.z.x * left[c].zw, w.x.z * left[c].xy + w.z.z * left[c].zw);
         other_side[k] += vec4(w.x.y * left[c].xy + w.z.y * left[c].zw, w.x.w * left[c].xy + w.z.w * left[c].zw);
       }
@@ -57,8 +57,8 @@ void main() {
     if (done % 2 == 0) continue;
     for (int k = 0; k < kBlocks; ++k) {
       const int block = first_x / 2 + k;
-      if (done > first_z + 1 && block < n / 2)
-        coarse_right[block + n / 2 * (done / 2 - 1)] = 0.25 * (waiting[k] + vec4(0.0, 0.0, other_side[k].zw));
+      if (done > first_z + 1 && block < n.x / 2)
+        coarse_right[block + int(coarse_nx) * (done / 2 - 1)] = 0.25 * (waiting[k] + vec4(0.0, 0.0, other_side[k].zw));
       waiting[k] = own_side[k] + vec4(other_side[k + 1].xy, 0.0, 0.0);
     }
   }

@@ -8,7 +8,9 @@
 // sweeps at once, each a row behind the one before it, and computes the neighbours that they need itself: that costs less
 // than fetching them.
 // FINEST: 1 for the grid of the wave, whose right side r is the slope of the surface.
-// FLAT: 1 if there are no obstacles or beaches: m, e and c are the same in all cells, and only faces at sides are closed.
+// FLAT: 1 if there are no obstacles or beaches and no grid has cells beyond the water: m, e and c are the same in all cells,
+// and only faces at sides are closed.
+// NARROW: 1 if a grid has so few cells along an axis that the neighbours of a strip go around it more than once.
 #ifndef SPINDRIFT_DISPERSION_STRIP
 #define SPINDRIFT_DISPERSION_STRIP
 
@@ -17,7 +19,7 @@
 #include "wave/wave_cell.glsl"
 
 // Tables of sim_setup/dispersion.h: m_x, m_z, e_0, e_1 of a cell, times the scene's depth. Then on the finest grid the square
-// roots of c_j times that depth at its faces, x face first, on the others f_0, f_1 of the cell.
+// roots of c_j times that depth at its faces, x face first, on the others f_0, f_1 of the cell, along x and along z.
 #if FLAT
 layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;
 #else
@@ -49,7 +51,7 @@ struct Row {
 #if !FLAT
   vec4 stiff[WIDTH];
 #if !FINEST
-  vec2 spread[WIDTH];
+  vec4 spread[WIDTH];
 #endif
 #endif
 };
@@ -71,7 +73,11 @@ struct Swept {
   Pressed pressed[WIDTH];
 };
 
-int side_count;       // cells per side of this grid
+// Cells of this grid and of the next coarser one; an axis that cannot be halved has one more row, of dry cells.
+uniform uint grid_nx;
+uniform uint grid_nz;
+uniform uint coarse_nx;
+ivec2 counts;         // of this grid
 int column[WIDTH];    // x of the columns
 #if FLAT
 vec4 flat_stiffness;
@@ -79,12 +85,24 @@ float open_x[WIDTH];  // 0 where the x face is at a closed side
 #if FINEST
 vec4 flat_root_c;
 #else
-vec2 flat_spread;
+vec4 flat_spread;
 #endif
 #else
 uvec4 coefficients_ahead[WIDTH + 1];  // of the next row
 #endif
+/// Like wrapped(), also where a strip is wider than the grid: i >= -8 n. (% of negative numbers is undefined.)
+int around(int i, int n) {
+#if NARROW
+  return (i + 8 * n) % n;
+#else
+  return wrapped(i, n);
+#endif
+}
+
 #if FINEST
+ivec2 wave_counts;
+// Columns of the wave: those of the grid; in place of dry cells beyond the water, the last one.
+int level_column[WIDTH + 1];
 int level_ahead[WIDTH + 1];  // of the next row [units]
 
 int levelAt(int i) {
@@ -113,7 +131,7 @@ vec4 stiffnessOf(Row row, int c) {
 }
 
 #if !FINEST
-vec2 spreadOf(Row row, int c) {
+vec4 spreadOf(Row row, int c) {
 #if FLAT
   return flat_spread;
 #else
@@ -124,13 +142,13 @@ vec2 spreadOf(Row row, int c) {
 
 /// Fetches what is needed of row z before fetchRow(z).
 void fetchAhead(int z) {
-  const int row = side_count * z;
-  const int beyond = wrapped(column[WIDTH - 1] + 1, side_count);
 #if FINEST
-  for (int c = 0; c < WIDTH; ++c) level_ahead[c] = levelAt(column[c] + row);
-  level_ahead[WIDTH] = levelAt(beyond + row);
+  const int level_row = wave_counts.x * min(z, wave_counts.y - 1);
+  for (int c = 0; c <= WIDTH; ++c) level_ahead[c] = levelAt(level_column[c] + level_row);
 #endif
 #if !FLAT
+  const int row = counts.x * z;
+  const int beyond = wrapped(column[WIDTH - 1] + 1, counts.x);
   for (int c = 0; c < WIDTH; ++c) coefficients_ahead[c] = texelFetch(coefficients, column[c] + row);
   coefficients_ahead[WIDTH] = texelFetch(coefficients, beyond + row);
 #endif
@@ -138,41 +156,42 @@ void fetchAhead(int z) {
 
 /// Sets the columns, the first of which may be outside, and fetches what the first row needs.
 void begin(int first_column, int first_row) {
+  counts = ivec2(int(grid_nx), int(grid_nz));
+  for (int c = 0; c < WIDTH; ++c) column[c] = around(first_column + c, counts.x);
 #if FINEST
-  side_count = int(sim.wave_n);
-#else
-  side_count = int(sqrt(float(textureSize(right_side))) + 0.5);
+  wave_counts = waveCounts();
+  for (int c = 0; c < WIDTH; ++c) level_column[c] = min(column[c], wave_counts.x - 1);
+  level_column[WIDTH] = min(wrapped(column[WIDTH - 1] + 1, counts.x), wave_counts.x - 1);
 #endif
-  for (int c = 0; c < WIDTH; ++c) column[c] = wrapped(first_column + c, side_count);
 #if FLAT
   flat_stiffness = texelFetch(coefficients, 0);
   for (int c = 0; c < WIDTH; ++c) {
 #if WAVE_PERIODIC_X
     open_x[c] = 1.0;
 #else
-    open_x[c] = column[c] == side_count - 1 ? 0.0 : 1.0;
+    open_x[c] = column[c] == counts.x - 1 ? 0.0 : 1.0;
 #endif
   }
 #if FINEST
   flat_root_c = texelFetch(coefficients, 1);
 #else
-  flat_spread = texelFetch(coefficients, 1).xy;
+  flat_spread = texelFetch(coefficients, 1);
 #endif
 #endif
-  fetchAhead(wrapped(first_row, side_count));
+  fetchAhead(around(first_row, counts.y));
 }
 
 /// The row z, inside the grid; rows are fetched in order.
 Row fetchRow(int z) {
   Row row;
-  const int first = side_count * z;
+  const int first = counts.x * z;
 #if FINEST
   int level[WIDTH + 1] = level_ahead;
 #endif
 #if !FLAT
   uvec4 here[WIDTH + 1] = coefficients_ahead;
 #endif
-  fetchAhead(wrapped(z + 1, side_count));
+  fetchAhead(wrapped(z + 1, counts.y));
   for (int c = 0; c < WIDTH; ++c) {
 #if FINEST
     const vec2 slope = vec2(level[c + 1] - level[c], level_ahead[c] - level[c]);
@@ -188,7 +207,7 @@ Row fetchRow(int z) {
 #if WAVE_PERIODIC_Z
     const float open_z = 1.0;
 #else
-    const float open_z = z == side_count - 1 ? 0.0 : 1.0;
+    const float open_z = z == counts.y - 1 ? 0.0 : 1.0;
 #endif
     const vec4 weight = DISPERSION_SWEEP_WEIGHT / (flat_stiffness.xxyy + 2.0 * flat_stiffness.zwzw);
     row.weight[c] = weight * vec2(open_x[c], open_z).xxyy;
@@ -198,7 +217,7 @@ Row fetchRow(int z) {
     row.weight[c] = mix(vec4(0.0), DISPERSION_SWEEP_WEIGHT / diagonal, greaterThan(stiff.xxyy, vec4(0.0)));
     row.stiff[c] = stiff;
 #if !FINEST
-    row.spread[c] = unpacked(here[c].z);
+    row.spread[c] = halves(here[c].zw);
 #endif
 #endif
   }
@@ -215,7 +234,7 @@ struct Weights {
 
 Weights weightsAt(int c, bool is_odd_x, int z) {
 #if !FLAT
-  const uvec4 words = texelFetch(weights, column[c] + side_count * z);
+  const uvec4 words = texelFetch(weights, column[c] + counts.x * z);
   return Weights(halves(words.xy), halves(words.zw));
 #else
   return Weights(is_odd_x ? vec4(1.0, 0.0, 0.0, 0.0) : vec4(0.5, 0.5, 0.0, 0.0),
@@ -237,7 +256,7 @@ void takeRow(int margin, inout Swept last, Row last_row, Row row, vec4 faces[WID
     pressed[c] = stiffnessOf(row, c).zw * (faces[c].xy - faces[c - 1].xy + faces[c].zw - last.faces[c].zw);
 #else
     const vec4 across = faces[c] - vec4(faces[c - 1].xy, last.faces[c].zw);
-    pressed[c] = (stiffnessOf(row, c).zw * (across.xy + across.zw)).xyxy - spreadOf(row, c).xyxy * across;
+    pressed[c] = (stiffnessOf(row, c).zw * (across.xy + across.zw)).xyxy - spreadOf(row, c) * across;
 #endif
   }
   for (int c = margin + 1; c < WIDTH - margin - 1; ++c)

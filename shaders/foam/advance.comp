@@ -1,8 +1,9 @@
 // White water on the surface, once per tick: carried by the water, fading at a rate per source, produced by breakers,
 // wakes and landings.
-// Reads FOAM_BEFORE [(n/2)^2: breaking, wake, landing, 0], SURFACE_FLOW, BREAKING, BOATS, LANDED. Writes FOAM_FIELD; clears LANDED.
+// Reads FOAM_BEFORE [foamCounts(): breaking, wake, landing, 0], SURFACE_FLOW, BREAKING, BOATS, LANDED. Writes FOAM_FIELD; clears LANDED.
 // Equation: semi-Lagrangian transport, f(x, t + dt) = f(x - u dt, t) exp(-dt/lifetime) + source; each share of white is at most 1.
 #include "shared/groups.h"
+#include "foam/foam_cell.glsl"
 #include "wave/wave_cell.glsl"
 #if HULLS
 #include "bodies/boat.glsl"
@@ -24,8 +25,8 @@ const float kBreakingGain_per_s = 3.0;
 const float kLandingGain = 0.06;
 const float kWakeGain_per_s = 5.0;
 
-vec4 before(ivec2 cell, int n) {
-  return texelFetch(foam_before, waveNeighbourX(cell.x, n) + n * waveNeighbourZ(cell.y, n));
+vec4 before(ivec2 cell, ivec2 n) {
+  return texelFetch(foam_before, waveNeighbourX(cell.x, n.x) + n.x * waveNeighbourZ(cell.y, n.y));
 }
 
 #if HULLS
@@ -50,14 +51,17 @@ float wakeAt(vec2 p) {
 #endif
 
 void main() {
-  const int n = int(sim.wave_n) / 2;
+  const ivec2 wave_n = waveCounts();
+  const ivec2 n = foamCounts(wave_n);
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int wave_row = 2 * cell.x + int(sim.wave_n) * 2 * cell.y;
-  const float cell_m = 2.0 * sim.wave_cell_m;
+  if (any(greaterThanEqual(cell, n))) return;
+  const ivec2 wave_cell = firstWaveCellOf(cell, wave_n);
+  const int wave_row = wave_cell.x + wave_n.x * wave_cell.y;
+  const vec2 cell_m = vec2(wave_n) / vec2(n) * sim.wave_cell_m;
 
   const vec2 flow_mps = texelFetch(flow_texels, wave_row).xy;
-  const vec2 from = vec2(cell) - clamp(flow_mps * sim.tick_s / cell_m, vec2(-2.0), vec2(2.0));
+  const vec2 most = vec2(min(ivec2(2), n - 1));  // no further than narrow water has cells
+  const vec2 from = vec2(cell) - clamp(flow_mps * sim.tick_s / cell_m, -most, most);
   const vec2 c = floor(from);
   const vec2 t = from - c;
   const ivec2 k = ivec2(c);
@@ -65,17 +69,18 @@ void main() {
                mix(before(k + ivec2(0, 1), n), before(k + ivec2(1, 1), n), t.x), t.y);
   f *= vec4(sim.breaking_foam_keep_ratio, sim.wake_foam_keep_ratio, sim.landing_foam_keep_ratio, 0.0);
 
-  const int below = int(sim.wave_n);
-  const float intensity = max(max(texelFetch(breaking, wave_row).y, texelFetch(breaking, wave_row + 1).y),
-                              max(texelFetch(breaking, wave_row + below).y, texelFetch(breaking, wave_row + below + 1).y));
+  const int right = wave_cell.x + 1 < wave_n.x ? 1 : 0;
+  const int below = wave_cell.y + 1 < wave_n.y ? wave_n.x : 0;
+  const float intensity = max(max(texelFetch(breaking, wave_row).y, texelFetch(breaking, wave_row + right).y),
+                              max(texelFetch(breaking, wave_row + below).y, texelFetch(breaking, wave_row + below + right).y));
   f.x += kBreakingGain_per_s * sim.tick_s * intensity;
 #if HULLS
-  const vec2 p = (vec2(cell) + 0.5) * cell_m - 0.5 * sim.wave_side_m;
+  const vec2 p = (vec2(cell) + 0.5) * cell_m - waveHalf_m();
   f.y += kWakeGain_per_s * sim.tick_s * wakeAt(p);
 #endif
 #if LANDINGS
-  f.z += kLandingGain * float(landed[cell.x + n * cell.y]);
-  landed[cell.x + n * cell.y] = 0u;
+  f.z += kLandingGain * float(landed[cell.x + n.x * cell.y]);
+  landed[cell.x + n.x * cell.y] = 0u;
 #endif
-  foam[cell.x + n * cell.y] = min(f, vec4(1.0));
+  foam[cell.x + n.x * cell.y] = min(f, vec4(1.0));
 }

@@ -14,20 +14,20 @@ layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 /// Inputs of the lookups, in registers.
 struct Floor {
   float band_m;
-  int n;
+  ivec2 n;
   float inverse_cell_pm;
   float cell_m;
-  float half_side_m;
+  vec2 half_m;
   float lead_s;
 };
 
 Floor loadFloor() {
   Floor f;
   f.band_m = sim.band_m;
-  f.n = int(sim.wave_n);
+  f.n = waveCounts();
   f.cell_m = sim.wave_cell_m;
   f.inverse_cell_pm = 1.0 / max(sim.wave_cell_m, 1e-9);
-  f.half_side_m = 0.5 * sim.wave_side_m;
+  f.half_m = waveHalf_m();
   f.lead_s = sim.surface_lead_s;
   return f;
 }
@@ -36,23 +36,23 @@ Floor loadFloor() {
 /// (elevation, d eta/dt, d eta/dx, d eta/dz) of the nearest wave cell, with the elevation extrapolated to (x, z) along
 /// the gradient: one fetch, second order in the cell size like the bilinear sample.
 vec4 surfaceNear(Floor f, vec2 xz) {
-  const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm;
+  const vec2 u = (xz + f.half_m) * f.inverse_cell_pm;
   const vec2 c = floor(u);
-  const ivec2 cell = ivec2(waveNeighbourX(int(c.x), f.n), waveNeighbourZ(int(c.y), f.n));
-  vec4 s = texelFetch(surface_texels, cell.x + f.n * cell.y);
+  const ivec2 cell = ivec2(waveNeighbourX(int(c.x), f.n.x), waveNeighbourZ(int(c.y), f.n.y));
+  vec4 s = texelFetch(surface_texels, cell.x + f.n.x * cell.y);
   s.x += dot(s.zw, (u - c - 0.5) * f.cell_m) + f.lead_s * s.y;
   return s;
 }
 
 /// The same four numbers and the flow, bilinear between cell centres.
 vec4 surfaceAt(Floor f, vec2 xz, out vec2 flow_mps) {
-  const vec2 u = (xz + f.half_side_m) * f.inverse_cell_pm - 0.5;
+  const vec2 u = (xz + f.half_m) * f.inverse_cell_pm - 0.5;
   const vec2 c = floor(u);
   const vec2 t = u - c;
-  const int x0 = waveNeighbourX(int(c.x), f.n);
-  const int x1 = waveNeighbourX(int(c.x) + 1, f.n);
-  const int z0 = f.n * waveNeighbourZ(int(c.y), f.n);
-  const int z1 = f.n * waveNeighbourZ(int(c.y) + 1, f.n);
+  const int x0 = waveNeighbourX(int(c.x), f.n.x);
+  const int x1 = waveNeighbourX(int(c.x) + 1, f.n.x);
+  const int z0 = f.n.x * waveNeighbourZ(int(c.y), f.n.y);
+  const int z1 = f.n.x * waveNeighbourZ(int(c.y) + 1, f.n.y);
   const vec2 f0 = mix(texelFetch(flow_texels, x0 + z0).xy, texelFetch(flow_texels, x1 + z0).xy, t.x);
   const vec2 f1 = mix(texelFetch(flow_texels, x0 + z1).xy, texelFetch(flow_texels, x1 + z1).xy, t.x);
   flow_mps = mix(f0, f1, t.y);

@@ -29,7 +29,7 @@
 #define CELL_MEMBER 10
 #define BLOCK_TOTAL 11
 
-// Wave, n x n cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance
+// Wave, nx x nz cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance
 // of those faces [m]; loss rates in absorbing layers and on beaches [1/s] with the still depth of the cell [m]
 // (sim_setup/basin.h); water that left through absorbing sides [units: low 24 bits, the rest].
 #define FLOW 12

@@ -25,11 +25,12 @@
 #define DISPERSION_CELL_SHARE 0.4
 // Weight of the damped Jacobi sweeps. With more than 1/2 the shortest waves would get a negative F, and grow.
 #define DISPERSION_SWEEP_WEIGHT 0.5
-// The dispersion's small grids, in one group: from this many cells per side down, or from the coarsest grid, which has at
-// most DISPERSION_BOTTOM_SIDE_MAX.
+// The dispersion's small grids, in one group: from one with as many cells as a square of this side down, or from the coarsest
+// grid, which has fewer than a square of DISPERSION_BOTTOM_SIDE_MAX.
 #define DISPERSION_BOTTOM_GROUP 64
 #define DISPERSION_BOTTOM_SIDE 16
 #define DISPERSION_BOTTOM_SIDE_MAX 32
+#define DISPERSION_BOTTOM_GRIDS_MAX 16
 // Sweeps that solve the coarsest grid.
 #define DISPERSION_COARSEST_SWEEPS 12
 // Groups along x that every OpenGL 4.5 device can dispatch at once. Passes over more cells loop.

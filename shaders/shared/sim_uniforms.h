@@ -78,9 +78,11 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // Position-based solver: added to a constraint's squared gradient, so that lone particles do not jump.
   float constraint_softness_pm2;
 
-  // Wave; n x n cells, x fastest.
-  uint wave_n;
-  float wave_side_m;
+  // Wave: wave_nx x wave_nz square cells, x fastest. Without a wave, the length and width are the particles' domain.
+  uint wave_nx;
+  uint wave_nz;
+  float wave_length_m;          // along x
+  float wave_width_m;           // along z
   float wave_cell_m;
   float wave_dt_s;              // wave substep
   float wave_depth_m;           // still depth away from beaches
@@ -101,8 +103,6 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // (sim_setup/derive.cpp).
   uint candidates_max_count;
   uint unused_0;                // std140 rounds the block up to a multiple of 16 bytes
-  uint unused_1;
-  uint unused_2;
 #ifdef __cplusplus
 };
 static_assert(sizeof(SimUniforms) == 68 * 4, "scalars of four bytes only: std140 and C++ must agree");

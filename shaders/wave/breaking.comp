@@ -41,10 +41,10 @@ vec2 crownAt(vec2 p) {
 float ageAt(int x, int row) { return texelFetch(breaking_before, x + row).x; }
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int row = n * cell.y;
+  if (any(greaterThanEqual(cell, n))) return;
+  const int row = n.x * cell.y;
   const int i = cell.x + row;
   const float rate_mps = smoothRate(cell, n);
 #if VARIED
@@ -58,9 +58,9 @@ void main() {
   // There is no breaking below the lowest threshold or on dry ground.
   if (rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
     // Distance that a crest travels in a tick.
-    const int hop = max(int(ceil(speed_mps * sim.tick_s / sim.wave_cell_m - 0.2)), 1);
-    const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - hop, n), row), ageAt(waveNeighbourX(cell.x + hop, n), row))),
-                            max(ageAt(cell.x, n * waveNeighbourZ(cell.y - hop, n)), ageAt(cell.x, n * waveNeighbourZ(cell.y + hop, n))));
+    const ivec2 hop = min(ivec2(max(int(ceil(speed_mps * sim.tick_s / sim.wave_cell_m - 0.2)), 1)), n);
+    const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - hop.x, n.x), row), ageAt(waveNeighbourX(cell.x + hop.x, n.x), row))),
+                            max(ageAt(cell.x, n.x * waveNeighbourZ(cell.y - hop.y, n.y)), ageAt(cell.x, n.x * waveNeighbourZ(cell.y + hop.y, n.y))));
     const float relaxed = age_s * sqrt(sim.gravity_mps2 / depth_m) / 5.0;
     // An event ends after LONGEST_EVENT relaxation times: its front has passed by then, and only small waves are left.
     const float share = age_s > 0.0 && relaxed < LONGEST_EVENT ? min(relaxed, 1.0) : 0.0;
@@ -72,7 +72,7 @@ void main() {
   state.y = max(state.y, clamp(crown_mps / speed_mps, 0.0, 1.0));
   breaking[i] = state;
 #if POOL_PARTICLES
-  if (emits(cell, n, tick, state.y, max(rate_mps, crown_mps)) && canEmit(cell, n)) {
+  if (emits(cell, n.x, tick, state.y, max(rate_mps, crown_mps)) && canEmit(cell, n)) {
     const uint slot = atomicAdd(pool[POOL_WANTED], 1u);
     if (slot < sim.pool_capacity_count) emitter[slot] = uint(i);
   }

@@ -1,5 +1,5 @@
 // Second half of a wave step: water moves through the faces, in whole units.
-// Reads TRANSFER [n x n, units], BED. Updates ELEVATION [n x n, units] and, in basins with an absorbing side, OUTFLOW
+// Reads TRANSFER [nx x nz, units], BED. Updates ELEVATION [nx x nz, units] and, in basins with an absorbing side, OUTFLOW
 // (units that have left through this cell since the start: low 24 bits, the rest). Lowers LIMIT_ARGS for the next step.
 // Equation: eta_t = -div q - sigma eta. sigma is not 0 only in the layers of absorbing sides. In a sponge the flow has the
 // same rate, so that plane waves along its normal enter it without reflection. Like the flow's loss, the loss is centred in
@@ -12,7 +12,7 @@
 // SEA: sigma acts on eta - eta_in, eta_in being the sea that comes in.
 // MATCHED: the layer is a PML (docs/absorption.md). The elevation has two parts, by the faces that the water came through,
 // each with the loss rate of its axis: eta_x_t = -dq_x/dx - sigma_x eta_x, eta_z_t = -dq_z/dz - sigma_z eta_z. Updates
-// ELEVATION_X [n x n, units], the part of x, inside the layer; that of z is the rest.
+// ELEVATION_X [nx x nz, units], the part of x, inside the layer; that of z is the rest.
 // Invariant: the sum of ELEVATION and OUTFLOW over the domain does not change by a single unit; no cell loses more than it holds.
 #include "shared/groups.h"
 #include "wave/water_column.glsl"
@@ -38,12 +38,12 @@ float lossOf(float level, int gain, float b) { return round((2.0 * level + float
 #endif
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int left = wrapped(cell.x - 1, n);
-  const int row = n * cell.y;
-  const int last_row = n * wrapped(cell.y - 1, n);
+  if (any(greaterThanEqual(cell, n))) return;
+  const int left = wrapped(cell.x - 1, n.x);
+  const int row = n.x * cell.y;
+  const int last_row = n.x * wrapped(cell.y - 1, n.y);
   const int i = cell.x + row;
   if (i == 0) limit_args[0] = 0u;
 

@@ -1,6 +1,6 @@
 // Crests displace water and set it in motion, so that they travel in one direction (d'Alembert; breaking wave: thesis
 // 3.6.4).
-// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units] for this step, and to FLOW [m^2/s] for
+// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [nx x nz, units] for this step, and to FLOW [m^2/s] for
 // the next step, half a step earlier as the leapfrog needs it; raises LIMIT_ARGS as wave/momentum.comp does.
 // Invariant: a face's transfer is computed by one invocation; nothing passes a closed face.
 #include "shared/groups.h"
@@ -21,11 +21,11 @@ void main() {
     ends[k].zw = crestEnds(e);
   }
   barrier();
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
+  if (any(greaterThanEqual(cell, n))) return;
   const float cell_m = sim.wave_cell_m;
-  const int i = cell.x + n * cell.y;
+  const int i = cell.x + n.x * cell.y;
   const vec2 p = waveCellCentre(cell);
   const Flow open = conductanceOf(cell, n);
   const ivec2 next = nextCells(cell, n);

@@ -10,8 +10,8 @@ layout(std430, binding = TRANSFER) restrict buffer Transfer { int transfer[]; };
 layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
 
 /// The cells toward +x and +z of cell i.
-ivec2 nextCells(ivec2 cell, int n) {
-  return ivec2(wrapped(cell.x + 1, n) + n * cell.y, cell.x + n * wrapped(cell.y + 1, n));
+ivec2 nextCells(ivec2 cell, ivec2 n) {
+  return ivec2(wrapped(cell.x + 1, n.x) + n.x * cell.y, cell.x + n.x * wrapped(cell.y + 1, n.y));
 }
 
 #if DISPERSE
@@ -23,9 +23,9 @@ float roomAt(int i) {
 #endif
 
 /// Shares of what effects move through the faces that a cell owns: in xy toward +x and +z, in zw the other way.
-vec4 effectShares(ivec2 cell, ivec2 next, int n) {
+vec4 effectShares(ivec2 cell, ivec2 next, ivec2 n) {
 #if DISPERSE
-  const float here = roomAt(cell.x + n * cell.y);
+  const float here = roomAt(cell.x + n.x * cell.y);
   return taperOf(cell, n).xyxy * vec4(roomAt(next.x), roomAt(next.y), here, here);
 #else
   return vec4(1.0);

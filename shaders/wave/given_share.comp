@@ -1,6 +1,6 @@
 // Before the water moves: computes the share of its outflow that each cell can give. Runs only in steps in which some
 // transfer is large compared with the water of the giving cell (LIMIT_ARGS).
-// Reads ELEVATION, TRANSFER [n x n, units], BED. Writes GIVEN_SHARE [n x n, 0..1].
+// Reads ELEVATION, TRANSFER [nx x nz, units], BED. Writes GIVEN_SHARE [nx x nz, 0..1].
 // Equation: share = held / outflow if the outflow through all faces of a cell exceeds the water that it holds,
 // otherwise 1: the limit of a donor cell as in flux-corrected transport (Zalesak 1979). Inflow during the same step
 // does not count.
@@ -23,12 +23,12 @@ float leaving(int outward_units) { return max(float(outward_units), 0.0); }
 float leavingBackward(int inward_units) { return max(-float(inward_units), 0.0); }
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int left = wrapped(cell.x - 1, n);
-  const int row = n * cell.y;
-  const int last_row = n * wrapped(cell.y - 1, n);
+  if (any(greaterThanEqual(cell, n))) return;
+  const int left = wrapped(cell.x - 1, n.x);
+  const int row = n.x * cell.y;
+  const int last_row = n.x * wrapped(cell.y - 1, n.y);
   const int i = cell.x + row;
 
   const ivec4 own = texelFetch(transfer, i);

@@ -1,5 +1,5 @@
 // The sea that comes in from outside, in the layers of absorbing sides.
-// Reads SeaUniforms, SEA_BLOCKS, SEA_COLUMNS, SEA_ROWS, BASIN, BED. Writes INCIDENT_SEA [n x n: part of x in the
+// Reads SeaUniforms, SEA_BLOCKS, SEA_COLUMNS, SEA_ROWS, BASIN, BED. Writes INCIDENT_SEA [nx x nz: part of x in the
 // elevation, flow toward +x and +z, part of z in the elevation; units and m^2/s] in a share of the blocks of those layers; each block is valid for several steps.
 // Equation: the sum of A cos(kx x + kz z - omega t + phase) over the plane waves of the sea (docs/wind_sea.md), as the real
 // part of strength(t) * column(x) * row(z). A strip of rows is summed at a time: its first row is read, and each
@@ -27,10 +27,13 @@ void main() {
   const uint place = sea_first_block + sea_block_stride * gl_GlobalInvocationID.y;
   if (place >= sea_block_count) return;
   const uvec4 block = texelFetch(sea_blocks, int(place));
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const int x = int(block.x + gl_LocalInvocationID.x);
+  if (x >= n.x) return;
   const int first_strip = int(block.y) / SEA_STRIP;
-  for (int strip = first_strip; strip < first_strip + SEA_BLOCK / SEA_STRIP; ++strip) {
+  const int strip_count = (n.y + SEA_STRIP - 1) / SEA_STRIP;
+  const int end_strip = min(first_strip + SEA_BLOCK / SEA_STRIP, strip_count);
+  for (int strip = first_strip; strip < end_strip; ++strip) {
     vec4 sums[SEA_STRIP];    // elevation, flow toward +x and +z, part of x in the elevation
     vec2 before[SEA_STRIP];  // flow through the faces toward -x and -z, at those edges only
     for (int k = 0; k < SEA_STRIP; ++k) {
@@ -42,8 +45,8 @@ void main() {
     for (uint w = 0u; w < sea_wave_count; ++w) {
       const SeaWaveUniform each = sea_waves[w];
       if ((each.sides & block.z) == 0u) continue;
-      const vec2 column = texelFetch(sea_columns, int(w) * n + x).xy;
-      vec2 row = texelFetch(sea_rows, int(w) * (n / SEA_STRIP) + strip).xy;
+      const vec2 column = texelFetch(sea_columns, int(w) * n.x + x).xy;
+      vec2 row = texelFetch(sea_rows, int(w) * strip_count + strip).xy;
       const vec2 next = vec2(each.next_re, each.next_im);
       const vec4 strength_re = vec4(each.elevation_re, each.flow_x_re, each.flow_z_re, each.share_of_x * each.elevation_re);
       const vec4 strength_im = vec4(each.elevation_im, each.flow_x_im, each.flow_z_im, each.share_of_x * each.elevation_im);
@@ -57,9 +60,9 @@ void main() {
     for (uint w = 0u; w < edge_wave_count; ++w) {
       const SeaWaveUniform each = sea_waves[w];
       if ((each.sides & block.z) == 0u) continue;
-      const vec2 column = texelFetch(sea_columns, int(w) * n + x).xy;
+      const vec2 column = texelFetch(sea_columns, int(w) * n.x + x).xy;
       const vec2 next = vec2(each.next_re, each.next_im);
-      vec2 row = texelFetch(sea_rows, int(w) * (n / SEA_STRIP) + strip).xy;
+      vec2 row = texelFetch(sea_rows, int(w) * strip_count + strip).xy;
       const vec2 flow_x = product(vec2(each.flow_x_re, each.flow_x_im), product(column, vec2(each.before_re, each.before_im)));
       const vec2 flow_z = product(vec2(each.flow_z_re, each.flow_z_im), product(column, vec2(next.x, -next.y))) / dot(next, next);
       for (int k = 0; k < SEA_STRIP; ++k) {
@@ -69,12 +72,13 @@ void main() {
     }
     for (int k = 0; k < SEA_STRIP; ++k) {
       const int z = SEA_STRIP * strip + k;
-      const int i = x + n * z;
+      if (z >= n.y) break;
+      const int i = x + n.x * z;
       vec2 inflow_m2ps = vec2(0.0);
       if (x == 0 && (block.z & SEA_MINUS_X) != 0u) inflow_m2ps.x += before[k].x;
       if (z == 0 && (block.z & SEA_MINUS_Z) != 0u) inflow_m2ps.y += before[k].y;
-      if (x == n - 1 && (block.z & SEA_PLUS_X) != 0u) inflow_m2ps.x -= sums[k].y;
-      if (z == n - 1 && (block.z & SEA_PLUS_Z) != 0u) inflow_m2ps.y -= sums[k].z;
+      if (x == n.x - 1 && (block.z & SEA_PLUS_X) != 0u) inflow_m2ps.x -= sums[k].y;
+      if (z == n.y - 1 && (block.z & SEA_PLUS_Z) != 0u) inflow_m2ps.y -= sums[k].z;
       const vec4 ground = texelFetch(bed, i);
 #if MATCHED
       const vec2 loss_per_s = ground.yw;

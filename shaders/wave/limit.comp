@@ -1,6 +1,6 @@
 // Before the water moves: multiplies the transfer through each face by the share of the giving cell
 // (wave/given_share.comp, in the same steps).
-// Reads GIVEN_SHARE. Updates TRANSFER [n x n, units], and FLOW [m^2/s] by the same share: water that does not move has
+// Reads GIVEN_SHARE. Updates TRANSFER [nx x nz, units], and FLOW [m^2/s] by the same share: water that does not move has
 // no momentum.
 // Invariant: only the giving cell limits a face; if no cell lacks water, no bit changes.
 #include "shared/groups.h"
@@ -15,12 +15,12 @@ layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
 float shareOf(int transfer_units, float share_here, float share_there) { return transfer_units > 0 ? share_here : share_there; }
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int right = wrapped(cell.x + 1, n);
-  const int row = n * cell.y;
-  const int next_row = n * wrapped(cell.y + 1, n);
+  if (any(greaterThanEqual(cell, n))) return;
+  const int right = wrapped(cell.x + 1, n.x);
+  const int row = n.x * cell.y;
+  const int next_row = n.x * wrapped(cell.y + 1, n.y);
   const int i = cell.x + row;
 
   const float here = texelFetch(given_share, i).x;

@@ -1,6 +1,6 @@
 // First half of a wave step: the slope of the surface accelerates the flow through each face.
-// Reads ELEVATION [n x n, units], PRESSURE_HEAD (boats, falling water), BASIN, BED, BREAKING if the scene has them.
-// Updates FLOW [n x n, m^2/s per metre of face]. Writes TRANSFER [n x n, units], which wave/continuity.comp moves.
+// Reads ELEVATION [nx x nz, units], PRESSURE_HEAD (boats, falling water), BASIN, BED, BREAKING if the scene has them.
+// Updates FLOW [nx x nz, m^2/s per metre of face]. Writes TRANSFER [nx x nz, units], which wave/continuity.comp moves.
 // Raises LIMIT_ARGS if a transfer could empty a cell, so that wave/given_share.comp runs over all cells.
 // Equation: q_t = -g d grad(eta + head) - (kappa + sigma) q, centred in time. Together with wave/continuity.comp this
 // is the leapfrog of eta_tt + kappa eta_t = div(g d grad eta) (thesis 3.21), with damping of the velocity term alone:
@@ -90,12 +90,12 @@ float steepFactor(int a, int b) {
 #endif
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (cell.x >= n || cell.y >= n) return;
-  const int right = wrapped(cell.x + 1, n);
-  const int row = n * cell.y;
-  const int next_row = n * wrapped(cell.y + 1, n);
+  if (any(greaterThanEqual(cell, n))) return;
+  const int right = wrapped(cell.x + 1, n.x);
+  const int row = n.x * cell.y;
+  const int next_row = n.x * wrapped(cell.y + 1, n.y);
   const int i = cell.x + row;
 
   const int i_x = right + row;

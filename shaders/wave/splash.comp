@@ -2,7 +2,7 @@
 // cell in the square that a splash can reach, z the index of the splash. Many or large ones (every_cell): (x, y) is the
 // cell of the domain, and the invocation sums all splashes before it adds, because reading the water column and the
 // atomic addition cost more than the splash itself.
-// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [n x n, units]; raises LIMIT_ARGS as wave/momentum.comp
+// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [nx x nz, units]; raises LIMIT_ARGS as wave/momentum.comp
 // does.
 // Invariant: both ways add the same integers; nothing passes a closed face.
 #include "shared/groups.h"
@@ -12,29 +12,29 @@
 layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
 
 /// Turns a place in the square of a splash into its cell. Returns false outside the square and outside the domain.
-bool findCell(EventUniform e, int n, inout ivec2 cell) {
+bool findCell(EventUniform e, ivec2 n, inout ivec2 cell) {
   const float cell_m = sim.wave_cell_m;
   // Number of cells of the square: as many as the splash needs; along a periodic axis at most the whole domain once.
   ivec2 across = ivec2(2 * int(ceil(SPLASH_REACH * e.radius_m / cell_m)) + 4);
 #if WAVE_PERIODIC_X
-  across.x = min(across.x, n);
+  across.x = min(across.x, n.x);
 #endif
 #if WAVE_PERIODIC_Z
-  across.y = min(across.y, n);
+  across.y = min(across.y, n.y);
 #endif
   if (any(greaterThanEqual(cell, across))) return false;
-  cell += ivec2(floor((vec2(e.x_m, e.z_m) + 0.5 * sim.wave_side_m) / cell_m)) - across / 2;
+  cell += ivec2(floor((vec2(e.x_m, e.z_m) + waveHalf_m()) / cell_m)) - across / 2;
 #if WAVE_PERIODIC_X
-  cell.x = wrapped(cell.x, n);
+  cell.x = wrapped(cell.x, n.x);
 #endif
 #if WAVE_PERIODIC_Z
-  cell.y = wrapped(cell.y, n);
+  cell.y = wrapped(cell.y, n.y);
 #endif
-  return all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, ivec2(n)));
+  return all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, n));
 }
 
 void main() {
-  const int n = int(sim.wave_n);
+  const ivec2 n = waveCounts();
   const float cell_m = sim.wave_cell_m;
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   uint first = 0u;
@@ -43,7 +43,7 @@ void main() {
     first = gl_GlobalInvocationID.z;
     end = first + 1u;
     if (!findCell(splashes[first], n, cell)) return;
-  } else if (any(greaterThanEqual(cell, ivec2(n)))) {
+  } else if (any(greaterThanEqual(cell, n))) {
     return;
   }
   const vec2 p = waveCellCentre(cell);
@@ -62,7 +62,7 @@ void main() {
   }
   if (moved == ivec2(0)) return;
   const Flow open = conductanceOf(cell, n);
-  const int i = cell.x + n * cell.y;
+  const int i = cell.x + n.x * cell.y;
   if (open.x > 0.0) addTransfer(i, next.x, 0u, moved.x);
   if (open.y > 0.0) addTransfer(i, next.y, 1u, moved.y);
 }

@@ -40,6 +40,6 @@ bool mayEmpty(int transfer_units, uint held_here, uint held_there) {
 }
 
 /// Groups of the passes that limit transfers, for LIMIT_ARGS.
-uint limitGroups() { return (sim.wave_n + uint(WAVE_GROUP_X) - 1u) / uint(WAVE_GROUP_X); }
+uint limitGroups() { return (sim.wave_nx + uint(WAVE_GROUP_X) - 1u) / uint(WAVE_GROUP_X); }
 
 #endif

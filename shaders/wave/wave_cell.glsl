@@ -5,6 +5,13 @@
 
 #include "shared/sim_uniforms.h"
 
+/// Cells along x and z.
+ivec2 waveCounts() { return ivec2(int(sim.wave_nx), int(sim.wave_nz)); }
+
+/// Half the length and half the width of the water. [m]
+vec2 waveHalf_m() { return 0.5 * vec2(sim.wave_length_m, sim.wave_width_m); }
+
+/// Precondition: -n <= i < 2 n.
 int wrapped(int i, int n) {
   return i < 0 ? i + n : (i >= n ? i - n : i);
 }
@@ -27,17 +34,16 @@ int waveNeighbourZ(int i, int n) {
 
 /// Centre of a cell. [m]
 vec2 waveCellCentre(ivec2 cell) {
-  return (vec2(cell) + 0.5) * sim.wave_cell_m - 0.5 * sim.wave_side_m;
+  return (vec2(cell) + 0.5) * sim.wave_cell_m - waveHalf_m();
 }
 
 /// Shortest way across periodic sides; the plain difference otherwise. [m]
 vec2 acrossSides(vec2 d_m) {
-  const float side_m = sim.wave_side_m;
 #if WAVE_PERIODIC_X
-  d_m.x -= side_m * round(d_m.x / side_m);
+  d_m.x -= sim.wave_length_m * round(d_m.x / sim.wave_length_m);
 #endif
 #if WAVE_PERIODIC_Z
-  d_m.y -= side_m * round(d_m.y / side_m);
+  d_m.y -= sim.wave_width_m * round(d_m.y / sim.wave_width_m);
 #endif
   return d_m;
 }

@@ -24,19 +24,19 @@ layout(binding = BASIN) uniform samplerBuffer basin;
 #endif
 
 /// Conductance of the faces that a cell owns. [m]
-Flow conductanceOf(ivec2 cell, int n) {
+Flow conductanceOf(ivec2 cell, ivec2 n) {
 #if VARIED
-  return asFlow(texelFetch(basin, cell.x + n * cell.y));
+  return asFlow(texelFetch(basin, cell.x + n.x * cell.y));
 #else
 #if WAVE_PERIODIC_X
   const float open_x = 1.0;
 #else
-  const float open_x = cell.x < n - 1 ? 1.0 : 0.0;
+  const float open_x = cell.x < n.x - 1 ? 1.0 : 0.0;
 #endif
 #if WAVE_PERIODIC_Z
   const float open_z = 1.0;
 #else
-  const float open_z = cell.y < n - 1 ? 1.0 : 0.0;
+  const float open_z = cell.y < n.y - 1 ? 1.0 : 0.0;
 #endif
   return sim.wave_depth_m * FLOW_WEIGHTS * asFlow(vec4(open_x, open_z, open_x * open_z, open_x * open_z));
 #endif
@@ -46,16 +46,16 @@ Flow conductanceOf(ivec2 cell, int n) {
 /// Share of an effect that passes the faces toward +x and +z of a cell: falls to 0 over EFFECT_TAPER_CELLS before a closed
 /// face along the axis. The water that a wall holds back would stand in the cells beside it, and where short waves are
 /// slow it would stay there.
-vec2 taperOf(ivec2 cell, int n) {
+vec2 taperOf(ivec2 cell, ivec2 n) {
 #if VARIED
-  return texelFetch(basin, cell.x + n * cell.y).zw;
+  return texelFetch(basin, cell.x + n.x * cell.y).zw;
 #else
   vec2 share = vec2(1.0);
 #if !WAVE_PERIODIC_X
-  share.x = min(float(min(cell.x + 1, n - 1 - cell.x)) / float(EFFECT_TAPER_CELLS), 1.0);
+  share.x = min(float(min(cell.x + 1, n.x - 1 - cell.x)) / float(EFFECT_TAPER_CELLS), 1.0);
 #endif
 #if !WAVE_PERIODIC_Z
-  share.y = min(float(min(cell.y + 1, n - 1 - cell.y)) / float(EFFECT_TAPER_CELLS), 1.0);
+  share.y = min(float(min(cell.y + 1, n.y - 1 - cell.y)) / float(EFFECT_TAPER_CELLS), 1.0);
 #endif
   return share;
 #endif

@@ -83,8 +83,7 @@ std::vector<RecordedFrame> read(std::FILE* in) {
   RecordedFrame frame;
   while (std::fread(&frame.surface, sizeof frame.surface, 1, in) == 1 &&
          std::fread(&frame.particles, sizeof frame.particles, 1, in) == 1) {
-    const std::size_t n = frame.surface.resolution_count;
-    frame.surface_words.resize(n * n / 2);
+    frame.surface_words.resize((frame.surface.count.total() + 1) / 2);
     frame.particle_words.resize(3 * std::size_t{frame.particles.count});
     if (std::fread(frame.surface_words.data(), 4, frame.surface_words.size(), in) != frame.surface_words.size() ||
         std::fread(frame.particle_words.data(), 4, frame.particle_words.size(), in) != frame.particle_words.size())

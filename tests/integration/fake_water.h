@@ -49,13 +49,17 @@ inline core::FrameView fakeFrame(std::uint64_t tick, std::minstd_rand& random) {
   core::FrameView frame;
   frame.tick = tick;
   frame.time_s = static_cast<double>(tick) / 60;
-  frame.at(core::Level::kFull).surface = core::SurfaceView{kFakeResolutionCount, 8.0, kFakeQuantum_m, slot->surface};
-  frame.at(core::Level::kFull).foam = core::FoamView{kFakeResolutionCount, 8.0, slot->foam};
+  frame.at(core::Level::kFull).surface =
+      core::SurfaceView{{kFakeResolutionCount, kFakeResolutionCount}, 8.0, 8.0, kFakeQuantum_m, slot->surface};
+  frame.at(core::Level::kFull).foam =
+      core::FoamView{{kFakeResolutionCount, kFakeResolutionCount}, 8.0, 8.0, slot->foam};
   frame.reduced_counts.planes = 1;
   core::LevelView& coarse = frame.at(core::Level::kCoarse);
-  coarse.surface = core::SurfaceView{kFakeCoarseCount, 8.0, kFakeQuantum_m, slot->coarse};
-  coarse.foam =
-      core::FoamView{kFakeCoarseCount, 8.0, std::span(slot->foam).first(kFakeCoarseCount * kFakeCoarseCount / 4)};
+  coarse.surface = core::SurfaceView{{kFakeCoarseCount, kFakeCoarseCount}, 8.0, 8.0, kFakeQuantum_m, slot->coarse};
+  coarse.foam = core::FoamView{{kFakeCoarseCount, kFakeCoarseCount},
+                               8.0,
+                               8.0,
+                               std::span(slot->foam).first(kFakeCoarseCount * kFakeCoarseCount / 4)};
   core::ParticleView particles;
   particles.count = static_cast<std::uint32_t>(slot->particles.size() / 3);
   for (double& min : particles.min_m) min = -4.0;

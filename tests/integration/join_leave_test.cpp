@@ -49,7 +49,7 @@ std::string readFrames(ScriptedClient& client, v1::Packing packing, v1::Level le
       const float mark_m = static_cast<float>(markOf(frame.tick()) * kFakeQuantum_m);
       if (surface->elevation_m.at(0) != mark_m) return "samples of another tick";
       const bool is_coarse = frame.level() == v1::LEVEL_COARSE;
-      if (surface->resolution_count != (is_coarse ? kFakeCoarseCount : kFakeResolutionCount)) return "another level";
+      if (surface->count.x != (is_coarse ? kFakeCoarseCount : kFakeResolutionCount)) return "another level";
     } else if (frame.layer() == v1::LAYER_FOAM) {
       const auto foam = packed ? packed_foam.decode(frame) : codec::decodeFoam(frame);
       if (!foam) return foam.error().message;

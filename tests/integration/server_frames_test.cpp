@@ -48,8 +48,8 @@ TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValuesWithGrowingTicks) {
       surface_tick = frame.tick();
       const auto surface = codec::decodeSurface(frame);
       ASSERT_TRUE(surface) << surface.error().message;
-      EXPECT_EQ(surface->resolution_count, 32u);
-      EXPECT_EQ(surface->side_m, 8.0);
+      EXPECT_EQ(surface->count.x, 32u);
+      EXPECT_EQ(surface->length_m, 8.0);
       for (const float eta_m : surface->elevation_m) ASSERT_TRUE(std::isfinite(eta_m));
     } else {
       EXPECT_GT(frame.tick(), particle_tick);

@@ -51,7 +51,7 @@ TEST_F(LevelsOfAPool, EachClientGetsTheLevelThatItAskedFor) {
     EXPECT_EQ(surface->level(), expected);
     const auto samples = codec::decodeSurface(*surface);
     ASSERT_TRUE(samples) << samples.error().message;
-    resolution_count[level] = samples->resolution_count;
+    resolution_count[level] = samples->count.x;
     const auto particles = one.nextFrame(v1::LAYER_PARTICLES);
     ASSERT_TRUE(particles);
     EXPECT_EQ(particles->level(), expected);
@@ -85,7 +85,7 @@ TEST_F(LevelsOfAPool, PackedLevelsCanAllBeReadWhileOneMovesBetweenThem) {
         EXPECT_TRUE(frame->keyframe()) << "nothing to build on at another level";
       }
       is_first = false;
-      EXPECT_EQ(samples->resolution_count, level == v1::LEVEL_COARSE ? 128u : 256u);
+      EXPECT_EQ(samples->count.x, level == v1::LEVEL_COARSE ? 128u : 256u);
       ++frames_of_level;
     }
     const auto particles = one.nextFrame(v1::LAYER_PARTICLES);

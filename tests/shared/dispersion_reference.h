@@ -1,6 +1,7 @@
 // The dispersion's V-cycle in double precision, one grid and one face at a time as sim_setup/dispersion.h defines it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -20,21 +21,25 @@ class DispersionReference {
 
   [[nodiscard]] const Dispersion& dispersion() const { return dispersion_; }
 
-  /// Returns F grad(eta) at the x and the z face of each cell, for a level at each cell: [m] times the level's unit.
+  /// Returns F grad(eta) at the x and the z face of each cell of the wave, for a level at each: [m] times the level's
+  /// unit.
   [[nodiscard]] std::vector<std::array<double, 2>> apply(const std::vector<double>& level) const {
     const Faces phi = poles(level);
     std::vector<std::array<double, 2>> out(level.size());
     const DispersionLevel& finest = dispersion_.levels.front();
+    const CellCounts water = dispersion_.water;
     forEach(finest, [&](int x, int z, std::size_t i) {
-      const double slope[2] = {level[finest.index(x + 1, z)] - level[i], level[finest.index(x, z + 1)] - level[i]};
+      if (x >= static_cast<int>(water.x) || z >= static_cast<int>(water.z)) return;
+      const std::size_t cell = cellOf(x, z);
+      const std::array<double, 2> slope = slopeAt(level, x, z);
       for (std::size_t axis = 0; axis < 2; ++axis) {
         const double stiffness = finest.stiffness[i][axis];
         if (stiffness > 0.0) {
           const double depth_m = dispersion_.depth_m / stiffness;
-          out[i][axis] = shareAtOnce(depth_m / dispersion_.cell_m) * depth_m * slope[axis];
+          out[cell][axis] = shareAtOnce(depth_m / dispersion_.cell_m) * depth_m * slope[axis];
         }
         for (std::size_t j = 0; j < kPoleCount; ++j)
-          out[i][axis] += dispersion_.root_c[i][2 * axis + j] * phi[i][2 * axis + j];
+          out[cell][axis] += dispersion_.root_c[i][2 * axis + j] * phi[i][2 * axis + j];
       }
     });
     return out;
@@ -43,9 +48,9 @@ class DispersionReference {
   /// The terms of the sum before their last factor sqrt(c_j).
   [[nodiscard]] Faces poles(const std::vector<double>& level) const {
     const DispersionLevel& finest = dispersion_.levels.front();
-    Faces right(level.size());
+    Faces right(finest.stiffness.size());
     forEach(finest, [&](int x, int z, std::size_t i) {
-      const double slope[2] = {level[finest.index(x + 1, z)] - level[i], level[finest.index(x, z + 1)] - level[i]};
+      const std::array<double, 2> slope = slopeAt(level, x, z);
       for (std::size_t k = 0; k < 4; ++k) right[i][k] = dispersion_.root_c[i][k] * slope[k / 2];
     });
     return cycle(0, right);
@@ -54,10 +59,22 @@ class DispersionReference {
  private:
   template <typename Visit>
   static void forEach(const DispersionLevel& grid, const Visit& visit) {
-    const int n = static_cast<int>(grid.side_count);
-    for (int z = 0; z < n; ++z) {
-      for (int x = 0; x < n; ++x) visit(x, z, grid.index(x, z));
+    for (int z = 0; z < static_cast<int>(grid.count.z); ++z) {
+      for (int x = 0; x < static_cast<int>(grid.count.x); ++x) visit(x, z, grid.index(x, z));
     }
+  }
+
+  /// The cell of the wave; in place of dry cells of the storage, one that counts for nothing.
+  [[nodiscard]] std::size_t cellOf(int x, int z) const {
+    const CellCounts grid = dispersion_.levels.front().count;
+    const auto along = [](int i, std::uint32_t stored, std::uint32_t cells) {
+      return std::min(static_cast<std::uint32_t>(i) % stored, cells - 1);
+    };
+    return along(x, grid.x, dispersion_.water.x) + dispersion_.water.x * along(z, grid.z, dispersion_.water.z);
+  }
+  [[nodiscard]] std::array<double, 2> slopeAt(const std::vector<double>& level, int x, int z) const {
+    const double here = level[cellOf(x, z)];
+    return {level[cellOf(x + 1, z)] - here, level[cellOf(x, z + 1)] - here};
   }
 
   /// r - K phi
@@ -67,9 +84,9 @@ class DispersionReference {
       for (std::size_t j = 0; j < 2; ++j) {
         const double along_x = phi[i][j] - phi[grid.index(x - 1, z)][j];
         const double along_z = phi[i][2 + j] - phi[grid.index(x, z - 1)][2 + j];
-        const double spread = grid.spread.empty() ? 0.0 : grid.spread[i][j];
-        pressed[i][j] = grid.stiffness[i][2 + j] * (along_x + along_z) - spread * along_x;
-        pressed[i][2 + j] = grid.stiffness[i][2 + j] * (along_x + along_z) - spread * along_z;
+        const Four spread = grid.spread.empty() ? Four{} : grid.spread[i];
+        pressed[i][j] = grid.stiffness[i][2 + j] * (along_x + along_z) - spread[j] * along_x;
+        pressed[i][2 + j] = grid.stiffness[i][2 + j] * (along_x + along_z) - spread[2 + j] * along_z;
       }
     });
     Faces out(phi.size());

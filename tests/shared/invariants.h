@@ -80,8 +80,7 @@ inline bool allFinite(const std::vector<float>& values) {
 
 /// The number of values matches the header, and all are finite.
 inline bool isWhole(const codec::SurfaceSamples& surface) {
-  return surface.elevation_m.size() == std::size_t{surface.resolution_count} * surface.resolution_count &&
-         allFinite(surface.elevation_m);
+  return surface.elevation_m.size() == surface.count.total() && allFinite(surface.elevation_m);
 }
 inline bool isWhole(const codec::ParticleSamples& particles) {
   return particles.position_m.size() == std::size_t{3} * particles.count &&
@@ -90,7 +89,7 @@ inline bool isWhole(const codec::ParticleSamples& particles) {
          allFinite(particles.position_m) && allFinite(particles.velocity_mps);
 }
 inline bool isWhole(const codec::FoamSamples& foam) {
-  return foam.foam.size() == std::size_t{foam.resolution_count} * foam.resolution_count;
+  return foam.foam.size() == foam.count.total();
 }
 
 }  // namespace spindrift::test

@@ -45,7 +45,7 @@ void expectSane(const core::FrameView& frame, const v1::Scene& scene, double& ma
     ASSERT_LT(particles.min_m[axis], particles.max_m[axis]);
   }
   for (std::size_t i = 2; i < particles.words.size(); i += 3) ASSERT_EQ(particles.words[i] >> 24, 0u);
-  ASSERT_EQ(full.foam->words.size() * 4, std::size_t{full.foam->resolution_count} * full.foam->resolution_count);
+  ASSERT_EQ(full.foam->words.size() * 4, std::size_t{full.foam->count.x} * full.foam->count.x);
   ASSERT_LE(frame.bodies->count, scene.boats().capacity_count());
 }
 

@@ -41,14 +41,16 @@ std::size_t PlaneRow::takeParts(std::uint8_t* memory) {
   return parts.usedBytes();
 }
 
-std::size_t PlaneRow::bytesFor(std::size_t n) {
+std::size_t PlaneRow::bytesFor(std::size_t nx, std::size_t nz) {
   PlaneRow row;
-  row.layout_.n = n;
+  row.layout_.nx = nx;
+  row.layout_.nz = nz;
   return row.takeParts(nullptr);
 }
 
-void PlaneRow::place(std::uint8_t* memory, std::size_t n) {
-  layout_.n = n;
+void PlaneRow::place(std::uint8_t* memory, std::size_t nx, std::size_t nz) {
+  layout_.nx = nx;
+  layout_.nz = nz;
   std::memset(memory, 0, takeParts(memory));
   has_row_ = false;
 }
@@ -83,8 +85,8 @@ void PlaneRow::readPlane(ResidualReader& in, const History& history, const Surfa
   const std::size_t stride = layout_.stride(), sums_stride = sumsStrideOf(layout_);
   std::memset(classes_, 0, layout_.tilesCount());
   std::memset(plane + layout_.placeOf(-1), 0, stride * sizeof *plane);
-  for (std::size_t top = 0; top < layout_.n; top += kTile) {
-    readTiles(in, std::min(kTile, layout_.n - top));
+  for (std::size_t top = 0; top < layout_.nz; top += kTile) {
+    readTiles(in, std::min(kTile, layout_.nz - top));
     const std::size_t begin = layout_.placeOf(static_cast<std::ptrdiff_t>(top));
     for (std::size_t j = 0; j < kTile; ++j) {
       const std::size_t row = begin + j * stride;
@@ -94,7 +96,7 @@ void PlaneRow::readPlane(ResidualReader& in, const History& history, const Surfa
       else
         sumHistory({history.before + row, earlier + row, stride}, known, residuals_, j, layout_.tilesCount(), sums);
     }
-    predictBand(sums_ + kSumsLeft, sums_stride, known, top == 0, plane + begin, stride, layout_.n);
+    predictBand(sums_ + kSumsLeft, sums_stride, known, top == 0, plane + begin, stride, layout_.nx);
   }
   fillBorder(plane);
 }
@@ -102,7 +104,7 @@ void PlaneRow::readPlane(ResidualReader& in, const History& history, const Surfa
 void PlaneRow::readTiles(ResidualReader& in, std::size_t rows) {
   std::uint32_t left = 0;
   for (std::size_t tile = 0; tile < layout_.tilesCount(); ++tile) {
-    const std::size_t columns = std::min(kTile, layout_.n - tile * kTile);
+    const std::size_t columns = std::min(kTile, layout_.nx - tile * kTile);
     ResidualGroup& group = residuals_[tile];
     left = in.group(group, rows * columns, left, classes_[tile]);
     classes_[tile] = static_cast<std::uint8_t>(left);
@@ -114,16 +116,17 @@ void PlaneRow::readTiles(ResidualReader& in, std::size_t rows) {
 }
 
 void PlaneRow::fillBorder(std::int16_t* plane) const {
-  const auto last = static_cast<std::ptrdiff_t>(layout_.n) - 1;
+  const auto last_x = static_cast<std::ptrdiff_t>(layout_.nx) - 1;
+  const auto last = static_cast<std::ptrdiff_t>(layout_.nz) - 1;
   for (std::ptrdiff_t z = 0; z <= last; ++z) {
     std::int16_t* r = plane + layout_.placeOf(z);
     r[-1] = r[-2] = r[0];
-    r[last + 1] = r[last + 2] = r[last];
+    r[last_x + 1] = r[last_x + 2] = r[last_x];
   }
   const auto copyRow = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
     std::memcpy(plane + layout_.placeOf(to) - PlaneLayout::kBorder,
                 plane + layout_.placeOf(from) - PlaneLayout::kBorder,
-                (layout_.n + 2 * PlaneLayout::kBorder) * sizeof *plane);
+                (layout_.nx + 2 * PlaneLayout::kBorder) * sizeof *plane);
   };
   for (const std::ptrdiff_t beyond : {1, 2}) {
     copyRow(0, -beyond);

@@ -11,18 +11,22 @@
 
 namespace spindrift::codec {
 
-/// A grid of n x n samples in memory, with a border: two samples repeat the outermost ones, the rest is undefined and
+/// A grid of nx x nz samples in memory, with a border: two samples repeat the outermost ones, the rest is undefined and
 /// only lets vectors be loaded and stored as a whole.
 struct PlaneLayout {
   static constexpr std::size_t kBorder = 2;
   static constexpr std::size_t kLeft = 8;
   static constexpr std::size_t kRight = 16;
 
-  std::size_t n = 0;
+  std::size_t nx = 0;
+  std::size_t nz = 0;
 
-  [[nodiscard]] std::size_t tilesCount() const { return (n + kTile - 1) / kTile; }
+  /// Of a row of tiles.
+  [[nodiscard]] std::size_t tilesCount() const { return (nx + kTile - 1) / kTile; }
   [[nodiscard]] std::size_t stride() const { return kLeft + kTile * tilesCount() + kRight; }
-  [[nodiscard]] std::size_t sampleCount() const { return stride() * (2 * kBorder + kTile * tilesCount()) + kRight; }
+  [[nodiscard]] std::size_t sampleCount() const {
+    return stride() * (2 * kBorder + (nz + kTile - 1) / kTile * kTile) + kRight;
+  }
   /// Index of sample 0 of row z; rows begin at -2.
   [[nodiscard]] std::size_t placeOf(std::ptrdiff_t z) const {
     return static_cast<std::size_t>(z + static_cast<std::ptrdiff_t>(kBorder)) * stride() + kLeft;
@@ -34,10 +38,10 @@ class PlaneRow {
   static constexpr std::size_t kMaxResolutionCount = 4096;
   static constexpr std::size_t kAlignment = alignof(ResidualGroup);
 
-  /// Number of bytes that place() needs for n x n samples.
-  static std::size_t bytesFor(std::size_t n);
-  /// Sets the memory to work in, aligned to kAlignment; there is no plane yet. 1 <= n <= kMaxResolutionCount.
-  void place(std::uint8_t* memory, std::size_t n);
+  /// Number of bytes that place() needs for nx x nz samples.
+  static std::size_t bytesFor(std::size_t nx, std::size_t nz);
+  /// Sets the memory to work in, aligned to kAlignment; there is no plane yet. 1 <= nx, nz <= kMaxResolutionCount.
+  void place(std::uint8_t* memory, std::size_t nx, std::size_t nz);
   /// Forgets the planes, so that only a keyframe can follow.
   void forget() { has_row_ = false; }
 
@@ -48,9 +52,11 @@ class PlaneRow {
   /// Decodes the payload of a delta. False: it is damaged (as above), or there is no plane before it.
   bool readDelta(const std::uint8_t* payload, std::uint32_t byte_count, const SurfaceWeights& weights);
 
-  /// Returns whether there is a plane; then row(z) holds n samples of the newest one.
+  /// Returns whether there is a plane; then row(z) holds nx samples of the newest one.
   [[nodiscard]] bool hasRow() const { return has_row_; }
-  [[nodiscard]] std::size_t resolution() const { return layout_.n; }
+  [[nodiscard]] std::size_t countX() const { return layout_.nx; }
+  [[nodiscard]] std::size_t countZ() const { return layout_.nz; }
+  [[nodiscard]] bool hasSize(std::size_t nx, std::size_t nz) const { return nx == layout_.nx && nz == layout_.nz; }
   [[nodiscard]] const std::int16_t* row(std::size_t z) const {
     return before_ + layout_.placeOf(static_cast<std::ptrdiff_t>(z));
   }

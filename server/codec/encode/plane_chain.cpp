@@ -7,7 +7,7 @@
 namespace spindrift::codec {
 
 PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
-  const bool is_first = before_.resolution() != next_.resolution();
+  const bool is_first = before_.count() != next_.count();
   if (is_first) {
     before_ = earlier_ = next_;
     guess_.reset();

@@ -23,10 +23,10 @@ class PlaneChainEncoder {
   };
   /// The plane that the caller fills with the next samples.
   SurfacePlane& next() { return next_; }
-  /// Encodes the plane in next(). Another resolution begins a new sequence.
+  /// Encodes the plane in next(). Another size begins a new sequence.
   Forms encode(bool wants_keyframe);
   /// The next plane begins a new sequence.
-  void restart() { before_.resize(0); }
+  void restart() { before_.resize({}); }
 
  private:
   Form delta();

@@ -63,7 +63,7 @@ void putTermsAround(const AroundRows& rows, std::ptrdiff_t count, std::size_t fi
 
 /// Computes the terms of a run that starts at sample (x, z), x and z at least 1.
 void putTerms(const SurfacePlane& plane, const SurfaceHistory& history, std::ptrdiff_t x, std::ptrdiff_t z, Run& out) {
-  const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kRun, static_cast<std::ptrdiff_t>(plane.resolution()) - x);
+  const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kRun, static_cast<std::ptrdiff_t>(plane.count().x) - x);
   if (history.before != nullptr) {
     const SurfacePlane& b = *history.before;
     putTermsAround({b, x, z}, count, W::kBefore, out);
@@ -117,19 +117,22 @@ void addProducts(const Run& run, RowSums& sums) {
 }  // namespace
 
 SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights* guess) {
-  const std::size_t n = plane.resolution();
-  if (n < kGuessedResolution) guess = nullptr;
-  const std::size_t row_stride = std::max<std::size_t>(n / kRows, 1);
-  const std::size_t run_stride = std::max(n / kRunsPerRow, kRun);
+  const std::size_t nx = plane.count().x;
+  const std::size_t nz = plane.count().z;
+  if (plane.count().total() < kGuessedResolution * kGuessedResolution) guess = nullptr;
+  const std::size_t row_stride = std::max<std::size_t>(nz / kRows, 1);
+  const std::size_t run_stride = std::max(nx / kRunsPerRow, kRun);
   std::array<std::array<double, kCount>, kCount> products{};
   std::array<double, kCount> right{};
   Run run{};
-  for (std::size_t z = 1, line = 0; z < n; z += row_stride, ++line) {
+  // A plane of one row or one column has no better place than its edge.
+  const std::size_t first_x = nx > 1 ? 1 : 0;
+  for (std::size_t z = nz > 1 ? 1 : 0, line = 0; z < nz; z += row_stride, ++line) {
     RowSums sums{};
     // Start at another column in each row, so that the samples do not all fall on one regular pattern.
-    for (std::size_t x = 1 + line * 37 % (run_stride - kRun + 1); x < n; x += run_stride) {
+    for (std::size_t x = first_x + line * 37 % (run_stride - kRun + 1); x < nx; x += run_stride) {
       putTerms(plane, history, static_cast<std::ptrdiff_t>(x), static_cast<std::ptrdiff_t>(z), run);
-      if (guess != nullptr) weigh(*guess, static_cast<std::ptrdiff_t>(std::min(kRun, n - x)), run);
+      if (guess != nullptr) weigh(*guess, static_cast<std::ptrdiff_t>(std::min(kRun, nx - x)), run);
       addProducts(run, sums);
     }
     const auto sumOf = [&sums](std::size_t k, std::size_t l) {

@@ -41,29 +41,30 @@ class TileBand {
 
 /// Calls code(band, top, rows) for each band of eight rows.
 template <typename Code>
-void forEachBand(std::size_t n, Code code) {
-  TileBand band(n);
-  for (std::size_t top = 0; top < n; top += kTile) code(band, top, std::min(kTile, n - top));
+void forEachBand(core::CellCounts count, Code code) {
+  TileBand band(count.x);
+  for (std::size_t top = 0; top < count.z; top += kTile) code(band, top, std::min(kTile, count.z - top));
 }
 
 }  // namespace
 
-void SurfacePlane::resize(std::size_t resolution_count) {
-  n_ = resolution_count;
+void SurfacePlane::resize(core::CellCounts count) {
+  count_ = count;
   is_small_ = false;
-  samples_.resize(stride() * stride());
+  samples_.resize(stride() * (count.z + 2 * kBorder));
 }
 
 void SurfacePlane::assign(std::span<const std::int16_t> samples) {
-  assert(samples.size() == n_ * n_);
+  assert(samples.size() == count_.total());
   constexpr std::size_t kLine = 64 / sizeof(std::int16_t);
   int bits = 0;  // all samples combined by or, negative ones inverted
-  for (std::size_t z = 0; z < n_; ++z) {
-    const std::int16_t* from = samples.data() + z * n_;
+  const std::size_t nx = count_.x;
+  for (std::size_t z = 0; z < count_.z; ++z) {
+    const std::int16_t* from = samples.data() + z * nx;
     std::int16_t* to = row(static_cast<std::ptrdiff_t>(z));
-    for (std::size_t x = 0; x < n_; x += kLine) fetchAhead(from + x);
+    for (std::size_t x = 0; x < nx; x += kLine) fetchAhead(from + x);
     std::int16_t row_bits = 0;
-    for (std::size_t x = 0; x < n_; ++x) {
+    for (std::size_t x = 0; x < nx; ++x) {
       to[x] = from[x];
       row_bits = static_cast<std::int16_t>(row_bits | (from[x] ^ from[x] >> 15));
     }
@@ -74,18 +75,21 @@ void SurfacePlane::assign(std::span<const std::int16_t> samples) {
 }
 
 void SurfacePlane::assign(std::span<const std::uint8_t> samples) {
-  assert(samples.size() == n_ * n_);
-  for (std::size_t z = 0; z < n_; ++z) std::copy_n(samples.data() + z * n_, n_, row(static_cast<std::ptrdiff_t>(z)));
+  assert(samples.size() == count_.total());
+  const std::size_t nx = count_.x;
+  for (std::size_t z = 0; z < count_.z; ++z)
+    std::copy_n(samples.data() + z * nx, nx, row(static_cast<std::ptrdiff_t>(z)));
   fillBorder();
   is_small_ = true;
 }
 
 void SurfacePlane::fillBorder() {
-  const auto last = static_cast<std::ptrdiff_t>(n_) - 1;
+  const auto last_x = static_cast<std::ptrdiff_t>(count_.x) - 1;
+  const auto last = static_cast<std::ptrdiff_t>(count_.z) - 1;
   for (std::ptrdiff_t z = 0; z <= last; ++z) {
     std::int16_t* r = row(z);
     r[-1] = r[-2] = r[0];
-    r[last + 1] = r[last + 2] = r[last];
+    r[last_x + 1] = r[last_x + 2] = r[last_x];
   }
   for (const std::ptrdiff_t z : {std::ptrdiff_t{-2}, std::ptrdiff_t{-1}})
     std::copy_n(row(0) - kBorder, stride(), row(z) - kBorder);
@@ -127,9 +131,9 @@ SPINDRIFT_VECTORS GroupWriter putTilesWithVectors(std::span<const std::int16_t> 
 void encodePlane(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                  ResidualEncoder& out) {
   const auto put = usesVectors() ? putTilesWithVectors : putTilesPlainly;
-  forEachBand(plane.resolution(), [&](TileBand& band, std::size_t top, std::size_t rows) {
+  forEachBand(plane.count(), [&](TileBand& band, std::size_t top, std::size_t rows) {
     for (std::size_t j = 0; j < rows; ++j) residualsOfRow(plane, history, weights, top + j, band.sums(), band.row(j));
-    out.end(put(band.rows(rows), plane.resolution(), band.classes(), out.begin(band.classes().size())));
+    out.end(put(band.rows(rows), plane.count().x, band.classes(), out.begin(band.classes().size())));
   });
 }
 

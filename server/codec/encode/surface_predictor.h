@@ -8,25 +8,27 @@
 #include <span>
 #include <vector>
 
+#include <spindrift/core/cell_counts.h>
+
 #include "format/surface_weights.h"
 #include "residual_coder.h"
 
 namespace spindrift::codec {
 
-/// Samples of a square grid in quanta, row by row, with a border of two that repeats the outermost samples.
+/// Samples of a grid in quanta, row by row, with a border of two that repeats the outermost samples.
 class SurfacePlane {
  public:
   static constexpr std::size_t kBorder = 2;
 
   /// Changes the size; the samples are undefined until they are written.
-  void resize(std::size_t resolution_count);
+  void resize(core::CellCounts count);
 
-  [[nodiscard]] std::size_t resolution() const { return n_; }
-  [[nodiscard]] std::size_t stride() const { return n_ + 2 * kBorder; }
-  /// Pointer to sample 0 of row z; samples and rows from -2 to n + 1 are valid.
+  [[nodiscard]] core::CellCounts count() const { return count_; }
+  [[nodiscard]] std::size_t stride() const { return count_.x + 2 * kBorder; }
+  /// Pointer to sample 0 of row z; samples from -2 to nx + 1 and rows from -2 to nz + 1 are valid.
   [[nodiscard]] std::int16_t* row(std::ptrdiff_t z) { return samples_.data() + offsetOf(z); }
   [[nodiscard]] const std::int16_t* row(std::ptrdiff_t z) const { return samples_.data() + offsetOf(z); }
-  /// Copies n * n samples into the plane and fills the border.
+  /// Copies nx * nz samples into the plane and fills the border.
   void assign(std::span<const std::int16_t> samples);
   void assign(std::span<const std::uint8_t> samples);
   /// Fills the border from the samples inside.
@@ -39,7 +41,7 @@ class SurfacePlane {
     return static_cast<std::size_t>(z + static_cast<std::ptrdiff_t>(kBorder)) * stride() + kBorder;
   }
 
-  std::size_t n_ = 0;
+  core::CellCounts count_;
   bool is_small_ = false;
   std::vector<std::int16_t> samples_;
 };

@@ -66,15 +66,17 @@ std::uint8_t* readPreparedParticles(std::uint32_t count, std::uint32_t cells_x, 
                                                                                                          : nullptr;
 }
 
-/// Returns room for the payload of a plane of n x n samples. 0: there is none. Another size forgets the planes.
-SPINDRIFT_EXPORT(preparePlane) std::uint8_t* preparePlane(std::uint32_t n, std::uint32_t byte_count) {
-  if (n < 1 || n > PlaneRow::kMaxResolutionCount) return nullptr;
-  const std::size_t row_bytes = aligned(PlaneRow::bytesFor(n));
-  std::uint8_t* const room = makeRoom(row_bytes + n * n * sizeof(std::int16_t), byte_count);
+/// Returns room for the payload of a plane of nx x nz samples. 0: there is none. Another size forgets the planes.
+SPINDRIFT_EXPORT(preparePlane)
+std::uint8_t* preparePlane(std::uint32_t nx, std::uint32_t nz, std::uint32_t byte_count) {
+  const auto isAllowed = [](std::uint32_t n) { return n >= 1 && n <= PlaneRow::kMaxResolutionCount; };
+  if (!isAllowed(nx) || !isAllowed(nz)) return nullptr;
+  const std::size_t row_bytes = aligned(PlaneRow::bytesFor(nx, nz));
+  std::uint8_t* const room = makeRoom(row_bytes + nx * nz * sizeof(std::int16_t), byte_count);
   if (room == nullptr) {
     row.forget();
-  } else if (n != row.resolution()) {
-    row.place(heapBegin(), n);
+  } else if (!row.hasSize(nx, nz)) {
+    row.place(heapBegin(), nx, nz);
     plain_samples = heapBegin() + row_bytes;
   }
   return room;
@@ -93,18 +95,18 @@ SPINDRIFT_EXPORT(readKeyframePlane) bool readKeyframePlane() {
 SPINDRIFT_EXPORT(readDeltaPlane) bool readDeltaPlane() {
   return row.readDelta(payload, payload_bytes, weights);
 }
-/// The n x n samples of the newest plane, row by row, 16 bits each.
+/// The nx x nz samples of the newest plane, row by row, 16 bits each.
 SPINDRIFT_EXPORT(surfaceSamples) std::int16_t* surfaceSamples() {
   auto* const out = reinterpret_cast<std::int16_t*>(plain_samples);
-  const std::size_t n = row.resolution();
-  for (std::size_t z = 0; z < n; ++z) std::copy_n(row.row(z), n, out + z * n);
+  const std::size_t nx = row.countX();
+  for (std::size_t z = 0; z < row.countZ(); ++z) std::copy_n(row.row(z), nx, out + z * nx);
   return out;
 }
 /// The same as bytes, 0 to 255.
 SPINDRIFT_EXPORT(foamSamples) std::uint8_t* foamSamples() {
-  const std::size_t n = row.resolution();
-  for (std::size_t z = 0; z < n; ++z) {
-    std::transform(row.row(z), row.row(z) + n, plain_samples + z * n,
+  const std::size_t nx = row.countX();
+  for (std::size_t z = 0; z < row.countZ(); ++z) {
+    std::transform(row.row(z), row.row(z) + nx, plain_samples + z * nx,
                    [](std::int16_t s) { return static_cast<std::uint8_t>(std::clamp<std::int16_t>(s, 0, 255)); });
   }
   return plain_samples;

@@ -35,7 +35,7 @@ v1::LayerFrame foamFrame() {
   core::FrameView view;
   view.tick = 60;
   view.time_s = 1.0;
-  view.at(core::Level::kFull).foam = core::FoamView{4, 16.0, words};
+  view.at(core::Level::kFull).foam = core::FoamView{{4, 4}, 16.0, 16.0, words};
   return encoded(v1::LAYER_FOAM, view);
 }
 
@@ -68,8 +68,8 @@ TEST(FoamCodec, RoundTripsEveryByte) {
   EXPECT_TRUE(frame.keyframe());
   const auto samples = decodeFoam(frame);
   ASSERT_TRUE(samples) << samples.error().message;
-  EXPECT_EQ(samples->resolution_count, 4u);
-  EXPECT_EQ(samples->side_m, 16.0);
+  EXPECT_EQ(samples->count.x, 4u);
+  EXPECT_EQ(samples->length_m, 16.0);
   EXPECT_THAT(samples->foam, testing::ElementsAre(0, 1, 2, 3, 0, 0, 0, 0, 252, 253, 254, 255, 128, 128, 128, 128));
 }
 

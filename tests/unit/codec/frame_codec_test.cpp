@@ -29,7 +29,7 @@ struct TestFrame {
     particle_words = {0xFFFF'0000u, 0x817F'8000u, 0x00FF'0740u, 0x0000'FFFFu, 0x0000'0000u, 0x0000'FF00u};
     view.tick = 600;
     view.time_s = 10.0;
-    view.at(core::Level::kFull).surface = core::SurfaceView{8, 16.0, 0.001, surface_words};
+    view.at(core::Level::kFull).surface = core::SurfaceView{{8, 8}, 16.0, 16.0, 0.001, surface_words};
     core::ParticleView particles;
     particles.count = 2;
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,8 +87,8 @@ TEST(FrameEncoding, RoundTripsTheSurfaceExactlyToTheQuantum) {
   EXPECT_TRUE(frame.keyframe());
   const auto samples = decodeSurface(frame);
   ASSERT_TRUE(samples) << samples.error().message;
-  EXPECT_EQ(samples->resolution_count, 8u);
-  EXPECT_EQ(samples->side_m, 16.0);
+  EXPECT_EQ(samples->count.x, 8u);
+  EXPECT_EQ(samples->length_m, 16.0);
   EXPECT_EQ(samples->quantum_m, 0.001);
   ASSERT_EQ(samples->elevation_m.size(), 64u);
   for (int i = 0; i < 64; ++i) {
@@ -148,7 +148,7 @@ TEST(FrameEncoding, HandlesAFrameWithoutParticles) {
 TEST(FrameEncoding, HandlesAFrameOfTheLargestScene) {
   TestFrame test;
   test.surface_words.assign(1024 * 1024 / 2, 0x1234'5678u);
-  test.view.at(core::Level::kFull).surface = core::SurfaceView{1024, 16.0, 0.001, test.surface_words};
+  test.view.at(core::Level::kFull).surface = core::SurfaceView{{1024, 1024}, 16.0, 16.0, 0.001, test.surface_words};
   const auto samples = decodeSurface(frameOf(FrameEncoder().encode(v1::LAYER_SURFACE, test.view)));
   ASSERT_TRUE(samples) << samples.error().message;
   EXPECT_EQ(samples->elevation_m.size(), 1024u * 1024u);
@@ -192,21 +192,21 @@ TEST(FrameEncoding, EachLevelIsEncodedSeparatelyWithItsLevel) {
     core::FrameView frame = test.view;
     frame.tick = tick;
     frame.reduced_counts.planes = 1;
-    frame.at(core::Level::kCoarse).surface = core::SurfaceView{8, 2.0, 0.001, small};
+    frame.at(core::Level::kCoarse).surface = core::SurfaceView{{8, 8}, 2.0, 2.0, 0.001, small};
     const EncodedFrame full = encoder.encode(kPacked, frame, core::Level::kFull, tick == 1);
     ASSERT_TRUE(full.keyframe || full.delta);
     const v1::LayerFrame sent = frameOf(tick == 1 ? full.keyframe : full.delta);
     EXPECT_EQ(sent.level(), v1::LEVEL_FULL);
     const auto samples = full_reader.decode(sent);
     ASSERT_TRUE(samples) << samples.error().message;
-    EXPECT_EQ(samples->resolution_count, test.view.at(core::Level::kFull).surface->resolution_count);
+    EXPECT_EQ(samples->count.x, test.view.at(core::Level::kFull).surface->count.x);
     if (tick % 3 == 2) continue;  // sometimes the frame has a coarse level
     const EncodedFrame coarse = encoder.encode(kPacked, frame, core::Level::kCoarse, tick == 1);
     const v1::LayerFrame sent_coarse = frameOf(tick == 1 ? coarse.keyframe : coarse.delta);
     EXPECT_EQ(sent_coarse.level(), v1::LEVEL_COARSE);
     const auto coarse_samples = coarse_reader.decode(sent_coarse);
     ASSERT_TRUE(coarse_samples) << coarse_samples.error().message;
-    EXPECT_EQ(coarse_samples->resolution_count, 8u);
+    EXPECT_EQ(coarse_samples->count.x, 8u);
   }
   EXPECT_FALSE(encoder.encode(kPacked, test.view, core::Level::kMedium, true).keyframe) << "not in the frame";
 }

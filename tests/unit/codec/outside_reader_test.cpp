@@ -77,7 +77,7 @@ TEST(OutsideReader, ReadsPlanesOfEverySizeOfResidual) {
       }
       core::FrameView view;
       view.tick = 10 + step;
-      view.at(core::Level::kFull).surface = core::SurfaceView{n, 8.0, 0.0009765625, words};
+      view.at(core::Level::kFull).surface = core::SurfaceView{{n, n}, 8.0, 8.0, 0.0009765625, words};
       const EncodedFrame encoded =
           encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, false);
       const core::Bytes& bytes = encoded.delta ? *encoded.delta : *encoded.keyframe;
@@ -143,7 +143,7 @@ TEST(OutsideReader, ReportsDifferentValues) {
   Cases cases;
   const std::vector<std::uint32_t> words(2 * 2 / 2);
   core::FrameView view;
-  view.at(core::Level::kFull).surface = core::SurfaceView{2, 8.0, 0.0009765625, words};
+  view.at(core::Level::kFull).surface = core::SurfaceView{{2, 2}, 8.0, 8.0, 0.0009765625, words};
   const core::Bytes bytes =
       *FrameEncoder().encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, true).keyframe;
   (void)cases.add(bytes, "", "\"elevation_m\": [0, 0, 0, 0.001]");

@@ -122,9 +122,9 @@ TEST(ParticleOrder, IsTheSameByCountingAndByDigits) {
   }
 }
 
-SurfacePlane planeOf(std::size_t n, auto sample_at) {
+SurfacePlane planeOf(core::CellCounts n, auto sample_at) {
   std::vector<std::int16_t> samples;
-  for (std::size_t i = 0; i < n * n; ++i) samples.push_back(static_cast<std::int16_t>(sample_at(i % n, i / n)));
+  for (std::size_t i = 0; i < n.total(); ++i) samples.push_back(static_cast<std::int16_t>(sample_at(i % n.x, i / n.x)));
   SurfacePlane plane;
   plane.resize(n);
   plane.assign(std::span<const std::int16_t>(samples));
@@ -158,8 +158,9 @@ std::int32_t fromHistoryAt(const SurfaceHistory& history, const SurfaceWeights& 
 TEST(Prediction, OfARowEqualsThatOfItsSamples) {
   Random random(4);
   const auto noise = [&](std::size_t, std::size_t) { return random(); };
-  for (const std::size_t n : {2u, 16u, 17u, 18u, 33u, 64u}) {
-    const SurfacePlane now = planeOf(n, noise), before = planeOf(n, noise), earlier = planeOf(n, noise);
+  for (const std::uint32_t n : {2u, 16u, 17u, 18u, 33u, 64u}) {
+    const core::CellCounts size{n, n / 2 + 1};
+    const SurfacePlane now = planeOf(size, noise), before = planeOf(size, noise), earlier = planeOf(size, noise);
     for (const std::int32_t largest : {4096, 32767, 1 << 20}) {
       SurfaceWeights weights;
       for (std::int32_t& w : weights.of) w = static_cast<std::int32_t>(random() % (2u * largest + 1)) - largest;
@@ -167,7 +168,7 @@ TEST(Prediction, OfARowEqualsThatOfItsSamples) {
            {SurfaceHistory{}, SurfaceHistory{&before, nullptr}, SurfaceHistory{&before, &earlier}}) {
         std::vector<std::int32_t> sums(n);
         std::vector<std::int16_t> residuals(n);
-        for (std::size_t z = 0; z < n; ++z) {
+        for (std::size_t z = 0; z < size.z; ++z) {
           residualsOfRow(now, history, weights, z, sums, residuals);
           const std::int16_t* here = now.row(static_cast<std::ptrdiff_t>(z));
           const std::int16_t* above = now.row(static_cast<std::ptrdiff_t>(z) - 1);
@@ -200,7 +201,7 @@ TEST(Prediction, FitsTheCalmWaterBesideABreakerOnceItKnowsWhereThatIs) {
   Random random(6);
   // Two waves that travel, and a breaker in a corner that no frame predicts.
   const auto frame = [&](double t) {
-    return planeOf(kSide, [&](std::size_t x, std::size_t z) {
+    return planeOf({kSide, kSide}, [&](std::size_t x, std::size_t z) {
       const auto along = static_cast<double>(x), across = static_cast<double>(z);
       const double waves = 60 * std::sin(0.3 * along - 0.5 * t) + 40 * std::sin(0.4 * (along + across) - 0.9 * t);
       const double breaker = x < 32 && z < 32 ? static_cast<double>(random() % 1200) - 600 : 0.0;
@@ -217,23 +218,39 @@ TEST(Prediction, FitsTheCalmWaterBesideABreakerOnceItKnowsWhereThatIs) {
 
 void expectSame(const PlaneRow& read, const SurfacePlane& plane, const std::string& which) {
   ASSERT_TRUE(read.hasRow()) << which;
-  for (std::size_t z = 0; z < plane.resolution(); ++z) {
+  for (std::size_t z = 0; z < plane.count().z; ++z) {
     const std::int16_t* row = plane.row(static_cast<std::ptrdiff_t>(z));
-    ASSERT_TRUE(std::equal(row, row + plane.resolution(), read.row(z))) << which << ", row " << z;
+    ASSERT_TRUE(std::equal(row, row + plane.count().x, read.row(z))) << which << ", row " << z;
   }
 }
 
 TEST(Planes, RoundTripToTheBitAtAnySizeAndWeights) {
   Random random(5);
   const auto noise = [&](std::size_t, std::size_t) { return random(); };
-  for (const std::size_t n : {1u, 2u, 7u, 8u, 9u, 16u, 17u, 23u, 33u, 64u}) {
+  for (const core::CellCounts n : {core::CellCounts{1, 1},
+                                   {2, 2},
+                                   {7, 7},
+                                   {8, 8},
+                                   {9, 9},
+                                   {16, 16},
+                                   {17, 17},
+                                   {23, 23},
+                                   {33, 33},
+                                   {64, 64},
+                                   {1, 40},
+                                   {40, 1},
+                                   {37, 113},
+                                   {113, 37},
+                                   {8, 65},
+                                   {25, 3}}) {
     for (const std::int32_t largest : {4096, 32767, 1 << 20}) {
       const SurfacePlane earlier = planeOf(n, noise), before = planeOf(n, noise), now = planeOf(n, noise);
       SurfaceWeights weights[3];
       for (SurfaceWeights& set : weights) {
         for (std::int32_t& w : set.of) w = static_cast<std::int32_t>(random() % (2u * largest + 1)) - largest;
       }
-      const std::string which = std::to_string(n) + " a side, weights to " + std::to_string(largest);
+      const std::string which =
+          std::to_string(n.x) + " x " + std::to_string(n.z) + ", weights to " + std::to_string(largest);
       PlaneMemory memory;
       memory.resize(n);
       PlaneRow& row = memory.row();
@@ -297,7 +314,7 @@ TEST(SurfacePredicted, TakesAtMost2Point3BitsPerSampleOfWavesEveryOtherTick) {
     const std::vector<std::uint32_t> words = water.words();
     core::FrameView view;
     view.tick = tick;
-    view.at(core::Level::kFull).surface = core::SurfaceView{kSide, 16.0, 0.001, words};
+    view.at(core::Level::kFull).surface = core::SurfaceView{{kSide, kSide}, 16.0, 16.0, 0.001, words};
     const EncodedFrame encoded =
         encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, false);
     if (encoded.delta) {

@@ -33,7 +33,7 @@ struct Surface {
     core::FrameView view;
     view.tick = tick;
     view.time_s = static_cast<double>(tick) / 60.0;
-    view.at(core::Level::kFull).surface = core::SurfaceView{n, 16.0, 0.001, words};
+    view.at(core::Level::kFull).surface = core::SurfaceView{{n, n}, 16.0, 16.0, 0.001, words};
     return view;
   }
 };
@@ -80,8 +80,8 @@ TEST(SurfacePredicted, IsThePlainSurfaceToTheBitFrameAfterFrame) {
       }
       const auto samples = decoder.decode(frame);
       ASSERT_TRUE(samples) << samples.error().message;
-      EXPECT_EQ(samples->resolution_count, n);
-      EXPECT_EQ(samples->side_m, 16.0);
+      EXPECT_EQ(samples->count.x, n);
+      EXPECT_EQ(samples->length_m, 16.0);
       EXPECT_EQ(samples->elevation_m, plainOf(surface)) << n << " samples a side, tick " << tick;
     }
   }
@@ -178,7 +178,7 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
       words[i] = tick == 5 ? static_cast<std::uint32_t>(random()) : 0xFFF0'A050u >> tick;
     core::FrameView view;
     view.tick = tick;
-    view.at(core::Level::kFull).foam = core::FoamView{32, 16.0, words};
+    view.at(core::Level::kFull).foam = core::FoamView{{32, 32}, 16.0, 16.0, words};
     const EncodedFrame encoded =
         encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, core::Level::kFull, tick == 1);
     const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
@@ -188,13 +188,13 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
     const auto plain = decodeFoam(frameOf(encoder.encode(v1::LAYER_FOAM, view)));
     ASSERT_TRUE(plain);
     EXPECT_EQ(packed->foam, plain->foam) << "tick " << tick;
-    EXPECT_EQ(packed->side_m, 16.0);
+    EXPECT_EQ(packed->length_m, 16.0);
   }
   EXPECT_LT(packed_bytes, 11u * 32 * 32 / 2);
   PackedFoamDecoder late;
   core::FrameView view;
   const std::vector<std::uint32_t> words(32 * 32 / 4, 0u);
-  view.at(core::Level::kFull).foam = core::FoamView{32, 16.0, words};
+  view.at(core::Level::kFull).foam = core::FoamView{{32, 32}, 16.0, 16.0, words};
   const auto missing =
       late.decode(frameOf(encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, core::Level::kFull, false).delta));
   ASSERT_FALSE(missing);

@@ -64,7 +64,7 @@ Frames surfaces(std::uint32_t n, double amplitude, int noise) {
   for (std::uint64_t tick = 1; tick <= 5; ++tick) {
     auto& view = out.views.emplace_back();
     view.tick = tick;
-    view.at(core::Level::kFull).surface = core::SurfaceView{n, 16.0, 0.001, out.words[tick - 1]};
+    view.at(core::Level::kFull).surface = core::SurfaceView{{n, n}, 16.0, 16.0, 0.001, out.words[tick - 1]};
   }
   return out;
 }

@@ -73,11 +73,11 @@ CarriedState stateOf(const core::Scene& scene, const auto& elevation_m) {
   CarriedState out{.scene = scene, .derived = derivedOf(scene)};
   const WaveLayout& wave = *out.derived.wave;
   const Basin floor = layOutBasin(scene, wave);
-  const auto n = static_cast<int>(wave.resolution_count);
+  const auto n = static_cast<int>(wave.count_x);
   for (int z = 0; z < n; ++z) {
     for (int x = 0; x < n; ++x) {
       const double eta_m =
-          elevation_m((x + 0.5) * wave.cell_m - wave.side_m / 2, (z + 0.5) * wave.cell_m - wave.side_m / 2);
+          elevation_m((x + 0.5) * wave.cell_m - wave.length_m / 2, (z + 0.5) * wave.cell_m - wave.length_m / 2);
       const bool is_wet = floor.depth_m[static_cast<std::size_t>(x + n * z)] > 0;
       out.state.elevation_m.push_back(is_wet ? std::round(eta_m * ELEVATION_UNITS_PER_M) / ELEVATION_UNITS_PER_M : 0.0);
     }
@@ -285,7 +285,7 @@ class TakeOver : public OnDevice {
   /// Mean elevation of 8 x 8 squares over the water, x fastest.
   static std::vector<double> squares(WaterSim& sim) {
     const StateCopy state = sim.copyState();
-    const std::uint32_t n = sim.derived().wave->resolution_count;
+    const std::uint32_t n = sim.derived().wave->count_x;
     std::vector<double> out(64, 0.0);
     for (std::size_t i = 0; i < state.elevation_m.size(); ++i)
       out[8 * (i / n / (n / 8)) + i % n / (n / 8)] +=
@@ -367,8 +367,8 @@ TEST_F(TakeOver, AnEffectInProgressAndSprayInTheAirGoOn) {
   const auto depthAt = [](WaterSim& water) {
     const StateCopy state = water.copyState();
     const WaveLayout& wave = *water.derived().wave;
-    const auto at = static_cast<std::size_t>((4.0 + wave.side_m / 2) / wave.cell_m);
-    return state.elevation_m[at + at * wave.resolution_count];
+    const auto at = static_cast<std::size_t>((4.0 + wave.length_m / 2) / wave.cell_m);
+    return state.elevation_m[at + at * wave.count_x];
   };
   EXPECT_LT(depthAt(*next), -0.05);
   EXPECT_NEAR(depthAt(*next), depthAt(sim), 0.05);

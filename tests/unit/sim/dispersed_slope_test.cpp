@@ -84,6 +84,29 @@ TEST_F(DispersedSlopeOnDevice, AgreesWithTheReference) {
   EXPECT_LE(largestDifference(sea(128, 0.1), true), 2e-5);
 }
 
+TEST_F(DispersedSlopeOnDevice, AgreesWithTheReferenceInRectanglesOfAnyNumberOfCells) {
+  struct Counts {
+    std::uint32_t x, z;
+  };
+  for (const Counts n :
+       {Counts{37, 113}, {113, 37}, {400, 10}, {10, 400}, {200, 1}, {1, 200}, {7, 5}, {3, 90}, {65, 66}}) {
+    core::Scene scene = sea(n.x, 1.2);
+    scene.wave->width_m = 0.125 * n.z;
+    scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+    EXPECT_LE(largestDifference(scene, false), 2e-5) << n.x << " x " << n.z;
+    if (std::min(n.x, n.z) < 10) continue;
+    scene.beaches.push_back({.side = core::Side::kPlusX, .width_m = 0.06 * n.x, .shore_depth_m = 0.3});
+    scene.obstacles.emplace_back(core::Rock{.x_m = 0.1, .z_m = -0.1, .radius_m = 0.4});
+    EXPECT_LE(largestDifference(scene, true), 2e-5) << n.x << " x " << n.z;
+  }
+  for (const Counts n : {Counts{48, 96}, {96, 1}, {2, 64}, {8, 200}, {496, 16}}) {
+    core::Scene scene = sea(n.x, 1.2);
+    scene.wave->width_m = 0.125 * n.z;
+    if (n.z == 200) scene.wave->boundary_minus_z = scene.wave->boundary_plus_z = core::WaveBoundary::kReflect;
+    EXPECT_LE(largestDifference(scene, false), 2e-5) << n.x << " x " << n.z << ", periodic";
+  }
+}
+
 TEST_F(DispersedSlopeOnDevice, AgreesWithTheReferenceBesideWallsRocksAndBeaches) {
   core::Scene scene = sea(96, 1.2);
   scene.wave->setBoundaries(core::WaveBoundary::kReflect);

@@ -38,7 +38,7 @@ class GaugesOnDevice : public OnDevice {
   static void startSeiche(WaterSim& sim) {
     StateCopy state = sim.copyState();
     const WaveLayout w = *sim.derived().wave;
-    const std::size_t n = w.resolution_count;
+    const std::size_t n = w.count_x;
     const std::size_t components = state.flow_m2ps.size() / state.elevation_m.size();
     const auto eta = [&](std::size_t x) {
       return kAmplitude_m * std::cos(wavenumber_radpm() * (static_cast<double>(x) + 0.5) * w.cell_m);

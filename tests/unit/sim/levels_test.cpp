@@ -96,14 +96,14 @@ TEST_F(Levels, AReducedSurfaceSampleIsTheMeanOfItsArea) {
   ASSERT_EQ(view.reduced_counts.particles, 0u);
   const core::LevelView& full = view.at(Level::kFull);
   ASSERT_TRUE(full.surface);
-  EXPECT_EQ(full.surface->resolution_count, kN);
+  EXPECT_EQ(full.surface->count.x, kN);
   const core::LevelView& coarse = view.at(Level::kCoarse);
   ASSERT_TRUE(coarse.surface);
   EXPECT_FALSE(coarse.particles);
   EXPECT_FALSE(view.at(Level::kMedium).surface) << "the scene is smaller than the level";
-  const std::size_t m = coarse.surface->resolution_count;
+  const std::size_t m = coarse.surface->count.x;
   ASSERT_EQ(m, 128u);
-  EXPECT_EQ(coarse.surface->side_m, full.surface->side_m);
+  EXPECT_EQ(coarse.surface->length_m, full.surface->length_m);
   const std::vector<int> reduced = samplesOf(*coarse.surface);
   ASSERT_EQ(reduced.size(), m * m);
 
@@ -130,8 +130,8 @@ TEST_F(Levels, AReducedFoamSampleIsTheMeanOfItsArea) {
   const auto& full = view.at(Level::kFull).foam;
   const auto& reduced = view.at(Level::kCoarse).foam;
   ASSERT_TRUE(full && reduced);
-  ASSERT_EQ(full->resolution_count, 96u);
-  ASSERT_EQ(reduced->resolution_count, 64u);
+  ASSERT_EQ(full->count.x, 96u);
+  ASSERT_EQ(reduced->count.x, 64u);
   const auto bytesOf = [](const core::FoamView& foam) {
     const auto bytes = std::as_bytes(foam.words);
     std::vector<double> out;
@@ -169,7 +169,7 @@ TEST_F(Levels, UnwatchedLevelsAreNotPacked) {
   const core::LevelView& full = view.at(Level::kFull);
   EXPECT_FALSE(full.surface || full.particles || full.foam || view.bodies);
   ASSERT_TRUE(view.at(Level::kCoarse).surface);
-  EXPECT_EQ(view.at(Level::kCoarse).surface->resolution_count, 128u);
+  EXPECT_EQ(view.at(Level::kCoarse).surface->count.x, 128u);
   EXPECT_FALSE(sim.requestFrame({})) << "nothing was asked for";
 }
 

@@ -193,7 +193,7 @@ TEST_F(TwoWay, FramesHaveTheLiveParticles) {
   EXPECT_EQ(particles.words.size(), 3u * particles.count);
   const auto& foam = view.at(core::Level::kFull).foam;
   ASSERT_TRUE(foam);
-  EXPECT_EQ(foam->resolution_count, 32u);
+  EXPECT_EQ(foam->count.x, 32u);
   std::uint32_t white = 0;
   for (const std::uint32_t word : foam->words) {
     for (int byte = 0; byte < 4; ++byte) white = std::max(white, word >> (8 * byte) & 0xffu);

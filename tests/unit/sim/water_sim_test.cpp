@@ -126,7 +126,7 @@ TEST_F(Water, FramesHoldTheStateToHalfAQuantum) {
   const auto& [surface, particles, foam] = view.at(core::Level::kFull);
   ASSERT_TRUE(surface && particles);
   EXPECT_EQ(view.tick, 20u);
-  const auto n = surface->resolution_count;
+  const auto n = surface->count.x;
   ASSERT_EQ(surface->words.size(), n * n / 2);
   for (std::size_t i = 0; i < std::size_t{n} * n; ++i) {
     const auto value = static_cast<std::int16_t>(surface->words[i / 2] >> (16 * (i % 2)));

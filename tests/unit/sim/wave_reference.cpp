@@ -17,7 +17,10 @@ struct Face {
 class Faces {
  public:
   Faces(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed)
-      : wave_(*scene.wave), depth_m_(bed.depth_m), n_(static_cast<int>(derived.wave->resolution_count)) {}
+      : wave_(*scene.wave),
+        depth_m_(bed.depth_m),
+        nx_(static_cast<int>(derived.wave->count_x)),
+        nz_(static_cast<int>(derived.wave->count_z)) {}
 
   [[nodiscard]] std::size_t count() const { return wave_.stencil == core::Stencil::kNinePoint ? 4 : 2; }
 
@@ -38,12 +41,12 @@ class Faces {
 
  private:
   [[nodiscard]] std::size_t index(int x, int z) const {
-    return static_cast<std::size_t>((x + n_) % n_ + n_ * ((z + n_) % n_));
+    return static_cast<std::size_t>((x + nx_) % nx_ + nx_ * ((z + nz_) % nz_));
   }
   [[nodiscard]] bool isWet(int x, int z) const {
     const bool periodic_x = wave_.boundary_minus_x == core::WaveBoundary::kPeriodic;
     const bool periodic_z = wave_.boundary_minus_z == core::WaveBoundary::kPeriodic;
-    if ((!periodic_x && (x < 0 || x >= n_)) || (!periodic_z && (z < 0 || z >= n_))) return false;
+    if ((!periodic_x && (x < 0 || x >= nx_)) || (!periodic_z && (z < 0 || z >= nz_))) return false;
     return depth_m_[index(x, z)] > 0;
   }
   /// Weight of the diagonals of a square with a dry corner; it goes to the faces beside the square.
@@ -58,7 +61,7 @@ class Faces {
 
   const core::WaveScene& wave_;
   const std::vector<double>& depth_m_;
-  int n_;
+  int nx_, nz_;
 };
 
 }  // namespace
@@ -78,15 +81,16 @@ ReferenceBed::ReferenceBed(const core::Scene& scene, const Basin& basin) {
 void referenceFlowStep(const core::Scene& scene, const Derived& derived, const ReferenceBed& bed, ReferenceWater& water,
                        const DispersionReference* dispersion) {
   const Faces faces(scene, derived, bed);
-  const int n = static_cast<int>(derived.wave->resolution_count);
+  const int nx = static_cast<int>(derived.wave->count_x);
+  const int nz = static_cast<int>(derived.wave->count_z);
   const double dt_s = derived.wave->dt_s;
   const double dt_per_dx = dt_s / derived.wave->cell_m;
   const auto forEachFace = [&](auto&& visit) {
-    for (int z = 0; z < n; ++z) {
-      for (int x = 0; x < n; ++x) {
+    for (int z = 0; z < nz; ++z) {
+      for (int x = 0; x < nx; ++x) {
         for (std::size_t k = 0; k < faces.count(); ++k) {
           const Face face = faces.at(x, z, k);
-          visit(face, water.flow_m2ps[static_cast<std::size_t>(x + n * z) * faces.count() + k], x, z, k);
+          visit(face, water.flow_m2ps[static_cast<std::size_t>(x + nx * z) * faces.count() + k], x, z, k);
         }
       }
     }
@@ -98,7 +102,7 @@ void referenceFlowStep(const core::Scene& scene, const Derived& derived, const R
   std::vector<double> leaving_m(water.elevation_m.size(), 0.0);
   forEachFace([&](const Face& face, double& flow_m2ps, int x, int z, std::size_t k) {
     // Diagonals have the loss rate of the cell that owns them.
-    const double own_per_s = bed.flow_loss_per_s[static_cast<std::size_t>(x + n * z)];
+    const double own_per_s = bed.flow_loss_per_s[static_cast<std::size_t>(x + nx * z)];
     double loss_per_s = k < 2 ? 0.5 * (own_per_s + bed.flow_loss_per_s[face.to]) : own_per_s;
     if (is_matched) {
       const std::vector<double>& layer = k == 0 ? bed.layer_x_per_s : bed.layer_z_per_s;

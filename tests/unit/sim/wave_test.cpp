@@ -37,7 +37,7 @@ class WaveOnDevice : public OnDevice {
   void set(WaterSim& sim, auto&& eta) {
     StateCopy state = sim.copyState();
     const WaveLayout w = *sim.derived().wave;
-    const auto n = static_cast<int>(w.resolution_count);
+    const auto n = static_cast<int>(w.count_x);
     for (int z = 0; z < n; ++z) {
       for (int x = 0; x < n; ++x)
         state.elevation_m[static_cast<std::size_t>(x + n * z)] = eta((x + 0.5) * w.cell_m, (z + 0.5) * w.cell_m);
@@ -201,7 +201,7 @@ TEST_F(WaveOnDevice, ACrestTravelsOneWayAtTheWaveSpeed) {
   ASSERT_TRUE(sim.start(core::BreakingWave{core::Side::kMinusX, 0.3, 1.5, 0.2}));
   const auto crestAt = [&] {
     const auto eta = sim.copyState().elevation_m;
-    const std::uint32_t n = sim.derived().wave->resolution_count;
+    const std::uint32_t n = sim.derived().wave->count_x;
     const auto row = eta.begin() + n * (n / 2);
     return (static_cast<double>(std::max_element(row, row + n) - row) + 0.5) * sim.derived().wave->cell_m;
   };

@@ -41,7 +41,7 @@ class WindSeaOnDevice : public OnDevice {
   template <typename Counts>
   double roughness(WaterSim& sim, int ticks, const Counts& counts) {
     const WaveLayout& layout = *sim.derived().wave;
-    const std::uint32_t n = layout.resolution_count;
+    const std::uint32_t n = layout.count_x;
     double sum = 0.0;
     std::size_t count = 0;
     for (int k = 0; k < ticks; ++k) {
@@ -49,8 +49,8 @@ class WindSeaOnDevice : public OnDevice {
       if (k % 10 != 0) continue;
       const auto eta_m = sim.copyState().elevation_m;
       for (std::uint32_t i = 0; i < n * n; ++i) {
-        const double x_m = (i % n + 0.5) * layout.cell_m - layout.side_m / 2;
-        const double z_m = (i / n + 0.5) * layout.cell_m - layout.side_m / 2;
+        const double x_m = (i % n + 0.5) * layout.cell_m - layout.length_m / 2;
+        const double z_m = (i / n + 0.5) * layout.cell_m - layout.length_m / 2;
         if (!counts(x_m, z_m)) continue;
         sum += eta_m[i] * eta_m[i];
         ++count;
@@ -80,7 +80,7 @@ TEST_F(WindSeaOnDevice, AgreesWithTheSumOfItsWavesInDoublePrecision) {
   conductance->bindTexel(BASIN);
   bed->bindTexel(BED);
   (*made)->fadeTo(sea);
-  const int n = static_cast<int>(layout.resolution_count);
+  const int n = static_cast<int>(layout.count_x);
   const double dt_s = layout.dt_s;
   const std::size_t values = static_cast<std::size_t>(n) * n * 4;
   const auto steps = static_cast<int>(std::ceil(10.0 / dt_s));

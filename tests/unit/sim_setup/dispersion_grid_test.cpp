@@ -15,7 +15,7 @@ constexpr int kSide = 32;
 
 /// Water of depth 1 between four walls, dry where `is_dry` says so.
 DispersionGrid basinWith(const std::function<bool(int x, int z)>& is_dry) {
-  DispersionGrid grid(kSide);
+  DispersionGrid grid({kSide, kSide});
   for (int z = 0; z < kSide; ++z) {
     for (int x = 0; x < kSide; ++x) {
       if (is_dry(x, z)) continue;
@@ -35,8 +35,9 @@ DispersionGrid basinWith(const std::function<bool(int x, int z)>& is_dry) {
 /// All grids down to 4 x 4 cells.
 struct Grids {
   explicit Grids(DispersionGrid finest) : grids{std::move(finest)} {
-    while (grids.back().n > 4) {
-      coarsened.push_back(coarsen(grids.back()));
+    while (grids.back().nx > 4) {
+      const auto half = static_cast<std::uint32_t>(grids.back().nx / 2);
+      coarsened.push_back(coarsen(grids.back(), {half, half}));
       owners.push_back(coarsened.back().owner);
       grids.push_back(coarsened.back().grid);
     }
@@ -78,8 +79,8 @@ TEST(DispersionGrid, SpreadsACoarseFluxEvenlyOverTheCellsThatACoarseCellStandsFo
       }
       std::vector<double> gained(fine.wet.size(), 0.0);
       std::vector<double> coarse_gained(coarse.wet.size(), 0.0);
-      for (int z = 0; z < fine.n; ++z) {
-        for (int x = 0; x < fine.n; ++x) {
+      for (int z = 0; z < fine.nz; ++z) {
+        for (int x = 0; x < fine.nx; ++x) {
           const std::size_t i = fine.at(x, z);
           const int bx = x / 2;
           const int bz = z / 2;

@@ -31,13 +31,14 @@ struct Laid {
   /// -div F grad(level), in cells.
   [[nodiscard]] std::vector<double> pull(const std::vector<double>& level) const {
     const auto faces = operator_f.apply(level);
-    const DispersionLevel& grid = operator_f.dispersion().levels.front();
     std::vector<double> out(level.size());
-    const int n = static_cast<int>(grid.side_count);
-    for (int z = 0; z < n; ++z) {
-      for (int x = 0; x < n; ++x) {
-        out[grid.index(x, z)] = faces[grid.index(x - 1, z)][0] - faces[grid.index(x, z)][0] +
-                                faces[grid.index(x, z - 1)][1] - faces[grid.index(x, z)][1];
+    const int nx = static_cast<int>(wave.count_x);
+    const int nz = static_cast<int>(wave.count_z);
+    const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz)); };
+    for (int z = 0; z < nz; ++z) {
+      for (int x = 0; x < nx; ++x) {
+        out[index(x, z)] =
+            faces[index(x - 1, z)][0] - faces[index(x, z)][0] + faces[index(x, z - 1)][1] - faces[index(x, z)][1];
       }
     }
     return out;
@@ -74,7 +75,7 @@ core::Scene harborLike() {
 /// Phase speed of a plane wave with (mx, mz) periods in the domain over that of the closed form.
 double speedRatio(const Laid& laid, int mx, int mz, double gravity_mps2) {
   const DispersionLevel& grid = laid.operator_f.dispersion().levels.front();
-  const int n = static_cast<int>(grid.side_count);
+  const int n = static_cast<int>(grid.count.x);
   std::vector<double> level(grid.stiffness.size());
   for (int z = 0; z < n; ++z) {
     for (int x = 0; x < n; ++x) level[grid.index(x, z)] = std::cos(2 * std::numbers::pi * (mx * x + mz * z) / n + 0.3);

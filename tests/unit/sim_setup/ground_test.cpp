@@ -77,6 +77,19 @@ TEST(Ground, OfAGridIsBilinearBetweenItsPoints) {
   EXPECT_NEAR(groundDepth(scene, 4, 3), 0.2 * (0.2 * 2 + 0.8 * 4) + 0.8 * (0.2 * 7 + 0.8 * -3), kExact);
 }
 
+TEST(Ground, OfALongWaterHasItsGridAndBeachesAtItsOwnSides) {
+  core::Scene scene = waterOf(32, 2.0);
+  scene.wave->width_m = 4;
+  scene.beaches = {{.side = core::Side::kPlusZ, .width_m = 1, .shore_depth_m = -1}};
+  EXPECT_NEAR(groundDepth(scene, 15, 2), -1.0, kExact);
+  EXPECT_NEAR(groundDepth(scene, -15, 1), 2.0, kExact);
+  scene.bed.emplace();
+  scene.bed->grid = gridOf(2, 2, {0, 1, 2, 3});
+  EXPECT_NEAR(groundDepth(scene, 16, 2), 3.0, kExact);
+  EXPECT_NEAR(groundDepth(scene, -16, 0), 1.0, kExact);
+  EXPECT_NEAR(groundDepth(scene, 8, -2), 0.75, kExact);
+}
+
 TEST(Ground, OutsideOfAGridStaysWhatItWas) {
   core::Scene scene = waterOf(10, 9.0);
   scene.bed.emplace();

@@ -45,7 +45,7 @@ TEST(Resample, KeepsTheIntegralOverTheWetAreaAndMakesNoExtremes) {
   for (const auto& [from_count, to_count] : {std::pair{64u, 32u}, {32u, 80u}, {48u, 112u}, {160u, 96u}, {33u, 64u}}) {
     const Field from = roughWithWalls(from_count);
     for (const SampleAxis axis : {kPeriodic, kSides}) {
-      const Field to = resample(from, from_count, to_count, axis, kSides);
+      const Field to = resample(from, {from_count, from_count}, {to_count, to_count}, axis, kSides);
       EXPECT_NEAR(integral(to), integral(from), 1e-12) << from_count << " to " << to_count;
       const auto [low, high] = std::ranges::minmax(from.mean);
       for (std::size_t i = 0; i < to.mean.size(); ++i) {
@@ -61,7 +61,7 @@ TEST(Resample, KeepsTheIntegralOverTheWetAreaAndMakesNoExtremes) {
 TEST(Resample, LeavesAnEvenFieldEvenBesideWalls) {
   Field from = roughWithWalls(60);
   for (std::size_t i = 0; i < from.mean.size(); ++i) from.mean[i] = from.share[i] > 0 ? 0.125 : 0.0;
-  const Field to = resample(from, 60, 144, kSides, kPeriodic);
+  const Field to = resample(from, {60, 60}, {144, 144}, kSides, kPeriodic);
   for (std::size_t i = 0; i < to.mean.size(); ++i) {
     if (to.share[i] > 0) {
       ASSERT_NEAR(to.mean[i], 0.125, 1e-13);
@@ -75,8 +75,8 @@ TEST(Resample, BringsLongWavesBack) {
     constexpr std::uint32_t kFine = 192, kCoarse = 128;
     const double k = 2 * std::numbers::pi * std::round(kCoarse / length_coarse_cells);
     const Field wave = allWet(kFine, [k](double x, double z) { return std::cos(k * x) + std::cos(k * z + 0.4); });
-    const Field back =
-        resample(resample(wave, kFine, kCoarse, kPeriodic, kPeriodic), kCoarse, kFine, kPeriodic, kPeriodic);
+    const Field back = resample(resample(wave, {kFine, kFine}, {kCoarse, kCoarse}, kPeriodic, kPeriodic),
+                                {kCoarse, kCoarse}, {kFine, kFine}, kPeriodic, kPeriodic);
     double missing = 0.0, held = 0.0;
     for (std::size_t i = 0; i < wave.mean.size(); ++i) {
       missing += std::pow(back.mean[i] - wave.mean[i], 2);
@@ -95,7 +95,7 @@ TEST(Resample, MovesTheFieldsOfFacesByHalfACell) {
   constexpr std::uint32_t kFrom = 96, kTo = 64;
   const SampleAxis faces{.shift_cells = 0.5};
   Field from = allWet(kFrom, [](double x, double z) { return 3 * (x + 0.5 / kFrom) + z; });
-  const Field to = resample(from, kFrom, kTo, faces, kSides);
+  const Field to = resample(from, {kFrom, kFrom}, {kTo, kTo}, faces, kSides);
   for (std::uint32_t z = 4; z < kTo - 4; ++z)
     for (std::uint32_t x = 4; x < kTo - 4; ++x)
       ASSERT_NEAR(to.mean[x + std::size_t{kTo} * z], 3 * (x + 1.0) / kTo + (z + 0.5) / kTo, 1e-12);
@@ -104,7 +104,7 @@ TEST(Resample, MovesTheFieldsOfFacesByHalfACell) {
 TEST(Resample, CellsThatWereDryGetTheWaterBesideThem) {
   Field field{{1.0, 2.0, 0.0, 0.0}, {1.0, 1.0, 0.0, 0.3}};
   const std::vector<char> wet = {1, 1, 1, 0};
-  settleOn(wet, 2, false, false, field);
+  settleOn(wet, {2, 2}, false, false, field);
   EXPECT_EQ(field.mean, (std::vector<double>{1.0, 2.0, 1.0, 0.0}));
   EXPECT_EQ(field.share, (std::vector<double>{1.0, 1.0, 1.0, 0.0}));
 }
@@ -112,7 +112,7 @@ TEST(Resample, CellsThatWereDryGetTheWaterBesideThem) {
 TEST(Resample, PoolsThatNoWaterReachesAreLevel) {
   Field field{std::vector<double>(16, 0.0), std::vector<double>(16, 0.0)};
   const std::vector<char> wet(16, 1);
-  settleOn(wet, 4, true, true, field);
+  settleOn(wet, {4, 4}, true, true, field);
   EXPECT_EQ(field.mean, std::vector<double>(16, 0.0));
 }
 

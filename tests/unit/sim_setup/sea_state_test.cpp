@@ -238,8 +238,8 @@ TEST(SeaState, IsFiniteForEveryValueInRange) {
             scene.storm->wind_speed_mps = wind_mps;
             scene.storm->fetch_m = fetch_m;
             WaveLayout layout;
-            layout.resolution_count = 32;
-            layout.side_m = side_m;
+            layout.count_x = layout.count_z = 32;
+            layout.length_m = layout.width_m = side_m;
             layout.cell_m = side_m / 32;
             const SeaState sea = seaState(scene, layout);
             EXPECT_LE(sea.significant_height_m, 0.5 * depth_m + 1e-12);

@@ -57,7 +57,7 @@ core::Bytes surfaceBytes() {
   core::FrameView frame;
   frame.tick = kTick;
   frame.time_s = kTimeS;
-  frame.at(core::Level::kFull).surface = core::SurfaceView{16, 8.0, 0.0009765625, words};
+  frame.at(core::Level::kFull).surface = core::SurfaceView{{16, 16}, 8.0, 8.0, 0.0009765625, words};
   return *codec::FrameEncoder().encode(v1::LAYER_SURFACE, frame);
 }
 
@@ -140,7 +140,7 @@ core::Bytes foamBytes() {
   core::FrameView frame;
   frame.tick = kTick;
   frame.time_s = kTimeS;
-  frame.at(core::Level::kFull).foam = core::FoamView{16, 8.0, words};
+  frame.at(core::Level::kFull).foam = core::FoamView{{16, 16}, 8.0, 8.0, words};
   return *codec::FrameEncoder().encode(v1::LAYER_FOAM, frame);
 }
 

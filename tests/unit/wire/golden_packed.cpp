@@ -98,7 +98,7 @@ std::vector<GoldenCase> goldenPackedFoam() {
     core::FrameView view;
     view.tick = 100 + 2 * step;
     view.time_s = 20.5;
-    view.at(core::Level::kFull).foam = core::FoamView{12, 8.0, words};
+    view.at(core::Level::kFull).foam = core::FoamView{{12, 12}, 8.0, 8.0, words};
     const codec::EncodedFrame encoded =
         encoder.encode({v1::LAYER_FOAM, v1::PACKING_PACKED}, view, core::Level::kFull, false);
     const core::Bytes& bytes = encoded.keyframe ? *encoded.keyframe : *encoded.delta;
@@ -162,7 +162,7 @@ std::vector<GoldenCase> goldenPackedSurfaces() {
     core::FrameView view;
     view.tick = 100 + 2 * static_cast<std::uint64_t>(step);
     view.time_s = 20.5;
-    view.at(core::Level::kFull).surface = core::SurfaceView{kSide, 8.0, 0.0009765625, words};
+    view.at(core::Level::kFull).surface = core::SurfaceView{{kSide, kSide}, 8.0, 8.0, 0.0009765625, words};
     const codec::EncodedFrame encoded =
         encoder.encode({v1::LAYER_SURFACE, v1::PACKING_PACKED}, view, core::Level::kFull, false);
     const core::Bytes& bytes = encoded.keyframe ? *encoded.keyframe : *encoded.delta;

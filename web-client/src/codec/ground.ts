@@ -29,7 +29,7 @@ export function readGround(bytes: Uint8Array): { ground: GroundGrid } | Malforme
   const message = parse(bytes);
   if (!message) return malformed("ground: no spindrift.v1.Ground");
   const { countX, countZ, lengthM, widthM, quantumM, rise } = message;
-  const isCount = (count: number): boolean => count >= 2 && count <= kMaxCount;
+  const isCount = (count: number): boolean => count >= 1 && count <= kMaxCount;
   if (!isCount(countX) || !isCount(countZ) || rise.length !== countX * countZ)
     return malformed(`ground: ${rise.length} heights for ${countX} x ${countZ} cells`);
   if (![lengthM, widthM, quantumM].every((size) => size > 0 && size <= 1e6)) return malformed(`ground: ${lengthM} m by ${widthM} m in steps of ${quantumM} m`);

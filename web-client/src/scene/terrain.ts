@@ -28,13 +28,13 @@ function riseAtM({ countX, countZ, lengthM, widthM, riseM }: GroundGrid, xM: num
   const clamped = (at: number, count: number): number => Math.min(Math.max(at, 0), count - 1);
   const column = clamped((xM / lengthM + 0.5) * countX - 0.5, countX);
   const row = clamped((zM / widthM + 0.5) * countZ - 0.5, countZ);
-  const left = Math.min(Math.floor(column), countX - 2);
-  const before = Math.min(Math.floor(row), countZ - 2);
+  const left = Math.floor(column);
+  const before = Math.floor(row);
   const along = (k: number): number => {
     const first = riseM[left + countX * k]!;
-    return first + (riseM[left + 1 + countX * k]! - first) * (column - left);
+    return first + (riseM[Math.min(left + 1, countX - 1) + countX * k]! - first) * (column - left);
   };
-  return along(before) + (along(before + 1) - along(before)) * (row - before);
+  return along(before) + (along(Math.min(before + 1, countZ - 1)) - along(before)) * (row - before);
 }
 
 /** Returns the distance from the side to a point inside the water; negative outside. */

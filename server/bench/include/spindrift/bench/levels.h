@@ -31,7 +31,7 @@ class LevelMeter {
     double surface_bytes = 0.0, particle_bytes = 0.0, foam_bytes = 0.0;
     double encode_ms = 0.0;
     double particle_sum = 0.0;  ///< over all frames
-    std::uint32_t resolution_count = 0;
+    core::CellCounts surface;
   };
 
   void addParts(const core::FrameView& frame);

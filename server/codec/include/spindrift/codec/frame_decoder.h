@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <spindrift/core/bytes.h>
+#include <spindrift/core/cell_counts.h>
 #include <spindrift/core/result.h>
 #include <spindrift/v1/wire.pb.h>
 
@@ -18,13 +19,14 @@ inline constexpr std::uint32_t kParticleMaxCount = 4 * 1024 * 1024;
 inline constexpr std::uint32_t kBodyMaxCount = 1024;
 inline constexpr std::size_t kServerMessageMaxBytes = 64 * 1024 * 1024;
 
-/// Elevations on a square grid, row by row (x fastest); sample (i, k) lies at x = (i + 1/2) side_m / n - side_m / 2,
-/// z likewise with k, n = resolution_count.
+/// Elevations on a grid, row by row (x fastest); sample (i, k) lies at x = (i + 1/2) length_m / count.x - length_m / 2,
+/// z likewise with k and width_m.
 struct SurfaceSamples {
-  std::uint32_t resolution_count = 0;
-  double side_m = 0.0;
+  core::CellCounts count;
+  double length_m = 0.0;
+  double width_m = 0.0;
   double quantum_m = 0.0;
-  std::vector<float> elevation_m;  ///< n * n values
+  std::vector<float> elevation_m;  ///< count.total() values
 };
 
 /// Particles in the order of the wire.
@@ -37,11 +39,12 @@ struct ParticleSamples {
   std::vector<std::uint8_t> foam;   ///< none (0) to white (255): count values
 };
 
-/// White water on the surface, with samples at the same positions as the surface's.
+/// White water on the surface, with samples that lie like a surface's.
 struct FoamSamples {
-  std::uint32_t resolution_count = 0;
-  double side_m = 0.0;
-  std::vector<std::uint8_t> foam;  ///< none (0) to white (255): n * n values
+  core::CellCounts count;
+  double length_m = 0.0;
+  double width_m = 0.0;
+  std::vector<std::uint8_t> foam;  ///< none (0) to white (255): count.total() values
 };
 
 /// Position and motion of a boat. Heading turns from +x toward +z, pitch lifts the bow, roll lowers starboard.
@@ -59,8 +62,9 @@ struct BodySample {
 /// Parses one server message. Error kInvalidInput: over kServerMessageMaxBytes, unparseable, or of an unknown kind.
 core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes);
 
-/// Decodes a frame of the surface layer. Error kInvalidInput names what is wrong: another layer or codec, a resolution
-/// of 0 or over kSurfaceMaxResolutionCount, payload length, checksum, numbers not finite or out of bounds.
+/// Decodes a frame of the surface layer. Error kInvalidInput names what is wrong: another layer or codec, a number of
+/// samples along an axis of 0 or over kSurfaceMaxResolutionCount, payload length, checksum, numbers not finite or out
+/// of bounds.
 core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame);
 
 /// Keeps the last two frames of a plane, on which a packed delta builds. One instance per subscription.

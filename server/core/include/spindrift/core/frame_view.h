@@ -14,13 +14,14 @@
 
 namespace spindrift::core {
 
-/// Elevations on a square grid, row by row (x fastest), two samples in each word, low half first:
-/// int16 = round(eta / quantum_m), saturating. Sample (i, k) sits at x = (i + 1/2) side/n - side/2, z likewise.
+/// Elevations on a grid, row by row (x fastest), two samples in each word, low half first:
+/// int16 = round(eta / quantum_m), saturating. Sample (i, k) sits at x = (i + 1/2) length/nx - length/2, z likewise.
 struct SurfaceView {
-  std::uint32_t resolution_count = 0;  ///< n, samples along each side
-  double side_m = 0.0;
+  CellCounts count;
+  double length_m = 0.0;  ///< along x
+  double width_m = 0.0;   ///< along z
   double quantum_m = 0.0;
-  std::span<const std::uint32_t> words;  ///< n*n/2 words
+  std::span<const std::uint32_t> words;  ///< nx*nz/2 words, rounded up; what no sample needs is 0
 };
 
 /// Particles in the simulation's cell order (below Level::kFull: in any order), three little-endian words each:
@@ -38,11 +39,12 @@ struct ParticleView {
 };
 
 /// Foam on the surface, one byte per sample, four samples in each word, low byte first: 0 none .. 255 white. The
-/// samples lie at the positions of the surface samples.
+/// samples lie like those of a surface.
 struct FoamView {
-  std::uint32_t resolution_count = 0;
-  double side_m = 0.0;
-  std::span<const std::uint32_t> words;  ///< n*n/4 words
+  CellCounts count;
+  double length_m = 0.0;
+  double width_m = 0.0;
+  std::span<const std::uint32_t> words;  ///< nx*nz/4 words, rounded up; what no sample needs is 0
 };
 
 /// Boats, seven words each: BodiesFixed28 in proto, little endian.

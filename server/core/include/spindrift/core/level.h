@@ -1,10 +1,14 @@
 // Levels of detail, for clients that cannot receive the full data. The client chooses a level, or the server adapts it.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+
+#include <spindrift/core/cell_counts.h>
 
 namespace spindrift::core {
 
@@ -20,8 +24,8 @@ constexpr std::size_t indexOf(Level level) {
 
 /// Limits of one level. The defaults are no limit.
 struct LevelBudget {
-  /// Samples along each side; the foam has half as many.
-  std::uint32_t surface_resolution_count = std::numeric_limits<std::uint32_t>::max();
+  /// Samples of the surface: as many as a square of so many along each side. The foam has half as many along each axis.
+  std::uint32_t surface_side_count = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t particle_count = std::numeric_limits<std::uint32_t>::max();
   double rate_hz = std::numeric_limits<double>::infinity();
 };
@@ -33,18 +37,37 @@ constexpr const LevelBudget& budgetOf(Level level) {
   return kLevelBudgets[indexOf(level)];
 }
 
+/// Returns the samples of a surface of this many cells at a level: its cells if they are within the budget, otherwise
+/// as many as fit into it in the same proportion.
+inline CellCounts surfaceSamples(CellCounts cells, Level level) {
+  const double side = budgetOf(level).surface_side_count;
+  if (static_cast<double>(cells.total()) <= side * side) return cells;
+  const double x = std::floor(side * std::sqrt(static_cast<double>(cells.x) / cells.z));
+  const double z = std::floor(x * cells.z / cells.x);
+  // Long and narrow water keeps one row or column of samples.
+  const double most = std::min(side * side, 1e9);
+  if (z < 1) return {static_cast<std::uint32_t>(std::min(most, 1.0 * cells.x)), 1};
+  if (x < 1) return {1, static_cast<std::uint32_t>(std::min(most, 1.0 * cells.z))};
+  return {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z)};
+}
+
+/// Returns the samples of a foam field beside surface samples.
+constexpr CellCounts foamSamples(CellCounts surface) {
+  return {(surface.x + 1) / 2, (surface.z + 1) / 2};
+}
+
 /// Number of levels that downsample a layer. They are the lowest ones; every other level has the data of kFull.
 struct ReducedCounts {
   std::uint32_t planes = 0;  ///< surface and foam
   std::uint32_t particles = 0;
 };
 
-/// Returns the counts for a surface with this many samples along each side and at most this many particles.
-constexpr ReducedCounts reducedCounts(std::uint32_t surface_resolution_count, std::uint32_t particle_count) {
+/// Returns the counts for a surface of this many cells and at most this many particles.
+inline ReducedCounts reducedCounts(CellCounts surface, std::uint32_t particle_count) {
   ReducedCounts out;
-  for (const LevelBudget& budget : kLevelBudgets) {
-    out.planes += surface_resolution_count > budget.surface_resolution_count ? 1 : 0;
-    out.particles += particle_count > budget.particle_count ? 1 : 0;
+  for (const Level level : kLevels) {
+    out.planes += surfaceSamples(surface, level) != surface ? 1 : 0;
+    out.particles += particle_count > budgetOf(level).particle_count ? 1 : 0;
   }
   return out;
 }

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include <spindrift/core/cell_counts.h>
 #include <spindrift/core/effect.h>
 #include <spindrift/core/scene_defaults.h>
 
@@ -47,8 +48,9 @@ enum class PressureForce { kConserving, kMean };
 /// The heightfield: eta_tt + kappa eta_t = div(g d grad eta).
 struct WaveScene {
   using Default = defaults::WaveScene;
-  std::uint32_t resolution_count = Default::resolution_count;  ///< cells along each side (x and z), multiple of 16
-  double side_m = Default::side_m;                             ///< side of the square domain
+  std::uint32_t resolution_count = Default::resolution_count;  ///< cells along x
+  double side_m = Default::side_m;                             ///< extent along x
+  double width_m = Default::width_m;                           ///< extent along z, in whole cells; 0 = side_m
   double depth_m = Default::depth_m;                           ///< still-water depth d
   double damping_per_s = Default::damping_per_s;               ///< kappa, on the velocity term only
   Stencil stencil = Stencil::kFivePoint;
@@ -56,6 +58,7 @@ struct WaveScene {
   WaveBoundary boundary_plus_x = WaveBoundary::kPeriodic;
   WaveBoundary boundary_minus_z = WaveBoundary::kPeriodic;
   WaveBoundary boundary_plus_z = WaveBoundary::kPeriodic;
+  [[nodiscard]] WaveCells cells() const { return waveCellsOf(resolution_count, side_m, width_m); }
   /// Sets all four sides.
   void setBoundaries(WaveBoundary all) {
     boundary_minus_x = boundary_plus_x = boundary_minus_z = boundary_plus_z = all;
@@ -212,9 +215,9 @@ struct ParticleScene {
   double layers_count = Default::layers_count;        ///< thickness of the resting band in particle spacings
   double patch_shift_x_m = Default::patch_shift_x_m;  ///< patch centre
   double patch_shift_z_m = Default::patch_shift_z_m;
-  double patch_scale = Default::patch_scale;  ///< patch side over wave side (over `box_side_m` without a wave), 0..1
-  double box_side_m = Default::box_side_m;    ///< side of the horizontal box when the scene has no wave
-  double headroom_m = Default::headroom_m;    ///< height of the particles' domain above y = 0
+  double patch_scale = Default::patch_scale;      ///< patch over water, along x and along z; 0..1
+  double box_side_m = Default::box_side_m;        ///< side of the horizontal box when the scene has no wave
+  double headroom_m = Default::headroom_m;        ///< height of the particles' domain above y = 0
   double support_ratio = Default::support_ratio;  ///< H / s
   double rest_density_kgpm3 = Default::rest_density_kgpm3;
   double sound_speed_mps = Default::sound_speed_mps;  ///< c0; stiffness k = c0^2 in p = k (rho - rho0)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <spindrift/core/cell_counts.h>
 #include <spindrift/core/effect.h>
 #include <spindrift/scene/fields.h>
 #include <spindrift/v1/scene.pb.h>
@@ -20,6 +21,12 @@ struct WaterExtents {
   [[nodiscard]] double shorterSide_m() const { return std::min(side_x_m, side_z_m); }
 };
 WaterExtents waterExtentsOf(const v1::Scene& scene);
+
+/// The cells of a wave; fields that are left out have their defaults.
+core::WaveCells waveCellsOf(const v1::WaveScene& wave);
+
+/// Checks that the width is a whole number of cells, and that there are not too many of them. Each field is valid.
+void checkCells(const v1::WaveScene& wave, std::vector<FieldIssue>& issues);
 
 /// Returns the violations by a splash or a breaking wave in this scene; paths start with "splash" or "breaking_wave".
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene);

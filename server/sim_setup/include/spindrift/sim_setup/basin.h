@@ -11,7 +11,7 @@
 
 namespace spindrift::sim {
 
-/// n x n cells, x fastest.
+/// nx x nz cells, x fastest.
 struct Basin {
   bool is_flat = false;  ///< no obstacles, beaches or bed, whatever the parameters: one depth, only sides are closed
   std::vector<float> depth_m;  ///< still depth at cell centres; 0 inside obstacles and on dry beaches
@@ -33,7 +33,7 @@ double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
 
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);
 
-/// The ground for particles and boats, n x n, for shaders/common/terrain_texels.glsl.
+/// The ground for particles and boats, nx x nz, for shaders/common/terrain_texels.glsl.
 struct Terrain {
   /// Signed distance to the nearest obstacle, its gradient (x, z), still depth (0 on dry ground at the rest level,
   /// negative on land, minus the obstacle's height inside one).

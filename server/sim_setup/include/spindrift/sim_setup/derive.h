@@ -2,6 +2,7 @@
 // conversion between the two; a pure function.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -50,14 +51,24 @@ struct ParticleLayout {
 };
 
 struct WaveLayout {
-  std::uint32_t resolution_count = 0;  ///< n
-  double side_m = 0.0;
+  std::uint32_t count_x = 0;  ///< cells along x
+  std::uint32_t count_z = 0;
+  double length_m = 0.0;  ///< along x: count_x * cell_m
+  double width_m = 0.0;   ///< along z: count_z * cell_m
   double cell_m = 0.0;
+  bool is_periodic_x = false;
+  bool is_periodic_z = false;
   double speed_mps = 0.0;            ///< sqrt(g d)
   double dispersing_depth_m = 0.0;   ///< d if waves disperse, otherwise 0
   std::uint32_t substeps_count = 1;  ///< wave steps per tick
   double dt_s = 0.0;                 ///< of a wave step
   double courant = 0.0;              ///< c dt / dx
+
+  [[nodiscard]] core::CellCounts counts() const { return {count_x, count_z}; }
+  /// Half as many along each axis, rounded up: the cells of the foam field.
+  [[nodiscard]] core::CellCounts foamCounts() const { return {(count_x + 1) / 2, (count_z + 1) / 2}; }
+  [[nodiscard]] double longerSide_m() const { return std::max(length_m, width_m); }
+  [[nodiscard]] double shorterSide_m() const { return std::min(length_m, width_m); }
 };
 
 /// Everything that follows from a scene.

@@ -20,6 +20,8 @@
 
 namespace spindrift::sim {
 
+using core::CellCounts;
+
 /// Rational terms of F. Two fit in one texel of a cell: (x face, z face) times two.
 inline constexpr std::size_t kPoleCount = 2;
 
@@ -45,37 +47,42 @@ struct Poles {
 /// waves of 8 cells and longer and 2.5 % for 4 cells, group speeds within 4 % for waves of 8 cells and longer.
 [[nodiscard]] Poles polesAt(double depth_cells);
 
-/// One grid of the V-cycle: n x n cells, x fastest. Each cell owns the faces toward +x and +z. A face variable is the
+/// One grid of the V-cycle: cells x fastest. Each cell owns the faces toward +x and +z. A face variable is the
 /// flux through the open part of the face per width of the whole face. Arrays of four: x face of pole 0 and 1, then z
 /// face of pole 0 and 1.
 struct DispersionLevel {
-  std::uint32_t side_count = 0;
+  /// Of the storage: even but for the coarsest grid, so an axis may end with a row of dry cells beyond the water.
+  CellCounts count;
   /// 1/d of the x face and of the z face (of coarse faces beside walls: their resistance), over their open share; b_0 d
   /// and b_1 d of the cell, over its wet share and the squared cell size of this grid; all times the scene's depth. 0
   /// where closed or dry.
   std::vector<std::array<double, 4>> stiffness;
-  /// f_0 and f_1 of the cell: spreadOf() the grid times the smallest 1/d of its four faces (over their open share),
-  /// times the scene's depth; beside closed faces 0, in a flat basin as elsewhere. Empty in the finest grid.
-  std::vector<std::array<double, kPoleCount>> spread;
+  /// f_0 and f_1 of the cell along x, then along z: spreadOf() the grid times the smallest 1/d of its four faces (over
+  /// their open share), times the scene's depth; beside closed faces 0, in a flat basin as elsewhere. In a flat basin
+  /// with cells beyond the water, the smallest along each axis. Empty in the finest grid.
+  std::vector<std::array<double, 4>> spread;
   /// Weights of the x and the z face in the coarser grid's faces E, W, N, S of the same block. Empty in the coarsest
   /// grid.
   std::vector<std::array<double, 4>> from_coarse_x;
   std::vector<std::array<double, 4>> from_coarse_z;
 
   [[nodiscard]] std::size_t index(int x, int z) const {
-    const int n = static_cast<int>(side_count);
-    return static_cast<std::size_t>((x + n) % n + n * ((z + n) % n));
+    const int nx = static_cast<int>(count.x);
+    const int nz = static_cast<int>(count.z);
+    return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz));
   }
 };
 
-/// All numbers fit in 16 bits (roundToHalf()), except where the basin is flat.
+/// All numbers fit in 16 bits (roundToHalf()), except where it is flat.
 struct Dispersion {
   double depth_m = 0.0;  ///< the scene's
   double cell_m = 0.0;
-  /// Finest first, at least two. The resolution alone decides how many.
+  CellCounts water;  ///< cells of the wave: the first ones along each axis of the finest grid
+  /// Finest first, at least two; their cells are those of dispersionGrids().
   std::vector<DispersionLevel> levels;
   std::vector<std::array<double, 4>> root_c;  ///< sqrt(c_j * scene's depth [m]) on the finest faces; 0 where closed
-  bool is_flat = false;                       ///< as in Basin
+  /// A flat basin whose grids have no cells beyond the water: each table has one value, and 0 at closed faces.
+  bool is_flat = false;
 };
 
 /// f_j d of a grid of the V-cycle, 0 being the finest. On coarse grids K phi = phi/d - grad(b_j d div phi - f_j D phi),
@@ -93,16 +100,24 @@ inline constexpr double kSweepWeight = DISPERSION_SWEEP_WEIGHT;
 /// Sweeps before and after the coarser grid, and in the coarsest one.
 inline constexpr int kSweepCount = 2;
 inline constexpr int kCoarsestSweepCount = DISPERSION_COARSEST_SWEEPS;
-/// One work group solves the grids from kBottomSide cells per side down, or the coarsest grid alone if it has more, up
-/// to kBottomSideMax.
-inline constexpr std::uint32_t kBottomSide = DISPERSION_BOTTOM_SIDE;
-inline constexpr std::uint32_t kBottomSideMax = DISPERSION_BOTTOM_SIDE_MAX;
+/// Returns the storage of each grid of the V-cycle, finest first. Each has half as many cells along each axis as the
+/// one before, rounded up; where there is no partner to halve with, a row or column of dry cells is added, which a
+/// periodic side cannot have. The last one has at most four cells along each axis, or, at least four grids down, an odd
+/// number along one of them. Empty where a periodic side stands in the way: multiples of 16 up to 496 always have
+/// grids.
+[[nodiscard]] std::vector<CellCounts> dispersionGrids(const WaveLayout& layout);
 
-/// Returns whether a wave of so many cells per side can be halved down to the grids of the bottom.
-[[nodiscard]] bool canDisperse(std::uint32_t resolution_count);
+/// Returns whether the wave has grids for the V-cycle.
+[[nodiscard]] inline bool canDisperse(const WaveLayout& layout) {
+  return !dispersionGrids(layout).empty();
+}
 
-/// Bytes of its buffers on the device, at most.
-[[nodiscard]] std::uint64_t dispersionBytes(std::uint32_t resolution_count);
+/// Returns the number of the first grid that one work group solves, with all coarser ones: one with at most
+/// DISPERSION_BOTTOM_SIDE squared cells, or the coarsest.
+[[nodiscard]] std::size_t bottomOf(const std::vector<CellCounts>& grids);
+
+/// Bytes of its buffers on the device, at most. Precondition: canDisperse().
+[[nodiscard]] std::uint64_t dispersionBytes(const WaveLayout& layout);
 
 /// Largest stable step [s]: 2 over the highest frequency of the grid, with the dispersion's coefficients at any depth
 /// up to depth_m, with a margin.

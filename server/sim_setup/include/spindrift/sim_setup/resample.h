@@ -1,10 +1,12 @@
-// Moves a field from one square grid to another one over the same square, keeping its integral. Pure functions.
+// Moves a field from one grid to another one over the same rectangle, keeping its integral. Pure functions.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include <spindrift/core/cell_counts.h>
 
 namespace spindrift::sim {
 
@@ -16,21 +18,21 @@ struct SampleAxis {
   bool is_periodic = false;
 };
 
-/// n x n samples, x fastest.
+/// nx x nz samples, x fastest.
 struct Field {
   std::vector<double> mean;   ///< over the wet part of each cell; 0 where there is none
   std::vector<double> share;  ///< wet share of each cell, 0 to 1
 };
 
-/// Returns the field on to_count x to_count cells. The integral over the wet area (the sum of mean x share x cell area)
+/// Returns the field on `to` cells. The integral over the wet area (the sum of mean x share x cell area)
 /// stays the same but for rounding in double precision, and no mean is above or below all means of `from`. Shares are
 /// carried by area. Each axis uses the piecewise parabolic method (Colella & Woodward 1984, equations 1.6 to 1.10, with
 /// fourth-order edges on the even grid); parabolas do not reach across dry cells.
-Field resample(const Field& from, std::uint32_t from_count, std::uint32_t to_count, SampleAxis x, SampleAxis z);
+Field resample(const Field& from, core::CellCounts from_count, core::CellCounts to, SampleAxis x, SampleAxis z);
 
 /// Gives wet cells without water (share of 0 in `field`) the mean of their wet neighbours, from the edge inwards, and
 /// 0 where no neighbour has any; dry cells become 0. Afterwards the share is 1 in wet cells and 0 in dry ones.
-void settleOn(std::span<const char> wet, std::uint32_t side_count, bool periodic_x, bool periodic_z, Field& field);
+void settleOn(std::span<const char> wet, core::CellCounts count, bool periodic_x, bool periodic_z, Field& field);
 
 /// Returns whole numbers near `values` (0 where not wet) whose sum is exactly `total`: the difference of the sums is
 /// spread evenly over the wet cells, and rounding is passed on from cell to cell. Without a wet cell: all 0.

@@ -70,6 +70,6 @@ struct WindSeaSpectrum {
 [[nodiscard]] SeaState seaState(const core::Scene& scene, const WaveLayout& layout);
 
 /// Bytes of its buffers on the device, at most.
-[[nodiscard]] std::uint64_t windSeaBytes(std::uint32_t resolution_count);
+[[nodiscard]] std::uint64_t windSeaBytes(core::CellCounts cells);
 
 }  // namespace spindrift::sim
