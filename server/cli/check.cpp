@@ -51,7 +51,6 @@ void printBed(const core::Bed& bed, double depth_m) {
                shallowest, deepest);
   }
   if (!bed.shapes.empty()) fmt::print(", shapes {}", bed.shapes.size());
-  if (bed.manning_spm13 > 0) fmt::print(", Manning {:.3g} s/m^(1/3)", bed.manning_spm13);
   fmt::print("\n");
 }
 

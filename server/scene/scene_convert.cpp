@@ -260,7 +260,6 @@ core::Bed toCore(const v1::Bed& in) {
   out.floor_depth_m = in.floor_depth_m();
   if (in.has_grid()) out.grid = toCore(in.grid());
   for (const v1::BedShape& shape : in.shapes()) out.shapes.push_back(toCore(shape));
-  out.manning_spm13 = in.manning_spm13();
   return out;
 }
 

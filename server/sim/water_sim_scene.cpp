@@ -118,7 +118,6 @@ BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
   wave.damping_per_s = 0.0;
   wave.steepening_ratio = 0.0;
   wave.fixed_substeps_count = 0;
-  if (bed) bed->manning_spm13 = 0.0;
 }
 
 }  // namespace spindrift::sim

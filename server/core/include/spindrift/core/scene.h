@@ -190,7 +190,6 @@ struct Bed {
   double floor_depth_m = Default::floor_depth_m;  ///< 0 = the depth of the water
   std::optional<DepthGrid> grid;
   std::vector<BedShape> shapes;
-  double manning_spm13 = Default::manning_spm13;  ///< bottom friction; linear waves do not feel it
 
   bool operator==(const Bed&) const = default;
 };
