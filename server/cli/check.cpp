@@ -12,6 +12,7 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/setting.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/ground.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
@@ -42,6 +43,17 @@ const char* nameOf(core::Side side) {
   return kNames[static_cast<int>(side)];
 }
 
+void printBed(const core::Bed& bed, double depth_m) {
+  fmt::print("  bed        floor at a depth of {:.4g} m", bed.floor_depth_m > 0 ? bed.floor_depth_m : depth_m);
+  if (bed.grid) {
+    const auto [shallowest, deepest] = std::ranges::minmax(*bed.grid->depths_m);
+    fmt::print(", grid of {} x {} points from {:.4g} to {:.4g} m", bed.grid->columns_count, bed.grid->rows_count,
+               shallowest, deepest);
+  }
+  if (!bed.shapes.empty()) fmt::print(", shapes {}", bed.shapes.size());
+  fmt::print("\n");
+}
+
 void printWave(const core::Scene& scene) {
   const core::WaveScene& wave = *scene.wave;
   fmt::print("  sides      -x {}, +x {}, -z {}, +z {}", nameOf(wave.boundary_minus_x), nameOf(wave.boundary_plus_x),
@@ -57,6 +69,11 @@ void printWave(const core::Scene& scene) {
   for (const core::Beach& beach : scene.beaches) {
     fmt::print("  beach      at {}, {:.3g} m wide, up to a depth of {:.3g} m\n", nameOf(beach.side), beach.width_m,
                beach.shore_depth_m);
+  }
+  if (scene.bed) printBed(*scene.bed, wave.depth_m);
+  for (const core::Gauge& gauge : scene.gauges) {
+    fmt::print("  gauge      {} at x {:.4g} m, z {:.4g} m, where the ground is {:.4g} m deep\n", gauge.name, gauge.x_m,
+               gauge.z_m, sim::groundDepth(scene, gauge.x_m, gauge.z_m));
   }
 }
 

@@ -109,6 +109,15 @@ core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {
     time.set_name(pass.name);
     time.set_ms(pass.ms);
   }
+  for (const core::DiagnosticsView::GaugeNow& gauge : in.gauges) {
+    v1::GaugeReading& reading = *out.add_gauges();
+    reading.set_name(gauge.name);
+    reading.set_elevation_m(gauge.elevation_m);
+    reading.set_velocity_x_mps(gauge.velocity_x_mps);
+    reading.set_velocity_z_mps(gauge.velocity_z_mps);
+    reading.set_highest_m(gauge.highest_m);
+    reading.set_lowest_m(gauge.lowest_m);
+  }
   core::Bytes bytes(message.ByteSizeLong());
   message.SerializeWithCachedSizesToArray(bytes.data());
   return core::share(std::move(bytes));

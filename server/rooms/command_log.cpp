@@ -19,8 +19,8 @@ using core::ErrorCode;
 
 constexpr std::string_view kMagic = "spinrec1";
 constexpr std::size_t kPrefixBytes = 8;
-/// Larger than any scene.
-constexpr std::uint32_t kRecordMaxBytes = 4u << 20;
+/// Larger than any scene: the points of a bed take up to 4 MiB.
+constexpr std::uint32_t kRecordMaxBytes = 8u << 20;
 
 std::array<char, kPrefixBytes> prefixOf(std::uint32_t length, std::uint32_t crc) {
   std::array<char, kPrefixBytes> out{};

@@ -85,7 +85,7 @@ std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
 
 void Room::publishSnapshot() {
   auto fresh = std::make_shared<const RoomSnapshot>(
-      RoomSnapshot{water_->scene(), water_->sceneVersion(), paused_, clock_.speed(), boats_});
+      RoomSnapshot{water_->scene(), water_->sceneVersion(), paused_, clock_.speed(), boats_, water_->sim().gauges()});
   const std::lock_guard lock(snapshot_mutex_);
   snapshot_ = std::move(fresh);
 }
@@ -280,6 +280,21 @@ void Room::handOverFrames() {
   }
 }
 
+std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& water) {
+  std::vector<core::DiagnosticsView::GaugeNow> out;
+  if (!water.gauges()) return out;
+  const std::vector<sim::GaugeHistory::Now> now = water.gauges()->now();
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    out.push_back({.name = water.scene().gauges[k].name,
+                   .elevation_m = now[k].reading.elevation_m,
+                   .velocity_x_mps = now[k].reading.velocity_x_mps,
+                   .velocity_z_mps = now[k].reading.velocity_z_mps,
+                   .highest_m = now[k].highest_m,
+                   .lowest_m = now[k].lowest_m});
+  }
+  return out;
+}
+
 core::DiagnosticsView Room::diagnostics() {
   if (step_count_ > 0) last_step_ms_ = step_ms_sum_ / step_count_;
   sim::WaterSim& water = water_->sim();
@@ -311,6 +326,7 @@ core::DiagnosticsView Room::diagnostics() {
       last_passes_.push_back({pass.name, pass.total_ms / step_count_});
   }
   out.passes = last_passes_;
+  out.gauges = gaugesNow(water);
   step_ms_sum_ = 0.0;
   step_count_ = 0;
   return out;

@@ -1,4 +1,7 @@
 // Proto to core, field for field.
+#include <cstring>
+#include <memory>
+
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
@@ -199,6 +202,73 @@ core::Beach toCore(const v1::Beach& in) {
   return {.side = toCore(in.side()), .width_m = in.width_m(), .shore_depth_m = in.shore_depth_m()};
 }
 
+core::DepthGrid toCore(const v1::DepthGrid& in) {
+  core::DepthGrid out;
+  out.x_m = in.x_m();
+  out.z_m = in.z_m();
+  out.length_m = in.length_m();
+  out.width_m = in.width_m();
+  const std::size_t row_bytes = in.points_size() > 0 ? in.points(0).size() : 0;
+  out.columns_count = static_cast<std::uint32_t>(row_bytes / sizeof(float));
+  out.rows_count = static_cast<std::uint32_t>(in.points_size());
+  // derive() refuses a grid whose rows differ: it has fewer depths than points.
+  std::vector<float> depths_m;
+  for (const std::string& row : in.points()) {
+    if (row.size() != row_bytes) break;
+    const std::size_t before = depths_m.size();
+    depths_m.resize(before + out.columns_count);
+    std::memcpy(depths_m.data() + before, row.data(), out.columns_count * sizeof(float));
+  }
+  out.depths_m = std::make_shared<const std::vector<float>>(std::move(depths_m));
+  return out;
+}
+
+core::BedShape toCore(const v1::BedShape& in) {
+  if (in.has_slope()) {
+    const v1::BedSlope& slope = in.slope();
+    return core::BedSlope{.x_m = slope.x_m(),
+                          .z_m = slope.z_m(),
+                          .heading_deg = slope.heading_deg(),
+                          .gradient_ratio = slope.gradient_ratio(),
+                          .length_m = slope.length_m()};
+  }
+  if (in.has_sill()) {
+    const v1::BedSill& sill = in.sill();
+    return core::BedSill{.x_m = sill.x_m(),
+                         .z_m = sill.z_m(),
+                         .heading_deg = sill.heading_deg(),
+                         .length_m = sill.length_m(),
+                         .crest_width_m = sill.crest_width_m(),
+                         .flank_width_m = sill.flank_width_m(),
+                         .height_m = sill.height_m()};
+  }
+  if (in.has_channel()) {
+    const v1::BedChannel& channel = in.channel();
+    return core::BedChannel{.x_m = channel.x_m(),
+                            .z_m = channel.z_m(),
+                            .heading_deg = channel.heading_deg(),
+                            .length_m = channel.length_m(),
+                            .bottom_width_m = channel.bottom_width_m(),
+                            .bank_width_m = channel.bank_width_m(),
+                            .cut_m = channel.cut_m()};
+  }
+  v1::BedCone cone = in.cone();
+  fillMessageDefaults(cone);
+  return core::BedCone{.x_m = cone.x_m(),
+                       .z_m = cone.z_m(),
+                       .toe_radius_m = cone.toe_radius_m(),
+                       .crest_radius_m = cone.crest_radius_m(),
+                       .height_m = cone.height_m()};
+}
+
+core::Bed toCore(const v1::Bed& in) {
+  core::Bed out;
+  out.floor_depth_m = in.floor_depth_m();
+  if (in.has_grid()) out.grid = toCore(in.grid());
+  for (const v1::BedShape& shape : in.shapes()) out.shapes.push_back(toCore(shape));
+  return out;
+}
+
 core::StormScene toCore(const v1::StormScene& in) {
   core::StormScene out;
   out.level_ratio = in.level_ratio();
@@ -288,6 +358,12 @@ void fillDefaults(v1::Scene& scene) {
   scene.set_setting(settingOf(scene));
 }
 
+v1::Scene forClients(const v1::Scene& scene) {
+  v1::Scene out = scene;
+  if (out.bed().has_grid()) out.mutable_bed()->mutable_grid()->clear_points();
+  return out;
+}
+
 core::Scene toCore(const v1::Scene& scene) {
   v1::Scene in = scene;
   fillDefaults(in);
@@ -306,6 +382,9 @@ core::Scene toCore(const v1::Scene& scene) {
   if (in.has_foam()) out.foam = toCore(in.foam());
   for (const v1::Obstacle& obstacle : in.obstacles()) out.obstacles.push_back(toCore(obstacle));
   for (const v1::Beach& beach : in.beaches()) out.beaches.push_back(toCore(beach));
+  if (in.has_bed()) out.bed = toCore(in.bed());
+  for (const v1::Gauge& gauge : in.gauges())
+    out.gauges.push_back({.name = gauge.name(), .x_m = gauge.x_m(), .z_m = gauge.z_m()});
   if (in.has_boats()) out.boats = toCore(in.boats());
   if (in.has_storm()) out.storm = toCore(in.storm());
   out.stream.frame_rate_hz = in.stream().frame_rate_hz();

@@ -17,6 +17,8 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
+#include "depth_grid.h"
+
 namespace spindrift::scene {
 namespace {
 
@@ -209,7 +211,8 @@ core::Error unavailable(const std::string& file, const std::string& why) {
 }  // namespace
 
 core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
-                                       std::optional<v1::Fidelity> fidelity) {
+                                       std::optional<v1::Fidelity> fidelity,
+                                       const std::optional<std::filesystem::path>& folder) {
   const auto invalid = [&](std::string message) {
     return core::Error{core::ErrorCode::kInvalidInput, std::move(message)};
   };
@@ -239,6 +242,7 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
     for (FieldIssue& issue : checkStructure(scene)) issues.push_back(std::move(issue));
     if (numbers_are_fine) {
       for (FieldIssue& issue : checkNumbers(scene)) issues.push_back(std::move(issue));
+      if (scene.bed().has_grid()) readDepthGrid(*scene.mutable_bed()->mutable_grid(), folder, issues);
     }
   }
   for (FieldIssue& issue : issues) {
@@ -270,7 +274,7 @@ core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file, std::op
         core::ErrorCode::kInvalidInput,
         label + ": is bigger than " + std::to_string(kSceneFileMaxBytes) + " bytes; a scene is a small text"};
   }
-  return parseSceneText(text, label, fidelity);
+  return parseSceneText(text, label, fidelity, file.parent_path());
 }
 
 }  // namespace spindrift::scene

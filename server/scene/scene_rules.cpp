@@ -7,6 +7,8 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
+#include "bed_rules.h"
+
 namespace spindrift::scene {
 namespace {
 
@@ -96,6 +98,8 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   if (scene.obstacles_size() > 0) needsWave("obstacles[0]", "the obstacles");
   if (scene.beaches_size() > 0) needsWave("beaches[0]", "the beaches");
   if (scene.has_storm()) needsWave("storm", "storm");
+  if (scene.has_bed()) needsWave("bed", "bed");
+  if (scene.gauges_size() > 0) needsWave("gauges[0]", "the gauges");
 }
 
 void checkCount(int count, int max_count, const std::string& path, const char* what, std::vector<FieldIssue>& issues) {
@@ -209,6 +213,7 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
   checkText(scene.description(), kDescriptionMaxBytes, "description", issues);
   checkParts(scene, issues);
   checkLists(scene, issues);
+  checkBedStructure(scene, issues);
   if (scene.events_size() > kSceneEventMaxCount) {
     addRange(issues, "events[" + std::to_string(kSceneEventMaxCount) + "]",
              std::to_string(scene.events_size()) + " events are more than " + std::to_string(kSceneEventMaxCount) +

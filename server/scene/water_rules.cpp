@@ -8,6 +8,8 @@
 #include <spindrift/core/text.h>
 #include <spindrift/scene/scene_rules.h>
 
+#include "bed_rules.h"
+
 namespace spindrift::scene {
 namespace {
 
@@ -289,6 +291,7 @@ std::vector<FieldIssue> checkWater(const v1::Scene& scene) {
     checkSides(scene.wave(), issues);
     checkObstacles(scene, issues);
     checkBeaches(scene, issues);
+    checkBedNumbers(scene, issues);
   }
   if (scene.has_boats()) checkBoats(scene, issues);
   return issues;

@@ -119,7 +119,8 @@ void ScriptClient::take(core::ByteView bytes) {
       return;
     }
     case v1::ServerMessage::kDiagnostics:
-      return frame(v1::LAYER_DIAGNOSTICS, parsed->diagnostics().state_id());
+      diagnostics_ = std::move(*parsed->mutable_diagnostics());
+      return frame(v1::LAYER_DIAGNOSTICS, diagnostics_->state_id());
     case v1::ServerMessage::kAck:
       return answered(parsed->ack().command_id(), {.ack = parsed->ack(), .reject = {}});
     case v1::ServerMessage::kReject:

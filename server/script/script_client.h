@@ -59,6 +59,8 @@ class ScriptClient {
   [[nodiscard]] const std::optional<End>& end() const { return end_; }
   [[nodiscard]] const Answer* answerTo(std::uint64_t command_id) const;
   [[nodiscard]] const v1::LayerFrame* newest(v1::Layer layer) const;
+  /// The newest diagnostics; null before the first.
+  [[nodiscard]] const v1::Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
   [[nodiscard]] const LayerTally& tally(v1::Layer layer) const { return tallies_[static_cast<std::size_t>(layer)]; }
   [[nodiscard]] const v1::People& people() const { return people_; }
   [[nodiscard]] std::uint64_t eventCount(v1::RoomEventKind kind) const;
@@ -89,6 +91,7 @@ class ScriptClient {
   std::map<std::uint64_t, Answer> answers_;  ///< one per command of the script
   std::array<std::optional<v1::LayerFrame>, v1::Layer_ARRAYSIZE> newest_;
   std::array<LayerTally, v1::Layer_ARRAYSIZE> tallies_;
+  std::optional<v1::Diagnostics> diagnostics_;
   v1::People people_;
   std::map<v1::RoomEventKind, std::uint64_t> events_;
   std::uint64_t received_bytes_ = 0;

@@ -45,6 +45,13 @@ std::string checkStep(const v1::ScriptStep& step, const std::set<std::string>& n
     }
     case v1::ScriptStep::kBoat:
       return step.boat().boat().empty() == (step.boat().boat_id() == 0) ? "name the boat, or give its boat_id" : "";
+    case v1::ScriptStep::kGauge: {
+      const v1::ExpectGauge& gauge = step.gauge();
+      if (gauge.gauge().empty()) return "gauge.gauge is empty: name a gauge of the scene";
+      const bool has_bound = gauge.has_min_m() || gauge.has_max_m() || gauge.has_highest_min_m() ||
+                             gauge.has_highest_max_m() || gauge.has_lowest_min_m() || gauge.has_lowest_max_m();
+      return has_bound ? "" : "gauge needs a bound, such as min_m or highest_max_m";
+    }
     case v1::ScriptStep::kSurface:
       return step.surface().has_min_m() || step.surface().has_max_m() ? "" : "surface needs min_m or max_m";
     default:

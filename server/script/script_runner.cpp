@@ -128,6 +128,8 @@ class Runner {
         return client.end() ? Outcome{false, "the connection ended: " + endOf(client)} : Outcome{true, ""};
       case v1::ScriptStep::kSurface:
         return expectSurface(step.surface(), client);
+      case v1::ScriptStep::kGauge:
+        return expectGauge(step.gauge(), client);
       case v1::ScriptStep::kBoat:
         return expectBoat(step.boat(), client);
       case v1::ScriptStep::kParticles:
@@ -205,6 +207,33 @@ class Runner {
     const std::int64_t k = index(z_m, surface->width_m, surface->count.z);
     if (i < 0 || k < 0 || i >= surface->count.x || k >= surface->count.z) return std::nullopt;
     return surface->elevation_m[static_cast<std::size_t>(k * surface->count.x + i)];
+  }
+
+  Outcome expectGauge(const v1::ExpectGauge& step, ScriptClient& client) {
+    client.needLayer(v1::LAYER_DIAGNOSTICS);
+    std::string seen = "no diagnostics";
+    std::uint64_t looked_count = 0;
+    bool held = false;
+    const auto holds = [&] {
+      if (held || client.tally(v1::LAYER_DIAGNOSTICS).frame_count == looked_count) return held;
+      looked_count = client.tally(v1::LAYER_DIAGNOSTICS).frame_count;
+      const auto& gauges = client.diagnostics()->gauges();
+      const auto gauge = std::ranges::find(gauges, step.gauge(), &v1::GaugeReading::name);
+      if (gauge == gauges.end()) {
+        seen = fmt::format("the scene has no gauge \"{}\"", step.gauge());
+        return false;
+      }
+      seen = fmt::format("elevation {:.4f} m, highest {:.4f} m, lowest {:.4f} m", gauge->elevation_m(),
+                         gauge->highest_m(), gauge->lowest_m());
+      held = (!step.has_min_m() || gauge->elevation_m() >= step.min_m()) &&
+             (!step.has_max_m() || gauge->elevation_m() <= step.max_m()) &&
+             (!step.has_highest_min_m() || gauge->highest_m() >= step.highest_min_m()) &&
+             (!step.has_highest_max_m() || gauge->highest_m() <= step.highest_max_m()) &&
+             (!step.has_lowest_min_m() || gauge->lowest_m() >= step.lowest_min_m()) &&
+             (!step.has_lowest_max_m() || gauge->lowest_m() <= step.lowest_max_m());
+      return held;
+    };
+    return await(client, patience_s(step), holds, [&] { return seen; });
   }
 
   Outcome expectBoat(const v1::ExpectBoat& step, ScriptClient& client) {

@@ -73,6 +73,19 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
        [](Sample r) { return r.vitals->diagnostics.nonfinite_count; });
   each("room_escaped_total", "counter", "Particles that left the domain, seen by the watchdog.",
        [](Sample r) { return r.vitals->diagnostics.escaped_count; });
+  using Reading = core::DiagnosticsView::GaugeNow;
+  const auto eachGauge = [&](const char* name, const char* help, double Reading::*value) {
+    page.head(name, "gauge", help);
+    for (const RoomSample& room : rooms) {
+      for (const Reading& gauge : room.vitals->diagnostics.gauges)
+        page.sample(fmt::format("{},gauge=\"{}\"", room.label, gauge.name), gauge.*value);
+    }
+  };
+  eachGauge("room_gauge_elevation_meters", "Elevation of the water at a gauge of the scene.", &Reading::elevation_m);
+  eachGauge("room_gauge_highest_meters", "The highest since the start of the scene.", &Reading::highest_m);
+  eachGauge("room_gauge_lowest_meters", "The lowest since the start of the scene.", &Reading::lowest_m);
+  eachGauge("room_gauge_velocity_x_mps", "Velocity of the water along x at a gauge.", &Reading::velocity_x_mps);
+  eachGauge("room_gauge_velocity_z_mps", "Velocity of the water along z at a gauge.", &Reading::velocity_z_mps);
   page.head("room_pass_seconds", "gauge", "Device time of a pass in a tick, where the device can tell.");
   for (const RoomSample& room : rooms) {
     for (const auto& pass : room.vitals->diagnostics.passes) {

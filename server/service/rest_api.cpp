@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/rest_api.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/api_message.h>
@@ -187,19 +188,60 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     fillRoomInfo(*room, out);
     return respond(json(200, out));
   }
+  if (call.path[2] == "gauges") return gauges(call, *room, respond);
   if (call.path.size() != 3) return respond(std::nullopt);
   const std::string& part = call.path[2];
   if (part == "commands") {
     if (method != "POST") return respond(wrongMethod("POST"));
     return command(call, room, std::move(respond));
   }
-  if (part != "scene" && part != "parameters" && part != "people") return respond(std::nullopt);
+  if (part != "scene" && part != "parameters" && part != "people" && part != "ground") return respond(std::nullopt);
   if (method != "GET") return respond(wrongMethod("GET"));
-  if (part == "scene") return respond(json(200, room->snapshot()->scene));
+  if (part == "ground") {
+    const auto ground = ground_.of(room);
+    if (!ground) return respond(problem(404, "the scene has no wave, and so no ground"));
+    return respond(HttpReply{.status = 200, .content_type = "application/x-protobuf", .body = *ground});
+  }
+  if (part == "scene") return respond(json(200, scene::forClients(room->snapshot()->scene)));
   if (part == "people") return respond(json(200, room->roster().people()));
   v1::ParameterList out;
   for (v1::ParameterDescription& known : scene::describeParameters(room->snapshot()->scene)) {
     *out.add_parameters() = std::move(known);
+  }
+  respond(json(200, out));
+}
+
+void RestApi::gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond) {
+  if (call.path.size() > 4) return respond(std::nullopt);
+  if (call.request.method != "GET") return respond(wrongMethod("GET"));
+  if (call.path.size() == 3) {
+    v1::GaugeList out;
+    for (const core::DiagnosticsView::GaugeNow& gauge : room.vitals()->diagnostics.gauges) {
+      v1::GaugeReading& reading = *out.add_gauges();
+      reading.set_name(gauge.name);
+      reading.set_elevation_m(gauge.elevation_m);
+      reading.set_velocity_x_mps(gauge.velocity_x_mps);
+      reading.set_velocity_z_mps(gauge.velocity_z_mps);
+      reading.set_highest_m(gauge.highest_m);
+      reading.set_lowest_m(gauge.lowest_m);
+    }
+    return respond(json(200, out));
+  }
+  const auto snapshot = room.snapshot();
+  const auto& gauges = snapshot->scene.gauges();
+  const auto gauge = std::ranges::find(gauges, call.path[3], &v1::Gauge::name);
+  if (gauge == gauges.end() || !snapshot->gauges)
+    return respond(problem(404, "the scene has no such gauge; /api/v1/rooms/ROOM/gauges lists what there is"));
+  v1::GaugeSeries out;
+  out.set_name(gauge->name());
+  out.set_x_m(gauge->x_m());
+  out.set_z_m(gauge->z_m());
+  const auto series = snapshot->gauges->series(static_cast<std::size_t>(gauge - gauges.begin()));
+  for (std::size_t k = 0; k < series.time_s.size(); ++k) {
+    out.add_time_s(series.time_s[k]);
+    out.add_elevation_m(series.readings[k].elevation_m);
+    out.add_velocity_x_mps(series.readings[k].velocity_x_mps);
+    out.add_velocity_z_mps(series.readings[k].velocity_z_mps);
   }
   respond(json(200, out));
 }

@@ -63,8 +63,16 @@ std::uint32_t sharesFor(std::uint32_t items, const gpu::Program& program) {
 
 }  // namespace
 
-core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx, const Derived& derived,
-                                                               const gpu::Defines& defines) {
+std::size_t Diagnostics::poolOffset() const {
+  return (particle_shares_ + surface_shares_) * sizeof(Partial);
+}
+
+std::size_t Diagnostics::gaugeOffset() const {
+  return poolOffset() + (is_pooled_ ? POOL_WORDS * sizeof(std::uint32_t) : 0);
+}
+
+core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx, const core::Scene& scene,
+                                                               const Derived& derived, const gpu::Defines& defines) {
   auto out = std::unique_ptr<Diagnostics>(new Diagnostics(ctx));
   Creation create;
   if (derived.particles) {
@@ -79,6 +87,7 @@ core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx
     create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial),
                                                    gpu::BufferUse::kDeviceOnly, gpu::BufferContent::kScratch));
   }
+  if (!scene.gauges.empty()) create(out->gauges_, Gauges::create(ctx, scene, *derived.wave, defines));
   if (create.error()) return *create.error();
   if (auto sized = out->resize(derived); !sized) return sized.error();
   return out;
@@ -92,9 +101,11 @@ core::Result<void> Diagnostics::resize(const Derived& derived) {
   if (shares > 0)
     create(sums, gpu::Buffer::create(ctx_, "particle sums", shares * sizeof(Partial), gpu::BufferUse::kDeviceOnly,
                                      gpu::BufferContent::kScratch));
-  create(ring, gpu::ReadbackRing::create(
-                   ctx_, "diagnostics",
-                   (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0), kSlotCount));
+  create(ring,
+         gpu::ReadbackRing::create(ctx_, "diagnostics",
+                                   (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0) +
+                                       (gauges_ ? gauges_->readings().sizeBytes() : 0),
+                                   kSlotCount));
   if (create.error()) return *create.error();
   particle_sums_ = std::move(sums);
   ring_ = std::move(ring);
@@ -131,8 +142,11 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
     copied = copied && slot->copyFrom(surface_sums_, 0, surface_sums_.sizeBytes(), particle_shares_ * sizeof(Partial));
   }
   if (is_pooled_) {
-    copied = copied && slot->copyFrom(population->pool()->words(), 0, POOL_WORDS * 4,
-                                      (particle_shares_ + surface_shares_) * sizeof(Partial));
+    copied = copied && slot->copyFrom(population->pool()->words(), 0, POOL_WORDS * 4, poolOffset());
+  }
+  if (gauges_) {
+    gauges_->measure();
+    copied = copied && slot->copyFrom(gauges_->readings(), 0, gauges_->readings().sizeBytes(), gaugeOffset());
   }
   // The next tick's passes write the buffers that were read here.
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
@@ -159,9 +173,8 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
       const auto crowded = static_cast<std::uint32_t>(first.elevation_high);  // see diagnostics/particles.comp
       h.crowded_count = crowded - std::exchange(crowded_before_, crowded);
       if (is_pooled_) {
-        const std::size_t at = (particle_shares_ + surface_shares_) * sizeof(Partial);
         std::array<std::uint32_t, POOL_WORDS> pool;
-        std::memcpy(pool.data(), bytes.data() + at, sizeof pool);
+        std::memcpy(pool.data(), bytes.data() + poolOffset(), sizeof pool);
         h.particle_count = pool[POOL_EMITTED] - pool[POOL_ABSORBED];
         h.emitted_count = pool[POOL_EMITTED];
         h.absorbed_count = pool[POOL_ABSORBED];
@@ -188,7 +201,8 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
       h.wave_volume_m3 = static_cast<double>(h.surface_units) * ELEVATION_UNIT_M * area_m2;
       h.wave_energy_j = 0.5 * rho * area_m2 * (scene.gravity_mps2 * t.sum[0] + t.sum[1]);
     }
-    out.push_back(h);
+    if (gauges_) h.gauges = Gauges::parse(bytes.subspan(gaugeOffset(), gauges_->readings().sizeBytes()));
+    out.push_back(std::move(h));
   }
   return out;
 }

@@ -16,6 +16,7 @@
 
 #include "boats.h"
 #include "breakers.h"
+#include "gauges.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
@@ -25,8 +26,8 @@ namespace spindrift::sim {
 
 class Diagnostics {
  public:
-  static core::Result<std::unique_ptr<Diagnostics>> create(gpu::Context& ctx, const Derived& derived,
-                                                           const gpu::Defines& defines);
+  static core::Result<std::unique_ptr<Diagnostics>> create(gpu::Context& ctx, const core::Scene& scene,
+                                                           const Derived& derived, const gpu::Defines& defines);
 
   /// Replaces the buffers for another number of particles and keeps the programs. Results in flight are lost. An error
   /// changes nothing.
@@ -41,6 +42,9 @@ class Diagnostics {
 
  private:
   explicit Diagnostics(gpu::Context& ctx) : ctx_(ctx) {}
+  /// Where the words of the pool, and then the readings of the gauges, begin in a slot.
+  [[nodiscard]] std::size_t poolOffset() const;
+  [[nodiscard]] std::size_t gaugeOffset() const;
 
   gpu::Context& ctx_;
   std::uint32_t particle_shares_ = 0;
@@ -52,6 +56,7 @@ class Diagnostics {
   std::uint32_t crowded_before_ = 0;  ///< NeighborGrid::crowded() of the last result
   gpu::Buffer particle_sums_, surface_sums_;
   gpu::Program particle_program_, surface_program_;
+  std::unique_ptr<Gauges> gauges_;  ///< null in scenes without gauges
   std::unique_ptr<gpu::ReadbackRing> ring_;
 };
 

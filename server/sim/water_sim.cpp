@@ -162,6 +162,7 @@ WaterSim::WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived)
       scene_(std::move(scene)),
       derived_(std::move(derived)),
       timers_(ctx),
+      gauges_(scene_.gauges.empty() ? nullptr : std::make_shared<GaugeHistory>(scene_.gauges.size())),
       parts_(std::make_unique<Parts>(ctx)) {}
 
 WaterSim::~WaterSim() = default;
@@ -203,7 +204,7 @@ core::Result<void> WaterSim::build() {
   if (!scene_.wave) create(parts_->stir, Stir::create(ctx_, defines));
   if (followNumber(scene_) != 0) create(parts_->follower, PatchFollower::create(ctx_, scene_, defines));
   create(parts_->frames, FramePacker::create(ctx_, scene_, derived_, defines));
-  create(parts_->diagnostics, Diagnostics::create(ctx_, derived_, defines));
+  create(parts_->diagnostics, Diagnostics::create(ctx_, scene_, derived_, defines));
   if (create.error()) return *create.error();
   if (parts_->wave) parts_->basin_inputs.emplace(scene_, *derived_.wave);  // Wave::create() uploaded its tables
   return parts_->makeCheckpoints(ctx_);

@@ -37,6 +37,7 @@ struct BasinInputs {
   double speed_mps;
   std::vector<core::Obstacle> obstacles;
   std::vector<core::Beach> beaches;
+  std::optional<core::Bed> bed;
 };
 
 /// The parts that the scene names; all others are null.

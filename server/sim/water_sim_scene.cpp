@@ -91,6 +91,7 @@ void WaterSim::reset() {
   start_tick_ = tick_;
   abandoned_until_tick_ = tick_;
   health_ = {};
+  if (gauges_) gauges_->clear();
   setCareful(false);
   uploadStartingState();
   parts_->checkpoints->forget();
@@ -108,7 +109,11 @@ void WaterSim::uploadBasin() {
 }
 
 BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
-    : wave(*scene.wave), speed_mps(layout.speed_mps), obstacles(scene.obstacles), beaches(scene.beaches) {
+    : wave(*scene.wave),
+      speed_mps(layout.speed_mps),
+      obstacles(scene.obstacles),
+      beaches(scene.beaches),
+      bed(scene.bed) {
   // Parameters that may change while running and that no table contains.
   wave.damping_per_s = 0.0;
   wave.steepening_ratio = 0.0;

@@ -37,6 +37,7 @@ void WaterSim::watchHealth() {
   for (const Health& health : parts_->diagnostics->poll(scene_, derived_)) {
     if (health.tick <= abandoned_until_tick_) continue;
     health_ = health;
+    if (gauges_) gauges_->add(static_cast<double>(health.tick - start_tick_) * derived_.tick_s, health.gauges);
     nonfinite_count_ += health.nonfinite_count;
     escaped_count_ += health.escaped_count;
     if (health.crowded_count > 0 && crowded_count_ == 0) {

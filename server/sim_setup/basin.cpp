@@ -7,6 +7,7 @@
 
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/fill_up.h>
+#include <spindrift/sim_setup/ground.h>
 
 namespace spindrift::sim {
 namespace {
@@ -46,11 +47,6 @@ struct Halves {
   double x_m = 0.0;
   double z_m = 0.0;
 };
-
-Halves halvesOf(const core::WaveScene& wave) {
-  const core::WaveCells cells = wave.cells();
-  return {cells.length_m / 2, cells.width_m / 2};
-}
 
 /// Distance from a place to a side. [m]
 double distanceTo(core::Side side, const Halves& half, double x_m, double z_m) {
@@ -119,33 +115,12 @@ double heightOf(const core::Obstacle& obstacle) {
 
 }  // namespace
 
-double bedDepth(const core::Scene& scene, double x_m, double z_m) {
-  double depth_m = scene.wave->depth_m;
-  if (scene.beaches.empty()) return depth_m;
-  const Halves half = halvesOf(*scene.wave);
-  for (const core::Beach& beach : scene.beaches) {
-    const double from_side_m = distanceTo(beach.side, half, x_m, z_m);
-    const double share = std::clamp(from_side_m / beach.width_m, 0.0, 1.0);
-    depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, scene.wave->depth_m, share));
-  }
-  return depth_m;
-}
-
 double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const core::Obstacle& obstacle : scene.obstacles) {
     nearest_m = std::min(nearest_m, std::visit([&](const auto& o) { return distance(o, x_m, z_m); }, obstacle));
   }
   return nearest_m;
-}
-
-double groundDepth(const core::Scene& scene, double x_m, double z_m) {
-  double depth_m = bedDepth(scene, x_m, z_m);
-  for (const core::Obstacle& obstacle : scene.obstacles) {
-    if (std::visit([&](const auto& o) { return distance(o, x_m, z_m); }, obstacle) < 0)
-      depth_m = std::min(depth_m, -heightOf(obstacle));
-  }
-  return depth_m;
 }
 
 std::vector<std::int32_t> restingElevation(const Basin& basin) {
@@ -196,7 +171,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz)); };
 
   Basin out;
-  out.is_flat = scene.obstacles.empty() && scene.beaches.empty();
+  out.is_flat = scene.obstacles.empty() && scene.beaches.empty() && !scene.bed;
   out.depth_m.resize(cells);
   out.conductance_m.resize(cells);
   out.bed.resize(cells);
@@ -209,11 +184,12 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const bool is_matched = hasMatchedLayer(scene);
   const bool is_nonlinear = isNonlinear(scene);
   const double matched_max = matchedLossMax(scene, layout);
-  const double along_share = scene.obstacles.empty() && scene.beaches.empty() ? kAlongShareFlat : kAlongShareUneven;
+  const double along_share = out.is_flat ? kAlongShareFlat : kAlongShareUneven;
   for (int z = 0; z < nz; ++z) {
     for (int x = 0; x < nx; ++x) {
       const std::size_t i = index(x, z);
-      double depth_m = bedDepth(scene, placeX(x), placeZ(z));
+      double depth_m = is_nonlinear ? groundDepthWithObstacles(scene, placeX(x), placeZ(z))
+                                    : bedDepth(scene, placeX(x), placeZ(z));
       if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, placeX(x), placeZ(z)) < 0) depth_m = 0.0;
       out.depth_m[i] = static_cast<float>(depth_m);
       double sigma = 0.0;
@@ -230,7 +206,15 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
         if (shallow > 0 && !is_nonlinear)
           fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
       }
-      const float ground_m = is_nonlinear ? static_cast<float>(groundDepth(scene, placeX(x), placeZ(z))) : out.depth_m[i];
+      const float ground_m =
+          is_nonlinear ? static_cast<float>(groundDepthWithObstacles(scene, placeX(x), placeZ(z))) : out.depth_m[i];
+      if (scene.bed && !is_nonlinear && depth_m < kFadeShare * w.depth_m) {
+        // The same where the bed of the scene rises to land, with the width of a beach of its slope.
+        if (const auto slope = shoreSlope(scene, placeX(x), placeZ(z))) {
+          const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
+          fade = std::max(fade, 4 * layout.speed_mps * *slope / w.depth_m * shallow * shallow);
+        }
+      }
       if (is_matched) {
         const AxisLoss loss = matchedLoss(w, half, matched_max, along_share, placeX(x), placeZ(z));
         out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), ground_m,
@@ -302,8 +286,12 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
       const double dx = (distanceAt(placeX(x) + step_m, placeZ(z)) - distanceAt(placeX(x) - step_m, placeZ(z)));
       const double dz = (distanceAt(placeX(x), placeZ(z) + step_m) - distanceAt(placeX(x), placeZ(z) - step_m));
       const double size = std::max(std::hypot(dx, dz), 1e-12);
-      double depth_m = basin.bed[static_cast<std::size_t>(x + nx * z)][2];
-      if (d < 0) {
+      // Land is as high as it is; ground that is dry only because it is too shallow is at the rest level.
+      const double land_m = std::min(groundDepth(scene, placeX(x), placeZ(z)), 0.0);
+      double depth_m = land_m < 0 ? land_m : basin.depth_m[static_cast<std::size_t>(x + nx * z)];
+      if (isNonlinear(scene)) {
+        depth_m = basin.bed[static_cast<std::size_t>(x + nx * z)][2];
+      } else if (d < 0) {
         for (const core::Obstacle& obstacle : scene.obstacles) {
           const double here = std::visit([&](const auto& o) { return distance(o, placeX(x), placeZ(z)); }, obstacle);
           if (here < 0) depth_m = std::min(depth_m, -heightOf(obstacle));

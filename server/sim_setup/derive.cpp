@@ -6,6 +6,7 @@
 
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/dispersion.h>
+#include <spindrift/sim_setup/ground.h>
 #include <spindrift/sim_setup/lattice.h>
 #include <spindrift/sim_setup/particle_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
@@ -338,8 +339,10 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     return invalid("coupling: needs both wave and particles: add the missing part or remove coupling");
   if (scene.foam && !scene.particles && !hasSurfaceFoam(scene))
     return invalid("foam: needs particles, or a wave and surface: true: add what is missing or remove foam");
-  if (!scene.wave && (scene.storm || !scene.obstacles.empty() || !scene.beaches.empty()))
-    return invalid("storm, obstacles, beaches: need a wave: add one or remove them");
+  if (!scene.wave &&
+      (scene.storm || !scene.obstacles.empty() || !scene.beaches.empty() || scene.bed || !scene.gauges.empty()))
+    return invalid("storm, obstacles, beaches, bed, gauges: need a wave: add one or remove them");
+  if (auto checked = checkGround(scene); !checked) return checked.error();
 
   if (scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing) {
     if (isTwoWay(scene))

@@ -57,7 +57,7 @@ bool isSampled(const core::Scene& scene) {
 bool isVaried(const core::Scene& scene) {
   const core::WaveScene& w = *scene.wave;
   const bool has_walls = !isPeriodicX(w) || !isPeriodicZ(w);
-  return isNonlinear(scene) || isOpen(scene) || !scene.obstacles.empty() || !scene.beaches.empty() ||
+  return isNonlinear(scene) || isOpen(scene) || !scene.obstacles.empty() || !scene.beaches.empty() || scene.bed ||
          (has_walls && w.stencil == core::Stencil::kNinePoint);
 }
 

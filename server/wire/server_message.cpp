@@ -2,6 +2,7 @@
 
 #include <spindrift/codec/stream.h>
 #include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/server_message.h>
 
 namespace spindrift::wire {
@@ -33,7 +34,7 @@ core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene) {
   limits.set_message_burst_count(facts.message_burst_count);
   limits.set_hello_within_s(facts.hello_within_s);
   limits.set_frame_rate_max_hz(facts.frame_rate_max_hz);
-  *out.mutable_scene() = scene;
+  *out.mutable_scene() = scene::forClients(scene);
   for (v1::ParameterDescription& description : scene::describeParameters(scene)) {
     *out.add_parameters() = std::move(description);
   }

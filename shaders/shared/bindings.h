@@ -7,6 +7,7 @@
 #define SIM_UNIFORMS 0
 #define EVENT_UNIFORMS 1
 #define SEA_UNIFORMS 3
+#define GAUGE_UNIFORMS 4
 
 // Particles: position.xyz [m] + id, velocity.xyz [m/s] + foam [0..1].
 #define POSITION 0
@@ -79,7 +80,7 @@
 #define SURFACE 15
 #define SURFACE_FLOW 16
 
-// Frames: packed words. Diagnostics: partial sums of work groups.
+// Frames: packed words. Diagnostics: partial sums of work groups; readings of the gauges.
 #define PACKED_WORDS 17
 #define PARTIAL_SUM 18
 

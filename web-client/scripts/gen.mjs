@@ -17,7 +17,7 @@ const run = spawnSync(
     `--es_out=${out_root}`,
     "--es_opt=target=ts",
     `--proto_path=${proto_root}`,
-    ...["options", "scene", "wire"].map((name) => `spindrift/v1/${name}.proto`),
+    ...["options", "scene", "wire", "api"].map((name) => `spindrift/v1/${name}.proto`),
   ],
   { stdio: "inherit" },
 );

@@ -2,6 +2,7 @@
 // input.ts calls the methods for the user's actions.
 import type { GreetingInfo } from "../codec/greeting";
 import type { RoleName } from "../codec/people";
+import { requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { socketUrl, WaterClient } from "../net/water_client";
@@ -62,6 +63,8 @@ export class App {
   private readonly url = socketUrl(location);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
   private identity = this.identities.load();
+  /** The last greeting. */
+  private entered: GreetingInfo | undefined;
 
   constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
     const isHandheld = window.matchMedia("(pointer: coarse)").matches;
@@ -194,6 +197,18 @@ export class App {
     this.viewButtons.refresh();
     // The card's height has changed with the text.
     this.display.resize();
+    this.entered = greeting;
+    if (greeting.hasBed) void this.loadGround(greeting);
+  }
+
+  /** The water is drawn over a level bed until the ground is there. */
+  private async loadGround(greeting: GreetingInfo): Promise<void> {
+    try {
+      const ground = await requestGround(greeting.room, this.identity.token);
+      if (this.entered === greeting) this.display.scene.setGround(ground);
+    } catch (error) {
+      this.toast.show(error instanceof Error ? error.message : String(error), "bad");
+    }
   }
 
   /** Shows the quality that is drawn, and asks for as many frames as it needs. */

@@ -3,6 +3,7 @@ import { CouplingMode, type ParticleScene, type Scene } from "../gen/spindrift/v
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
 import { fidelityName, type FidelityName } from "./fidelity";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
+import type { GroundGrid } from "./ground";
 import { malformed, type Malformed } from "./malformed";
 import {
   readBeaches,
@@ -89,6 +90,10 @@ export interface GreetingInfo {
   hasBoats: boolean;
   obstacles: ObstacleInfo[];
   beaches: BeachInfo[];
+  /** The scene has a bed: the ground does not follow from depth and beaches alone. */
+  hasBed: boolean;
+  /** The ground of such a scene, once it has been asked for. */
+  ground?: GroundGrid;
   boats: BoatDetail[];
   /** Scenes that ChangeScene accepts. */
   scenes: string[];
@@ -173,6 +178,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       hasBoats: scene?.boats !== undefined,
       obstacles: scene ? readObstacles(scene) : [],
       beaches: scene ? readBeaches(scene) : [],
+      hasBed: scene?.wave !== undefined && scene.bed !== undefined,
       boats,
       scenes: [...greeting.scenes],
       parameters: greeting.parameters

@@ -158,7 +158,7 @@ export function readBeaches(scene: Scene): BeachInfo[] {
     const side = kSides[beach.side];
     const widthM = beach.widthM ?? 6;
     const shoreDepthM = beach.shoreDepthM ?? 0;
-    if (!side || !isSize(widthM) || !(shoreDepthM >= 0 && shoreDepthM <= 1e6)) continue;
+    if (!side || !isSize(widthM) || !(Math.abs(shoreDepthM) <= 1e6)) continue;
     if (!read.some((other) => other.side === side)) read.push({ side, widthM, shoreDepthM });
   }
   return read;

@@ -1,5 +1,7 @@
-// The bed: level at the scene's depth, rising toward sides with a beach, with dry land behind a shore. Pure.
+// The bed: level at the scene's depth, rising toward sides with a beach, with dry land behind a shore; or the ground that the server
+// sends for a scene with a bed. Pure.
 import type { GreetingInfo } from "../codec/greeting";
+import type { GroundGrid } from "../codec/ground";
 import type { BeachInfo, SideName } from "../codec/scene_info";
 
 const kSides: readonly SideName[] = ["+x", "-x", "+z", "-z"];
@@ -13,10 +15,26 @@ export interface Bed {
   sideM: number;
   depthM: number;
   beaches: readonly BeachInfo[];
+  /** If there, it counts inside the water instead of depth and beaches. */
+  ground?: GroundGrid | undefined;
 }
 
-export function bedOf(greeting: Pick<GreetingInfo, "sideM" | "waterExtents" | "beaches">): Bed {
-  return { sideM: greeting.sideM, depthM: greeting.waterExtents.depthM, beaches: greeting.beaches };
+export function bedOf(greeting: Pick<GreetingInfo, "sideM" | "waterExtents" | "beaches" | "ground">): Bed {
+  return { sideM: greeting.sideM, depthM: greeting.waterExtents.depthM, beaches: greeting.beaches, ground: greeting.ground };
+}
+
+/** Bilinear between the centres of cells; outside of them the nearest value. */
+function riseAtM({ countX, countZ, lengthM, widthM, riseM }: GroundGrid, xM: number, zM: number): number {
+  const clamped = (at: number, count: number): number => Math.min(Math.max(at, 0), count - 1);
+  const column = clamped((xM / lengthM + 0.5) * countX - 0.5, countX);
+  const row = clamped((zM / widthM + 0.5) * countZ - 0.5, countZ);
+  const left = Math.floor(column);
+  const before = Math.floor(row);
+  const along = (k: number): number => {
+    const first = riseM[left + countX * k]!;
+    return first + (riseM[Math.min(left + 1, countX - 1) + countX * k]! - first) * (column - left);
+  };
+  return along(before) + (along(Math.min(before + 1, countZ - 1)) - along(before)) * (row - before);
 }
 
 /** Returns the distance from the side to a point inside the water; negative outside. */
@@ -31,8 +49,9 @@ export function landWidthM(bed: Bed, beach: BeachInfo): number {
   return Math.min(kLandBeaches * beach.widthM, kLandSides * bed.sideM);
 }
 
-/** Returns the still-water depth inside the water's square, as the server computes it; 0 at a shore. */
+/** Returns the still-water depth inside the water's square, as the server computes it; 0 at a shore, negative on land. */
 export function depthAtM(bed: Bed, xM: number, zM: number): number {
+  if (bed.ground) return -riseAtM(bed.ground, xM, zM);
   let depthM = bed.depthM;
   for (const beach of bed.beaches) {
     const share = Math.min(Math.max(insideM(beach.side, bed.sideM, xM, zM) / beach.widthM, 0), 1);

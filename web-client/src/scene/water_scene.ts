@@ -2,6 +2,7 @@
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
+import type { GroundGrid } from "../codec/ground";
 import type { PersonInfo } from "../codec/people";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import type { BodyPose } from "./bodies";
@@ -138,6 +139,13 @@ export class WaterScene {
   take(frame: Frame, nowS: number): void {
     this.frames.take(frame, nowS);
     if (frame.layer === "particles") this.findFloor();
+  }
+
+  /** Draws the ground of the room's scene, which comes after its greeting. */
+  setGround(ground: GroundGrid): void {
+    if (!this.greeting) return;
+    this.greeting.ground = ground;
+    this.enter(this.greeting, true);
   }
 
   /** Sets the boats on the water. */

@@ -1,6 +1,6 @@
 // The water's surface in the colours of a value or with Phong's lighting (look_surface.frag), and its sides where they are seen. Reads the
 // field, the look's value or the foam, the sea around, and the depth of the solids. Writes the canvas and its depth.
-import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
+import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
 import type { Pass, Picture, Resource } from "../passes/pass";
@@ -8,6 +8,7 @@ import type { SolidsPass } from "../passes/solids_pass";
 import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
+import { makeGroundTexture } from "../ground_texture";
 import { bedOf, bedUniformValues } from "../terrain";
 import { makeWaterGeometries } from "../water_grid";
 import type { LookColours } from "./look_colours";
@@ -47,17 +48,20 @@ export class LookSurfacePass implements Pass {
   private readonly scene = new Scene();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly uniforms: Uniforms;
+  private readonly ground: DataTexture | undefined;
 
   constructor(greeting: GreetingInfo, { sky, field, solids, quality, paint, loweredM, colour }: SurfaceLookInputs) {
     this.reads = ["field", "sea", "solids", ...(colour ? [colour.of === "foam" ? ("foam" as const) : ("lookValue" as const)] : [])];
     const bed = bedOf(greeting);
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
+    this.ground = makeGroundTexture(bed);
     const { edge } = solids.surroundings;
     this.uniforms = {
       ...sky.uniforms,
       ...colour?.colours.uniforms,
       ...(colour && (colour.of === "foam" ? colour.foam : { u_value: { value: colour.value.texture } })),
       ...(edge.kind === "sea" && edge.sea),
+      ...(this.ground && { u_ground: { value: this.ground } }),
       u_field: { value: field },
       u_behind_depth: { value: solids.textures.depth },
       u_camera_m: { value: new Vector3() },
@@ -74,7 +78,8 @@ export class LookSurfacePass implements Pass {
     };
     const defines: Record<string, number> = {};
     if (colour) defines[kDefines[colour.of]] = 1;
-    if (bed.beaches.length > 0) defines["BEACH"] = 1;
+    if (bed.beaches.length > 0 || this.ground) defines["BEACH"] = 1;
+    if (this.ground) defines["GROUND"] = 1;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     if (loweredM > 0) defines["LOWERED"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
@@ -98,5 +103,6 @@ export class LookSurfacePass implements Pass {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }
+    this.ground?.dispose();
   }
 }

@@ -2,7 +2,7 @@
 // goes on to the horizon and has no sides. Reads the field, the foam and the froth, the rain, the sea around, the
 // shadow, and the solids, which are seen through the water and in its mirror. Writes the canvas and its depth.
 // A camera close to the surface sees it from below as well (below_surface.ts).
-import { DoubleSide, FrontSide, Mesh, Scene, Vector2, Vector3, Vector4, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
+import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
 import type { SurfaceFrame } from "../../net/messages";
@@ -10,14 +10,15 @@ import { BelowSurface } from "../below_surface";
 import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
+import { makeGroundTexture } from "../ground_texture";
 import { bedOf, bedUniformValues } from "../terrain";
 import { makeWaterGeometries } from "../water_grid";
 import type { Pass, Picture } from "./pass";
 import type { SolidsPass } from "./solids_pass";
 
 /** The water reflects solids as well as the sky. */
-function hasSolids({ hasBoats, obstacles, beaches, setting }: GreetingInfo): boolean {
-  return hasBoats || obstacles.length > 0 || beaches.length > 0 || setting === "pool";
+function hasSolids({ hasBoats, obstacles, beaches, hasBed, setting }: GreetingInfo): boolean {
+  return hasBoats || obstacles.length > 0 || beaches.length > 0 || hasBed || setting === "pool";
 }
 
 export interface WaterTools {
@@ -47,11 +48,13 @@ export class WaterPass implements Pass {
   private readonly grid: Mesh<BufferGeometry, RawShaderMaterial>;
   private readonly underside: Mesh<BufferGeometry, RawShaderMaterial>;
   private readonly below: BelowSurface;
+  private readonly ground: DataTexture | undefined;
 
   constructor(greeting: GreetingInfo, solids: SolidsPass, { sky, noise, quality }: WaterTools, { field, foam, froth, rain, newest }: WaterInputs) {
     const bed = bedOf(greeting);
     const { sideM, depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
+    this.ground = makeGroundTexture(bed);
     const { edge } = solids.surroundings;
     const { color, depth } = solids.textures;
     const { caustics, shadow } = solids.sunlight;
@@ -75,10 +78,12 @@ export class WaterPass implements Pass {
       ...foam,
       ...rain,
       ...(edge.kind === "sea" && edge.sea),
+      ...(this.ground && { u_ground: { value: this.ground } }),
     };
     const defines: Record<string, number> = {};
     if (quality.plain) defines["PLAIN"] = 1;
-    if (beaches.length > 0) defines["BEACH"] = 1;
+    if (beaches.length > 0 || this.ground) defines["BEACH"] = 1;
+    if (this.ground) defines["GROUND"] = 1;
     if (foam) defines["FOAM"] = 1;
     if (rain) defines["RAIN"] = 1;
     if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;
@@ -117,5 +122,6 @@ export class WaterPass implements Pass {
       mesh.material.dispose();
     }
     this.below.dispose();
+    this.ground?.dispose();
   }
 }

@@ -18,6 +18,10 @@ const kQuayMinM = 0.25;
 const kQuayMaxM = 2.5;
 /** A closed side whose bed is shallower than this share of the depth is a shore, otherwise a quay. */
 const kShoreDepths = 0.02;
+/** Where a ground is looked at along a side. */
+const kSideSamples = [-0.45, -0.3, -0.15, 0, 0.15, 0.3, 0.45] as const;
+/** Slope behind a shore that no beach makes. */
+const kShoreSlope = 0.1;
 /** Dunes and hills, in sides of the square: height, and the distances over which the hills rise. */
 const kDuneSides = 0.05;
 const kHillSides = 0.5;
@@ -52,7 +56,11 @@ function rolling(x: number, z: number): number {
 }
 
 function isShore({ bed }: Coast, side: SideName): boolean {
-  return bed.beaches.some((beach) => beach.side === side && beach.shoreDepthM <= kShoreDepths * bed.depthM);
+  if (!bed.ground) return bed.beaches.some((beach) => beach.side === side && beach.shoreDepthM <= kShoreDepths * bed.depthM);
+  const sign = side[0] === "+" ? 1 : -1;
+  const half = bed.sideM / 2;
+  const depthsM = kSideSamples.map((share) => (side[1] === "x" ? depthAtM(bed, sign * half, share * bed.sideM) : depthAtM(bed, share * bed.sideM, sign * half)));
+  return depthsM.every((depthM) => depthM <= kShoreDepths * bed.depthM);
 }
 
 export function quayHeightM(bed: Bed): number {
@@ -71,10 +79,11 @@ export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = fa
     const hillsM = kHillSides * sideM * smoothstep(kHillsFromSides, kHillsToSides, outM / sideM) * (0.55 + 0.45 * rolling((3.1 * xM) / sideM / 3, (3.1 * zM) / sideM / 3));
     const roll = rolling((9 * xM) / sideM, (9 * zM) / sideM);
     if (isShore(coast, side)) {
-      const beach = bed.beaches.find((each) => each.side === side)!;
+      const beach = bed.ground ? undefined : bed.beaches.find((each) => each.side === side);
+      const edgeM = beach ? -beach.shoreDepthM : heightM;
       const topM = kDuneSides * sideM * (0.75 + 0.35 * roll);
-      const slope = Math.min((bed.depthM - beach.shoreDepthM) / beach.widthM, 0.25);
-      heightM = Math.max(heightM, -beach.shoreDepthM + topM * (1 - Math.exp((-slope * Math.max(outM, 0)) / topM)) + hillsM);
+      const slope = beach ? Math.min((bed.depthM - beach.shoreDepthM) / beach.widthM, 0.25) : kShoreSlope;
+      heightM = Math.max(heightM, edgeM + topM * (1 - Math.exp((-slope * Math.max(outM, 0)) / topM)) + hillsM);
     } else if (outM > 1e-9 || pastQuay) {
       heightM = Math.max(heightM, quayHeightM(bed) + 0.3 * kDuneSides * sideM * (1 + roll) * smoothstep(0.25, 1, outM / sideM) + hillsM);
     }

@@ -21,6 +21,9 @@ const kRainHaze = 3;
 /** Cells along each side of a bed with beaches, obstacles or a coast. */
 const kBedCells = 96;
 const kPlainBedCells = 48;
+/** The most of a ground that the server sends. */
+const kGroundCells = 256;
+const kPlainGroundCells = 96;
 
 /** How much of the water a view has to show: where it goes on beyond the picture, only a part. */
 const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised" | "sideRaised">> = {
@@ -69,11 +72,11 @@ export class Surroundings {
   private readonly landscape: Landscape | undefined;
 
   constructor(greeting: GreetingInfo, context: SurroundingsContext) {
-    const { setting, wave, wind, obstacles, beaches } = greeting;
+    const { setting, wave, wind, obstacles, beaches, hasBed } = greeting;
     const { plain } = context.quality;
     const bed = bedOf(greeting);
     this.floorM = wave ? -wave.depthM : 0;
-    const cellsCount = plain ? kPlainBedCells : kBedCells;
+    const cellsCount = bed.ground ? Math.min(Math.max(bed.ground.countX, bed.ground.countZ), plain ? kPlainGroundCells : kGroundCells) : plain ? kPlainBedCells : kBedCells;
     if (setting === "openSea" && wave) {
       this.sea = new OpenSea(wave, wind, context.quality);
       this.edge = { kind: "sea", sea: { ...this.sea.uniforms, u_haze_m: context.haze }, sides: wave.sides };
@@ -81,7 +84,7 @@ export class Surroundings {
       this.solids.push(this.landscape.group);
       return;
     }
-    if (obstacles.length > 0 || beaches.length > 0) {
+    if (obstacles.length > 0 || beaches.length > 0 || hasBed) {
       this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);
     }

@@ -1,4 +1,12 @@
-// Include: depth of the bed, which rises toward sides with a beach. Sides in the order +x, -x, +z, -z.
+// Include: depth of the bed; negative on land. GROUND: of a scene with a bed, from a texture over the square. Otherwise it rises toward
+// sides with a beach, in the order +x, -x, +z, -z.
+#ifdef GROUND
+uniform sampler2D u_ground;  // [m]
+
+float bedDepth(vec2 at, float side_m, float depth_m) {
+  return textureLod(u_ground, at / side_m + 0.5, 0.0).r;
+}
+#else
 uniform vec4 u_beach_width_m;
 uniform vec4 u_shore_depth_m;  // the scene's depth where there is no beach
 
@@ -7,3 +15,4 @@ float bedDepth(vec2 at, float side_m, float depth_m) {
   vec4 depth = mix(u_shore_depth_m, vec4(depth_m), clamp(inside_m / u_beach_width_m, 0.0, 1.0));
   return min(min(depth.x, depth.y), min(depth.z, depth.w));
 }
+#endif

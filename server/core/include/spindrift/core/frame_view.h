@@ -79,6 +79,16 @@ struct DiagnosticsView {
     double ms = 0.0;   ///< mean per tick
   };
   std::vector<PassTime> passes;
+  /// What a gauge of the scene reads; as v1::GaugeReading.
+  struct GaugeNow {
+    std::string name;
+    double elevation_m = 0.0;
+    double velocity_x_mps = 0.0;
+    double velocity_z_mps = 0.0;
+    double highest_m = 0.0;
+    double lowest_m = 0.0;
+  };
+  std::vector<GaugeNow> gauges;  ///< in the order of the scene
 };
 
 /// The layers of a frame that have levels of detail, at one level. Below Level::kFull the surface and the foam have

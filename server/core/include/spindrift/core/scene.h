@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -105,7 +106,8 @@ struct Breakwater {
 
 using Obstacle = std::variant<Rock, Breakwater>;
 
-/// The bed rises linearly over width_m toward a side, from the scene's depth to shore_depth_m at the side.
+/// The bed rises linearly over width_m toward a side, from the depth of the floor to shore_depth_m at the side; below 0
+/// it is land.
 struct Beach {
   using Default = defaults::Beach;
   Side side = Side::kPlusX;
@@ -114,6 +116,102 @@ struct Beach {
 
   bool operator==(const Beach&) const = default;
 };
+
+/// Depths at the points of a grid over a rectangle, bilinear between them. [m], negative on land
+struct DepthGrid {
+  using Default = defaults::DepthGrid;
+  double x_m = Default::x_m;  ///< centre
+  double z_m = Default::z_m;
+  double length_m = Default::length_m;  ///< first to last point along x; 0 = the length of the water
+  double width_m = Default::width_m;    ///< the same along z
+  std::uint32_t columns_count = 0;      ///< points along x
+  std::uint32_t rows_count = 0;
+  /// columns_count * rows_count, x fastest. Shared by the copies of a scene.
+  std::shared_ptr<const std::vector<float>> depths_m;
+
+  bool operator==(const DepthGrid& other) const {
+    return x_m == other.x_m && z_m == other.z_m && length_m == other.length_m && width_m == other.width_m &&
+           columns_count == other.columns_count && rows_count == other.rows_count &&
+           (depths_m == other.depths_m || (depths_m && other.depths_m && *depths_m == *other.depths_m));
+  }
+};
+
+/// A truncated cone, height_m over the bed on which it stands; negative for a pit.
+struct BedCone {
+  using Default = defaults::BedCone;
+  double x_m = Default::x_m;
+  double z_m = Default::z_m;
+  double toe_radius_m = Default::toe_radius_m;
+  double crest_radius_m = Default::crest_radius_m;
+  double height_m = Default::height_m;
+
+  bool operator==(const BedCone&) const = default;
+};
+
+/// A plane that rises from a line through (x_m, z_m) toward heading_deg, for length_m (0: to the sides).
+struct BedSlope {
+  using Default = defaults::BedSlope;
+  double x_m = Default::x_m;
+  double z_m = Default::z_m;
+  double heading_deg = Default::heading_deg;
+  double gradient_ratio = Default::gradient_ratio;
+  double length_m = Default::length_m;
+
+  bool operator==(const BedSlope&) const = default;
+};
+
+/// A bar with a level crest and flanks all round, height_m over the bed.
+struct BedSill {
+  using Default = defaults::BedSill;
+  double x_m = Default::x_m;
+  double z_m = Default::z_m;
+  double heading_deg = Default::heading_deg;
+  double length_m = Default::length_m;
+  double crest_width_m = Default::crest_width_m;
+  double flank_width_m = Default::flank_width_m;
+  double height_m = Default::height_m;
+
+  bool operator==(const BedSill&) const = default;
+};
+
+/// A trench with a level bottom and banks all round, cut_m below the bed.
+struct BedChannel {
+  using Default = defaults::BedChannel;
+  double x_m = Default::x_m;
+  double z_m = Default::z_m;
+  double heading_deg = Default::heading_deg;
+  double length_m = Default::length_m;
+  double bottom_width_m = Default::bottom_width_m;
+  double bank_width_m = Default::bank_width_m;
+  double cut_m = Default::cut_m;
+
+  bool operator==(const BedChannel&) const = default;
+};
+
+using BedShape = std::variant<BedCone, BedSlope, BedSill, BedChannel>;
+
+/// The bed: level floor, beaches, grid, then the shapes in order (sim_setup/ground.h).
+struct Bed {
+  using Default = defaults::Bed;
+  double floor_depth_m = Default::floor_depth_m;  ///< 0 = the depth of the water
+  std::optional<DepthGrid> grid;
+  std::vector<BedShape> shapes;
+
+  bool operator==(const Bed&) const = default;
+};
+
+/// A place where elevation and velocity are measured at every tick.
+struct Gauge {
+  using Default = defaults::Gauge;
+  std::string name;
+  double x_m = Default::x_m;
+  double z_m = Default::z_m;
+
+  bool operator==(const Gauge&) const = default;
+};
+
+/// At most this many gauges in a scene.
+inline constexpr std::uint32_t kMaxGauges = 64;
 
 /// The SPH particles of a patch: a band of water, `layers` spacings thick, over part of the surface or all of it.
 struct ParticleScene {
@@ -234,6 +332,8 @@ struct Scene {
   std::optional<FoamScene> foam;          ///< needs particles, or a wave if it has a surface field
   std::vector<Obstacle> obstacles;        ///< need a wave
   std::vector<Beach> beaches;             ///< need a wave
+  std::optional<Bed> bed;                 ///< needs a wave
+  std::vector<Gauge> gauges;              ///< need a wave
   std::optional<BoatsScene> boats;        ///< on the wave, or among particles without a wave
   std::optional<StormScene> storm;        ///< needs a wave
   StreamScene stream;

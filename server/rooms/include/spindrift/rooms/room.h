@@ -57,7 +57,8 @@ struct RoomSnapshot {
   std::uint64_t scene_version = 0;  ///< RoomWater::sceneVersion()
   bool paused = false;
   double speed = 1.0;
-  v1::BoatList boats;  ///< boats on the water now
+  v1::BoatList boats;                               ///< boats on the water now
+  std::shared_ptr<const sim::GaugeHistory> gauges;  ///< null in scenes without gauges
 };
 
 /// Condition of a room, for /metrics and lists; updated a few times per second.
@@ -70,6 +71,9 @@ struct RoomVitals {
   std::uint64_t dropped_frame_count = 0;
   core::DiagnosticsView diagnostics;
 };
+
+/// Returns what the gauges of the water read now.
+std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& water);
 
 class Room {
  public:

@@ -13,6 +13,7 @@
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/simulation_thread.h>
 #include <spindrift/service/access.h>
+#include <spindrift/service/ground_answers.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/client_message.h>
@@ -50,6 +51,7 @@ class RestApi {
   void room(const Call& call, net::HttpResponder respond);
   void closeRoom(const Call& call, net::HttpResponder respond);
   void command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
+  void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
   net::HttpResponder takePending(std::uint64_t request_id);
 
@@ -59,6 +61,7 @@ class RestApi {
   const std::function<void(const rooms::Room&)> dismiss_;
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
   net::Hub* hub_ = nullptr;                   ///< set before any request arrives
+  GroundAnswers ground_;
   std::atomic<std::uint64_t> last_request_id_{0};
   std::mutex mutex_;
   std::map<std::uint64_t, net::HttpResponder> pending_;  ///< at most one per connection

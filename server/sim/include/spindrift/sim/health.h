@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
+#include <spindrift/sim/gauge_history.h>
 
 namespace spindrift::sim {
 
@@ -35,6 +38,8 @@ struct Health {
   std::uint32_t pool_refused_count = 0;  ///< substeps in which the pool was full
   double emitted_m3 = 0.0;               ///< the emitted particles as volume
   double absorbed_m3 = 0.0;
+
+  std::vector<GaugeReading> gauges;  ///< one per gauge of the scene
 
   [[nodiscard]] bool isGood() const { return nonfinite_count == 0 && escaped_count == 0; }
 };

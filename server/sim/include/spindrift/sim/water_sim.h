@@ -18,6 +18,7 @@
 #include <spindrift/gpu/pass_timer.h>
 #include <spindrift/sim/boat_record.h>
 #include <spindrift/sim/carried_state.h>
+#include <spindrift/sim/gauge_history.h>
 #include <spindrift/sim/health.h>
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/state_copy.h>
@@ -134,6 +135,9 @@ class WaterSim {
 
   /// The newest available health.
   [[nodiscard]] const Health& health() const { return health_; }
+  /// What the scene's gauges have read since the start or the last reset(); null in scenes without gauges. Like
+  /// health(), it is some ticks behind.
+  [[nodiscard]] std::shared_ptr<const GaugeHistory> gauges() const { return gauges_; }
   /// Sums of health() since creation, and the number of times that the watchdog restored the last good checkpoint.
   [[nodiscard]] std::uint64_t nonfiniteCount() const { return nonfinite_count_; }
   [[nodiscard]] std::uint64_t escapedCount() const { return escaped_count_; }
@@ -195,6 +199,7 @@ class WaterSim {
   core::Scene scene_;
   Derived derived_;
   gpu::PassTimers timers_;
+  std::shared_ptr<GaugeHistory> gauges_;
   std::unique_ptr<Parts> parts_;
   std::uint64_t tick_ = 0;  ///< never decreases
   std::uint64_t start_tick_ = 0;

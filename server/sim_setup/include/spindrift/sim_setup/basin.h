@@ -13,7 +13,7 @@ namespace spindrift::sim {
 
 /// nx x nz cells, x fastest.
 struct Basin {
-  bool is_flat = false;        ///< no obstacles or beaches, whatever the parameters: one depth, only sides are closed
+  bool is_flat = false;  ///< no obstacles, beaches or bed, whatever the parameters: one depth, only sides are closed
   std::vector<float> depth_m;  ///< still depth at cell centres; 0 inside obstacles and on dry beaches
   /// Conductance [m] of the faces that a cell owns, in the order of shaders/wave/wave_faces.glsl: toward +x, toward +z,
   /// and the two diagonals of the 9-point stencil. It is the depth at the face (harmonic mean, so 0 beside a dry cell)
@@ -29,15 +29,8 @@ struct Basin {
   std::vector<std::array<float, 4>> bed;
 };
 
-/// Still depth of the ground at a place [m], obstacles included: negative above the still water. bedDepth() where no
-/// ground stands out of the water.
-double groundDepth(const core::Scene& scene, double x_m, double z_m);
-
 /// Elevation [units] of the water of a nonlinear bulk at rest: 0, and the ground where that is higher.
 std::vector<std::int32_t> restingElevation(const Basin& basin);
-
-/// Still depth at a place, without obstacles. [m]
-double bedDepth(const core::Scene& scene, double x_m, double z_m);
 
 /// Signed distance in the plane to the nearest obstacle: negative inside; +infinity without obstacles. [m]
 double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
@@ -46,8 +39,8 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);
 
 /// The ground for particles and boats, nx x nz, for shaders/common/terrain_texels.glsl.
 struct Terrain {
-  /// Signed distance to the nearest obstacle, its gradient (x, z), still depth (0 on dry ground, minus the obstacle's
-  /// height inside one).
+  /// Signed distance to the nearest obstacle, its gradient (x, z), still depth (0 on dry ground at the rest level,
+  /// negative on land, minus the obstacle's height inside one).
   std::vector<std::array<float, 4>> ground;
   /// Index of the wet cell that receives water falling on this cell: the cell itself, or the nearest wet one.
   std::vector<std::int32_t> landing;

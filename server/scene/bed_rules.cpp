@@ -1,0 +1,87 @@
+#include "bed_rules.h"
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <spindrift/core/scene.h>
+#include <spindrift/core/text.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
+
+namespace spindrift::scene {
+namespace {
+
+constexpr std::size_t kGaugeNameMaxBytes = 32;
+
+std::string metres(double value) {
+  return core::formatQuantity(value, "m");
+}
+
+std::string indexed(const char* list, int index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+bool isGaugeName(const std::string& name) {
+  return name.size() <= kGaugeNameMaxBytes && isSceneName(name);
+}
+
+void checkInside(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  if (std::abs(value_m) <= 0.5 * side_m) return;
+  addRange(issues, path,
+           metres(value_m) + " lies outside of the water; choose " + core::formatNumber(-0.5 * side_m) + " to " +
+               metres(0.5 * side_m));
+}
+
+}  // namespace
+
+void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  if (scene.bed().shapes_size() > kSceneBedShapeMaxCount) {
+    addRange(issues, indexed("bed.shapes", kSceneBedShapeMaxCount),
+             std::to_string(scene.bed().shapes_size()) + " shapes are more than " +
+                 std::to_string(kSceneBedShapeMaxCount) + "; remove some, or give a grid");
+  }
+  for (int i = 0; i < scene.bed().shapes_size(); ++i) {
+    if (scene.bed().shapes(i).shape_case() != v1::BedShape::SHAPE_NOT_SET) continue;
+    issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("bed.shapes", i),
+                      "has no shape; say what is there: \"cone {}\", \"slope {}\", \"sill {}\" or \"channel {}\""});
+  }
+  constexpr int kMaxCount = static_cast<int>(core::kMaxGauges);
+  if (scene.gauges_size() > kMaxCount) {
+    addRange(
+        issues, indexed("gauges", kMaxCount),
+        std::to_string(scene.gauges_size()) + " gauges are more than " + std::to_string(kMaxCount) + "; remove some");
+  }
+  std::set<std::string> names;
+  for (int i = 0; i < scene.gauges_size(); ++i) {
+    const std::string& name = scene.gauges(i).name();
+    const std::string shown = "\"" + core::cleanText(name, kGaugeNameMaxBytes) + "\"";
+    if (!isGaugeName(name)) {
+      addRange(issues, indexed("gauges", i) + ".name", shown + " is no name; use 1 to 32 letters, digits, '_' and '-'");
+    } else if (!names.insert(name).second) {
+      addRange(issues, indexed("gauges", i) + ".name", shown + " names an earlier gauge, too; choose another name");
+    }
+  }
+}
+
+void checkBedNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  if (scene.bed().floor_depth_m() > scene.wave().depth_m()) {
+    addRange(issues, "bed.floor_depth_m",
+             metres(scene.bed().floor_depth_m()) + " is deeper than the water of " + metres(scene.wave().depth_m()) +
+                 "; choose at most " + metres(scene.wave().depth_m()));
+  }
+  for (int i = 0; i < scene.bed().shapes_size(); ++i) {
+    const v1::BedShape& shape = scene.bed().shapes(i);
+    if (shape.cone().crest_radius_m() <= shape.cone().toe_radius_m()) continue;
+    addRange(issues, indexed("bed.shapes", i) + ".cone.crest_radius_m",
+             metres(shape.cone().crest_radius_m()) + " is more than the toe radius of " +
+                 metres(shape.cone().toe_radius_m()) + "; choose at most that");
+  }
+  const WaterExtents water = waterExtentsOf(scene);
+  for (int i = 0; i < scene.gauges_size(); ++i) {
+    checkInside(scene.gauges(i).x_m(), water.side_x_m, indexed("gauges", i) + ".x_m", issues);
+    checkInside(scene.gauges(i).z_m(), water.side_z_m, indexed("gauges", i) + ".z_m", issues);
+  }
+}
+
+}  // namespace spindrift::scene

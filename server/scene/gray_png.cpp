@@ -1,0 +1,119 @@
+#include "gray_png.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <png.h>
+
+namespace spindrift::scene {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+/// Twice the pixels of the largest image: PNG may store noise with some overhead.
+constexpr std::uintmax_t kFileMaxBytes = 4u << 20;
+/// For ancillary chunks, which are not used.
+constexpr png_alloc_size_t kChunkMaxBytes = 1u << 20;
+
+/// Belongs to the caller of the functions that libpng may leave by longjmp, so that no object of theirs is lost.
+struct Reader {
+  std::FILE* stream = nullptr;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::string error;
+  GrayImage image;
+  std::vector<png_bytep> rows;
+  int bit_depth = 0;
+  int color_type = 0;
+  bool is_transparent = false;
+
+  Reader() = default;
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+[[noreturn]] void fail(png_structp png, png_const_charp message) {
+  static_cast<Reader*>(png_get_error_ptr(png))->error = message;
+  png_longjmp(png, 1);
+}
+
+void ignore(png_structp, png_const_charp) {}
+
+/// Returns false after an error.
+bool readHeader(Reader& reader) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_set_chunk_malloc_max(reader.png, kChunkMaxBytes);
+  png_init_io(reader.png, reader.stream);
+  png_read_info(reader.png, reader.info);
+  reader.image.width_count = png_get_image_width(reader.png, reader.info);
+  reader.image.height_count = png_get_image_height(reader.png, reader.info);
+  reader.bit_depth = png_get_bit_depth(reader.png, reader.info);
+  reader.color_type = png_get_color_type(reader.png, reader.info);
+  reader.is_transparent = png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0;
+  return true;
+}
+
+/// Returns false after an error.
+bool readPixels(Reader& reader) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_set_swap(reader.png);  // PNG is big-endian
+  png_set_interlace_handling(reader.png);
+  png_read_update_info(reader.png, reader.info);
+  png_read_image(reader.png, reader.rows.data());
+  png_read_end(reader.png, nullptr);
+  return true;
+}
+
+std::string kindOf(const Reader& reader) {
+  const bool is_gray = (reader.color_type & PNG_COLOR_MASK_COLOR) == 0;
+  const bool is_transparent = reader.is_transparent || (reader.color_type & PNG_COLOR_MASK_ALPHA) != 0;
+  return fmt::format("{}-bit {}{}", reader.bit_depth, is_gray ? "grayscale" : "color",
+                     is_transparent ? " with transparency" : "");
+}
+
+}  // namespace
+
+core::Result<GrayImage> readGrayPng(const std::filesystem::path& file) {
+  const auto invalid = [](std::string message) { return Error{ErrorCode::kInvalidInput, std::move(message)}; };
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) return Error{ErrorCode::kUnavailable, "there is no such file; check the name"};
+  if (!std::filesystem::is_regular_file(status)) return invalid("is no regular file; name a PNG");
+  if (const auto bytes = std::filesystem::file_size(file, error); error || bytes > kFileMaxBytes)
+    return invalid(fmt::format("is bigger than {} bytes; choose an image of at most {} x {} pixels", kFileMaxBytes,
+                               kImageSideMaxCount, kImageSideMaxCount));
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+  if (!stream)
+    return Error{ErrorCode::kUnavailable,
+                 std::string("cannot be opened: ") + std::strerror(errno) + "; check its permissions"};
+
+  Reader reader;
+  reader.stream = stream.get();
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, &fail, &ignore);
+  reader.info = reader.png ? png_create_info_struct(reader.png) : nullptr;
+  if (!reader.info) return Error{ErrorCode::kInternal, "libpng has no memory"};
+  if (!readHeader(reader)) return invalid("cannot be read as PNG: " + reader.error);
+  const bool is_gray16 = reader.bit_depth == 16 && reader.color_type == PNG_COLOR_TYPE_GRAY && !reader.is_transparent;
+  if (!is_gray16) return invalid("is " + kindOf(reader) + "; save it as 16-bit grayscale");
+  if (std::max(reader.image.width_count, reader.image.height_count) > kImageSideMaxCount)
+    return invalid(fmt::format("is {} x {} pixels; choose at most {} x {}", reader.image.width_count,
+                               reader.image.height_count, kImageSideMaxCount, kImageSideMaxCount));
+  const std::size_t width = reader.image.width_count;
+  const std::size_t height = reader.image.height_count;
+  reader.image.values.resize(width * height);
+  for (std::size_t row = 0; row < height; ++row)
+    reader.rows.push_back(reinterpret_cast<png_bytep>(reader.image.values.data() + row * width));
+  if (!readPixels(reader)) return invalid("cannot be read as PNG: " + reader.error);
+  return std::move(reader.image);
+}
+
+}  // namespace spindrift::scene

@@ -1,0 +1,38 @@
+// The ground of a room's water for clients that draw it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <spindrift/core/scene.h>
+#include <spindrift/rooms/room.h>
+#include <spindrift/v1/api.pb.h>
+
+namespace spindrift::service {
+
+/// Returns the ground of a scene with a wave: one height per cell, without obstacles. Errors of rounding: at most half
+/// of `quantum_m`, which is a 32,767th of the largest height or depth and at least 0.1 mm.
+v1::Ground groundOf(const core::Scene& scene);
+
+/// Any thread.
+class GroundAnswers {
+ public:
+  /// Returns a serialized v1::Ground of the room's present scene; null if it has no wave. Keeps the newest answer of
+  /// each room, because all clients of a room ask for the same one.
+  [[nodiscard]] std::shared_ptr<const std::string> of(const std::shared_ptr<const rooms::Room>& room);
+
+ private:
+  struct Kept {
+    std::weak_ptr<const rooms::Room> room;  ///< another room may have the name later
+    std::uint64_t scene_version = 0;
+    std::shared_ptr<const std::string> bytes;
+  };
+  std::mutex mutex_;
+  std::map<std::string, Kept> kept_;  ///< by room; at most kKeptMaxCount
+};
+
+}  // namespace spindrift::service

@@ -1,0 +1,60 @@
+// What the gauges of a scene have read at the last ticks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace spindrift::sim {
+
+/// Of one gauge at the end of one tick; shaders/diagnostics/gauges.comp. All 0 on dry ground.
+struct GaugeReading {
+  float elevation_m = 0.0F;     ///< over the rest level
+  float velocity_x_mps = 0.0F;  ///< of the flow over the depth
+  float velocity_z_mps = 0.0F;
+};
+
+/// A bounded ring. The simulation thread writes it; any thread may read it.
+class GaugeHistory {
+ public:
+  /// Ticks that are kept: 68 s at 60 Hz.
+  static constexpr std::size_t kTickMaxCount = 4096;
+
+  /// The newest reading of a gauge, with the extremes since the start of the scene or the last clear().
+  struct Now {
+    GaugeReading reading;
+    float highest_m = 0.0F;
+    float lowest_m = 0.0F;
+  };
+  struct Series {
+    std::vector<double> time_s;  ///< simulation time since the start of the scene; ascending
+    std::vector<GaugeReading> readings;
+  };
+
+  explicit GaugeHistory(std::size_t gauge_count);
+
+  // Simulation thread.
+  /// One reading per gauge. Overwrites the oldest tick when the ring is full.
+  void add(double time_s, std::span<const GaugeReading> readings);
+  void clear();
+
+  // Any thread.
+  [[nodiscard]] std::size_t gaugeCount() const { return gauge_count_; }
+  /// One per gauge; zeros before the first reading.
+  [[nodiscard]] std::vector<Now> now() const;
+  /// The kept ticks of a gauge, oldest first. Precondition: gauge < gaugeCount().
+  [[nodiscard]] Series series(std::size_t gauge) const;
+
+ private:
+  const std::size_t gauge_count_;
+  mutable std::mutex mutex_;
+  std::vector<double> times_s_;         ///< ring of ticks
+  std::vector<GaugeReading> readings_;  ///< the same ticks, gauge fastest
+  std::vector<Now> now_;
+  std::size_t next_ = 0;  ///< tick of the ring that is written next
+  bool is_empty_ = true;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <spindrift/core/overloaded.h>
+#include <spindrift/sim_setup/ground.h>
+
+namespace spindrift::sim {
+namespace {
+
+using core::Error;
+using core::ErrorCode;
+
+/// Allows for the rounding of a bed that reaches exactly the depth of the water.
+constexpr double kDepthTolerance = 1e-6;
+/// The ground above a place counts as land on the way to shore if it is shallower than this share of the depth there.
+constexpr double kLandShare = 0.01;
+
+/// A place relative to a centre: along a heading, and across it to the right. [m]
+struct Place {
+  double along_m, across_m;
+};
+
+Place placeFrom(double centre_x_m, double centre_z_m, double heading_deg, double x_m, double z_m) {
+  const double heading = heading_deg * std::numbers::pi / 180.0;
+  const double dx = x_m - centre_x_m;
+  const double dz = z_m - centre_z_m;
+  return {dx * std::cos(heading) + dz * std::sin(heading), dz * std::cos(heading) - dx * std::sin(heading)};
+}
+
+/// Distance of a place from a side. [m]
+double distanceTo(core::Side side, const core::WaveCells& water, double x_m, double z_m) {
+  switch (side) {
+    case core::Side::kMinusX:
+      return x_m + water.length_m / 2;
+    case core::Side::kPlusZ:
+      return water.width_m / 2 - z_m;
+    case core::Side::kMinusZ:
+      return z_m + water.width_m / 2;
+    default:
+      return water.length_m / 2 - x_m;
+  }
+}
+
+double floorDepth(const core::Scene& scene) {
+  const bool is_set = scene.bed && scene.bed->floor_depth_m > 0;
+  return is_set ? scene.bed->floor_depth_m : scene.wave->depth_m;
+}
+
+/// Returns the depth that the grid gives; nullopt outside of its rectangle.
+std::optional<double> gridDepth(const core::DepthGrid& grid, const core::WaveCells& water, double x_m, double z_m) {
+  const double length_m = grid.length_m > 0 ? grid.length_m : water.length_m;
+  const double width_m = grid.width_m > 0 ? grid.width_m : water.width_m;
+  const double column = ((x_m - grid.x_m) / length_m + 0.5) * (grid.columns_count - 1);
+  const double row = ((z_m - grid.z_m) / width_m + 0.5) * (grid.rows_count - 1);
+  if (column < 0 || row < 0 || column > grid.columns_count - 1 || row > grid.rows_count - 1) return std::nullopt;
+  const auto left = std::min(static_cast<std::size_t>(column), std::size_t{grid.columns_count} - 2);
+  const auto before = std::min(static_cast<std::size_t>(row), std::size_t{grid.rows_count} - 2);
+  const auto at = [&](std::size_t c, std::size_t r) { return double{(*grid.depths_m)[c + grid.columns_count * r]}; };
+  const double along = column - static_cast<double>(left);
+  return std::lerp(std::lerp(at(left, before), at(left + 1, before), along),
+                   std::lerp(at(left, before + 1), at(left + 1, before + 1), along), row - static_cast<double>(before));
+}
+
+/// Share of the full height at a distance from the level part: 1 on it, 0 beyond the flank.
+double flankShare(double distance_m, double flank_m) {
+  if (distance_m <= 0) return 1.0;
+  return flank_m > 0 ? std::max(1.0 - distance_m / flank_m, 0.0) : 0.0;
+}
+
+/// Distance from a rectangle with this centre; 0 inside.
+double outsideRectangle(Place place, double length_m, double width_m) {
+  return std::hypot(std::max(std::abs(place.along_m) - length_m / 2, 0.0),
+                    std::max(std::abs(place.across_m) - width_m / 2, 0.0));
+}
+
+/// How much a shape raises the ground. [m]
+double rise_m(const core::BedShape& shape, double x_m, double z_m) {
+  return std::visit(
+      core::Overloaded{
+          [&](const core::BedCone& cone) {
+            const double from_crest_m = std::hypot(x_m - cone.x_m, z_m - cone.z_m) - cone.crest_radius_m;
+            return cone.height_m * flankShare(from_crest_m, cone.toe_radius_m - cone.crest_radius_m);
+          },
+          [&](const core::BedSlope& slope) {
+            const double up_m = placeFrom(slope.x_m, slope.z_m, slope.heading_deg, x_m, z_m).along_m;
+            const double end_m = slope.length_m > 0 ? slope.length_m : std::numeric_limits<double>::infinity();
+            return slope.gradient_ratio * std::clamp(up_m, 0.0, end_m);
+          },
+          [&](const core::BedSill& sill) {
+            const Place place = placeFrom(sill.x_m, sill.z_m, sill.heading_deg, x_m, z_m);
+            return sill.height_m *
+                   flankShare(outsideRectangle(place, sill.length_m, sill.crest_width_m), sill.flank_width_m);
+          },
+          [&](const core::BedChannel& channel) {
+            const Place place = placeFrom(channel.x_m, channel.z_m, channel.heading_deg, x_m, z_m);
+            return -channel.cut_m *
+                   flankShare(outsideRectangle(place, channel.length_m, channel.bottom_width_m), channel.bank_width_m);
+          },
+      },
+      shape);
+}
+
+/// Depth that no ground exceeds: a bound that needs no look at the cells.
+double deepestPossible(const core::Scene& scene) {
+  double deepest_m = floorDepth(scene);
+  for (const core::Beach& beach : scene.beaches) deepest_m = std::max(deepest_m, beach.shore_depth_m);
+  if (scene.bed->grid) {
+    for (const float depth_m : *scene.bed->grid->depths_m) deepest_m = std::max(deepest_m, double{depth_m});
+  }
+  const core::WaveCells water = scene.wave->cells();
+  const double reach_m = std::hypot(water.length_m, water.width_m);
+  for (const core::BedShape& shape : scene.bed->shapes) {
+    deepest_m += std::visit(core::Overloaded{
+                                [](const core::BedCone& cone) { return std::max(-cone.height_m, 0.0); },
+                                [&](const core::BedSlope& slope) {
+                                  const double length_m = slope.length_m > 0 ? slope.length_m : 2 * reach_m;
+                                  return std::max(-slope.gradient_ratio, 0.0) * length_m;
+                                },
+                                [](const core::BedSill&) { return 0.0; },
+                                [](const core::BedChannel& channel) { return channel.cut_m; },
+                            },
+                            shape);
+  }
+  return deepest_m;
+}
+
+/// Still depth of an obstacle as ground; +infinity where it is not.
+double obstacleDepth(const core::Rock& rock, double x_m, double z_m) {
+  const double share = std::hypot(x_m - rock.x_m, z_m - rock.z_m) / rock.radius_m;
+  return share < 1 ? -rock.height_m * (1 - share * share) : 2 * rock.height_m * (share - 1);
+}
+
+double obstacleDepth(const core::Breakwater& wall, double x_m, double z_m) {
+  const Place place = placeFrom(wall.x_m, wall.z_m, wall.heading_deg, x_m, z_m);
+  const bool is_inside = std::abs(place.along_m) <= wall.length_m / 2 && std::abs(place.across_m) <= wall.width_m / 2;
+  return is_inside ? -wall.height_m : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double groundDepth(const core::Scene& scene, double x_m, double z_m) {
+  const double floor_m = floorDepth(scene);
+  double depth_m = floor_m;
+  if (scene.beaches.empty() && !scene.bed) return depth_m;
+  const core::WaveCells water = scene.wave->cells();
+  for (const core::Beach& beach : scene.beaches) {
+    const double share = std::clamp(distanceTo(beach.side, water, x_m, z_m) / beach.width_m, 0.0, 1.0);
+    depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, floor_m, share));
+  }
+  if (!scene.bed) return depth_m;
+  if (scene.bed->grid) depth_m = gridDepth(*scene.bed->grid, water, x_m, z_m).value_or(depth_m);
+  for (const core::BedShape& shape : scene.bed->shapes) depth_m -= rise_m(shape, x_m, z_m);
+  return depth_m;
+}
+
+double groundDepthWithObstacles(const core::Scene& scene, double x_m, double z_m) {
+  double depth_m = groundDepth(scene, x_m, z_m);
+  for (const core::Obstacle& obstacle : scene.obstacles) {
+    depth_m = std::min(depth_m, std::visit([&](const auto& o) { return obstacleDepth(o, x_m, z_m); }, obstacle));
+  }
+  return depth_m;
+}
+
+double bedDepth(const core::Scene& scene, double x_m, double z_m) {
+  return std::max(groundDepth(scene, x_m, z_m), 0.0);
+}
+
+std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_m) {
+  const double here_m = groundDepth(scene, x_m, z_m);
+  if (!scene.bed || here_m <= 0) return std::nullopt;
+  const double step_m = 0.5 * scene.wave->cells().cell_m;
+  const double rise_x = (groundDepth(scene, x_m - step_m, z_m) - groundDepth(scene, x_m + step_m, z_m)) / (2 * step_m);
+  const double rise_z = (groundDepth(scene, x_m, z_m - step_m) - groundDepth(scene, x_m, z_m + step_m)) / (2 * step_m);
+  const double slope = std::hypot(rise_x, rise_z);
+  if (slope <= 0) return std::nullopt;
+  // Where the ground would come out of the water if it went on with this slope.
+  const double way_m = here_m / slope;
+  const double top_m = groundDepth(scene, x_m + rise_x / slope * way_m, z_m + rise_z / slope * way_m);
+  return top_m < kLandShare * here_m ? std::optional(slope) : std::nullopt;
+}
+
+core::Result<void> checkGround(const core::Scene& scene) {
+  if (!scene.wave || !scene.bed) return {};
+  if (const auto& grid = scene.bed->grid) {
+    const std::size_t wanted = std::size_t{grid->columns_count} * grid->rows_count;
+    if (grid->columns_count < 2 || grid->rows_count < 2 || !grid->depths_m || grid->depths_m->size() != wanted)
+      return Error{ErrorCode::kInvalidInput,
+                   fmt::format("bed.grid: {} x {} points with {} depths are no grid: give rows or a png with at least "
+                               "2 x 2 points",
+                               grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0)};
+  }
+  const double limit_m = scene.wave->depth_m * (1 + kDepthTolerance);
+  if (deepestPossible(scene) <= limit_m) return {};
+  const core::WaveCells water = scene.wave->cells();
+  double deepest_m = limit_m, deepest_x_m = 0.0, deepest_z_m = 0.0;
+  for (std::uint32_t z = 0; z < water.count.z; ++z) {
+    for (std::uint32_t x = 0; x < water.count.x; ++x) {
+      const double x_m = (x + 0.5) * water.cell_m - water.length_m / 2;
+      const double z_m = (z + 0.5) * water.cell_m - water.width_m / 2;
+      const double depth_m = groundDepth(scene, x_m, z_m);
+      if (depth_m > deepest_m) {
+        deepest_m = depth_m;
+        deepest_x_m = x_m;
+        deepest_z_m = z_m;
+      }
+    }
+  }
+  if (deepest_m <= limit_m) return {};
+  return Error{ErrorCode::kInvalidInput,
+               fmt::format("bed: {:.4g} m at x {:.4g} m, z {:.4g} m is deeper than wave.depth_m of {:.4g} m, the bound "
+                           "by which steps are chosen: choose wave.depth_m of at least {:.4g} m (and "
+                           "bed.floor_depth_m for the depth of the level floor)",
+                           deepest_m, deepest_x_m, deepest_z_m, scene.wave->depth_m, deepest_m)};
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,33 @@
+// The ground under the water and beside it, as a function of place. Pure functions of the scene. "Still depth": from
+// the rest level down, positive below it and negative above it (land). [m]
+#pragma once
+
+#include <optional>
+
+#include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
+
+namespace spindrift::sim {
+
+/// Returns the still depth of the ground at a place, without obstacles: floor, beaches, grid, then the shapes in order.
+/// Not above wave.depth_m if checkGround() found nothing. Precondition: the scene has a wave.
+double groundDepth(const core::Scene& scene, double x_m, double z_m);
+
+/// Returns the still depth of the ground with obstacles as ground. A rock is a paraboloid of height_m over the still
+/// water, which it meets at radius_m, on a cone that goes on with its slope down to the bed; a breakwater is a vertical
+/// wall of height_m over the still water.
+double groundDepthWithObstacles(const core::Scene& scene, double x_m, double z_m);
+
+/// Returns the still depth where there is water at rest, 0 on land; without obstacles. [m]
+double bedDepth(const core::Scene& scene, double x_m, double z_m);
+
+/// Returns how fast the ground rises toward land, if a straight way up from this place leads there: the slope of the
+/// ground, positive. Returns nullopt on land, on level ground, and on a slope that stays under water, such as a bar's.
+/// Only of the scene's bed; 0 without one.
+std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_m);
+
+/// Checks the bed against the water: points of the grid, and no ground deeper than wave.depth_m at the centre of any
+/// cell. Error: kInvalidInput. Does nothing in scenes without a bed.
+core::Result<void> checkGround(const core::Scene& scene);
+
+}  // namespace spindrift::sim
