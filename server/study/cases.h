@@ -38,6 +38,13 @@ Outcome shallowWake(gpu::Context& ctx, bool quick);
 Outcome reflection(gpu::Context& ctx, bool quick);
 Outcome greensLaw(gpu::Context& ctx, bool quick);
 
+// island_case.cpp
+Outcome conicalIsland(gpu::Context& ctx, bool quick);
+
+// run_up_cases.cpp
+Outcome solitaryRunUp(gpu::Context& ctx, bool quick);
+Outcome solitaryWave(gpu::Context& ctx, bool quick);
+
 // shore_cases.cpp
 Outcome damBreakOfShallowWater(gpu::Context& ctx, bool quick);
 Outcome lakeWithIslands(gpu::Context& ctx, bool quick);

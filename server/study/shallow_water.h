@@ -13,7 +13,7 @@ namespace spindrift::study {
 /// `courant`: share of a cell that a long wave of the still depth crosses in a tick.
 core::Scene shallowScene(std::uint32_t resolution_count, double cell_m, double depth_m, double courant);
 
-/// Still depth of the ground at the cells, negative on land. n x n, x fastest. [m]
+/// Still depth of the ground at the cells, negative on land. x fastest. [m]
 std::vector<double> groundDepths(const core::Scene& scene, const sim::WaveLayout& layout);
 
 /// A field over the water; x and z are scene coordinates. [m]

@@ -1,0 +1,170 @@
+// Solitary waves of nonlinear shallow water on beaches, and in balance with dispersion over a level bed.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cases.h"
+#include "shallow_water.h"
+#include "ticks.h"
+
+namespace spindrift::study {
+namespace {
+
+constexpr double kGravity_mps2 = 9.81;
+/// Cells across a channel. The waves do not vary there.
+constexpr std::uint32_t kAcross = 4;
+/// Water thinner than this share of the depth does not count as wet when the waterline is read.
+constexpr double kFilm = 1e-4;
+constexpr double kBeachCotangent = 19.85;
+/// Where the beach begins, a solitary wave has a twentieth of its height (Synolakis 1987).
+const double kStartArgument = std::acosh(std::sqrt(20.0));
+
+/// A solitary wave of height H in water of depth 1 m: H sech^2(gamma (x - x_0)), as the benchmarks define it.
+struct SolitaryWave {
+  double height_m;
+  double crest_x_m;
+  [[nodiscard]] double gamma_pm() const { return std::sqrt(0.75 * height_m); }
+  [[nodiscard]] double at(double x_m) const {
+    return height_m / std::pow(std::cosh(gamma_pm() * (x_m - crest_x_m)), 2);
+  }
+  [[nodiscard]] double halfLength_m() const { return kStartArgument / gamma_pm(); }
+};
+
+/// A channel 1 m deep with a plane beach at +x. The toe is at x = `toe_x_m` of the scene.
+struct BeachChannel {
+  core::Scene scene;
+  double toe_x_m;
+};
+
+BeachChannel beachChannel(double cells_per_m, double offshore_m, double top_m, double courant) {
+  const double cell_m = 1.0 / cells_per_m;
+  const double beach_m = kBeachCotangent * (1.0 + top_m);
+  const auto cells = static_cast<std::uint32_t>(std::ceil((offshore_m + beach_m) * cells_per_m));
+  BeachChannel out{shallowScene(cells, cell_m, 1.0, courant), 0.0};
+  out.scene.wave->width_m = kAcross * cell_m;
+  out.scene.beaches = {core::Beach{core::Side::kPlusX, beach_m, -top_m}};
+  out.toe_x_m = out.scene.wave->side_m / 2 - beach_m;
+  return out;
+}
+
+/// Highest place [m over the still water] that the water has reached after `duration_s`.
+core::Result<double> runUp(gpu::Context& ctx, double height_m, double cells_per_m, double manning_spm13) {
+  const double half_m = kStartArgument / std::sqrt(0.75 * height_m);
+  const double expected_m = std::max(2.831 * std::sqrt(kBeachCotangent) * std::pow(height_m, 1.25), 0.05);
+  const double top_m = std::min(2.0 * expected_m, 1.0);
+  BeachChannel channel = beachChannel(cells_per_m, 2.2 * half_m, top_m, 0.38);
+  channel.scene.wave->manning_spm13 = manning_spm13;
+  const SolitaryWave wave{height_m, channel.toe_x_m - half_m};
+  auto water = sim::WaterSim::create(ctx, channel.scene);
+  if (!water) return water.error();
+  const double speed_mps = std::sqrt(kGravity_mps2);
+  setShallowState(
+      **water, [&](double x, double) { return x < channel.toe_x_m + half_m ? wave.at(x) : 0.0; },
+      [&](double x, double) { return x < channel.toe_x_m + half_m ? wave.at(x) * speed_mps : 0.0; });
+  const std::vector<double> depth_m = groundDepths(channel.scene, *(*water)->derived().wave);
+  const std::size_t nx = (*water)->derived().wave->count_x;
+  const double duration_s = (half_m + 1.7 * kBeachCotangent + 3.0 * kBeachCotangent * expected_m) / speed_mps;
+  double highest_m = 0.0;
+  int tick_count = 0;
+  auto done = runTo(**water, duration_s, [&] {
+    if (++tick_count % 8 != 0 || (*water)->time_s() < 0.4 * duration_s) return;
+    const std::vector<double> eta_m = (*water)->copyState().elevation_m;
+    for (std::size_t x = nx; x-- > 0;) {
+      const std::size_t i = x + nx;  // not the first row
+      if (eta_m[i] + depth_m[i] <= kFilm) continue;
+      highest_m = std::max(highest_m, eta_m[i]);
+      break;
+    }
+  });
+  if (!done) return done.error();
+  return highest_m;
+}
+
+struct LaboratoryRun {
+  double height;  ///< H/d
+  double run_up;  ///< R/d
+  bool breaks;
+};
+
+/// From Synolakis (1987), plane beach 1:19.85: means of the runs with nearly the same H/d.
+constexpr std::array<LaboratoryRun, 7> kLaboratory = {{{0.0185, 0.0758, false},
+                                                       {0.0275, 0.1155, false},
+                                                       {0.039, 0.157, false},
+                                                       {0.0765, 0.2545, true},
+                                                       {0.16, 0.384, true},
+                                                       {0.28, 0.511, true},
+                                                       {0.39, 0.631, true}}};
+/// One roughness for all: the laboratory's painted slope.
+constexpr double kLaboratoryManning = 0.01;
+
+}  // namespace
+
+Outcome solitaryRunUp(gpu::Context& ctx, bool quick) {
+  std::vector<Row> rows;
+  // The closed form of Synolakis's nonlinear theory reaches 0.0912 d at t = 55 sqrt(d/g) (NTHMP benchmark 1).
+  for (const double cells_per_m : {10.0, 20.0, 40.0}) {
+    if (quick && cells_per_m != 20.0) continue;
+    const auto reached_m = runUp(ctx, 0.019, cells_per_m, 0.0);
+    if (!reached_m) return reached_m.error();
+    const double tolerance = cells_per_m == 40.0 ? 0.012 : 0.035;
+    rows.push_back(
+        {fmt::format("slope 1:19.85, H/d = 0.019, without friction, {:.0f} cells a depth: run-up / d", cells_per_m), "",
+         *reached_m, 0.0912, Tolerance::kRelative, tolerance, "closed form (NTHMP benchmark 1); Celeris -1.27 %"});
+  }
+  for (const LaboratoryRun& run : kLaboratory) {
+    if (quick && run.height != 0.0275) continue;
+    const auto reached_m = runUp(ctx, run.height, 20.0, kLaboratoryManning);
+    if (!reached_m) return reached_m.error();
+    rows.push_back({fmt::format("slope 1:19.85, H/d = {}, {}, Manning {}: run-up / d", run.height,
+                                run.breaks ? "breaking" : "not breaking", kLaboratoryManning),
+                    "", *reached_m, run.run_up, Tolerance::kRelative, run.breaks ? 0.08 : 0.05,
+                    "laboratory, Synolakis 1987 (NTHMP benchmark 4)"});
+  }
+  return CaseResult{std::move(rows), {}};
+}
+
+Outcome solitaryWave(gpu::Context& ctx, bool quick) {
+  std::vector<Row> rows;
+  for (const double height_m : {0.1, 0.3}) {
+    for (const double cells_per_m : {10.0, 20.0}) {
+      if (quick && cells_per_m != 10.0) continue;
+      constexpr double kWay_m = 30.0;
+      constexpr double kStart_m = 15.0;
+      const auto cells = static_cast<std::uint32_t>((kStart_m + kWay_m + 15.0) * cells_per_m);
+      core::Scene scene = shallowScene(cells, 1.0 / cells_per_m, 1.0, 0.3);
+      scene.wave->width_m = kAcross / cells_per_m;
+      scene.wave->dispersion = core::Dispersion::kAiry;
+      const double speed_mps = std::sqrt(kGravity_mps2 * (1.0 + height_m));
+      const double from_m = kStart_m - scene.wave->side_m / 2;
+      // The shape of Serre's solitary wave; its water moves as the shape does: u = c eta / (d + eta).
+      const double gamma_pm = std::sqrt(0.75 * height_m / (1.0 + height_m));
+      const auto eta = [&](double x) { return height_m / std::pow(std::cosh(gamma_pm * (x - from_m)), 2); };
+      auto water = sim::WaterSim::create(ctx, scene);
+      if (!water) return water.error();
+      const double ahead_m = 0.5 * speed_mps * (*water)->derived().wave->dt_s;  // flow is half a step ahead
+      setShallowState(
+          **water, [&](double x, double) { return eta(x); },
+          [&](double x, double) { return speed_mps * eta(x - ahead_m) / (1.0 + eta(x - ahead_m)); });
+      if (auto done = runTo(**water, kWay_m / speed_mps); !done) return done.error();
+      const std::vector<double> eta_m = (*water)->copyState().elevation_m;
+      const auto first = eta_m.begin() + cells;
+      const auto top = std::max_element(first, first + cells);
+      const auto at = static_cast<double>(top - first);
+      const double bend = *(top - 1) - 2 * *top + *(top + 1);
+      const double shift = 0.5 * (*(top - 1) - *(top + 1)) / bend;
+      const double crest_m = *top - 0.25 * (*(top - 1) - *(top + 1)) * shift;
+      const double way_m = (at + 0.5 + shift) / cells_per_m - kStart_m;
+      const std::string name = fmt::format("H/d = {}, {:.0f} cells a depth", height_m, cells_per_m);
+      rows.push_back({name + ": height after 30 depths / height", "", crest_m / height_m, 1.0, Tolerance::kRelative,
+                      0.05, "keeps its height"});
+      rows.push_back({name + ": speed / sqrt(g (d + H))", "", way_m / ((*water)->time_s() * speed_mps), 1.0,
+                      Tolerance::kRelative, 0.025, "solitary wave; REEF3D-SFLOW -0.2 %"});
+    }
+  }
+  return CaseResult{std::move(rows), {}};
+}
+
+}  // namespace spindrift::study
