@@ -40,6 +40,10 @@ core::Stencil toCore(v1::Stencil stencil) {
   return stencil == v1::STENCIL_NINE_POINT ? core::Stencil::kNinePoint : core::Stencil::kFivePoint;
 }
 
+core::Bulk toCore(v1::Bulk bulk) {
+  return bulk == v1::BULK_NONLINEAR ? core::Bulk::kNonlinear : core::Bulk::kLinear;
+}
+
 core::Absorption toCore(v1::Absorption absorption) {
   switch (absorption) {
     case v1::ABSORPTION_SPONGE:
@@ -112,6 +116,8 @@ core::WaveScene toCore(const v1::WaveScene& in) {
   out.stencil = toCore(in.stencil());
   out.dispersion = toCore(in.dispersion());
   out.absorption = toCore(in.absorption());
+  out.bulk = toCore(in.bulk());
+  out.manning_spm13 = in.manning_spm13();
   out.boundary_minus_x = toCore(in.boundary_minus_x());
   out.boundary_plus_x = toCore(in.boundary_plus_x());
   out.boundary_minus_z = toCore(in.boundary_minus_z());

@@ -201,6 +201,7 @@ core::WaveScene fixedPart(core::WaveScene wave) {
   wave.depth_m = any.depth_m;
   wave.damping_per_s = any.damping_per_s;
   wave.steepening_ratio = any.steepening_ratio;
+  wave.manning_spm13 = any.manning_spm13;
   wave.fixed_substeps_count = any.fixed_substeps_count;
   return wave;
 }

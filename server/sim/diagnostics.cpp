@@ -130,6 +130,7 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
     copied = slot->copyFrom(particle_sums_, 0, particle_sums_.sizeBytes(), 0);
   }
   if (wave) {
+    resting_units_ = wave->restingUnits();
     wave->elevation().bindTexel(ELEVATION);
     wave->flow().bindTexel(FLOW);
     wave->bindBasin();
@@ -190,14 +191,14 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
       h.nonfinite_count += static_cast<std::uint64_t>(t.nonfinite);
       h.max_elevation_m = t.max_a;
       h.breaking_ratio = t.count_b / cells_;
-      h.surface_units = t.elevation_units;
+      h.surface_units = t.elevation_units - resting_units_;
       h.outflow_units = t.outflow_units;
-      h.volume_error_units = t.elevation_units + t.outflow_units;
+      h.volume_error_units = h.surface_units + t.outflow_units;
       const double droplet_m3 = derived.uniforms.droplet_units * double{ELEVATION_UNIT_M} * area_m2;
       h.emitted_m3 = h.emitted_count * droplet_m3;
       h.absorbed_m3 = h.absorbed_count * droplet_m3;
       if (is_pooled_) h.volume_error_units += std::int64_t{h.particle_count} * derived.uniforms.droplet_units;
-      h.wave_volume_m3 = static_cast<double>(t.elevation_units) * ELEVATION_UNIT_M * area_m2;
+      h.wave_volume_m3 = static_cast<double>(h.surface_units) * ELEVATION_UNIT_M * area_m2;
       h.wave_energy_j = 0.5 * rho * area_m2 * (scene.gravity_mps2 * t.sum[0] + t.sum[1]);
     }
     if (gauges_) h.gauges = Gauges::parse(bytes.subspan(gaugeOffset(), gauges_->readings().sizeBytes()));

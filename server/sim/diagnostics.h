@@ -52,6 +52,7 @@ class Diagnostics {
   std::uint32_t cells_ = 0;
   std::uint32_t particles_ = 0;
   bool is_pooled_ = false;
+  std::int64_t resting_units_ = 0;    ///< Wave::restingUnits()
   std::uint32_t crowded_before_ = 0;  ///< NeighborGrid::crowded() of the last result
   gpu::Buffer particle_sums_, surface_sums_;
   gpu::Program particle_program_, surface_program_;

@@ -134,9 +134,7 @@ void DispersedSlope::upload(const Dispersion& dispersion) {
   if (!from_z.empty()) bottom_.from_z.upload(from_z);
 }
 
-void DispersedSlope::compute(const gpu::TexelBuffer& elevation, const gpu::TexelBuffer* pressure_head) {
-  elevation.bindTexel(ELEVATION);
-  if (pressure_head) pressure_head->bindTexel(PRESSURE_HEAD);
+void DispersedSlope::compute() {
   const std::size_t bottom = grids_.size() - 1;
   for (std::size_t level = 0; level < bottom; ++level) descend(level);
   solveBottom();

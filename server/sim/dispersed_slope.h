@@ -20,8 +20,9 @@ class DispersedSlope {
   /// Uploads the tables for a changed depth.
   void upload(const WaveLayout& layout, const Basin& basin);
 
-  /// Computes texels() from the elevation and the pressure head (null: none), nx x nz [units].
-  void compute(const gpu::TexelBuffer& elevation, const gpu::TexelBuffer* pressure_head);
+  /// Computes texels() from the slopes of the surface, which the caller has bound for lookups: ELEVATION and, if the
+  /// scene has one, PRESSURE_HEAD, nx x nz [units]; with a nonlinear bulk SURFACE_RISE, nx x nz x 2 [units per cell].
+  void compute();
   /// nx x nz x 2: F grad(eta) at the faces that a cell owns [m * units per cell].
   [[nodiscard]] const gpu::TexelBuffer& texels() const { return dispersed_; }
 

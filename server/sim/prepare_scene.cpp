@@ -14,6 +14,12 @@ using core::ErrorCode;
 core::Result<Derived> checkChange(const core::Scene& scene, const SceneBasis& basis) {
   auto fresh = derive(scene);
   if (!fresh) return fresh;
+  if (isNonlinear(scene) && scene.wave->depth_m != basis.scene.wave->depth_m) {
+    return Error{
+        ErrorCode::kInvalidInput,
+        "wave.depth_m: cannot change while water with BULK_NONLINEAR runs, because its ground and its shore would "
+        "move; start the room again with the changed scene"};
+  }
   const bool relays = asksForOtherCount(basis.scene, scene);
   if (relays && isTwoWay(basis.scene)) {
     // The device counts the slots of a pool, and their number is fixed.

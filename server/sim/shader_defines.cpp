@@ -47,6 +47,7 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"VARIED", flag(scene.wave && isVaried(scene))},
           {"OPEN", flag(scene.wave && isOpen(scene))},
           {"MATCHED", flag(hasMatchedLayer(scene))},
+          {"NONLINEAR", flag(isNonlinear(scene))},
           {"DISPERSE", flag(disperses(scene))},
           {"HEAD", flag(hasPressureHead(scene))},
           {"BREAKERS", flag(hasBreakers(scene))},

@@ -117,6 +117,7 @@ BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
   // Parameters that may change while running and that no table contains.
   wave.damping_per_s = 0.0;
   wave.steepening_ratio = 0.0;
+  wave.manning_spm13 = 0.0;
   wave.fixed_substeps_count = 0;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include <shared/bindings.h>
 
@@ -21,12 +22,13 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   auto wave = std::unique_ptr<Wave>(new Wave(ctx, layout));
   const std::size_t cells = layout.counts().total();
   const bool nine = scene.wave->stencil == core::Stencil::kNinePoint;
-  wave->flow_components_ = nine ? 4 : 2;
+  const bool wide_flow = nine || isNonlinear(scene);
+  wave->flow_components_ = wide_flow ? 4 : 2;
   wave->is_varied_ = isVaried(scene);
   wave->has_outflow_ = isOpen(scene);
   Creation create;
   create(wave->elevation_, TexelBuffer::create(ctx, "elevation", cells, TexelFormat::kR32I));
-  create(wave->flow_, TexelBuffer::create(ctx, "flow", cells, nine ? TexelFormat::kRGBA32F : TexelFormat::kRG32F));
+  create(wave->flow_, TexelBuffer::create(ctx, "flow", cells, wide_flow ? TexelFormat::kRGBA32F : TexelFormat::kRG32F));
   create(wave->transfer_,
          TexelBuffer::create(ctx, "transfer", cells, nine ? TexelFormat::kRGBA32I : TexelFormat::kRG32I));
   create(wave->given_share_, TexelBuffer::create(ctx, "given share", cells, TexelFormat::kR32F));
@@ -57,7 +59,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     if (sea && !hasWindSea(scene)) continue;
     gpu::Defines of_sea = defines;
     of_sea.emplace_back("SEA", sea ? "1" : "0");
-    create(wave->momentum_[sea], Program::create(ctx, "wave/momentum.comp", of_sea));
+    if (!isNonlinear(scene)) create(wave->momentum_[sea], Program::create(ctx, "wave/momentum.comp", of_sea));
     create(wave->continuity_[sea], Program::create(ctx, "wave/continuity.comp", of_sea));
   }
   if (sampled) {
@@ -67,6 +69,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
            TexelBuffer::create(ctx, "surface flow", cells, TexelFormat::kRG32F, gpu::BufferContent::kScratch));
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
+  if (isNonlinear(scene)) create(wave->shallow_flow_, ShallowFlow::create(ctx, scene, layout, defines));
   if (create.error()) return *create.error();
   if (disperses(scene)) {
     auto dispersed = DispersedSlope::create(ctx, layout, layOutBasin(scene, layout), defines);
@@ -80,7 +83,11 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
 }
 
 void Wave::clear() {
-  elevation_.clear();
+  if (shallow_flow_) {
+    elevation_.upload(resting_elevation_);
+  } else {
+    elevation_.clear();
+  }
   flow_.clear();
   if (has_outflow_) outflow_.clear();
   if (has_matched_layer_) elevation_x_.clear();
@@ -102,6 +109,10 @@ void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
   if (!is_varied_) return;
   basin_.upload(basin.conductance_m);
   bed_.upload(basin.bed);
+  if (shallow_flow_) {
+    resting_elevation_ = restingElevation(basin);
+    resting_units_ = std::accumulate(resting_elevation_.begin(), resting_elevation_.end(), std::int64_t{0});
+  }
   if (!has_terrain_) return;
   const Terrain terrain = layOutTerrain(scene, layout, basin);
   terrain_.upload(terrain.ground);
@@ -156,18 +167,7 @@ void Wave::bindBasin() const {
 void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events,
                    const gpu::TexelBuffer* incident_sea) {
   const bool sea = incident_sea != nullptr;
-  if (dispersed_slope_) dispersed_slope_->compute(elevation_, has_head_ ? &pressure_head_ : nullptr);
-  bindBasin();
-  if (dispersed_slope_) dispersed_slope_->texels().bindTexel(DISPERSED);
-  elevation_.bindTexel(ELEVATION);
-  if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
-  if (breaking) breaking->bindTexel(BREAKING);
-  flow_.bindStorage(FLOW);
-  transfer_.bindStorage(TRANSFER);
-  limit_args_.bindStorage(LIMIT_ARGS);
-  if (sea) incident_sea->bindTexel(INCIDENT_SEA);
-  momentum_[sea].dispatch(count_.x, count_.z);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  accelerate(breaking, incident_sea);
   displace(events);
   limit();
 
@@ -177,6 +177,33 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   if (has_matched_layer_) elevation_x_.bindStorage(ELEVATION_X);
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);  // other passes use its unit
   continuity_[sea].dispatch(count_.x, count_.z);
+  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+}
+
+/// Updates FLOW and writes TRANSFER; leaves both bound as storage, with LIMIT_ARGS.
+void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* incident_sea) {
+  const bool sea = incident_sea != nullptr;
+  elevation_.bindTexel(ELEVATION);
+  if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
+  if (shallow_flow_ && dispersed_slope_) {
+    bindBasin();
+    flow_.bindTexel(FLOW);
+    shallow_flow_->findRise().bindTexel(SURFACE_RISE);
+  }
+  if (dispersed_slope_) dispersed_slope_->compute();
+  bindBasin();
+  if (dispersed_slope_) dispersed_slope_->texels().bindTexel(DISPERSED);
+  if (breaking) breaking->bindTexel(BREAKING);
+  transfer_.bindStorage(TRANSFER);
+  limit_args_.bindStorage(LIMIT_ARGS);
+  if (sea) incident_sea->bindTexel(INCIDENT_SEA);
+  if (shallow_flow_) {
+    shallow_flow_->advance(flow_, sea);
+    flow_.bindStorage(FLOW);
+    return;
+  }
+  flow_.bindStorage(FLOW);
+  momentum_[sea].dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 

@@ -4,7 +4,9 @@
 // the last unit.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include <shared/event_uniforms.h>
 
@@ -15,6 +17,7 @@
 #include <spindrift/sim_setup/derive.h>
 
 #include "dispersed_slope.h"
+#include "shallow_flow.h"
 
 namespace spindrift::sim {
 
@@ -26,7 +29,7 @@ class Wave {
                                                     const WaveLayout& layout, const gpu::Defines& defines,
                                                     bool sampled);
 
-  /// Sets a level surface at rest and the outflow to zero.
+  /// Sets a level surface at rest, with dry ground above it in a nonlinear bulk, and the outflow to zero.
   void clear();
   /// Clears the external pressure on the surface; callers then add to pressureHead().
   void clearPressure();
@@ -53,14 +56,18 @@ class Wave {
   void sampleSurface();
 
   [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< nx x nz [units]
-  [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }            ///< nx x nz x 2 (9-point: 4) [m^2/s]
+  /// nx x nz x 2 (9-point: 4) [m^2/s]. Nonlinear bulk: nx x nz x 4, velocities toward +x and +z [m/s], then the water that
+  /// they moved [m^2/s].
+  [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }
   [[nodiscard]] gpu::TexelBuffer* outflow() {
     return has_outflow_ ? &outflow_ : nullptr;
   }  ///< nx x nz [units: low 24 bits, the rest]
   /// nx x nz [units]: the part of the elevation that came through x faces, inside a matched layer
   /// (wave/continuity.comp); null in scenes without one. 0 outside the layer.
   [[nodiscard]] gpu::TexelBuffer* elevationX() { return has_matched_layer_ ? &elevation_x_ : nullptr; }
-  /// 2, or 4 with the 9-point stencil.
+  /// Sum of the elevations of water at rest: ground above the still water counts in a nonlinear bulk.
+  [[nodiscard]] std::int64_t restingUnits() const { return resting_units_; }
+  /// 2, or 4 with the 9-point stencil or a nonlinear bulk.
   [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
   /// Binds SURFACE and SURFACE_FLOW for lookups. Only in scenes whose surface is sampled.
   void bindSurface() const;
@@ -75,6 +82,7 @@ class Wave {
 
  private:
   Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.counts()), cell_m_(layout.cell_m) {}
+  void accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* incident_sea);
   void displace(shared::EventUniforms events);
   void uploadOutflow(std::int64_t units);
   void limit();
@@ -96,9 +104,13 @@ class Wave {
   gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;
   std::unique_ptr<DispersedSlope> dispersed_slope_;  ///< null in scenes without dispersion
+  std::unique_ptr<ShallowFlow> shallow_flow_;        ///< null if the bulk is linear
+  std::vector<std::int32_t> resting_elevation_;      ///< n x n [units]; empty if the bulk is linear
+  std::int64_t resting_units_ = 0;
   gpu::Buffer event_uniforms_;
   gpu::Program splash_, crest_, find_share_, limit_, sample_surface_;
-  gpu::Program momentum_[2], continuity_[2];  ///< by whether a sea comes in; the second only in scenes with a wind sea
+  /// By whether a sea comes in; the second only in scenes with a wind sea. Momentum only in a linear bulk.
+  gpu::Program momentum_[2], continuity_[2];
 };
 
 }  // namespace spindrift::sim

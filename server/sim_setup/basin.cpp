@@ -6,6 +6,7 @@
 #include <shared/effects.h>
 
 #include <spindrift/sim_setup/basin.h>
+#include <spindrift/sim_setup/fill_up.h>
 #include <spindrift/sim_setup/ground.h>
 
 namespace spindrift::sim {
@@ -122,6 +123,14 @@ double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
   return nearest_m;
 }
 
+std::vector<std::int32_t> restingElevation(const Basin& basin) {
+  std::vector<std::int32_t> out(basin.bed.size());
+  std::ranges::transform(basin.bed, out.begin(), [](const std::array<float, 4>& cell) {
+    return static_cast<std::int32_t>(std::max<std::int64_t>(-bedUnits(cell[2]), 0));
+  });
+  return out;
+}
+
 namespace {
 
 /// Shares of the displacement of effects (Basin::conductance_m), from the number of faces to the next closed one.
@@ -173,12 +182,14 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
                                                        {core::Side::kMinusZ, w.boundary_minus_z},
                                                        {core::Side::kPlusZ, w.boundary_plus_z}};
   const bool is_matched = hasMatchedLayer(scene);
+  const bool is_nonlinear = isNonlinear(scene);
   const double matched_max = matchedLossMax(scene, layout);
   const double along_share = out.is_flat ? kAlongShareFlat : kAlongShareUneven;
   for (int z = 0; z < nz; ++z) {
     for (int x = 0; x < nx; ++x) {
       const std::size_t i = index(x, z);
-      double depth_m = bedDepth(scene, placeX(x), placeZ(z));
+      double depth_m = is_nonlinear ? groundDepthWithObstacles(scene, placeX(x), placeZ(z))
+                                    : bedDepth(scene, placeX(x), placeZ(z));
       if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, placeX(x), placeZ(z)) < 0) depth_m = 0.0;
       out.depth_m[i] = static_cast<float>(depth_m);
       double sigma = 0.0;
@@ -192,9 +203,12 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       for (const core::Beach& beach : scene.beaches) {
         if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
         const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
-        if (shallow > 0) fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
+        if (shallow > 0 && !is_nonlinear)
+          fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
       }
-      if (scene.bed && depth_m < kFadeShare * w.depth_m) {
+      const float ground_m =
+          is_nonlinear ? static_cast<float>(groundDepthWithObstacles(scene, placeX(x), placeZ(z))) : out.depth_m[i];
+      if (scene.bed && !is_nonlinear && depth_m < kFadeShare * w.depth_m) {
         // The same where the bed of the scene rises to land, with the width of a beach of its slope.
         if (const auto slope = shoreSlope(scene, placeX(x), placeZ(z))) {
           const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
@@ -203,11 +217,11 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       }
       if (is_matched) {
         const AxisLoss loss = matchedLoss(w, half, matched_max, along_share, placeX(x), placeZ(z));
-        out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), out.depth_m[i],
+        out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), ground_m,
                       static_cast<float>(loss.z_per_s)};
         continue;
       }
-      out.bed[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma), out.depth_m[i], 0.0f};
+      out.bed[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma), ground_m, 0.0f};
     }
   }
 
@@ -275,7 +289,9 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
       // Land is as high as it is; ground that is dry only because it is too shallow is at the rest level.
       const double land_m = std::min(groundDepth(scene, placeX(x), placeZ(z)), 0.0);
       double depth_m = land_m < 0 ? land_m : basin.depth_m[static_cast<std::size_t>(x + nx * z)];
-      if (d < 0) {
+      if (isNonlinear(scene)) {
+        depth_m = basin.bed[static_cast<std::size_t>(x + nx * z)][2];
+      } else if (d < 0) {
         for (const core::Obstacle& obstacle : scene.obstacles) {
           const double here = std::visit([&](const auto& o) { return distance(o, placeX(x), placeZ(z)); }, obstacle);
           if (here < 0) depth_m = std::min(depth_m, -heightOf(obstacle));

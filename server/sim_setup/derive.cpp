@@ -34,6 +34,15 @@ constexpr double kFivePointCourant = 0.70710678;
 constexpr double kNinePointCourant = 0.8660254;
 /// Share of the wave's stability limit that is used: a margin for rounding only.
 constexpr double kWaveSafety = 0.98;
+/// Share of a cell that a long wave may cross in a step of nonlinear shallow water. Its limit is 0.7 without flow; the
+/// rest is for higher water and for the flow that carries waves: together 1.5 times as fast as still water.
+constexpr double kShallowCourant = 0.45;
+/// With dispersion, the share of the linear limit that is used, and the share of a cell that flow may cross: water as
+/// fast as a long wave of the scene's depth.
+constexpr double kShallowDispersedShare = 0.85;
+constexpr double kFlowCourant = 1.0;
+/// Nonlinear water has at most this depth, so that depth and elevation together fit their units.
+constexpr double kShallowMaxDepth_m = 50.0;
 /// Share of its flow that fully breaking water loses in the time sqrt(d/g): a bore ends within a few depths of travel.
 constexpr double kBreakingLoss = 0.6;
 constexpr std::uint32_t kMaxSubstepsCount = 1000;
@@ -130,6 +139,18 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
       return invalid("wave.dispersion: DISPERSION_AIRY needs STENCIL_FIVE_POINT; remove wave.stencil");
     if (!canDisperse(out)) return invalid(whyNoGrids(out));
   }
+  if (isNonlinear(scene)) {
+    if (w.stencil == core::Stencil::kNinePoint)
+      return invalid("wave.bulk: BULK_NONLINEAR needs STENCIL_FIVE_POINT; remove wave.stencil");
+    if (w.steepening_ratio > 0)
+      return invalid(
+          fmt::format("wave.steepening_ratio: {} is for BULK_LINEAR; BULK_NONLINEAR steepens by itself: remove it",
+                      w.steepening_ratio));
+    if (w.depth_m > kShallowMaxDepth_m)
+      return invalid(
+          fmt::format("wave.depth_m: {} m; BULK_NONLINEAR takes at most {} m: use shallower water or BULK_LINEAR",
+                      w.depth_m, kShallowMaxDepth_m));
+  }
   if (hasMatchedLayer(scene) && w.stencil == core::Stencil::kNinePoint)
     return invalid(
         "wave.absorption: ABSORPTION_PML needs STENCIL_FIVE_POINT; remove wave.stencil or choose ABSORPTION_SPONGE");
@@ -141,10 +162,16 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
 /// Holds in sponges and with any damping, too, because losses are centred in the step (shaders/wave/continuity.comp).
 double waveMaxStep(const core::Scene& scene, const WaveLayout& layout) {
   const core::WaveScene& wave = *scene.wave;
+  double deepest_m = wave.depth_m;
+  for (const core::Beach& beach : scene.beaches) deepest_m = std::max(deepest_m, beach.shore_depth_m);
+  if (isNonlinear(scene)) {
+    const double cell_s = layout.cell_m / std::sqrt(std::max(scene.gravity_mps2 * deepest_m, 1e-18));
+    if (!disperses(scene)) return kShallowCourant * cell_s;
+    return std::min(kShallowDispersedShare * dispersedMaxStep(scene.gravity_mps2, deepest_m, layout.cell_m),
+                    kFlowCourant * cell_s);
+  }
   if (disperses(scene)) {
     // A crest's factor on the slope (see below) may act on all of the waves.
-    double deepest_m = wave.depth_m;
-    for (const core::Beach& beach : scene.beaches) deepest_m = std::max(deepest_m, beach.shore_depth_m);
     return dispersedMaxStep(scene.gravity_mps2, deepest_m, layout.cell_m) / std::sqrt(1.0 + wave.steepening_ratio);
   }
   const double limit = wave.stencil == core::Stencil::kNinePoint ? kNinePointCourant : kFivePointCourant;
@@ -155,6 +182,12 @@ double waveMaxStep(const core::Scene& scene, const WaveLayout& layout) {
 
 /// The rule of waveMaxStep(), for people.
 std::string waveRule(const core::Scene& scene) {
+  if (isNonlinear(scene)) {
+    if (!disperses(scene)) return fmt::format("nonlinear wave CFL, {} dx / c", kShallowCourant);
+    return fmt::format(
+        "nonlinear wave step with dispersion, {:.3g} / (highest frequency of the grid), at most {} dx / c",
+        1.8 * kShallowDispersedShare, kFlowCourant);
+  }
   const bool steepens = scene.wave->steepening_ratio > 0;
   if (disperses(scene))
     return std::string("wave step with dispersion, 1.8 / (highest frequency of the grid") +
@@ -171,6 +204,7 @@ std::uint32_t stepsFor(double interval_s, double max_dt_s) {
 std::uint64_t waveCellBytes(const core::Scene& scene) {
   // Elevation; flow and transfer; the share that limits transfers.
   std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
+  if (isNonlinear(scene)) bytes += 2 * 16 - 8 + (disperses(scene) ? 8 : 0);  // FLOW twice; SURFACE_RISE
   if (isVaried(scene)) bytes += 16 + 16;
   if (isOpen(scene)) bytes += 8;
   if (hasMatchedLayer(scene)) bytes += 4;
@@ -291,6 +325,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.wave_pull = f(scene.gravity_mps2 * w.dt_s / w.cell_m * ELEVATION_UNIT_M);
     u.wave_transfer = f(w.dt_s / w.cell_m * ELEVATION_UNITS_PER_M);
     u.steepening_ratio = f(scene.wave->steepening_ratio);
+    u.wave_friction = f(scene.gravity_mps2 * scene.wave->manning_spm13 * scene.wave->manning_spm13);
     u.breaking_loss_per_s = f(kBreakingLoss * std::sqrt(scene.gravity_mps2 / scene.wave->depth_m));
   }
   u.surface_quantum_m = f(scene.stream.surface_quantum_m);

@@ -11,6 +11,10 @@ bool isPeriodicZ(const core::WaveScene& wave) {
   return wave.boundary_minus_z == WaveBoundary::kPeriodic;
 }
 
+bool isNonlinear(const core::Scene& scene) {
+  return scene.wave && scene.wave->bulk == core::Bulk::kNonlinear;
+}
+
 bool disperses(const core::Scene& scene) {
   return scene.wave && scene.wave->dispersion == core::Dispersion::kAiry;
 }
@@ -43,7 +47,8 @@ bool hasPressureHead(const core::Scene& scene) {
   return scene.wave && (scene.boats || isTwoWay(scene));
 }
 bool hasBreakers(const core::Scene& scene) {
-  return scene.wave && (isTwoWay(scene) || hasSurfaceFoam(scene) || scene.wave->steepening_ratio > 0);
+  return scene.wave && (isTwoWay(scene) || hasSurfaceFoam(scene) || scene.wave->steepening_ratio > 0 ||
+                        (isNonlinear(scene) && disperses(scene)));
 }
 bool isSampled(const core::Scene& scene) {
   return scene.wave && (scene.coupling || scene.boats || hasBreakers(scene));
@@ -52,7 +57,7 @@ bool isSampled(const core::Scene& scene) {
 bool isVaried(const core::Scene& scene) {
   const core::WaveScene& w = *scene.wave;
   const bool has_walls = !isPeriodicX(w) || !isPeriodicZ(w);
-  return isOpen(scene) || !scene.obstacles.empty() || !scene.beaches.empty() || scene.bed ||
+  return isNonlinear(scene) || isOpen(scene) || !scene.obstacles.empty() || !scene.beaches.empty() || scene.bed ||
          (has_walls && w.stencil == core::Stencil::kNinePoint);
 }
 

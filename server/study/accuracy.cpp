@@ -40,6 +40,8 @@ const std::vector<Case>& accuracyCases() {
         {"kelvin-wake", "Wake of a boat with dispersion, beside the exact linear waves", kelvinWake},
         {"shallow-wake", "Wake of a boat about as fast as long waves, beside the exact linear waves", shallowWake},
         {"wind-sea", "A wind sea that comes in from outside, in the middle of open water", windSea},
+        {"shallow-dam-break", "Dam breaks of nonlinear shallow water", damBreakOfShallowWater},
+        {"lake", "Nonlinear water at rest around islands", lakeWithIslands},
         {"one-step", "One step on the device and in double precision", oneStep},
         {"still-water", "Particles on a level wave that should not move", stillWater},
         {"hydrostatic", "Pressure in a column at rest", hydrostaticColumn},

@@ -38,6 +38,10 @@ Outcome shallowWake(gpu::Context& ctx, bool quick);
 Outcome reflection(gpu::Context& ctx, bool quick);
 Outcome greensLaw(gpu::Context& ctx, bool quick);
 
+// shore_cases.cpp
+Outcome damBreakOfShallowWater(gpu::Context& ctx, bool quick);
+Outcome lakeWithIslands(gpu::Context& ctx, bool quick);
+
 // sea_cases.cpp
 Outcome windSea(gpu::Context& ctx, bool quick);
 

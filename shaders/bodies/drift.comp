@@ -67,6 +67,7 @@ void meetGround(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
     const vec4 t = terrainAt(p);
     const float overlap_m = 0.5 * b.hull_m.y - t.x;
     if (overlap_m > 0.0) pushBack(shift_m, velocity_mps, t.yz, overlap_m, -dot(velocity_mps, t.yz));
+#if !NONLINEAR
     // Aground: moves slowly toward deeper water, and not further onto the ground.
     const float missing_m = kGroundingDepth * b.hull_m.w - t.w;
     if (missing_m > 0.0 && t.x > 0.0) {
@@ -76,6 +77,7 @@ void meetGround(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
       const vec2 normal = deeper / max(length(deeper), 1e-6);
       pushBack(shift_m, velocity_mps, normal, min(missing_m, 0.5 * sim.tick_s * b.hull_m.x), -dot(velocity_mps, normal));
     }
+#endif
   }
 }
 #endif

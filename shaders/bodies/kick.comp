@@ -13,6 +13,7 @@
 // Thrust balances quadratic drag, relative to the moving water, at full speed; the rudder turns a moving boat on a circle
 // of about two lengths. A boat thrown up by waves falls freely: forces but buoyancy are multiplied by min(1, 2 s), s
 // being the share of its weight that the water carries.
+// NONLINEAR: ground under the keel carries, too, and holds the hull by friction: boats run aground and float off.
 #include "bodies/boat.glsl"
 #include "wave/wave_cell.glsl"
 #if WAVE
@@ -36,6 +37,11 @@ const float kTurnLengths = 1.6;       // radius of the tightest circle over the 
 const float kYawRate_per_s = 3.0;     // rate at which the boat follows its rudder
 const float kWashYaw_per_s = 0.25;    // turning by the propeller's wash at standstill
 const float kSwayDrag_per_s = 2.5;
+#if NONLINEAR
+const float kGroundStiffness = 15.0;  // weight that ground carries over that of water as high as the keel stands in it
+const float kGroundFriction = 0.5;    // of a hull on sand: a boat rests on slopes up to 1 in 2
+const float kGroundYaw_per_s = 4.0;   // rate at which a grounded hull stops turning
+#endif
 
 /// Sums over the wet cells under a hull, with w = hullShape.
 struct HullSums {
@@ -43,14 +49,20 @@ struct HullSums {
   vec4 spread;    // w (along, across, along^2, across^2)
   vec4 water;     // w (1, velocity x, z, up [m/s]), w of the hull where it was when the flow was sampled
   vec4 gradient;  // grad(w) and its moment about the centre; w phi
+#if NONLINEAR
+  float ground;   // w times the part of submerged that the ground carries [m]
+#endif
   vec3 push;      // the same times phi [m]
 };
 shared vec4 share_lift[kGroup], share_spread[kGroup], share_water[kGroup], share_gradient[kGroup];
 shared vec3 share_push[kGroup];
+#if NONLINEAR
+shared float share_ground[kGroup];
+#endif
 
 vec2 inHull(BoatState b, vec2 d) { return vec2(dot(d, forwardOf(b.heading)), dot(d, starboardOf(b.heading))); }
 
-/// Index of a cell, or -1 if it is outside or dry.
+/// Index of a cell, or -1 if it is outside or never holds water.
 int wetCell(ivec2 cell) {
 #if WAVE
   const ivec2 n = waveCounts();
@@ -62,7 +74,7 @@ int wetCell(ivec2 cell) {
 #endif
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, n))) return -1;
   const int i = cell.x + n.x * cell.y;
-#if VARIED
+#if VARIED && !NONLINEAR
   if (texelFetch(terrain, i).w <= 0.0) return -1;
 #endif
   return i;
@@ -103,7 +115,13 @@ void add(inout HullSums sums, BoatState b, BoatState before, vec2 half_m, float 
   const float w = hullShape(half_m, at_m);
   const float level_m = levelAt(i, peak_m * w);
   const float keel_m = b.centre_m.y - 0.5 * b.hull_m.z + at_m.x * b.tilt.x - at_m.y * b.tilt.y;
+#if NONLINEAR
+  const float carried_m = kGroundStiffness * max(-texelFetch(terrain, i).w - keel_m, 0.0);
+  const float submerged_m = clamp(level_m - keel_m, 0.0, b.hull_m.z) + carried_m;
+  sums.ground += w * carried_m;
+#else
   const float submerged_m = clamp(level_m - keel_m, 0.0, b.hull_m.z);
+#endif
   sums.lift += w * vec4(1.0, submerged_m, submerged_m * at_m);
   sums.spread += w * vec4(at_m, at_m * at_m);
 #if WAVE
@@ -118,7 +136,11 @@ void add(inout HullSums sums, BoatState b, BoatState before, vec2 half_m, float 
 
 /// The sums of this invocation's share of the cells.
 HullSums shareOf(BoatState b, vec2 half_m, float peak_m) {
+#if NONLINEAR
+  HullSums sums = HullSums(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0, vec3(0.0));
+#else
   HullSums sums = HullSums(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec3(0.0));
+#endif
   ivec2 across = hullCells(b, half_m) + 4;  // differences reach two cells further
 #if WAVE
   across = min(across, waveCounts());
@@ -139,6 +161,9 @@ HullSums totalOf(HullSums share) {
   share_water[own] = share.water;
   share_gradient[own] = share.gradient;
   share_push[own] = share.push;
+#if NONLINEAR
+  share_ground[own] = share.ground;
+#endif
   memoryBarrierShared();
   barrier();
   if (own > 0u) return share;
@@ -148,6 +173,9 @@ HullSums totalOf(HullSums share) {
     share.water += share_water[k];
     share.gradient += share_gradient[k];
     share.push += share_push[k];
+#if NONLINEAR
+    share.ground += share_ground[k];
+#endif
   }
   return share;
 }
@@ -223,6 +251,11 @@ void kick(inout BoatState b, HullSums sums, float duration_s) {
   b.tilt_rate *= exp(-2.0 * kTiltDamping * omega * duration_s * hold);
   relative_mps = slowed(b, relative_mps, hold, 0.5 * duration_s);
   b.speed_mps.xy = relative_mps + flow_mps;
+#if NONLINEAR
+  const float aground = min(sums.ground / (weight * draught_m), 1.0);  // share of its weight
+  b.speed_mps.xy *= max(1.0 - kGroundFriction * g * aground * duration_s / max(length(b.speed_mps.xy), 1e-6), 0.0);
+  b.yaw_rate *= exp(-kGroundYaw_per_s * aground * duration_s);
+#endif
   push(b, forces, 0.5 * duration_s);
 }
 

@@ -2,9 +2,13 @@
 // velocity.
 // Reads ELEVATION [nx x nz, units], FLOW, BASIN. Writes SURFACE (eta, d eta/dt, d eta/dx, d eta/dz) and SURFACE_FLOW [m/s].
 // Equations: differences in metres (thesis, algorithm 9); d eta/dt = -div q; velocity = q / d, from the faces around a cell.
+// NONLINEAR: the velocities are those of FLOW. The surface of dry cells is the ground.
 #include "shared/groups.h"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"
+#if NONLINEAR
+#include "wave/shallow_column.glsl"
+#endif
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
@@ -12,6 +16,10 @@ layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
 layout(std430, binding = SURFACE) restrict writeonly buffer Surface { vec4 surface[]; };
 layout(std430, binding = SURFACE_FLOW) restrict writeonly buffer SurfaceFlow { vec2 flow_mps[]; };
+
+#if NONLINEAR
+bool isDry(int i, int eta) { return columnOf(i, eta).water_m <= 0.0; }
+#endif
 
 int at(int x, int row) { return texelFetch(elevation, x + row).x; }
 
@@ -31,6 +39,19 @@ void main() {
   int after_eta = at(cell.x, n.x * waveNeighbourZ(cell.y + 1, n.y));
   int before_eta = at(cell.x, n.x * waveNeighbourZ(cell.y - 1, n.y));
 
+#if NONLINEAR
+  const vec4 own_stored = texelFetch(flow, i);
+  const vec4 left_stored = texelFetch(flow, left.x + row);
+  const vec4 before_stored = texelFetch(flow, cell.x + n.x * before.y);
+  const float rate_mps = left_stored.z - own_stored.z + before_stored.w - own_stored.w;
+  const vec2 velocity_mps = 0.5 * (own_stored.xy + vec2(left_stored.x, before_stored.y));
+  // Dry ground above the level of the water is a wall: the elevation continues level behind it.
+  const bool is_wet = columnOf(i, here).water_m > 0.0;
+  right_eta = is_wet && right_eta > here && isDry(waveNeighbourX(cell.x + 1, n.x) + row, right_eta) ? here : right_eta;
+  left_eta = is_wet && left_eta > here && isDry(waveNeighbourX(cell.x - 1, n.x) + row, left_eta) ? here : left_eta;
+  after_eta = is_wet && after_eta > here && isDry(cell.x + n.x * waveNeighbourZ(cell.y + 1, n.y), after_eta) ? here : after_eta;
+  before_eta = is_wet && before_eta > here && isDry(cell.x + n.x * waveNeighbourZ(cell.y - 1, n.y), before_eta) ? here : before_eta;
+#else
   const Flow own_flow = asFlow(texelFetch(flow, i));
   const Flow left_flow = asFlow(texelFetch(flow, left.x + row));
   const Flow before_flow = asFlow(texelFetch(flow, cell.x + n.x * before.y));
@@ -51,7 +72,9 @@ void main() {
 #if STENCIL == 9
   rate_mps += texelFetch(flow, left.x + n.x * before.y).z - own_flow.z + before_flow.w - left_flow.w;
 #endif
+  const vec2 velocity_mps = vec2(own_flow.x + left_flow.x, own_flow.y + before_flow.y) / max(conductance_m, 0.05 * sim.wave_depth_m);
+#endif
   const vec2 slope = ELEVATION_UNIT_M * vec2(right_eta - left_eta, after_eta - before_eta) * (0.5 * inverse_dx);
   surface[i] = vec4(metres(here), rate_mps * inverse_dx, slope);
-  flow_mps[i] = vec2(own_flow.x + left_flow.x, own_flow.y + before_flow.y) / max(conductance_m, 0.05 * sim.wave_depth_m);
+  flow_mps[i] = velocity_mps;
 }

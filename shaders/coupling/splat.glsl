@@ -7,16 +7,20 @@
 
 #include "wave/wave_cell.glsl"
 
-#if VARIED
+// Water may stand on any ground of a nonlinear bulk; elsewhere some cells never hold water.
+#if VARIED && !NONLINEAR
+#define HAS_DRY_CELLS 1
 #include "common/terrain_texels.glsl"
 layout(binding = LANDING) uniform isamplerBuffer landing;
+#else
+#define HAS_DRY_CELLS 0
 #endif
 
 /// The cell at a position; if it is dry, the wet cell that its water runs to.
 ivec2 wetCellAt(vec2 xz, ivec2 n) {
   const vec2 u = floor((xz + waveHalf_m()) / sim.wave_cell_m);
   const ivec2 cell = ivec2(waveNeighbourX(int(u.x), n.x), waveNeighbourZ(int(u.y), n.y));
-#if VARIED
+#if HAS_DRY_CELLS
   const int at = texelFetch(landing, cell.x + n.x * cell.y).x;
   return ivec2(at % n.x, at / n.x);
 #else
@@ -36,7 +40,7 @@ int splatTarget(ivec2 middle, ivec2 offset, ivec2 n) {
 #endif
   if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, n))) return -1;
   const int i = cell.x + n.x * cell.y;
-#if VARIED
+#if HAS_DRY_CELLS
   if (texelFetch(terrain, i).w <= 0.0) return -1;
 #endif
   return i;

@@ -3,22 +3,28 @@
 // x and z [m/s], share of wet cells around the gauge.
 // Equations: bilinear between the centres of the four cells around the place. Dry cells do not count: their weight goes
 // to the wet ones; among dry cells alone all values are 0. Velocity of a cell: mean of flow over still depth at its two
-// faces along an axis, 0 at a closed one; flows belong to half a wave step before the elevations.
+// faces along an axis, 0 at a closed one, with NONLINEAR that of FLOW; flows belong to half a wave step before the elevations.
 #include "shared/gauge_uniforms.h"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"
+#if NONLINEAR
+#include "wave/water_column.glsl"
+#endif
 
 layout(local_size_x = MAX_GAUGES) in;
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
-#if VARIED
+#if VARIED && !NONLINEAR
 layout(binding = BED) uniform samplerBuffer bed;
 #endif
 layout(std430, binding = PARTIAL_SUM) restrict writeonly buffer GaugeReading { vec4 gauge_reading[]; };
 
 bool isWet(ivec2 cell, ivec2 n) {
-#if VARIED
+#if NONLINEAR
+  const int i = cell.x + n.x * cell.y;
+  return heldUnits(texelFetch(elevation, i).x, stillDepth(i)) > 0u;
+#elif VARIED
   return texelFetch(bed, cell.x + n.x * cell.y).z > 0.0;
 #else
   return true;
@@ -30,6 +36,10 @@ vec3 readingOf(ivec2 cell, ivec2 n) {
   const int row = n.x * cell.y;
   const ivec2 left = ivec2(wrapped(cell.x - 1, n.x), cell.y);
   const ivec2 before = ivec2(cell.x, wrapped(cell.y - 1, n.y));
+#if NONLINEAR
+  const vec2 after_mps = texelFetch(flow, cell.x + row).xy;
+  const vec2 before_mps = vec2(texelFetch(flow, left.x + row).x, texelFetch(flow, cell.x + n.x * before.y).y);
+#else
   const Flow own = asFlow(texelFetch(flow, cell.x + row));
   const Flow from_left = asFlow(texelFetch(flow, left.x + row));
   const Flow from_before = asFlow(texelFetch(flow, cell.x + n.x * before.y));
@@ -37,6 +47,7 @@ vec3 readingOf(ivec2 cell, ivec2 n) {
   const vec2 after_mps = own.xy / max(conductanceOf(cell, n).xy, least_m);
   const vec2 before_mps = vec2(from_left.x / max(conductanceOf(left, n).x, least_m),
                                from_before.y / max(conductanceOf(before, n).y, least_m));
+#endif
   return vec3(metres(texelFetch(elevation, cell.x + row).x), 0.5 * (after_mps + before_mps));
 }
 

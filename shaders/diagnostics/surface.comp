@@ -6,6 +6,9 @@
 #include "shared/groups.h"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"
+#if NONLINEAR
+#include "wave/water_column.glsl"
+#endif
 
 layout(local_size_x = REDUCE_GROUP) in;
 
@@ -37,15 +40,31 @@ void main() {
     const int left = wrapped(cell.x - 1, n.x);
     const int last_row = n.x * wrapped(cell.y - 1, n.y);
     const int units = texelFetch(elevation, i).x;
+#if NONLINEAR
+    const vec4 stored = texelFetch(flow, i);
+    const vec2 own = stored.zw;
+    const vec2 from_left = texelFetch(flow, left + n.x * cell.y).zw;
+    const vec2 from_before = texelFetch(flow, cell.x + last_row).zw;
+#else
     const Flow own = asFlow(texelFetch(flow, i));
     const Flow from_left = asFlow(texelFetch(flow, left + n.x * cell.y));
     const Flow from_before = asFlow(texelFetch(flow, cell.x + last_row));
+#endif
     float inflow = from_left.x - own.x + from_before.y - own.y;
 #if STENCIL == 9
     inflow += texelFetch(flow, left + last_row).z - own.z + from_before.w - from_left.w;
 #endif
+#if NONLINEAR
+    const float motion = dot(own, stored.xy);
+    // The potential energy of a column over land begins at the ground.
+    const float ground_m = max(-stillDepth(i), 0.0);
+    const bool is_below_bed = float(units) * ELEVATION_UNIT_M < -stillDepth(i) - 1e-5;
+#else
     const Flow conductance_m = conductanceOf(cell, n);
     const float motion = dot(own, own / max(conductance_m, Flow(1e-6)));
+    const float ground_m = 0.0;
+    const bool is_below_bed = false;
+#endif
     volume.x += uint(units >> 16);
     volume.y += uint(units & 0xffff);
 #if OPEN
@@ -55,14 +74,14 @@ void main() {
 #endif
     // Elevations beyond the range of their units overflow: transferUnits() drops the transfer, and sums wrap around.
     const bool is_beyond = units > ELEVATION_MAX_UNITS || units < -ELEVATION_MAX_UNITS ||
-                           !all(lessThan(abs(own) * sim.wave_transfer, Flow(TRANSFER_MAX_UNITS)));
+                           is_below_bed || !all(lessThan(abs(own) * sim.wave_transfer, Flow(TRANSFER_MAX_UNITS)));
     if (is_beyond) {
       worst.x += 1.0;
       continue;
     }
     const float eta = metres(units);
-    worst.z = max(worst.z, abs(eta));
-    sum += vec4(eta * (eta - dt_over_dx * inflow), motion, 0.0, 0.0);
+    worst.z = max(worst.z, abs(eta) - ground_m);
+    sum += vec4(eta * (eta - dt_over_dx * inflow) - ground_m * ground_m, motion, 0.0, 0.0);
 #if BREAKERS
     worst.w += texelFetch(breaking, i).y > 0.0 ? 1.0 : 0.0;
 #endif

@@ -1,6 +1,6 @@
 // On the way up the V-cycle: the two sweeps of descend.comp again, the correction of the coarser grid, two sweeps.
-// Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, otherwise
-// DISPERSION_RIGHT), DISPERSION_COARSE, DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_FACES; on the finest grid
+// Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, with
+// NONLINEAR SURFACE_RISE, otherwise DISPERSION_RIGHT), DISPERSION_COARSE, DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_FACES; on the finest grid
 // DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope [m * units].
 // Equation: phi_3 = phi_2 + P coarse, with the weights P of strip.glsl; then phi += w (r - K phi) twice; F grad(eta) = a
 // grad(eta) + sum_j sqrt(c_j) phi_j.

@@ -1,6 +1,6 @@
 // On the way down the V-cycle: two sweeps from zero; what is left goes to the next coarser grid.
-// Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, otherwise
-// DISPERSION_RIGHT), DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_COARSE_RIGHT.
+// Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, with
+// NONLINEAR SURFACE_RISE, otherwise DISPERSION_RIGHT), DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_COARSE_RIGHT.
 // Equation: phi_1 = w r, phi_2 = phi_1 + w (r - K phi_1), r_coarse = P^T (r - K phi_2)/4, with the weights P of strip.glsl.
 #include "dispersion/strip.glsl"
 

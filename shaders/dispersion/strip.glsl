@@ -8,6 +8,7 @@
 // sweeps at once, each a row behind the one before it, and computes the neighbours that they need itself: that costs less
 // than fetching them.
 // FINEST: 1 for the grid of the wave, whose right side r is the slope of the surface.
+// NONLINEAR: wave/shallow_slope.comp has computed that slope; elsewhere it follows from ELEVATION and PRESSURE_HEAD.
 // FLAT: 1 if there are no obstacles or beaches and no grid has cells beyond the water: m, e and c are the same in all cells,
 // and only faces at sides are closed.
 // NARROW: 1 if a grid has so few cells along an axis that the neighbours of a strip go around it more than once.
@@ -27,7 +28,9 @@ layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;
 layout(binding = DISPERSION_COEFFICIENTS) uniform usamplerBuffer coefficients;
 #endif
 
-#if FINEST
+#if FINEST && NONLINEAR
+layout(binding = SURFACE_RISE) uniform samplerBuffer surface_rise;
+#elif FINEST
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 #if HEAD
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
@@ -103,6 +106,10 @@ int around(int i, int n) {
 ivec2 wave_counts;
 // Columns of the wave: those of the grid; in place of dry cells beyond the water, the last one.
 int level_column[WIDTH + 1];
+#endif
+#if FINEST && NONLINEAR
+vec2 rise_ahead[WIDTH];  // of the next row [units]
+#elif FINEST
 int level_ahead[WIDTH + 1];  // of the next row [units]
 
 int levelAt(int i) {
@@ -144,7 +151,11 @@ vec4 spreadOf(Row row, int c) {
 void fetchAhead(int z) {
 #if FINEST
   const int level_row = wave_counts.x * min(z, wave_counts.y - 1);
+#if NONLINEAR
+  for (int c = 0; c < WIDTH; ++c) rise_ahead[c] = texelFetch(surface_rise, level_column[c] + level_row).xy;
+#else
   for (int c = 0; c <= WIDTH; ++c) level_ahead[c] = levelAt(level_column[c] + level_row);
+#endif
 #endif
 #if !FLAT
   const int row = counts.x * z;
@@ -185,7 +196,9 @@ void begin(int first_column, int first_row) {
 Row fetchRow(int z) {
   Row row;
   const int first = counts.x * z;
-#if FINEST
+#if FINEST && NONLINEAR
+  const vec2 rise[WIDTH] = rise_ahead;
+#elif FINEST
   int level[WIDTH + 1] = level_ahead;
 #endif
 #if !FLAT
@@ -194,7 +207,11 @@ Row fetchRow(int z) {
   fetchAhead(wrapped(z + 1, counts.y));
   for (int c = 0; c < WIDTH; ++c) {
 #if FINEST
+#if NONLINEAR
+    const vec2 slope = rise[c];
+#else
     const vec2 slope = vec2(level[c + 1] - level[c], level_ahead[c] - level[c]);
+#endif
 #if FLAT
     row.right[c] = flat_root_c * slope.xxyy;
 #else

@@ -68,6 +68,9 @@
 #define SEA_COLUMNS 1
 #define SEA_ROWS 2
 #define INCIDENT_SEA 10
+// Nonlinear shallow water with dispersion: rise of the surface and of pressures across the faces that a cell owns [units]
+// (binding shared with SURFACE_FLOW; no pass has both). There FLOW holds velocities [m/s] and flows [m^2/s].
+#define SURFACE_RISE 16
 // Pressure on the surface (hulls, falling particles), as a height of water [units].
 #define PRESSURE_HEAD 21
 // Breaking: seconds since a cell began to break, intensity 0..1; and the same one substep ago.

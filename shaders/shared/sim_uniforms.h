@@ -91,6 +91,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float wave_transfer;          // dt / dx in units: elevation moved per flow
   float steepening_ratio;
   float breaking_loss_per_s;    // of flow, where the intensity is 1
+  float wave_friction;          // g n^2, n being Manning's roughness of the bed [m^(1/3)]
 
   // Frames: range of the quantized positions in x and z; in y it is min_y_m to max_y_m.
   float frame_min_x_m;
@@ -102,7 +103,6 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // Bound of the neighbour search: largest number of candidates of a column of cells that a particle visits
   // (sim_setup/derive.cpp).
   uint candidates_max_count;
-  uint unused_0;                // std140 rounds the block up to a multiple of 16 bytes
 #ifdef __cplusplus
 };
 static_assert(sizeof(SimUniforms) == 68 * 4, "scalars of four bytes only: std140 and C++ must agree");

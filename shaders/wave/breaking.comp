@@ -8,6 +8,9 @@
 #include "wave/wave_faces.glsl"
 #include "coupling/emission.glsl"
 #include "wave/surface_rate.glsl"
+#if NONLINEAR
+#include "wave/water_column.glsl"
+#endif
 #if POOL_PARTICLES
 #include "coupling/spray_source.glsl"
 #endif
@@ -47,7 +50,9 @@ void main() {
   const int row = n.x * cell.y;
   const int i = cell.x + row;
   const float rate_mps = smoothRate(cell, n);
-#if VARIED
+#if NONLINEAR
+  const float depth_m = texelFetch(surface_texels, i).x + stillDepth(i);
+#elif VARIED
   const Flow open = conductanceOf(cell, n);
   const float depth_m = max(open.x, open.y) / FLOW_WEIGHTS.x;
 #else

@@ -9,7 +9,7 @@
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
-layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
+layout(std430, binding = FLOW) restrict buffer FaceFlow { StoredFlow stored_flow[]; };
 
 shared vec4 ends[MAX_CRESTS];  // crestEnds() now and half a step before
 
@@ -51,5 +51,16 @@ void main() {
 #if DISPERSE
   flow = passing(flow, shares);
 #endif
-  flow_m2ps[i] += flow * Flow(greaterThan(open, Flow(0.0)));
+  flow *= Flow(greaterThan(open, Flow(0.0)));
+#if NONLINEAR
+  const float water_m = metresOf(heldUnits(texelFetch(elevation, i).x, stillDepth(i)));
+  const vec2 there_m = vec2(metresOf(heldUnits(texelFetch(elevation, next.x).x, stillDepth(next.x))),
+                            metresOf(heldUnits(texelFetch(elevation, next.y).x, stillDepth(next.y))));
+  // Thin water takes the speed of water as deep as a tenth of the scene's: it would fly.
+  const vec2 gained_mps = flow / max(0.5 * (water_m + there_m), vec2(0.1 * sim.wave_depth_m));
+  const float max_mps = cell_m / sim.wave_dt_s;
+  stored_flow[i] = vec4(clamp(stored_flow[i].xy + gained_mps, -max_mps, max_mps), stored_flow[i].zw + flow);
+#else
+  stored_flow[i] += flow;
+#endif
 }

@@ -1,6 +1,6 @@
 // Before the water moves: multiplies the transfer through each face by the share of the giving cell
 // (wave/given_share.comp, in the same steps).
-// Reads GIVEN_SHARE. Updates TRANSFER [nx x nz, units], and FLOW [m^2/s] by the same share: water that does not move has
+// Reads GIVEN_SHARE. Updates TRANSFER [nx x nz, units], and FLOW [m^2/s] by the same share: water that does not move carries
 // no momentum.
 // Invariant: only the giving cell limits a face; if no cell lacks water, no bit changes.
 #include "shared/groups.h"
@@ -10,7 +10,7 @@ layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
 layout(binding = GIVEN_SHARE) uniform samplerBuffer given_share;
 layout(std430, binding = TRANSFER) restrict buffer Transfer { Units transfer[]; };
-layout(std430, binding = FLOW) restrict buffer FaceFlow { Flow flow_m2ps[]; };
+layout(std430, binding = FLOW) restrict buffer FaceFlow { StoredFlow stored_flow[]; };
 
 float shareOf(int transfer_units, float share_here, float share_there) { return transfer_units > 0 ? share_here : share_there; }
 
@@ -37,5 +37,9 @@ void main() {
   if (all(equal(share, Flow(1.0)))) return;
   for (uint k = 0u; k < OWNED_FACES; ++k) moved[k] = share[k] < 1.0 ? int(float(moved[k]) * share[k]) : moved[k];
   transfer[i] = moved;
-  flow_m2ps[i] *= share;
+#if NONLINEAR
+  stored_flow[i] *= share.xyxy;
+#else
+  stored_flow[i] *= share;
+#endif
 }

@@ -19,7 +19,7 @@ layout(binding = BED) uniform samplerBuffer bed;
 #endif
 #define OWNED_FACES (FACES_PER_CELL / 2u)
 
-/// Still depth at the centre of a cell; 0 on dry ground. [m]
+/// Still depth at the centre of a cell; 0 on dry ground, negative there with a nonlinear bulk. [m]
 float stillDepth(int i) {
 #if VARIED
   return texelFetch(bed, i).z;
@@ -33,6 +33,8 @@ uint heldUnits(int elevation_units, float depth_m) {
   const int bed_units = -int(depth_m * ELEVATION_UNITS_PER_M);
   return elevation_units > bed_units ? uint(elevation_units) - uint(bed_units) : 0u;
 }
+
+float metresOf(uint units) { return float(units) * ELEVATION_UNIT_M; }
 
 /// Returns whether a transfer could exceed the water of the giving cell if all its faces carried as much.
 bool mayEmpty(int transfer_units, uint held_here, uint held_there) {

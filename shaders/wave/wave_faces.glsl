@@ -19,6 +19,13 @@
 #define asFlow(v) ((v).xy)
 #endif
 
+/// What a cell's faces carry. Nonlinear: velocities toward +x and +z [m/s], then the water that they move [m^2/s].
+#if NONLINEAR
+#define StoredFlow vec4
+#else
+#define StoredFlow Flow
+#endif
+
 #if VARIED
 layout(binding = BASIN) uniform samplerBuffer basin;
 #endif

@@ -8,6 +8,8 @@
 #include <shared/fixed_point.h>
 
 #include <spindrift/sim_setup/basin.h>
+#include <spindrift/sim_setup/fill_up.h>
+#include <spindrift/sim_setup/scene_parts.h>
 
 #include "random_crowd.h"
 #include "stability_scene.h"
@@ -32,12 +34,15 @@ Extremes extremesOf(sim::WaterSim& water) {
   const sim::Basin basin = sim::layOutBasin(water.scene(), *water.derived().wave);
   const sim::StateCopy state = water.copyState();
   Extremes out;
+  const bool is_nonlinear = sim::isNonlinear(water.scene());  // then every cell can hold water
   for (std::size_t i = 0; i < state.elevation_m.size(); ++i) {
-    if (basin.depth_m[i] <= 0) continue;
+    if (!is_nonlinear && basin.depth_m[i] <= 0) continue;
     // Both are exact: the elevation is a whole number of units, and so is the bed in the shaders.
-    const auto bed_units = static_cast<std::int64_t>(double{basin.depth_m[i]} * double{ELEVATION_UNITS_PER_M});
+    const std::int64_t bed_units = sim::bedUnits(basin.bed[i][2]);
     const auto units = static_cast<std::int64_t>(std::llround(state.elevation_m[i] * double{ELEVATION_UNITS_PER_M}));
-    out.add({bed_units + units, state.elevation_m[i], state.elevation_m[i]});
+    const std::int64_t held_units = bed_units + units;
+    out.add({.thinnest_units = held_units});
+    if (held_units != 0) out.add({held_units, state.elevation_m[i], state.elevation_m[i]});
   }
   return out;
 }

@@ -28,6 +28,10 @@ enum class Stencil { kFivePoint, kNinePoint };
 /// kNone: all waves travel at sqrt(g d). kAiry: omega^2 = g k tanh(k d).
 enum class Dispersion { kNone, kAiry };
 
+/// kLinear: small waves on still water; the shore does not move. kNonlinear: shallow water of real depth with wetting
+/// and drying.
+enum class Bulk { kLinear, kNonlinear };
+
 /// What the layer along absorbing sides is. kByDispersion: kPml if the wave disperses, otherwise kSponge.
 enum class Absorption { kByDispersion, kSponge, kPml };
 
@@ -70,6 +74,8 @@ struct WaveScene {
       Default::fixed_substeps_count;  ///< 0 = derive() chooses; otherwise this many wave steps per tick, checked
   Dispersion dispersion = Dispersion::kNone;
   Absorption absorption = Absorption::kByDispersion;
+  Bulk bulk = Bulk::kLinear;
+  double manning_spm13 = Default::manning_spm13;  ///< roughness of the bed, nonlinear bulk only [s/m^(1/3)]
 
   bool operator==(const WaveScene&) const = default;
 };

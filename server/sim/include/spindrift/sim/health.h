@@ -28,7 +28,7 @@ struct Health {
   double breaking_ratio = 0.0;  ///< share of the cells that are breaking
 
   // The volume ledger, in units of shaders/shared/fixed_point.h times a cell's area.
-  std::int64_t surface_units = 0;       ///< sum of the elevations
+  std::int64_t surface_units = 0;       ///< sum of the elevations, without dry ground above the still water
   std::int64_t outflow_units = 0;       ///< volume lost through absorbing sides since the start
   std::int64_t volume_error_units = 0;  ///< surface + outflow + particles of a two-way scene - initial volume: always 0
 

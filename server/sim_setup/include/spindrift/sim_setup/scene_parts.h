@@ -8,6 +8,8 @@ namespace spindrift::sim {
 /// Returns whether shaders need tables: the bed or the sides differ from a flat basin with periodic sides, or with
 /// walls under the 5-point stencil.
 bool isVaried(const core::Scene& scene);
+/// Returns whether the water has its real depth, which wets and dries (BULK_NONLINEAR).
+bool isNonlinear(const core::Scene& scene);
 /// Returns whether short waves are slower than long ones.
 bool disperses(const core::Scene& scene);
 /// Returns whether water can leave: a side absorbs.

@@ -1,0 +1,95 @@
+#include "shallow_water.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <spindrift/sim_setup/basin.h>
+
+namespace spindrift::study {
+
+using core::WaveBoundary;
+
+core::Scene shallowScene(std::uint32_t resolution_count, double cell_m, double depth_m, double courant) {
+  core::Scene scene;
+  scene.name = "shallow";
+  scene.wave.emplace();
+  scene.wave->resolution_count = resolution_count;
+  scene.wave->side_m = cell_m * resolution_count;
+  scene.wave->depth_m = depth_m;
+  scene.wave->damping_per_s = 0.0;
+  scene.wave->bulk = core::Bulk::kNonlinear;
+  scene.wave->manning_spm13 = 0.0;
+  scene.wave->setBoundaries(WaveBoundary::kReflect);
+  scene.wave->fixed_substeps_count = 1;
+  scene.allow_unstable = true;  // the tick is the step, whatever the rule would choose
+  scene.tick_rate_hz = std::sqrt(scene.gravity_mps2 * depth_m) / (courant * cell_m);
+  return scene;
+}
+
+std::vector<double> groundDepths(const core::Scene& scene, const sim::WaveLayout& layout) {
+  const sim::Basin basin = sim::layOutBasin(scene, layout);
+  std::vector<double> out(basin.bed.size());
+  std::ranges::transform(basin.bed, out.begin(), [](const auto& cell) { return static_cast<double>(cell[2]); });
+  return out;
+}
+
+void setShallowState(sim::WaterSim& water, const Field2& eta_m, const Field2& u_mps, const Field2& w_mps) {
+  const sim::WaveLayout& layout = *water.derived().wave;
+  const std::vector<double> depth_m = groundDepths(water.scene(), layout);
+  const std::size_t nx = layout.count_x, nz = layout.count_z;
+  const double cell_m = layout.cell_m;
+  const auto placeX = [&](std::size_t x) { return (static_cast<double>(x) + 0.5) * cell_m - layout.length_m / 2; };
+  const auto placeZ = [&](std::size_t z) { return (static_cast<double>(z) + 0.5) * cell_m - layout.width_m / 2; };
+  sim::StateCopy state = water.copyState();
+  const std::vector<double> ground_m = [&] {
+    std::vector<double> out(depth_m.size());
+    std::ranges::transform(depth_m, out.begin(), [](double d) { return -d; });
+    return out;
+  }();
+  for (std::size_t i = 0; i < depth_m.size(); ++i) {
+    const double x_m = placeX(i % nx);
+    const double z_m = placeZ(i / nx);
+    // The resting state has the ground in whole units; only water above it is set.
+    if (eta_m(x_m, z_m) > ground_m[i]) {
+      state.elevation_m[i] = eta_m(x_m, z_m);
+    } else if (depth_m[i] > 0) {
+      state.elevation_m[i] = -std::floor(depth_m[i] * (1 << 24)) / (1 << 24);
+    }
+  }
+  const auto water_m = [&](std::size_t i) { return std::max(state.elevation_m[i] - ground_m[i], 0.0); };
+  for (std::size_t i = 0; i < depth_m.size(); ++i) {
+    const std::size_t x = i % nx, z = i / nx;
+    const double x_m = placeX(x);
+    const double z_m = placeZ(z);
+    const auto set = [&](std::size_t axis, bool is_inside, std::size_t to, double speed_mps) {
+      const double carried_m = speed_mps > 0 ? water_m(i) : is_inside ? water_m(to) : 0.0;
+      const double u = is_inside && carried_m > 0 ? speed_mps : 0.0;
+      state.flow_m2ps[4 * i + axis] = static_cast<float>(u);
+      state.flow_m2ps[4 * i + 2 + axis] = static_cast<float>(u * carried_m);
+    };
+    set(0, x + 1 < nx, i + 1, u_mps ? u_mps(x_m + cell_m / 2, z_m) : 0.0);
+    set(1, z + 1 < nz, i + nx, w_mps ? w_mps(x_m, z_m + cell_m / 2) : 0.0);
+  }
+  water.setState(state);
+}
+
+DamBreak::Flow DamBreak::at(double x_m, double time_s) const {
+  const double g = gravity_mps2;
+  const double c = std::sqrt(g * high_m);
+  const double xi = x_m / time_s;
+  if (xi < -c) return {high_m, 0.0};
+  const auto fan = [&]() -> Flow { return {std::pow(2 * c - xi, 2) / (9 * g), 2.0 / 3 * (c + xi)}; };
+  if (low_m <= 0) return xi < 2 * c ? fan() : Flow{0.0, 0.0};
+  // Depth between fan and bore: the velocity behind the bore is that at the foot of the fan.
+  double below = low_m, above = high_m;
+  for (int k = 0; k < 100; ++k) {
+    const double h = (below + above) / 2;
+    const double excess = 2 * (c - std::sqrt(g * h)) - (h - low_m) * std::sqrt(g * (h + low_m) / (2 * h * low_m));
+    (excess > 0 ? below : above) = h;
+  }
+  const double u = 2 * (c - std::sqrt(g * below));
+  if (xi < u - std::sqrt(g * below)) return fan();
+  return xi < below * u / (below - low_m) ? Flow{below, u} : Flow{low_m, 0.0};
+}
+
+}  // namespace spindrift::study

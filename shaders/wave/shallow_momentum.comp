@@ -1,0 +1,217 @@
+// First half of a wave step of nonlinear shallow water (BULK_NONLINEAR): velocities at the faces, and the water that moves.
+// Reads ELEVATION [nx x nz, units], FLOW [nx x nz: velocity toward +x and +z, m/s; the water they carried, m^2/s], BED,
+// PRESSURE_HEAD; with DISPERSE the static depth of faces (BASIN), DISPERSED and BREAKING.
+// Writes FLOW of the next step, and TRANSFER [nx x nz, units], which wave/continuity.comp moves.
+// Raises LIMIT_ARGS if a transfer could empty a cell, so that wave/given_share.comp runs over all cells.
+// Equation: u_t + (u grad) u = -g grad(eta + head) - g n^2 |u| u / h^(4/3) - (kappa + sigma) u.
+//   Advection conserves momentum (Stelling & Duinmeijer 2003): du = sum of inflow (u_there - u) over the mean water of both
+//   cells. It is bounded: a step takes at most all of the momentum that flows in.
+//   The height at a face is that of the giving cell, limited second order (van Leer 1979), over the higher bed.
+//   Where water runs together, cells press with h (du)^2 (von Neumann & Richtmyer 1950), so that bores stay without ripples.
+//   Friction of the bed (Manning) is implicit, so it stops thin films.
+// DISPERSE: slopes filtered by the dispersion take the place of those of the surface in water that is deep for its waves.
+// Invariants: no water leaves a dry cell; a level surface without flow does not change in any bit, at any level of any pond.
+#include "shared/groups.h"
+#include "wave/shallow_column.glsl"
+
+layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
+
+layout(binding = ELEVATION) uniform isamplerBuffer elevation;
+layout(binding = FLOW) uniform samplerBuffer flow;
+#if HEAD
+layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
+#endif
+#if DISPERSE
+layout(binding = DISPERSED) uniform samplerBuffer dispersed;
+layout(binding = BREAKING) uniform samplerBuffer breaking;
+#endif
+#if SEA
+#include "wave/incident_sea.glsl"
+#endif
+layout(std430, binding = FLOW) restrict writeonly buffer NextFlow { vec4 next_flow[]; };
+layout(std430, binding = TRANSFER) restrict writeonly buffer Transfer { ivec2 transfer[]; };
+layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
+
+/// Share of the speed difference across a cell that its pressure may take from a face in a step; both faces together take
+/// less than all.
+#define MAX_PRESSED 0.45
+/// A face drives no more than a step can bear: water may be this many times (dx/dt)^2/g high (the limit of the step is 1/2),
+/// and where slopes are dispersed this many times its static depth. Higher piles of water fall as slowly as if they were lower.
+#define STABLE_HEIGHT 0.4
+/// Loss of velocity in a step where columns alternate between high and empty from cell to cell.
+#define ALTERNATING_LOSS 4.0
+#define STABLE_DISPERSED 1.6
+
+int headAt(int i) {
+#if HEAD
+  return texelFetch(pressure_head, i).x;
+#else
+  return 0;
+#endif
+}
+
+/// How much four columns in a row alternate, 0 to 1: the square of their least difference over their water, and 0 if their levels do not go up and down from one to the next. Such a pattern
+/// is not a wave: water would be thrown from each cell into its neighbours and back in every step.
+float alternates(Column behind, Column here, Column there, Column beyond) {
+  const vec3 rises = vec3(here.eta - behind.eta, there.eta - here.eta, beyond.eta - there.eta) * ELEVATION_UNIT_M;
+  const bool turns = rises.x * rises.y < 0.0 && rises.y * rises.z < 0.0;
+  const vec3 size_m = abs(rises);
+  const float share = min(size_m.y / max(max(here.water_m, there.water_m), 1e-6), 1.0);
+  return turns ? share * share * min(4.0 * min(size_m.x, size_m.z) / size_m.y, 1.0) : 0.0;
+}
+
+float vanLeer(float a, float b) { return a * b > 0.0 ? 2.0 * a * b / (a + b) : 0.0; }
+
+/// The flow along and across the axis of a face, by the cells beside it.
+struct Face {
+  float before, own, after;  // velocity along the axis at the face before, at this one and at the next [m/s]
+  float left, right;         // the same at the parallel faces on both sides
+  float in_before, in_after; // water along the axis in the middle of the cell before and of the cell behind [m^2/s], toward +
+  float in_left, in_right;   // water across the axis at both ends of the face, toward +
+  float across;              // velocity across the axis at the face [m/s]
+};
+
+/// Change of the velocity in a step by the water that flows in, and by the pressure of water that runs together. [m/s]
+float advected(Face f, Column here, Column there) {
+  const float mean_m = 0.5 * (here.water_m + there.water_m);
+  if (mean_m <= 0.0) return 0.0;
+  const float per_m = sim.wave_dt_s / sim.wave_cell_m;
+  const float weight = per_m / mean_m;
+  const vec4 inflow = weight * max(vec4(f.in_before, -f.in_after, f.in_left, -f.in_right), vec4(0.0));
+  const float change = dot(inflow, vec4(f.before, f.after, f.left, f.right) - f.own);
+  const vec2 differs = vec2(f.before, f.after) - f.own;
+  const vec2 closing = max(vec2(differs.x, -differs.y), vec2(0.0));
+  const vec2 pressed = min(closing * per_m * vec2(here.water_m, there.water_m) / mean_m, vec2(MAX_PRESSED)) * closing;
+  return change / max(dot(inflow, vec4(1.0)), 1.0) + pressed.x - pressed.y;
+}
+
+float stableHeight_m() {
+  const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
+  return STABLE_HEIGHT * max_mps * max_mps / max(sim.gravity_mps2, 1e-6);
+}
+
+#if DISPERSE
+/// How far the dispersion acts at a face of static depth `depth_m`: not where waves are high for their depth, water is
+/// missing or breaks. What it leaves out moves at once, and the step would be too long for that in deep water.
+float dispersedShare(float depth_m, Column here, Column there, float breaks) {
+  if (depth_m <= 0.0 || min(here.water_m, there.water_m) <= 0.0) return 0.0;
+  const float high = 0.5 * (here.water_m + there.water_m) / depth_m;
+  const float share = (1.0 - smoothstep(1.6, 1.9, high)) * smoothstep(0.2, 0.5, high) * (1.0 - breaks);
+  return max(share, 1.0 - stableHeight_m() / depth_m);
+}
+#endif
+
+/// Velocity [m/s] and water [m^2/s] at a face after the step. `driving` is g dt times the slope; `a` the share of the
+/// velocity that losses take in half a step; `gained` what an incoming sea adds. Columns higher than
+/// `borne_m`, which a step can bear, keep a part of their water in every step.
+vec2 movedFlow(Face f, Column behind, Column here, Column there, Column beyond, float driving, float a, float gained, float borne_m) {
+  const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
+  float u = ((1.0 - a) * f.own + advected(f, here, there) - driving + gained) / (1.0 + a);
+  u /= 1.0 + ALTERNATING_LOSS * alternates(behind, here, there, beyond);
+  const bool forward = u > 0.0;
+  const Column from = forward ? here : there;
+  const Column to = forward ? there : here;
+  float passing_m = passingWater_m(from, to);
+  if (passing_m <= 0.0) return vec2(0.0);
+  u /= 1.0 + sim.wave_dt_s * sim.wave_friction * sqrt(u * u + f.across * f.across) * exp2(-1.3333333 * log2(passing_m));
+  const float borne_mps = max_mps * min(borne_m / from.water_m, 1.0);
+  u = clamp(u, -borne_mps, borne_mps);
+  // No sill between: the height at the face follows the slope of the water behind it.
+  if (passing_m >= from.water_m) {
+    const float before_m = forward ? behind.water_m : beyond.water_m;
+    passing_m += 0.5 * (1.0 - abs(u) / max_mps) * vanLeer(to.water_m - from.water_m, from.water_m - before_m);
+  }
+  return vec2(u, u * passing_m);
+}
+
+void main() {
+  const ivec2 n = waveCounts();
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(cell, n))) return;
+  // Flow reaches across every side, because it is 0 at closed ones; water is mirrored there.
+  const int row = n.x * cell.y;
+  const int row_before = n.x * wrapped(cell.y - 1, n.y);
+  const int row_after = n.x * wrapped(cell.y + 1, n.y);
+  const int x_before = wrapped(cell.x - 1, n.x);
+  const int x_after = wrapped(cell.x + 1, n.x);
+  const int i = cell.x + row;
+  const int i_x = x_after + row;
+  const int i_z = cell.x + row_after;
+
+  const vec4 own = texelFetch(flow, i);
+  const vec4 at_before_x = texelFetch(flow, x_before + row);
+  const vec4 at_x = texelFetch(flow, i_x);
+  const vec4 at_before_z = texelFetch(flow, cell.x + row_before);
+  const vec4 at_z = texelFetch(flow, i_z);
+  const vec4 at_x_before_z = texelFetch(flow, x_after + row_before);
+  const vec4 at_z_before_x = texelFetch(flow, x_before + row_after);
+  const Face face_x = Face(at_before_x.x, own.x, at_x.x, at_before_z.x, at_z.x,
+                           0.5 * (at_before_x.z + own.z), 0.5 * (own.z + at_x.z),
+                           0.5 * (at_before_z.w + at_x_before_z.w), 0.5 * (own.w + at_x.w),
+                           0.25 * (own.y + at_x.y + at_before_z.y + at_x_before_z.y));
+  const Face face_z = Face(at_before_z.y, own.y, at_z.y, at_before_x.y, at_x.y,
+                           0.5 * (at_before_z.w + own.w), 0.5 * (own.w + at_z.w),
+                           0.5 * (at_before_x.z + at_z_before_x.z), 0.5 * (own.z + at_z.z),
+                           0.25 * (own.x + at_z.x + at_before_x.x + at_z_before_x.x));
+
+  const Column here = columnOf(i, texelFetch(elevation, i).x);
+  const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
+  const Column there_z = columnOf(i_z, texelFetch(elevation, i_z).x);
+  const int mirrored_before_x = waveNeighbourX(cell.x - 1, n.x) + row;
+  const int mirrored_before_z = cell.x + n.x * waveNeighbourZ(cell.y - 1, n.y);
+  const int mirrored_beyond_x = waveNeighbourX(waveNeighbourX(cell.x + 1, n.x) + 1, n.x) + row;
+  const int mirrored_beyond_z = cell.x + n.x * waveNeighbourZ(waveNeighbourZ(cell.y + 1, n.y) + 1, n.y);
+  const Column behind_x = columnOf(mirrored_before_x, texelFetch(elevation, mirrored_before_x).x);
+  const Column behind_z = columnOf(mirrored_before_z, texelFetch(elevation, mirrored_before_z).x);
+  const Column beyond_x = columnOf(mirrored_beyond_x, texelFetch(elevation, mirrored_beyond_x).x);
+  const Column beyond_z = columnOf(mirrored_beyond_z, texelFetch(elevation, mirrored_beyond_z).x);
+
+  const int head = headAt(i);
+  vec2 rise = vec2(drivingRise(here, there_x, there_x.eta - here.eta + headAt(i_x) - head),
+                   drivingRise(here, there_z, there_z.eta - here.eta + headAt(i_z) - head));
+  const vec2 there_m = vec2(there_x.water_m, there_z.water_m);
+  const vec2 tallest_m = max(vec2(here.water_m), there_m);
+  vec2 borne_m = vec2(stableHeight_m());
+  rise *= min(borne_m / max(tallest_m, vec2(1e-6)), vec2(1.0));
+#if DISPERSE
+  const vec2 depth_m = texelFetch(basin, i).xy;
+  const float breaks = texelFetch(breaking, i).y;
+  const vec2 share = vec2(dispersedShare(depth_m.x, here, there_x, max(breaks, texelFetch(breaking, i_x).y)),
+                          dispersedShare(depth_m.y, here, there_z, max(breaks, texelFetch(breaking, i_z).y)));
+  const vec2 dispersed_borne_m = STABLE_DISPERSED * depth_m;
+  borne_m = max(borne_m, dispersed_borne_m);
+  rise = mix(rise, min(dispersed_borne_m / max(tallest_m, vec2(1e-6)), vec2(1.0)) * texelFetch(dispersed, i).xy / max(depth_m, vec2(1e-6)), share);
+#endif
+  const vec2 driving = sim.wave_pull * rise;
+
+  const vec4 ground = texelFetch(bed, i);
+  const vec4 ground_x = texelFetch(bed, i_x);
+  const vec4 ground_z = texelFetch(bed, i_z);
+#if MATCHED
+  const vec2 layer_loss = 0.5 * vec2(ground.y + ground_x.y, ground.w + ground_z.w);
+#else
+  const vec2 layer_loss = 0.5 * vec2(ground.y + ground_x.y, ground.y + ground_z.y);
+#endif
+  const vec2 a = 0.5 * sim.wave_dt_s * (sim.wave_damping_per_s + layer_loss);
+#if SEA
+  const vec2 mean_m = 0.5 * (here.water_m + there_m);
+  const vec2 gained = sim.wave_dt_s * layer_loss * incidentFlow(i) / max(mean_m, vec2(0.05 * sim.wave_depth_m));
+#else
+  const vec2 gained = vec2(0.0);
+#endif
+  vec2 flow_x = movedFlow(face_x, behind_x, here, there_x, beyond_x, driving.x, a.x, gained.x, borne_m.x);
+  vec2 flow_z = movedFlow(face_z, behind_z, here, there_z, beyond_z, driving.y, a.y, gained.y, borne_m.y);
+#if !WAVE_PERIODIC_X
+  if (cell.x == n.x - 1) flow_x = vec2(0.0);
+#endif
+#if !WAVE_PERIODIC_Z
+  if (cell.y == n.y - 1) flow_z = vec2(0.0);
+#endif
+  next_flow[i] = vec4(flow_x.x, flow_z.x, flow_x.y, flow_z.y);
+
+  const ivec2 moved = ivec2(transferUnits(flow_x.y, sim.wave_transfer), transferUnits(flow_z.y, sim.wave_transfer));
+  transfer[i] = moved;
+  const uint held = uint(max(here.eta + here.depth, 0));
+  if (mayEmpty(moved.x, held, uint(max(there_x.eta + there_x.depth, 0))) || mayEmpty(moved.y, held, uint(max(there_z.eta + there_z.depth, 0))))
+    limit_args[0] = limitGroups();  // all invocations write the same number
+}
