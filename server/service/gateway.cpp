@@ -97,13 +97,21 @@ void Gateway::greet(net::SessionId session, const rooms::Room& room) {
 
 void Gateway::sceneChanged(const rooms::Room& room) {
   std::vector<net::SessionId> members;
+  std::vector<std::pair<net::SessionId, std::string>> outdated;
+  const auto snapshot = room.snapshot();
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [session, state] : sessions_) {
-      if (state.room.get() == &room) members.push_back(session);
+      if (state.room.get() != &room) continue;
+      auto why = state.said_hello ? wire::checkWater(state.wire_minor, snapshot->scene) : std::nullopt;
+      if (why)
+        outdated.emplace_back(session, *std::move(why));
+      else
+        members.push_back(session);
     }
   }
   for (const net::SessionId session : members) greet(session, room);
+  for (const auto& [session, why] : outdated) refuse(session, net::CloseCode::kPolicy, why);
 }
 
 void Gateway::dismiss(const rooms::Room& room) {
@@ -150,6 +158,8 @@ void Gateway::sessionMessage(net::SessionId session, core::ByteView message) {
 
 void Gateway::hello(net::SessionId session, const SessionState& state, const wire::Hello& hello) {
   if (auto why = wire::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
+  if (auto why = wire::checkWater(hello.minor, state.room->snapshot()->scene))
+    return refuse(session, net::CloseCode::kPolicy, *why);
   if (state.said_hello) return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
   const auto now = std::chrono::system_clock::now();
   const auto grant = options_.access.resolve(hello.token, now);
@@ -174,6 +184,7 @@ void Gateway::hello(net::SessionId session, const SessionState& state, const wir
     SessionState& kept = sessions_.at(session);
     greeted = kept.greeted;
     kept.said_hello = true;
+    kept.wire_minor = hello.minor;
     kept.role = grant->role;
     kept.person_id = admission.person_id;
   }
@@ -189,7 +200,11 @@ void Gateway::hello(net::SessionId session, const SessionState& state, const wir
   // From here on the session gets the room's news, and the frames that it subscribes to. Send the changes since the
   // greeting.
   hub().join(session, state.room->name());
-  if (state.room->snapshot() != greeted) greet(session, *state.room);
+  if (const auto now_there = state.room->snapshot(); now_there != greeted) {
+    if (auto why = wire::checkWater(hello.minor, now_there->scene))
+      return refuse(session, net::CloseCode::kPolicy, *why);
+    greet(session, *state.room);
+  }
   hub().sendState(session, topic::kPeople, wire::people(state.room->roster().people()));
 }
 

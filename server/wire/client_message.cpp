@@ -142,6 +142,16 @@ std::optional<std::string> checkVersion(const Hello& hello) {
          "; use a client of the same major version";
 }
 
+std::optional<std::string> checkWater(std::uint32_t minor, const v1::Scene& scene) {
+  if (minor >= kRectangleMinor || !scene.has_wave()) return std::nullopt;
+  const core::WaveCells cells = scene::waveCellsOf(scene.wave());
+  if (cells.count.x == cells.count.z) return std::nullopt;
+  return "this water is " + core::formatNumber(cells.length_m) + " x " + core::formatNumber(cells.width_m) +
+         " m, and wire version " + std::to_string(kWireMajor) + "." + std::to_string(minor) +
+         " knows squares only; update the client to " + std::to_string(kWireMajor) + "." +
+         std::to_string(kRectangleMinor) + " (a page: reload)";
+}
+
 v1::Role toWire(core::Role role) {
   switch (role) {
     case core::Role::kViewer:

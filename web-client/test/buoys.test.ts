@@ -11,10 +11,10 @@ const sides: Record<SideName, SideKind> = { "-x": "open", "+x": "closed", "-z": 
 const wall = (xM: number, zM: number, lengthM: number, headingDeg: number): ObstacleInfo => ({ shape: "breakwater", xM, zM, lengthM, widthM: 1.2, headingRad: (headingDeg * Math.PI) / 180, heightM: 0.7 });
 /** As the scene "harbor". */
 const harbor = {
-  sideM: 32,
-  waterExtents: { sideM: 32, depthM: 1.2 },
+  sideM: 32, widthM: 32,
+  waterExtents: { sideM: 32, longM: 32, depthM: 1.2 },
   setting: "openSea" as const,
-  wave: { resolutionCount: 192, sideM: 32, depthM: 1.2, periodicX: false, periodicZ: false, sides, spongeWidthM: 3, dampingPerS: 0 },
+  wave: { resolutionCount: 192, countZ: 192, sideM: 32, widthM: 32, depthM: 1.2, periodicX: false, periodicZ: false, sides, spongeWidthM: 3, dampingPerS: 0 },
   beaches: [{ side: "+x" as const, widthM: 7, shoreDepthM: 0 }],
   obstacles: [
     wall(-6, -4, 14, 60), wall(6, -11, 9, 0),
@@ -35,7 +35,7 @@ describe("the places of buoys", () => {
   it("are in deep water, clear of obstacles, of layers and of each other", () => {
     for (const { xM, zM, radiusM } of places) {
       for (const obstacle of harbor.obstacles) expect(clearanceM(obstacle, xM, zM)).toBeGreaterThan(radiusM);
-      expect(depthAtM({ sideM: 32, depthM: 1.2, beaches: harbor.beaches }, xM, zM)).toBeGreaterThan(0.7);
+      expect(depthAtM({ sideM: 32, widthM: 32, depthM: 1.2, beaches: harbor.beaches }, xM, zM)).toBeGreaterThan(0.7);
       expect(Math.min(xM, zM)).toBeGreaterThan(-16 + 3 + radiusM);
       expect(Math.max(xM, zM)).toBeLessThan(16 - radiusM);
       for (const other of places) if (other.xM !== xM || other.zM !== zM) expect(Math.hypot(xM - other.xM, zM - other.zM)).toBeGreaterThan(3);
@@ -43,7 +43,7 @@ describe("the places of buoys", () => {
   });
 
   it("are none without room, without breakwaters, in a pool, and without a wave", () => {
-    expect(buoyPlaces({ ...harbor, beaches: [{ side: "+x", widthM: 32, shoreDepthM: 0 }, { side: "+z", widthM: 32, shoreDepthM: 0 }], waterExtents: { sideM: 32, depthM: 1.2 }, obstacles: [wall(12, 12, 6, 0)] })).toEqual([]);
+    expect(buoyPlaces({ ...harbor, beaches: [{ side: "+x", widthM: 32, shoreDepthM: 0 }, { side: "+z", widthM: 32, shoreDepthM: 0 }], waterExtents: { sideM: 32, longM: 32, depthM: 1.2 }, obstacles: [wall(12, 12, 6, 0)] })).toEqual([]);
     expect(buoyPlaces({ ...harbor, obstacles: harbor.obstacles.slice(2) })).toEqual([]);
     expect(buoyPlaces({ ...harbor, setting: "pool" })).toEqual([]);
     expect(buoyPlaces({ ...harbor, wave: undefined })).toEqual([]);
@@ -51,7 +51,7 @@ describe("the places of buoys", () => {
 
   it("are bounded in a scene full of breakwaters", () => {
     const many = Array.from({ length: 60 }, (_, n) => wall(-100 + 30 * (n % 8), -100 + 30 * Math.floor(n / 8), 6, 0));
-    expect(buoyPlaces({ ...harbor, sideM: 400, waterExtents: { sideM: 400, depthM: 1.2 }, obstacles: many, beaches: [] })).toHaveLength(8);
+    expect(buoyPlaces({ ...harbor, sideM: 400, widthM: 400, waterExtents: { sideM: 400, longM: 400, depthM: 1.2 }, obstacles: many, beaches: [] })).toHaveLength(8);
   });
 });
 

@@ -14,7 +14,7 @@ const kWall = { shape: "breakwater", xM: -4, zM: -2, lengthM: 6, widthM: 1, head
 
 function water(change: Partial<GreetingInfo> = {}, depthM = 2) {
   const wave = { resolutionCount: 32, sideM: 16, depthM, periodicX: false, periodicZ: false, sides: kSides, spongeWidthM: 2, dampingPerS: 0 };
-  const greeting = { sideM: 16, widthM: 16, setting: "openSea", waterExtents: { sideM: 16, depthM }, obstacles: [kRock, kWall], beaches: [{ side: "+x", widthM: 6, shoreDepthM: 0 }], wave, ...change };
+  const greeting = { sideM: 16, widthM: 16, setting: "openSea", waterExtents: { sideM: 16, longM: 16, depthM }, obstacles: [kRock, kWall], beaches: [{ side: "+x", widthM: 6, shoreDepthM: 0 }], wave, ...change };
   return diveWater(greeting as unknown as GreetingInfo, kNearM);
 }
 

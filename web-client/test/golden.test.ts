@@ -44,6 +44,12 @@ function unpacked(golden: GoldenCase, unpacker = new FrameUnpacker()): Exclude<P
 const kKinds = ["frame", "diagnostics", "greeting", "ack", "reject", "boat_list", "room_event"];
 const kLayers = ["LAYER_SURFACE", "LAYER_PARTICLES", "LAYER_FOAM", "LAYER_BODIES"];
 
+/** A plane's samples and sides; a square names those along x only. */
+function extentsOf(golden: GoldenCase): object {
+  const [resolutionCount, sideM] = [golden["resolution_count"], golden["side_m"]];
+  return { resolutionCount, sideM, countZ: golden["count_z"] ?? resolutionCount, widthM: golden["width_m"] ?? sideM };
+}
+
 describe("golden bytes", () => {
   it("have only verdicts, kinds and layers that a test here reads", () => {
     expect(new Set(cases.map((c) => c.verdict))).toEqual(new Set(["ok", "bad_frame", "bad_message"]));
@@ -65,15 +71,14 @@ describe("golden bytes", () => {
     if (parsed.kind !== "surface") throw new Error(JSON.stringify(parsed));
     const { header, payload } = parsed;
     expect(header).toEqual({
-      tick: BigInt(golden["tick"] as string), stateId: BigInt((golden["state_id"] ?? "0") as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", resolutionCount: golden["resolution_count"],
-      sideM: golden["side_m"], quantumM: golden["quantum_m"],
+      tick: BigInt(golden["tick"] as string), stateId: BigInt((golden["state_id"] ?? "0") as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", ...extentsOf(golden), quantumM: golden["quantum_m"],
     });
     const frame = { layer: "surface" as const, ...header, buffer: payload.slice().buffer };
     const n = header.resolutionCount;
     const samples = new Int16Array(frame.buffer);
     (golden["elevation_m"] as number[]).forEach((elevation, at) => {
       const xM = ((at % n) + 0.5) * (header.sideM / n) - header.sideM / 2;
-      const zM = (Math.floor(at / n) + 0.5) * (header.sideM / n) - header.sideM / 2;
+      const zM = (Math.floor(at / n) + 0.5) * (header.widthM / header.countZ) - header.widthM / 2;
       expect(Math.fround(samples[at]! * header.quantumM)).toBe(Math.fround(elevation));
       expect(elevationAtM(frame, xM, zM)).toBeCloseTo(elevation, 7);
     });
@@ -111,7 +116,7 @@ describe("golden bytes", () => {
     const parsed = unpacked(golden);
     if (parsed.kind !== "foam") throw new Error(JSON.stringify(parsed));
     expect(parsed.header).toEqual({
-      tick: BigInt(golden["tick"] as string), stateId: BigInt((golden["state_id"] ?? "0") as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", resolutionCount: golden["resolution_count"], sideM: golden["side_m"],
+      tick: BigInt(golden["tick"] as string), stateId: BigInt((golden["state_id"] ?? "0") as string), timeS: golden["time_s"], serverTimeS: 0, level: "full", ...extentsOf(golden),
     });
     expect([...parsed.payload]).toEqual(golden["foam"]);
   });

@@ -38,7 +38,7 @@ describe("the ground of a scene with a bed", () => {
   });
 
   it("is bilinear between the centres of cells and continues level beyond the last ones", () => {
-    const bed: Bed = { sideM: 12, depthM: 4, beaches: [], ground: groundOf(kRises) };
+    const bed: Bed = { sideM: 12, widthM: 6, depthM: 4, beaches: [], ground: groundOf(kRises) };
     expect(depthAtM(bed, -4.5, -1.5)).toBeCloseTo(2, 6);
     expect(depthAtM(bed, 4.5, 1.5)).toBeCloseTo(0.5, 6);
     expect(depthAtM(bed, -3, -1.5)).toBeCloseTo(1.5, 6);
@@ -48,14 +48,14 @@ describe("the ground of a scene with a bed", () => {
   });
 
   it("is drawn with its land and its deepest place", () => {
-    const bed: Bed = { sideM: 12, depthM: 4, beaches: [], ground: groundOf(kRises) };
+    const bed: Bed = { sideM: 12, widthM: 6, depthM: 4, beaches: [], ground: groundOf(kRises) };
     const geometry = makeGroundGeometry(bed, 24);
     geometry.computeBoundingBox();
     expect(geometry.boundingBox!.max.y).toBeCloseTo(1, 1);
   });
 
   it("makes a shore of a closed side that is land, and a quay of one that is deep", () => {
-    const land: Bed = { sideM: 12, depthM: 4, beaches: [], ground: groundOf([[-8, -8, 1, 1], [-8, -8, 1, 1]]) };
+    const land: Bed = { sideM: 12, widthM: 6, depthM: 4, beaches: [], ground: groundOf([[-8, -8, 1, 1], [-8, -8, 1, 1]]) };
     const sides = { "+x": "closed", "-x": "closed", "+z": "open", "-z": "open" } as const;
     const coast = { bed: land, sides };
     expect(coastHeightM(coast, 6.001, 0)).toBeCloseTo(0.5, 2);

@@ -103,10 +103,10 @@ describe("limits from the scene", () => {
 
   it("keep boats afloat: no longer than a quarter of the side, nor deeper than the water", () => {
     expect(boatLimits(greeting({}))!.lengthM).toMatchObject({ min: 0.3, max: 6, default: defaultOf(BoatSchema.field.lengthM) });
-    const shallow = boatLimits(greeting({ waterExtents: { sideM: 24, depthM: 0.2 } }))!.lengthM;
+    const shallow = boatLimits(greeting({ waterExtents: { sideM: 24, longM: 24, depthM: 0.2 } }))!.lengthM;
     expect(boatOfLength(shallow.max).draughtM).toBeLessThanOrEqual(0.6 * 0.2 + 1e-9);
     expect(boatLimits(greeting({ hasBoats: false }))).toBeUndefined();
-    expect(boatLimits(greeting({ waterExtents: { sideM: 24, depthM: 0 } }))).toBeUndefined();
+    expect(boatLimits(greeting({ waterExtents: { sideM: 24, longM: 24, depthM: 0 } }))).toBeUndefined();
     expect(boatLimits(greeting({}))!.throttleRatio).toMatchObject({ min: -1, max: 1 });
   });
 

@@ -53,7 +53,7 @@ describe("the lamps of a picture", () => {
 
   it("hold one lighthouse with two opposite beams, on the longest breakwater, and beacons on the others", () => {
     const walls: ObstacleInfo[] = [6, 14, 9, 14].map((lengthM, n) => ({ shape: "breakwater", xM: 20 * n, zM: 0, lengthM, widthM: 1.2, headingRad: n, heightM: 0.7 }));
-    const landscape = new Landscape({ sideM: 80, depthM: 2, beaches: [] }, new BufferGeometry(), walls, new RawShaderMaterial(), true);
+    const landscape = new Landscape({ sideM: 80, widthM: 80, depthM: 2, beaches: [] }, new BufferGeometry(), walls, new RawShaderMaterial(), true);
     const lamps = new Lamps();
     landscape.collectLamps(lamps, 2);
     expect(lamps.lampsCount).toBe(4 + 2);

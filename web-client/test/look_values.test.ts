@@ -6,18 +6,18 @@ import { describe, expect, it } from "vitest";
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
 import { isCovered } from "../src/scene/looks/dry_places";
 import { densityRatio, pickParticle, placeM, speedMps, type ShownParticles } from "../src/scene/looks/particle_values";
-import { breakingCriterion, foamAt, kLeastDepths, ShownSurface, type Square } from "../src/scene/looks/surface_values";
+import { breakingCriterion, foamAt, kLeastDepths, ShownSurface, type Rectangle } from "../src/scene/looks/surface_values";
 import type { ShownSurfaces } from "../src/scene/passes/field_pass";
 import { timeRateWeights, timeWeights, type FrameTimes } from "../src/scene/time_weights";
 import { describePlace, describeValue } from "../src/ui/probe_label";
 
-const kSquare: Square = { sideM: 8, periodicX: false, periodicZ: false };
+const kSquare: Rectangle = { sideM: 8, widthM: 8, periodicX: false, periodicZ: false };
 const kTimes: FrameTimes = { beforeS: 1, fromS: 1.05, toS: 1.1, afterS: 1.15 };
 
 function frameOf(timeS: number, n: number, quantumM: number, elevationM: (xM: number, zM: number) => number): SurfaceFrame {
   const at = (i: number): number => ((i + 0.5) / n - 0.5) * kSquare.sideM;
   const samples = Int16Array.from({ length: n * n }, (_, index) => Math.round(elevationM(at(index % n), at(Math.floor(index / n))) / quantumM));
-  return { layer: "surface", tick: 1n, stateId: 0n, timeS, serverTimeS: 0, level: "full", resolutionCount: n, sideM: kSquare.sideM, quantumM, buffer: samples.buffer };
+  return { layer: "surface", tick: 1n, stateId: 0n, timeS, serverTimeS: 0, level: "full", resolutionCount: n, countZ: n, sideM: kSquare.sideM, widthM: kSquare.sideM, quantumM, buffer: samples.buffer };
 }
 
 function shownOf(times: FrameTimes, mix: number, n: number, elevationM: (timeS: number, xM: number, zM: number) => number, quanta = [1e-4, 1e-4, 1e-4, 1e-4]): ShownSurfaces {
@@ -58,7 +58,7 @@ describe("the probe of the surface", () => {
 
   it("reads the breaking criterion of a wave front that rises evenly", () => {
     const rising = new ShownSurface(kSquare, shownOf(kTimes, 0.5, 8, (timeS) => 1.2 * (timeS - 1)));
-    const bed = { sideM: 8, depthM: 2, beaches: [{ side: "+x" as const, widthM: 4, shoreDepthM: 0 }] };
+    const bed = { sideM: 8, widthM: 8, depthM: 2, beaches: [{ side: "+x" as const, widthM: 4, shoreDepthM: 0 }] };
     expect(breakingCriterion(rising, bed, 9.81, -1, 0)).toBeCloseTo(1.2 / Math.sqrt(9.81 * 2), 3);
     expect(breakingCriterion(rising, bed, 9.81, 2, 0)).toBeCloseTo(1.2 / Math.sqrt(9.81 * 1), 3);
     // Nearly dry: finite.
@@ -70,13 +70,13 @@ describe("the probe of the surface", () => {
     const atSample = (i: number): number => ((i + 0.5) / n - 0.5) * 8;
     const spike = (timeS: number, xM: number, zM: number): number => (Math.abs(xM - atSample(4)) < 0.1 && Math.abs(zM - atSample(4)) < 0.1 ? timeS - 1 : 0);
     const surface = new ShownSurface(kSquare, shownOf(kTimes, 0.5, n, spike));
-    const bed = { sideM: 8, depthM: 1, beaches: [] };
+    const bed = { sideM: 8, widthM: 8, depthM: 1, beaches: [] };
     const weights = [3, 4, 5].map((k) => [3, 4, 5].map((i) => Math.round(16 * breakingCriterion(surface, bed, 1, atSample(i), atSample(k)) * 100) / 100));
     expect(weights).toEqual([[1, 2, 1], [2, 4, 2], [1, 2, 1]]);
   });
 
   it("reads the foam between two frames", () => {
-    const foam = (value: number, n: number): FoamFrame => ({ layer: "foam", tick: 1n, stateId: 0n, timeS: 0, serverTimeS: 0, level: "full", resolutionCount: n, sideM: 8, buffer: new Uint8Array(n * n).fill(value).buffer });
+    const foam = (value: number, n: number): FoamFrame => ({ layer: "foam", tick: 1n, stateId: 0n, timeS: 0, serverTimeS: 0, level: "full", resolutionCount: n, countZ: n, sideM: 8, widthM: 8, buffer: new Uint8Array(n * n).fill(value).buffer });
     const [from, to] = [foam(50, 4), foam(250, 4)];
     expect(foamAt(kSquare, { before: undefined, after: undefined, from, to, mix: 0.25 }, 1, 1)).toBeCloseTo(100, 9);
     // Frames of two levels cannot be mixed.

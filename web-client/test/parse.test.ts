@@ -79,7 +79,7 @@ describe("parse", () => {
     const buffer = encode(surfaceFrame([0, 1, -2, 32767]));
     const parsed = parse(buffer);
     if (parsed.kind !== "surface") throw new Error(parsed.kind);
-    expect(parsed.header).toEqual({ tick: 7n, stateId: 0n, timeS: 0.25, serverTimeS: 0, level: "full", resolutionCount: 2, sideM: 16, quantumM: 0.001 });
+    expect(parsed.header).toEqual({ tick: 7n, stateId: 0n, timeS: 0.25, serverTimeS: 0, level: "full", resolutionCount: 2, countZ: 2, sideM: 16, widthM: 16, quantumM: 0.001 });
     expect(parsed.payload.buffer).toBe(buffer);
     expect([...new Int16Array(parsed.payload.slice().buffer)]).toEqual([0, 1, -2, 32767]);
   });
@@ -162,13 +162,24 @@ describe("parse of foam, boats and obstacles", () => {
     expect(bodies.payload.buffer).toBe(buffer);
   });
 
+  it("reads planes with other numbers along x and z, down to one", () => {
+    const wide = parse(encode(foamFrame(new Uint8Array([1, 2, 3]), {}, { resolutionCount: 3, countZ: 1, sideM: 6, widthM: 2 })));
+    expect(wide).toMatchObject({ kind: "foam", header: { resolutionCount: 3, countZ: 1, sideM: 6, widthM: 2 } });
+    const square = parse(encode(foamFrame(new Uint8Array(4), {}, { resolutionCount: 2, sideM: 16 })));
+    expect(square).toMatchObject({ kind: "foam", header: { resolutionCount: 2, countZ: 2, sideM: 16, widthM: 16 } });
+  });
+
   it("accepts frames without particles or boats", () => {
     expect(parse(encode(particleFrame(new Uint8Array(0))))).toMatchObject({ kind: "particles", header: { count: 0 } });
     expect(parse(encode(bodiesFrame(new Uint8Array(0))))).toMatchObject({ kind: "bodies", header: { count: 0 } });
   });
 
   it("refuses hostile sizes before it touches the payload", () => {
-    for (const resolutionCount of [0, 1, 4097, 0xffffffff]) expectMalformed(encode(foamFrame(new Uint8Array(4), {}, { resolutionCount })), /foam of/);
+    for (const count of [4097, 0xffffffff])
+      for (const counts of [{ resolutionCount: count }, { countZ: count }]) expectMalformed(encode(foamFrame(new Uint8Array(4), {}, counts)), /foam of/);
+    expectMalformed(encode(foamFrame(new Uint8Array(4), {}, { resolutionCount: 0 })), /foam of/);
+    expectMalformed(encode(foamFrame(new Uint8Array(4), {}, { widthM: -1 })), /foam side/);
+    expectMalformed(encode(foamFrame(new Uint8Array(4), {}, { resolutionCount: 2, countZ: 3 })), /payload of 4 bytes, header says 6/);
     for (const sideM of [0, -1, Number.NaN, Number.POSITIVE_INFINITY, 2e6]) expectMalformed(encode(foamFrame(new Uint8Array(4), {}, { sideM })), /foam side/);
     for (const count of [kMaxBodyCount + 1, 0xffffffff]) expectMalformed(encode(bodiesFrame(new Uint8Array(28), {}, count)), /at most/);
     expectMalformed(encode(foamFrame(new Uint8Array(5), {}, { resolutionCount: 2 })), /payload of 5 bytes, header says 4/);

@@ -29,7 +29,7 @@ describe("the rain in the picture", () => {
   });
 
   it("makes the air hazier", () => {
-    const room = { sideM: 16, wind: storm } as Parameters<typeof hazeM>[0];
+    const room = { sideM: 16, widthM: 16, wind: storm } as Parameters<typeof hazeM>[0];
     expect(hazeM(room)).toBeLessThan(0.5 * hazeM({ ...room, wind: { ...storm, levelRatio: 0 } }));
     expect(hazeM(room)).toBeGreaterThan(16);
   });

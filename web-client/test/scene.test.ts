@@ -5,7 +5,7 @@ import { elevationAtM, elevationRangeM } from "../src/scene/height_field";
 import { pickWater, type WaterShape } from "../src/scene/pick";
 import { TapDetector, toDeviceCoordinates } from "../src/ui/tap";
 
-const flat: WaterShape = { sideM: 16, minM: 0, maxM: 0, elevationAtM: () => 0 };
+const flat: WaterShape = { sideM: 16, widthM: 16, minM: 0, maxM: 0, elevationAtM: () => 0 };
 
 /** Returns the page's ray through the middle of a pixel of an 800 x 600 canvas. */
 function clickRay(camera: PerspectiveCamera, xPx: number, yPx: number) {
@@ -34,7 +34,7 @@ describe("a click on the water", () => {
   });
 
   it("hits the crest in front, not the plane behind it", () => {
-    const crest: WaterShape = { sideM: 16, minM: 0, maxM: 1, elevationAtM: (_, zM) => Math.exp(-((zM - 2) ** 2)) };
+    const crest: WaterShape = { sideM: 16, widthM: 16, minM: 0, maxM: 1, elevationAtM: (_, zM) => Math.exp(-((zM - 2) ** 2)) };
     const eye = camera();
     const seen = new Vector3(0, Math.exp(-0.04), 2.2).project(eye);
     const place = pickWater(clickRay(eye, (seen.x + 1) * 400, (1 - seen.y) * 300), crest)!;
@@ -52,7 +52,7 @@ describe("a click on the water", () => {
 describe("the CPU's view of the surface", () => {
   const n = 4;
   const values = Int16Array.from({ length: n * n }, (_, at) => 100 * (at % n) + 10 * Math.floor(at / n));
-  const frame = { layer: "surface" as const, tick: 1n, stateId: 0n, timeS: 0, serverTimeS: 0, level: "full" as const, resolutionCount: n, sideM: 8, quantumM: 0.01, buffer: values.buffer };
+  const frame = { layer: "surface" as const, tick: 1n, stateId: 0n, timeS: 0, serverTimeS: 0, level: "full" as const, resolutionCount: n, countZ: n, sideM: 8, widthM: 8, quantumM: 0.01, buffer: values.buffer };
 
   it("interpolates between samples and clamps at the edge", () => {
     expect(elevationAtM(frame, -3, -3)).toBeCloseTo(0, 9);

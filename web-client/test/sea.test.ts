@@ -15,7 +15,7 @@ const sidesOf = (plusX: SideKind, minusX: SideKind, plusZ: SideKind, minusZ: Sid
 
 // As openSea() in tests/unit/sim_setup/sea_state_test.cpp.
 const wave: WaveInfo = {
-  resolutionCount: 256, sideM: 30, depthM: 2, periodicX: false, periodicZ: false,
+  resolutionCount: 256, countZ: 256, sideM: 30, widthM: 30, depthM: 2, periodicX: false, periodicZ: false,
   sides: sidesOf("open", "open", "open", "open"), spongeWidthM: 4, dampingPerS: 0.1,
 };
 const wind: WindInfo = { seed: 7n, gravityMps2: 9.81, comesIn: true, levelRatio: 1, dropsPerM2S: 0.08, waveHeightM: 1, directionDeg: 30, speedMps: 15, fetchM: 2000 };
@@ -78,7 +78,7 @@ describe("ripples", () => {
 
 describe("the blend with the simulated water", () => {
   /** As simulatedShare() in sea_blend.glsl. */
-  const shareAt = (info: Pick<WaveInfo, "sides" | "sideM" | "spongeWidthM">, xM: number, zM: number): number => {
+  const shareAt = (info: Pick<WaveInfo, "sides" | "sideM" | "widthM" | "spongeWidthM">, xM: number, zM: number): number => {
     const { beyondM, widthM } = blendOf(info);
     const inside = [xM, -xM, zM, -zM].map((at) => info.sideM / 2 - at);
     return Math.min(...inside.map((insideM, n) => {
@@ -114,7 +114,7 @@ describe("the water's grid", () => {
 });
 
 describe("the coast", () => {
-  const bed = { sideM: 32, depthM: 1.2, beaches: [{ side: "+x" as const, widthM: 7, shoreDepthM: 0 }] };
+  const bed = { sideM: 32, widthM: 32, depthM: 1.2, beaches: [{ side: "+x" as const, widthM: 7, shoreDepthM: 0 }] };
   const coast = { bed, sides: sidesOf("closed", "open", "closed", "open") };
 
   it("has the bed's depth under open water, rises behind a beach without a step, and stands as a quay at a closed side without one", () => {

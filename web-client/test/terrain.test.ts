@@ -10,7 +10,7 @@ import { makeRockGeometry } from "../src/scene/obstacle_mesh";
 import { bedUniformValues, depthAtM, groundExtent, groundHeightM, landWidthM, type Bed } from "../src/scene/terrain";
 import { spawnPlace } from "../src/ui/spawn_place";
 
-const bed: Bed = { sideM: 40, depthM: 3, beaches: [{ side: "-x", widthM: 12, shoreDepthM: 0 }, { side: "+z", widthM: 5, shoreDepthM: 1 }] };
+const bed: Bed = { sideM: 40, widthM: 40, depthM: 3, beaches: [{ side: "-x", widthM: 12, shoreDepthM: 0 }, { side: "+z", widthM: 5, shoreDepthM: 1 }] };
 const rock: RockInfo = { shape: "rock", xM: 5, zM: -6, radiusM: 2, heightM: 1.2 };
 const wall: BreakwaterInfo = { shape: "breakwater", xM: 1, zM: 2, lengthM: 12, widthM: 2, headingRad: 0.5, heightM: 1 };
 
@@ -106,7 +106,7 @@ describe("the lace of foam", () => {
 });
 
 describe("a new boat's place", () => {
-  const water = { sideM: 40, waterExtents: { sideM: 40, depthM: 3 }, beaches: [...bed.beaches], obstacles: [rock, wall] };
+  const water = { sideM: 40, widthM: 40, waterExtents: { sideM: 40, longM: 40, depthM: 3 }, beaches: [...bed.beaches], obstacles: [rock, wall] };
 
   it("measures the distance to rocks and turned walls", () => {
     expect(clearanceM(rock, 5, -3)).toBeCloseTo(1, 9);

@@ -20,12 +20,12 @@ function fakeRenderer(): WebGLRenderer {
 }
 
 const kOpen: Record<"-x" | "+x" | "-z" | "+z", SideKind> = { "-x": "open", "+x": "open", "-z": "open", "+z": "open" };
-const kWave: WaveInfo = { resolutionCount: 32, sideM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0 };
+const kWave: WaveInfo = { resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0 };
 const kRoom = {
   layers: ["surface", "foam", "bodies", "particles"],
   sideM: 16,
   widthM: 16,
-  waterExtents: { sideM: 16, depthM: 2 },
+  waterExtents: { sideM: 16, longM: 16, depthM: 2 },
   obstacles: [],
   beaches: [],
   boats: [],
@@ -132,7 +132,7 @@ describe("the list of passes", () => {
 
 describe("a new greeting", () => {
   const frame = (timeS: number): Frame => ({
-    layer: "surface", tick: 0n, stateId: BigInt(Math.round(timeS * 60)), timeS, serverTimeS: timeS, level: "full", resolutionCount: 32, sideM: 16, quantumM: 0.001, buffer: new ArrayBuffer(2048),
+    layer: "surface", tick: 0n, stateId: BigInt(Math.round(timeS * 60)), timeS, serverTimeS: timeS, level: "full", resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, quantumM: 0.001, buffer: new ArrayBuffer(2048),
   });
 
   it("keeps the frames of the same water at another fidelity, and returns those of other water", () => {
@@ -143,7 +143,7 @@ describe("a new greeting", () => {
     const [first, second] = [frame(1), frame(1.1)];
     scene.take(first, 1);
     scene.take(second, 1.1);
-    scene.enter({ ...sea, wave: { ...kWave, resolutionCount: 64 } }, true);
+    scene.enter({ ...sea, wave: { ...kWave, resolutionCount: 64, countZ: 64 } }, true);
     expect(scene.newestSurface()).toBe(second);
     expect(released).toEqual([]);
     scene.enter({ ...sea, sceneName: "other" }, false);

@@ -15,11 +15,11 @@ function surfaceFrame(timeS: number, elevationM: (xM: number, zM: number) => num
   const samples = new Int16Array(kCount * kCount);
   const at = (i: number): number => ((i + 0.5) / kCount - 0.5) * kSideM;
   samples.forEach((_, n) => (samples[n] = Math.round(elevationM(at(n % kCount), at(Math.floor(n / kCount))) * 1000)));
-  return { ...header, layer: "surface", timeS, resolutionCount: kCount, sideM: kSideM, quantumM: 0.001, buffer: samples.buffer };
+  return { ...header, layer: "surface", timeS, resolutionCount: kCount, countZ: kCount, sideM: kSideM, widthM: kSideM, quantumM: 0.001, buffer: samples.buffer };
 }
 
 function foamFrame(timeS: number, value: number): FoamFrame {
-  return { ...header, layer: "foam", timeS, resolutionCount: kCount, sideM: kSideM, buffer: new Uint8Array(kCount * kCount).fill(value).buffer };
+  return { ...header, layer: "foam", timeS, resolutionCount: kCount, countZ: kCount, sideM: kSideM, widthM: kSideM, buffer: new Uint8Array(kCount * kCount).fill(value).buffer };
 }
 
 /** A surface that rises everywhere by `riseMps`, with the slope `slope` along x. */
@@ -131,7 +131,7 @@ describe("the moving surface", () => {
   });
 
   it("stands still with frames of two sizes", () => {
-    const from = { ...surfaceFrame(0, () => 1), resolutionCount: 4 };
+    const from = { ...surfaceFrame(0, () => 1), resolutionCount: 4, countZ: 4 };
     const surface = new MovingSurface({ before: undefined, from, to: surfaceFrame(0.1, () => 0.5), after: undefined, mix: 0.5 });
     expect(surface.motionAt(0, 0)).toEqual({ elevationM: 0.5, riseMps: 0, slopeX: 0, slopeZ: 0 });
   });
@@ -159,7 +159,7 @@ describe("breaking crests", () => {
   it("do nothing where the foam fades, the surface falls, or two sizes of frames meet", () => {
     const made = births();
     addCrests(made, foamFrame(0, 255), foamFrame(0.1, 0), moving(1));
-    addCrests(made, { ...foamFrame(0, 0), resolutionCount: 8 }, foamFrame(0.1, 255), moving(1));
+    addCrests(made, { ...foamFrame(0, 0), resolutionCount: 8, countZ: 8 }, foamFrame(0.1, 255), moving(1));
     expect(made.particles.count).toBe(0);
     addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(-1));
     expect(made.particles.countOf(kinds.spray)).toBe(0);

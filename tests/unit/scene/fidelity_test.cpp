@@ -5,6 +5,7 @@
 
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
 
 namespace spindrift::scene {
 namespace {
@@ -92,9 +93,32 @@ TEST(Fidelity, HasNames) {
 }
 
 TEST(Fidelity, AWrongNumberIsAnErrorAtEveryLevel) {
-  const auto scene = parseSceneText("wave { resolution_count: 8 }", "pool.textproto", v1::FIDELITY_REFERENCE);
+  const auto scene = parseSceneText("wave { resolution_count: 5000 }", "pool.textproto", v1::FIDELITY_REFERENCE);
   ASSERT_FALSE(scene);
   EXPECT_NE(scene.error().message.find("wave.resolution_count"), std::string::npos) << scene.error().message;
+}
+
+TEST(Fidelity, ALevelFindsCellsThatFitTheWidthOrRoundsTheWidthToItsCells) {
+  const auto cellsAt = [](const std::string& wave, v1::Fidelity fidelity) {
+    const auto scene = parseSceneText("wave { " + wave + " }", "flume.textproto", fidelity);
+    EXPECT_TRUE(scene) << scene.error().message;
+    return waveCellsOf(scene->wave());
+  };
+  const std::string flume = "resolution_count: 400 side_m: 40 width_m: 1";
+  EXPECT_EQ(cellsAt(flume, v1::FIDELITY_DRAFT).count, (core::CellCounts{200, 5}));
+  EXPECT_EQ(cellsAt(flume, v1::FIDELITY_BALANCED).count, (core::CellCounts{400, 10}));
+  EXPECT_EQ(cellsAt(flume, v1::FIDELITY_FINE).count, (core::CellCounts{600, 15}));
+  EXPECT_EQ(cellsAt(flume, v1::FIDELITY_REFERENCE).count, (core::CellCounts{1000, 25}));
+  const std::string odd = "resolution_count: 37 side_m: 7.4 width_m: 22.6";
+  for (const v1::Fidelity fidelity : kFidelities) {
+    const core::WaveCells cells = cellsAt(odd, fidelity);
+    EXPECT_NEAR(cells.width_m, 22.6, 0.5 * cells.cell_m);
+    EXPECT_DOUBLE_EQ(cells.width_m, cells.count.z * cells.cell_m);
+    EXPECT_EQ(cells.length_m, 7.4);
+  }
+  const core::WaveCells most = cellsAt("resolution_count: 4000 side_m: 40 width_m: 2", v1::FIDELITY_REFERENCE);
+  EXPECT_LE(most.count.total(), core::kWaveMaxCellCount);
+  EXPECT_LE(most.count.x, core::kWaveMaxSideCount);
 }
 
 TEST(Fidelity, LevelsAreInOrder) {

@@ -78,10 +78,18 @@ const BadScene kBadScenes[] = {
      {"not a finite number", "1 to 1000 m"}},
     {"Infinite", "wave {\n  side_m: inf\n}\n", "pool.textproto:2:3: wave.side_m: inf", {"not a finite number"}},
     {"MinusInfinite", "wave {\n  side_m: -inf\n}\n", "pool.textproto:2:3: wave.side_m: -inf", {"not a finite number"}},
-    {"NotAMultiple",
-     "wave {\n  resolution_count: 100\n}\n",
-     "pool.textproto:2:3: wave.resolution_count: 100 cells",
-     {"multiple of 16", "96 or 112"}},
+    {"WidthOfNoWholeCells",
+     "wave {\n  resolution_count: 40\n  side_m: 8\n  width_m: 3.5\n}\n",
+     "pool.textproto:4:3: wave.width_m: 3.5 m is no whole number of cells",
+     {"0.2 m wide", "3.4 m or 3.6 m"}},
+    {"WidthOfLessThanACell",
+     "wave {\n  resolution_count: 4\n  side_m: 8\n  width_m: 0.5\n}\n",
+     "pool.textproto:4:3: wave.width_m: 0.5 m is no whole number of cells",
+     {"choose 2 m"}},
+    {"TooManyCells",
+     "wave {\n  resolution_count: 2048\n}\n",
+     "pool.textproto:2:3: wave.resolution_count: 2048 x 2048 cells",
+     {"1048576 in all"}},
     {"BadName", "name: \"my pool\"\nwave {}\n", "pool.textproto:1:1: name: \"my pool\"", {"letters, digits"}},
     {"NotUtf8", "title: \"\\377\"\nwave {}\n", "pool.textproto:1:1: title: byte 0", {"UTF-8"}},
     {"NeitherWaveNorParticles", "gravity_mps2: 9.81\n", "pool.textproto:1:1: wave: missing", {"particles", "wave {}"}},
@@ -161,7 +169,7 @@ TEST(SceneLoader, ReportsEveryErrorOfAFileInOrder) {
       "  depth_m: 200\n"
       "  side: 3\n"
       "  damping_per_s: \"much\"\n"
-      "  resolution_count: 100\n"
+      "  resolution_count: 5000\n"
       "}\n"
       "particles {\n"
       "  boundary_x: BOUNDARY_SPONGE\n"
@@ -171,7 +179,7 @@ TEST(SceneLoader, ReportsEveryErrorOfAFileInOrder) {
   EXPECT_THAT(errors[0], StartsWith("pool.textproto:2:3: wave.depth_m: 200 m"));
   EXPECT_THAT(errors[1], AllOf(StartsWith("pool.textproto:3:"), HasSubstr("side")));
   EXPECT_THAT(errors[2], AllOf(StartsWith("pool.textproto:4:"), HasSubstr("much")));
-  EXPECT_THAT(errors[3], StartsWith("pool.textproto:5:3: wave.resolution_count: 100"));
+  EXPECT_THAT(errors[3], StartsWith("pool.textproto:5:3: wave.resolution_count: 5000"));
   EXPECT_THAT(errors[4], AllOf(StartsWith("pool.textproto:8:"), HasSubstr("BOUNDARY_SPONGE")));
   EXPECT_THAT(errors[5], StartsWith("pool.textproto:9:3: particles.viscosity_pas: nan"));
 }

@@ -106,13 +106,13 @@ export class Display {
   /** The camera keeps its view if only the scene's parameters changed. */
   enter(greeting: GreetingInfo): void {
     const before = this.greeting;
-    const isSameWater = before?.sideM === greeting.sideM && before.room === greeting.room && before.sceneName === greeting.sceneName;
+    const isSameWater = before?.sideM === greeting.sideM && Math.abs(before.widthM - greeting.widthM) < 0.05 * greeting.widthM && before.room === greeting.room && before.sceneName === greeting.sceneName;
     this.greeting = greeting;
     this.scene.enter(greeting, isSameWater);
     if (isSameWater) return;
     const box = this.scene.viewedBox();
     this.isBoxKnown = box !== undefined;
-    this.views.enter(box ?? { sideM: greeting.sideM, minYM: -0.25 * greeting.sideM, maxYM: 0 }, this.scene.diveWater());
+    this.views.enter(box ?? { sideM: greeting.sideM, widthM: greeting.widthM, minYM: -0.25 * greeting.sideM, maxYM: 0 }, this.scene.diveWater());
   }
 
   take(frame: Frame): void {

@@ -1,5 +1,6 @@
 // The readers of packed frames: server/codec/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance per layer.
 import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
+import type { PlaneExtents } from "./frame_types";
 
 /** Weights of one packed plane. */
 export const kWeightCount = 10;
@@ -9,7 +10,7 @@ interface Exports {
   memory: WebAssembly.Memory;
   prepareParticles(count: number, payloadBytes: number): number;
   readParticles(count: number, cellsX: number, cellsY: number, cellsZ: number, offsetBits: number): number;
-  preparePlane(resolutionCount: number, payloadBytes: number): number;
+  preparePlane(countX: number, countZ: number, payloadBytes: number): number;
   weights(): number;
   earlierWeights(): number;
   readKeyframePlane(): number;
@@ -72,27 +73,27 @@ export class ParticleReader extends Reader {
 
 /** The planes of one layer. After a damaged plane only a keyframe can be read. */
 export class PlaneReader extends Reader {
-  readKeyframe(payload: Uint8Array, resolutionCount: number, weights: readonly number[], earlierWeights: readonly number[]): boolean {
-    if (!this.put(payload, this.exports.preparePlane(resolutionCount, payload.length))) return false;
+  readKeyframe(payload: Uint8Array, plane: PlaneExtents, weights: readonly number[], earlierWeights: readonly number[]): boolean {
+    if (!this.put(payload, this.exports.preparePlane(plane.resolutionCount, plane.countZ, payload.length))) return false;
     this.putWeights(weights, this.exports.weights());
     this.putWeights(earlierWeights, this.exports.earlierWeights());
     return this.exports.readKeyframePlane() !== 0;
   }
 
-  readDelta(payload: Uint8Array, resolutionCount: number, weights: readonly number[]): boolean {
-    if (!this.put(payload, this.exports.preparePlane(resolutionCount, payload.length))) return false;
+  readDelta(payload: Uint8Array, plane: PlaneExtents, weights: readonly number[]): boolean {
+    if (!this.put(payload, this.exports.preparePlane(plane.resolutionCount, plane.countZ, payload.length))) return false;
     this.putWeights(weights, this.exports.weights());
     return this.exports.readDeltaPlane() !== 0;
   }
 
   /** Samples of the plane read last, two bytes each. */
-  surface(resolutionCount: number): Uint8Array {
-    return this.view(this.exports.surfaceSamples(), 2 * resolutionCount * resolutionCount);
+  surface({ resolutionCount, countZ }: PlaneExtents): Uint8Array {
+    return this.view(this.exports.surfaceSamples(), 2 * resolutionCount * countZ);
   }
 
   /** Samples of the plane read last, one byte each. */
-  foam(resolutionCount: number): Uint8Array {
-    return this.view(this.exports.foamSamples(), resolutionCount * resolutionCount);
+  foam({ resolutionCount, countZ }: PlaneExtents): Uint8Array {
+    return this.view(this.exports.foamSamples(), resolutionCount * countZ);
   }
 
   private putWeights(weights: readonly number[], at: number): void {

@@ -23,10 +23,23 @@ export interface FrameHeader {
   level: LevelName;
 }
 
-/** Elevation of sample (i, k) = int16 value * quantumM. It lies at x = (i + 1/2) sideM / n - sideM / 2, and at z likewise with k. */
-export interface SurfaceHeader extends FrameHeader {
+/** Samples of a plane, row by row, x fastest. Sample (i, k) lies at x = (i + 1/2) sideM / resolutionCount - sideM / 2, z likewise with k. */
+export interface PlaneExtents {
+  /** Along x. */
   resolutionCount: number;
   sideM: number;
+  /** Along z. */
+  countZ: number;
+  widthM: number;
+}
+
+/** Returns whether samples of one plane lie where those of the other do. */
+export function isLike(a: PlaneExtents, b: PlaneExtents): boolean {
+  return a.resolutionCount === b.resolutionCount && a.countZ === b.countZ && a.sideM === b.sideM && a.widthM === b.widthM;
+}
+
+/** Elevation of a sample = int16 value * quantumM. */
+export interface SurfaceHeader extends FrameHeader, PlaneExtents {
   quantumM: number;
 }
 
@@ -44,10 +57,7 @@ export interface ParticleHeader extends FrameHeader {
 }
 
 /** One byte per sample, 0 none to 255 white; samples lie as those of the surface. */
-export interface FoamHeader extends FrameHeader {
-  resolutionCount: number;
-  sideM: number;
-}
+export interface FoamHeader extends FrameHeader, PlaneExtents {}
 
 export interface BodiesHeader extends FrameHeader {
   count: number;
@@ -64,10 +74,8 @@ export interface FrameHeaders extends Record<FrameLayer, FrameHeader> {
 export type PlainFrame = { [L in FrameLayer]: { kind: L; header: FrameHeaders[L]; payload: Uint8Array } }[FrameLayer];
 
 /** A predicted plane: its residuals, and the weights of the prediction. */
-export interface PackedPlane<H extends FrameHeader> {
+export interface PackedPlane<H extends FrameHeader & PlaneExtents> {
   header: H;
-  /** Samples along each side. */
-  resolutionCount: number;
   /** Tick of the frame that a delta builds on; undefined for a keyframe. */
   baseTick: bigint | undefined;
   weights: number[];

@@ -20,7 +20,7 @@ import {
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
-export const kWireMinor = 0;
+export const kWireMinor = 1;
 
 export interface ParameterInfo {
   path: string;
@@ -43,9 +43,10 @@ export interface BoatDetail {
   draughtM: number;
 }
 
-/** Side and depth of the resting water, as in the server's rules. */
+/** Shorter and longer side and depth of the resting water, as in the server's rules. */
 export interface WaterExtents {
   sideM: number;
+  longM: number;
   depthM: number;
 }
 
@@ -72,9 +73,9 @@ export interface GreetingInfo {
   wave: WaveInfo | undefined;
   /** Undefined in a scene without a storm. */
   wind: WindInfo | undefined;
-  /** Horizontal side of the water, metres. */
+  /** Length of the water along x, metres. */
   sideM: number;
-  /** Length of the water along z; differs from `sideM` in a narrow tank of particles. */
+  /** Width of the water along z. */
   widthM: number;
   /** Limits of effects and boats follow from these: the wave, or the resting water of a box of particles. */
   waterExtents: WaterExtents;
@@ -118,7 +119,7 @@ function boxExtents(particles: ParticleScene | undefined): WaterExtents {
   const { boxSideM = 0, boxWidthM = 0, fillXRatio = 1, fillZRatio = 1, layersCount = 0, count = 0 } = particles ?? {};
   const widthM = boxWidthM > 0 ? boxWidthM : boxSideM;
   const areaM2 = boxSideM * fillXRatio * widthM * fillZRatio;
-  return { sideM: Math.min(boxSideM, widthM), depthM: layersCount * Math.sqrt((areaM2 * layersCount) / Math.max(count, 1)) };
+  return { sideM: Math.min(boxSideM, widthM), longM: Math.max(boxSideM, widthM), depthM: layersCount * Math.sqrt((areaM2 * layersCount) / Math.max(count, 1)) };
 }
 
 function finiteAbove0(value: number | undefined): number {
@@ -129,7 +130,8 @@ function finiteAbove0(value: number | undefined): number {
 function bandOf(scene: Scene | undefined): number {
   if (!scene?.wave || !scene.particles || scene.coupling?.mode === CouplingMode.TWO_WAY) return 0;
   const { patchScale = 1, layersCount = 0, count = 0 } = scene.particles;
-  const bandM = layersCount * (scene.wave.sideM ?? 0) * patchScale * Math.sqrt(layersCount / Math.max(count, 1));
+  const { sideM, widthM } = readWave(scene.wave);
+  const bandM = layersCount * Math.sqrt(sideM * widthM) * patchScale * Math.sqrt(layersCount / Math.max(count, 1));
   return bandM > 0 && bandM < 1e4 ? bandM : 0;
 }
 
@@ -168,8 +170,8 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       wave,
       wind: scene && readWind(scene),
       sideM,
-      widthM: (!wave && scene?.particles?.boxWidthM) || sideM,
-      waterExtents: wave ? { sideM, depthM: wave.depthM } : boxExtents(scene?.particles),
+      widthM: wave?.widthM ?? (scene?.particles?.boxWidthM || sideM),
+      waterExtents: wave ? { sideM: Math.min(sideM, wave.widthM), longM: Math.max(sideM, wave.widthM), depthM: wave.depthM } : boxExtents(scene?.particles),
       hasParticles: scene?.particles !== undefined,
       bandM: bandOf(scene),
       hasBreakers: breaks(scene),

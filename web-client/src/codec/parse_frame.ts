@@ -10,6 +10,7 @@ import {
   kParticleBytes,
   type FrameHeader,
   type PackedFrame,
+  type PlaneExtents,
   type PlainFrame,
 } from "./frame_types";
 import { levelName } from "./level";
@@ -51,39 +52,42 @@ export function parseFrame(frame: LayerFrame): PlainFrame | PackedFrame | Malfor
 }
 
 function parseSurface(frame: LayerFrame, header: FrameHeader, codec: CodecOf<"surfaceFixed16">): PlainFrame | Malformed {
-  const { resolutionCount, sideM, quantumM } = codec;
+  const { quantumM } = codec;
+  const plane = extentsOf(codec);
   const fault =
-    gridFault("surface", resolutionCount, sideM) ??
+    gridFault("surface", plane) ??
     quantumFault(quantumM) ??
-    plainFault(frame, Layer.SURFACE, "a surface", 2 * resolutionCount * resolutionCount);
-  return fault ? malformed(fault) : { kind: "surface", header: { ...header, resolutionCount, sideM, quantumM }, payload: frame.payload };
+    plainFault(frame, Layer.SURFACE, "a surface", 2 * plane.resolutionCount * plane.countZ);
+  return fault ? malformed(fault) : { kind: "surface", header: { ...header, ...plane, quantumM }, payload: frame.payload };
 }
 
 function parsePackedSurface(frame: LayerFrame, header: FrameHeader, codec: CodecOf<"surfacePredicted">): PackedFrame | Malformed {
-  const { resolutionCount, sideM, quantumM, weights, earlierWeights } = codec;
+  const { quantumM, weights, earlierWeights } = codec;
+  const plane = extentsOf(codec);
   const fault =
-    gridFault("surface", resolutionCount, sideM) ??
+    gridFault("surface", plane) ??
     quantumFault(quantumM) ??
     weightsFault(frame, weights, earlierWeights) ??
     frameFault(frame, Layer.SURFACE, "a surface");
   if (fault) return malformed(fault);
-  const plain = { ...header, resolutionCount, sideM, quantumM };
-  return { kind: "packedSurface", header: plain, resolutionCount, baseTick: baseTickOf(frame), weights, earlierWeights, payload: frame.payload };
+  const plain = { ...header, ...plane, quantumM };
+  return { kind: "packedSurface", header: plain, baseTick: baseTickOf(frame), weights, earlierWeights, payload: frame.payload };
 }
 
 function parseFoam(frame: LayerFrame, header: FrameHeader, codec: CodecOf<"foamFixed8">): PlainFrame | Malformed {
-  const { resolutionCount, sideM } = codec;
-  const fault = gridFault("foam", resolutionCount, sideM) ?? plainFault(frame, Layer.FOAM, "foam", resolutionCount * resolutionCount);
-  return fault ? malformed(fault) : { kind: "foam", header: { ...header, resolutionCount, sideM }, payload: frame.payload };
+  const plane = extentsOf(codec);
+  const fault = gridFault("foam", plane) ?? plainFault(frame, Layer.FOAM, "foam", plane.resolutionCount * plane.countZ);
+  return fault ? malformed(fault) : { kind: "foam", header: { ...header, ...plane }, payload: frame.payload };
 }
 
 function parsePackedFoam(frame: LayerFrame, header: FrameHeader, codec: CodecOf<"foamPredicted">): PackedFrame | Malformed {
-  const { resolutionCount, sideM, weights, earlierWeights } = codec;
+  const { weights, earlierWeights } = codec;
+  const plane = extentsOf(codec);
   const fault =
-    gridFault("foam", resolutionCount, sideM) ?? weightsFault(frame, weights, earlierWeights) ?? frameFault(frame, Layer.FOAM, "foam");
+    gridFault("foam", plane) ?? weightsFault(frame, weights, earlierWeights) ?? frameFault(frame, Layer.FOAM, "foam");
   if (fault) return malformed(fault);
-  const plain = { ...header, resolutionCount, sideM };
-  return { kind: "packedFoam", header: plain, resolutionCount, baseTick: baseTickOf(frame), weights, earlierWeights, payload: frame.payload };
+  const plain = { ...header, ...plane };
+  return { kind: "packedFoam", header: plain, baseTick: baseTickOf(frame), weights, earlierWeights, payload: frame.payload };
 }
 
 function parseBodies(frame: LayerFrame, header: FrameHeader, { count }: CodecOf<"bodiesFixed28">): PlainFrame | Malformed {
@@ -153,10 +157,16 @@ function keyframeFault(frame: LayerFrame): Fault {
   return frame.keyframe ? undefined : "a delta, but this codec has only keyframes";
 }
 
-function gridFault(what: string, resolutionCount: number, sideM: number): Fault {
-  if (resolutionCount < 2 || resolutionCount > kMaxResolutionCount)
-    return `${what} of ${resolutionCount} samples a side, allowed are 2 to ${kMaxResolutionCount}`;
-  return isSize(sideM) ? undefined : `${what} side ${sideM} m has to be above 0`;
+/** What the header of a plane leaves out along z is as along x. */
+function extentsOf({ resolutionCount, sideM, countZ, widthM }: PlaneExtents): PlaneExtents {
+  return { resolutionCount, sideM, countZ: countZ || resolutionCount, widthM: widthM || sideM };
+}
+
+function gridFault(what: string, { resolutionCount, sideM, countZ, widthM }: PlaneExtents): Fault {
+  for (const count of [resolutionCount, countZ])
+    if (count < 1 || count > kMaxResolutionCount) return `${what} of ${count} samples along an axis, allowed are 1 to ${kMaxResolutionCount}`;
+  const bad = [sideM, widthM].find((sizeM) => !isSize(sizeM));
+  return bad === undefined ? undefined : `${what} side ${bad} m has to be above 0`;
 }
 
 function quantumFault(quantumM: number): Fault {

@@ -1,6 +1,6 @@
 // Unpacks the planes of one layer. A delta is predicted from the plane before it, which the reader keeps.
 import { PlaneReader } from "./frame_reader";
-import type { FrameHeader, PackedPlane } from "./frame_types";
+import type { FrameHeader, PackedPlane, PlaneExtents } from "./frame_types";
 import { malformed, type Malformed } from "./malformed";
 
 /** The delta's base frame is missing: only a keyframe can be read. */
@@ -8,7 +8,7 @@ export interface MissingBase {
   kind: "missingBase";
 }
 
-export class PlaneHistory<H extends FrameHeader> {
+export class PlaneHistory<H extends FrameHeader & PlaneExtents> {
   private reader: PlaneReader | undefined;
   /** Header of the plane read last; undefined if no delta can follow it. */
   private last: H | undefined;
@@ -22,7 +22,7 @@ export class PlaneHistory<H extends FrameHeader> {
 
   /** The samples are in the returned reader until the next call. */
   unpack(packed: PackedPlane<H>): { kind: "samples"; reader: PlaneReader } | Malformed | MissingBase {
-    const { header, resolutionCount, payload, weights, earlierWeights, baseTick } = packed;
+    const { header, payload, weights, earlierWeights, baseTick } = packed;
     const { last } = this;
     // A damaged plane leaves no history.
     this.forget();
@@ -30,8 +30,8 @@ export class PlaneHistory<H extends FrameHeader> {
     if (baseTick !== undefined && (!last || last.tick !== baseTick || !this.canFollow(last, header))) return { kind: "missingBase" };
     const isRead =
       baseTick === undefined
-        ? reader.readKeyframe(payload, resolutionCount, weights, earlierWeights)
-        : reader.readDelta(payload, resolutionCount, weights);
+        ? reader.readKeyframe(payload, header, weights, earlierWeights)
+        : reader.readDelta(payload, header, weights);
     if (!isRead) return malformed("a packed plane: the payload's end does not fit its beginning");
     this.last = header;
     return { kind: "samples", reader };

@@ -10,8 +10,13 @@ export type SideName = "+x" | "-x" | "+z" | "-z";
 export type SideKind = "periodic" | "closed" | "open";
 
 export interface WaveInfo {
+  /** Cells along x and along z. */
   resolutionCount: number;
+  countZ: number;
+  /** Length along x. */
   sideM: number;
+  /** Width along z. */
+  widthM: number;
   depthM: number;
   periodicX: boolean;
   periodicZ: boolean;
@@ -68,6 +73,12 @@ function sideKind(boundary: WaveBoundary): SideKind {
   return boundary === WaveBoundary.ABSORB ? "open" : boundary === WaveBoundary.REFLECT ? "closed" : "periodic";
 }
 
+/** As in the server: cells are square, and there are as many along z as make up the width. */
+function cellsOf({ resolutionCount = 0, sideM = 0, widthM = 0 }: WaveScene): Pick<WaveInfo, "resolutionCount" | "countZ" | "sideM" | "widthM"> {
+  if (!(widthM > 0 && widthM <= 1e6) || !(resolutionCount > 0 && sideM > 0)) return { resolutionCount, countZ: resolutionCount, sideM, widthM: sideM };
+  return { resolutionCount, countZ: Math.max(Math.round((widthM * resolutionCount) / sideM), 1), sideM, widthM };
+}
+
 export function readWave(wave: WaveScene): WaveInfo {
   const sides = {
     "+x": sideKind(wave.boundaryPlusX),
@@ -78,8 +89,7 @@ export function readWave(wave: WaveScene): WaveInfo {
   const spongeWidthM = wave.spongeWidthM ?? 0;
   const dampingPerS = wave.dampingPerS ?? 0;
   return {
-    resolutionCount: wave.resolutionCount ?? 0,
-    sideM: wave.sideM ?? 0,
+    ...cellsOf(wave),
     depthM: wave.depthM ?? 0,
     periodicX: sides["+x"] === "periodic" && sides["-x"] === "periodic",
     periodicZ: sides["+z"] === "periodic" && sides["-z"] === "periodic",

@@ -38,15 +38,15 @@ export interface BuoyPlace {
   radiusM: number;
 }
 
-type BuoyScene = Pick<GreetingInfo, "sideM" | "waterExtents" | "beaches" | "obstacles" | "wave" | "setting">;
+type BuoyScene = Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents" | "beaches" | "obstacles" | "wave" | "setting">;
 
 /** Returns the places of the buoys: off both ends of each breakwater, where there is room and depth, and outside of absorbing layers. */
 export function buoyPlaces(greeting: BuoyScene): BuoyPlace[] {
-  const { wave, obstacles, setting, sideM } = greeting;
+  const { wave, obstacles, setting } = greeting;
   if (!wave || setting !== "openSea") return [];
   const bed = bedOf(greeting);
   const isFree = (xM: number, zM: number, widthM: number, found: readonly BuoyPlace[]): boolean =>
-    kSides.every((side) => insideM(side, sideM, xM, zM) > kClearWidths.side * widthM + (wave.sides[side] === "open" ? wave.spongeWidthM : 0)) &&
+    kSides.every((side) => insideM(side, greeting, xM, zM) > kClearWidths.side * widthM + (wave.sides[side] === "open" ? wave.spongeWidthM : 0)) &&
     depthAtM(bed, xM, zM) >= kLeastDepths * bed.depthM &&
     obstacles.every((obstacle) => clearanceM(obstacle, xM, zM) > kClearWidths.obstacle * widthM) &&
     found.every((other) => Math.hypot(xM - other.xM, zM - other.zM) > kClearWidths.buoy * widthM);

@@ -6,8 +6,13 @@ interface Slot<F> {
   frame: F | undefined;
 }
 
-interface PlaneFrame {
+/** Samples along x and along z. */
+export interface PlaneCounts {
   resolutionCount: number;
+  countZ: number;
+}
+
+interface PlaneFrame extends PlaneCounts {
   buffer: ArrayBuffer;
 }
 
@@ -16,9 +21,9 @@ export class FrameTextures<F extends PlaneFrame> {
 
   /** `count`: frames that are drawn at the same time. */
   constructor(
-    public resolutionCount: number,
+    public counts: PlaneCounts,
     private readonly count: number,
-    private readonly make: (resolutionCount: number) => DataTexture,
+    private readonly make: (counts: PlaneCounts) => DataTexture,
   ) {
     this.slots = this.makeSlots();
   }
@@ -28,9 +33,14 @@ export class FrameTextures<F extends PlaneFrame> {
     return this.slots[0]!.texture;
   }
 
-  resize(resolutionCount: number): void {
+  /** Returns whether the textures have room for planes of this size. */
+  fits({ resolutionCount, countZ }: PlaneCounts): boolean {
+    return resolutionCount === this.counts.resolutionCount && countZ === this.counts.countZ;
+  }
+
+  resize(counts: PlaneCounts): void {
     this.dispose();
-    this.resolutionCount = resolutionCount;
+    this.counts = counts;
     this.slots = this.makeSlots();
   }
 
@@ -53,6 +63,6 @@ export class FrameTextures<F extends PlaneFrame> {
   }
 
   private makeSlots(): Slot<F>[] {
-    return Array.from({ length: this.count }, () => ({ texture: this.make(this.resolutionCount), frame: undefined }));
+    return Array.from({ length: this.count }, () => ({ texture: this.make(this.counts), frame: undefined }));
   }
 }

@@ -7,7 +7,7 @@ import { castsShadow } from "./light/casters";
 import { MeshBuilder, type Paint, type Point } from "./mesh_builder";
 import { kLampColors, type Lamps } from "./lamps";
 import { makeRockGeometry } from "./obstacle_mesh";
-import { depthAtM, groundExtent, groundHeightM, type Bed } from "./terrain";
+import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kDrySand: Paint = [0.66, 0.53, 0.36, 0.7];
 const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
@@ -18,7 +18,7 @@ const kFloorDropSides = 0.002;
 /** Returns the bed as a grid with vertical faces on all sides, down to the floor. */
 export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry {
   const { minXM, maxXM, minZM, maxZM } = groundExtent(bed);
-  const floorM = -bed.depthM - kFloorDropSides * bed.sideM;
+  const floorM = -bed.depthM - kFloorDropSides * longSideM(bed);
   const columns = Array.from({ length: cellsCount + 1 }, (_, i) => minXM + ((maxXM - minXM) * i) / cellsCount);
   // From near to far: rows go up and columns go right, seen from above.
   const lines = Array.from({ length: cellsCount + 1 }, (_, k) => maxZM - ((maxZM - minZM) * k) / cellsCount);

@@ -8,6 +8,7 @@ export interface Ray {
 
 export interface WaterShape {
   sideM: number;
+  widthM: number;
   /** Bounds of elevationAtM. */
   minM: number;
   maxM: number;
@@ -17,7 +18,7 @@ export interface WaterShape {
 const kMarchCount = 64;
 const kBisectCount = 20;
 
-/** Returns the point where the ray first goes under the water from above; undefined if it misses the square of water. */
+/** Returns the point where the ray first goes under the water from above; undefined if it misses the water. */
 export function pickWater(ray: Ray, water: WaterShape): { xM: number; zM: number } | undefined {
   const [ox, oy, oz] = ray.originM;
   const [dx, dy, dz] = ray.direction;
@@ -44,6 +45,5 @@ export function pickWater(ray: Ray, water: WaterShape): { xM: number; zM: number
   }
   const xM = ox + to * dx;
   const zM = oz + to * dz;
-  const half = water.sideM / 2;
-  return Math.abs(xM) <= half && Math.abs(zM) <= half ? { xM, zM } : undefined;
+  return Math.abs(xM) <= water.sideM / 2 && Math.abs(zM) <= water.widthM / 2 ? { xM, zM } : undefined;
 }

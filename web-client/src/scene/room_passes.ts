@@ -66,10 +66,10 @@ export interface RoomWater {
 }
 
 export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality }: RoomTools): RoomBase {
-  const { wave, sideM } = greeting;
+  const { wave, sideM, widthM } = greeting;
   const field = wave && new FieldPass(wave, frames.surfaces, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
-  const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, depthM: wave.depthM }, quality.caustics);
+  const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, widthM, depthM: wave.depthM }, quality.caustics);
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
   const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms }, frames.bodies, quality);
   shadow?.setCasters(solids);
@@ -85,9 +85,9 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
   const inputs = field && white && { field: field.texture, foam: foam?.uniforms, froth: white.froth.texture, rain: rings?.uniforms, newest: () => frames.surfaces.newest() };
   const water = inputs && new WaterPass(greeting, solids, { sky, noise, quality }, inputs);
-  const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting.sideM, quality.fluid) : { before: [], after: [] };
-  const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting.sideM) : undefined;
-  const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting.sideM) : undefined;
+  const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality.fluid) : { before: [], after: [] };
+  const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting) : undefined;
+  const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting) : undefined;
   const before = [...fluid.before, ...(white?.before ?? []), flatShadow, rings];
   const after = [new PresentPass(sky, solids, water), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass)];
   const passes = [...before, water, ...after].filter((pass) => pass !== undefined);

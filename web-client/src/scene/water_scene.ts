@@ -81,8 +81,10 @@ export class WaterScene {
     this.base.solids.darkness.value = this.darknessShare;
     this.makeWater();
     this.findFloor();
-    this.camera.near = greeting.sideM / kNearPerSide;
-    this.camera.far = greeting.sideM * kFarSides;
+    // A long channel is looked at from as near as it is wide.
+    const { sideM, widthM } = greeting;
+    this.camera.near = Math.sqrt(sideM * widthM) / kNearPerSide;
+    this.camera.far = Math.max(sideM, widthM) * kFarSides;
     this.camera.updateProjectionMatrix();
   }
 
@@ -180,7 +182,7 @@ export class WaterScene {
     if (!this.greeting) return undefined;
     const { sideM, widthM, wave } = this.greeting;
     const view = viewOf(this.greeting);
-    if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * sideM };
+    if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * Math.sqrt(sideM * widthM) };
     const frame = this.frames.particles.newest();
     return frame && { ...view, sideM, widthM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
   }
@@ -197,10 +199,10 @@ export class WaterScene {
   /** Returns the surface for picking: the newest elevations, or flat water before the first frame. */
   shape(): WaterShape | undefined {
     if (!this.greeting) return undefined;
-    const { sideM } = this.greeting;
+    const { sideM, widthM } = this.greeting;
     const frame = this.newestSurface();
-    if (!frame) return { sideM, minM: 0, maxM: 0, elevationAtM: () => 0 };
-    return { sideM, ...elevationRangeM(frame), elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
+    if (!frame) return { sideM, widthM, minM: 0, maxM: 0, elevationAtM: () => 0 };
+    return { sideM, widthM, ...elevationRangeM(frame), elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
   }
 
   /** Follows a parameter of the room, by its path in the scene. */

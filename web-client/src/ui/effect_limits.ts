@@ -51,8 +51,9 @@ export interface BoatLimits {
   rudderRatio: EffectRange;
 }
 
-/** Longest hull as a share of the water's side. */
+/** Longest hull as a share of the water's longer and shorter side. */
 const kLongestBoatSides = 0.25;
+const kLongestBoatWidths = 0.5;
 const defaultOf = (field: DescField): number => getOption(field, parameter).default;
 const { field: kBoat } = BoatSchema;
 /** Beam and height of a new boat as shares of its length, and its density: the shape of the proto's default boat. */
@@ -66,11 +67,11 @@ const kDraughtDepths = 0.6;
 
 /** Undefined for a scene without boats. */
 export function boatLimits(greeting: GreetingInfo): BoatLimits | undefined {
-  const { sideM, depthM } = greeting.waterExtents;
+  const { sideM, longM, depthM } = greeting.waterExtents;
   if (!greeting.hasBoats || !(depthM > 0 && Number.isFinite(depthM))) return undefined;
   const deepest = (kDraughtDepths * depthM) / (kBoatShape.height * kBoatShape.density);
   return {
-    lengthM: range(BoatSchema.field.lengthM, Math.min(kLongestBoatSides * sideM, deepest)),
+    lengthM: range(BoatSchema.field.lengthM, Math.min(kLongestBoatSides * longM, kLongestBoatWidths * sideM, deepest)),
     throttleRatio: range(ControlBoatSchema.field.throttleRatio, Infinity),
     rudderRatio: range(ControlBoatSchema.field.rudderRatio, Infinity),
   };

@@ -35,10 +35,10 @@ export interface FluidPasses {
 }
 
 /** `field` undefined: no wave around the particles. */
-export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, sideM: number, quality: FluidQuality): FluidPasses {
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, quality: FluidQuality): FluidPasses {
   const { scale, samplesCount, roundsCount } = quality;
-  const particles = new FluidParticles(frames.particles, frames.clock, field, sideM);
-  const colourRatio = field ? 1 : Math.max(kColourSideM / sideM, 1);
+  const particles = new FluidParticles(frames.particles, frames.clock, field, size);
+  const colourRatio = field ? 1 : Math.max(kColourSideM / size.sideM, 1);
   const tiles = new FluidTilesPass(particles);
   const depth = new FluidDepthPass(particles, scale);
   const smooth = new FluidSmoothPass(tiles, particles, depth, samplesCount, roundsCount);
@@ -46,6 +46,6 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   const thickness = new FluidThicknessPass(particles, scale);
   const surface = new FluidSurfacePass({ tiles, smooth, normal, thickness, solids }, sky, noise, particles.uniforms, field !== undefined, colourRatio);
   // A wave has no floor of its own.
-  const before = field ? [particles] : [particles, new FluidShadowPass(particles, solids, sky, sideM, colourRatio)];
+  const before = field ? [particles] : [particles, new FluidShadowPass(particles, solids, sky, size.sideM, colourRatio)];
   return { before, after: [tiles, depth, smooth, normal, thickness, surface] };
 }

@@ -1,7 +1,7 @@
 // The particles of the time shown, on the GPU: the 12 bytes of a plain particle unchanged, as six u16 in one interleaved buffer, so no
 // JavaScript runs per particle. Several passes draw them as points. Reads the particle frames. Writes
 // the particles.
-import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type Vector2, type WebGLRenderer, type WebGLRenderTarget } from "three";
+import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector2, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type WebGLRenderer, type WebGLRenderTarget } from "three";
 
 import { kParticleBytes } from "../../codec/frame_types";
 import type { ParticleFrame } from "../../net/messages";
@@ -31,7 +31,7 @@ export class FluidParticles implements Pass {
     private readonly frames: FrameRing<ParticleFrame>,
     private readonly clock: PlayoutClock,
     field: Texture | undefined,
-    sideM: number,
+    size: { sideM: number; widthM: number },
   ) {
     this.uniforms = {
       u_min_m: { value: new Vector3() },
@@ -40,7 +40,7 @@ export class FluidParticles implements Pass {
       u_advance_s: { value: 0 },
       u_radius_m: { value: 1 },
       u_field: { value: field ?? null },
-      u_side_m: { value: sideM },
+      u_extent_m: { value: new Vector2(size.sideM, size.widthM) },
       u_has_water: { value: field !== undefined },
     };
     this.points.frustumCulled = false;

@@ -24,7 +24,7 @@ import { kBluePaint, kGreyPaint, LookSurfacePass, type SurfaceColour } from "./l
 import { LookValuePass } from "./look_value_pass";
 import { kLooks, type LookName, type Quantity } from "./looks";
 import { densityRatio, kDensityRatios, pickParticle, placeM, speedMps } from "./particle_values";
-import { breakingCriterion, foamAt, ShownSurface, type Square } from "./surface_values";
+import { breakingCriterion, foamAt, ShownSurface, type Rectangle } from "./surface_values";
 import { reachOf, ticksOf, type ValueRange } from "./value_range";
 
 /** How often the range is measured, on how many values, and what it spans at least: so many steps of a surface's values, or so fast. */
@@ -71,7 +71,7 @@ export class LookRoom {
   private readonly quantity: Quantity | undefined;
   private readonly colours: LookColours | undefined;
   private readonly particles: FluidParticles | undefined;
-  private readonly square: Square;
+  private readonly rectangle: Rectangle;
   private readonly loweredM: number;
   private measuredAtS = -Infinity;
 
@@ -81,13 +81,13 @@ export class LookRoom {
     private readonly inputs: LookInputs,
   ) {
     const { field, frames, solids, sky, quality } = inputs;
-    const { wave, sideM } = greeting;
-    this.square = { sideM, periodicX: wave?.periodicX ?? false, periodicZ: wave?.periodicZ ?? false };
+    const { wave, sideM, widthM } = greeting;
+    this.rectangle = { sideM, widthM, periodicX: wave?.periodicX ?? false, periodicZ: wave?.periodicZ ?? false };
     this.quantity = kLooks[name].quantity;
     this.colours = this.quantity && new LookColours(this.quantity);
     const hasSurfaceValues = this.quantity?.of === "surface";
-    const value = field && (name === "height" || name === "velocity" || name === "breaking") ? new LookValuePass(field, this.square, name === "height" ? "elevation" : "rate") : undefined;
-    this.particles = greeting.hasParticles && !hasSurfaceValues ? new FluidParticles(frames.particles, frames.clock, field?.texture, sideM) : undefined;
+    const value = field && (name === "height" || name === "velocity" || name === "breaking") ? new LookValuePass(field, this.rectangle, name === "height" ? "elevation" : "rate") : undefined;
+    this.particles = greeting.hasParticles && !hasSurfaceValues ? new FluidParticles(frames.particles, frames.clock, field?.texture, greeting) : undefined;
     this.loweredM = this.particles ? greeting.bandM : 0;
     const paint = name === "thesis" ? kBluePaint : kGreyPaint;
     const surface = field && new LookSurfacePass(greeting, { sky, field: field.texture, solids, quality, paint, loweredM: this.loweredM, colour: this.surfaceColour(value) });
@@ -140,16 +140,17 @@ export class LookRoom {
     const shown = this.inputs.field?.shown;
     // A frame's buffer goes back to the worker when the ring drops it.
     if (!shown || shown.frames.some(({ buffer }) => buffer.byteLength === 0)) return undefined;
-    return new ShownSurface(this.square, shown);
+    return new ShownSurface(this.rectangle, shown);
   }
 
   private measureSurface(): { reach: number; least: number } | undefined {
     const surface = this.surface();
     if (!surface) return undefined;
     const magnitudes = new Float64Array(kMeasuredPerSide ** 2);
-    const place = (i: number): number => ((i + 0.5) / kMeasuredPerSide - 0.5) * this.square.sideM;
+    const place = (i: number, alongM: number): number => ((i + 0.5) / kMeasuredPerSide - 0.5) * alongM;
+    const { sideM, widthM } = this.rectangle;
     for (let at = 0; at < magnitudes.length; ++at) {
-      const [xM, zM] = [place(at % kMeasuredPerSide), place(Math.floor(at / kMeasuredPerSide))];
+      const [xM, zM] = [place(at % kMeasuredPerSide, sideM), place(Math.floor(at / kMeasuredPerSide), widthM)];
       magnitudes[at] = Math.abs(this.name === "height" ? surface.elevationM(xM, zM) : surface.rateMps(xM, zM));
     }
     const step = this.name === "height" ? surface.quantumM : surface.rateQuantumMps;
@@ -168,7 +169,7 @@ export class LookRoom {
 
   private probeSurface(ray: Ray, quantity: Quantity, shownS: number): Reading | undefined {
     const surface = this.surface();
-    const place = surface && pickWater(ray, { sideM: this.square.sideM, ...surface.boundsM(), elevationAtM: (xM, zM) => surface.elevationM(xM, zM) });
+    const place = surface && pickWater(ray, { ...this.rectangle, ...surface.boundsM(), elevationAtM: (xM, zM) => surface.elevationM(xM, zM) });
     if (!place) return undefined;
     const { xM, zM } = place;
     const bed = bedOf(this.greeting);
@@ -178,7 +179,7 @@ export class LookRoom {
     if (this.name === "height") return { ...at, value: yM, step: surface.quantumM };
     if (this.name === "foam") {
       const shown = this.inputs.frames.foam.around(shownS);
-      return shown && { ...at, value: (100 / 255) * foamAt(this.square, shown, xM, zM), step: 100 / 255 };
+      return shown && { ...at, value: (100 / 255) * foamAt(this.rectangle, shown, xM, zM), step: 100 / 255 };
     }
     // With a single frame the velocity is not known.
     if (surface.rateQuantumMps === 0) return undefined;
@@ -206,7 +207,7 @@ export class LookRoom {
     const { minM, maxM } = surface.boundsM();
     const loweredM = this.loweredM;
     const elevationAtM = (xM: number, zM: number): number => surface.elevationM(xM, zM) - loweredM;
-    const place = pickWater({ originM, direction }, { sideM: this.square.sideM, minM: minM - loweredM, maxM: maxM - loweredM, elevationAtM });
+    const place = pickWater({ originM, direction }, { ...this.rectangle, minM: minM - loweredM, maxM: maxM - loweredM, elevationAtM });
     if (!place) return Infinity;
     const to = [place.xM, elevationAtM(place.xM, place.zM), place.zM];
     return to.reduce((sum, value, axis) => sum + (value - originM[axis]!) * direction[axis]!, 0);

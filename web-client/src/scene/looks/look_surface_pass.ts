@@ -66,7 +66,7 @@ export class LookSurfacePass implements Pass {
       u_behind_depth: { value: solids.textures.depth },
       u_camera_m: { value: new Vector3() },
       u_resolution: { value: new Vector2(1, 1) },
-      u_side_m: { value: bed.sideM },
+      u_extent_m: { value: new Vector2(bed.sideM, bed.widthM) },
       u_depth_m: { value: bed.depthM },
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },

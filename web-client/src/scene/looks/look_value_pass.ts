@@ -6,7 +6,7 @@ import { FullscreenPass } from "../fullscreen";
 import type { FieldPass } from "../passes/field_pass";
 import type { Pass, Picture } from "../passes/pass";
 import { makeMaterial } from "../shaders";
-import type { Square } from "./surface_values";
+import type { Rectangle } from "./surface_values";
 
 export class LookValuePass implements Pass {
   readonly name = "look value";
@@ -17,7 +17,7 @@ export class LookValuePass implements Pass {
 
   constructor(
     private readonly field: FieldPass,
-    { periodicX, periodicZ }: Square,
+    { periodicX, periodicZ }: Rectangle,
     private readonly of: "elevation" | "rate",
   ) {
     this.target = new WebGLRenderTarget(1, 1, {
@@ -40,8 +40,8 @@ export class LookValuePass implements Pass {
   draw({ renderer }: Picture): void {
     const { shown } = this.field;
     if (!shown) return;
-    const n = shown.frames[2]!.resolutionCount;
-    this.target.setSize(n, n);
+    const { resolutionCount, countZ } = shown.frames[2]!;
+    this.target.setSize(resolutionCount, countZ);
     const weights = this.of === "elevation" ? shown.weights : shown.ratesPerS;
     const [a, b, c, d] = shown.frames.map(({ quantumM }, i) => weights[i]! * quantumM);
     (this.screen.material.uniforms["u_weights"]!.value as Vector4).set(a!, b!, c!, d!);

@@ -2,44 +2,46 @@
 // without the rounding of textures. Pure.
 import type { FoamFrame } from "../../net/messages";
 import type { Between } from "../frame_ring";
+import type { PlaneCounts } from "../frame_textures";
 import { elevationRangeM } from "../height_field";
 import type { ShownSurfaces } from "../passes/field_pass";
 import { depthAtM, type Bed } from "../terrain";
 
-/** A square of samples, and what is beyond its edges: the opposite edge, or the edge's own samples again. */
-export interface Square {
+/** A rectangle of samples, and what is beyond its edges: the opposite edge, or the edge's own samples again. */
+export interface Rectangle {
   sideM: number;
+  widthM: number;
   periodicX: boolean;
   periodicZ: boolean;
 }
 
-/** Returns the bilinear value at a place; `at`: value of sample (i, k) of n x n. */
-function bilinear({ sideM, periodicX, periodicZ }: Square, n: number, xM: number, zM: number, at: (i: number, k: number) => number): number {
-  const u = (xM / sideM + 0.5) * n - 0.5;
-  const v = (zM / sideM + 0.5) * n - 0.5;
-  const held = (i: number, periodic: boolean): number => (periodic ? ((i % n) + n) % n : Math.min(Math.max(i, 0), n - 1));
+/** Returns the bilinear value at a place; `at`: value of sample (i, k). */
+function bilinear({ sideM, widthM, periodicX, periodicZ }: Rectangle, { resolutionCount, countZ }: PlaneCounts, xM: number, zM: number, at: (i: number, k: number) => number): number {
+  const u = (xM / sideM + 0.5) * resolutionCount - 0.5;
+  const v = (zM / widthM + 0.5) * countZ - 0.5;
+  const held = (i: number, n: number, periodic: boolean): number => (periodic ? ((i % n) + n) % n : Math.min(Math.max(i, 0), n - 1));
   const [i, k] = [Math.floor(u), Math.floor(v)];
   const [fu, fv] = [u - i, v - k];
-  const [i0, i1, k0, k1] = [held(i, periodicX), held(i + 1, periodicX), held(k, periodicZ), held(k + 1, periodicZ)];
+  const [i0, i1, k0, k1] = [held(i, resolutionCount, periodicX), held(i + 1, resolutionCount, periodicX), held(k, countZ, periodicZ), held(k + 1, countZ, periodicZ)];
   return (at(i0, k0) * (1 - fu) + at(i1, k0) * fu) * (1 - fv) + (at(i0, k1) * (1 - fu) + at(i1, k1) * fu) * fv;
 }
 
 /** The surface of one picture, for evaluation at many places. Valid until the next frame arrives. */
 export class ShownSurface {
-  private readonly n: number;
+  private readonly counts: PlaneCounts;
   private readonly planes: readonly Int16Array[];
 
   constructor(
-    private readonly square: Square,
+    private readonly rectangle: Rectangle,
     private readonly shown: ShownSurfaces,
   ) {
-    this.n = shown.frames[2]!.resolutionCount;
+    this.counts = shown.frames[2]!;
     this.planes = shown.frames.map(({ buffer }) => new Int16Array(buffer));
   }
 
   /** Distance between samples. */
   get cellM(): number {
-    return this.square.sideM / this.n;
+    return this.rectangle.sideM / this.counts.resolutionCount;
   }
 
   /** The smallest difference of two elevations, in metres. */
@@ -76,10 +78,10 @@ export class ShownSurface {
   }
 
   private weighted(weights: readonly number[], xM: number, zM: number): number {
-    const { n, planes } = this;
+    const { counts, planes } = this;
     const [a, b, c, d] = this.shown.frames.map(({ quantumM }, i) => weights[i]! * quantumM) as [number, number, number, number];
-    return bilinear(this.square, n, xM, zM, (i, k) => {
-      const at = k * n + i;
+    return bilinear(this.rectangle, counts, xM, zM, (i, k) => {
+      const at = k * counts.resolutionCount + i;
       return a * planes[0]![at]! + b * planes[1]![at]! + c * planes[2]![at]! + d * planes[3]![at]!;
     });
   }
@@ -99,12 +101,11 @@ export function breakingCriterion(surface: ShownSurface, bed: Bed, gravityMps2: 
 export const kLeastDepths = 0.02;
 
 /** Returns the streamed foam between two frames, 0 none to 255 white. */
-export function foamAt(square: Square, { from, to, mix }: Readonly<Between<FoamFrame>>, xM: number, zM: number): number {
+export function foamAt(rectangle: Rectangle, { from, to, mix }: Readonly<Between<FoamFrame>>, xM: number, zM: number): number {
   const at = (frame: FoamFrame): number => {
-    const n = frame.resolutionCount;
     const bytes = new Uint8Array(frame.buffer);
-    return bilinear(square, n, xM, zM, (i, k) => bytes[k * n + i]!);
+    return bilinear(rectangle, frame, xM, zM, (i, k) => bytes[k * frame.resolutionCount + i]!);
   };
-  const first = from.resolutionCount === to.resolutionCount ? from : to;
+  const first = from.resolutionCount === to.resolutionCount && from.countZ === to.countZ ? from : to;
   return first === to || mix === 0 ? at(first) : at(first) * (1 - mix) + at(to) * mix;
 }

@@ -31,8 +31,9 @@ export class CausticsPass implements Pass {
   private readonly white = new Color(1, 1, 1);
   private readonly cleared = new Color();
 
-  constructor(field: Texture, private readonly sky: Sky, size: { sideM: number; depthM: number }, { cellsCount, texelsCount }: { cellsCount: number; texelsCount: number }) {
-    const { sideM, depthM } = size;
+  constructor(field: Texture, private readonly sky: Sky, size: { sideM: number; widthM: number; depthM: number }, { cellsCount, texelsCount }: { cellsCount: number; texelsCount: number }) {
+    const { sideM, widthM, depthM } = size;
+    const extentM = new Vector2(sideM, widthM);
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
       format: RGFormat,
       type: HalfFloatType,
@@ -41,16 +42,16 @@ export class CausticsPass implements Pass {
       generateMipmaps: true,
       depthBuffer: false,
     });
-    this.uniforms = { u_caustics: { value: this.target.texture }, u_caustic_depth_m: { value: depthM }, u_caustic_side_m: { value: sideM } };
+    this.uniforms = { u_caustics: { value: this.target.texture }, u_caustic_depth_m: { value: depthM }, u_caustic_extent_m: { value: extentM } };
     const lines = gridLines(cellsCount, false, false);
     const uniforms = {
       ...sky.uniforms,
       u_field: { value: field },
-      u_side_m: { value: sideM },
+      u_extent_m: { value: extentM },
       u_deep_m: { value: depthM },
       u_reach: { value: kReachSides },
       u_layer: { value: new Vector2() },
-      u_texel_m: { value: sideM / texelsCount },
+      u_texel_m: { value: Math.sqrt((sideM / texelsCount) * (widthM / texelsCount)) },
     };
     this.mesh = new Mesh(makeGrid(lines, lines), makeMaterial("caustics", uniforms, { side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, blending: AdditiveBlending, premultipliedAlpha: true }));
     this.mesh.frustumCulled = false;

@@ -23,7 +23,7 @@ import { kMaxResolutionCount } from "../../codec/frame_types";
 import type { SurfaceFrame } from "../../net/messages";
 import { kCurvature, kSlope, kSmooth } from "../field_kernels";
 import type { Between, FrameRing } from "../frame_ring";
-import { FrameTextures } from "../frame_textures";
+import { FrameTextures, type PlaneCounts } from "../frame_textures";
 import { FullscreenPass } from "../fullscreen";
 import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
@@ -50,7 +50,7 @@ export class FieldPass implements Pass {
   readonly name = "field";
   readonly reads = ["frames"] as const;
   readonly writes = ["field"] as const;
-  /** Elevation (m), slope x, slope z, curvature (1/m); u along x and v along z, the water's square is 0..1. */
+  /** Elevation (m), slope x, slope z, curvature (1/m); u along x and v along z, the water is 0..1. */
   readonly texture: Texture;
   private readonly target: WebGLRenderTarget;
   private readonly elevation: WebGLRenderTarget;
@@ -69,14 +69,14 @@ export class FieldPass implements Pass {
 
   /** The texture has as many texels as a surface has samples, at most `quality.fieldCountMax` per side. */
   constructor(
-    { sideM, periodicX, periodicZ, ...wave }: WaveInfo,
+    { sideM, periodicX, periodicZ, resolutionCount, countZ }: WaveInfo,
     private readonly surfaces: FrameRing<SurfaceFrame>,
     private readonly quality: Pick<Quality, "fieldCountMax" | "texelType">,
   ) {
     this.sideM = sideM;
-    const resolutionCount = Math.min(Math.max(wave.resolutionCount, 2), kMaxResolutionCount);
-    const fieldCount = Math.min(resolutionCount, quality.fieldCountMax);
-    this.target = new WebGLRenderTarget(fieldCount, fieldCount, {
+    const allowed = (count: number): number => Math.min(Math.max(count, 1), kMaxResolutionCount);
+    const counts = { resolutionCount: allowed(resolutionCount), countZ: allowed(countZ) };
+    this.target = new WebGLRenderTarget(...this.fieldCounts(counts), {
       format: RGBAFormat,
       type: quality.texelType,
       minFilter: LinearFilter,
@@ -86,7 +86,7 @@ export class FieldPass implements Pass {
       depthBuffer: false,
     });
     this.texture = this.target.texture;
-    this.elevation = new WebGLRenderTarget(resolutionCount, resolutionCount, {
+    this.elevation = new WebGLRenderTarget(counts.resolutionCount, counts.countZ, {
       format: RedIntegerFormat,
       type: IntType,
       internalFormat: "R32I",
@@ -94,7 +94,7 @@ export class FieldPass implements Pass {
       magFilter: NearestFilter,
       depthBuffer: false,
     });
-    this.frames = new FrameTextures<SurfaceFrame>(resolutionCount, kFrameCount, makeTexture);
+    this.frames = new FrameTextures<SurfaceFrame>(counts, kFrameCount, makeTexture);
     const { blank } = this.frames;
     const state = { depthTest: false, depthWrite: false };
     this.interpolate = new FullscreenPass(
@@ -117,7 +117,7 @@ export class FieldPass implements Pass {
           u_elevation: { value: this.elevation.texture },
           u_unit_m: { value: 0 },
           u_cell_m: { value: 1 },
-          u_cells_per_texel: { value: 1 },
+          u_cells_per_texel: { value: new Vector2(1, 1) },
           u_periodic: { value: new Vector2(Number(periodicX), Number(periodicZ)) },
           u_smooth: { value: new Vector3(...kSmooth) },
           u_slope: { value: new Vector3(...kSlope) },
@@ -159,11 +159,11 @@ export class FieldPass implements Pass {
   private drawBetween(renderer: WebGLRenderer, between: Readonly<Between<SurfaceFrame>>): void {
     const { to, mix } = between;
     // The level of detail changed: frames of two sizes cannot be interpolated.
-    const isLike = (frame: SurfaceFrame | undefined): frame is SurfaceFrame => frame?.resolutionCount === to.resolutionCount;
+    const isLike = (frame: SurfaceFrame | undefined): frame is SurfaceFrame => frame?.resolutionCount === to.resolutionCount && frame.countZ === to.countZ;
     const from = isLike(between.from) ? between.from : to;
     const before = isLike(between.before) ? between.before : from;
     const after = isLike(between.after) ? between.after : to;
-    if (to.resolutionCount !== this.frames.resolutionCount) this.resize(to.resolutionCount);
+    if (!this.frames.fits(to)) this.resize({ resolutionCount: to.resolutionCount, countZ: to.countZ });
 
     const { times, weights, drawn } = this;
     times.beforeS = before === from ? undefined : before.timeS;
@@ -196,23 +196,29 @@ export class FieldPass implements Pass {
     this.derive.render(renderer, this.target);
   }
 
-  private resize(resolutionCount: number): void {
-    this.frames.resize(resolutionCount);
-    this.elevation.setSize(resolutionCount, resolutionCount);
-    const fieldCount = Math.min(resolutionCount, this.quality.fieldCountMax);
-    this.target.setSize(fieldCount, fieldCount);
+  private resize(counts: PlaneCounts): void {
+    this.frames.resize(counts);
+    this.elevation.setSize(counts.resolutionCount, counts.countZ);
+    this.target.setSize(...this.fieldCounts(counts));
     this.scale();
+  }
+
+  /** Texels along x and z: as many as samples, or as many as the quality allows along the longer side. */
+  private fieldCounts({ resolutionCount, countZ }: PlaneCounts): [number, number] {
+    const perTexel = Math.max(Math.max(resolutionCount, countZ) / this.quality.fieldCountMax, 1);
+    return [Math.max(Math.round(resolutionCount / perTexel), 1), Math.max(Math.round(countZ / perTexel), 1)];
   }
 
   private scale(): void {
     const uniforms = this.derive.material.uniforms;
-    uniforms["u_cell_m"]!.value = this.sideM / this.frames.resolutionCount;
-    uniforms["u_cells_per_texel"]!.value = this.frames.resolutionCount / this.target.width;
+    const { resolutionCount, countZ } = this.frames.counts;
+    uniforms["u_cell_m"]!.value = this.sideM / resolutionCount;
+    (uniforms["u_cells_per_texel"]!.value as Vector2).set(resolutionCount / this.target.width, countZ / this.target.height);
   }
 }
 
-function makeTexture(n: number): DataTexture {
-  const texture = new DataTexture(new Int16Array(n * n), n, n, RedIntegerFormat, ShortType);
+function makeTexture({ resolutionCount, countZ }: PlaneCounts): DataTexture {
+  const texture = new DataTexture(new Int16Array(resolutionCount * countZ), resolutionCount, countZ, RedIntegerFormat, ShortType);
   texture.internalFormat = "R16I";
   texture.minFilter = texture.magFilter = NearestFilter;
   texture.unpackAlignment = 2;

@@ -23,10 +23,10 @@ export class FlatShadowPass implements Pass {
   private readonly light: Vector3;
 
   /** `target`: of the froth. */
-  constructor(private readonly casters: Pick<Casters, "scene">, private readonly sky: Sky, private readonly target: WebGLRenderTarget, sideM: number) {
+  constructor(private readonly casters: Pick<Casters, "scene">, private readonly sky: Sky, private readonly target: WebGLRenderTarget, { sideM, widthM }: { sideM: number; widthM: number }) {
     this.light = sky.uniforms["u_sun_light"]!.value as Vector3;
     // Three's culling uses it, too, so that height needs a place in it.
-    this.camera.projectionMatrix.set(2 / sideM, 0, 0, 0, 0, 0, 2 / sideM, 0, 0, 1e-3 / sideM, 0, 0, 0, 0, 0, 1);
+    this.camera.projectionMatrix.set(2 / sideM, 0, 0, 0, 0, 0, 2 / widthM, 0, 0, 1e-3 / Math.max(sideM, widthM), 0, 0, 0, 0, 0, 1);
     this.camera.layers.set(kCasterLayers.solid);
     this.camera.layers.enable(kCasterLayers.float);
     this.material = makeMaterial("flatShadow", { ...sky.uniforms, u_shade: { value: 0 } }, {

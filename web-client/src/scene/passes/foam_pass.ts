@@ -3,7 +3,7 @@ import { ClampToEdgeWrapping, DataTexture, LinearFilter, RedFormat, RepeatWrappi
 
 import type { FoamFrame } from "../../net/messages";
 import type { FrameRing } from "../frame_ring";
-import { FrameTextures } from "../frame_textures";
+import { FrameTextures, type PlaneCounts } from "../frame_textures";
 import type { Uniforms } from "../shaders";
 import type { Pass, Picture } from "./pass";
 
@@ -20,7 +20,7 @@ export class FoamPass implements Pass {
     periodicX: boolean,
     periodicZ: boolean,
   ) {
-    this.frames = new FrameTextures<FoamFrame>(2, 2, (n) => makeTexture(n, periodicX, periodicZ));
+    this.frames = new FrameTextures<FoamFrame>({ resolutionCount: 2, countZ: 2 }, 2, (counts) => makeTexture(counts, periodicX, periodicZ));
     const { blank } = this.frames;
     this.uniforms = { u_foam_from: { value: blank }, u_foam_to: { value: blank }, u_foam_mix: { value: 0 } };
   }
@@ -30,8 +30,8 @@ export class FoamPass implements Pass {
     if (!foam) return;
     const { to, mix } = foam;
     let { from } = foam;
-    if (from.resolutionCount !== to.resolutionCount) from = to;
-    if (from.resolutionCount !== this.frames.resolutionCount) this.frames.resize(from.resolutionCount);
+    if (from.resolutionCount !== to.resolutionCount || from.countZ !== to.countZ) from = to;
+    if (!this.frames.fits(from)) this.frames.resize({ resolutionCount: from.resolutionCount, countZ: from.countZ });
     const drawn = [from, to];
     this.uniforms["u_foam_from"]!.value = this.frames.textureOf(from, drawn);
     this.uniforms["u_foam_to"]!.value = this.frames.textureOf(to, drawn);
@@ -43,8 +43,8 @@ export class FoamPass implements Pass {
   }
 }
 
-function makeTexture(n: number, periodicX: boolean, periodicZ: boolean): DataTexture {
-  const texture = new DataTexture(new Uint8Array(n * n), n, n, RedFormat, UnsignedByteType);
+function makeTexture({ resolutionCount, countZ }: PlaneCounts, periodicX: boolean, periodicZ: boolean): DataTexture {
+  const texture = new DataTexture(new Uint8Array(resolutionCount * countZ), resolutionCount, countZ, RedFormat, UnsignedByteType);
   texture.minFilter = texture.magFilter = LinearFilter;
   texture.wrapS = periodicX ? RepeatWrapping : ClampToEdgeWrapping;
   texture.wrapT = periodicZ ? RepeatWrapping : ClampToEdgeWrapping;

@@ -18,14 +18,14 @@ export class LampsPass implements Pass {
   constructor(
     private readonly solids: SolidsPass,
     field: Texture | undefined,
-    sideM: number,
+    size: { sideM: number; widthM: number },
   ) {
     const uniforms = {
       u_camera_m: { value: new Vector3() },
       u_behind_depth: { value: solids.textures.depth },
       u_resolution: { value: new Vector2(1, 1) },
       u_field: { value: field ?? null },
-      u_side_m: { value: sideM },
+      u_extent_m: { value: new Vector2(size.sideM, size.widthM) },
       u_darkness: solids.darkness,
     };
     const screen = { blending: CustomBlending, blendEquation: AddEquation, blendSrc: OneFactor, blendDst: OneMinusSrcColorFactor };

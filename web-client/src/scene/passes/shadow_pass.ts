@@ -48,7 +48,7 @@ export class ShadowPass implements Pass {
     depth.minFilter = depth.magFilter = LinearFilter;
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, { format: RedFormat, depthTexture: depth });
     this.uniforms = { u_shadow: { value: depth }, u_shadow_matrix: { value: new Matrix4() }, u_shadow_texel_m: { value: new Vector2() } };
-    const moved = { u_field: { value: field ?? null }, u_side_m: { value: sideM } };
+    const moved = { u_field: { value: field ?? null }, u_extent_m: { value: new Vector2(sideM, widthM) } };
     const parameters = { side: DoubleSide, colorWrite: false, polygonOffset: true, polygonOffsetFactor: 1.2, polygonOffsetUnits: 4 };
     this.materials = { solid: makeMaterial("shadow", moved, parameters), float: makeMaterial("shadow", moved, { ...parameters, defines: { FLOATS: 1 } }) };
   }

@@ -1,7 +1,7 @@
 // Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the caustics, the shadow, and the frames of
 // the boats.
 // Writes the solids' colour (linear light) and depth.
-import { DepthTexture, Scene, UnsignedIntType, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
 import type { BodiesState, BodyPose } from "../bodies";
@@ -48,7 +48,7 @@ export class SolidsPass implements Pass {
     private readonly bodies: FrameRing<BodiesState>,
     quality: Quality,
   ) {
-    const { sideM } = greeting;
+    const { sideM, widthM } = greeting;
     const { caustics, shadow } = (this.sunlight = sunlight);
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
@@ -58,8 +58,8 @@ export class SolidsPass implements Pass {
       u_camera_m: { value: new Vector3() },
       u_field: { value: field ?? null },
       u_noise: { value: noise },
-      u_side_m: { value: sideM },
-      u_grain_m: { value: Math.min(Math.max(kGrainSides * sideM, leastM), mostM) },
+      u_extent_m: { value: new Vector2(sideM, widthM) },
+      u_grain_m: { value: Math.min(Math.max(kGrainSides * Math.max(sideM, widthM), leastM), mostM) },
       u_wet_m: { value: kWetDepths * bedOf(greeting).depthM },
       u_haze_m: this.haze,
       u_darkness: this.darkness,

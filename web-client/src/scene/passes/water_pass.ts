@@ -11,7 +11,7 @@ import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { Sky } from "../sky";
 import { makeGroundTexture } from "../ground_texture";
-import { bedOf, bedUniformValues } from "../terrain";
+import { bedOf, bedUniformValues, longSideM } from "../terrain";
 import { makeWaterGeometries } from "../water_grid";
 import type { Pass, Picture } from "./pass";
 import type { SolidsPass } from "./solids_pass";
@@ -52,7 +52,7 @@ export class WaterPass implements Pass {
 
   constructor(greeting: GreetingInfo, solids: SolidsPass, { sky, noise, quality }: WaterTools, { field, foam, froth, rain, newest }: WaterInputs) {
     const bed = bedOf(greeting);
-    const { sideM, depthM, beaches } = bed;
+    const { depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
     this.ground = makeGroundTexture(bed);
     const { edge } = solids.surroundings;
@@ -68,12 +68,12 @@ export class WaterPass implements Pass {
       u_camera_m: { value: new Vector3() },
       u_resolution: { value: new Vector2(1, 1) },
       u_near_far_m: { value: new Vector2(1, 2) },
-      u_side_m: { value: sideM },
+      u_extent_m: { value: new Vector2(bed.sideM, bed.widthM) },
       u_depth_m: { value: depthM },
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
-      u_lace_m: { value: Math.min(Math.max(sideM / 7, 1), 9) },
+      u_lace_m: { value: Math.min(Math.max(longSideM(bed) / 7, 1), 9) },
       u_froth: { value: froth },
       ...foam,
       ...rain,

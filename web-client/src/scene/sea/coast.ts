@@ -4,7 +4,7 @@ import type { BufferGeometry } from "three";
 
 import type { SideKind, SideName } from "../../codec/scene_info";
 import { MeshBuilder, type Paint, type Point } from "../mesh_builder";
-import { depthAtM, insideM, type Bed } from "../terrain";
+import { depthAtM, insideM, longSideM, type Bed } from "../terrain";
 
 export interface Coast {
   bed: Bed;
@@ -58,23 +58,23 @@ function rolling(x: number, z: number): number {
 function isShore({ bed }: Coast, side: SideName): boolean {
   if (!bed.ground) return bed.beaches.some((beach) => beach.side === side && beach.shoreDepthM <= kShoreDepths * bed.depthM);
   const sign = side[0] === "+" ? 1 : -1;
-  const half = bed.sideM / 2;
-  const depthsM = kSideSamples.map((share) => (side[1] === "x" ? depthAtM(bed, sign * half, share * bed.sideM) : depthAtM(bed, share * bed.sideM, sign * half)));
+  const { sideM, widthM } = bed;
+  const depthsM = kSideSamples.map((share) => (side[1] === "x" ? depthAtM(bed, (sign * sideM) / 2, share * widthM) : depthAtM(bed, share * sideM, (sign * widthM) / 2)));
   return depthsM.every((depthM) => depthM <= kShoreDepths * bed.depthM);
 }
 
 export function quayHeightM(bed: Bed): number {
-  return Math.min(Math.max(kQuaySides * bed.sideM, kQuayMinM), kQuayMaxM);
+  return Math.min(Math.max(kQuaySides * longSideM(bed), kQuayMinM), kQuayMaxM);
 }
 
 /** Returns the height of the ground, y = 0 at the still water. `pastQuay`: on the land side of a quay where the point is on its edge. */
 export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = false): number {
   const { bed, sides } = coast;
-  const { sideM } = bed;
+  const sideM = longSideM(bed);
   let heightM = -depthAtM(bed, xM, zM);
   for (const side of kSideNames) {
     if (sides[side] !== "closed") continue;
-    const outM = -insideM(side, sideM, xM, zM);
+    const outM = -insideM(side, bed, xM, zM);
     if (outM < -1e-9) continue;
     const hillsM = kHillSides * sideM * smoothstep(kHillsFromSides, kHillsToSides, outM / sideM) * (0.55 + 0.45 * rolling((3.1 * xM) / sideM / 3, (3.1 * zM) / sideM / 3));
     const roll = rolling((9 * xM) / sideM, (9 * zM) / sideM);
@@ -93,10 +93,11 @@ export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = fa
 
 function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
   const { bed, sides } = coast;
-  const { sideM, depthM } = bed;
+  const { depthM } = bed;
+  const sideM = longSideM(bed);
   let paint = mixPaint(kSeabed, kSand, Math.min(Math.max(1 + yM / (0.8 * depthM), 0), 1));
   for (const side of kSideNames) {
-    const outM = -insideM(side, sideM, xM, zM);
+    const outM = -insideM(side, bed, xM, zM);
     if (sides[side] !== "closed" || outM < -1e-9) continue;
     const out = outM / sideM;
     const grass = mixPaint(kGrass, kFarGrass, smoothstep(0.5, 6, out));
@@ -109,10 +110,11 @@ function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
 
 /** Lines along one axis: dense over the square, growing beyond. Split into bands where a quay makes a step. */
 function bandsOf(coast: Coast, axis: "x" | "z", cellsCount: number, descending: boolean): { at: number[]; low: boolean; high: boolean }[] {
-  const { sideM } = coast.bed;
-  const half = sideM / 2;
+  const sideM = longSideM(coast.bed);
+  const lengthM = axis === "x" ? coast.bed.sideM : coast.bed.widthM;
+  const half = lengthM / 2;
   const beyond: number[] = [];
-  let step = sideM / cellsCount;
+  let step = lengthM / cellsCount;
   for (let at = half; at < kReachSides * sideM; ) {
     step *= cellsCount < kFewCells ? kCoarseGrowth : kGrowth;
     at += step;
@@ -121,7 +123,7 @@ function bandsOf(coast: Coast, axis: "x" | "z", cellsCount: number, descending: 
   // Where paving becomes grass.
   const extra = [kPavingSides, kPavingSides + 0.01].map((out) => half + out * sideM);
   const outer = [...beyond, ...extra].sort((a, b) => a - b);
-  const inside = Array.from({ length: cellsCount + 1 }, (_, i) => (i / cellsCount - 0.5) * sideM);
+  const inside = Array.from({ length: cellsCount + 1 }, (_, i) => (i / cellsCount - 0.5) * lengthM);
   const isQuay = (side: SideName): boolean => coast.sides[side] === "closed" && !isShore(coast, side);
   const below = outer.map((at) => -at).reverse();
   const bands: { at: number[]; low: boolean; high: boolean }[] = [];
@@ -142,8 +144,8 @@ function bandsOf(coast: Coast, axis: "x" | "z", cellsCount: number, descending: 
 export function makeCoastGeometry(coast: Coast, cellsCount: number, hasFlatBed: boolean): BufferGeometry {
   const { bed } = coast;
   const builder = new MeshBuilder();
-  const reachM = (0.5 + kBedReachSides) * bed.sideM;
-  const isNear = ([x, y, z]: Point): boolean => (hasFlatBed || y > -0.999 * bed.depthM) && Math.abs(x) <= reachM && Math.abs(z) <= reachM;
+  const [reachXM, reachZM] = [bed.sideM, bed.widthM].map((lengthM) => 0.5 * lengthM + kBedReachSides * longSideM(bed)) as [number, number];
+  const isNear = ([x, y, z]: Point): boolean => (hasFlatBed || y > -0.999 * bed.depthM) && Math.abs(x) <= reachXM && Math.abs(z) <= reachZM;
   const isSeen = (points: readonly Point[]): boolean => points.some((point) => point[1] > -0.6 * bed.depthM || isNear(point));
   for (const zBand of bandsOf(coast, "z", cellsCount, true))
     for (const xBand of bandsOf(coast, "x", cellsCount, false)) {
@@ -156,8 +158,8 @@ export function makeCoastGeometry(coast: Coast, cellsCount: number, hasFlatBed: 
 }
 
 function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): void {
-  const half = coast.bed.sideM / 2;
   for (const side of kSideNames) {
+    const half = (side[1] === "x" ? coast.bed.sideM : coast.bed.widthM) / 2;
     if (coast.sides[side] !== "closed" || isShore(coast, side)) continue;
     const sign = side[0] === "+" ? 1 : -1;
     const along = bandsOf(coast, side[1] === "x" ? "z" : "x", cellsCount, false).flatMap(({ at }) => at);

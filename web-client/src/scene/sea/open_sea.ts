@@ -33,10 +33,10 @@ export const kSideOrder: readonly SideName[] = ["+x", "-x", "+z", "-z"];
  * Returns the uniforms of sea_blend.glsl for the sides +x, -x, +z, -z: `beyondM`, how far outside a side the simulated water's share
  * becomes 0, and `widthM`, over which it falls from 1.
  */
-export function blendOf(wave: Pick<WaveInfo, "sides" | "sideM" | "spongeWidthM">): { beyondM: number[]; widthM: number[] } {
-  const { sideM } = wave;
+export function blendOf(wave: Pick<WaveInfo, "sides" | "sideM" | "widthM" | "spongeWidthM">): { beyondM: number[]; widthM: number[] } {
   const of = (side: SideName): [number, number] => {
     const kind = wave.sides[side];
+    const sideM = side[1] === "x" ? wave.sideM : wave.widthM;
     if (kind === "closed") return [kNever, 1];
     if (kind === "periodic") return [kPeriodicFadeSides * sideM, kPeriodicFadeSides * sideM];
     return [0, Math.max(wave.spongeWidthM, kLeastBlendSides * sideM)];
@@ -66,7 +66,7 @@ export class OpenSea implements Pass {
     this.wind = wind;
     const kind = plain ? "plain" : "full";
     const longestM = (kLongestRippleCells * wave.sideM) / wave.resolutionCount;
-    this.swell = new SeaTile(kSwellTileSides[kind] * wave.sideM, seaTexelsCount, !plain, texelType);
+    this.swell = new SeaTile(kSwellTileSides[kind] * Math.max(wave.sideM, wave.widthM), seaTexelsCount, !plain, texelType);
     this.ripples = new SeaTile(kRippleTileLengths * longestM, seaTexelsCount, !plain, texelType);
     this.rippleWaves = makeRipples(kRippleCount[kind], longestM / kRippleRange, longestM, wind?.directionDeg ?? 30, wind?.gravityMps2 ?? 9.81);
     const { beyondM, widthM } = blendOf(wave);

@@ -134,7 +134,7 @@ export function seaStateOf(wave: WaveInfo, wind: WindInfo): PlaneWave[] {
   const d = wave.depthM;
   const cellM = wave.sideM / wave.resolutionCount;
   if (!(levelRatio * wind.speedMps > 0 && g > 0 && wind.fetchM > 0)) return [];
-  const lowest = waveFrequencyRadps((2 * Math.PI) / (kLongestWaveShare * wave.sideM), g, d);
+  const lowest = waveFrequencyRadps((2 * Math.PI) / (kLongestWaveShare * Math.max(wave.sideM, wave.widthM)), g, d);
   const highest = waveFrequencyRadps((2 * Math.PI) / (kShortestWaveCells * cellM), g, d);
   const energy = new Distribution(lowest, highest, makeSpectrum(wind, d));
   const capM = levelRatio * Math.min(wind.waveHeightM, kLargestHeightShare * d);
@@ -151,13 +151,18 @@ export function seaStateOf(wave: WaveInfo, wind: WindInfo): PlaneWave[] {
     let k = waveNumberRadpm(omega, g, d);
     let [kxRadpm, kzRadpm] = [k * Math.cos(angle), k * Math.sin(angle)];
     // A whole number of waves between periodic sides.
-    const whole = (2 * Math.PI) / wave.sideM;
-    if (wave.periodicX) kxRadpm = whole * Math.round(kxRadpm / whole);
-    if (wave.periodicZ) kzRadpm = whole * Math.round(kzRadpm / whole);
+    if (wave.periodicX) kxRadpm = wholeWaves(kxRadpm, wave.sideM);
+    if (wave.periodicZ) kzRadpm = wholeWaves(kzRadpm, wave.widthM);
     k = Math.hypot(kxRadpm, kzRadpm);
     const phaseRad = 2 * Math.PI * random();
     if (k <= 0 || (wind.comesIn && !entersThroughOpenSide(wave, kxRadpm, kzRadpm))) continue;
     waves.push({ amplitudeM: Math.sqrt((2 * varianceM2) / kWaveCount), omegaRadps: waveFrequencyRadps(k, g, d), kxRadpm, kzRadpm, phaseRad });
   }
   return waves;
+}
+
+/** Returns the wave number nearest to `kRadpm` with a whole number of waves between sides that are `lengthM` apart. */
+function wholeWaves(kRadpm: number, lengthM: number): number {
+  const whole = (2 * Math.PI) / lengthM;
+  return whole * Math.round(kRadpm / whole);
 }

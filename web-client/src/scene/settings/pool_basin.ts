@@ -59,8 +59,9 @@ function addWalls(builder: MeshBuilder, half: readonly [number, number], lowM: n
 }
 
 /** Returns the basin with its floor at y = 0 and the water's rest level at `depthM`. */
-export function makeBasinGeometries(sideM: number, widthM: number, depthM: number): BasinGeometries {
-  const half: [number, number] = [sideM / 2, widthM / 2];
+export function makeBasinGeometries(lengthM: number, widthM: number, depthM: number): BasinGeometries {
+  const half: [number, number] = [lengthM / 2, widthM / 2];
+  const sideM = Math.max(lengthM, widthM);  // what tiles, rim and deck are shares of
   const grown = (byM: number): [number, number] => [half[0] + byM, half[1] + byM];
   const rimM = depthM + kRimHeight * sideM;
   const bandM = depthM - 0.012 * sideM;
@@ -113,7 +114,7 @@ export class PoolBasin {
       ...shadow,
       u_camera_m: { value: new Vector3() },
       u_field: { value: field ?? null },
-      u_side_m: { value: sideM },
+      u_extent_m: { value: new Vector2(sideM, widthM) },
       u_half_m: { value: new Vector2(sideM / 2, widthM / 2) },
       u_level_m: { value: 0 },
       u_has_water: { value: field !== undefined },

@@ -49,8 +49,8 @@ export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus"
 }
 
 /** Returns the distance at which haze has half of the light. Rain makes it hazier. */
-export function hazeM({ sideM, wind }: GreetingInfo): number {
-  return (kHazeSides * sideM) / (1 + kRainHaze * rainShare(wind));
+export function hazeM({ sideM, widthM, wind }: GreetingInfo): number {
+  return (kHazeSides * Math.max(sideM, widthM)) / (1 + kRainHaze * rainShare(wind));
 }
 
 export function isIndoors({ setting }: GreetingInfo): boolean {

@@ -1,7 +1,7 @@
 // Include: light on its way to an eye in the water. After <sky> and <water_optics>.
 // CAUSTICS: what the waves focus is seen as shafts; SHADOWS: boats cut them. OPEN_SEA: the water goes on.
 uniform sampler2D u_field;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
 uniform vec2 u_near_far_m;
 uniform vec3 u_floor_albedo;  // where the floor is not on the screen
@@ -37,9 +37,9 @@ float viewZ(float depth) {
 
 // Elevation of the water, as water.vert draws it.
 float waterLevel(vec2 at) {
-  float level = textureLod(u_field, at / u_side_m + 0.5, 0.0).r;
+  float level = textureLod(u_field, at / u_extent_m + 0.5, 0.0).r;
 #ifdef OPEN_SEA
-  float share = simulatedShare(at, u_side_m);
+  float share = simulatedShare(at, u_extent_m);
   if (share < 1.0) level = mix(textureLod(u_swell, at / u_tiles_m.x, 0.0).r, level, share);
 #endif
   return level;
@@ -47,7 +47,7 @@ float waterLevel(vec2 at) {
 
 bool isInWater(vec3 at) {
 #ifndef OPEN_SEA
-  if (max(abs(at.x), abs(at.z)) > 0.5 * u_side_m) return false;
+  if (any(greaterThan(abs(at.xz), 0.5 * u_extent_m))) return false;
 #endif
   return at.y < waterLevel(at.xz);
 }
@@ -55,12 +55,12 @@ bool isInWater(vec3 at) {
 // Distance from `from` along `direction` to the sides or the floor of the water.
 float wayOut(vec3 from, vec3 direction) {
 #ifdef OPEN_SEA
-  const float half_m = 1e4;
+  const vec2 half_m = vec2(1e4);
 #else
-  float half_m = 0.5 * u_side_m;
+  vec2 half_m = 0.5 * u_extent_m;
 #endif
-  vec3 high = vec3(half_m, 1e3, half_m);
-  vec3 low = vec3(-half_m, -u_depth_m, -half_m);
+  vec3 high = vec3(half_m.x, 1e3, half_m.y);
+  vec3 low = vec3(-half_m.x, -u_depth_m, -half_m.y);
   vec3 safe = mix(vec3(1e-6), direction, step(vec3(1e-6), abs(direction)));
   vec3 t = max((high - from) / safe, (low - from) / safe);
   return max(min(t.x, min(t.y, t.z)), 0.0);
@@ -79,9 +79,9 @@ float shaftsAlong(vec3 from, vec3 ray, float way_m) {
     vec3 at = from + ray * (reach_m * (float(i) + jitter) / float(kShaftSteps));
     // Where this light crossed the level surface.
     vec2 crossed = at.xz - down.xz / down.y * at.y;
-    vec2 layers = textureLod(u_caustics, crossed / u_caustic_side_m + 0.5, 1.5).rg;
+    vec2 layers = textureLod(u_caustics, crossed / u_caustic_extent_m + 0.5, 1.5).rg;
     float focus = mix(layers.g, layers.r, clamp(-at.y / u_caustic_depth_m, 0.0, 1.0));
-    vec2 inside = step(abs(crossed), vec2(0.5 * u_caustic_side_m));
+    vec2 inside = step(abs(crossed), 0.5 * u_caustic_extent_m);
     focus = mix(1.0, focus, inside.x * inside.y);
 #ifdef SHADOWS
     focus *= texture(u_shadow, (u_shadow_matrix * vec4(crossed.x, 0.0, crossed.y, 1.0)).xyz);

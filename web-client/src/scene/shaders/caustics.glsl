@@ -1,13 +1,13 @@
 // Include: sunlight focused by the waves, from passes/caustics_pass.ts.
 uniform sampler2D u_caustics;       // light relative to level water, at the floor and at kUpperLayer of its depth
 uniform float u_caustic_depth_m;    // of the floor
-uniform float u_caustic_side_m;
+uniform vec2 u_caustic_extent_m;
 
 const float kUpperLayer = 0.4;
 
 // Light at `deep_m` below the still water, whose way through level water began at `crossed`. Mean 1.
 float focusedLight(vec2 crossed, float deep_m) {
-  vec2 uv = crossed / u_caustic_side_m + 0.5;
+  vec2 uv = crossed / u_caustic_extent_m + 0.5;
   vec2 layers = texture(u_caustics, uv).rg;
   float share = clamp(deep_m / u_caustic_depth_m, 0.0, 1.0);
   float focus = share < kUpperLayer ? mix(1.0, layers.g, share / kUpperLayer) : mix(layers.g, layers.r, (share - kUpperLayer) / (1.0 - kUpperLayer));

@@ -5,7 +5,7 @@
 uniform isampler2D u_elevation;
 uniform float u_unit_m;
 uniform float u_cell_m;
-uniform float u_cells_per_texel;  // >= 1; above 1 the neighbourhood below has wider steps
+uniform vec2 u_cells_per_texel;  // >= 1; above 1 the neighbourhood below has wider steps
 uniform vec2 u_periodic;  // along x and z: 1 or 0
 // Weights of samples at distance 0, 1 and 2.
 uniform vec3 u_smooth;
@@ -14,9 +14,9 @@ uniform vec3 u_curvature;
 
 layout(location = 0) out vec4 field;
 
-float elevation(ivec2 cell, int n) {
-  ivec2 wrapped = cell + n * (ivec2(lessThan(cell, ivec2(0))) - ivec2(greaterThanEqual(cell, ivec2(n))));
-  ivec2 held = clamp(cell, ivec2(0), ivec2(n - 1));
+float elevation(ivec2 cell, ivec2 n) {
+  ivec2 wrapped = (cell + 16 * n) % n;
+  ivec2 held = clamp(cell, ivec2(0), n - 1);
   cell = ivec2(u_periodic.x > 0.5 ? wrapped.x : held.x, u_periodic.y > 0.5 ? wrapped.y : held.y);
   return float(texelFetch(u_elevation, cell, 0).r);
 }
@@ -25,9 +25,9 @@ float even(vec3 taps, float a, float b, float c, float d, float e) { return taps
 float odd(vec3 taps, float a, float b, float d, float e) { return taps.y * (d - b) + taps.z * (e - a); }
 
 void main() {
-  int n = textureSize(u_elevation, 0).x;
+  ivec2 n = textureSize(u_elevation, 0);
   ivec2 at = ivec2(gl_FragCoord.xy * u_cells_per_texel);
-  int k = int(u_cells_per_texel + 0.5);
+  int k = int(max(u_cells_per_texel.x, u_cells_per_texel.y) + 0.5);
   vec3 rows[5];  // along x: smoothed, slope, curvature
   for (int z = -2; z <= 2; ++z) {
     float a = elevation(at + k * ivec2(-2, z), n), b = elevation(at + k * ivec2(-1, z), n), c = elevation(at + k * ivec2(0, z), n);

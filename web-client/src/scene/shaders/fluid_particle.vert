@@ -17,7 +17,7 @@ uniform float u_advance_s;
 uniform float u_radius_m;
 uniform vec2 u_target_px;
 uniform sampler2D u_field;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform bool u_has_water;
 
 #include <fluid_sizes>
@@ -43,7 +43,7 @@ void main() {
   float bulk = smoothstep(kAloneTint, kBulkTint, float(words.y >> 8u) / 255.0);
   v_strength = 1.0;
   if (u_has_water) {
-    float surface_m = texture(u_field, center.xz / u_side_m + 0.5).r;
+    float surface_m = texture(u_field, center.xz / u_extent_m + 0.5).r;
     float over = (center.y - surface_m) / u_radius_m;
     v_strength = smoothstep(0.5, 1.1, over);
     if (v_strength < 0.5) {

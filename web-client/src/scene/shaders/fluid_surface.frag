@@ -24,7 +24,7 @@ uniform sampler2D u_noise;
 uniform float u_colour_ratio;  // lengths in the fluid count as so much longer for its colour
 #ifdef WAVE
 uniform sampler2D u_field;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 #endif
 const float kLeastFacing = 0.18;
 // Size of one tile of the noise in particle radii.
@@ -84,7 +84,7 @@ void main() {
 
   float raised = 1.0;
 #ifdef WAVE
-  vec4 field = texture(u_field, world.xz / u_side_m + 0.5);
+  vec4 field = texture(u_field, world.xz / u_extent_m + 0.5);
   raised = smoothstep(0.0, 1.5, (world.y - field.r) / u_radius_m);
   normal = normalize(mix(vec3(-field.g, 1.0, -field.b), normal, raised));
   // Drawn in front of the wave's surface, from which it can hardly be told.

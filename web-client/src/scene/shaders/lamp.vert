@@ -10,7 +10,7 @@ uniform vec3 u_camera_m;
 uniform sampler2D u_behind_depth;
 uniform vec2 u_resolution;
 uniform sampler2D u_field;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 out vec2 v_corner;
 flat out vec4 v_color;  // a: 1 for a beam
 
@@ -23,7 +23,7 @@ float seen(vec4 clip, vec2 shift_px) {
 
 void main() {
   vec3 at = a_at.xyz;
-  if (a_color.w > 0.5) at.y += textureLod(u_field, at.xz / u_side_m + 0.5, 0.0).r;
+  if (a_color.w > 0.5) at.y += textureLod(u_field, at.xz / u_extent_m + 0.5, 0.0).r;
   v_corner = position.xy;
   vec3 toward = normalize(u_camera_m - at);
   float is_beam = step(1e-6, dot(a_reach, a_reach));

@@ -19,7 +19,7 @@ uniform vec3 u_camera_m;
 uniform sampler2D u_field;
 uniform sampler2D u_behind_depth;
 uniform vec2 u_resolution;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
 uniform vec3 u_paint;   // albedo
 uniform float u_shine;  // of the highlight
@@ -53,7 +53,7 @@ float valueAt(vec2 uv) {
   vec2 half_uv = 0.5 / vec2(textureSize(u_value, 0));
   float rate_mps = 0.25 * (textureLod(u_value, uv - half_uv, 0.0).r + textureLod(u_value, uv + half_uv, 0.0).r +
                            textureLod(u_value, uv + half_uv * vec2(1.0, -1.0), 0.0).r + textureLod(u_value, uv + half_uv * vec2(-1.0, 1.0), 0.0).r);
-  float depth_m = max(bedDepth((uv - 0.5) * u_side_m, u_side_m, u_depth_m), u_least_depths * u_depth_m);
+  float depth_m = max(bedDepth((uv - 0.5) * u_extent_m, u_extent_m, u_depth_m), u_least_depths * u_depth_m);
   return rate_mps * inversesqrt(u_gravity_mps2 * depth_m);
 #else
   return textureLod(u_value, uv, 0.0).r;
@@ -64,9 +64,9 @@ float valueAt(vec2 uv) {
 void main() {
   if (textureLod(u_behind_depth, gl_FragCoord.xy / u_resolution, 0.0).r < gl_FragCoord.z) discard;
 #ifdef BEACH
-  if (v_top_m + bedDepth(v_world.xz, u_side_m, u_depth_m) <= 0.0) discard;
+  if (v_top_m + bedDepth(v_world.xz, u_extent_m, u_depth_m) <= 0.0) discard;
 #endif
-  vec2 uv = v_world.xz / u_side_m + 0.5;
+  vec2 uv = v_world.xz / u_extent_m + 0.5;
 #if defined(COLOURED) && !defined(SKIRT)
   if (all(lessThanEqual(abs(uv - 0.5), vec2(0.5)))) {
     color = vec4(mapped(valueAt(uv)), 1.0);
@@ -91,7 +91,7 @@ void main() {
   float specular = pow(max(dot(reflect(ray, normal), u_sun_direction), 0.0), 40.0);
   vec3 light = u_paint * (0.35 + 0.9 * diffuse) + u_shine * specular;
 #ifdef OPEN_SEA
-  float hazy = max(distance_m - 2.0 * u_side_m, 0.0) / u_haze_m;
+  float hazy = max(distance_m - 2.0 * max(u_extent_m.x, u_extent_m.y), 0.0) / u_haze_m;
   if (hazy > 0.01) light = mix(light, textureLod(u_sky, vec3(ray.x, max(ray.y, 0.01), ray.z), 0.0).rgb, 0.85 * hazy / (1.0 + hazy));
 #endif
   color = vec4(toDisplay(light), 1.0);

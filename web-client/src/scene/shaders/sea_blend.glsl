@@ -6,12 +6,12 @@ uniform vec4 u_blend_beyond_m;
 uniform vec4 u_blend_width_m;
 
 // 1 where the water is the simulated one, 0 where it is the sea.
-float simulatedShare(vec2 at, float side_m) {
-  vec4 inside_m = 0.5 * side_m - vec4(at.x, -at.x, at.y, -at.y);
+float simulatedShare(vec2 at, vec2 extent_m) {
+  vec4 inside_m = 0.5 * extent_m.xxyy - vec4(at.x, -at.x, at.y, -at.y);
   vec4 share = clamp((inside_m + u_blend_beyond_m) / u_blend_width_m, 0.0, 1.0);
   share = share * share * (3.0 - 2.0 * share);
   return min(min(share.x, share.y), min(share.z, share.w));
 }
 
-// Distance from the simulated square; 0 inside.
-float awayFromSquare(vec2 at, float side_m) { return length(max(abs(at) - 0.5 * side_m, 0.0)); }
+// Distance from the simulated water; 0 inside.
+float awayFromWater(vec2 at, vec2 extent_m) { return length(max(abs(at) - 0.5 * extent_m, 0.0)); }

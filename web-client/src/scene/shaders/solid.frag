@@ -7,7 +7,7 @@ in vec3 v_normal;
 in vec4 v_color;
 uniform vec3 u_camera_m;
 uniform sampler2D u_noise;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_grain_m;  // size of one tile of the noise
 uniform float u_wet_m;    // height over the still water up to which stone is wet
 uniform float u_haze_m;   // half of the light at this distance; 0: no haze
@@ -68,7 +68,7 @@ void main() {
   }
 #endif
   if (u_haze_m > 0.0) {
-    float hazy = max(distance_m - 2.0 * u_side_m, 0.0) / u_haze_m;
+    float hazy = max(distance_m - 2.0 * max(u_extent_m.x, u_extent_m.y), 0.0) / u_haze_m;
     if (hazy > 0.01) lit = mix(lit, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.9 * hazy / (1.0 + hazy));
   }
   if (v_color.a < 0.0) lit = mix(lit, 5.0 * v_color.rgb, u_darkness);

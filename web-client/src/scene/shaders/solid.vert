@@ -10,17 +10,17 @@ out vec3 v_normal;
 out vec4 v_color;
 #ifdef FLOATS
 uniform sampler2D u_field;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 
 const float kReachM = 0.25;  // of the water that moves it, from its middle
 
 // Elevation and slopes of the water under the buoy.
 vec3 waterAt(vec2 middle_m) {
-  vec2 uv = middle_m / u_side_m + 0.5;
-  float reach = kReachM / u_side_m;
+  vec2 uv = middle_m / u_extent_m + 0.5;
+  vec2 reach = kReachM / u_extent_m;
   vec3 sum = 2.0 * textureLod(u_field, uv, 0.0).rgb;
-  sum += textureLod(u_field, uv + vec2(reach, 0.0), 0.0).rgb + textureLod(u_field, uv - vec2(reach, 0.0), 0.0).rgb;
-  sum += textureLod(u_field, uv + vec2(0.0, reach), 0.0).rgb + textureLod(u_field, uv - vec2(0.0, reach), 0.0).rgb;
+  sum += textureLod(u_field, uv + vec2(reach.x, 0.0), 0.0).rgb + textureLod(u_field, uv - vec2(reach.x, 0.0), 0.0).rgb;
+  sum += textureLod(u_field, uv + vec2(0.0, reach.y), 0.0).rgb + textureLod(u_field, uv - vec2(0.0, reach.y), 0.0).rgb;
   return sum / 6.0;
 }
 #endif

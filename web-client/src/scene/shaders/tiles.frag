@@ -17,7 +17,7 @@ uniform vec3 u_camera_m;
 #ifndef CAUSTICS
 uniform sampler2D u_field;
 #endif
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform vec2 u_half_m;
 uniform float u_level_m;    // of the resting water
 uniform bool u_has_water;
@@ -39,7 +39,7 @@ float tiles(vec2 at, float tile_m) {
 #ifndef CAUSTICS
 // Sunlight gathered by the curvature of the surface at the point where the light came in, for a way of `deep_m` below it.
 float focusedLight(vec2 crossed, float deep_m) {
-  float curvature = textureLod(u_field, crossed / u_side_m + 0.5, 0.0).a;
+  float curvature = textureLod(u_field, crossed / u_extent_m + 0.5, 0.0).a;
   return 1.0 / clamp(1.0 + 0.25 * deep_m * curvature, 0.3, 4.0);
 }
 #endif
@@ -48,7 +48,7 @@ void main() {
   vec3 normal = normalize(v_normal);
   vec3 steep = abs(normal);
   vec2 at = steep.y > max(steep.x, steep.z) ? v_world.xz : steep.x > steep.z ? v_world.zy : v_world.xy;
-  vec3 albedo = v_color.rgb * tiles(at, v_color.a * u_side_m);
+  vec3 albedo = v_color.rgb * tiles(at, v_color.a * max(u_extent_m.x, u_extent_m.y));
   float deep_m = u_level_m - v_world.y;
   bool below = u_has_water && deep_m > 0.0 && all(lessThanEqual(abs(v_world.xz), u_half_m * 1.001));
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
@@ -61,14 +61,14 @@ void main() {
     toward_sun = normalize(vec3(u_sun_direction.xz * 0.75, 0.0).xzy + vec3(0.0, sqrt(1.0 - 0.5625 * dot(u_sun_direction.xz, u_sun_direction.xz)), 0.0));
     vec2 crossed = v_world.xz + toward_sun.xz / toward_sun.y * deep_m;
     vec2 over_m = u_half_m - abs(crossed);
-    float lit = smoothstep(-0.1, 0.1, min(over_m.x, over_m.y) / (0.2 * deep_m + 0.02 * u_side_m) + 0.05);
+    float lit = smoothstep(-0.1, 0.1, min(over_m.x, over_m.y) / (0.2 * deep_m + 0.02 * max(u_extent_m.x, u_extent_m.y)) + 0.05);
 #ifdef SHADOWS
     // What is above the water; the walls' own shade is softer than the map's.
     lit *= sunShare(vec3(crossed.x, u_level_m, crossed.y), vec3(0.0, 1.0, 0.0), 0.12 * deep_m);
 #endif
     // Walls take part of the light that the water scatters.
     sun = lit * (max(dot(normal, toward_sun), 0.0) * 0.9 + 0.1) * 0.96 * mix(1.0, focusedLight(crossed, deep_m), 0.88 * u_sun_sharp);
-    ambient *= vec3(0.75, 0.95, 1.0) * (1.0 - 0.25 * smoothstep(0.0, 1.0, deep_m / (0.12 * u_side_m)));
+    ambient *= vec3(0.75, 0.95, 1.0) * (1.0 - 0.25 * smoothstep(0.0, 1.0, deep_m / (0.12 * max(u_extent_m.x, u_extent_m.y))));
   } else {
     sun = max(dot(normal, toward_sun), 0.0);
 #ifdef SHADOWS

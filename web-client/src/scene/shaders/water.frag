@@ -22,7 +22,7 @@ uniform sampler2D u_behind;
 uniform sampler2D u_behind_depth;
 uniform vec2 u_resolution;
 uniform vec2 u_near_far_m;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
 #ifdef BEACH
 #include <bed>
@@ -74,8 +74,8 @@ float wayOut(vec3 from, vec3 direction) {
   vec3 high = vec3(1e5, 1e3, 1e5);
   vec3 low = vec3(-1e5, -u_depth_m, -1e5);
 #else
-  vec3 high = vec3(0.5 * u_side_m, 1e3, 0.5 * u_side_m);
-  vec3 low = vec3(-0.5 * u_side_m, -u_depth_m, -0.5 * u_side_m);
+  vec3 high = vec3(0.5 * u_extent_m.x, 1e3, 0.5 * u_extent_m.y);
+  vec3 low = vec3(-0.5 * u_extent_m.x, -u_depth_m, -0.5 * u_extent_m.y);
 #endif
   vec3 safe = mix(vec3(1e-6), direction, step(vec3(1e-6), abs(direction)));
   vec3 t = max((high - from) / safe, (low - from) / safe);
@@ -99,7 +99,7 @@ float behindScreen(vec3 at, out vec2 uv) {
 // Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
 vec3 mirroredLight(vec3 from, vec3 direction) {
   vec3 sky = skyLight(direction);
-  float reach_m = 0.3 * u_side_m;
+  float reach_m = 0.3 * max(u_extent_m.x, u_extent_m.y);
   float jitter = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   float before_m = 0.0;
   vec2 uv;
@@ -143,7 +143,7 @@ void main() {
   if (behind_depth < gl_FragCoord.z) discard;
   float edge = 1.0;
 #ifdef BEACH
-  float deep_m = v_top_m + bedDepth(v_world.xz, u_side_m, u_depth_m);
+  float deep_m = v_top_m + bedDepth(v_world.xz, u_extent_m, u_depth_m);
   if (deep_m <= 0.0) discard;
   edge = smoothstep(0.0, 0.05 * u_depth_m, deep_m);
 #endif
@@ -155,9 +155,9 @@ void main() {
   vec3 normal = v_side_normal;
 #else
 #ifdef OPEN_SEA
-  vec4 field = v_share_away.x > 0.0 ? textureLod(u_field, v_world.xz / u_side_m + 0.5, 0.0) : vec4(0.0);
+  vec4 field = v_share_away.x > 0.0 ? textureLod(u_field, v_world.xz / u_extent_m + 0.5, 0.0) : vec4(0.0);
 #else
-  vec4 field = texture(u_field, v_world.xz / u_side_m + 0.5);
+  vec4 field = texture(u_field, v_world.xz / u_extent_m + 0.5);
 #endif
   float variance = 0.0;
 #ifdef OPEN_SEA
@@ -166,7 +166,7 @@ void main() {
   vec2 width_m = fwidth(sea_at);
   vec2 lost = smoothstep(vec2(0.004, 0.01), vec2(0.05, 0.08), max(width_m.x, width_m.y) / u_tiles_m);
   // Somewhere far out there is always some wind.
-  float far_out = smoothstep(0.5, 6.0, length(sea_at) / u_side_m);
+  float far_out = smoothstep(0.5, 6.0, length(sea_at) / max(u_extent_m.x, u_extent_m.y));
   variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out;
 #ifdef PLAIN
   // Without mip levels the waves are faded here.
@@ -203,16 +203,16 @@ void main() {
 #ifdef OPEN_SEA
   // Outside the square the bed is drawn for a short way only, with PLAIN nowhere where it is level. Elsewhere it has one colour; far
   // away it falls off.
-  float undrawn = smoothstep(0.02, 0.35, v_share_away.y / u_side_m);
-  float sunk = smoothstep(0.8, 5.0, length(v_world.xz) / u_side_m);
+  float undrawn = smoothstep(0.02, 0.35, v_share_away.y / max(u_extent_m.x, u_extent_m.y));
+  float sunk = smoothstep(0.8, 5.0, length(v_world.xz) / max(u_extent_m.x, u_extent_m.y));
 #ifdef BEACH
-  float floor_share = bedDepth(v_world.xz, u_side_m, u_depth_m) / u_depth_m;
+  float floor_share = bedDepth(v_world.xz, u_extent_m, u_depth_m) / u_depth_m;
   undrawn *= floor_share * floor_share;
   sunk *= floor_share * floor_share;
 #ifdef PLAIN
   // The mesh of the beach ends where the bed becomes level: fade its grain before, but not what stands on it.
   vec3 hit = v_world + ray * behind_m;
-  float hit_depth_m = bedDepth(hit.xz, u_side_m, u_depth_m);
+  float hit_depth_m = bedDepth(hit.xz, u_extent_m, u_depth_m);
   if (hit.y < 0.1 * u_depth_m - hit_depth_m) undrawn = max(undrawn, smoothstep(0.6, 0.95, hit_depth_m / u_depth_m));
 #endif
 #endif
@@ -284,7 +284,7 @@ void main() {
   if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
 #ifndef SKIRT
-  vec2 place = v_world.xz / u_side_m + 0.5;
+  vec2 place = v_world.xz / u_extent_m + 0.5;
   float foam = 0.0;
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
@@ -321,7 +321,7 @@ void main() {
   }
 #endif
 #ifdef OPEN_SEA
-  float hazy = max(distance_m - 2.0 * u_side_m, 0.0) / u_haze_m;
+  float hazy = max(distance_m - 2.0 * max(u_extent_m.x, u_extent_m.y), 0.0) / u_haze_m;
   if (hazy > 0.01) water = mix(water, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.85 * hazy / (1.0 + hazy));
 #endif
   color = vec4(toDisplay(water), 1.0);

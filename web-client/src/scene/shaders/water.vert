@@ -10,7 +10,7 @@ out vec3 v_side_normal;
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 uniform sampler2D u_field;
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
 
 #ifdef LOWERED
@@ -33,11 +33,11 @@ out float v_top_m;
 void main() {
   v_top_m = texture(u_field, position.xz + 0.5).r;
 #ifdef OPEN_SEA
-  vec2 at = position.xz * u_side_m;
-  float away_m = awayFromSquare(at, u_side_m);
-  v_share_away = vec2(simulatedShare(at, u_side_m), away_m);
+  vec2 at = position.xz * u_extent_m;
+  float away_m = awayFromWater(at, u_extent_m);
+  v_share_away = vec2(simulatedShare(at, u_extent_m), away_m);
   // The grid becomes coarser outside: there the waves are in the normals only.
-  float raised = 1.0 - smoothstep(0.12, 0.5, away_m / u_side_m);
+  float raised = 1.0 - smoothstep(0.12, 0.5, away_m / max(u_extent_m.x, u_extent_m.y));
   float sea_m = raised > 0.0 ? raised * textureLod(u_swell, at / u_tiles_m.x, 0.0).r : 0.0;
   v_top_m = mix(sea_m, v_top_m, v_share_away.x);
 #endif
@@ -46,9 +46,9 @@ void main() {
 #endif
   float depth_m = u_depth_m;
 #ifdef BEACH
-  depth_m = bedDepth(position.xz * u_side_m, u_side_m, u_depth_m);
+  depth_m = bedDepth(position.xz * u_extent_m, u_extent_m, u_depth_m);
 #endif
-  v_world = vec3(position.x * u_side_m, mix(-depth_m, max(v_top_m, -depth_m), position.y), position.z * u_side_m);
+  v_world = vec3(position.x * u_extent_m.x, mix(-depth_m, max(v_top_m, -depth_m), position.y), position.z * u_extent_m.y);
 #ifdef SKIRT
   v_side_normal = normal;
 #endif

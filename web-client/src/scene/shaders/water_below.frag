@@ -29,11 +29,11 @@ const float kWaterPerAir = 1.0 / 0.75;
 
 vec2 slopes() {
 #ifdef OPEN_SEA
-  vec2 slope = v_share_away.x > 0.0 ? textureLod(u_field, v_world.xz / u_side_m + 0.5, 0.0).gb : vec2(0.0);
+  vec2 slope = v_share_away.x > 0.0 ? textureLod(u_field, v_world.xz / u_extent_m + 0.5, 0.0).gb : vec2(0.0);
   slope = mix(texture(u_swell, v_world.xz / u_tiles_m.x).gb, slope, v_share_away.x);
   return slope + texture(u_ripples, v_world.xz / u_tiles_m.y).gb;
 #else
-  return texture(u_field, v_world.xz / u_side_m + 0.5).gb;
+  return texture(u_field, v_world.xz / u_extent_m + 0.5).gb;
 #endif
 }
 
@@ -49,7 +49,7 @@ float fresnelBelow(float facing) {
 
 // Share of the surface that is covered by foam, as in water.frag.
 float foamCover() {
-  vec2 place = v_world.xz / u_side_m + 0.5;
+  vec2 place = v_world.xz / u_extent_m + 0.5;
   float foam = textureLod(u_froth, place, 0.0).r;
 #ifdef FOAM
   foam = max(foam, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
@@ -80,7 +80,7 @@ vec3 airLight(vec3 direction) {
   // Solids above the water, as far as they are on the screen.
   float before_m = 0.0;
   for (int i = 1; i <= 10; ++i) {
-    float along_m = 0.25 * u_side_m * float(i * i) / 100.0;
+    float along_m = 0.25 * max(u_extent_m.x, u_extent_m.y) * float(i * i) / 100.0;
     vec2 uv;
     float view_z;
     if (!onScreen(v_world + direction * along_m, uv, view_z)) break;

@@ -8,7 +8,7 @@ uniform mat4 projectionMatrix;
 
 flat out float v_strength;
 #ifdef FROTH
-uniform float u_side_m;
+uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_target_px;
 const int kKind = 1;
 #else
@@ -44,8 +44,8 @@ void main() {
   // Foam spreads and fades.
   float radius_m = a_motion.w * (1.0 + 1.5 * age);
   v_strength = 0.75 * (1.0 - age);
-  gl_Position = vec4(2.0 * position.xz / u_side_m, 0.0, 1.0);
-  gl_PointSize = max(2.0 * radius_m / u_side_m * u_target_px, 2.0);
+  gl_Position = vec4(2.0 * position.xz / u_extent_m, 0.0, 1.0);
+  gl_PointSize = max(2.0 * radius_m / max(u_extent_m.x, u_extent_m.y) * u_target_px, 2.0);
 #else
   v_flight = vec3(1.0, 0.0, 1.0);
   if (kind != kKind) return;

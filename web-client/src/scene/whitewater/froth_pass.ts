@@ -1,6 +1,6 @@
-// Foam as a texture over the square, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
+// Foam as a texture over the water, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
 // from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (passes/flat_shadow_pass.ts).
-import { ClampToEdgeWrapping, CustomBlending, LinearFilter, MaxEquation, OneFactor, RGFormat, UnsignedByteType, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+import { ClampToEdgeWrapping, CustomBlending, LinearFilter, MaxEquation, OneFactor, RGFormat, UnsignedByteType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../passes/pass";
 import { makeMaterial } from "../shaders";
@@ -13,13 +13,15 @@ export class FrothPass implements Pass {
   readonly target: WebGLRenderTarget;
   private readonly material: RawShaderMaterial;
 
-  /** `texelsCount`: along each side of the square. */
+  /** `texelsCount`: along the longer side of the water. */
   constructor(
     private readonly points: WhitePoints,
-    sideM: number,
+    { sideM, widthM }: { sideM: number; widthM: number },
     texelsCount: number,
   ) {
-    this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
+    const texelsPerM = texelsCount / Math.max(sideM, widthM);
+    const along = (lengthM: number): number => Math.max(Math.round(lengthM * texelsPerM), 1);
+    this.target = new WebGLRenderTarget(along(sideM), along(widthM), {
       format: RGFormat,
       type: UnsignedByteType,
       minFilter: LinearFilter,
@@ -28,7 +30,7 @@ export class FrothPass implements Pass {
       wrapT: ClampToEdgeWrapping,
       depthBuffer: false,
     });
-    this.material = makeMaterial("froth", { u_side_m: { value: sideM }, u_target_px: { value: texelsCount } }, {
+    this.material = makeMaterial("froth", { u_extent_m: { value: new Vector2(sideM, widthM) }, u_target_px: { value: texelsCount } }, {
       defines: { FROTH: 1 },
       blending: CustomBlending,
       blendEquation: MaxEquation,

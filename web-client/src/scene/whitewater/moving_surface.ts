@@ -11,10 +11,12 @@ export interface SurfaceMotion {
 }
 
 export class MovingSurface {
-  readonly sideM: number;
+  private readonly sideM: number;
+  private readonly widthM: number;
   private readonly from: Int16Array;
   private readonly to: Int16Array;
   private readonly resolutionCount: number;
+  private readonly countZ: number;
   private readonly quantaM: readonly [number, number];
   private readonly mix: number;
   private readonly intervalS: number;
@@ -22,9 +24,11 @@ export class MovingSurface {
   private readonly motion: SurfaceMotion = { elevationM: 0, riseMps: 0, slopeX: 0, slopeZ: 0 };
 
   constructor({ from, to, mix }: Readonly<Between<SurfaceFrame>>) {
-    const earlier = from.resolutionCount === to.resolutionCount ? from : to;
+    const earlier = from.resolutionCount === to.resolutionCount && from.countZ === to.countZ ? from : to;
     this.sideM = to.sideM;
+    this.widthM = to.widthM;
     this.resolutionCount = to.resolutionCount;
+    this.countZ = to.countZ;
     this.from = new Int16Array(earlier.buffer);
     this.to = new Int16Array(to.buffer);
     this.quantaM = [earlier.quantumM, to.quantumM];
@@ -36,14 +40,14 @@ export class MovingSurface {
     return this.sideM / this.resolutionCount;
   }
 
-  /** Returns the elevation of the nearest sample; undefined outside the square. */
+  /** Returns the elevation of the nearest sample; undefined outside the water. */
   elevationAtM(xM: number, zM: number): number | undefined {
     const at = this.sampleAt(xM, zM);
     if (at < 0) return undefined;
     return this.from[at]! * this.quantaM[0] * (1 - this.mix) + this.to[at]! * this.quantaM[1] * this.mix;
   }
 
-  /** Returns how the surface moves at the nearest sample; undefined outside the square. The next call overwrites the result. */
+  /** Returns how the surface moves at the nearest sample; undefined outside the water. The next call overwrites the result. */
   motionAt(xM: number, zM: number): Readonly<SurfaceMotion> | undefined {
     const at = this.sampleAt(xM, zM);
     if (at < 0) return undefined;
@@ -51,7 +55,7 @@ export class MovingSurface {
     const { motion, to, from, quantaM } = this;
     const [i, k] = [at % n, Math.floor(at / n)];
     const [left, right] = [Math.max(i - 1, 0), Math.min(i + 1, n - 1)];
-    const [back, front] = [Math.max(k - 1, 0), Math.min(k + 1, n - 1)];
+    const [back, front] = [Math.max(k - 1, 0), Math.min(k + 1, this.countZ - 1)];
     motion.elevationM = from[at]! * quantaM[0] * (1 - this.mix) + to[at]! * quantaM[1] * this.mix;
     motion.riseMps = this.intervalS > 0 ? (to[at]! * quantaM[1] - from[at]! * quantaM[0]) / this.intervalS : 0;
     motion.slopeX = ((to[k * n + right]! - to[k * n + left]!) * quantaM[1]) / (Math.max(right - left, 1) * this.cellM);
@@ -63,7 +67,7 @@ export class MovingSurface {
   private sampleAt(xM: number, zM: number): number {
     const n = this.resolutionCount;
     const i = Math.floor((xM / this.sideM + 0.5) * n);
-    const k = Math.floor((zM / this.sideM + 0.5) * n);
-    return i >= 0 && i < n && k >= 0 && k < n ? k * n + i : -1;
+    const k = Math.floor((zM / this.widthM + 0.5) * this.countZ);
+    return i >= 0 && i < n && k >= 0 && k < this.countZ ? k * n + i : -1;
   }
 }

@@ -69,15 +69,15 @@ const kMostCrestMps = 6;
 /** Breaking crests: foam that grew from one frame to the next. */
 export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surface: MovingSurface): void {
   const n = to.resolutionCount;
-  if (from.resolutionCount !== n) return;
+  if (from.resolutionCount !== n || from.countZ !== to.countZ) return;
   const { particles, random, scale } = births;
   const [before, after] = [new Uint8Array(from.buffer), new Uint8Array(to.buffer)];
   const cellM = to.sideM / n;
-  for (let at = 0; at < n * n; ++at) {
+  for (let at = 0; at < n * to.countZ; ++at) {
     const grown = after[at]! - before[at]!;
     if (grown < kNewFoam) continue;
     const xM = ((at % n) + 0.5) * cellM - to.sideM / 2;
-    const zM = (Math.floor(at / n) + 0.5) * cellM - to.sideM / 2;
+    const zM = (Math.floor(at / n) + 0.5) * (to.widthM / to.countZ) - to.widthM / 2;
     const motion = surface.motionAt(xM, zM);
     if (!motion) continue;
     const { elevationM, riseMps, slopeX, slopeZ } = motion;

@@ -28,6 +28,6 @@ export interface WhitewaterPasses {
 export function makeWhitewaterPasses(greeting: GreetingInfo, frames: StreamedFrames, solids: SolidsPass, sky: Sky, quality: WhitewaterQuality): WhitewaterPasses {
   const whitewater = new WhitewaterPass(greeting, frames, solids, quality);
   const { points } = whitewater;
-  const froth = new FrothPass(points, greeting.sideM, quality.frothTexelsCount);
+  const froth = new FrothPass(points, greeting, quality.frothTexelsCount);
   return { before: [whitewater, froth, new BubblesPass(points, solids, sky)], after: [new SprayPass(points, solids, sky)], froth, particles: whitewater.particles };
 }

@@ -76,6 +76,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
     std::shared_ptr<const rooms::RoomSnapshot> greeted;  ///< the state sent in the last greeting
     core::TokenBucket commands;
     bool said_hello = false;
+    std::uint32_t wire_minor = 0;  ///< of the client, once it has said hello
     core::Role role = core::Role::kViewer;
     std::uint32_t person_id = 0;
   };

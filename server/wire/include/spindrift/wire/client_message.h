@@ -18,7 +18,9 @@ namespace spindrift::wire {
 /// Version of the wire protocol. Clients with another major version are refused; minor versions only add fields and
 /// messages.
 inline constexpr std::uint32_t kWireMajor = 1;
-inline constexpr std::uint32_t kWireMinor = 0;
+inline constexpr std::uint32_t kWireMinor = 1;
+/// First minor version whose clients know planes that are no squares (count_z and width_m of their headers).
+inline constexpr std::uint32_t kRectangleMinor = 1;
 /// Hello.client is cut to this length.
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.
@@ -76,6 +78,10 @@ v1::Reject toWire(const CommandRejection& rejection);
 
 /// Returns nullopt if this server supports the client's version, otherwise one line for a Refusal.
 std::optional<std::string> checkVersion(const Hello& hello);
+
+/// Returns nullopt if a client of this minor version can show the scene's water, otherwise one line for a Refusal:
+/// clients of 1.0 take every plane for a square.
+std::optional<std::string> checkWater(std::uint32_t minor, const v1::Scene& scene);
 
 /// Checks a command that checkCommand() accepted against the scene: absent parts, splashes deeper or wider than the
 /// water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range, boats too
