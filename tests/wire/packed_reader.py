@@ -58,18 +58,26 @@ def fields_of(data):
 # Name and type of the fields that are read, by number; from wire.proto.
 DOUBLE, UINT, SINTS, FIXED32, BYTES = "double", "uint", "sints", "fixed32", "bytes"
 GRID = {1: ("resolution_count", UINT), 2: ("side_m", DOUBLE)}
+
+
+def along_z(first):
+    """What the headers of planes that are no squares have besides; 0 is as along x."""
+    return {first: ("count_z", UINT), first + 1: ("width_m", DOUBLE)}
+
+
 CODECS = {
-    8: ("surface_fixed16", {**GRID, 3: ("quantum_m", DOUBLE)}),
+    8: ("surface_fixed16", {**GRID, 3: ("quantum_m", DOUBLE), **along_z(4)}),
     9: ("particles_fixed12", {1: ("count", UINT), **{i + 2: (f"{m}_{a}_m", DOUBLE) for i, (m, a) in enumerate(
         (m, a) for m in ("min", "max") for a in "xyz")}, 8: ("max_speed_mps", DOUBLE), 9: ("radius_m", DOUBLE)}),
-    10: ("foam_fixed8", GRID),
+    10: ("foam_fixed8", {**GRID, **along_z(3)}),
     11: ("bodies_fixed28", {1: ("count", UINT)}),
-    12: ("surface_predicted", {**GRID, 3: ("quantum_m", DOUBLE), 4: ("weights", SINTS), 5: ("earlier_weights", SINTS)}),
+    12: ("surface_predicted", {**GRID, 3: ("quantum_m", DOUBLE), 4: ("weights", SINTS), 5: ("earlier_weights", SINTS),
+                               **along_z(6)}),
     13: ("particles_by_cell", {1: ("count", UINT), 2: ("min_x_m", DOUBLE), 3: ("min_y_m", DOUBLE), 4: ("min_z_m", DOUBLE),
                                5: ("cells_x_count", UINT), 6: ("cells_y_count", UINT), 7: ("cells_z_count", UINT),
                                8: ("cell_m", DOUBLE), 9: ("offset_bits", UINT), 10: ("velocity_quantum_mps", DOUBLE),
                                11: ("radius_m", DOUBLE)}),
-    14: ("foam_predicted", {**GRID, 3: ("weights", SINTS), 4: ("earlier_weights", SINTS)}),
+    14: ("foam_predicted", {**GRID, 3: ("weights", SINTS), 4: ("earlier_weights", SINTS), **along_z(5)}),
 }
 FRAME = {1: ("layer", UINT), 2: ("tick", UINT), 3: ("time_s", DOUBLE), 4: ("keyframe", UINT), 5: ("base_tick", UINT),
          6: ("crc32c", FIXED32), 7: ("level", UINT), 15: ("payload", BYTES), 16: ("server_time_s", DOUBLE),
@@ -161,6 +169,11 @@ def check_header(frame):
                         ("velocity_quantum_mps", 0)):
         must(h.get(name, least) >= least, f"{name} is below {least}")
     must(1 <= h.get("resolution_count", 1) <= 4096, "resolution_count")
+    if "resolution_count" in h:
+        h["count_z"] = h["count_z"] or h["resolution_count"]
+        h["width_m"] = h["width_m"] or h["side_m"]
+        must(h["count_z"] <= 4096, "count_z")
+        must(h["width_m"] >= 1e-6, "width_m")
     must(h.get("count", 0) <= (1024 if codec == "bodies_fixed28" else 4_194_304), "count")
     if codec == "particles_fixed12":
         must(all(h[f"min_{a}_m"] <= h[f"max_{a}_m"] for a in "xyz"), "a minimum above its maximum")
@@ -175,7 +188,7 @@ def check_header(frame):
         must(not frame["keyframe"] or len(h["earlier_weights"]) == 10, "earlier_weights")
     bytes_each = {"surface_fixed16": 2, "foam_fixed8": 1, "particles_fixed12": 12, "bodies_fixed28": 28}.get(codec)
     if bytes_each:
-        elements = h["count"] if "count" in h else h["resolution_count"] ** 2
+        elements = h["count"] if "count" in h else h["resolution_count"] * h["count_z"]
         must(len(frame["payload"]) == bytes_each * elements, "the payload's length")
     must(crc32c(frame["payload"]) == frame["crc32c"], "the checksum")
 
@@ -276,28 +289,29 @@ CROSS = ((-1, 0), (1, 0), (0, -1), (0, 1))
 DIAGONAL = ((-1, -1), (1, -1), (-1, 1), (1, 1))
 
 
-def read_plane(residuals, n, weights, before, earlier):
+def read_plane(residuals, counts, weights, before, earlier):
     """before, earlier: planes as lists of rows, or None."""
-    plane = [[0] * n for _ in range(n)]
+    nx, nz = counts
+    plane = [[0] * nx for _ in range(nz)]
 
     def total(frame, x, z, places, reach=1):
         if frame is None:
             return 0
-        at = lambda i: min(max(i, 0), n - 1)
-        return sum(frame[at(z + reach * dz)][at(x + reach * dx)] for dx, dz in places)
+        at = lambda i, n: min(max(i, 0), n - 1)
+        return sum(frame[at(z + reach * dz, nz)][at(x + reach * dx, nx)] for dx, dz in places)
 
     classes = {}
-    for tz in range(0, n, 8):
-        for tx in range(0, n, 8):
-            width, height = min(8, n - tx), min(8, n - tz)
+    for tz in range(0, nz, 8):
+        for tx in range(0, nx, 8):
+            width, height = min(8, nx - tx), min(8, nz - tz)
             c, values = residuals.group(width * height, classes.get((tx - 8, tz), 0), classes.get((tx, tz - 8), 0))
             classes[tx, tz] = c
             plane_part = iter(values)
             for z in range(tz, tz + height):
                 for x in range(tx, tx + width):
                     plane[z][x] = next(plane_part)
-    for z in range(n):
-        for x in range(n):
+    for z in range(nz):
+        for x in range(nx):
             if z == 0:
                 own = [plane[0][x - 1] if x > 0 else 0] * 3
             elif x == 0:
@@ -324,7 +338,8 @@ class Reader:
         return getattr(self, frame["codec"])(frame, frame["header"])
 
     def predicted(self, frame, h):
-        n, same = h["resolution_count"], (frame["level"], h["resolution_count"], h["side_m"], h.get("quantum_m"))
+        n = h["resolution_count"], h["count_z"]
+        same = (frame["level"], *n, h["side_m"], h["width_m"], h.get("quantum_m"))
         known = self.history.pop(frame["layer"], None)
         residuals = Residuals(Bits(frame["payload"]))
         if frame["keyframe"]:
@@ -345,7 +360,7 @@ class Reader:
         return {"foam": [min(max(s, 0), 255) for s in self.predicted(frame, h)]}
 
     def surface_fixed16(self, frame, h):
-        samples = struct.unpack(f"<{h['resolution_count'] ** 2}h", frame["payload"])
+        samples = struct.unpack(f"<{h['resolution_count'] * h['count_z']}h", frame["payload"])
         return {"elevation_m": [s * h["quantum_m"] for s in samples]}
 
     def foam_fixed8(self, frame, h):

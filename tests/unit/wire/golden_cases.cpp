@@ -392,6 +392,7 @@ std::vector<GoldenCase> goldenCases() {
   for (GoldenCase& packed : goldenPackedSurfaces()) cases.push_back(std::move(packed));
   for (GoldenCase& packed : goldenPackedFoam()) cases.push_back(std::move(packed));
   for (GoldenCase& packed : goldenPackedParticles()) cases.push_back(std::move(packed));
+  for (GoldenCase& rectangle : goldenRectangles()) cases.push_back(std::move(rectangle));
   return cases;
 }
 

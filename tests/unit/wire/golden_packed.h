@@ -10,5 +10,7 @@ namespace spindrift::wire {
 std::vector<GoldenCase> goldenPackedSurfaces();
 std::vector<GoldenCase> goldenPackedFoam();
 std::vector<GoldenCase> goldenPackedParticles();
+/// Planes with other numbers of samples along x and z, plain and packed (golden_rectangles.cpp).
+std::vector<GoldenCase> goldenRectangles();
 
 }  // namespace spindrift::wire

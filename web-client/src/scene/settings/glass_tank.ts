@@ -8,15 +8,17 @@ import { MeshBuilder, type Paint } from "../mesh_builder";
 import { makeMaterial, type Uniforms } from "../shaders";
 import type { SurroundingsContext } from "./context";
 
-/** Shares of the longer side: thickness of the glass, of the table, and how far it reaches beyond the glass. */
+/** Shares of the tank's size: thickness of the glass, of the table, and how far it reaches beyond the glass. */
 const kGlassThickness = 0.012;
 const kTableThickness = 0.05;
 const kTableReach = 0.35;
-/** Rim of the glass over the resting water: a share of the depth, and at least one of the longer side. */
+/** Rim of the glass over the resting water: a share of the depth, and at least one of the tank's size. */
 const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
-/** Bays of a flume's frame along its length. */
+/** Bays of a flume's frame along its length, for each of its sizes. */
 const kBayCount = 2;
+/** The size of a long channel is this many of its shorter sides: its glass and frame are not those of a wide tank. */
+const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
 const kWood: Paint = [0.30, 0.16, 0.075, 0.55];
@@ -34,17 +36,22 @@ export interface TankSize {
   isFlume: boolean;
 }
 
+/** The length that glass, table and frame are shares of: the longer side. */
+function sizeM({ sideM, widthM }: Pick<TankSize, "sideM" | "widthM">): number {
+  return Math.min(Math.max(sideM, widthM), kSizeWidths * Math.min(sideM, widthM));
+}
+
 /** Returns the tank that holds the scene's water, with room for waves. */
 export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents" | "setting">): TankSize {
   const { sideM, widthM, waterExtents } = greeting;
   const { depthM } = waterExtents;
-  const freeboardM = Math.max(kFreeboardDepths * depthM, kFreeboardSides * Math.max(sideM, widthM));
+  const freeboardM = Math.max(kFreeboardDepths * depthM, kFreeboardSides * sizeM({ sideM, widthM }));
   return { sideM, widthM, heightM: depthM + freeboardM, isFlume: greeting.setting === "flume" };
 }
 
 /** Four panes; their upper edges have the second paint. The floor of the tank is at y = 0. */
 export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferGeometry {
-  const thickM = kGlassThickness * Math.max(sideM, widthM);
+  const thickM = kGlassThickness * sizeM({ sideM, widthM });
   const builder = new MeshBuilder();
   const [hx, hz] = [sideM / 2, widthM / 2];
   const pane = (xM: number, zM: number, halfX: number, halfZ: number): void => {
@@ -59,7 +66,8 @@ export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferG
 
 /** What carries the tank: a table, or the frame of a flume. */
 export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize): BufferGeometry {
-  const longM = Math.max(sideM, widthM);
+  const longM = sizeM({ sideM, widthM });
+  const bayCount = Math.max(Math.round((kBayCount * Math.max(sideM, widthM)) / longM), 1);
   const thickM = kGlassThickness * longM;
   const builder = new MeshBuilder();
   const [hx, hz] = [sideM / 2 + thickM, widthM / 2 + thickM];
@@ -78,15 +86,20 @@ export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize)
     return builder.build();
   }
   const beamM = 0.013 * longM;
+  const isAlongX = sideM >= widthM;
   box(0, 0, -bedM - 2.5 * beamM, -bedM, hx + beamM, hz + beamM, kSteel);
-  for (let bay = 0; bay <= kBayCount; ++bay) {
-    const xM = (bay / kBayCount - 0.5) * 2 * hx;
-    for (const z of [-1, 1]) {
-      box(xM, z * (hz + beamM / 2), -bedM, heightM + beamM / 2, beamM / 2, beamM / 2, kSteel);
-      box(xM, z * hz, -bedM - 0.4 * longM, -bedM - 2.5 * beamM, beamM, beamM, kSteel);
+  for (let bay = 0; bay <= bayCount; ++bay) {
+    const along = (bay / bayCount - 0.5) * 2;
+    for (const side of [-1, 1]) {
+      const [post, leg] = isAlongX ? [[along * hx, side * (hz + beamM / 2)], [along * hx, side * hz]] : [[side * (hx + beamM / 2), along * hz], [side * hx, along * hz]];
+      box(post![0]!, post![1]!, -bedM, heightM + beamM / 2, beamM / 2, beamM / 2, kSteel);
+      box(leg![0]!, leg![1]!, -bedM - 0.4 * longM, -bedM - 2.5 * beamM, beamM, beamM, kSteel);
     }
   }
-  for (const z of [-1, 1]) box(0, z * (hz + beamM / 2), heightM, heightM + beamM, hx + beamM / 2, beamM / 2, kSteel);
+  for (const side of [-1, 1]) {
+    if (isAlongX) box(0, side * (hz + beamM / 2), heightM, heightM + beamM, hx + beamM / 2, beamM / 2, kSteel);
+    else box(side * (hx + beamM / 2), 0, heightM, heightM + beamM, beamM / 2, hz + beamM / 2, kSteel);
+  }
   return builder.build();
 }
 
