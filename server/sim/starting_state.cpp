@@ -6,7 +6,7 @@
 namespace spindrift::sim {
 namespace {
 
-constexpr double kCalmInterval_s = 1.0 / 3;
+constexpr double kCalmInterval_s = 1.0;
 
 }  // namespace
 

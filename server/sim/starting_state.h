@@ -14,7 +14,7 @@ namespace spindrift::sim {
 /// 4 floats per particle: position [m] and id, layer by layer from below. The same on every machine for a given seed.
 std::vector<float> startingPositions(const core::Scene& scene, const ParticleLayout& layout);
 
-/// The same after `settle_s` without events, in which three times per second all speeds are set to zero: a lattice is
+/// The same after `settle_s` without events, in which once per second all speeds are set to zero: a lattice is
 /// not the solver's state of rest, and releases its surplus energy when it slides into a looser order.
 core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core::Scene& scene);
 

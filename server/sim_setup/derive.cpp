@@ -286,7 +286,8 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.wall_share = f(l.wall_share);
     u.wall_reach_m = f(l.wall_reach_m);
     u.constraint_softness_pm2 = f(l.constraint_softness_pm2);
-    u.floor_gap_m = f(kFloorGapRatio * l.spacing_m);
+    const bool holds_layer = scene.coupling && p.solver == core::PressureSolver::kPositionBased;
+    u.floor_gap_m = f((holds_layer ? kPositionBasedFloorGapRatio : kFloorGapRatio) * l.spacing_m);
     u.candidates_max_count = maxCandidates(p, l);
   }
   if (isTwoWay(scene)) {

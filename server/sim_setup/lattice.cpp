@@ -164,7 +164,7 @@ double calibratedFloorDrag(double s, double H, double rho_0, double mass_kg, con
   double laplacian_pm2 = 0.0;
   for (int y = 1; y <= layersWithin(s, H); ++y) {
     for (const double d2 : lateralSquares(s, layersWithin(s, H)))
-      laplacian_pm2 += mass_kg / rho_0 * viscosityNorm(H) * std::max(H - std::sqrt(d2 + s * s * y * y), 0.0);
+      laplacian_pm2 += 2 * y * mass_kg / rho_0 * viscosityNorm(H) * std::max(H - std::sqrt(d2 + s * s * y * y), 0.0);
   }
   return laplacian_pm2 / std::pow(1 - s / 2 / wall.reach_m, 2);
 }

@@ -176,6 +176,12 @@ double pressure(const core::Scene& scene, const sim::Derived& d, double rho) {
   return s.cohesion ? p : std::max(p, 0.0);
 }
 
+/// Of a pair that approaches with this speed, over the rest density. [m^2/s^2]
+double collisionStress(const sim::Derived& d, double approach_mps) {
+  constexpr double kCollisionFactor = 6.0;
+  return approach_mps * std::min(kCollisionFactor * approach_mps, d.particles->spacing_m / (4 * d.dt_s));
+}
+
 double length2(const Vec3& a) {
   return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
@@ -286,12 +292,17 @@ std::vector<Vec3> referenceAcceleration(const core::Scene& scene, const sim::Der
       const double pair = scene.particles->pressure_force == core::PressureForce::kMean
                               ? (own + other) / (2 * rho[i] * rho[j])
                               : own_term + other / (rho[j] * rho[j]);
-      const double push = -m * pair * pressureGradient(scene.particles->kernel_set, distance, H) / distance;
+      double closing = 0;
+      for (int axis = 0; axis < 3; ++axis) closing -= (v[i][axis] - v[j][axis]) * r[axis] / distance;
+      const double collision = collisionStress(d, std::max(closing, 0.0)) / scene.particles->rest_density_kgpm3;
+      const double push =
+          -m * (pair + collision) * pressureGradient(scene.particles->kernel_set, distance, H) / distance;
       const double drag = mu / rho[i] * m / rho[j] * viscosityLaplacian(distance, H);
       for (int axis = 0; axis < 3; ++axis) a[axis] += push * r[axis] + drag * (v[j][axis] - v[i][axis]);
     }
     const Vec3 floor_velocity = floor.velocity(x[i][0], x[i][2]);
-    const double floor_drag = mu / rho[i] * floor.drag(x[i]);
+    double floor_drag = mu / rho[i] * floor.drag(x[i]);
+    if (!scene.coupling) floor_drag /= 1 + d.dt_s * floor_drag;  // implicit
     for (int axis = 0; axis < 3; ++axis) a[axis] += floor_drag * (floor_velocity[axis] - v[i][axis]);
     const Vec3 gradient = boundaryGradient(scene, d, floor, x[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) a[axis] -= std::max(own_term, 0.0) * gradient[axis];

@@ -30,11 +30,13 @@ float floorDensity(vec3 x_i) {
 /// Gradient of floorDensity. [kg/m^4]
 vec3 floorGradient(vec3 x_i) { return vec3(0.0, -2.0 * sim.rest_density_kgpm3 * sim.wall_share * flatFloorReach(x_i) / sim.wall_reach_m, 0.0); }
 
-/// Acceleration by the floor: pressure, -(p_i / rho_i^2) times the gradient, and viscosity against the floor at rest.
+/// Acceleration by the floor: pressure, -(p_i / rho_i^2) times the gradient, and viscosity against the floor at rest, which
+/// is implicit in the step: below the lowest layer's place it is stiffer than between particles.
 /// `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
 vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
   const float u = flatFloorReach(x_i);
-  return -pressure_term * floorGradient(x_i) - sim.viscosity_pas / rho_i * sim.floor_drag_pm2 * u * u * v_i;
+  const float rate_ps = sim.viscosity_pas / rho_i * sim.floor_drag_pm2 * u * u;
+  return -pressure_term * floorGradient(x_i) - rate_ps / (1.0 + sim.dt_s * rate_ps) * v_i;
 }
 #else
 #define LATTICE_REACH (LATTICE / 2)

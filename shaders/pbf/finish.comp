@@ -1,11 +1,13 @@
-// Viscosity between the particles and against the floor, foam, and the sides; ends the step.
+// Viscosity between the particles and against the floor, collisions between them, foam, and the sides; ends the step.
 // Reads PRESSURE_POINT (position, m/rho), ACCELERATION (velocity, rho), SORTED_POSITION.w (id), SORTED_VELOCITY.w (foam), CELL_START, the
 // floor. Writes POSITION, VELOCITY (in sorted order).
-// Equation: the weakly compressible solver's viscosity, mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W (thesis 3.18), over one step.
+// Equation: the weakly compressible solver's viscosity, mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W (thesis 3.18), and its
+// collisions, -1/rho_0 sum_j m q grad W (particles/collision.glsl), over one step.
 #include "shared/groups.h"
 #include "particles/population.glsl"
 #include "grid/candidates.glsl"
 #include "particles/boundary.glsl"
+#include "particles/collision.glsl"
 #include "common/finite.glsl"
 #include "particles/foam.glsl"
 #include "particles/surroundings.glsl"
@@ -35,7 +37,9 @@ void main() {
   const vec4 own = texelFetch(acceleration, int(i));
   const ivec3 cell = cellOf(g, x_i);
 
+  const float limit_mps = collisionLimit();
   vec3 drag = vec3(0.0);
+  vec3 push = vec3(0.0);
 #if NEIGHBOUR_FOAM
   const float H2 = support.H * support.H;
   float near = -1.0;  // the particle itself is not counted
@@ -48,7 +52,9 @@ void main() {
         const vec4 a = texelFetch(pressure_point, j);
         const vec3 r = fromCandidate(g, x, a.xyz);
         const float r2 = dot(r, r);
-        drag += (a.w * viscosityLaplacian(sqrt(r2), support.H)) * (texelFetch(acceleration, j).xyz - own.xyz);
+        const vec3 v_ij = own.xyz - texelFetch(acceleration, j).xyz;
+        push += (collision(r, r2, v_ij, limit_mps) * pressurePull(r2, support)) * r;
+        drag -= (a.w * viscosityLaplacian(sqrt(r2), support.H)) * v_ij;
 #if NEIGHBOUR_FOAM
         near += step(r2, H2);
 #endif
@@ -56,7 +62,9 @@ void main() {
     }
   }
 
-  vec3 v = own.xyz + sim.dt_s * (sim.viscosity_norm * sim.viscosity_pas / own.w * drag + floorAcceleration(x_i, own.xyz, 0.0, own.w));
+  const vec3 a_collisions = sim.slope_norm * sim.mass_kg / sim.rest_density_kgpm3 * push;
+  const vec3 a_viscosity = sim.viscosity_norm * sim.viscosity_pas / own.w * drag + floorAcceleration(x_i, own.xyz, 0.0, own.w);
+  vec3 v = own.xyz + sim.dt_s * (a_collisions + a_viscosity);
   v *= min(1.0, sim.max_speed_mps / max(length(v), 1e-6));
   if (!meetSurroundings(x_i, v)) {
 #if POOL_PARTICLES

@@ -2,13 +2,14 @@
 // Reads PRESSURE_POINT, MOTION_POINT, ACCELERATION.w (rho), CELL_START, floor and walls. Writes ACCELERATION.
 // Equations: -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W (momentum-conserving form of thesis 3.17) or, with MEAN_FORCE,
 // -1/rho_i sum_j m (p_i + p_j)/(2 rho_j) grad W (thesis 3.17 unchanged); mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian
-// W, viscosity kernel (thesis 3.18, with the velocity difference that its text describes); above the water -downforce
-// (y - eta)^2 (thesis 3.6.2).
+// W, viscosity kernel (thesis 3.18, with the velocity difference that its text describes); -1/rho_0 sum_j m q grad W for
+// pairs that approach each other (particles/collision.glsl); above the water -downforce (y - eta)^2 (thesis 3.6.2).
 // Invariant: the pair terms are antisymmetric up to rounding (not with MEAN_FORCE); the particle itself adds nothing (r = 0).
 #include "shared/groups.h"
 #include "grid/candidates.glsl"
 #include "particles/population.glsl"
 #include "particles/boundary.glsl"
+#include "particles/collision.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
@@ -26,6 +27,16 @@ void main() {
   const float rho_i = acceleration[i].w;
   const ivec3 cell = cellOf(g, own.xyz);
 
+#if MEAN_FORCE
+  const float push_factor = 0.5 / rho_i;
+  const float pressure_term = own.w / (rho_i * rho_i);
+#else
+  const float push_factor = sim.mass_kg;
+  const float pressure_term = own.w;
+#endif
+  const float collision_factor = sim.mass_kg / (sim.rest_density_kgpm3 * push_factor);
+  const float limit_mps = collisionLimit();
+
   vec3 push = vec3(0.0);
   vec3 drag = vec3(0.0);
   for (int dz = -1; dz <= 1; ++dz) {
@@ -37,23 +48,17 @@ void main() {
         const vec4 b = texelFetch(motion_point, j);
         const vec3 r = fromCandidate(g, x, a.xyz);
         const float r2 = dot(r, r);
+        const float q = collision(r, r2, v_i - b.xyz, limit_mps);
 #if MEAN_FORCE
-        push += ((own.w + a.w) * b.w * pressurePull(r2, support)) * r;
+        push += (((own.w + a.w) * b.w + collision_factor * q) * pressurePull(r2, support)) * r;
 #else
-        push += ((own.w + a.w) * pressurePull(r2, support)) * r;
+        push += ((own.w + a.w + collision_factor * q) * pressurePull(r2, support)) * r;
 #endif
         drag += (b.w * viscosityLaplacian(sqrt(r2), support.H)) * (b.xyz - v_i);
       }
     }
   }
 
-#if MEAN_FORCE
-  const float push_factor = 0.5 / rho_i;
-  const float pressure_term = own.w / (rho_i * rho_i);
-#else
-  const float push_factor = sim.mass_kg;
-  const float pressure_term = own.w;
-#endif
   vec3 a = sim.slope_norm * push_factor * push + sim.viscosity_norm * sim.viscosity_pas / rho_i * drag;
   a += boundaryAcceleration(own.xyz, v_i, pressure_term, rho_i);
   a.y -= sim.gravity_mps2;

@@ -1,5 +1,6 @@
 // The device's step against the reference in double precision, through the solver's public interface.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -122,6 +123,62 @@ TEST_F(Solver, AgreesWithTheReferenceInABoxThatIsPeriodicInEveryDirection) {
     scene.particles->fill_density_ratio = 1.1;
     scene.particles->solver = solver;
     compare(scene);
+  }
+}
+
+/// Two particles, 0.8 spacings apart and far from the others, with speeds +-`speed_mps` along their line; returns the
+/// speeds along it after one step without viscosity.
+class Pair : public Solver {
+ protected:
+  std::array<double, 2> after(core::PressureSolver solver, float speed_mps) {
+    core::Scene scene = smallScene(900);
+    scene.wave.reset();
+    scene.coupling.reset();
+    scene.foam.reset();
+    scene.particles->box_side_m = 8.0;
+    scene.particles->viscosity_pas = 0.0;
+    scene.particles->solver = solver;
+    WaterSim& sim = make(study::oneSubstepScene(scene));
+    StateCopy state = sim.copyState();
+    state.velocity.assign(state.velocity.size(), 0.0f);
+    const auto gap_m = static_cast<float>(0.8 * sim.derived().particles->spacing_m);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const float side = k == 0 ? -1.0f : 1.0f;
+      state.position[4 * k] = side * gap_m / 2;
+      state.position[4 * k + 1] = 2.5f;
+      state.position[4 * k + 2] = 0.0f;
+      state.velocity[4 * k] = -side * speed_mps;
+    }
+    sim.setState(state);
+    sim.step();
+    const StateCopy moved = sim.copyState();
+    std::array<double, 2> out{};
+    for (std::size_t i = 0; i < moved.position.size() / 4; ++i) {
+      if (moved.position[4 * i + 3] < 1.5f)
+        out[static_cast<std::size_t>(moved.position[4 * i + 3])] = moved.velocity[4 * i];
+    }
+    return out;
+  }
+};
+
+TEST_F(Pair, LosesSpeedWhereItApproachesAndNeverBounces) {
+  for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
+    double kept_before = 1.0;
+    for (const float speed_mps : {0.1f, 1.0f, 3.0f}) {
+      const auto [left, right] = after(solver, speed_mps);
+      EXPECT_NEAR(left, -right, 1e-5 * speed_mps) << "momentum";
+      EXPECT_GT(left, 0.0);
+      EXPECT_LT(left / speed_mps, kept_before) << "faster pairs lose more";
+      kept_before = left / speed_mps;
+    }
+  }
+}
+
+TEST_F(Pair, KeepsItsSpeedWhereItParts) {
+  for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
+    const auto [left, right] = after(solver, -1.0f);
+    EXPECT_NEAR(left, -1.0, 1e-5);
+    EXPECT_NEAR(right, 1.0, 1e-5);
   }
 }
 

@@ -200,23 +200,6 @@ TEST(Derive, TaitWaterTakesSmallerStepsForItsFasterSound) {
               1e-12);
 }
 
-TEST(Derive, WallsReplaceTheDensityOfTheMissingLayers) {
-  const double s = 0.1;
-  for (const auto set : {core::KernelSet::kMuller, core::KernelSet::kCubicSpline, core::KernelSet::kWendlandC2}) {
-    for (const double H : {0.17, 0.2, 0.24, 0.3}) {
-      const double m = calibratedMass(set, s, H, 1000.0);
-      const WallSupport wall = calibratedWall(set, s, H, 1000.0, m);
-      double missing = 0.0;
-      for (int x = 1; x <= 3; ++x)
-        for (int y = -3; y <= 3; ++y)
-          for (int z = -3; z <= 3; ++z) missing += m * densityKernel(set, s * std::sqrt(x * x + y * y + z * z), H);
-      EXPECT_NEAR(1000.0 * wall.share * std::pow(1 - s / 2 / wall.reach_m, 2), missing, 1e-6);
-      EXPECT_GT(wall.reach_m, s / 2);
-      EXPECT_LE(wall.reach_m, H);
-    }
-  }
-}
-
 TEST(Derive, CountsUpToAMillionFitTheirDispatches) {
   core::Scene scene = boxScene(1'048'576);
   scene.particles->layers_count = 16;

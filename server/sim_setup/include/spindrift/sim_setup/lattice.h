@@ -13,6 +13,9 @@ inline constexpr double kVirtualDepthRatio = 0.5;
 /// Pressure keeps particles about s/2 above the floor. This share of the spacing is the hard limit for particles that
 /// pressure did not stop. Larger values lift still water; smaller ones let particles come close to the virtual ones.
 inline constexpr double kFloorGapRatio = 0.1;
+/// The same for position-based water on a wave: its lowest layer would sink onto the limit and lose a quarter of its
+/// particles to the layers above, one by one and at up to 0.8 m/s.
+inline constexpr double kPositionBasedFloorGapRatio = 0.45;
 
 /// Factors of the shapes in shaders/particles/kernels.glsl, from the support radius H [m].
 double densityNorm(core::KernelSet set, double H);
@@ -48,7 +51,8 @@ struct WallSupport {
 WallSupport calibratedWall(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
 /// Viscosity of a flat floor, drag(d) = result times max(1 - d / reach_m, 0)^2: replaces the Laplacian of the layers
-/// missing below the lowest one. [1/m^2]
+/// missing below the lowest one. Water sticks to the floor: a missing layer k counts with the speed that continues an even
+/// shear through zero at the floor, -(2 k - 1) times that of the lowest layer. [1/m^2]
 double calibratedFloorDrag(double s, double H, double rho_0, double mass_kg, const WallSupport& wall);
 
 /// Squared gradient of the density constraint rho/rho_0 - 1, summed over the neighbours, inside the lattice. [1/m^2]
