@@ -131,12 +131,15 @@ std::vector<CellCounts> dispersionGrids(const WaveLayout& layout) {
   CellCounts n = layout.counts();
   while (true) {
     const bool is_small = n.x <= kCoarsestSideCount && n.z <= kCoarsestSideCount;
-    const bool ends_odd = out.size() >= kLeastOdd && (isOdd(n.x) || isOdd(n.z)) && n.total() <= kBottomCells;
+    // Where only one axis is odd, going on is more accurate than the sweeps of a coarsest grid that is long.
+    const bool is_stuck = (layout.is_periodic_x && isOdd(n.x)) || (layout.is_periodic_z && isOdd(n.z));
+    const bool ends_odd =
+        out.size() >= kLeastOdd && (is_stuck || (isOdd(n.x) && isOdd(n.z))) && n.total() <= kBottomCells;
     if (!out.empty() && (is_small || ends_odd)) {
       out.push_back(n);
       return out;
     }
-    if ((layout.is_periodic_x && isOdd(n.x)) || (layout.is_periodic_z && isOdd(n.z))) return {};
+    if (is_stuck) return {};
     n = {n.x + n.x % 2, n.z + n.z % 2};
     out.push_back(n);
     n = {n.x / 2, n.z / 2};

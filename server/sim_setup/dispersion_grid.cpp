@@ -142,7 +142,8 @@ Area areaOf(const DispersionGrid& fine, const CellOwners& owner, int x, int z, s
   }
   for (int axis = 0; axis < 2; ++axis) {
     for (const std::size_t cell : coveredBy(fine, x, z, axis).behind) {
-      if (owner[cell] == own) area.cells.push_back(cell);
+      // Along an axis of two cells these are the block's own.
+      if (owner[cell] == own && std::ranges::find(block, cell) == block.end()) area.cells.push_back(cell);
     }
   }
   for (std::size_t k = 0; k < area.cells.size(); ++k) {

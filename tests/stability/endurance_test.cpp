@@ -29,8 +29,8 @@ void expectSane(const core::FrameView& frame, const v1::Scene& scene, double& ma
   const core::LevelView& full = frame.at(core::Level::kFull);
   ASSERT_TRUE(full.surface && full.particles && full.foam && frame.bodies);
   const core::SurfaceView& surface = *full.surface;
-  ASSERT_EQ(surface.words.size(), std::size_t{surface.resolution_count} * surface.resolution_count / 2);
-  ASSERT_EQ(surface.resolution_count, scene.wave().resolution_count());
+  ASSERT_EQ(surface.words.size(), surface.count.total() / 2);
+  ASSERT_EQ(surface.count.x, scene.wave().resolution_count());
   int largest = 0;
   for (const std::uint32_t word : surface.words) {
     for (const auto half : {static_cast<std::int16_t>(word & 0xffff), static_cast<std::int16_t>(word >> 16)})

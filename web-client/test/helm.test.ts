@@ -95,7 +95,7 @@ describe("the helm", () => {
 describe("limits from the scene", () => {
   const defaultOf = (field: DescField): number => getOption(field, parameter).default;
   const wave = { resolutionCount: 256, sideM: 24, depthM: 1.5, periodicX: true, periodicZ: true };
-  const greeting = (change: Partial<GreetingInfo>) => ({ wave, waterExtents: wave, hasBoats: true, ...change }) as GreetingInfo;
+  const greeting = (change: Partial<GreetingInfo>) => ({ wave, waterExtents: { ...wave, longM: 24 }, hasBoats: true, ...change }) as GreetingInfo;
 
   it("allow waves from every direction", () => {
     expect(effectLimits(greeting({}))!.waveDirectionDeg).toMatchObject({ min: -180, max: 180, step: 1 });
@@ -107,6 +107,8 @@ describe("limits from the scene", () => {
     expect(boatOfLength(shallow.max).draughtM).toBeLessThanOrEqual(0.6 * 0.2 + 1e-9);
     expect(boatLimits(greeting({ hasBoats: false }))).toBeUndefined();
     expect(boatLimits(greeting({ waterExtents: { sideM: 24, longM: 24, depthM: 0 } }))).toBeUndefined();
+    const canal = boatLimits(greeting({ waterExtents: { sideM: 4, longM: 40, depthM: 3 } }))!.lengthM;
+    expect(canal.max, "half of a canal's width").toBe(2);
     expect(boatLimits(greeting({}))!.throttleRatio).toMatchObject({ min: -1, max: 1 });
   });
 

@@ -130,8 +130,8 @@ TEST_F(Rectangle, WaterTurnedByNinetyDegreesHasTheSameBits) {
   EXPECT_EQ(transposed(along, {61, 23}), other.copyState().elevation_m);
 }
 
-TEST_F(Rectangle, ADispersedCrestAlongAChannelHasTheSameBitsAlongXAndAlongZ) {
-  for (const std::uint32_t across : {1u}) {
+TEST_F(Rectangle, ADispersedCrestAlongAChannelIsTheSameAlongXAndAlongZ) {
+  for (const std::uint32_t across : {1u, 10u, 13u}) {
     core::Scene scene = rectangle(150, across);
     scene.wave->dispersion = core::Dispersion::kAiry;
     const auto run = [&](const core::Scene& of, core::Side side) {
@@ -141,8 +141,16 @@ TEST_F(Rectangle, ADispersedCrestAlongAChannelHasTheSameBitsAlongXAndAlongZ) {
       for (int k = 0; k < 300; ++k) sim.step();
       return sim.copyState().elevation_m;
     };
-    EXPECT_EQ(transposed(run(scene, core::Side::kMinusX), {150, across}), run(turned(scene), core::Side::kMinusZ))
-        << across;
+    const auto along_x = transposed(run(scene, core::Side::kMinusX), {150, across});
+    const auto along_z = run(turned(scene), core::Side::kMinusZ);
+    if (across == 1) {
+      EXPECT_EQ(along_x, along_z) << "to the bit";
+      continue;
+    }
+    // The passes add up x before z.
+    double worst_m = 0.0;
+    for (std::size_t i = 0; i < along_x.size(); ++i) worst_m = std::max(worst_m, std::abs(along_x[i] - along_z[i]));
+    EXPECT_LT(worst_m, 5e-6) << across;
   }
 }
 

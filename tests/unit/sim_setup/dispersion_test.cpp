@@ -89,6 +89,46 @@ double speedRatio(const Laid& laid, int mx, int mz, double gravity_mps2) {
   return omega / std::sqrt(gravity_mps2 * k_pm * std::tanh(k_pm * depth_m));
 }
 
+core::Scene channel(std::uint32_t along, std::uint32_t across) {
+  core::Scene scene = sea(along, 0.125, 1.2, core::WaveBoundary::kReflect);
+  scene.wave->width_m = 0.125 * across;
+  return scene;
+}
+
+TEST(Dispersion, WavesAlongAChannelAreEquallyFastInAllOfItsWidth) {
+  for (const std::uint32_t across : {1u, 2u, 5u, 10u, 13u, 37u}) {
+    const Laid laid(channel(150, across));
+    std::vector<double> level(laid.basin.depth_m.size());
+    for (std::size_t i = 0; i < level.size(); ++i)
+      level[i] = std::cos(std::numbers::pi * 7 * (static_cast<double>(i % 150) + 0.5) / 150);
+    const std::vector<double> pull = laid.pull(level);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < pull.size(); ++i) worst = std::max(worst, std::abs(pull[i] - pull[i % 150]));
+    EXPECT_LT(worst, 1e-5) << across;  // tables of 16 bits
+  }
+}
+
+TEST(Dispersion, WavesAlongAChannelAreAsFastAsInASquare) {
+  // omega^2 of a wave with m periods along x, up to a factor.
+  const auto squareOf = [](const Laid& laid, int m) {
+    std::vector<double> level(laid.basin.depth_m.size());
+    for (std::size_t i = 0; i < level.size(); ++i)
+      level[i] =
+          std::cos(2 * std::numbers::pi * m * static_cast<double>(i % laid.wave.count_x) / laid.wave.count_x + 0.3);
+    return dot(level, laid.pull(level)) / dot(level, level);
+  };
+  const Laid square(sea(256, 0.125, 1.2, core::WaveBoundary::kPeriodic));
+  for (const std::uint32_t across : {1u, 10u, 13u, 37u, 100u}) {
+    core::Scene scene = channel(256, across);
+    scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = core::WaveBoundary::kPeriodic;
+    const Laid laid(scene);
+    for (const int m : {1, 4, 16, 32, 64}) {
+      EXPECT_NEAR(std::sqrt(squareOf(laid, m) / squareOf(square, m)), 1.0, 5e-4)
+          << across << " wide, " << m << " periods";
+    }
+  }
+}
+
 TEST(Dispersion, IsSymmetricAndPositiveOverAnyBedAndBesideAnyWall) {
   const Laid laid(harborLike());
   for (std::uint32_t seed = 1; seed < 4; ++seed) {

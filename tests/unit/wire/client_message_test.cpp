@@ -83,8 +83,22 @@ TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedWithALineOfText) {
   const auto refusal = checkVersion(Hello{2, 3, "later"});
   ASSERT_TRUE(refusal);
   EXPECT_THAT(*refusal, HasSubstr("wire version 2.3"));
-  EXPECT_THAT(*refusal, HasSubstr("1.0"));
+  EXPECT_THAT(*refusal, HasSubstr("1.1"));
   EXPECT_TRUE(checkVersion(Hello{0, 0, ""})) << "a hello without a version";
+}
+
+TEST(ClientMessages, ClientsThatKnowSquaresOnlyAreRefusedWhereTheWaterIsNone) {
+  const auto flume = scene::parseSceneText("wave { resolution_count: 400 side_m: 40 width_m: 1 }", "flume.textproto");
+  ASSERT_TRUE(flume) << flume.error().message;
+  const auto refusal = checkWater(0, *flume);
+  ASSERT_TRUE(refusal);
+  EXPECT_THAT(*refusal, HasSubstr("40 x 1 m"));
+  EXPECT_THAT(*refusal, HasSubstr("update the client to 1.1"));
+  EXPECT_FALSE(checkWater(1, *flume));
+  const auto square = scene::parseSceneText("wave { resolution_count: 37 }", "pond.textproto");
+  EXPECT_FALSE(checkWater(0, *square)) << "any number of cells";
+  const auto box = scene::parseSceneText("particles { box_width_m: 2 }", "box.textproto");
+  EXPECT_FALSE(checkWater(0, *box)) << "no planes";
 }
 
 TEST(Text, NamesLoseCharactersThatReverseOrHideText) {

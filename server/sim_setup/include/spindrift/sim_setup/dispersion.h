@@ -103,8 +103,8 @@ inline constexpr int kCoarsestSweepCount = DISPERSION_COARSEST_SWEEPS;
 /// Returns the storage of each grid of the V-cycle, finest first. Each has half as many cells along each axis as the
 /// one before, rounded up; where there is no partner to halve with, a row or column of dry cells is added, which a
 /// periodic side cannot have. The last one has at most four cells along each axis, or, at least four grids down, an odd
-/// number along one of them. Empty where a periodic side stands in the way: multiples of 16 up to 496 always have
-/// grids.
+/// number along both or along a periodic one. Empty where a periodic side stands in the way: multiples of 16 up to 496
+/// always have grids.
 [[nodiscard]] std::vector<CellCounts> dispersionGrids(const WaveLayout& layout);
 
 /// Returns whether the wave has grids for the V-cycle.
