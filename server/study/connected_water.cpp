@@ -23,10 +23,14 @@ double ConnectedWater::edge_m() const {
 }
 
 double ConnectedWater::columnHeight_m() const {
+  const double spacing_m = layout_.spacing_m;
   const double length_m = 2 * layout_.support_radius_m;
-  const auto count = std::ranges::count_if(members_, [&](std::size_t i) { return fromWall_m(i) < length_m; });
-  return static_cast<double>(count) * std::pow(layout_.spacing_m, 3) /
-         (length_m * (layout_.max_m[2] - layout_.min_m[2]));
+  double count = 0.0;
+  for (const std::size_t i : members_) {
+    // The share of the particle's own spacing that lies before the end.
+    count += std::clamp((length_m - fromWall_m(i)) / spacing_m + 0.5, 0.0, 1.0);
+  }
+  return count * std::pow(spacing_m, 3) / (length_m * (layout_.max_m[2] - layout_.min_m[2]));
 }
 
 double ConnectedWater::highestAtWall_m() const {

@@ -10,8 +10,8 @@
 
 namespace spindrift::study {
 
-/// Particles that reach each other through neighbours closer than the support radius, starting at the one nearest to the
-/// foot of the wall at the start of the box. Refers to its arguments.
+/// Particles that reach each other through neighbours closer than the support radius, starting at the one nearest to
+/// the foot of the wall at the start of the box. Refers to its arguments.
 class ConnectedWater {
  public:
   /// `position`: four floats per particle, as in sim::StateCopy.

@@ -8,6 +8,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <shared/bindings.h>
 
 #include <spindrift/sim_setup/scene_parts.h>
 
@@ -53,7 +54,9 @@ class DispersedSlopeOnDevice : public OnDevice {
     }
     elevation->upload(eta);
     head->upload(pressed);
-    (*made)->compute(*elevation, has_head ? &*head : nullptr);
+    elevation->bindTexel(ELEVATION);
+    if (has_head) head->bindTexel(PRESSURE_HEAD);
+    (*made)->compute();
     const auto got = (*made)->texels().downloadVector<float>(2 * cells);
     const auto wanted = DispersionReference(layOutDispersion(layout, basin)).apply(level);
     double square = 0.0;

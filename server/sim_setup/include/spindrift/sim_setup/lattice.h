@@ -51,8 +51,8 @@ struct WallSupport {
 WallSupport calibratedWall(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
 /// Viscosity of a flat floor, drag(d) = result times max(1 - d / reach_m, 0)^2: replaces the Laplacian of the layers
-/// missing below the lowest one. Water sticks to the floor: a missing layer k counts with the speed that continues an even
-/// shear through zero at the floor, -(2 k - 1) times that of the lowest layer. [1/m^2]
+/// missing below the lowest one. Water sticks to the floor: a missing layer k counts with the speed that continues an
+/// even shear through zero at the floor, -(2 k - 1) times that of the lowest layer. [1/m^2]
 double calibratedFloorDrag(double s, double H, double rho_0, double mass_kg, const WallSupport& wall);
 
 /// Squared gradient of the density constraint rho/rho_0 - 1, summed over the neighbours, inside the lattice. [1/m^2]
