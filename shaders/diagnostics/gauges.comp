@@ -5,6 +5,7 @@
 // to the wet ones; among dry cells alone all values are 0. Velocity of a cell: mean of flow over still depth at its two
 // faces along an axis, 0 at a closed one, with NONLINEAR that of FLOW; flows belong to half a wave step before the elevations.
 #include "shared/gauge_uniforms.h"
+#include "shared/groups.h"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"
 #if NONLINEAR
