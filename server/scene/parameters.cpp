@@ -113,6 +113,12 @@ std::optional<ParameterError> checkChanged(const v1::Scene& changed, std::string
                         issue.path == path ? issue.message : issue.path + ": " + issue.message};
 }
 
+/// Returns whether the equations of the scene's water do not have this parameter, or fix it while the room runs.
+bool hasNoEffect(const v1::Scene& scene, std::string_view path) {
+  if (scene.wave().bulk() == v1::BULK_NONLINEAR) return path == "wave.steepening_ratio" || path == "wave.depth_m";
+  return path == "wave.manning_spm13";
+}
+
 void appendReference(const Descriptor& type, const std::string& prefix, std::string& table) {
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
@@ -133,6 +139,7 @@ void appendReference(const Descriptor& type, const std::string& prefix, std::str
 std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene) {
   std::vector<v1::ParameterDescription> out;
   describePart(scene, "", out);
+  std::erase_if(out, [&](const v1::ParameterDescription& each) { return hasNoEffect(scene, each.path()); });
   return out;
 }
 

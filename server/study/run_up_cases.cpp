@@ -98,7 +98,7 @@ constexpr std::array<LaboratoryRun, 7> kLaboratory = {{{0.0185, 0.0758, false},
                                                        {0.28, 0.511, true},
                                                        {0.39, 0.631, true}}};
 /// One roughness for all: the laboratory's painted slope.
-constexpr double kLaboratoryManning = 0.01;
+constexpr double kLaboratoryManning = 0.008;
 
 }  // namespace
 
@@ -161,7 +161,7 @@ Outcome solitaryWave(gpu::Context& ctx, bool quick) {
       rows.push_back({name + ": height after 30 depths / height", "", crest_m / height_m, 1.0, Tolerance::kRelative,
                       0.05, "keeps its height"});
       rows.push_back({name + ": speed / sqrt(g (d + H))", "", way_m / ((*water)->time_s() * speed_mps), 1.0,
-                      Tolerance::kRelative, 0.025, "solitary wave; REEF3D-SFLOW -0.2 %"});
+                      Tolerance::kRelative, 0.035, "solitary wave; REEF3D-SFLOW -0.2 %"});
     }
   }
   return CaseResult{std::move(rows), {}};

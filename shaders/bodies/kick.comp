@@ -116,8 +116,11 @@ void add(inout HullSums sums, BoatState b, BoatState before, vec2 half_m, float 
   const float level_m = levelAt(i, peak_m * w);
   const float keel_m = b.centre_m.y - 0.5 * b.hull_m.z + at_m.x * b.tilt.x - at_m.y * b.tilt.y;
 #if NONLINEAR
-  const float carried_m = kGroundStiffness * max(-texelFetch(terrain, i).w - keel_m, 0.0);
-  const float submerged_m = clamp(level_m - keel_m, 0.0, b.hull_m.z) + carried_m;
+  const float ground_m = -texelFetch(terrain, i).w;
+  const float carried_m = kGroundStiffness * max(ground_m - keel_m, 0.0);
+  // The surface of a dry cell is the ground, which carries in its own way.
+  const bool is_wet = texelFetch(surface_texels, i).x > ground_m + 1e-4;
+  const float submerged_m = (is_wet ? clamp(level_m - keel_m, 0.0, b.hull_m.z) : 0.0) + carried_m;
   sums.ground += w * carried_m;
 #else
   const float submerged_m = clamp(level_m - keel_m, 0.0, b.hull_m.z);
@@ -234,8 +237,13 @@ void kick(inout BoatState b, HullSums sums, float duration_s) {
   const float restoring = g / draught_m / (1.0 + 0.25 * hold * omega * omega * duration_s * duration_s);
   const float throttle = b.control.x < 0.0 ? kReverseShare * b.control.x : b.control.x;
   const float thrust_mps2 = kDragPerLength / b.hull_m.x * b.full_speed_mps * b.full_speed_mps * throttle;
+#if NONLINEAR
+  const float aground = min(sums.ground / (weight * draught_m), 1.0);  // share of its weight
+#else
+  const float aground = 0.0;
+#endif
   Forces forces;
-  forces.along_mps2 = vec3(pushed_mps2.x + hold * thrust_mps2, pushed_mps2.y, restoring * (lift - draught_m));
+  forces.along_mps2 = vec3(pushed_mps2.x + hold * (1.0 - aground) * thrust_mps2, pushed_mps2.y, restoring * (lift - draught_m));
   forces.tilt_ps2 = restoring * vec2(lever_m2.x, -lever_m2.y) / (spread_m2 + b.hull_m.z * b.hull_m.z / 12.0);
   forces.yaw_ps2 = g * pressing * pushed.z / (spread_m2.x + spread_m2.y);
   b.push_mps2 = pushed_mps2.x;
@@ -252,7 +260,6 @@ void kick(inout BoatState b, HullSums sums, float duration_s) {
   relative_mps = slowed(b, relative_mps, hold, 0.5 * duration_s);
   b.speed_mps.xy = relative_mps + flow_mps;
 #if NONLINEAR
-  const float aground = min(sums.ground / (weight * draught_m), 1.0);  // share of its weight
   b.speed_mps.xy *= max(1.0 - kGroundFriction * g * aground * duration_s / max(length(b.speed_mps.xy), 1e-6), 0.0);
   b.yaw_rate *= exp(-kGroundYaw_per_s * aground * duration_s);
 #endif
