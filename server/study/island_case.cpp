@@ -134,6 +134,7 @@ Outcome conicalIsland(gpu::Context& ctx, bool quick) {
   const double cell_m = quick ? 0.1 : 0.05;
   std::vector<Row> rows;
   for (const Experiment& experiment : kExperiments) {
+    if (quick && &experiment != kExperiments.data()) continue;
     const auto cells = static_cast<std::uint32_t>(std::lround((kBefore_m + kLength_m) / cell_m));
     core::Scene scene = shallowScene(cells, cell_m, kDepth_m, 0.38);
     scene.wave->width_m = kWidth_m;
@@ -157,7 +158,8 @@ Outcome conicalIsland(gpu::Context& ctx, bool quick) {
       if (std::abs(error) > std::abs(front_error)) front_error = error;
       if (std::fmod(each.angle_deg, 45.0) != 0.0) continue;
       rows.push_back({fmt::format("case {}: run-up at {:.0f} degrees", experiment.name, each.angle_deg), "m", reached_m,
-                      each.height_m, Tolerance::kNone, 0.0, "Briggs et al. 1995"});
+                      each.height_m, each.angle_deg == 270.0 ? Tolerance::kRelative : Tolerance::kNone, 0.15,
+                      "Briggs et al. 1995"});
     }
     rows.push_back({fmt::format("case {}: run-up, worst of 24 angles", experiment.name), "%",
                     100 * std::abs(front_error), 15.0, quick ? Tolerance::kNone : Tolerance::kAtMost, 0.0,

@@ -13,6 +13,7 @@ import { repository } from "../server.mjs";
 const kDefault = { tick: 180 };
 /** Ticks at which something is to be seen: a crown, a crest about to break, a wake. @type {Record<string, Shot>} */
 const kShots = {
+  beach: { tick: 282, camera: { eyeM: [-1, 3.4, 7.5], targetM: [5.5, 0, -1] } },
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
