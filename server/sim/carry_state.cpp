@@ -29,18 +29,54 @@ struct Grid {
   Grid(const core::Scene& scene, const WaveLayout& layout)
       : count(layout.counts()), foam_count(layout.foamCounts()), basin(layOutBasin(scene, layout)) {
     wet.reserve(basin.depth_m.size());
-    for (const float depth_m : basin.depth_m) {
-      bed_units.push_back(bedUnits(depth_m));
-      wet.push_back(depth_m > 0 ? 1 : 0);
+    for (std::size_t i = 0; i < basin.depth_m.size(); ++i) {
+      bed_units.push_back(bedUnits(isNonlinear(scene) ? basin.bed[i][2] : basin.depth_m[i]));
+      wet.push_back(basin.depth_m[i] > 0 ? 1 : 0);
     }
   }
   [[nodiscard]] std::size_t cellCount() const { return count.total(); }
+  /// Water at rest, and the sum of its elevations, which counts ground above it. [units]
+  [[nodiscard]] std::int64_t restingWater() const {
+    return std::accumulate(bed_units.begin(), bed_units.end(), std::int64_t{0},
+                           [](std::int64_t sum, std::int64_t bed) { return sum + std::max<std::int64_t>(bed, 0); });
+  }
+  [[nodiscard]] std::int64_t restingElevation() const {
+    return restingWater() - std::accumulate(bed_units.begin(), bed_units.end(), std::int64_t{0});
+  }
 
   core::CellCounts count, foam_count;
   Basin basin;
   std::vector<char> wet;
   std::vector<std::int64_t> bed_units;
 };
+
+/// Adds `lack_units` to the cells that hold water, evenly, or takes them in proportion to what they hold.
+void spread(std::int64_t lack_units, std::vector<std::int64_t>& held_units) {
+  const std::int64_t sum = std::accumulate(held_units.begin(), held_units.end(), std::int64_t{0});
+  if (sum <= 0) return;
+  if (lack_units < 0) {
+    std::int64_t left = std::min(-lack_units, sum);
+    const double share = static_cast<double>(left) / static_cast<double>(sum);
+    for (std::int64_t& held : held_units) {
+      const auto part = std::min({static_cast<std::int64_t>(static_cast<double>(held) * share), held, left});
+      held -= part;
+      left -= part;
+    }
+    for (std::size_t i = 0; left > 0; i = (i + 1) % held_units.size()) {
+      if (held_units[i] == 0) continue;
+      --held_units[i];
+      --left;
+    }
+    return;
+  }
+  const auto wet_count = std::ranges::count_if(held_units, [](std::int64_t held) { return held > 0; });
+  std::int64_t rest = lack_units % wet_count;
+  for (std::int64_t& held : held_units) {
+    if (held == 0) continue;
+    held += lack_units / wet_count + (rest > 0 ? 1 : 0);
+    if (rest > 0) --rest;
+  }
+}
 
 class SurfaceCarrier {
  public:
@@ -57,8 +93,12 @@ class SurfaceCarrier {
     return static_cast<double>(to_.cellCount()) / static_cast<double>(from_.cellCount());
   }
 
+  /// Sum of the elevations of water at rest in the new cells. [units]
+  [[nodiscard]] std::int64_t restingElevation() const { return to_.restingElevation(); }
+
   /// `extra_units`: volume that is added, in units of the new cells.
   [[nodiscard]] std::vector<std::int32_t> elevation(std::int64_t extra_units) const {
+    if (isNonlinear(scene_)) return shallowElevation(extra_units);
     std::vector<double> units(before_.state.elevation_m.size());
     std::ranges::transform(before_.state.elevation_m, units.begin(),
                            [](double eta_m) { return eta_m * double{ELEVATION_UNITS_PER_M}; });
@@ -91,11 +131,13 @@ class SurfaceCarrier {
       Field field{std::vector<double>(from_.cellCount()), std::vector<double>(from_.cellCount(), 1.0)};
       for (std::size_t i = 0; i < field.mean.size(); ++i) field.mean[i] = old[components * i + c];
       SampleAxis x = x_, z = z_;
-      x.shift_cells = kFaceShifts[c][0];
-      z.shift_cells = kFaceShifts[c][1];
+      // A nonlinear bulk has velocities and moved water at the same two faces.
+      const std::size_t face = isNonlinear(scene_) ? c % 2 : c;
+      x.shift_cells = kFaceShifts[face][0];
+      z.shift_cells = kFaceShifts[face][1];
       const Field moved = resample(field, from_.count, to_.count, x, z);
       for (std::size_t i = 0; i < moved.mean.size(); ++i) {
-        if (to_.basin.conductance_m[i][c] > 0) out[components * i + c] = static_cast<float>(moved.mean[i]);
+        if (to_.basin.conductance_m[i][face] > 0) out[components * i + c] = static_cast<float>(moved.mean[i]);
       }
     }
     return out;
@@ -134,6 +176,33 @@ class SurfaceCarrier {
   }
 
  private:
+  /// Nonlinear bulk: the level of the water where there is some, over the new ground. What the water holds beyond water
+  /// at rest stays to the unit.
+  [[nodiscard]] std::vector<std::int32_t> shallowElevation(std::int64_t extra_units) const {
+    Field field{std::vector<double>(from_.cellCount()), std::vector<double>(from_.cellCount())};
+    std::int64_t excess_units = -from_.restingWater();
+    for (std::size_t i = 0; i < field.mean.size(); ++i) {
+      const std::int64_t eta = std::llround(before_.state.elevation_m[i] * double{ELEVATION_UNITS_PER_M});
+      const std::int64_t held = eta + from_.bed_units[i];
+      excess_units += held;
+      if (held <= 0) continue;
+      field.mean[i] = static_cast<double>(eta);
+      field.share[i] = 1.0;
+    }
+    const Field moved = resample(field, from_.count, to_.count, x_, z_);
+    std::vector<std::int64_t> held(to_.cellCount());
+    std::int64_t lack_units =
+        std::llround(static_cast<double>(excess_units) * unitRatio()) + extra_units + to_.restingWater();
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      if (moved.share[i] >= 0.5) held[i] = std::max<std::int64_t>(std::llround(moved.mean[i]) + to_.bed_units[i], 0);
+      lack_units -= held[i];
+    }
+    spread(lack_units, held);
+    std::vector<std::int32_t> out(held.size());
+    for (std::size_t i = 0; i < held.size(); ++i) out[i] = static_cast<std::int32_t>(held[i] - to_.bed_units[i]);
+    return out;
+  }
+
   [[nodiscard]] Field onWetCells(std::vector<double> values) const {
     Field field{std::move(values), std::vector<double>(from_.wet.begin(), from_.wet.end())};
     for (std::size_t i = 0; i < field.mean.size(); ++i)
@@ -254,7 +323,7 @@ ResampledState resampleState(const CarriedState& before, const core::Scene& scen
     out.state.velocity = std::move(spray.velocity);
     out.state.pool = std::move(spray.pool);
   }
-  std::int64_t surface_units = 0;
+  std::int64_t surface_units = isNonlinear(scene) ? -carrier.restingElevation() : 0;
   for (const std::int32_t units : carrier.elevation(rest_units)) {
     surface_units += units;
     out.state.elevation_m.push_back(units * double{ELEVATION_UNIT_M});

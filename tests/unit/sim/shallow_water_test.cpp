@@ -113,6 +113,32 @@ TEST_P(ShallowWater, RunsUpTheBeachAndLeavesItAgain) {
   EXPECT_EQ(water.health().volume_error_units, 0);
 }
 
+TEST_P(ShallowWater, GoesOnInFinerCellsWithItsVolumeAndWithoutANegativeDepth) {
+  WaterSim& coarse = make(shore(GetParam()));
+  ASSERT_TRUE(coarse.start(
+      core::BreakingWave{.side = core::Side::kMinusX, .amplitude_m = 0.5, .length_m = 4.0, .duration_s = 0.6}));
+  for (int k = 0; k < 250; ++k) coarse.step();
+  const CarriedState carried = coarse.carriedState();
+  core::Scene finer = shore(GetParam());
+  finer.wave->resolution_count = 60;
+  auto made = WaterSim::create(*ctx_, finer);
+  ASSERT_TRUE(made) << made.error().message;
+  WaterSim& fine = **made;
+  const auto taken = fine.takeOver(carried);
+  ASSERT_TRUE(taken) << taken.error().message;
+  EXPECT_GE(std::ranges::min(heldUnits(fine)), 0);
+  const auto mean = [](const std::vector<std::int64_t>& held) {
+    double sum = 0.0;
+    for (const std::int64_t units : held) sum += static_cast<double>(units);
+    return sum / static_cast<double>(held.size()) / double{ELEVATION_UNITS_PER_M};
+  };
+  EXPECT_NEAR(mean(heldUnits(fine)), mean(heldUnits(coarse)), 0.02) << "the shores of the two grids differ";
+  for (int k = 0; k < 100; ++k) fine.step();
+  EXPECT_EQ(fine.health().volume_error_units, 0);
+  EXPECT_EQ(fine.recoveredCount(), 0u);
+  EXPECT_GE(std::ranges::min(heldUnits(fine)), 0);
+}
+
 TEST_P(ShallowWater, RepeatsBitForBit) {
   std::uint64_t hashes[2];
   for (std::uint64_t& hash : hashes) {
