@@ -56,8 +56,8 @@ class Wave {
   void sampleSurface();
 
   [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< nx x nz [units]
-  /// nx x nz x 2 (9-point: 4) [m^2/s]. Nonlinear bulk: nx x nz x 4, velocities toward +x and +z [m/s], then the water that
-  /// they moved [m^2/s].
+  /// nx x nz x 2 (9-point: 4) [m^2/s]. Nonlinear bulk: nx x nz x 4, velocities toward +x and +z [m/s], then the water
+  /// that they moved [m^2/s].
   [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }
   [[nodiscard]] gpu::TexelBuffer* outflow() {
     return has_outflow_ ? &outflow_ : nullptr;

@@ -188,8 +188,8 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   for (int z = 0; z < nz; ++z) {
     for (int x = 0; x < nx; ++x) {
       const std::size_t i = index(x, z);
-      double depth_m = is_nonlinear ? groundDepthWithObstacles(scene, placeX(x), placeZ(z))
-                                    : bedDepth(scene, placeX(x), placeZ(z));
+      double depth_m =
+          is_nonlinear ? groundDepthWithObstacles(scene, placeX(x), placeZ(z)) : bedDepth(scene, placeX(x), placeZ(z));
       if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, placeX(x), placeZ(z)) < 0) depth_m = 0.0;
       out.depth_m[i] = static_cast<float>(depth_m);
       double sigma = 0.0;
