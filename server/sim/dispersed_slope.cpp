@@ -6,6 +6,7 @@
 #include <string>
 
 #include <shared/bindings.h>
+#include <shared/dispersion_uniforms.h>
 #include <shared/groups.h>
 
 #include <spindrift/sim_setup/half.h>
@@ -57,6 +58,8 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
     const std::size_t cells = dispersion.levels[k].stiffness.size();
     Grid& grid = out->grids_.emplace_back();
     grid.count = dispersion.levels[k].count;
+    create(grid.sizes, gpu::Buffer::create(ctx, "dispersion sizes", sizeof(shared::DispersionUniforms),
+                                           gpu::BufferUse::kUpdatable));
     if (k > 0) {
       const CellCounts finer = dispersion.levels[k - 1].count;
       const bool is_exact = grid.count == CellCounts{finer.x / 2, finer.z / 2};
@@ -94,9 +97,14 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   }
   create(tables.solve, Program::create(ctx, "dispersion/bottom.comp"));
   if (create.error()) return *create.error();
-  tables.solve.setUniform("grid_count", static_cast<std::uint32_t>(dispersion.levels.size() - bottom));
-  tables.solve.setUniform("grid_nx", out->grids_.back().count.x);
-  tables.solve.setUniform("grid_nz", out->grids_.back().count.z);
+  for (std::size_t k = 0; k <= bottom; ++k) {
+    Grid& grid = out->grids_[k];
+    grid.sizes.uploadValue(
+        shared::DispersionUniforms{.grid_nx = grid.count.x,
+                                   .grid_nz = grid.count.z,
+                                   .coarse_nx = k < bottom ? out->grids_[k + 1].count.x : 0,
+                                   .grid_count = static_cast<std::uint32_t>(dispersion.levels.size() - k)});
+  }
   out->upload(dispersion);
   return out;
 }
@@ -162,6 +170,7 @@ void DispersedSlope::solveBottom() {
   bottom_.from_z.bindTexel(DISPERSION_FROM_Z);
   grids_.back().right.bindTexel(DISPERSION_RIGHT);
   grids_.back().faces.bindStorage(DISPERSION_FACES);
+  grids_.back().sizes.bindUniform(DISPERSION_UNIFORMS);
   bottom_.solve.dispatchGroups(1);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
@@ -178,9 +187,7 @@ void DispersedSlope::ascend(std::size_t level) {
 
 void DispersedSlope::dispatch(gpu::Program& pass, std::size_t level) {
   const CellCounts count = grids_[level].count;
-  pass.setUniform("grid_nx", count.x);
-  pass.setUniform("grid_nz", count.z);
-  pass.setUniform("coarse_nx", grids_[level + 1].count.x);
+  grids_[level].sizes.bindUniform(DISPERSION_UNIFORMS);
   pass.dispatch((count.x + DISPERSION_COLUMNS - 1) / DISPERSION_COLUMNS,
                 (count.z + DISPERSION_STRIP - 1) / DISPERSION_STRIP);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);

@@ -29,6 +29,7 @@ class DispersedSlope {
  private:
   struct Grid {
     CellCounts count;
+    gpu::Buffer sizes;                       ///< shared::DispersionUniforms
     gpu::TexelBuffer coefficients, weights;  ///< none in the last grid; no weights in a flat basin
     gpu::TexelBuffer right, faces;           ///< except on the finest grid
   };

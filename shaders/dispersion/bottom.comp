@@ -3,6 +3,7 @@
 // Reads DISPERSION_RIGHT of the largest of them, and of all of them, one behind the other, DISPERSION_STIFFNESS,
 // DISPERSION_SPREAD, DISPERSION_SWEEP, DISPERSION_FROM_X, DISPERSION_FROM_Z. Writes DISPERSION_FACES of the largest.
 // Equations: those of descend.comp and ascend.comp; in the coarsest grid sweeps alone.
+#include "shared/dispersion_uniforms.h"
 #include "shared/bindings.h"
 #include "shared/groups.h"
 
@@ -15,10 +16,6 @@ layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
 layout(binding = DISPERSION_FROM_X) uniform samplerBuffer from_x;
 layout(binding = DISPERSION_FROM_Z) uniform samplerBuffer from_z;
 layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec4 faces[]; };
-// Of the largest grid.
-uniform uint grid_nx;
-uniform uint grid_nz;
-uniform uint grid_count;
 
 /// As large as a square grid of less than DISPERSION_BOTTOM_SIDE_MAX cells per side, an odd number that cannot be halved, or all
 /// grids from one as large as DISPERSION_BOTTOM_SIDE squared down (sim_setup/dispersion.h, bottomOf()).

@@ -16,6 +16,7 @@
 #define SPINDRIFT_DISPERSION_STRIP
 
 #include "shared/bindings.h"
+#include "shared/dispersion_uniforms.h"
 #include "shared/groups.h"
 #include "wave/wave_cell.glsl"
 
@@ -77,9 +78,6 @@ struct Swept {
 };
 
 // Cells of this grid and of the next coarser one; an axis that cannot be halved has one more row, of dry cells.
-uniform uint grid_nx;
-uniform uint grid_nz;
-uniform uint coarse_nx;
 ivec2 counts;         // of this grid
 int column[WIDTH];    // x of the columns
 #if FLAT

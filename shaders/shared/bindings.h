@@ -8,6 +8,7 @@
 #define EVENT_UNIFORMS 1
 #define SEA_UNIFORMS 3
 #define GAUGE_UNIFORMS 4
+#define DISPERSION_UNIFORMS 5
 
 // Particles: position.xyz [m] + id, velocity.xyz [m/s] + foam [0..1].
 #define POSITION 0
