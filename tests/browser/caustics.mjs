@@ -55,7 +55,7 @@ export async function focusLight(page) {
       const uniform = (name) => gl.getUniformLocation(program, name);
       gl.uniform1i(uniform("u_field"), 0);
       gl.uniform3f(uniform("u_sun_direction"), -0.4255, 0.4457, -0.7876);
-      gl.uniform1f(uniform("u_side_m"), side_m);
+      gl.uniform2f(uniform("u_extent_m"), side_m, side_m);
       gl.uniform1f(uniform("u_deep_m"), 1.5);
       gl.uniform1f(uniform("u_reach"), 1.12);
       gl.uniform2f(uniform("u_layer"), 1, 0);
