@@ -7,6 +7,7 @@
 #include <google/protobuf/io/coded_stream.h>
 
 #include <spindrift/codec/crc32c.h>
+#include <spindrift/codec/gauge_message.h>
 #include <spindrift/codec/stream.h>
 
 namespace spindrift::codec {
@@ -109,15 +110,7 @@ core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {
     time.set_name(pass.name);
     time.set_ms(pass.ms);
   }
-  for (const core::DiagnosticsView::GaugeNow& gauge : in.gauges) {
-    v1::GaugeReading& reading = *out.add_gauges();
-    reading.set_name(gauge.name);
-    reading.set_elevation_m(gauge.elevation_m);
-    reading.set_velocity_x_mps(gauge.velocity_x_mps);
-    reading.set_velocity_z_mps(gauge.velocity_z_mps);
-    reading.set_highest_m(gauge.highest_m);
-    reading.set_lowest_m(gauge.lowest_m);
-  }
+  for (const core::DiagnosticsView::GaugeNow& gauge : in.gauges) writeGauge(gauge, *out.add_gauges());
   core::Bytes bytes(message.ByteSizeLong());
   message.SerializeWithCachedSizesToArray(bytes.data());
   return core::share(std::move(bytes));

@@ -3,6 +3,7 @@
 #include <string_view>
 #include <utility>
 
+#include <spindrift/codec/gauge_message.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/rest_api.h>
@@ -216,15 +217,8 @@ void RestApi::gauges(const Call& call, const rooms::Room& room, const net::HttpR
   if (call.request.method != "GET") return respond(wrongMethod("GET"));
   if (call.path.size() == 3) {
     v1::GaugeList out;
-    for (const core::DiagnosticsView::GaugeNow& gauge : room.vitals()->diagnostics.gauges) {
-      v1::GaugeReading& reading = *out.add_gauges();
-      reading.set_name(gauge.name);
-      reading.set_elevation_m(gauge.elevation_m);
-      reading.set_velocity_x_mps(gauge.velocity_x_mps);
-      reading.set_velocity_z_mps(gauge.velocity_z_mps);
-      reading.set_highest_m(gauge.highest_m);
-      reading.set_lowest_m(gauge.lowest_m);
-    }
+    for (const core::DiagnosticsView::GaugeNow& gauge : room.vitals()->diagnostics.gauges)
+      codec::writeGauge(gauge, *out.add_gauges());
     return respond(json(200, out));
   }
   const auto snapshot = room.snapshot();

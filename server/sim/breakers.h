@@ -24,7 +24,7 @@ class Breakers {
   /// Call it after Wave::sampleSurface(). `pool` receives the list of emitting cells; null except in two-way scenes.
   void update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick);
 
-  /// n x n: seconds since the breaking event began, intensity 0..1, velocity of a splash's crown (x, z) [m/s].
+  /// nx x nz: seconds since the breaking event began, intensity 0..1, velocity of a splash's crown (x, z) [m/s].
   [[nodiscard]] gpu::TexelBuffer& state() { return now_; }
 
  private:

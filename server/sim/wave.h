@@ -105,7 +105,7 @@ class Wave {
   gpu::TexelBuffer surface_, surface_flow_;
   std::unique_ptr<DispersedSlope> dispersed_slope_;  ///< null in scenes without dispersion
   std::unique_ptr<ShallowFlow> shallow_flow_;        ///< null if the bulk is linear
-  std::vector<std::int32_t> resting_elevation_;      ///< n x n [units]; empty if the bulk is linear
+  std::vector<std::int32_t> resting_elevation_;      ///< nx x nz [units]; empty if the bulk is linear
   std::int64_t resting_units_ = 0;
   gpu::Buffer event_uniforms_;
   gpu::Program splash_, crest_, find_share_, limit_, sample_surface_;

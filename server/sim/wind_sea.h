@@ -35,7 +35,7 @@ class WindSea {
   [[nodiscard]] CarriedSea carried() const;
   void takeOver(const CarriedSea& carried);
 
-  /// Returns the sea during the step of dt_s that begins at begin_s, n x n texels (wave/incident_sea.comp); null while
+  /// Returns the sea during the step of dt_s that begins at begin_s, nx x nz texels (wave/incident_sea.comp); null while
   /// calm. BASIN and BED must be bound.
   const gpu::TexelBuffer* advance(double begin_s, double dt_s);
 
@@ -54,7 +54,7 @@ class WindSea {
   std::uint64_t step_count_ = 0;
   std::uint32_t block_count_ = 0;
   gpu::TexelBuffer blocks_, columns_, rows_;
-  gpu::TexelBuffer incident_;  ///< n x n; 0 outside the layers
+  gpu::TexelBuffer incident_;  ///< nx x nz; 0 outside the layers
   gpu::Buffer uniforms_;
   gpu::Program compute_;
 };

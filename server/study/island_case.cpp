@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -133,8 +134,7 @@ double runUpAt(const Seen& seen, const std::vector<double>& depth_m, const sim::
 Outcome conicalIsland(gpu::Context& ctx, bool quick) {
   const double cell_m = quick ? 0.1 : 0.05;
   std::vector<Row> rows;
-  for (const Experiment& experiment : kExperiments) {
-    if (quick && &experiment != kExperiments.data()) continue;
+  for (const Experiment& experiment : std::span(kExperiments).first(quick ? 1 : kExperiments.size())) {
     const auto cells = static_cast<std::uint32_t>(std::lround((kBefore_m + kLength_m) / cell_m));
     core::Scene scene = shallowScene(cells, cell_m, kDepth_m, 0.38);
     scene.wave->width_m = kWidth_m;
@@ -151,18 +151,18 @@ Outcome conicalIsland(gpu::Context& ctx, bool quick) {
     auto derived = sim::derive(scene);
     if (!derived) return derived.error();
     const std::vector<double> depth_m = groundDepths(scene, *derived->wave);
-    double front_error = 0.0;
+    double worst_error = 0.0;
     for (const RunUp& each : experiment.run_up) {
       const double reached_m = runUpAt(*seen, depth_m, *derived->wave, each.angle_deg);
       const double error = reached_m / each.height_m - 1.0;
-      if (std::abs(error) > std::abs(front_error)) front_error = error;
+      if (std::abs(error) > std::abs(worst_error)) worst_error = error;
       if (std::fmod(each.angle_deg, 45.0) != 0.0) continue;
       rows.push_back({fmt::format("case {}: run-up at {:.0f} degrees", experiment.name, each.angle_deg), "m", reached_m,
                       each.height_m, each.angle_deg == 270.0 ? Tolerance::kRelative : Tolerance::kNone, 0.15,
                       "Briggs et al. 1995"});
     }
     rows.push_back({fmt::format("case {}: run-up, worst of 24 angles", experiment.name), "%",
-                    100 * std::abs(front_error), 15.0, quick ? Tolerance::kNone : Tolerance::kAtMost, 0.0,
+                    100 * std::abs(worst_error), 15.0, quick ? Tolerance::kNone : Tolerance::kAtMost, 0.0,
                     "Briggs et al. 1995; Celeris 0 to +81 %"});
     for (std::size_t k = 0; k < experiment.gauges.size(); ++k) {
       const Place& gauge = experiment.gauges[k];

@@ -41,22 +41,17 @@ void setShallowState(sim::WaterSim& water, const Field2& eta_m, const Field2& u_
   const auto placeX = [&](std::size_t x) { return (static_cast<double>(x) + 0.5) * cell_m - layout.length_m / 2; };
   const auto placeZ = [&](std::size_t z) { return (static_cast<double>(z) + 0.5) * cell_m - layout.width_m / 2; };
   sim::StateCopy state = water.copyState();
-  const std::vector<double> ground_m = [&] {
-    std::vector<double> out(depth_m.size());
-    std::ranges::transform(depth_m, out.begin(), [](double d) { return -d; });
-    return out;
-  }();
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
     const double x_m = placeX(i % nx);
     const double z_m = placeZ(i / nx);
     // The resting state has the ground in whole units; only water above it is set.
-    if (eta_m(x_m, z_m) > ground_m[i]) {
+    if (eta_m(x_m, z_m) > -depth_m[i]) {
       state.elevation_m[i] = eta_m(x_m, z_m);
     } else if (depth_m[i] > 0) {
       state.elevation_m[i] = -std::floor(depth_m[i] * (1 << 24)) / (1 << 24);
     }
   }
-  const auto water_m = [&](std::size_t i) { return std::max(state.elevation_m[i] - ground_m[i], 0.0); };
+  const auto water_m = [&](std::size_t i) { return std::max(state.elevation_m[i] + depth_m[i], 0.0); };
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
     const std::size_t x = i % nx, z = i / nx;
     const double x_m = placeX(x);

@@ -16,15 +16,13 @@
 // Invariant: a level surface without flow does not change in any bit; closed faces carry nothing.
 #include "shared/fixed_point.h"
 #include "shared/groups.h"
+#include "wave/pressure_head.glsl"
 #include "wave/transfer.glsl"
 #include "wave/water_column.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
-#if HEAD
-layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
-#endif
 #if DISPERSE
 layout(binding = DISPERSED) uniform samplerBuffer dispersed;
 #endif
@@ -39,14 +37,6 @@ layout(std430, binding = TRANSFER) restrict writeonly buffer Transfer { Units tr
 layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
 
 int elevationAt(int i) { return texelFetch(elevation, i).x; }
-
-int headAt(int i) {
-#if HEAD
-  return texelFetch(pressure_head, i).x;
-#else
-  return 0;
-#endif
-}
 
 /// Loss rate of flow at a cell, in addition to kappa. [1/s]
 float lossAt(int i) {

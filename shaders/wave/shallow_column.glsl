@@ -23,11 +23,11 @@ Column columnOf(int i, int eta) {
 /// a slope. [units]
 int slopeStep() { return int(sim.wave_cell_m * ELEVATION_UNITS_PER_M); }
 
-/// Difference of level across a face, as far as it drives water: a level below the bed of the other cell pulls no more than
-/// one at that bed, one step lower. `rise` is the difference of elevation plus pressure head. [units]
-float drivingRise(Column here, Column there, int rise) {
+/// Rise of level across a face, as far as it drives water: a level below the bed of the other cell pulls no more than
+/// one at that bed, one step lower. `head_rise` is that of the pressure head. [units]
+float drivingRise(Column here, Column there, int head_rise) {
   const float step_units = float(slopeStep());
-  return clamp(float(rise), -(float(max(here.eta + here.depth, 0)) + step_units), float(max(there.eta + there.depth, 0)) + step_units);
+  return clamp(float(there.eta - here.eta + head_rise), -(float(max(here.eta + here.depth, 0)) + step_units), float(max(there.eta + there.depth, 0)) + step_units);
 }
 
 /// Height of the water that flows from one cell into another, over the higher bed of both; that of a step counts as the

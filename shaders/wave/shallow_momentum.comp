@@ -12,15 +12,13 @@
 // DISPERSE: slopes filtered by the dispersion take the place of those of the surface in water that is deep for its waves.
 // Invariants: no water leaves a dry cell; a level surface without flow does not change in any bit, at any level of any pond.
 #include "shared/groups.h"
+#include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
-#if HEAD
-layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
-#endif
 #if DISPERSE
 layout(binding = DISPERSED) uniform samplerBuffer dispersed;
 layout(binding = BREAKING) uniform samplerBuffer breaking;
@@ -38,20 +36,13 @@ layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args
 /// A face drives no more than a step can bear: water may be this many times (dx/dt)^2/g high (the limit of the step is 1/2),
 /// and where slopes are dispersed this many times its static depth. Higher piles of water fall as slowly as if they were lower.
 #define STABLE_HEIGHT 0.4
-/// Loss of velocity in a step where columns alternate between high and empty from cell to cell.
-#define ALTERNATING_LOSS 4.0
 #define STABLE_DISPERSED 1.6
+/// In a step, velocities are divided by 1 plus this number where columns alternate between high and empty.
+#define ALTERNATING_LOSS 4.0
 
-int headAt(int i) {
-#if HEAD
-  return texelFetch(pressure_head, i).x;
-#else
-  return 0;
-#endif
-}
-
-/// How much four columns in a row alternate, 0 to 1: the square of their least difference over their water, and 0 if their levels do not go up and down from one to the next. Such a pattern
-/// is not a wave: water would be thrown from each cell into its neighbours and back in every step.
+/// How much four columns in a row alternate, 0 to 1: 0 unless their levels go up and down from one to the next; then the
+/// square of the middle difference over the water there, less where an outer difference is under a quarter of it. Such a
+/// pattern is not a wave: a step would throw water from each cell into its neighbours, and the next one back.
 float alternates(Column behind, Column here, Column there, Column beyond) {
   const vec3 rises = vec3(here.eta - behind.eta, there.eta - here.eta, beyond.eta - there.eta) * ELEVATION_UNIT_M;
   const bool turns = rises.x * rises.y < 0.0 && rises.y * rises.z < 0.0;
@@ -85,6 +76,7 @@ float advected(Face f, Column here, Column there) {
   return change / max(dot(inflow, vec4(1.0)), 1.0) + pressed.x - pressed.y;
 }
 
+/// Height of water that a step can bear. [m]
 float stableHeight_m() {
   const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
   return STABLE_HEIGHT * max_mps * max_mps / max(sim.gravity_mps2, 1e-6);
@@ -167,8 +159,8 @@ void main() {
   const Column beyond_z = columnOf(mirrored_beyond_z, texelFetch(elevation, mirrored_beyond_z).x);
 
   const int head = headAt(i);
-  vec2 rise = vec2(drivingRise(here, there_x, there_x.eta - here.eta + headAt(i_x) - head),
-                   drivingRise(here, there_z, there_z.eta - here.eta + headAt(i_z) - head));
+  vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head),
+                   drivingRise(here, there_z, headAt(i_z) - head));
   const vec2 there_m = vec2(there_x.water_m, there_z.water_m);
   const vec2 tallest_m = max(vec2(here.water_m), there_m);
   vec2 borne_m = vec2(stableHeight_m());
@@ -184,13 +176,12 @@ void main() {
 #endif
   const vec2 driving = sim.wave_pull * rise;
 
-  const vec4 ground = texelFetch(bed, i);
-  const vec4 ground_x = texelFetch(bed, i_x);
-  const vec4 ground_z = texelFetch(bed, i_z);
 #if MATCHED
-  const vec2 layer_loss = 0.5 * vec2(ground.y + ground_x.y, ground.w + ground_z.w);
+  const vec2 layer_loss = 0.5 * (texelFetch(bed, i).yw + vec2(texelFetch(bed, i_x).y, texelFetch(bed, i_z).w));
+#elif OPEN
+  const vec2 layer_loss = 0.5 * (texelFetch(bed, i).yy + vec2(texelFetch(bed, i_x).y, texelFetch(bed, i_z).y));
 #else
-  const vec2 layer_loss = 0.5 * vec2(ground.y + ground_x.y, ground.y + ground_z.y);
+  const vec2 layer_loss = vec2(0.0);
 #endif
   const vec2 a = 0.5 * sim.wave_dt_s * (sim.wave_damping_per_s + layer_loss);
 #if SEA

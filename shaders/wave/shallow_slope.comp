@@ -4,29 +4,19 @@
 // cell] at the faces toward +x and +z of each cell.
 // Equation: head_q = h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h. The equations of Serre (1953; Green & Naghdi 1976) have
 // this term with the factor 2/3, and dispersion by the real depth where ours takes the still one; with the factor 1 solitary waves
-// of 0.1 to 0.5 of the depth keep their height (docs/shore.md).
+// of 0.1 and 0.3 of the depth keep their height (docs/shore.md).
 // Invariant: exactly 0 between cells at the same level without flow, and beside a dry cell.
 #include "shared/groups.h"
+#include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
-#if HEAD
-layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
-#endif
 layout(std430, binding = SURFACE_RISE) restrict writeonly buffer SurfaceRise { vec2 surface_rise[]; };
 
 #define MAX_DYNAMIC_HEAD 0.1
-
-int headAt(int i) {
-#if HEAD
-  return texelFetch(pressure_head, i).x;
-#else
-  return 0;
-#endif
-}
 
 /// head_q of a cell, for velocities through its faces toward + and - x, + and - z. [units]
 float dynamicHead(Column water, vec4 u_mps) {
@@ -56,8 +46,8 @@ void main() {
   const float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, texelFetch(flow, x_after + row_before).y));
   const float pressed_z = dynamicHead(there_z, vec4(at_z.x, texelFetch(flow, x_before + row_after).x, at_z.y, own.y));
   const int head = headAt(i);
-  const vec2 rise = vec2(drivingRise(here, there_x, there_x.eta - here.eta + headAt(i_x) - head) + pressed_x - pressed,
-                         drivingRise(here, there_z, there_z.eta - here.eta + headAt(i_z) - head) + pressed_z - pressed);
+  const vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head) + pressed_x - pressed,
+                         drivingRise(here, there_z, headAt(i_z) - head) + pressed_z - pressed);
   const bvec2 is_wet = bvec2(min(here.water_m, there_x.water_m) > 0.0, min(here.water_m, there_z.water_m) > 0.0);
   surface_rise[i] = mix(vec2(0.0), rise, is_wet);
 }

@@ -1,6 +1,7 @@
 // The messages whose bytes are frozen in tests/golden, and how a client must read each.
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,18 @@ struct GoldenCase {
   std::string expected_json;  ///< members of the case's JSON object besides file and verdict
   core::Bytes bytes;
 };
+
+/// A JSON list of numbers.
+template <typename Values>
+std::string numbersOf(const Values& values) {
+  std::string text = "[";
+  for (const auto value : values) {
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%s%.9g", text.size() > 1 ? ", " : "", static_cast<double>(value));
+    text += buffer;
+  }
+  return text + "]";
+}
 
 /// Every case, in a fixed order.
 std::vector<GoldenCase> goldenCases();

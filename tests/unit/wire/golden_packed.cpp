@@ -71,17 +71,6 @@ std::vector<std::uint32_t> particleWords() {
   return words;
 }
 
-template <typename Values>
-std::string numbersOf(const Values& values) {
-  std::string text = "[";
-  for (const auto value : values) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%s%.9g", text.size() > 1 ? ", " : "", static_cast<double>(value));
-    text += buffer;
-  }
-  return text + "]";
-}
-
 }  // namespace
 
 std::vector<GoldenCase> goldenPackedFoam() {

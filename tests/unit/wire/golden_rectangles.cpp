@@ -53,27 +53,16 @@ std::string extentsOf(const Samples& samples) {
   return buffer;
 }
 
-template <typename Values>
-std::string listOf(const Values& values) {
-  std::string text = "[";
-  for (const auto value : values) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%s%.9g", text.size() > 1 ? ", " : "", static_cast<double>(value));
-    text += buffer;
-  }
-  return text + "]";
-}
-
 std::string jsonOf(const v1::LayerFrame& frame, const codec::SurfaceSamples& samples, bool is_packed,
                    const std::string& follows) {
   return headOf(frame, "LAYER_SURFACE", is_packed, follows) + extentsOf(samples) +
-         ", \"quantum_m\": 0.0009765625,\n    \"elevation_m\": " + listOf(samples.elevation_m);
+         ", \"quantum_m\": 0.0009765625,\n    \"elevation_m\": " + numbersOf(samples.elevation_m);
 }
 
 std::string jsonOf(const v1::LayerFrame& frame, const codec::FoamSamples& samples, bool is_packed,
                    const std::string& follows) {
   return headOf(frame, "LAYER_FOAM", is_packed, follows) + extentsOf(samples) +
-         ",\n    \"foam\": " + listOf(samples.foam);
+         ",\n    \"foam\": " + numbersOf(samples.foam);
 }
 
 GoldenCase damaged(const std::string& name, const std::string& why, const core::Bytes& good,

@@ -6,7 +6,7 @@
 
 namespace spindrift::sim {
 
-/// Positions and velocities 4 floats per particle (xyz + id, xyz + foam), elevations n x n, x fastest [m].
+/// Positions and velocities 4 floats per particle (xyz + id, xyz + foam), elevations nx x nz, x fastest [m].
 struct StateCopy {
   std::vector<float> position, velocity;
   std::vector<float> density_kgpm3;

@@ -21,7 +21,7 @@ struct FillUp {
 };
 
 /// Raises each cell whose elevation is below its bed to the bed (`elevation_units` = -`bed_units`). The water is taken
-/// from the other wet cells, in proportion to their water. Both spans are n x n; a cell with a bed of 0 is dry and
+/// from the other wet cells, in proportion to their water. Both spans are nx x nz; a cell with a bed of 0 is dry and
 /// ignored.
 FillUp fillUp(std::span<const std::int64_t> bed_units, std::span<std::int32_t> elevation_units, Lack lack);
 
