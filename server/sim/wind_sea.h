@@ -35,8 +35,8 @@ class WindSea {
   [[nodiscard]] CarriedSea carried() const;
   void takeOver(const CarriedSea& carried);
 
-  /// Returns the sea during the step of dt_s that begins at begin_s, nx x nz texels (wave/incident_sea.comp); null while
-  /// calm. BASIN and BED must be bound.
+  /// Returns the sea during the step of dt_s that begins at begin_s, nx x nz texels (wave/incident_sea.comp); null
+  /// while calm. BASIN and BED must be bound.
   const gpu::TexelBuffer* advance(double begin_s, double dt_s);
 
  private:
