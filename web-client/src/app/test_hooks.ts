@@ -41,6 +41,8 @@ function stats(app: App) {
     surfaceResolutionCount: surface?.resolutionCount ?? null,
     delayMs: 1000 * (scene.clock.delayS() ?? NaN),
     simTime: app.simTimeS,
+    surfaceTimeS: surface?.timeS ?? null,
+    shownTimeS: scene.shownTimeS ?? null,
     lastAck: app.lastAck,
     minElevationM: range?.minM ?? null,
     maxElevationM: range?.maxM ?? null,

@@ -65,6 +65,11 @@ export class WaterScene {
     return this.frames.clock;
   }
 
+  /** The simulation time of the picture drawn last [s]; it follows the newest frame after the delay of the clock. */
+  get shownTimeS(): number | undefined {
+    return this.picture.shownS;
+  }
+
   /**
    * Builds the passes of this room and disposes those of the one before. `isSameWater`: the frames before are of the same water, perhaps
    * at another fidelity, and are shown until new ones come.
