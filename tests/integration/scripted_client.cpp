@@ -28,6 +28,7 @@ void ScriptedClient::hello(const Person& who) {
   v1::ClientMessage message;
   v1::Hello& hello = *message.mutable_hello();
   hello.mutable_version()->set_major(who.major);
+  hello.mutable_version()->set_minor(who.minor);
   hello.set_client("scripted client");
   hello.set_name(who.name);
   hello.set_token(who.token);

@@ -20,6 +20,7 @@ struct Person {
   std::string token{};
   std::string resume_key{};
   std::uint32_t major = 1;
+  std::uint32_t minor = 1;  ///< of the wire version
 };
 
 class ScriptedClient {

@@ -20,6 +20,7 @@ class Scenes : public ServerTest {
                   "particles { count: 200 layers_count: 4 box_side_m: 1 headroom_m: 1\n"
                   "  boundary_x: BOUNDARY_WALL boundary_z: BOUNDARY_WALL }");
     folder_.write("quay.textproto", "wave { resolution_count: 48 side_m: 16 depth_m: 1 }\nboats { boats { x_m: -4 } }");
+    folder_.write("flume.textproto", "wave { resolution_count: 48 side_m: 12 width_m: 2 depth_m: 1 }");
     folder_.write("broken.textproto", "wave { depth_m: 200 }\nparticles { count: 0 }\n");
     folder_.write("impossible.textproto", "particles { count: 10 }\n");
     return rooms::SceneCatalog(folder_.path());
@@ -30,7 +31,10 @@ class Scenes : public ServerTest {
     for (int i = 0; i < 50; ++i) {
       const v1::ServerMessage answer = client.ask(changeScene(name));
       if (answer.has_ack()) return answer.ack().applied_tick();
-      if (answer.reject().reason() != v1::REJECT_REASON_BUSY) return std::nullopt;
+      if (answer.reject().reason() != v1::REJECT_REASON_BUSY) {
+        ADD_FAILURE() << answer.ShortDebugString();
+        return std::nullopt;
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     return std::nullopt;
@@ -41,7 +45,23 @@ class Scenes : public ServerTest {
 };
 
 TEST_F(Scenes, AreListedInTheGreeting) {
-  EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "impossible", "pond", "quay"));
+  EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "flume", "impossible", "pond", "quay"));
+}
+
+TEST_F(Scenes, ClientsOfWire10AreRefusedWhereTheWaterIsNoSquare) {
+  ScriptedClient old = person({.minor = 0});
+  ASSERT_NE(old.welcome().role(), v1::ROLE_UNSPECIFIED) << "squares are what version 1.0 knows";
+  ScriptedClient newer = client();
+  ASSERT_TRUE(changeTo(newer, "flume"));
+  // The change closes the session that would misread the frames, and a new one is not let in.
+  EXPECT_TRUE(old.ws().waitClosed());
+  EXPECT_EQ(old.ws().closeCode(), 1008);
+  EXPECT_THAT(old.ws().closeReason(), HasSubstr("12 x 2 m, and wire version 1.0 knows squares only"));
+  ScriptedClient another = person({.minor = 0});
+  EXPECT_TRUE(another.ws().waitClosed());
+  EXPECT_THAT(another.ws().closeReason(), HasSubstr("update the client to 1.1"));
+  const v1::ServerMessage answer = newer.ask(setSpeed(1.0));
+  EXPECT_TRUE(answer.has_ack()) << answer.ShortDebugString();
 }
 
 TEST_F(Scenes, OnlyTheAnswerToASpawnNamesABoat) {
@@ -80,7 +100,7 @@ TEST_F(Scenes, ChangeForAllClientsOfTheRoomWithAGreetingAndGrowingTicks) {
     ASSERT_TRUE(greeting);
     EXPECT_EQ(greeting->greeting().scene().name(), "pond");
     EXPECT_EQ(greeting->greeting().session_id(), each->greeting().session_id());
-    EXPECT_EQ(greeting->greeting().scenes_size(), 5);
+    EXPECT_EQ(greeting->greeting().scenes_size(), 6);
   }
   const auto frame = two.waitFor(
       [](const v1::ServerMessage& m) { return m.has_frame() && m.frame().surface_fixed16().resolution_count() == 48; });
