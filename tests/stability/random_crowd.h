@@ -85,6 +85,7 @@ class Crowd {
  private:
   v1::Command any(const sim::WaterSim& water) {
     const double half_m = scene_.wave().side_m() / 2;
+    const double half_z_m = scene_.wave().width_m() > 0 ? scene_.wave().width_m() / 2 : half_m;
     const auto boats = water.boats();
     const auto anyBoat = [&] {
       return boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id;
@@ -96,7 +97,7 @@ class Crowd {
     } else if (kind < 250) {
       v1::Splash& splash = *out.mutable_splash();
       splash.set_x_m(dice_.between(-half_m, half_m));
-      splash.set_z_m(dice_.between(-half_m, half_m));
+      splash.set_z_m(dice_.between(-half_z_m, half_z_m));
       splash.set_radius_m(dice_.between(0.2, 3.0));
       splash.set_depth_m(dice_.between(0.05, 1.0));
       splash.set_duration_s(dice_.between(0.05, 0.6));
@@ -111,7 +112,7 @@ class Crowd {
     } else if (kind < 500) {
       v1::Boat& boat = *out.mutable_spawn_boat()->mutable_boat();
       boat.set_x_m(dice_.between(-half_m, half_m));
-      boat.set_z_m(dice_.between(-half_m, half_m));
+      boat.set_z_m(dice_.between(-half_z_m, half_z_m));
       boat.set_heading_deg(dice_.between(-180, 180));
       boat.set_length_m(dice_.between(0.8, 5.0));
       boat.set_beam_m(dice_.between(0.3, 0.8));

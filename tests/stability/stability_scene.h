@@ -16,6 +16,14 @@
 namespace spindrift {
 
 class Endurance : public ::testing::Test {
+ public:
+  static std::filesystem::path sceneFolder() { return std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes"; }
+  static v1::Scene shipped(const std::string& name) {
+    auto scene = scene::loadSceneFile(sceneFolder() / (name + ".textproto"));
+    if (!scene) throw std::runtime_error(scene.error().message);
+    return *scene;
+  }
+
  protected:
   void SetUp() override {
     auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
@@ -27,13 +35,6 @@ class Endurance : public ::testing::Test {
     if (ctx_) {
       EXPECT_EQ(ctx_->debugErrorCount(), 0u) << "the driver complained; see the log";
     }
-  }
-
-  static v1::Scene shipped(const std::string& name) {
-    auto scene =
-        scene::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes" / (name + ".textproto"));
-    if (!scene) throw std::runtime_error(scene.error().message);
-    return *scene;
   }
 
   sim::WaterSim& make(const core::Scene& scene) {
