@@ -2,7 +2,8 @@
 // Reads ELEVATION [cells, units], FLOW, BASIN, BED. Writes PARTIAL_SUM, 4 words per gauge: elevation [m], velocity along
 // x and z [m/s], share of wet cells around the gauge.
 // Equations: bilinear between the centres of the four cells around the place. Dry cells do not count: their weight goes
-// to the wet ones; among dry cells alone all values are 0. Velocity of a cell: mean of flow over still depth at its two
+// to the wet ones. Among dry cells alone the velocity is 0, and the elevation that of the ground where water can come
+// (NONLINEAR), otherwise 0. Velocity of a cell: mean of flow over still depth at its two
 // faces along an axis, 0 at a closed one, with NONLINEAR that of FLOW; flows belong to half a wave step before the elevations.
 #include "shared/gauge_uniforms.h"
 #include "shared/groups.h"
@@ -61,15 +62,20 @@ void main() {
   const vec2 share = place - first;
   vec3 sum = vec3(0.0);
   float wet = 0.0;
+  float ground_m = 0.0;
   for (int corner = 0; corner < 4; ++corner) {
     const ivec2 offset = ivec2(corner & 1, corner >> 1);
     const ivec2 at = ivec2(first) + offset;
     const ivec2 cell = ivec2(waveNeighbourX(at.x, n.x), waveNeighbourZ(at.y, n.y));
     const vec2 weights = mix(1.0 - share, share, vec2(offset));
     const float weight = weights.x * weights.y;
-    if (weight == 0.0 || !isWet(cell, n)) continue;
+    if (weight == 0.0) continue;
+#if NONLINEAR
+    ground_m -= weight * stillDepth(cell.x + n.x * cell.y);
+#endif
+    if (!isWet(cell, n)) continue;
     sum += weight * readingOf(cell, n);
     wet += weight;
   }
-  gauge_reading[k] = wet > 0.0 ? vec4(sum / wet, wet) : vec4(0.0);
+  gauge_reading[k] = wet > 0.0 ? vec4(sum / wet, wet) : vec4(ground_m, vec3(0.0));
 }

@@ -107,6 +107,25 @@ TEST_F(GaugesOnDevice, HaveOneReadingPerTickAndForgetItAtAReset) {
   EXPECT_EQ(sim.gauges()->now()[0].highest_m, 0.0F);
 }
 
+/// On land that the water can reach, the water of a gauge lies on the ground.
+TEST_F(GaugesOnDevice, ReadTheGroundUntilWaterComes) {
+  core::Scene scene = seicheScene();
+  scene.wave->bulk = core::Bulk::kNonlinear;
+  scene.beaches = {core::Beach{core::Side::kPlusX, 6.0, -0.5}};
+  // Ground rises from -1.5 m at x = 0 by a third of x.
+  scene.gauges = {{.name = "land", .x_m = 5.4, .z_m = 0}};
+  WaterSim& sim = make(scene);
+  run(sim, 3);
+  const GaugeReading dry = sim.gauges()->series(0).readings.back();
+  EXPECT_NEAR(dry.elevation_m, 0.3, 0.02);
+  EXPECT_EQ(dry.velocity_x_mps, 0.0F);
+  StateCopy state = sim.copyState();
+  for (double& elevation_m : state.elevation_m) elevation_m = std::max(elevation_m, 0.4);
+  sim.setState(state);
+  run(sim, 12);
+  EXPECT_NEAR(sim.gauges()->series(0).readings.back().elevation_m, 0.4, 0.02);
+}
+
 /// Beside dry ground the wet cells alone count; on it everything is 0.
 TEST_F(GaugesOnDevice, DoNotMixDryGroundIntoTheirReadings) {
   core::Scene scene = seicheScene();
