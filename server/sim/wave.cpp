@@ -188,6 +188,7 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
   if (shallow_flow_ && dispersed_slope_) {
     bindBasin();
     flow_.bindTexel(FLOW);
+    if (breaking) breaking->bindTexel(BREAKING);
     shallow_flow_->findRise().bindTexel(SURFACE_RISE);
   }
   if (dispersed_slope_) dispersed_slope_->compute();

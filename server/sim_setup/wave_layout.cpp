@@ -21,10 +21,6 @@ constexpr double kWaveSafety = 0.98;
 /// Share of a cell that a long wave may cross in a step of nonlinear shallow water. Its limit is 0.7 without flow; the
 /// rest is for higher water and for the flow that carries waves: together 1.5 times as fast as still water.
 constexpr double kShallowCourant = 0.45;
-/// With dispersion, the share of the linear limit that is used, and the share of a cell that flow may cross: water as
-/// fast as a long wave of the scene's depth.
-constexpr double kShallowDispersedShare = 0.85;
-constexpr double kFlowCourant = 1.0;
 /// Nonlinear water has at most this depth, so that depth and elevation together fit their units.
 constexpr double kShallowMaxDepth_m = 50.0;
 
@@ -112,10 +108,7 @@ double waveMaxStep(const core::Scene& scene, const WaveLayout& layout) {
   double deepest_m = wave.depth_m;
   for (const core::Beach& beach : scene.beaches) deepest_m = std::max(deepest_m, beach.shore_depth_m);
   if (isNonlinear(scene)) {
-    const double cell_s = layout.cell_m / std::sqrt(std::max(scene.gravity_mps2 * deepest_m, 1e-18));
-    if (!disperses(scene)) return kShallowCourant * cell_s;
-    return std::min(kShallowDispersedShare * dispersedMaxStep(scene.gravity_mps2, deepest_m, layout.cell_m),
-                    kFlowCourant * cell_s);
+    return kShallowCourant * layout.cell_m / std::sqrt(std::max(scene.gravity_mps2 * deepest_m, 1e-18));
   }
   if (disperses(scene)) {
     // A crest's factor on the slope (see below) may act on all of the waves.
@@ -128,12 +121,7 @@ double waveMaxStep(const core::Scene& scene, const WaveLayout& layout) {
 }
 
 std::string waveRule(const core::Scene& scene) {
-  if (isNonlinear(scene)) {
-    if (!disperses(scene)) return fmt::format("nonlinear wave CFL, {} dx / c", kShallowCourant);
-    return fmt::format(
-        "nonlinear wave step with dispersion, {:.3g} / (highest frequency of the grid), at most {} dx / c",
-        1.8 * kShallowDispersedShare, kFlowCourant);
-  }
+  if (isNonlinear(scene)) return fmt::format("nonlinear wave CFL, {} dx / c", kShallowCourant);
   const bool steepens = scene.wave->steepening_ratio > 0;
   if (disperses(scene))
     return std::string("wave step with dispersion, 1.8 / (highest frequency of the grid") +

@@ -12,6 +12,7 @@
 // DISPERSE: slopes filtered by the dispersion take the place of those of the surface in water that is deep for its waves.
 // Invariants: no water leaves a dry cell; a level surface without flow does not change in any bit, at any level of any pond.
 #include "shared/groups.h"
+#include "wave/dispersed_share.glsl"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
 
@@ -21,7 +22,6 @@ layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
 #if DISPERSE
 layout(binding = DISPERSED) uniform samplerBuffer dispersed;
-layout(binding = BREAKING) uniform samplerBuffer breaking;
 #endif
 #if SEA
 #include "wave/incident_sea.glsl"
@@ -33,10 +33,11 @@ layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args
 /// Share of the speed difference across a cell that its pressure may take from a face in a step; both faces together take
 /// less than all.
 #define MAX_PRESSED 0.45
-/// A face drives no more than a step can bear: water may be this many times (dx/dt)^2/g high (the limit of the step is 1/2),
-/// and where slopes are dispersed this many times its static depth. Higher piles of water fall as slowly as if they were lower.
-#define STABLE_HEIGHT 0.4
-#define STABLE_DISPERSED 1.6
+/// Waves and flow together may cross this share of a cell in a step. What is faster loses velocity: in a step it is divided by 1 plus
+/// COURANT_LOSS times the excess. The scene's step leaves room for waves that break, not for columns several times the
+/// depth; their explicit step would gain energy.
+#define FREE_COURANT 0.8
+#define COURANT_LOSS 4.0
 /// In a step, velocities are divided by 1 plus this number where columns alternate between high and empty.
 #define ALTERNATING_LOSS 4.0
 
@@ -76,38 +77,21 @@ float advected(Face f, Column here, Column there) {
   return change / max(dot(inflow, vec4(1.0)), 1.0) + pressed.x - pressed.y;
 }
 
-/// Height of water that a step can bear. [m]
-float stableHeight_m() {
-  const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
-  return STABLE_HEIGHT * max_mps * max_mps / max(sim.gravity_mps2, 1e-6);
-}
-
-#if DISPERSE
-/// How far the dispersion acts at a face of static depth `depth_m`: not where waves are high for their depth, water is
-/// missing or breaks. What it leaves out moves at once, and the step would be too long for that in deep water.
-float dispersedShare(float depth_m, Column here, Column there, float breaks) {
-  if (depth_m <= 0.0 || min(here.water_m, there.water_m) <= 0.0) return 0.0;
-  const float high = 0.5 * (here.water_m + there.water_m) / depth_m;
-  const float share = (1.0 - smoothstep(1.6, 1.9, high)) * smoothstep(0.2, 0.5, high) * (1.0 - breaks);
-  return max(share, 1.0 - stableHeight_m() / depth_m);
-}
-#endif
-
 /// Velocity [m/s] and water [m^2/s] at a face after the step. `driving` is g dt times the slope; `a` the share of the
-/// velocity that losses take in half a step; `gained` what an incoming sea adds. Columns higher than
-/// `borne_m`, which a step can bear, keep a part of their water in every step.
-vec2 movedFlow(Face f, Column behind, Column here, Column there, Column beyond, float driving, float a, float gained, float borne_m) {
+/// velocity that losses take in half a step; `gained` what an incoming sea adds.
+vec2 movedFlow(Face f, Column behind, Column here, Column there, Column beyond, float driving, float a, float gained) {
   const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
   float u = ((1.0 - a) * f.own + advected(f, here, there) - driving + gained) / (1.0 + a);
   u /= 1.0 + ALTERNATING_LOSS * alternates(behind, here, there, beyond);
+  const float courant = (abs(u) + sqrt(sim.gravity_mps2 * max(here.water_m, there.water_m))) / max_mps;
+  u /= 1.0 + COURANT_LOSS * max(courant - FREE_COURANT, 0.0);
   const bool forward = u > 0.0;
   const Column from = forward ? here : there;
   const Column to = forward ? there : here;
   float passing_m = passingWater_m(from, to);
   if (passing_m <= 0.0) return vec2(0.0);
   u /= 1.0 + sim.wave_dt_s * sim.wave_friction * sqrt(u * u + f.across * f.across) * exp2(-1.3333333 * log2(passing_m));
-  const float borne_mps = max_mps * min(borne_m / from.water_m, 1.0);
-  u = clamp(u, -borne_mps, borne_mps);
+  u = clamp(u, -max_mps, max_mps);
   // No sill between: the height at the face follows the slope of the water behind it.
   if (passing_m >= from.water_m) {
     const float before_m = forward ? behind.water_m : beyond.water_m;
@@ -161,18 +145,12 @@ void main() {
   const int head = headAt(i);
   vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head),
                    drivingRise(here, there_z, headAt(i_z) - head));
-  const vec2 there_m = vec2(there_x.water_m, there_z.water_m);
-  const vec2 tallest_m = max(vec2(here.water_m), there_m);
-  vec2 borne_m = vec2(stableHeight_m());
-  rise *= min(borne_m / max(tallest_m, vec2(1e-6)), vec2(1.0));
 #if DISPERSE
   const vec2 depth_m = texelFetch(basin, i).xy;
-  const float breaks = texelFetch(breaking, i).y;
-  const vec2 share = vec2(dispersedShare(depth_m.x, here, there_x, max(breaks, texelFetch(breaking, i_x).y)),
-                          dispersedShare(depth_m.y, here, there_z, max(breaks, texelFetch(breaking, i_z).y)));
-  const vec2 dispersed_borne_m = STABLE_DISPERSED * depth_m;
-  borne_m = max(borne_m, dispersed_borne_m);
-  rise = mix(rise, min(dispersed_borne_m / max(tallest_m, vec2(1e-6)), vec2(1.0)) * texelFetch(dispersed, i).xy / max(depth_m, vec2(1e-6)), share);
+  const float breaks = breakingAt(i);
+  const DispersedShare share_x = dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x)));
+  const DispersedShare share_z = dispersedShare(depth_m.y, here, there_z, max(breaks, breakingAt(i_z)));
+  rise = vec2(1.0 - share_x.all, 1.0 - share_z.all) * rise + vec2(share_x.after, share_z.after) * texelFetch(dispersed, i).xy;
 #endif
   const vec2 driving = sim.wave_pull * rise;
 
@@ -185,13 +163,13 @@ void main() {
 #endif
   const vec2 a = 0.5 * sim.wave_dt_s * (sim.wave_damping_per_s + layer_loss);
 #if SEA
-  const vec2 mean_m = 0.5 * (here.water_m + there_m);
+  const vec2 mean_m = 0.5 * (here.water_m + vec2(there_x.water_m, there_z.water_m));
   const vec2 gained = sim.wave_dt_s * layer_loss * incidentFlow(i) / max(mean_m, vec2(0.05 * sim.wave_depth_m));
 #else
   const vec2 gained = vec2(0.0);
 #endif
-  vec2 flow_x = movedFlow(face_x, behind_x, here, there_x, beyond_x, driving.x, a.x, gained.x, borne_m.x);
-  vec2 flow_z = movedFlow(face_z, behind_z, here, there_z, beyond_z, driving.y, a.y, gained.y, borne_m.y);
+  vec2 flow_x = movedFlow(face_x, behind_x, here, there_x, beyond_x, driving.x, a.x, gained.x);
+  vec2 flow_z = movedFlow(face_z, behind_z, here, there_z, beyond_z, driving.y, a.y, gained.y);
 #if !WAVE_PERIODIC_X
   if (cell.x == n.x - 1) flow_x = vec2(0.0);
 #endif

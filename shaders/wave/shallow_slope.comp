@@ -7,6 +7,7 @@
 // of 0.1 and 0.3 of the depth keep their height (docs/shore.md).
 // Invariant: exactly 0 between cells at the same level without flow, and beside a dry cell.
 #include "shared/groups.h"
+#include "wave/dispersed_share.glsl"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
 
@@ -48,6 +49,8 @@ void main() {
   const int head = headAt(i);
   const vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head) + pressed_x - pressed,
                          drivingRise(here, there_z, headAt(i_z) - head) + pressed_z - pressed);
-  const bvec2 is_wet = bvec2(min(here.water_m, there_x.water_m) > 0.0, min(here.water_m, there_z.water_m) > 0.0);
-  surface_rise[i] = mix(vec2(0.0), rise, is_wet);
+  const vec2 depth_m = texelFetch(basin, i).xy;
+  const float breaks = breakingAt(i);
+  surface_rise[i] = rise * vec2(dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x))).before,
+                                dispersedShare(depth_m.y, here, there_z, max(breaks, breakingAt(i_z))).before);
 }
