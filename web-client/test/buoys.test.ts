@@ -14,7 +14,7 @@ const harbor = {
   sideM: 32, widthM: 32,
   waterExtents: { sideM: 32, longM: 32, depthM: 1.2 },
   setting: "openSea" as const,
-  wave: { resolutionCount: 192, countZ: 192, sideM: 32, widthM: 32, depthM: 1.2, periodicX: false, periodicZ: false, sides, spongeWidthM: 3, dampingPerS: 0 },
+  wave: { resolutionCount: 192, countZ: 192, sideM: 32, widthM: 32, depthM: 1.2, periodicX: false, periodicZ: false, sides, spongeWidthM: 3, dampingPerS: 0, isNonlinear: false },
   beaches: [{ side: "+x" as const, widthM: 7, shoreDepthM: 0 }],
   obstacles: [
     wall(-6, -4, 14, 60), wall(6, -11, 9, 0),

@@ -20,7 +20,7 @@ function fakeRenderer(): WebGLRenderer {
 }
 
 const kOpen: Record<"-x" | "+x" | "-z" | "+z", SideKind> = { "-x": "open", "+x": "open", "-z": "open", "+z": "open" };
-const kWave: WaveInfo = { resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0 };
+const kWave: WaveInfo = { resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0, isNonlinear: false };
 const kRoom = {
   layers: ["surface", "foam", "bodies", "particles"],
   sideM: 16,
