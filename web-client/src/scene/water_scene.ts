@@ -218,6 +218,7 @@ export class WaterScene {
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
     if (this.greeting?.wind) this.greeting.wind = withParameter(this.greeting.wind, path, value);
+    if (path === "wave.depth_m" && this.greeting?.wave) this.greeting.wave.depthM = this.greeting.waterExtents.depthM = value;
     if (path === "storm.level_ratio") this.daylight.setRoomStorm(value);
     this.base?.solids.surroundings.setParameter(path, value);
   }
