@@ -41,23 +41,32 @@ void main() {
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
     float wet = 1.0 - smoothstep(0.0, 1.0, v_world.y / u_wet_m - 0.5 * coarse);
 #ifdef SHORE
-    if (all(lessThan(abs(v_world.xz), 0.5 * u_extent_m))) {
+    float inner = simulatedShore(v_world.xz, u_extent_m);
+    // Sand has slopes on which it stays, and less grain than stone.
+    bool is_sand = grain < 0.95 && normal.y > 0.8;
+    float foam = 0.0;
+    if (inner > 0.0) {
       vec3 shore = shoreAt(v_world.xz, u_extent_m);
-      // Stone near the still water is always wet; sand is where water was, with an edge that follows its grain, not the cells.
+      // With an edge that follows the sand's grain, not the cells.
       float washed = max(smoothstep(-0.004, 0.004, shore.r), smoothstep(0.0, 0.55, shore.g * (1.0 + 0.5 * fine + 0.6 * coarse)));
-      bool is_stone = grain > 0.95 || normal.y < 0.8;
-      wet = is_stone ? max(wet, washed) : washed;
-      wet_film = washed * smoothstep(0.75, 1.0, shore.g) * (is_stone ? 0.35 : 1.0);
-      albedo *= mix(vec3(1.0), is_stone ? vec3(0.55) : kWetSand, wet);
-      if (shore.b > 0.02 && !is_stone) {
-        float lace = texture(u_noise, v_world.xz / (0.6 * u_grain_m)).r;
-        float threads = smoothstep(1.0 - shore.b, 1.25 - 0.5 * shore.b, lace + 0.12) * smoothstep(0.02, 0.3, shore.b);
-        albedo = mix(albedo, kLace, 0.8 * threads);
-        wet_film *= 1.0 - threads;
-      }
-    } else
-#endif
+      wet_film = inner * washed * smoothstep(0.75, 1.0, shore.g) * (is_sand ? 1.0 : 0.35);
+      foam = inner * shore.b;
+      // Stone near the still water is always wet; sand is where water was.
+      wet = is_sand ? mix(wet, washed, inner) : max(wet, inner * washed);
+    }
+    vec3 wet_albedo = vec3(1.0 - 0.42 * min(grain, 1.0));
+    // The paint of the deep bed is that of ground which is never dry.
+    if (is_sand) wet_albedo = mix(wet_albedo, kWetSand, clamp(1.0 + v_world.y / (10.0 * u_wet_m), 0.0, 1.0));
+    albedo *= mix(vec3(1.0), wet_albedo, wet);
+    if (foam > 0.02 && is_sand) {
+      float lace = texture(u_noise, v_world.xz / (0.6 * u_grain_m)).r;
+      float threads = smoothstep(1.0 - foam, 1.25 - 0.5 * foam, lace + 0.12) * smoothstep(0.02, 0.3, foam);
+      albedo = mix(albedo, kLace, 0.8 * threads);
+      wet_film *= 1.0 - threads;
+    }
+#else
     albedo *= 1.0 - 0.42 * min(grain, 1.0) * wet;
+#endif
   }
   float sun = max(dot(normal, u_sun_direction), 0.0);
   vec3 lit_at = v_world;

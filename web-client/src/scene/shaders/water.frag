@@ -148,8 +148,9 @@ void main() {
   float edge = 1.0;
 #ifdef SHORE
   vec3 shore = shoreAt(v_world.xz, u_extent_m);
-  bool is_inside = all(lessThan(abs(v_world.xz), 0.5 * u_extent_m));
-  float deep_m = is_inside ? shore.r : v_top_m + bedDepth(v_world.xz, u_extent_m, u_depth_m);
+  float inner = simulatedShore(v_world.xz, u_extent_m);
+  float deep_m = shore.r;
+  if (inner < 1.0) deep_m = mix(v_top_m + bedDepth(v_world.xz, u_extent_m, u_depth_m), deep_m, inner);
   if (deep_m <= 0.0) discard;
   if (behind_depth < gl_FragCoord.z) {
     // Ground and thin water are two meshes at nearly the same place: which is in front says nothing there.
@@ -335,7 +336,7 @@ void main() {
 #ifdef BEACH
   // Shallow water at a beach always has a little foam; a moving shore knows where.
 #ifdef SHORE
-  if (is_inside) foam = max(foam, shore.b);
+  foam = max(foam, inner * shore.b);
 #else
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
 #endif
