@@ -59,7 +59,7 @@ void main() {
     if (is_sand) wet_albedo = mix(wet_albedo, kWetSand, clamp(1.0 + v_world.y / (10.0 * u_wet_m), 0.0, 1.0));
     albedo *= mix(vec3(1.0), wet_albedo, wet);
     if (foam > 0.02 && is_sand) {
-      float lace = texture(u_noise, v_world.xz / (0.6 * u_grain_m)).r;
+      float lace = texture(u_noise, v_world.xz / (2.2 * u_grain_m)).r;
       float threads = smoothstep(1.0 - foam, 1.25 - 0.5 * foam, lace + 0.12) * smoothstep(0.02, 0.3, foam);
       albedo = mix(albedo, kLace, 0.8 * threads);
       wet_film *= 1.0 - threads;

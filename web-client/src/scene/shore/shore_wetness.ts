@@ -10,7 +10,7 @@ export const kFilmM = 0.003;
 export const kDryingS = 45;
 /** Foam fades by a factor of e within this time: on water, and as lace on the ground. */
 const kFoamOnWaterS = 1.6;
-const kFoamOnGroundS = 7;
+const kFoamOnGroundS = 5;
 /** Water that came to a place within this time belongs to the front. */
 const kFrontS = 0.5;
 /** A front is white by the speed at which it fills a place: none below the first, all above the second. */
