@@ -80,7 +80,7 @@ export class FieldPass implements Pass {
   constructor(
     { sideM, periodicX, periodicZ, resolutionCount, countZ }: WaveInfo,
     private readonly surfaces: FrameRing<SurfaceFrame>,
-    private readonly quality: Pick<Quality, "fieldCountMax" | "texelType">,
+    private readonly quality: Pick<Quality, "fieldCountMax" | "texelType" | "plain">,
     private readonly cellsOf?: (counts: PlaneCounts) => ShoreCells,
   ) {
     this.sideM = sideM;
@@ -117,7 +117,7 @@ export class FieldPass implements Pass {
     if (cellsOf) {
       const cells = { value: makeCellsTexture(cellsOf(counts)) };
       const uniforms = { u_elevation: { value: this.elevation.texture }, u_unit_m: unit, u_cells: cells, u_film_m: { value: kFilmM } };
-      this.level = { pass: new FullscreenPass(makeMaterial("level", uniforms, state)), target: makeElevationTarget(counts), cells };
+      this.level = { pass: new FullscreenPass(makeMaterial("level", uniforms, { ...state, defines: quality.plain ? { PLAIN: 1 } : {} })), target: makeElevationTarget(counts), cells };
     }
     this.derive = new FullscreenPass(
       makeMaterial(

@@ -1,11 +1,18 @@
 // The elevation → the level of the water, continued over dry ground: there the streamed elevation is that of the ground, which would bend
 // the surface upward at a waterline and over rocks. Where the level falls below the ground, between two texels, is the waterline.
+// PLAIN: only one texel far; field.frag reads two, so that the surface bends a little before its edge.
 // Reads u_elevation and writes the level, in units of u_unit_m; u_cells: ground with obstacles and without them [m].
 
 uniform isampler2D u_elevation;
 uniform sampler2D u_cells;
 uniform float u_unit_m;
 uniform float u_film_m;  // thinner water counts as none
+
+#ifdef PLAIN
+const int kReach = 1;
+#else
+const int kReach = 2;
+#endif
 
 layout(location = 0) out int level;
 
@@ -20,8 +27,8 @@ void main() {
   }
   // The mean level and depth of the water near, by the inverse of the distance squared.
   vec3 near = vec3(0.0);
-  for (int z = -2; z <= 2; ++z)
-    for (int x = -2; x <= 2; ++x) {
+  for (int z = -kReach; z <= kReach; ++z)
+    for (int x = -kReach; x <= kReach; ++x) {
       ivec2 beside = clamp(at + ivec2(x, z), ivec2(0), last);
       float high_m = float(texelFetch(u_elevation, beside, 0).r) * u_unit_m;
       float deep_m = high_m - texelFetch(u_cells, beside, 0).r;
