@@ -21,8 +21,8 @@ uniform float u_darkness; // 0 by day, 1 at night
 #endif
 #ifdef SHORE
 #include <shore>
-// Wet over dry albedo. Water between the grains guides light inward, and the film reflects back what would leave (Lekner & Dorf 1988,
-// "Why some things are darker when wet"); fields of wet sand measure about half of dry ones. Blue loses most.
+// Wet over dry albedo, by eye. Light in wet sand is scattered more often before it leaves: water between the grains makes them scatter
+// forward (Twomey, Bohren & Mergenthaler 1986), and the film reflects it back (Lekner & Dorf 1988). Blue, which sand absorbs most, loses most.
 const vec3 kWetSand = vec3(0.50, 0.46, 0.42);
 const vec3 kLace = vec3(0.80, 0.82, 0.82);
 #endif
