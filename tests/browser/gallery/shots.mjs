@@ -23,7 +23,7 @@ const kShots = {
   breaking_wave_wave: { tick: 120 },
   dam_break: { tick: 84 },
   harbor: { tick: 330 },
-  island: { tick: 540, historyTicks: 300, camera: { eyeM: [9, 4, 9], targetM: [1, 0, 0] } },
+  island: { tick: 540, historyTicks: 300, camera: { eyeM: [9, 4, 13.5], targetM: [0.5, 0, 1] } },
   kelvin: { tick: 840, camera: { view: "overview" } },
   open_water: { tick: 240 },
   particles_only: { tick: 60 },
