@@ -130,7 +130,8 @@ TEST_P(StormWhereWavesDisperse, KeepsItsVolumeAndStaysBounded) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, StormWhereWavesDisperse,
-                         ::testing::Values("harbor", "splash", "boat_wake", "open_water", "kelvin", "rain_rings"),
+                         ::testing::Values("harbor", "splash", "boat_wake", "open_water", "kelvin", "rain_rings",
+                                           "beach", "island", "river_mouth"),
                          [](const auto& scene) { return std::string(scene.param); });
 
 }  // namespace
