@@ -50,11 +50,12 @@ v1::Ground groundOf(const core::Scene& scene) {
 std::shared_ptr<const std::string> GroundAnswers::of(const std::shared_ptr<const rooms::Room>& room) {
   const auto snapshot = room->snapshot();
   if (!snapshot->scene.has_wave()) return nullptr;
+  const double depth_m = snapshot->scene.wave().depth_m();
   {
     const std::lock_guard lock(mutex_);
     const auto found = kept_.find(room->name());
     if (found != kept_.end() && found->second.room.lock() == room &&
-        found->second.scene_version == snapshot->scene_version)
+        found->second.scene_version == snapshot->scene_version && found->second.depth_m == depth_m)
       return found->second.bytes;
   }
   v1::Ground ground = groundOf(scene::toCore(snapshot->scene));
@@ -62,7 +63,7 @@ std::shared_ptr<const std::string> GroundAnswers::of(const std::shared_ptr<const
   auto bytes = std::make_shared<const std::string>(ground.SerializeAsString());
   const std::lock_guard lock(mutex_);
   if (kept_.size() >= kKeptMaxCount && !kept_.contains(room->name())) kept_.erase(kept_.begin());
-  kept_[room->name()] = {room, snapshot->scene_version, bytes};
+  kept_[room->name()] = {room, snapshot->scene_version, depth_m, bytes};
   return bytes;
 }
 

@@ -110,5 +110,17 @@ TEST_F(GaugesOfARoom, GroundIsSentAsHeightsOfTheCells) {
   EXPECT_EQ(get("/api/v1/rooms/box/ground").status, 404U) << "a box of particles has none";
 }
 
+TEST_F(GaugesOfARoom, GroundFollowsTheParameterOfTheDepth) {
+  ScriptedClient operator_client = client();
+  ASSERT_EQ(get("/api/v1/rooms/main/ground").status, 200U);
+  v1::Command deeper;
+  deeper.mutable_set_parameter()->set_path("wave.depth_m");
+  deeper.mutable_set_parameter()->set_value(1.5);
+  ASSERT_TRUE(operator_client.apply(deeper));
+  v1::Ground ground;
+  ASSERT_TRUE(ground.ParseFromString(get("/api/v1/rooms/main/ground").body));
+  EXPECT_NEAR(riseOf(ground).front(), -1.5, 0.51 * ground.quantum_m());
+}
+
 }  // namespace
 }  // namespace spindrift::test

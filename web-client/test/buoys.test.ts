@@ -14,8 +14,8 @@ const harbor = {
   sideM: 32, widthM: 32,
   waterExtents: { sideM: 32, longM: 32, depthM: 1.2 },
   setting: "openSea" as const,
-  wave: { resolutionCount: 192, countZ: 192, sideM: 32, widthM: 32, depthM: 1.2, periodicX: false, periodicZ: false, sides, spongeWidthM: 3, dampingPerS: 0 },
-  beaches: [{ side: "+x" as const, widthM: 7, shoreDepthM: 0 }],
+  wave: { resolutionCount: 192, countZ: 192, sideM: 32, widthM: 32, depthM: 1.2, periodicX: false, periodicZ: false, sides, spongeWidthM: 3, dampingPerS: 0, isNonlinear: true },
+  beaches: [{ side: "+x" as const, widthM: 10, shoreDepthM: -0.6 }],
   obstacles: [
     wall(-6, -4, 14, 60), wall(6, -11, 9, 0),
     { shape: "rock" as const, xM: -8, zM: 6, radiusM: 1.3, heightM: 1 }, { shape: "rock" as const, xM: -6.3, zM: 7.6, radiusM: 0.8, heightM: 0.6 }, { shape: "rock" as const, xM: 2.5, zM: 10.5, radiusM: 1.1, heightM: 0.8 },

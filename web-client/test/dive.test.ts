@@ -13,7 +13,7 @@ const kRock = { shape: "rock", xM: 3, zM: 0, radiusM: 1.5, heightM: 1 } as const
 const kWall = { shape: "breakwater", xM: -4, zM: -2, lengthM: 6, widthM: 1, headingRad: 0.7, heightM: 0.8 } as const;
 
 function water(change: Partial<GreetingInfo> = {}, depthM = 2) {
-  const wave = { resolutionCount: 32, sideM: 16, depthM, periodicX: false, periodicZ: false, sides: kSides, spongeWidthM: 2, dampingPerS: 0 };
+  const wave = { resolutionCount: 32, sideM: 16, depthM, periodicX: false, periodicZ: false, sides: kSides, spongeWidthM: 2, dampingPerS: 0, isNonlinear: false };
   const greeting = { sideM: 16, widthM: 16, setting: "openSea", waterExtents: { sideM: 16, longM: 16, depthM }, obstacles: [kRock, kWall], beaches: [{ side: "+x", widthM: 6, shoreDepthM: 0 }], wave, ...change };
   return diveWater(greeting as unknown as GreetingInfo, kNearM);
 }

@@ -1,8 +1,9 @@
 import { create, toBinary } from "@bufbuild/protobuf";
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 
 import { readGround, type GroundGrid } from "../src/codec/ground";
 import { isMalformed } from "../src/codec/malformed";
+import { GroundRequests } from "../src/net/ground_request";
 import { GroundSchema } from "../src/gen/spindrift/v1/api_pb";
 import { makeGroundGeometry } from "../src/scene/landscape";
 import { coastHeightM } from "../src/scene/sea/coast";
@@ -24,6 +25,37 @@ const kRises = [
   [-4, -2, 0, 2],
   [-8, -6, 2, -1],
 ];
+
+describe("requests for the ground", () => {
+  it("are made one at a time, once more after any number of changes, and take only the newest answer", async () => {
+    const answers: ((ground: GroundGrid) => void)[] = [];
+    const taken: [string, GroundGrid][] = [];
+    const requests = new GroundRequests(() => new Promise((resolve) => answers.push(resolve)), (room, ground) => taken.push([room, ground]), () => {});
+    const [first, second] = [groundOf(kRises), groundOf(kRises)];
+    requests.ask("a");
+    requests.ask("a");
+    requests.ask("b");
+    expect(answers).toHaveLength(1);
+    answers[0]!(first);
+    await vi.waitFor(() => expect(answers).toHaveLength(2));
+    expect(taken).toEqual([]);
+    answers[1]!(second);
+    await vi.waitFor(() => expect(taken).toEqual([["b", second]]));
+    expect(answers).toHaveLength(2);
+  });
+
+  it("that fail are told, and do not end further ones", async () => {
+    const told: string[] = [];
+    let isUp = false;
+    const taken: string[] = [];
+    const requests = new GroundRequests(() => (isUp ? Promise.resolve(groundOf(kRises)) : Promise.reject(new Error("404"))), (room) => taken.push(room), (message) => told.push(message));
+    requests.ask("a");
+    await vi.waitFor(() => expect(told).toEqual(["404"]));
+    isUp = true;
+    requests.ask("a");
+    await vi.waitFor(() => expect(taken).toEqual(["a"]));
+  });
+});
 
 describe("the ground of a scene with a bed", () => {
   it("is read from differences", () => {

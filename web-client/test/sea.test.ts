@@ -16,7 +16,7 @@ const sidesOf = (plusX: SideKind, minusX: SideKind, plusZ: SideKind, minusZ: Sid
 // As openSea() in tests/unit/sim_setup/sea_state_test.cpp.
 const wave: WaveInfo = {
   resolutionCount: 256, countZ: 256, sideM: 30, widthM: 30, depthM: 2, periodicX: false, periodicZ: false,
-  sides: sidesOf("open", "open", "open", "open"), spongeWidthM: 4, dampingPerS: 0.1,
+  sides: sidesOf("open", "open", "open", "open"), spongeWidthM: 4, dampingPerS: 0.1, isNonlinear: false,
 };
 const wind: WindInfo = { seed: 7n, gravityMps2: 9.81, comesIn: true, levelRatio: 1, dropsPerM2S: 0.08, waveHeightM: 1, directionDeg: 30, speedMps: 15, fetchM: 2000 };
 

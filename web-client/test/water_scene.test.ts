@@ -20,7 +20,7 @@ function fakeRenderer(): WebGLRenderer {
 }
 
 const kOpen: Record<"-x" | "+x" | "-z" | "+z", SideKind> = { "-x": "open", "+x": "open", "-z": "open", "+z": "open" };
-const kWave: WaveInfo = { resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0 };
+const kWave: WaveInfo = { resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0, isNonlinear: false };
 const kRoom = {
   layers: ["surface", "foam", "bodies", "particles"],
   sideM: 16,
@@ -46,6 +46,12 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
     hasBoats: true,
     obstacles: [{ shape: "rock", xM: 2, zM: 2, radiusM: 1, heightM: 1 }],
     wind: kWind,
+  },
+  "a beach where water runs up": {
+    wave: { ...kWave, isNonlinear: true, sides: { ...kOpen, "+x": "closed" } },
+    setting: "openSea",
+    beaches: [{ side: "+x", widthM: 6, shoreDepthM: -1 }],
+    obstacles: [{ shape: "rock", xM: 2, zM: 2, radiusM: 1, heightM: 1 }],
   },
   "a pool": { wave: kWave, setting: "pool", hasParticles: true },
   "a tank of particles": { setting: "glassTank", hasParticles: true },
@@ -124,6 +130,8 @@ describe("the list of passes", () => {
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "flat shadow", "water", "present", "spray"]);
     expect(names(kRooms["a harbor with everything"]!)).toContain("rain streaks");
     expect(names(kRooms["a flume"]!)).not.toContain("rain streaks");
+    expect(names(kRooms["a beach where water runs up"]!).slice(0, 3)).toEqual(["field", "shore", "foam"]);
+    expect(names(kRooms["a harbor with everything"]!)).not.toContain("shore");
     const tank = names(kRooms["a tank of particles"]!);
     expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);
     expect(tank.at(-1)).toBe("glass");
@@ -149,6 +157,43 @@ describe("a new greeting", () => {
     scene.enter({ ...sea, sceneName: "other" }, false);
     expect(scene.newestSurface()).toBeUndefined();
     expect(released).toEqual([first, second]);
+    scene.dispose();
+  });
+});
+
+describe("wet ground", () => {
+  const beach: GreetingInfo = { ...kRoom, ...kRooms["a beach where water runs up"]! };
+  const frame = (timeS: number, elevationM: number): Frame => ({
+    layer: "surface", tick: 0n, stateId: BigInt(Math.round(timeS * 60)), timeS, serverTimeS: timeS, level: "full", resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, quantumM: 0.001,
+    buffer: new Int16Array(1024).fill(1000 * elevationM).buffer,
+  });
+  /** The last frame is the one shown; a sample of 2 m over the sand is a wave over all of it. */
+  const shownAfter = (frames: Frame[]): WaterScene => {
+    const scene = new WaterScene(fakeRenderer(), { ...kTiers.low, texelType: HalfFloatType }, () => {});
+    scene.enter(beach, false);
+    for (const each of frames) {
+      scene.take(each, each.timeS);
+      scene.clock.hold(each.timeS);
+      scene.render(each.timeS);
+    }
+    return scene;
+  };
+
+  it("is where water was, also in another quality, and not in another room", () => {
+    const scene = shownAfter([frame(1, 2), frame(1.1, -0.5)]);
+    expect(scene.shoreAt(7.5, 0)!.wetness).toBeGreaterThan(0.9);
+    scene.setQuality({ ...kTiers.low, surfaceCellsCount: 64, texelType: HalfFloatType });
+    scene.render(1.1);
+    expect(scene.shoreAt(7.5, 0)!.wetness).toBeGreaterThan(0.9);
+    scene.enter({ ...beach, sceneName: "other" }, false);
+    expect(scene.shoreAt(7.5, 0)).toBeUndefined();
+    scene.dispose();
+  });
+
+  it("is dry for one who comes after the wave", () => {
+    const scene = shownAfter([frame(1.1, -0.5)]);
+    expect(scene.shoreAt(7.5, 0)).toEqual({ wetness: 0, foam: 0 });
+    expect(scene.shoreAt(-7.5, 0)!.wetness).toBe(1);
     scene.dispose();
   });
 });

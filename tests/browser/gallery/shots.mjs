@@ -6,6 +6,7 @@ import { repository } from "../server.mjs";
 /**
  * @typedef {object} Shot
  * @property {number} tick the water shown
+ * @property {number} [historyTicks] before it, for what the page keeps of them: kHistoryTicks unless it is longer
  * @property {{view?: string, eyeM?: number[], targetM?: number[]}} [camera] a view of the page (by default the first one), or a place
  */
 
@@ -13,7 +14,7 @@ import { repository } from "../server.mjs";
 const kDefault = { tick: 180 };
 /** Ticks at which something is to be seen: a crown, a crest about to break, a wake. @type {Record<string, Shot>} */
 const kShots = {
-  beach: { tick: 282, camera: { eyeM: [-1, 3.4, 7.5], targetM: [5.5, 0, -1] } },
+  beach: { tick: 516, historyTicks: 300, camera: { eyeM: [-1, 3.4, 7.5], targetM: [5.5, 0, -1] } },
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
@@ -22,10 +23,12 @@ const kShots = {
   breaking_wave_wave: { tick: 120 },
   dam_break: { tick: 84 },
   harbor: { tick: 330 },
+  island: { tick: 540, historyTicks: 300, camera: { eyeM: [9, 4, 13.5], targetM: [0.5, 0, 1] } },
   kelvin: { tick: 840, camera: { view: "overview" } },
   open_water: { tick: 240 },
   particles_only: { tick: 60 },
   pool: { tick: 102 },
+  river_mouth: { tick: 780, historyTicks: 300, camera: { eyeM: [-6, 6, 14], targetM: [3, 0, 0] } },
   rain_rings: { tick: 420, camera: { eyeM: [0.4, 2.2, 4.6], targetM: [0, 0, 0] } },
   splash: { tick: 84 },
   splash_particles: { tick: 84 },
@@ -37,7 +40,7 @@ const kShots = {
 
 /** Pictures of both qualities have this size. */
 export const kSize = { width: 400, height: 225 };
-/** White water lives for some seconds: it is computed over this many ticks before the picture, in steps of kStride. */
+/** White water lives for some seconds, and wet ground longer: they are computed over this many ticks before the picture, in steps of kStride. */
 const kHistoryTicks = 120;
 const kStride = 6;
 
@@ -57,9 +60,9 @@ export function sceneOf(name) {
 export const shotOf = (scene) => kShots[scene] ?? kDefault;
 
 /** Brings a scene to the tick of its picture and places the camera. @param {import("./driven_page.mjs").DrivenPage} page */
-export async function setUp(page, { tick, camera }) {
+export async function setUp(page, { tick, camera, historyTicks = kHistoryTicks }) {
   await page.skipTo(tick % kStride);
-  await page.skipTo(Math.max(tick - kHistoryTicks, tick % kStride));
+  await page.skipTo(Math.max(tick - historyTicks, tick % kStride));
   await page.showTo(tick, kStride);
   if (camera) await page.look(camera);
 }

@@ -2,7 +2,7 @@
 // input.ts calls the methods for the user's actions.
 import type { GreetingInfo } from "../codec/greeting";
 import type { RoleName } from "../codec/people";
-import { requestGround } from "../net/ground_request";
+import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { socketUrl, WaterClient } from "../net/water_client";
@@ -60,6 +60,14 @@ export class App {
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
   private readonly answerListeners: AnswerListener[];
+  /** The water is drawn over a level bed until the ground is there. */
+  private readonly ground = new GroundRequests(
+    (room) => requestGround(room, this.identity.token),
+    (room, ground) => {
+      if (this.entered?.room === room && this.entered.hasBed) this.display.scene.setGround(ground);
+    },
+    (message) => this.toast.show(message, "bad"),
+  );
   private readonly url = socketUrl(location);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
   private identity = this.identities.load();
@@ -153,6 +161,7 @@ export class App {
       parameterChanged: ({ path, value }) => {
         this.parameters.setServerValue(path, value);
         this.display.scene.setParameter(path, value);
+        if (path === "wave.depth_m" && this.entered?.hasBed) this.ground.ask(this.entered.room);
       },
       roomState: ({ paused, speed }) => this.room.roomState(paused, speed),
       people: ({ people }) => {
@@ -198,17 +207,7 @@ export class App {
     // The card's height has changed with the text.
     this.display.resize();
     this.entered = greeting;
-    if (greeting.hasBed) void this.loadGround(greeting);
-  }
-
-  /** The water is drawn over a level bed until the ground is there. */
-  private async loadGround(greeting: GreetingInfo): Promise<void> {
-    try {
-      const ground = await requestGround(greeting.room, this.identity.token);
-      if (this.entered === greeting) this.display.scene.setGround(ground);
-    } catch (error) {
-      this.toast.show(error instanceof Error ? error.message : String(error), "bad");
-    }
+    if (greeting.hasBed) this.ground.ask(greeting.room);
   }
 
   /** Shows the quality that is drawn, and asks for as many frames as it needs. */

@@ -11,18 +11,19 @@ import { SteppedPictures } from "./stepped_pictures";
 export function installTestHooks(app: App, isStepped: boolean): void {
   const hooks = {
     stats: () => stats(app),
-    pixelOf: (xM: number, zM: number) => pixelOf(app, xM, zM),
+    pixelOf: (xM: number, zM: number, yM = 0) => pixelOf(app, [xM, yM, zM]),
+    shoreAt: (xM: number, zM: number) => app.display.scene.shoreAt(xM, zM) ?? null,
     passTimesMs: (picturesCount: number) => app.display.passTimesMs(picturesCount),
     stepped: isStepped ? new SteppedPictures(app) : undefined,
   };
   Object.defineProperty(window, "spindrift", { value: Object.freeze(hooks) });
 }
 
-/** Returns where a point of the still water is on the page, in CSS pixels from the top left corner. */
-function pixelOf(app: App, xM: number, zM: number): [number, number] {
+/** Returns where a point is on the page, in CSS pixels from the top left corner; the still water is at y = 0. */
+function pixelOf(app: App, atM: [x: number, y: number, z: number]): [number, number] {
   const { camera } = app.display.scene;
   const { left, top, width, height } = app.display.canvas.getBoundingClientRect();
-  const { x, y } = new Vector3(xM, 0, zM).project(camera);
+  const { x, y } = new Vector3(...atM).project(camera);
   return [left + ((x + 1) / 2) * width, top + ((1 - y) / 2) * height];
 }
 

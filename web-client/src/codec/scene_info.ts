@@ -1,5 +1,5 @@
 // What the page draws of a scene besides its water: setting, sides, wind sea, rocks, breakwaters and beaches, as plain, finite numbers.
-import { Dispersion, Setting, Side, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
+import { Bulk, Dispersion, Setting, Side, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
 
 /** More than the server allows; the rest is not drawn. */
 const kMaxObstacleCount = 256;
@@ -24,6 +24,8 @@ export interface WaveInfo {
   /** Width of the layer along open sides in which waves are absorbed. */
   spongeWidthM: number;
   dampingPerS: number;
+  /** Water moves over its shore: elevations of dry cells are those of the ground. */
+  isNonlinear: boolean;
 }
 
 /** What the sea that wind raises follows from, as in the server (docs/wind_sea.md). */
@@ -96,6 +98,7 @@ export function readWave(wave: WaveScene): WaveInfo {
     sides,
     spongeWidthM: isSize(spongeWidthM) ? spongeWidthM : 0,
     dampingPerS: Number.isFinite(dampingPerS) ? Math.max(dampingPerS, 0) : 0,
+    isNonlinear: wave.bulk === Bulk.NONLINEAR,
   };
 }
 

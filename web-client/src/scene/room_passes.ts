@@ -1,6 +1,7 @@
 // The passes of one room, each with what it reads and writes, in the order in which they are drawn.
 //   field        frames -> field (elevation, slopes, curvature of the water)
 //   caustics     field -> sunlight that the waves focus on what is below them; in the tiers from high on
+//   shore        frames, field -> shore, where water moves over its ground (shore/shore_pass.ts)
 //   foam         frames -> foam
 //   sea          time -> the sea around the square, in an open sea
 //   shadow       frames, field -> what the sun sees of solids; in the tiers from medium on
@@ -35,6 +36,9 @@ import { WaterPass } from "./passes/water_pass";
 import type { Quality } from "./quality";
 import { RainRingsPass } from "./rain/rain_rings_pass";
 import { RainStreaksPass } from "./rain/rain_streaks_pass";
+import { shoreOf } from "./shore/shore_ground";
+import { ShorePass } from "./shore/shore_pass";
+import type { ShoreWetness } from "./shore/shore_wetness";
 import { isIndoors } from "./settings/surroundings";
 import type { Sky } from "./sky";
 import type { StreamedFrames } from "./streamed_frames";
@@ -47,6 +51,8 @@ export interface RoomTools {
   sky: Sky;
   noise: DataTexture;
   quality: Quality;
+  /** Outlives the passes of a room, so that another quality keeps wet ground. */
+  wetness: ShoreWetness;
 }
 
 /** What all looks of a room share. `field` undefined: there is no wave. */
@@ -65,15 +71,17 @@ export interface RoomWater {
   dispose(): void;
 }
 
-export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality }: RoomTools): RoomBase {
+export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, wetness }: RoomTools): RoomBase {
   const { wave, sideM, widthM } = greeting;
-  const field = wave && new FieldPass(wave, frames.surfaces, quality);
+  const cellsOf = shoreOf(greeting);
+  const field = wave && new FieldPass(wave, frames.surfaces, quality, cellsOf);
+  const shore = field && cellsOf && new ShorePass(frames, field, wetness, cellsOf, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
   const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, widthM, depthM: wave.depthM }, quality.caustics);
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
-  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms }, frames.bodies, quality);
+  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, frames.bodies, quality);
   shadow?.setCasters(solids);
-  return { field, foam, solids, passes: [field, caustics, foam, solids.surroundings.sea, shadow, solids].filter((pass) => pass !== undefined) };
+  return { field, foam, solids, passes: [field, shore, caustics, foam, solids.surroundings.sea, shadow, solids].filter((pass) => pass !== undefined) };
 }
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {

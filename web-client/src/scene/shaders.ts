@@ -29,6 +29,7 @@ import fullscreenVert from "./shaders/fullscreen.vert?raw";
 import glassFrag from "./shaders/glass.frag?raw";
 import lampFrag from "./shaders/lamp.frag?raw";
 import lampVert from "./shaders/lamp.vert?raw";
+import levelFrag from "./shaders/level.frag?raw";
 import lookMap from "./shaders/look_map.glsl?raw";
 import lookParticleFrag from "./shaders/look_particle.frag?raw";
 import lookParticleVert from "./shaders/look_particle.vert?raw";
@@ -46,6 +47,8 @@ import seaTileFrag from "./shaders/sea_tile.frag?raw";
 import shadow from "./shaders/shadow.glsl?raw";
 import shadowFrag from "./shaders/shadow.frag?raw";
 import sky from "./shaders/sky.glsl?raw";
+import shore from "./shaders/shore.glsl?raw";
+import shoreFrag from "./shaders/shore.frag?raw";
 import skyBakeFrag from "./shaders/sky_bake.frag?raw";
 import skyBakeVert from "./shaders/sky_bake.vert?raw";
 import skyDomeFrag from "./shaders/sky_dome.frag?raw";
@@ -76,6 +79,7 @@ const kPrograms = {
   froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
   lamp: [lampVert, lampFrag],
+  level: [fullscreenVert, levelFrag],
   lookParticle: [lookParticleVert, lookParticleFrag],
   lookSurface: [waterVert, lookSurfaceFrag],
   lookValue: [fullscreenVert, lookValueFrag],
@@ -86,6 +90,7 @@ const kPrograms = {
   roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
   shadow: [solidVert, shadowFrag],
+  shore: [fullscreenVert, shoreFrag],
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
   solid: [solidVert, solidFrag],
@@ -109,6 +114,7 @@ const kShared: Record<string, string> = {
   look_map: lookMap,
   sea_blend: seaBlend,
   shadow,
+  shore,
   water_optics: waterOptics,
 };
 

@@ -20,6 +20,7 @@ import type { Quality } from "./quality";
 import { makeBase, makeNaturalWater, usedPasses, type RoomBase, type RoomTools, type RoomWater } from "./room_passes";
 import { withParameter } from "./sea/sea_state";
 import { isIndoors, viewOf } from "./settings/surroundings";
+import { ShoreWetness } from "./shore/shore_wetness";
 import { Sky } from "./sky";
 import { StreamedFrames } from "./streamed_frames";
 import { kinds } from "./whitewater/diffuse_particles";
@@ -37,6 +38,7 @@ export class WaterScene {
   private readonly frames: StreamedFrames;
   private sky: Sky;
   private readonly noise = makeNoiseTexture();
+  private readonly wetness = new ShoreWetness();
   private readonly picture: Picture;
   /** What every look needs: field, foam, surroundings. */
   private base: RoomBase | undefined;
@@ -78,6 +80,7 @@ export class WaterScene {
     this.leave();
     this.greeting = greeting;
     this.frames.enter(greeting.wave !== undefined, isSameWater);
+    if (!isSameWater) this.wetness.clear();
     this.sky.enter(isIndoors(greeting));
     this.sky.hideBelowHorizon(greeting.setting === "openSea");
     this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
@@ -197,6 +200,13 @@ export class WaterScene {
     return this.greeting && diveWater(this.greeting, this.camera.near);
   }
 
+  /** Returns wetness and swash foam (0 to 1) of the ground at a place; undefined where the shore is fixed, and before the first picture. */
+  shoreAt(xM: number, zM: number): { wetness: number; foam: number } | undefined {
+    if (!this.greeting) return undefined;
+    const { sideM, widthM } = this.greeting;
+    return this.wetness.at(xM / sideM + 0.5, zM / widthM + 0.5);
+  }
+
   newestSurface(): SurfaceFrame | undefined {
     return this.frames.surfaces.newest();
   }
@@ -213,6 +223,7 @@ export class WaterScene {
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
     if (this.greeting?.wind) this.greeting.wind = withParameter(this.greeting.wind, path, value);
+    if (path === "wave.depth_m" && this.greeting?.wave) this.greeting.wave.depthM = this.greeting.waterExtents.depthM = value;
     if (path === "storm.level_ratio") this.daylight.setRoomStorm(value);
     this.base?.solids.surroundings.setParameter(path, value);
   }
@@ -229,8 +240,8 @@ export class WaterScene {
   }
 
   private get tools(): RoomTools {
-    const { frames, sky, noise, quality } = this;
-    return { frames, sky, noise, quality };
+    const { frames, sky, noise, quality, wetness } = this;
+    return { frames, sky, noise, quality, wetness };
   }
 
   private makeWater(): void {

@@ -1,4 +1,5 @@
-// Surface frames → the field texture that every shader reads: elevation, slopes and curvature at the time shown.
+// Surface frames → the field texture that every shader reads: elevation, slopes and curvature at the time shown. Where water moves over its
+// shore, the field is that of the water's level, which goes on over dry ground (level.frag).
 // Reads the surface frames around that time. Writes the field.
 import {
   ClampToEdgeWrapping,
@@ -14,6 +15,7 @@ import {
   Vector3,
   Vector4,
   WebGLRenderTarget,
+  type IUniform,
   type Texture,
   type WebGLRenderer,
 } from "three";
@@ -25,6 +27,9 @@ import { kCurvature, kSlope, kSmooth } from "../field_kernels";
 import type { Between, FrameRing } from "../frame_ring";
 import { FrameTextures, type PlaneCounts } from "../frame_textures";
 import { FullscreenPass } from "../fullscreen";
+import { makeCellsTexture } from "../shore/cells_texture";
+import type { ShoreCells } from "../shore/shore_ground";
+import { kFilmM } from "../shore/shore_wetness";
 import type { Quality } from "../quality";
 import { makeMaterial, type Uniforms } from "../shaders";
 import { timeRateWeights, timeWeights, type FrameTimes } from "../time_weights";
@@ -32,6 +37,8 @@ import type { Pass, Picture } from "./pass";
 
 /** The elevation between frames is kept in fractions of the quantum: 15 bits and these 8 fill the 24 of a float. */
 const kUnitsPerQuantum = 256;
+/** Unit of the elevation before the first frame, which tells its quantum. */
+const kUnitBeforeM = 1e-5;
 /** Frames that a picture is interpolated from. */
 const kFrameCount = 4;
 
@@ -57,6 +64,8 @@ export class FieldPass implements Pass {
   private readonly frames: FrameTextures<SurfaceFrame>;
   private readonly interpolate: FullscreenPass;
   private readonly derive: FullscreenPass;
+  /** Of a room whose water moves over its shore. */
+  private readonly level: { pass: FullscreenPass; target: WebGLRenderTarget; cells: IUniform<DataTexture> } | undefined;
   // Of the picture drawn last; kept, because every picture would make new ones.
   private readonly times: FrameTimes = { beforeS: undefined, fromS: 0, toS: 0, afterS: undefined };
   private readonly weights: [number, number, number, number] = [0, 1, 0, 0];
@@ -67,11 +76,12 @@ export class FieldPass implements Pass {
   private readonly sideM: number;
   private isDrawn = false;
 
-  /** The texture has as many texels as a surface has samples, at most `quality.fieldCountMax` per side. */
+  /** The texture has as many texels as a surface has samples, at most `quality.fieldCountMax` per side. `cellsOf`: the ground by the counts of a frame, for a moving shore. */
   constructor(
     { sideM, periodicX, periodicZ, resolutionCount, countZ }: WaveInfo,
     private readonly surfaces: FrameRing<SurfaceFrame>,
-    private readonly quality: Pick<Quality, "fieldCountMax" | "texelType">,
+    private readonly quality: Pick<Quality, "fieldCountMax" | "texelType" | "plain">,
+    private readonly cellsOf?: (counts: PlaneCounts) => ShoreCells,
   ) {
     this.sideM = sideM;
     const allowed = (count: number): number => Math.min(Math.max(count, 1), kMaxResolutionCount);
@@ -86,14 +96,7 @@ export class FieldPass implements Pass {
       depthBuffer: false,
     });
     this.texture = this.target.texture;
-    this.elevation = new WebGLRenderTarget(counts.resolutionCount, counts.countZ, {
-      format: RedIntegerFormat,
-      type: IntType,
-      internalFormat: "R32I",
-      minFilter: NearestFilter,
-      magFilter: NearestFilter,
-      depthBuffer: false,
-    });
+    this.elevation = makeElevationTarget(counts);
     this.frames = new FrameTextures<SurfaceFrame>(counts, kFrameCount, makeTexture);
     const { blank } = this.frames;
     const state = { depthTest: false, depthWrite: false };
@@ -110,12 +113,18 @@ export class FieldPass implements Pass {
         state,
       ),
     );
+    const unit = { value: kUnitBeforeM };
+    if (cellsOf) {
+      const cells = { value: makeCellsTexture(cellsOf(counts)) };
+      const uniforms = { u_elevation: { value: this.elevation.texture }, u_unit_m: unit, u_cells: cells, u_film_m: { value: kFilmM } };
+      this.level = { pass: new FullscreenPass(makeMaterial("level", uniforms, { ...state, defines: quality.plain ? { PLAIN: 1 } : {} })), target: makeElevationTarget(counts), cells };
+    }
     this.derive = new FullscreenPass(
       makeMaterial(
         "field",
         {
-          u_elevation: { value: this.elevation.texture },
-          u_unit_m: { value: 0 },
+          u_elevation: { value: (this.level?.target ?? this.elevation).texture },
+          u_unit_m: unit,
           u_cell_m: { value: 1 },
           u_cells_per_texel: { value: new Vector2(1, 1) },
           u_periodic: { value: new Vector2(Number(periodicX), Number(periodicZ)) },
@@ -140,6 +149,16 @@ export class FieldPass implements Pass {
     return { u_before: u_before!, u_from: u_from!, u_to: u_to!, u_after: u_after! };
   }
 
+  /** Texels of the field, and samples of the frames that it is drawn from. */
+  get sizes(): { width: number; height: number; counts: PlaneCounts } {
+    return { width: this.target.width, height: this.target.height, counts: this.frames.counts };
+  }
+
+  /** The level of the water in units of u_unit_m, and the ground below it, as entries for materials; of a room with a moving shore. */
+  get levelUniforms(): Uniforms {
+    return { u_level: { value: this.level!.target.texture }, u_unit_m: this.derive.material.uniforms["u_unit_m"]!, u_cells: this.level!.cells };
+  }
+
   draw({ renderer, shownS }: Picture): void {
     const surfaces = shownS === undefined ? undefined : this.surfaces.around(shownS);
     if (surfaces) this.drawBetween(renderer, surfaces);
@@ -152,6 +171,9 @@ export class FieldPass implements Pass {
     this.elevation.dispose();
     this.interpolate.dispose();
     this.derive.dispose();
+    this.level?.target.dispose();
+    this.level?.pass.dispose();
+    this.level?.cells.value.dispose();
     this.frames.dispose();
   }
 
@@ -184,21 +206,30 @@ export class FieldPass implements Pass {
     uniforms["u_after"]!.value = this.frames.textureOf(after, drawn);
     const scaled = (k: 0 | 1 | 2 | 3): number => (weights[k] * drawn[k]!.quantumM) / unitM;
     (uniforms["u_weights"]!.value as Vector4).set(scaled(0), scaled(1), scaled(2), scaled(3));
-    this.interpolate.render(renderer, this.elevation);
     this.derive.material.uniforms["u_unit_m"]!.value = unitM;
-    this.derive.render(renderer, this.target);
+    this.drawField(renderer);
   }
 
   /** Draws water at rest, until the first frame comes. */
   private drawStill(renderer: WebGLRenderer): void {
     (this.interpolate.material.uniforms["u_weights"]!.value as Vector4).set(0, 0, 0, 0);
+    this.drawField(renderer);
+  }
+
+  private drawField(renderer: WebGLRenderer): void {
     this.interpolate.render(renderer, this.elevation);
+    this.level?.pass.render(renderer, this.level.target);
     this.derive.render(renderer, this.target);
   }
 
   private resize(counts: PlaneCounts): void {
     this.frames.resize(counts);
     this.elevation.setSize(counts.resolutionCount, counts.countZ);
+    if (this.level) {
+      this.level.target.setSize(counts.resolutionCount, counts.countZ);
+      this.level.cells.value.dispose();
+      this.level.cells.value = makeCellsTexture(this.cellsOf!(counts));
+    }
     this.target.setSize(...this.fieldCounts(counts));
     this.scale();
   }
@@ -215,6 +246,17 @@ export class FieldPass implements Pass {
     uniforms["u_cell_m"]!.value = this.sideM / resolutionCount;
     (uniforms["u_cells_per_texel"]!.value as Vector2).set(resolutionCount / this.target.width, countZ / this.target.height);
   }
+}
+
+function makeElevationTarget({ resolutionCount, countZ }: PlaneCounts): WebGLRenderTarget {
+  return new WebGLRenderTarget(resolutionCount, countZ, {
+    format: RedIntegerFormat,
+    type: IntType,
+    internalFormat: "R32I",
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+    depthBuffer: false,
+  });
 }
 
 function makeTexture({ resolutionCount, countZ }: PlaneCounts): DataTexture {

@@ -11,6 +11,8 @@ export type Resource =
   | "caustics"
   /** What the sun or the moon sees of solids. */
   | "shadow"
+  /** Depth at the waterline, wetness of the ground, foam of the swash. */
+  | "shore"
   /** Foam of the simulated water. */
   | "foam"
   /** Drops, foam and bubbles that the page adds. */

@@ -1,5 +1,5 @@
-// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the caustics, the shadow, and the frames of
-// the boats.
+// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the shore, the caustics, the shadow, and the
+// frames of the boats.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
@@ -22,9 +22,15 @@ const kGrainLimitsM = [0.5, 4] as const;
 /** Stone is wet up to this share of the depth above the still water. */
 const kWetDepths = 0.08;
 
+interface LitBy {
+  caustics: Uniforms | undefined;
+  shadow: Uniforms | undefined;
+  shore: Uniforms | undefined;
+}
+
 export class SolidsPass implements Pass {
   readonly name = "solids";
-  readonly reads = ["frames", "field", "caustics", "shadow"] as const;
+  readonly reads = ["frames", "field", "shore", "caustics", "shadow"] as const;
   readonly writes = ["solids"] as const;
   readonly surroundings: Surroundings;
   readonly target: WebGLRenderTarget;
@@ -32,8 +38,8 @@ export class SolidsPass implements Pass {
   readonly darkness = { value: 0 };
   private readonly haze = { value: 0 };
   readonly scene = new Scene();
-  /** Uniforms of caustics.glsl and shadow.glsl; undefined: there is none. */
-  readonly sunlight: { caustics: Uniforms | undefined; shadow: Uniforms | undefined };
+  /** Uniforms of caustics.glsl, shadow.glsl and shore.glsl; undefined: there is none. */
+  readonly sunlight: LitBy;
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
@@ -44,17 +50,18 @@ export class SolidsPass implements Pass {
     private readonly sky: Sky,
     noise: Texture,
     field: Texture | undefined,
-    sunlight: { caustics: Uniforms | undefined; shadow: Uniforms | undefined },
+    sunlight: LitBy,
     private readonly bodies: FrameRing<BodiesState>,
     quality: Quality,
   ) {
     const { sideM, widthM } = greeting;
-    const { caustics, shadow } = (this.sunlight = sunlight);
+    const { caustics, shadow, shore } = (this.sunlight = sunlight);
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
       ...sky.uniforms,
       ...caustics,
       ...shadow,
+      ...shore,
       u_camera_m: { value: new Vector3() },
       u_field: { value: field ?? null },
       u_noise: { value: noise },
@@ -64,7 +71,7 @@ export class SolidsPass implements Pass {
       u_haze_m: this.haze,
       u_darkness: this.darkness,
     };
-    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) };
+    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
     this.material = makeMaterial("solid", uniforms, { defines });
     this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, haze: this.haze, solid: this.material, quality });
     this.scene.add(sky.dome, ...this.surroundings.solids);

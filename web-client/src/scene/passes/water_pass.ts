@@ -1,5 +1,5 @@
 // The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
-// goes on to the horizon and has no sides. Reads the field, the foam and the froth, the rain, the sea around, the
+// goes on to the horizon and has no sides. Reads the field, the shore, the foam and the froth, the rain, the sea around, the
 // shadow, and the solids, which are seen through the water and in its mirror. Writes the canvas and its depth.
 // A camera close to the surface sees it from below as well (below_surface.ts).
 import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";
@@ -21,6 +21,9 @@ function hasSolids({ hasBoats, obstacles, beaches, hasBed, setting }: GreetingIn
   return hasBoats || obstacles.length > 0 || beaches.length > 0 || hasBed || setting === "pool";
 }
 
+/** Thin water is drawn although the ground is in front of it by this share of a cell of the drawn surface: both are triangles, over a sloping bed. */
+const kLiftPerCell = 0.1;
+
 export interface WaterTools {
   sky: Sky;
   noise: Texture;
@@ -40,7 +43,7 @@ export interface WaterInputs {
 
 export class WaterPass implements Pass {
   readonly name = "water";
-  readonly reads = ["field", "foam", "froth", "rain", "sea", "shadow", "solids"] as const;
+  readonly reads = ["field", "shore", "foam", "froth", "rain", "sea", "shadow", "solids"] as const;
   readonly writes = ["canvas"] as const;
   private readonly scene = new Scene();
   private readonly meshes: Mesh<BufferGeometry, RawShaderMaterial>[];
@@ -57,11 +60,13 @@ export class WaterPass implements Pass {
     this.ground = makeGroundTexture(bed);
     const { edge } = solids.surroundings;
     const { color, depth } = solids.textures;
-    const { caustics, shadow } = solids.sunlight;
+    const { caustics, shadow, shore } = solids.sunlight;
     this.uniforms = {
       ...sky.uniforms,
       ...caustics,
       ...shadow,
+      ...shore,
+      u_lift_m: { value: (kLiftPerCell * longSideM(bed)) / quality.surfaceCellsCount },
       u_field: { value: field },
       u_behind: { value: color },
       u_behind_depth: { value: depth },
@@ -84,6 +89,7 @@ export class WaterPass implements Pass {
     if (quality.plain) defines["PLAIN"] = 1;
     if (beaches.length > 0 || this.ground) defines["BEACH"] = 1;
     if (this.ground) defines["GROUND"] = 1;
+    if (shore) defines["SHORE"] = 1;
     if (foam) defines["FOAM"] = 1;
     if (rain) defines["RAIN"] = 1;
     if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;

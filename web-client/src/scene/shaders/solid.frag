@@ -1,4 +1,5 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker. CAUSTICS: under water, waves focus the sunlight.
+// SHORE: the ground is wet where water was, mirrors the sky as long as a film stands on it, and carries the lace of the swash.
 // PLAIN: without gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
 
@@ -18,12 +19,20 @@ uniform float u_darkness; // 0 by day, 1 at night
 #ifdef SHADOWS
 #include <shadow>
 #endif
+#ifdef SHORE
+#include <shore>
+// Wet over dry albedo, by eye. Light in wet sand is scattered more often before it leaves: water between the grains makes them scatter
+// forward (Twomey, Bohren & Mergenthaler 1986), and the film reflects it back (Lekner & Dorf 1988). Blue, which sand absorbs most, loses most.
+const vec3 kWetSand = vec3(0.50, 0.46, 0.42);
+const vec3 kLace = vec3(0.80, 0.82, 0.82);
+#endif
 layout(location = 0) out vec4 color;
 
 void main() {
   vec3 normal = normalize(v_normal);
   vec3 albedo = v_color.rgb;
   float grain = max(v_color.a, 0.0);
+  float wet_film = 0.0;
   if (grain > 0.0) {
     vec3 steep = abs(normal);
     vec2 at = steep.y > max(steep.x, steep.z) ? v_world.xz : steep.x > steep.z ? v_world.zy : v_world.xy;
@@ -31,7 +40,33 @@ void main() {
     float coarse = texture(u_noise, at.yx / (5.3 * u_grain_m) + 0.37).r - 0.5;
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
     float wet = 1.0 - smoothstep(0.0, 1.0, v_world.y / u_wet_m - 0.5 * coarse);
+#ifdef SHORE
+    float inner = simulatedShore(v_world.xz, u_extent_m);
+    // Sand has slopes on which it stays, and less grain than stone.
+    bool is_sand = grain < 0.95 && normal.y > 0.8;
+    float foam = 0.0;
+    if (inner > 0.0) {
+      vec3 shore = shoreAt(v_world.xz, u_extent_m);
+      // With an edge that follows the sand's grain, not the cells.
+      float washed = max(smoothstep(-0.004, 0.004, shore.r), smoothstep(0.0, 0.55, shore.g * (1.0 + 0.5 * fine + 0.6 * coarse)));
+      wet_film = inner * washed * smoothstep(0.75, 1.0, shore.g) * (is_sand ? 1.0 : 0.35);
+      foam = inner * shore.b;
+      // Stone near the still water is always wet; sand is where water was.
+      wet = is_sand ? mix(wet, washed, inner) : max(wet, inner * washed);
+    }
+    vec3 wet_albedo = vec3(1.0 - 0.42 * min(grain, 1.0));
+    // The paint of the deep bed is that of ground which is never dry.
+    if (is_sand) wet_albedo = mix(wet_albedo, kWetSand, clamp(1.0 + v_world.y / (10.0 * u_wet_m), 0.0, 1.0));
+    albedo *= mix(vec3(1.0), wet_albedo, wet);
+    if (foam > 0.02 && is_sand) {
+      float lace = texture(u_noise, v_world.xz / (2.2 * u_grain_m)).r;
+      float threads = smoothstep(1.0 - foam, 1.25 - 0.5 * foam, lace + 0.12) * smoothstep(0.02, 0.3, foam);
+      albedo = mix(albedo, kLace, 0.8 * threads);
+      wet_film *= 1.0 - threads;
+    }
+#else
     albedo *= 1.0 - 0.42 * min(grain, 1.0) * wet;
+#endif
   }
   float sun = max(dot(normal, u_sun_direction), 0.0);
   vec3 lit_at = v_world;
@@ -59,6 +94,17 @@ void main() {
   float distance_m = length(ray);
   ray /= distance_m;
 #ifndef PLAIN
+#ifdef SHORE
+  if (wet_film > 0.01) {
+    // A film over grains: its mirror is as level as water, and broken by the grains.
+    vec3 level = normalize(mix(normal, vec3(0.0, 1.0, 0.0), 0.5));
+    float past = 1.0 - clamp(-dot(level, ray), 0.0, 1.0);
+    float mirror = wet_film * (0.02 + 0.75 * past * past * past * past * past);
+    vec3 over = reflect(ray, level);
+    over.y = abs(over.y);
+    lit = mix(lit, skyLight(over), mirror) + wet_film * u_sun_sharp * u_sun_light * 0.35 * pow(max(dot(over, u_sun_direction), 0.0), 60.0);
+  }
+#endif
   float away = 1.0 - clamp(-dot(normal, ray), 0.0, 1.0);
   float shine = (0.03 + 0.30 * away * away * away * away) * (1.0 - min(grain, 1.0));
   if (shine > 0.01 && v_world.y > 0.0) {

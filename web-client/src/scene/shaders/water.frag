@@ -1,6 +1,7 @@
 // The water's surface: reflected sky by Fresnel, and through it the scene drawn before, refracted by the slope. Its colour is absorbed
 // along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
 // MIRROR: solids are reflected as well, as far as they are on the screen; steps of the search for them. BEACH: the water ends where the bed rises above it.
+// SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
 // RAIN: with the rings of rain.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
@@ -26,6 +27,10 @@ uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
 #ifdef BEACH
 #include <bed>
+#endif
+#ifdef SHORE
+#include <shore>
+uniform float u_lift_m;  // by which thin water may lie below the ground that is drawn
 #endif
 #ifdef OPEN_SEA
 #include <sea_blend>
@@ -140,9 +145,23 @@ vec3 mirroredLight(vec3 from, vec3 direction) { return skyLight(direction); }
 void main() {
   vec2 uv = gl_FragCoord.xy / u_resolution;
   float behind_depth = texture(u_behind_depth, uv).r;
-  if (behind_depth < gl_FragCoord.z) discard;
   float edge = 1.0;
-#ifdef BEACH
+#ifdef SHORE
+  vec3 shore = shoreAt(v_world.xz, u_extent_m);
+  float inner = simulatedShore(v_world.xz, u_extent_m);
+  float deep_m = shore.r;
+  if (inner < 1.0) deep_m = mix(v_top_m + bedDepth(v_world.xz, u_extent_m, u_depth_m), deep_m, inner);
+  if (deep_m <= 0.0) discard;
+  if (behind_depth < gl_FragCoord.z) {
+    // Ground and thin water are two meshes at nearly the same place: which is in front says nothing there.
+    float under_m = viewZ(behind_depth) - v_view_z;
+    if (under_m > u_lift_m / max((u_camera_m.y - v_world.y) / length(u_camera_m - v_world), 0.05) || deep_m > 4.0 * u_lift_m) discard;
+  }
+  edge = smoothstep(0.0, 0.008, deep_m);
+#else
+  if (behind_depth < gl_FragCoord.z) discard;
+#endif
+#if defined(BEACH) && !defined(SHORE)
   float deep_m = v_top_m + bedDepth(v_world.xz, u_extent_m, u_depth_m);
   if (deep_m <= 0.0) discard;
   edge = smoothstep(0.0, 0.05 * u_depth_m, deep_m);
@@ -193,6 +212,9 @@ void main() {
   vec3 bent = refract(ray, normal, 0.75);
   // The shift does not depend on the depth of what is behind: that would tear the outlines of things near the surface.
   float reach_m = min(0.5 * way_m, 0.45);
+#ifdef SHORE
+  reach_m = min(reach_m, deep_m);
+#endif
   vec3 shift = mat3(viewMatrix) * (bent - ray) * reach_m;
   shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
   float shifted_depth = texture(u_behind_depth, shifted_uv).r;
@@ -223,6 +245,12 @@ void main() {
   vec3 behind = texture(u_behind, shifted_uv).rgb;
 #endif
   float path_m = clamp(behind_m, 0.0, way_m) + 9.0 * sunk;
+#ifdef SHORE
+  // In thin water the way follows from the depth and the refracted ray: the distance between two meshes says little, and a straight ray at
+  // a low angle would make a film milky.
+  float sine2 = 0.5625 * (1.0 - ray.y * ray.y);
+  path_m = mix(deep_m * inversesqrt(1.0 - sine2), path_m, smoothstep(0.15, 0.6, deep_m));
+#endif
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
@@ -235,7 +263,13 @@ void main() {
 #endif
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun * sunlit_share;
-  scattered += vec3(0.02, 0.289, 0.324) * u_sun_light * against_sun * max(v_top_m, 0.0) * 1.6;
+#ifdef SHORE
+  // Of water over land, only its own depth lets light through.
+  float crest_m = min(max(v_top_m, 0.0), deep_m);
+#else
+  float crest_m = max(v_top_m, 0.0);
+#endif
+  scattered += vec3(0.02, 0.289, 0.324) * u_sun_light * against_sun * crest_m * 1.6;
   vec3 under = behind * passed + scattered * (1.0 - fading(vec3(kScatteringPerM * path_m)).x);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
@@ -300,8 +334,12 @@ void main() {
   }
 #endif
 #ifdef BEACH
-  // Shallow water at a beach always has a little foam.
+  // Shallow water at a beach always has a little foam; a moving shore knows where.
+#ifdef SHORE
+  foam = max(foam, inner * shore.b);
+#else
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
+#endif
 #endif
   if (foam > 0.01) {
     vec2 at = v_world.xz - 0.6 * field.gb;
@@ -314,7 +352,11 @@ void main() {
     float strength = min(1.1 * foam * sqrt(foam) + 0.1, 1.0);
     float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
-    water = mix(water, vec3(0.16, 0.42, 0.46) * u_water_light, 0.45 * foam);
+    float clouded = 0.45 * foam;
+#ifdef SHORE
+    clouded *= smoothstep(0.0, 0.25, deep_m);
+#endif
+    water = mix(water, vec3(0.16, 0.42, 0.46) * u_water_light, clouded);
     float sunlit = sunlit_share * clamp(dot(normal, u_sun_direction), 0.0, 1.0);
     vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.80 + 0.28 * lace);
     water = mix(water, froth, 0.94 * white);

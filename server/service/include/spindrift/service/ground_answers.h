@@ -29,6 +29,7 @@ class GroundAnswers {
   struct Kept {
     std::weak_ptr<const rooms::Room> room;  ///< another room may have the name later
     std::uint64_t scene_version = 0;
+    double depth_m = 0.0;  ///< of the wave: the parameter that moves the ground while a scene runs
     std::shared_ptr<const std::string> bytes;
   };
   std::mutex mutex_;

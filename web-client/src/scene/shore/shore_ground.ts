@@ -1,0 +1,77 @@
+// The ground under the cells of a nonlinear wave, from which real depths follow. Pure.
+import type { GreetingInfo } from "../../codec/greeting";
+import type { ObstacleInfo, WaveInfo } from "../../codec/scene_info";
+import type { PlaneCounts } from "../frame_textures";
+import { bedOf, depthAtM, type Bed } from "../terrain";
+
+/** Heights over the still water at the centres of a frame's samples; x fastest, from the smallest x and z. */
+export interface ShoreCells extends PlaneCounts {
+  /** With rocks and breakwaters: the elevation of a dry sample. */
+  groundM: Float32Array;
+  /** Without them. */
+  bedM: Float32Array;
+}
+
+/** Returns the height of an obstacle as the server's ground, over the still water; -Infinity where it is not. */
+export function obstacleRiseM(obstacle: ObstacleInfo, xM: number, zM: number): number {
+  const [dx, dz] = [xM - obstacle.xM, zM - obstacle.zM];
+  const { heightM } = obstacle;
+  if (obstacle.shape === "rock") {
+    // A dome over the water; below it a cone with the dome's slope at the water line.
+    const share = Math.hypot(dx, dz) / obstacle.radiusM;
+    return share < 1 ? heightM * (1 - share * share) : 2 * heightM * (1 - share);
+  }
+  const [c, s] = [Math.cos(obstacle.headingRad), Math.sin(obstacle.headingRad)];
+  const isInside = Math.abs(dx * c + dz * s) <= obstacle.lengthM / 2 && Math.abs(dz * c - dx * s) <= obstacle.widthM / 2;
+  return isInside ? heightM : -Infinity;
+}
+
+/** Returns means of `values` over `wanted` equal parts of each of `linesCount` lines; samples of a line are `stride` apart. */
+function meansAlong(values: Float32Array, count: number, stride: number, linesCount: number, lineStride: number, wanted: number): Float32Array {
+  const out = new Float32Array(wanted * linesCount);
+  const width = count / wanted;
+  for (let part = 0; part < wanted; ++part) {
+    const [from, to] = [part * width, (part + 1) * width];
+    for (let cell = Math.floor(from); cell < Math.min(Math.ceil(to - 1e-9), count); ++cell) {
+      const share = (Math.min(cell + 1, to) - Math.max(cell, from)) / width;
+      for (let line = 0; line < linesCount; ++line) {
+        const at = stride === 1 ? part + wanted * line : line + linesCount * part;
+        out[at] = out[at]! + share * values[cell * stride + line * lineStride]!;
+      }
+    }
+  }
+  return out;
+}
+
+/** Returns a plane with other counts, each sample the mean over what it covers, as the server makes the levels of detail. */
+export function meansOver(values: Float32Array, from: PlaneCounts, to: PlaneCounts): Float32Array {
+  const alongX = meansAlong(values, from.resolutionCount, 1, from.countZ, from.resolutionCount, to.resolutionCount);
+  return meansAlong(alongX, from.countZ, to.resolutionCount, to.resolutionCount, 1, to.countZ);
+}
+
+/** Returns the ground under the samples of frames with `counts`; the wave itself has `wave.resolutionCount` x `wave.countZ` cells. */
+export function shoreCells(bed: Bed, obstacles: readonly ObstacleInfo[], wave: Pick<WaveInfo, "resolutionCount" | "countZ">, counts: PlaneCounts): ShoreCells {
+  const { resolutionCount, countZ } = wave;
+  const groundM = new Float32Array(resolutionCount * countZ);
+  const bedM = new Float32Array(resolutionCount * countZ);
+  for (let k = 0; k < countZ; ++k)
+    for (let i = 0; i < resolutionCount; ++i) {
+      const [xM, zM] = [((i + 0.5) / resolutionCount - 0.5) * bed.sideM, ((k + 0.5) / countZ - 0.5) * bed.widthM];
+      const at = i + resolutionCount * k;
+      bedM[at] = -depthAtM(bed, xM, zM);
+      groundM[at] = obstacles.reduce((highest, obstacle) => Math.max(highest, obstacleRiseM(obstacle, xM, zM)), bedM[at]!);
+    }
+  if (counts.resolutionCount === resolutionCount && counts.countZ === countZ) return { ...counts, groundM, bedM };
+  return { ...counts, groundM: meansOver(groundM, wave, counts), bedM: meansOver(bedM, wave, counts) };
+}
+
+/** Returns the cells by the counts of a frame, for a room whose water moves over its shore; undefined: the shore is fixed, or its ground not here yet. */
+export function shoreOf(greeting: GreetingInfo): ((counts: PlaneCounts) => ShoreCells) | undefined {
+  const { wave, beaches, obstacles, hasBed, ground } = greeting;
+  if (!wave?.isNonlinear || (hasBed ? !ground : beaches.length === 0 && obstacles.length === 0)) return undefined;
+  let last: ShoreCells | undefined;
+  return (counts) => {
+    if (last?.resolutionCount !== counts.resolutionCount || last.countZ !== counts.countZ) last = shoreCells(bedOf(greeting), obstacles, wave, counts);
+    return last;
+  };
+}
