@@ -25,7 +25,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   const bool wide_flow = nine || isNonlinear(scene);
   wave->flow_components_ = wide_flow ? 4 : 2;
   wave->is_varied_ = isVaried(scene);
-  wave->has_outflow_ = isOpen(scene);
+  wave->has_outflow_ = exchangesWater(scene);
   Creation create;
   create(wave->elevation_, TexelBuffer::create(ctx, "elevation", cells, TexelFormat::kR32I));
   create(wave->flow_, TexelBuffer::create(ctx, "flow", cells, wide_flow ? TexelFormat::kRGBA32F : TexelFormat::kRG32F));
@@ -70,6 +70,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
   if (isNonlinear(scene)) create(wave->shallow_flow_, ShallowFlow::create(ctx, scene, layout, defines));
+  if (hasMakers(scene)) create(wave->makers_, WaveMakers::create(ctx, scene, layout, defines));
   if (create.error()) return *create.error();
   if (disperses(scene)) {
     auto dispersed = DispersedSlope::create(ctx, layout, layOutBasin(scene, layout), defines);
@@ -91,6 +92,7 @@ void Wave::clear() {
   flow_.clear();
   if (has_outflow_) outflow_.clear();
   if (has_matched_layer_) elevation_x_.clear();
+  if (makers_) makers_->clear();
   clearPressure();
 }
 
@@ -165,7 +167,7 @@ void Wave::bindBasin() const {
 }
 
 void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events,
-                   const gpu::TexelBuffer* incident_sea) {
+                   const gpu::TexelBuffer* incident_sea, double middle_s) {
   const bool sea = incident_sea != nullptr;
   accelerate(breaking, incident_sea);
   displace(events);
@@ -178,6 +180,7 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);  // other passes use its unit
   continuity_[sea].dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  if (makers_) makers_->advance(middle_s);
 }
 
 /// Updates FLOW and writes TRANSFER; leaves both bound as storage, with LIMIT_ARGS.
@@ -185,6 +188,7 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
   const bool sea = incident_sea != nullptr;
   elevation_.bindTexel(ELEVATION);
   if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
+  if (makers_) makers_->flow().bindTexel(MAKER_FLOW);
   if (shallow_flow_ && dispersed_slope_) {
     bindBasin();
     flow_.bindTexel(FLOW);

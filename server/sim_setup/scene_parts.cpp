@@ -27,6 +27,14 @@ bool isOpen(const core::Scene& scene) {
   return false;
 }
 
+bool hasMakers(const core::Scene& scene) {
+  return scene.wave && !scene.wave_makers.empty();
+}
+
+bool exchangesWater(const core::Scene& scene) {
+  return hasMakers(scene) || isOpen(scene);
+}
+
 bool hasMatchedLayer(const core::Scene& scene) {
   if (!scene.wave || !isOpen(scene)) return false;
   const core::Absorption absorption = scene.wave->absorption;

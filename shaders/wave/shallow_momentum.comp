@@ -14,6 +14,9 @@
 #include "shared/groups.h"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
+#if MAKERS
+#include "wave/maker_flow.glsl"
+#endif
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
@@ -120,7 +123,7 @@ void main() {
   const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(cell, n))) return;
-  // Flow reaches across every side, because it is 0 at closed ones; water is mirrored there.
+  // Flow reaches across every side, because it is 0 at closed ones; water is mirrored there. Wave-makers have their own.
   const int row = n.x * cell.y;
   const int row_before = n.x * wrapped(cell.y - 1, n.y);
   const int row_after = n.x * wrapped(cell.y + 1, n.y);
@@ -131,10 +134,16 @@ void main() {
   const int i_z = cell.x + row_after;
 
   const vec4 own = texelFetch(flow, i);
-  const vec4 at_before_x = texelFetch(flow, x_before + row);
-  const vec4 at_x = texelFetch(flow, i_x);
-  const vec4 at_before_z = texelFetch(flow, cell.x + row_before);
-  const vec4 at_z = texelFetch(flow, i_z);
+  vec4 at_before_x = texelFetch(flow, x_before + row);
+  vec4 at_x = texelFetch(flow, i_x);
+  vec4 at_before_z = texelFetch(flow, cell.x + row_before);
+  vec4 at_z = texelFetch(flow, i_z);
+#if MAKERS
+  if (cell.x == 0) at_before_x.xz = makerFlow(MAKER_MINUS_X, cell.y, n);
+  if (cell.x == n.x - 2) at_x.xz = makerFlow(MAKER_PLUS_X, cell.y, n);
+  if (cell.y == 0) at_before_z.yw = makerFlow(MAKER_MINUS_Z, cell.x, n);
+  if (cell.y == n.y - 2) at_z.yw = makerFlow(MAKER_PLUS_Z, cell.x, n);
+#endif
   const vec4 at_x_before_z = texelFetch(flow, x_after + row_before);
   const vec4 at_z_before_x = texelFetch(flow, x_before + row_after);
   const Face face_x = Face(at_before_x.x, own.x, at_x.x, at_before_z.x, at_z.x,

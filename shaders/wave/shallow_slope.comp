@@ -9,6 +9,9 @@
 #include "shared/groups.h"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
+#if MAKERS
+#include "wave/maker_flow.glsl"
+#endif
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
@@ -37,12 +40,20 @@ void main() {
   const int i_x = x_after + row;
   const int i_z = cell.x + row_after;
   const vec2 own = texelFetch(flow, i).xy;
-  const vec2 at_x = texelFetch(flow, i_x).xy;
-  const vec2 at_z = texelFetch(flow, i_z).xy;
+  vec2 at_x = texelFetch(flow, i_x).xy;
+  vec2 at_z = texelFetch(flow, i_z).xy;
+  float before_x = texelFetch(flow, x_before + row).x;
+  float before_z = texelFetch(flow, cell.x + row_before).y;
+#if MAKERS
+  if (cell.x == 0) before_x = makerFlow(MAKER_MINUS_X, cell.y, n).x;
+  if (cell.x == n.x - 2) at_x.x = makerFlow(MAKER_PLUS_X, cell.y, n).x;
+  if (cell.y == 0) before_z = makerFlow(MAKER_MINUS_Z, cell.x, n).x;
+  if (cell.y == n.y - 2) at_z.y = makerFlow(MAKER_PLUS_Z, cell.x, n).x;
+#endif
   const Column here = columnOf(i, texelFetch(elevation, i).x);
   const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
   const Column there_z = columnOf(i_z, texelFetch(elevation, i_z).x);
-  const float pressed = dynamicHead(here, vec4(own.x, texelFetch(flow, x_before + row).x, own.y, texelFetch(flow, cell.x + row_before).y));
+  const float pressed = dynamicHead(here, vec4(own.x, before_x, own.y, before_z));
   const float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, texelFetch(flow, x_after + row_before).y));
   const float pressed_z = dynamicHead(there_z, vec4(at_z.x, texelFetch(flow, x_before + row_after).x, at_z.y, own.y));
   const int head = headAt(i);

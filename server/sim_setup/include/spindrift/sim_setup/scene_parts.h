@@ -12,8 +12,12 @@ bool isVaried(const core::Scene& scene);
 bool isNonlinear(const core::Scene& scene);
 /// Returns whether short waves are slower than long ones.
 bool disperses(const core::Scene& scene);
-/// Returns whether water can leave: a side absorbs.
+/// Returns whether a side absorbs waves in a layer.
 bool isOpen(const core::Scene& scene);
+/// Returns whether a side has a wave-maker.
+bool hasMakers(const core::Scene& scene);
+/// Returns whether water can leave or enter: a side absorbs, or has a wave-maker.
+bool exchangesWater(const core::Scene& scene);
 /// Returns whether absorbing sides have a perfectly matched layer, not a sponge.
 bool hasMatchedLayer(const core::Scene& scene);
 
