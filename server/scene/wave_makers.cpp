@@ -218,9 +218,9 @@ core::WaveMaker toCore(const v1::WaveMaker& in) {
   } else if (in.has_solitary()) {
     out.waves = core::SolitaryWave{.height_m = in.solitary().height_m()};
   } else if (in.has_series()) {
-    out.waves = core::ElevationSeries{.time_s = {in.series().time_s().begin(), in.series().time_s().end()},
-                                      .elevation_m = {in.series().elevation_m().begin(),
-                                                      in.series().elevation_m().end()}};
+    out.waves =
+        core::ElevationSeries{.time_s = {in.series().time_s().begin(), in.series().time_s().end()},
+                              .elevation_m = {in.series().elevation_m().begin(), in.series().elevation_m().end()}};
   } else {
     v1::RegularWaves waves = in.regular();
     fillMessageDefaults(waves);

@@ -300,8 +300,7 @@ bool isSameWater(const core::Scene& a, const core::Scene& b) {
   if (a.coupling && a.coupling->mode != b.coupling->mode) return false;
   if (a.wave && hasSurfaceFoam(a) != hasSurfaceFoam(b)) return false;
   if (a.boats && a.boats->capacity_count != b.boats->capacity_count) return false;
-  return a.obstacles == b.obstacles && a.beaches == b.beaches && a.bed == b.bed &&
-         a.wave_makers == b.wave_makers;
+  return a.obstacles == b.obstacles && a.beaches == b.beaches && a.bed == b.bed && a.wave_makers == b.wave_makers;
 }
 
 ResampledState resampleState(const CarriedState& before, const core::Scene& scene, const Derived& derived) {

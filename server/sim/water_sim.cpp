@@ -220,7 +220,6 @@ core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
     state = {&wave->elevation(), &wave->flow()};
     if (auto* outflow = wave->outflow()) state.push_back(outflow);
     if (auto* elevation_x = wave->elevationX()) state.push_back(elevation_x);
-    if (wave->makers()) state.push_back(&wave->makers()->flow());
   }
   if (particles) state.insert(state.end(), {&particles->position, &particles->velocity});
   if (pool) state.push_back(&pool->words());

@@ -92,7 +92,6 @@ void Wave::clear() {
   flow_.clear();
   if (has_outflow_) outflow_.clear();
   if (has_matched_layer_) elevation_x_.clear();
-  if (makers_) makers_->clear();
   clearPressure();
 }
 
@@ -188,7 +187,6 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
   const bool sea = incident_sea != nullptr;
   elevation_.bindTexel(ELEVATION);
   if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
-  if (makers_) makers_->flow().bindTexel(MAKER_FLOW);
   if (shallow_flow_ && dispersed_slope_) {
     bindBasin();
     flow_.bindTexel(FLOW);

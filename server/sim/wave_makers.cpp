@@ -4,33 +4,16 @@
 
 #include <shared/bindings.h>
 
+#include <spindrift/sim_setup/scene_parts.h>
+
 #include "create_all.h"
 
 namespace spindrift::sim {
-namespace {
-
-std::uint32_t numberOf(core::Side side) {
-  switch (side) {
-    case core::Side::kMinusX:
-      return MAKER_MINUS_X;
-    case core::Side::kMinusZ:
-      return MAKER_MINUS_Z;
-    case core::Side::kPlusZ:
-      return MAKER_PLUS_Z;
-    default:
-      return MAKER_PLUS_X;
-  }
-}
-
-}  // namespace
-
 core::Result<std::unique_ptr<WaveMakers>> WaveMakers::create(gpu::Context& ctx, const core::Scene& scene,
                                                              const WaveLayout& layout, const gpu::Defines& defines) {
   auto out = std::unique_ptr<WaveMakers>(new WaveMakers(ctx));
   out->count_ = layout.counts();
-  const std::size_t cells = 2 * (std::size_t{layout.count_x} + layout.count_z);
   Creation create;
-  create(out->flow_, gpu::TexelBuffer::create(ctx, "maker flow", cells, gpu::TexelFormat::kRG32F));
   create(out->program_, gpu::Program::create(ctx, "wave/maker.comp", defines));
   for (const core::WaveMaker& maker : scene.wave_makers) {
     Maker& made = out->makers_.emplace_back();
@@ -41,10 +24,6 @@ core::Result<std::unique_ptr<WaveMakers>> WaveMakers::create(gpu::Context& ctx, 
   if (create.error()) return *create.error();
   out->update(scene, layout);
   return out;
-}
-
-void WaveMakers::clear() {
-  flow_.clear();
 }
 
 void WaveMakers::update(const core::Scene& scene, const WaveLayout& layout) {
@@ -58,11 +37,10 @@ void WaveMakers::update(const core::Scene& scene, const WaveLayout& layout) {
 }
 
 void WaveMakers::advance(double middle_s) {
-  flow_.bindStorage(MAKER_FLOW);
   for (Maker& maker : makers_) {
     const Incident incident = maker.waves.at(middle_s);
     const auto f = [](double v) { return static_cast<float>(v); };
-    maker.uniforms.uploadValue(shared::MakerUniforms{.maker_side = numberOf(maker.side),
+    maker.uniforms.uploadValue(shared::MakerUniforms{.maker_side = makerBit(maker.side),
                                                      .maker_flow_m2ps = f(incident.flow_m2ps),
                                                      .maker_elevation_m = f(incident.elevation_m),
                                                      .maker_absorbing_mps = f(maker.waves.absorbing_mps()),

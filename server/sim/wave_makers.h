@@ -1,5 +1,5 @@
-// The wave-makers of a scene on the device: water through sides that are walls otherwise (sim_setup/incident_waves.h says how
-// much). Their time is the scene's, so a reset begins them again and a replay repeats them.
+// The wave-makers of a scene on the device: water through sides that are walls otherwise (sim_setup/incident_waves.h
+// says how much). Their time is the scene's, so a reset begins them again and a replay repeats them.
 #pragma once
 
 #include <memory>
@@ -21,15 +21,11 @@ class WaveMakers {
   static core::Result<std::unique_ptr<WaveMakers>> create(gpu::Context& ctx, const core::Scene& scene,
                                                           const WaveLayout& layout, const gpu::Defines& defines);
 
-  /// No water passes, for a start.
-  void clear();
   /// Takes on changed parameters (depth, gravity, step).
   void update(const core::Scene& scene, const WaveLayout& layout);
-  /// Lets in and takes up the water of a wave step around middle_s [s since the start of the scene]. The caller has bound
-  /// ELEVATION, OUTFLOW and ELEVATION_X as storage and BED for lookups, as far as the scene has them.
+  /// Lets in and takes up the water of a wave step around middle_s [s since the start of the scene]. The caller has
+  /// bound ELEVATION, OUTFLOW and ELEVATION_X as storage and BED for lookups, as far as the scene has them.
   void advance(double middle_s);
-  /// 2 (nx + nz) cells along the sides -x, +x, -z, +z: velocity [m/s], flow [m^2/s]; part of the state. 0 at other sides.
-  [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }
 
  private:
   explicit WaveMakers(gpu::Context& ctx) : ctx_(ctx) {}
@@ -50,7 +46,6 @@ class WaveMakers {
   core::CellCounts count_;
   std::vector<Maker> makers_;
   Inputs inputs_{};
-  gpu::TexelBuffer flow_;
   gpu::Program program_;
 };
 

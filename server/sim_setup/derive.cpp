@@ -104,7 +104,6 @@ std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   if (d.wave) bytes += d.wave->counts().total() * waveCellBytes(scene);
   if (disperses(scene)) bytes += dispersionBytes(*d.wave);
   if (hasWindSea(scene)) bytes += windSeaBytes(d.wave->counts());
-  if (hasMakers(scene)) bytes += 16 * std::uint64_t{d.wave->count_x + d.wave->count_z};
   return bytes;
 }
 

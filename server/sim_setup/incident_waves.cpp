@@ -81,8 +81,7 @@ class Answers {
     for (int k = 1; k <= kAnswerCount; ++k) {
       const double omega = highest_radps_ * k / kAnswerCount * (1 - 1e-12);
       const auto answer = side.at(omega);
-      gains_.push_back(answer ? Gain{answer->flow_mps, omega / answer->wavenumber_radpm, answer->edge}
-                              : gains_.back());
+      gains_.push_back(answer ? Gain{answer->flow_mps, omega / answer->wavenumber_radpm, answer->edge} : gains_.back());
     }
   }
   [[nodiscard]] Gain at(double omega_radps) const {
@@ -229,9 +228,9 @@ core::Result<void> periodFits(const std::string& path, const char* name, double 
   }
   const double limit_m = height_share * kMicheRatio * length_m * std::tanh(k * depth_m);
   if (height_m > limit_m) {
-    return invalid(fmt::format(
-        "{}: waves of {:.4g} s and {:.4g} m break at once; with this period choose at most {:.4g} m", path, period_s,
-        height_m, limit_m));
+    return invalid(
+        fmt::format("{}: waves of {:.4g} s and {:.4g} m break at once; with this period choose at most {:.4g} m", path,
+                    period_s, height_m, limit_m));
   }
   return {};
 }
@@ -320,8 +319,8 @@ Incident IncidentWaves::at(double time_s) const {
   Incident out = components_.empty() ? ofTable(time_s - begin_s_) : ofComponents(time_s - begin_s_);
   if (!is_simple_wave_) return out;
   out.flow_m2ps = simpleFlow(gravity_mps2_, depth_m_, out.elevation_m);
-  // The centres of the cells are half a cell inside, and a maker sees their level half a step later, less half of its own
-  // part (side_response.h).
+  // The centres of the cells are half a cell inside, and a maker sees their level half a step later, less half of its
+  // own part (side_response.h).
   const double later_s = time_s - begin_s_ + seen_later_s_;
   const double inside_m = components_.empty() ? ofTable(later_s).elevation_m : ofComponents(later_s).elevation_m;
   out.elevation_m = inside_m - own_part_spm_ * out.flow_m2ps;
@@ -336,7 +335,8 @@ double depthAtSide(const core::Scene& scene, const WaveLayout& layout, core::Sid
   double deepest_m = -1e9;
   for (std::uint32_t k = 0; k < count; ++k) {
     const double along_m = (k + 0.5) * layout.cell_m - 0.5 * (along_z ? layout.width_m : layout.length_m);
-    deepest_m = std::max(deepest_m, groundDepthWithObstacles(scene, along_z ? edge_m : along_m, along_z ? along_m : edge_m));
+    deepest_m =
+        std::max(deepest_m, groundDepthWithObstacles(scene, along_z ? edge_m : along_m, along_z ? along_m : edge_m));
   }
   return deepest_m;
 }
@@ -351,7 +351,8 @@ core::Result<void> makersFit(const core::Scene& scene, const WaveLayout& layout)
     if (scene.gravity_mps2 <= 0) continue;
     core::Result<void> fits;
     if (const auto* regular = std::get_if<core::RegularWaves>(&maker.waves)) {
-      fits = periodFits(path + ".regular", "period_s", regular->period_s, regular->height_m, 1.0, scene, layout, depth_m);
+      fits =
+          periodFits(path + ".regular", "period_s", regular->period_s, regular->height_m, 1.0, scene, layout, depth_m);
     } else if (const auto* irregular = std::get_if<core::IrregularWaves>(&maker.waves)) {
       fits = periodFits(path + ".irregular", "peak_period_s", irregular->peak_period_s, irregular->significant_height_m,
                         kSignificantShare, scene, layout, depth_m);

@@ -75,10 +75,8 @@ std::optional<SideResponse::Answer> SideResponse::at(double omega_radps) const {
   const std::complex<double> impedance = 2 / pi * w * std::complex<double>(pi * residue, sum);
   const std::complex<double> seen = impedance * std::polar(1.0, 0.5 * omega_radps * dt_s_) - 0.5 * dt_s_ / cell_m_;
   const double flow_mps = slope / (2 * w * cosine);
-  return Answer{.wavenumber_radpm = k,
-                .flow_mps = flow_mps,
-                .edge = flow_mps * seen,
-                .absorbing_mps = 1 / std::abs(seen)};
+  return Answer{
+      .wavenumber_radpm = k, .flow_mps = flow_mps, .edge = flow_mps * seen, .absorbing_mps = 1 / std::abs(seen)};
 }
 
 }  // namespace spindrift::sim

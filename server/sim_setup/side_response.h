@@ -8,16 +8,17 @@
 
 namespace spindrift::sim {
 
-/// For waves of small height along the normal of a side, in half a space of level bed behind it. The side is closed for the
-/// pressure, as in the solver: the dispersion sees the water mirrored there.
+/// For waves of small height along the normal of a side, in half a space of level bed behind it. The side is closed for
+/// the pressure, as in the solver: the dispersion sees the water mirrored there.
 ///
 /// With q exp(i w t) let in, the cell at the side has the elevation Z q, and the wave that travels away q/Y:
-///   Z = (2/pi) integral over k from 0 to pi/dx of i w cos^2(k dx/2) / (w(k)^2 - w^2),   Y = dw^2/dk / (2 w cos(k dx/2)).
+///   Z = (2/pi) integral over k from 0 to pi/dx of i w cos^2(k dx/2) / (w(k)^2 - w^2),   Y = dw^2/dk / (2 w cos(k
+///   dx/2)).
 /// Y is the group speed, not the phase speed: through a closed side no pressure of the wave outside does work. The
 /// imaginary part of Z belongs to waves that do not travel and stay beside the side.
 ///
-/// A maker sees the level after a step less half of what it lets in itself (wave/maker.comp). With q in the middle of the
-/// step that is (Z exp(i w dt/2) - dt/(2 dx)) q.
+/// A maker sees the level after a step less half of what it lets in itself (wave/maker.comp). With q in the middle of
+/// the step that is (Z exp(i w dt/2) - dt/(2 dx)) q.
 class SideResponse {
  public:
   /// `dt_s`: the step. `disperses`: w^2 = g k tanh(k d), otherwise that of the grid's shallow water.
@@ -25,9 +26,9 @@ class SideResponse {
 
   struct Answer {
     double wavenumber_radpm;
-    double flow_mps;             ///< Y: flow per elevation of the wave that travels away
-    std::complex<double> edge;   ///< level at the side per elevation of that wave, as a maker sees it
-    double absorbing_mps;        ///< flow per such level with which a side sends back least of such a wave
+    double flow_mps;            ///< Y: flow per elevation of the wave that travels away
+    std::complex<double> edge;  ///< level at the side per elevation of that wave, as a maker sees it
+    double absorbing_mps;       ///< flow per such level with which a side sends back least of such a wave
   };
   /// nullopt if the grid has no travelling wave of this frequency, or one of fewer than four cells.
   [[nodiscard]] std::optional<Answer> at(double omega_radps) const;

@@ -58,9 +58,8 @@ core::Scene flumeScene(const Water& water, double length_m, double cell_m, doubl
 
 /// Adds a gauge so many metres from the maker.
 void addGauge(core::Scene& scene, double from_maker_m) {
-  scene.gauges.push_back({.name = fmt::format("g{}", scene.gauges.size()),
-                          .x_m = from_maker_m - 0.5 * scene.wave->side_m,
-                          .z_m = 0.0});
+  scene.gauges.push_back(
+      {.name = fmt::format("g{}", scene.gauges.size()), .x_m = from_maker_m - 0.5 * scene.wave->side_m, .z_m = 0.0});
 }
 
 /// Runs the scene and returns what each gauge has read.
@@ -116,13 +115,14 @@ core::Result<void> regularWaves(gpu::Context& ctx, const Water& water, double de
   const bool disperses = water.dispersion == core::Dispersion::kAiry;
   const double omega = disperses ? sim::waveFrequency(k_radpm, kGravity_mps2, 1.0) : k_radpm * std::sqrt(kGravity_mps2);
   const double period_s = 2 * pi / omega;
-  const double height_m = std::min(0.02, 0.02 * length_m);
+  // Low enough that they keep their form over the gauges.
+  const double height_m = std::min(0.004, 0.004 * length_m);
   constexpr double kCellsPerWave = 20.0;
-  core::Scene scene = flumeScene(water, 12 * length_m, length_m / kCellsPerWave, 2 * length_m,
-                                 std::clamp(40 / period_s, 10.0, 240.0));
-  scene.wave_makers = {core::WaveMaker{
-      .side = core::Side::kMinusX, .waves = core::RegularWaves{.height_m = height_m, .period_s = period_s}}};
-  for (double waves = 3.0; waves < 7.99; waves += 0.25) addGauge(scene, waves * length_m);
+  core::Scene scene =
+      flumeScene(water, 12 * length_m, length_m / kCellsPerWave, 2 * length_m, std::clamp(40 / period_s, 10.0, 240.0));
+  scene.wave_makers = {core::WaveMaker{.side = core::Side::kMinusX,
+                                       .waves = core::RegularWaves{.height_m = height_m, .period_s = period_s}}};
+  for (double waves = 2.0; waves < 4.99; waves += 0.25) addGauge(scene, waves * length_m);
   // The slowest part of the beginning, at the group speed, has passed all gauges.
   const double from_s = 32 * period_s;
   const double to_s = 42 * period_s;
@@ -148,28 +148,27 @@ core::Result<void> standingWaves(gpu::Context& ctx, const Water& water, double d
   const double k_radpm = 2 * pi / length_m;
   const double omega = disperses ? sim::waveFrequency(k_radpm, kGravity_mps2, 1.0) : k_radpm * std::sqrt(kGravity_mps2);
   const double period_s = 2 * pi / omega;
-  const double height_m = 0.01;
+  const double height_m = std::min(0.004, 0.004 * length_m);
   core::Scene scene = flumeScene(water, 4.25 * length_m, length_m / 20, 0.0, std::clamp(40 / period_s, 10.0, 240.0));
-  scene.wave_makers = {core::WaveMaker{
-      .side = core::Side::kMinusX, .waves = core::RegularWaves{.height_m = height_m, .period_s = period_s}}};
+  scene.wave_makers = {core::WaveMaker{.side = core::Side::kMinusX,
+                                       .waves = core::RegularWaves{.height_m = height_m, .period_s = period_s}}};
   addGauge(scene, scene.wave->side_m - 0.5 * scene.wave->side_m / scene.wave->resolution_count);
   const auto readings = readingsOf(ctx, scene, 60 * period_s);
   if (!readings) return readings.error();
   const double early_m = 2 * std::abs(amplitudeOf(readings->front(), omega, 25 * period_s, 30 * period_s));
   const double late_m = 2 * std::abs(amplitudeOf(readings->front(), omega, 55 * period_s, 60 * period_s));
   const std::string name = fmt::format("{}, before a wall, depth / length {:.2f}", water.name, depth_ratio);
-  rows.push_back({name + ": height after 60 over that after 30 periods", "", late_m / early_m, 1.0,
-                  Tolerance::kRelative, 0.02, "what comes back is taken up"});
+  rows.push_back({name + ": height after 60 over that after 30 periods", "", late_m / early_m, 1.02, Tolerance::kAtMost,
+                  0.0, "does not grow: what comes back is taken up"});
   rows.push_back({name + ": height at the wall / twice that of the waves", "", late_m / (2 * height_m), 1.0,
-                  Tolerance::kRelative, 0.15, "1 plus what the maker sends back again"});
+                  Tolerance::kRelative, 0.2, "1, and what the maker sends back again"});
   return {};
 }
 
 core::Result<void> solitaryWaves(gpu::Context& ctx, double height_m, std::vector<Row>& rows) {
   const double speed_mps = std::sqrt(kGravity_mps2 * (1 + height_m));
   core::Scene scene = flumeScene(kShallowDispersed, 60.0, 0.1, 0.0, 60.0);
-  scene.wave_makers = {
-      core::WaveMaker{.side = core::Side::kMinusX, .waves = core::SolitaryWave{.height_m = height_m}}};
+  scene.wave_makers = {core::WaveMaker{.side = core::Side::kMinusX, .waves = core::SolitaryWave{.height_m = height_m}}};
   constexpr std::array<double, 3> kGauges_m = {5.0, 15.0, 30.0};
   for (const double x : kGauges_m) addGauge(scene, x);
   const double begin_s = 5.0 / (std::sqrt(0.75 * height_m / (1 + height_m)) * speed_mps);
@@ -179,9 +178,9 @@ core::Result<void> solitaryWaves(gpu::Context& ctx, double height_m, std::vector
     double highest_m = 0.0;
     for (const sim::GaugeReading& each : (*readings)[g].readings)
       highest_m = std::max(highest_m, double{each.elevation_m});
-    rows.push_back({fmt::format("solitary wave, H/d = {}: height {} depths from the maker / wanted", height_m,
-                                kGauges_m[g]),
-                    "", highest_m / height_m, 1.0, Tolerance::kRelative, 0.05, "what the maker was asked for"});
+    rows.push_back(
+        {fmt::format("solitary wave, H/d = {}: height {} depths from the maker / wanted", height_m, kGauges_m[g]), "",
+         highest_m / height_m, 1.0, Tolerance::kRelative, 0.05, "what the maker was asked for"});
   }
   return {};
 }
@@ -192,9 +191,9 @@ core::Result<void> irregularWaves(gpu::Context& ctx, const Water& water, bool qu
   const double length_m = 2 * pi / sim::waveNumber(2 * pi / peak_s, kGravity_mps2, 1.0);
   const double height_m = 0.03;
   core::Scene scene = flumeScene(water, 10 * length_m, length_m / 40, 3 * length_m, 20.0);
-  scene.wave_makers = {core::WaveMaker{
-      .side = core::Side::kMinusX,
-      .waves = core::IrregularWaves{.significant_height_m = height_m, .peak_period_s = peak_s}}};
+  scene.wave_makers = {
+      core::WaveMaker{.side = core::Side::kMinusX,
+                      .waves = core::IrregularWaves{.significant_height_m = height_m, .peak_period_s = peak_s}}};
   addGauge(scene, 3 * length_m);
   addGauge(scene, 5 * length_m);
   const double from_s = 20 * peak_s;
@@ -209,7 +208,8 @@ core::Result<void> irregularWaves(gpu::Context& ctx, const Water& water, bool qu
       count += 1;
     }
   }
-  // Energy in bands of 4 % of the peak's frequency; the peak by the fourth power, which chance moves less than the largest band.
+  // Energy in bands of 4 % of the peak's frequency; the peak by the fourth power, which chance moves less than the
+  // largest band.
   double weights = 0.0, weighted = 0.0;
   for (double ratio = 0.5; ratio < 2.0; ratio += 0.04) {
     double energy = 0.0;
@@ -228,32 +228,47 @@ core::Result<void> irregularWaves(gpu::Context& ctx, const Water& water, bool qu
   return {};
 }
 
-/// A series: what passes a gauge beside the maker, against what was given.
+/// A series: what passes a gauge two depths from the maker, against the linear waves of the given series there.
 core::Result<void> givenSeries(gpu::Context& ctx, const Water& water, std::vector<Row>& rows) {
   core::ElevationSeries series;
   const auto given = [](double t) {
     const double far = (t - 20.0) / 6.0;
-    return 0.02 * std::exp(-far * far) * (std::cos(2 * pi / 5.0 * (t - 20.0)) + 0.4 * std::sin(2 * pi / 8.0 * t));
+    return 0.01 * std::exp(-far * far) * (std::cos(2 * pi / 5.0 * (t - 20.0)) + 0.4 * std::sin(2 * pi / 8.0 * t));
   };
-  for (double t = 0.0; t <= 40.0; t += 0.1) {
+  constexpr double kStep_s = 0.1;
+  constexpr double kEnd_s = 40.0;
+  for (double t = 0.0; t <= kEnd_s; t += kStep_s) {
     series.time_s.push_back(t);
     series.elevation_m.push_back(given(t));
   }
   core::Scene scene = flumeScene(water, 60.0, 0.25, 15.0, 30.0);
   scene.wave_makers = {core::WaveMaker{.side = core::Side::kMinusX, .waves = series}};
-  constexpr double kGauge_m = 0.125;
+  constexpr double kGauge_m = 2.125;
   addGauge(scene, kGauge_m);
   const auto readings = readingsOf(ctx, scene, 45.0);
   if (!readings) return readings.error();
-  const double late_s = kGauge_m / std::sqrt(kGravity_mps2);
+  // The series as a sum of waves over a time in which they do not overlap, each at its own speed.
+  constexpr double kSpan_s = 80.0;
+  std::vector<std::pair<double, std::complex<double>>> waves;
+  for (int n = 1; 2 * pi * n / kSpan_s < 5.0; ++n) {
+    const double omega = 2 * pi * n / kSpan_s;
+    std::complex<double> sum;
+    for (double t = 0.0; t <= kEnd_s; t += kStep_s) sum += given(t) * std::polar(2 * kStep_s / kSpan_s, -omega * t);
+    const double k = water.dispersion == core::Dispersion::kAiry ? sim::waveNumber(omega, kGravity_mps2, 1.0)
+                                                                 : omega / std::sqrt(kGravity_mps2);
+    waves.emplace_back(omega, sum * std::polar(1.0, -k * kGauge_m));
+  }
   double off = 0.0, all = 0.0;
   for (std::size_t k = 0; k < readings->front().time_s.size(); ++k) {
-    const double wanted = given(readings->front().time_s[k] - late_s);
+    double wanted = 0.0;
+    for (const auto& [omega, strength] : waves)
+      wanted += (strength * std::polar(1.0, omega * readings->front().time_s[k])).real();
     off += std::pow(readings->front().readings[k].elevation_m - wanted, 2);
     all += wanted * wanted;
   }
-  rows.push_back({fmt::format("{}, series: root mean square error beside the maker", water.name), "%",
-                  100 * std::sqrt(off / all), 3.0, Tolerance::kAtMost, 0.0, "the series that was given"});
+  rows.push_back({fmt::format("{}, series: root mean square error two depths from the maker", water.name), "%",
+                  100 * std::sqrt(off / all), 3.0, Tolerance::kAtMost, 0.0,
+                  "the series that was given, as linear waves"});
   return {};
 }
 
@@ -265,8 +280,12 @@ Outcome waveMakers(gpu::Context& ctx, bool quick) {
   const auto next = [&](auto measure) {
     if (done) done = measure();
   };
-  for (const auto& [water, depth_ratio] : {std::pair{kLinear, 0.03}, {kShallow, 0.03}, {kLinearDispersed, 0.15},
-                                           {kShallowDispersed, 0.05}, {kShallowDispersed, 0.15}, {kShallowDispersed, 0.4}})
+  for (const auto& [water, depth_ratio] : {std::pair{kLinear, 0.03},
+                                           {kShallow, 0.03},
+                                           {kLinearDispersed, 0.15},
+                                           {kShallowDispersed, 0.05},
+                                           {kShallowDispersed, 0.15},
+                                           {kShallowDispersed, 0.4}})
     next([&] { return regularWaves(ctx, water, depth_ratio, rows); });
   for (const auto& [water, depth_ratio] :
        {std::pair{kShallow, 0.03}, {kShallowDispersed, 0.05}, {kShallowDispersed, 0.15}, {kShallowDispersed, 0.4}})

@@ -70,9 +70,6 @@
 #define SEA_COLUMNS 1
 #define SEA_ROWS 2
 #define INCIDENT_SEA 10
-// Velocity [m/s] and flow [m^2/s] through sides with wave-makers (shared/maker_uniforms.h; binding shared with PACKED_WORDS, no
-// pass has both).
-#define MAKER_FLOW 17
 // Nonlinear shallow water with dispersion: rise of the surface and of pressures across the faces that a cell owns [units]
 // (binding shared with SURFACE_FLOW; no pass has both). There FLOW holds velocities [m/s] and flows [m^2/s].
 #define SURFACE_RISE 16

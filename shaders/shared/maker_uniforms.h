@@ -4,12 +4,7 @@
 
 #include "shared/bindings.h"
 #include "shared/dual.h"
-
-// Sides of the water. MAKER_FLOW has the cells along -x, then +x, -z, +z.
-#define MAKER_MINUS_X 0u
-#define MAKER_PLUS_X 1u
-#define MAKER_MINUS_Z 2u
-#define MAKER_PLUS_Z 3u
+#include "shared/maker_sides.h"
 
 #ifdef __cplusplus
 namespace spindrift::shared {

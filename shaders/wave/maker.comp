@@ -1,13 +1,12 @@
 // Water that comes through a side with a wave-maker in a wave step, after the step's continuity.
-// Reads MakerUniforms, BED. Updates ELEVATION and OUTFLOW [units] in the cells along the side, in matched layers ELEVATION_X;
-// writes MAKER_FLOW [velocity m/s, flow m^2/s, toward + along the axis], which the next step's momentum reads.
-// Equation: with q_I and eta_I of the wave that is made, and eta the level at the side in the middle of the step,
-//   q = q_I + c_a (eta_I - eta),   so the gain is r (q_I + c_a (eta_I - eta_before)) / (1 + r c_a/2), r = dt/dx.
-// The second term lets out what comes back. Where the side is shallower than maker_depth_m both are those of slower waves.
+// Reads MakerUniforms, BED. Updates ELEVATION and OUTFLOW [units] in the cells along the side, in matched layers ELEVATION_X.
+// Equation: with q_I and eta_I of the wave that is made,
+//   q = q_I + c_a (eta_I - eta),   gain = r q,   eta = level after continuity + gain/2,   r = dt/dx,
+// so gain = r (q_I + c_a (eta_I - level)) / (1 + r c_a/2). The second term lets out what comes back. Where the side is shallower than maker_depth_m both are those of slower waves.
 // Invariants: the sum of ELEVATION and OUTFLOW does not change by a unit; no cell gives more than it holds; a side that
 // makes nothing leaves level water alone.
 #include "shared/groups.h"
-#include "wave/maker_side.glsl"
+#include "shared/maker_uniforms.h"
 #include "wave/water_column.glsl"
 #include "wave/transfer.glsl"
 
@@ -15,7 +14,6 @@ layout(local_size_x = WAVE_GROUP_X) in;
 
 layout(std430, binding = ELEVATION) restrict buffer Elevation { int elevation[]; };
 layout(std430, binding = OUTFLOW) restrict buffer Outflow { uvec2 outflow[]; };
-layout(std430, binding = MAKER_FLOW) restrict writeonly buffer MakerFlow { vec2 next_maker_flow[]; };
 #if MATCHED
 layout(std430, binding = ELEVATION_X) restrict buffer ElevationX { int elevation_x[]; };
 #endif
@@ -23,9 +21,9 @@ layout(std430, binding = ELEVATION_X) restrict buffer ElevationX { int elevation
 void main() {
   const ivec2 n = waveCounts();
   const int along = int(gl_GlobalInvocationID.x);
-  const bool is_x = maker_side == MAKER_MINUS_X || maker_side == MAKER_PLUS_X;
+  const bool is_x = (maker_side & uint(MAKER_MINUS_X | MAKER_PLUS_X)) != 0u;
   if (along >= (is_x ? n.y : n.x)) return;
-  const bool is_plus = maker_side == MAKER_PLUS_X || maker_side == MAKER_PLUS_Z;
+  const bool is_plus = (maker_side & uint(MAKER_PLUS_X | MAKER_PLUS_Z)) != 0u;
   const int across = is_plus ? (is_x ? n.x : n.y) - 1 : 0;
   const ivec2 cell = is_x ? ivec2(across, along) : ivec2(along, across);
   const int i = cell.x + n.x * cell.y;
@@ -50,9 +48,4 @@ void main() {
   // Only cells of a layer have a part of x; others keep 0.
   if (is_x && texelFetch(bed, i).y + texelFetch(bed, i).w > 0.0) elevation_x[i] += gain;
 #endif
-  const float water_m = float(heldUnits(before + gain / 2, depth_m)) * ELEVATION_UNIT_M;
-  const float q = float(gain) / sim.wave_transfer;
-  const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
-  const float u = water_m > 0.0 ? clamp(q / water_m, -max_mps, max_mps) : 0.0;
-  next_maker_flow[makerBegin(maker_side, n) + along] = is_plus ? vec2(-u, -q) : vec2(u, q);
 }

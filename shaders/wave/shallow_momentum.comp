@@ -12,11 +12,9 @@
 // DISPERSE: slopes filtered by the dispersion take the place of those of the surface in water that is deep for its waves.
 // Invariants: no water leaves a dry cell; a level surface without flow does not change in any bit, at any level of any pond.
 #include "shared/groups.h"
+#include "shared/maker_sides.h"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
-#if MAKERS
-#include "wave/maker_flow.glsl"
-#endif
 
 layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
@@ -123,7 +121,7 @@ void main() {
   const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(cell, n))) return;
-  // Flow reaches across every side, because it is 0 at closed ones; water is mirrored there. Wave-makers have their own.
+  // Flow reaches across every side, because it is 0 at closed ones; water is mirrored there.
   const int row = n.x * cell.y;
   const int row_before = n.x * wrapped(cell.y - 1, n.y);
   const int row_after = n.x * wrapped(cell.y + 1, n.y);
@@ -138,11 +136,18 @@ void main() {
   vec4 at_x = texelFetch(flow, i_x);
   vec4 at_before_z = texelFetch(flow, cell.x + row_before);
   vec4 at_z = texelFetch(flow, i_z);
-#if MAKERS
-  if (cell.x == 0) at_before_x.xz = makerFlow(MAKER_MINUS_X, cell.y, n);
-  if (cell.x == n.x - 2) at_x.xz = makerFlow(MAKER_PLUS_X, cell.y, n);
-  if (cell.y == 0) at_before_z.yw = makerFlow(MAKER_MINUS_Z, cell.x, n);
-  if (cell.y == n.y - 2) at_z.yw = makerFlow(MAKER_PLUS_Z, cell.x, n);
+  // Through a side with a wave-maker water comes and goes as fast as beside it.
+#if MAKERS & MAKER_MINUS_X
+  if (cell.x == 0) at_before_x.xz = own.xz;
+#endif
+#if MAKERS & MAKER_PLUS_X
+  if (cell.x == n.x - 2) at_x.xz = own.xz;
+#endif
+#if MAKERS & MAKER_MINUS_Z
+  if (cell.y == 0) at_before_z.yw = own.yw;
+#endif
+#if MAKERS & MAKER_PLUS_Z
+  if (cell.y == n.y - 2) at_z.yw = own.yw;
 #endif
   const vec4 at_x_before_z = texelFetch(flow, x_after + row_before);
   const vec4 at_z_before_x = texelFetch(flow, x_before + row_after);

@@ -74,7 +74,9 @@ TEST_P(WaveMakersOnDevice, OfNoHeightDoNotMoveLevelWaterByOneUnit) {
 
 TEST_P(WaveMakersOnDevice, AtAllFourSidesKeepTheVolumeToTheUnit) {
   core::Scene scene = basin();
-  scene.wave_makers = {makerOf(Side::kMinusX, 0.2), makerOf(Side::kPlusX, 0.1, 2.5), makerOf(Side::kMinusZ, 0.15),
+  scene.wave_makers = {makerOf(Side::kMinusX, 0.2),
+                       makerOf(Side::kPlusX, 0.1, 2.5),
+                       makerOf(Side::kMinusZ, 0.15),
                        {.side = Side::kPlusZ, .waves = core::SolitaryWave{.height_m = 0.2}}};
   WaterSim& water = make(scene);
   bool has_exchanged = false;
@@ -91,8 +93,8 @@ TEST_P(WaveMakersOnDevice, AtAllFourSidesKeepTheVolumeToTheUnit) {
 
 TEST_P(WaveMakersOnDevice, RepeatBitForBitAndBeginAgainAfterAReset) {
   core::Scene scene = basin();
-  scene.wave_makers = {{.side = Side::kMinusX,
-                        .waves = core::IrregularWaves{.significant_height_m = 0.1, .peak_period_s = 3.0}}};
+  scene.wave_makers = {
+      {.side = Side::kMinusX, .waves = core::IrregularWaves{.significant_height_m = 0.1, .peak_period_s = 3.0}}};
   std::uint64_t hashes[3];
   for (std::uint64_t& hash : hashes) {
     const bool is_reset = &hash == &hashes[2];

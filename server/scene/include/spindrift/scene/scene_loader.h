@@ -38,7 +38,8 @@ core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file,
 /// Parses and checks the text of a scene. `file_label` names it in errors; without folder and extension it is the
 /// default name of the scene. Error: kInvalidInput with every error found, one per line, in order of appearance:
 /// `FILE:LINE:COLUMN: field.path: value, bound, what to do`. Rules between fields are checked only if the text can be
-/// parsed. `folder`: where the files lie that the scene names (bed.grid.png, wave_makers[].series.file); nullopt refuses such scenes.
+/// parsed. `folder`: where the files lie that the scene names (bed.grid.png, wave_makers[].series.file); nullopt
+/// refuses such scenes.
 core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
                                        std::optional<v1::Fidelity> fidelity = std::nullopt,
                                        const std::optional<std::filesystem::path>& folder = std::nullopt);

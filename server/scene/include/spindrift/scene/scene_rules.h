@@ -38,8 +38,8 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
 /// The scene has boats and a wave.
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix);
 
-/// Checks rules between the water and sides, sponge, obstacles, beaches, boats and wave-makers. They hold in a running scene too, so
-/// parameter changes are checked against them.
+/// Checks rules between the water and sides, sponge, obstacles, beaches, boats and wave-makers. They hold in a running
+/// scene too, so parameter changes are checked against them.
 std::vector<FieldIssue> checkWater(const v1::Scene& scene);
 
 /// Checks rules on texts and on which parts are present, independent of numbers. Defaults are filled in.

@@ -1,5 +1,5 @@
-// What a wave-maker lets in over time: the waves of core::WaveMaker as elevation and flow at its side. Pure functions of
-// the scene; docs/wave_makers.md has the equations.
+// What a wave-maker lets in over time: the waves of core::WaveMaker as elevation and flow at its side. Pure functions
+// of the scene; docs/wave_makers.md has the equations.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ struct Incident {
 
 class IncidentWaves {
  public:
-  /// amplitude cos(omega t + phase); the flow is in phase with the wave that travels away, the level at the side is not.
+  /// amplitude cos(omega t + phase); the flow is in phase with the wave that travels away, the level at the side is
+  /// not.
   struct Component {
     double omega_radps, phase_rad, flow_m2ps, edge_m, edge_phase_rad;
   };
@@ -56,8 +57,8 @@ class IncidentWaves {
 /// Returns the still depth of the deepest cell along a side; not positive where all of it is dry. [m]
 [[nodiscard]] double depthAtSide(const core::Scene& scene, const WaveLayout& layout, core::Side side);
 
-/// Checks what depends on the lengths of the waves: the side has water, the grid resolves the waves, and they are not so
-/// high that they break at once. kInvalidInput names the field.
+/// Checks what depends on the lengths of the waves: the side has water, the grid resolves the waves, and they are not
+/// so high that they break at once. kInvalidInput names the field.
 core::Result<void> makersFit(const core::Scene& scene, const WaveLayout& layout);
 
 }  // namespace spindrift::sim
