@@ -260,10 +260,12 @@ IncidentWaves IncidentWaves::of(const core::WaveMaker& maker, const core::Scene&
     out.ramp_s_ = regular->period_s;
     if (const auto each = componentOf(side, regular->height_m / 2, omega, -pi / 2); each && regular->height_m > 0)
       out.components_ = {*each};
+    if (out.is_simple_wave_) out.keepLevels(long_mps);
     if (const auto answered = side.at(omega)) out.absorbing_mps_ = answered->absorbing_mps;
   } else if (const auto* irregular = std::get_if<core::IrregularWaves>(&maker.waves)) {
     out.ramp_s_ = irregular->peak_period_s;
     if (irregular->significant_height_m > 0) out.components_ = irregularComponents(*irregular, scene.seed, side);
+    if (out.is_simple_wave_) out.keepLevels(long_mps);
     if (const auto answered = side.at(2 * pi / irregular->peak_period_s)) out.absorbing_mps_ = answered->absorbing_mps;
   } else if (const auto* solitary = std::get_if<core::SolitaryWave>(&maker.waves)) {
     if (solitary->height_m < 1e-6 * depth_m) return out;
@@ -285,6 +287,13 @@ IncidentWaves IncidentWaves::of(const core::WaveMaker& maker, const core::Scene&
           0.75 * long_mps / depth_m * levels.values[k].elevation_m * levels.values[k].elevation_m;
   }
   return out;
+}
+
+void IncidentWaves::keepLevels(double long_mps) {
+  for (Component& each : components_) {
+    each.edge_m = each.flow_m2ps / long_mps;
+    each.edge_phase_rad = each.phase_rad;
+  }
 }
 
 double IncidentWaves::envelope(double since_s) const {

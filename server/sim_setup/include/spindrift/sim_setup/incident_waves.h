@@ -43,6 +43,8 @@ class IncidentWaves {
  private:
   [[nodiscard]] Incident ofComponents(double since_s) const;
   [[nodiscard]] Incident ofTable(double since_s) const;
+  /// Of a simple wave, whose flow follows from its level: components have the level of the wave itself.
+  void keepLevels(double long_mps);
   [[nodiscard]] double envelope(double since_s) const;
 
   double begin_s_ = 0.0, duration_s_ = 0.0, ramp_s_ = 0.0;
