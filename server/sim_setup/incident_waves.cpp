@@ -250,7 +250,7 @@ IncidentWaves IncidentWaves::of(const core::WaveMaker& maker, const core::Scene&
   const SideResponse side(g, depth_m, layout.cell_m, layout.dt_s, disperses(scene));
   const double long_mps = side.longWave_mps();
   const double before_s = out.is_simple_wave_ ? 0.0 : kAnswerReach_depths * depth_m / long_mps;
-  out.absorbing_mps_ = long_mps / side.longEdge();
+  out.absorbing_mps_ = side.longAbsorbing_mps();
   if (out.is_simple_wave_) {
     out.seen_later_s_ = 0.5 * layout.dt_s - 0.5 * layout.cell_m / long_mps;
     out.own_part_spm_ = 0.5 * layout.dt_s / layout.cell_m;

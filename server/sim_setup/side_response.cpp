@@ -73,10 +73,20 @@ std::optional<SideResponse::Answer> SideResponse::at(double omega_radps) const {
     sum += weight_[j] / (square_[j] - w * w) - step * residue / off;
   }
   const std::complex<double> impedance = 2 / pi * w * std::complex<double>(pi * residue, sum);
-  const std::complex<double> seen = impedance * std::polar(1.0, 0.5 * omega_radps * dt_s_) - 0.5 * dt_s_ / cell_m_;
+  const std::complex<double> later = std::polar(1.0, 0.5 * omega_radps * dt_s_);
+  const std::complex<double> seen = impedance * later - 0.5 * dt_s_ / cell_m_;
   const double flow_mps = slope / (2 * w * cosine);
-  return Answer{
-      .wavenumber_radpm = k, .flow_mps = flow_mps, .edge = flow_mps * seen, .absorbing_mps = 1 / std::abs(seen)};
+  Answer out{.wavenumber_radpm = k, .flow_mps = flow_mps, .edge = flow_mps * seen, .absorbing_mps = 0, .sent_back = 1};
+  const std::complex<double> missing = 2 * cosine / flow_mps * later - seen;
+  constexpr int kTryCount = 400;
+  for (int n = 1; n <= kTryCount; ++n) {
+    const double absorbing_mps = 4.0 * n / kTryCount / std::abs(missing);
+    const double sent_back = std::abs((1.0 - absorbing_mps * missing) / (1.0 + absorbing_mps * seen));
+    if (sent_back >= out.sent_back) continue;
+    out.sent_back = sent_back;
+    out.absorbing_mps = absorbing_mps;
+  }
+  return out;
 }
 
 }  // namespace spindrift::sim

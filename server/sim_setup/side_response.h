@@ -28,13 +28,15 @@ class SideResponse {
     double wavenumber_radpm;
     double flow_mps;            ///< Y: flow per elevation of the wave that travels away
     std::complex<double> edge;  ///< level at the side per elevation of that wave, as a maker sees it
-    double absorbing_mps;       ///< flow per such level with which a side sends back least of such a wave
+    double absorbing_mps;       ///< c_a: flow per such level with which a side sends back least of such a wave
+    double sent_back;           ///< that least, over the wave that comes
   };
   /// nullopt if the grid has no travelling wave of this frequency, or one of fewer than four cells.
   [[nodiscard]] std::optional<Answer> at(double omega_radps) const;
 
   /// The same for the longest waves.
   [[nodiscard]] double longEdge() const { return 1 - 0.5 * dt_s_ / cell_m_ * long_mps_; }
+  [[nodiscard]] double longAbsorbing_mps() const { return long_mps_ / (1 + 0.5 * dt_s_ / cell_m_ * long_mps_); }
   /// Highest frequency with an answer. [rad/s]
   [[nodiscard]] double highest_radps() const { return highest_radps_; }
   /// Speed of long waves, sqrt(g d).
