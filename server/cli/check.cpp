@@ -54,6 +54,19 @@ void printBed(const core::Bed& bed, double depth_m) {
   fmt::print("\n");
 }
 
+std::string wavesOf(const core::WaveMaker& maker) {
+  if (const auto* regular = std::get_if<core::RegularWaves>(&maker.waves))
+    return fmt::format("regular waves of {:.3g} m, {:.3g} s", regular->height_m, regular->period_s);
+  if (const auto* irregular = std::get_if<core::IrregularWaves>(&maker.waves))
+    return fmt::format("JONSWAP of {:.3g} m, peak at {:.3g} s", irregular->significant_height_m,
+                       irregular->peak_period_s);
+  if (const auto* solitary = std::get_if<core::SolitaryWave>(&maker.waves))
+    return fmt::format("solitary wave of {:.3g} m", solitary->height_m);
+  const auto& series = std::get<core::ElevationSeries>(maker.waves);
+  return fmt::format("series of {} rows, {:.4g} s", series.time_s.size(),
+                     series.time_s.empty() ? 0.0 : series.time_s.back());
+}
+
 void printWave(const core::Scene& scene) {
   const core::WaveScene& wave = *scene.wave;
   fmt::print("  sides      -x {}, +x {}, -z {}, +z {}", nameOf(wave.boundary_minus_x), nameOf(wave.boundary_plus_x),
@@ -71,6 +84,8 @@ void printWave(const core::Scene& scene) {
                beach.shore_depth_m);
   }
   if (scene.bed) printBed(*scene.bed, wave.depth_m);
+  for (const core::WaveMaker& maker : scene.wave_makers)
+    fmt::print("  maker      at {}: {}, from {:.4g} s on\n", nameOf(maker.side), wavesOf(maker), maker.begin_s);
   for (const core::Gauge& gauge : scene.gauges) {
     fmt::print("  gauge      {} at x {:.4g} m, z {:.4g} m, where the ground is {:.4g} m deep\n", gauge.name, gauge.x_m,
                gauge.z_m, sim::groundDepth(scene, gauge.x_m, gauge.z_m));

@@ -3,12 +3,12 @@
 #include <bit>
 #include <cmath>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <spindrift/core/text.h>
 
 #include "gray_png.h"
+#include "scene_folder.h"
 
 namespace spindrift::scene {
 namespace {
@@ -60,21 +60,6 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
   }
   setPoints(grid, static_cast<std::size_t>(columns), static_cast<std::size_t>(grid.rows_size()), depths_m);
   grid.clear_rows();
-}
-
-/// Returns the reason why a name does not stay in the folder; empty if it does.
-std::string leavesFolder(const fs::path& folder, const fs::path& name) {
-  if (name.is_absolute()) return "is an absolute path";
-  for (const fs::path& part : name) {
-    if (part == "..") return "goes up by \"..\"";
-  }
-  // Links are followed: what they point to has to be in the folder, too.
-  std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  const fs::path file = fs::weakly_canonical(root / name, error);
-  if (error) return "cannot be found: " + error.message();
-  const fs::path inside = file.lexically_relative(root);
-  return inside.empty() || *inside.begin() == ".." ? "is a link that leads out of it" : "";
 }
 
 void readImage(v1::DepthGrid& grid, const std::optional<fs::path>& folder, std::vector<FieldIssue>& issues) {

@@ -7,6 +7,8 @@
 #include <spindrift/scene/scene_rules.h>
 #include <spindrift/scene/setting.h>
 
+#include "wave_makers.h"
+
 namespace spindrift::scene {
 namespace {
 
@@ -57,21 +59,6 @@ core::Absorption toCore(v1::Absorption absorption) {
 
 core::Dispersion toCore(v1::Dispersion dispersion) {
   return dispersion == v1::DISPERSION_AIRY ? core::Dispersion::kAiry : core::Dispersion::kNone;
-}
-
-core::Side toCore(v1::Side side) {
-  switch (side) {
-    case v1::SIDE_MINUS_X:
-      return core::Side::kMinusX;
-    case v1::SIDE_PLUS_Z:
-      return core::Side::kPlusZ;
-    case v1::SIDE_MINUS_Z:
-      return core::Side::kMinusZ;
-    case v1::SIDE_DIRECTION:
-      return core::Side::kDirection;
-    default:
-      return core::Side::kPlusX;
-  }
 }
 
 core::WaveShape toCore(v1::WaveShape shape) {
@@ -199,7 +186,7 @@ core::Obstacle toCore(const v1::Obstacle& in) {
 }
 
 core::Beach toCore(const v1::Beach& in) {
-  return {.side = toCore(in.side()), .width_m = in.width_m(), .shore_depth_m = in.shore_depth_m()};
+  return {.side = scene::toCore(in.side()), .width_m = in.width_m(), .shore_depth_m = in.shore_depth_m()};
 }
 
 core::DepthGrid toCore(const v1::DepthGrid& in) {
@@ -302,6 +289,21 @@ core::TimedEvent toCore(const v1::TimedEvent& in) {
 
 }  // namespace
 
+core::Side toCore(v1::Side side) {
+  switch (side) {
+    case v1::SIDE_MINUS_X:
+      return core::Side::kMinusX;
+    case v1::SIDE_PLUS_Z:
+      return core::Side::kPlusZ;
+    case v1::SIDE_MINUS_Z:
+      return core::Side::kMinusZ;
+    case v1::SIDE_DIRECTION:
+      return core::Side::kDirection;
+    default:
+      return core::Side::kPlusX;
+  }
+}
+
 core::Splash toCore(const v1::Splash& splash) {
   v1::Splash in = splash;
   fillMessageDefaults(in);
@@ -361,6 +363,11 @@ void fillDefaults(v1::Scene& scene) {
 v1::Scene forClients(const v1::Scene& scene) {
   v1::Scene out = scene;
   if (out.bed().has_grid()) out.mutable_bed()->mutable_grid()->clear_points();
+  for (v1::WaveMaker& maker : *out.mutable_wave_makers()) {
+    if (!maker.has_series()) continue;
+    maker.mutable_series()->clear_time_s();
+    maker.mutable_series()->clear_elevation_m();
+  }
   return out;
 }
 
@@ -385,6 +392,7 @@ core::Scene toCore(const v1::Scene& scene) {
   if (in.has_bed()) out.bed = toCore(in.bed());
   for (const v1::Gauge& gauge : in.gauges())
     out.gauges.push_back({.name = gauge.name(), .x_m = gauge.x_m(), .z_m = gauge.z_m()});
+  for (const v1::WaveMaker& maker : in.wave_makers()) out.wave_makers.push_back(toCore(maker));
   if (in.has_boats()) out.boats = toCore(in.boats());
   if (in.has_storm()) out.storm = toCore(in.storm());
   out.stream.frame_rate_hz = in.stream().frame_rate_hz();

@@ -18,6 +18,7 @@
 #include <spindrift/scene/scene_rules.h>
 
 #include "depth_grid.h"
+#include "wave_makers.h"
 
 namespace spindrift::scene {
 namespace {
@@ -241,6 +242,7 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
     if (scene.name().empty()) scene.set_name(std::filesystem::path(file_label).stem().string());
     for (FieldIssue& issue : checkStructure(scene)) issues.push_back(std::move(issue));
     if (numbers_are_fine) {
+      readSeries(scene, folder, issues);
       for (FieldIssue& issue : checkNumbers(scene)) issues.push_back(std::move(issue));
       if (scene.bed().has_grid()) readDepthGrid(*scene.mutable_bed()->mutable_grid(), folder, issues);
     }

@@ -8,6 +8,7 @@
 #include <spindrift/scene/scene_rules.h>
 
 #include "bed_rules.h"
+#include "wave_makers.h"
 
 namespace spindrift::scene {
 namespace {
@@ -100,6 +101,7 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   if (scene.has_storm()) needsWave("storm", "storm");
   if (scene.has_bed()) needsWave("bed", "bed");
   if (scene.gauges_size() > 0) needsWave("gauges[0]", "the gauges");
+  if (scene.wave_makers_size() > 0) needsWave("wave_makers[0]", "the wave-makers");
 }
 
 void checkCount(int count, int max_count, const std::string& path, const char* what, std::vector<FieldIssue>& issues) {
@@ -111,6 +113,7 @@ void checkCount(int count, int max_count, const std::string& path, const char* w
 void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   checkCount(scene.obstacles_size(), kSceneObstacleMaxCount, "obstacles", "obstacles", issues);
   checkCount(scene.beaches_size(), kSceneBeachMaxCount, "beaches", "beaches", issues);
+  checkCount(scene.wave_makers_size(), kSceneWaveMakerMaxCount, "wave_makers", "wave-makers", issues);
   checkCount(scene.boats().boats_size(), static_cast<int>(core::kMaxBoats), "boats.boats", "boats", issues);
   for (int i = 0; i < scene.obstacles_size(); ++i) {
     if (scene.obstacles(i).shape_case() != v1::Obstacle::SHAPE_NOT_SET) continue;
@@ -214,6 +217,7 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
   checkParts(scene, issues);
   checkLists(scene, issues);
   checkBedStructure(scene, issues);
+  checkMakerStructure(scene, issues);
   if (scene.events_size() > kSceneEventMaxCount) {
     addRange(issues, "events[" + std::to_string(kSceneEventMaxCount) + "]",
              std::to_string(scene.events_size()) + " events are more than " + std::to_string(kSceneEventMaxCount) +

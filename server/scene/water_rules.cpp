@@ -1,4 +1,4 @@
-// Rules between the water and the objects in it: sides, sponge, obstacles, beaches, boats.
+// Rules between the water and the objects in it: sides, sponge, obstacles, beaches, boats, wave-makers.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +9,7 @@
 #include <spindrift/scene/scene_rules.h>
 
 #include "bed_rules.h"
+#include "wave_makers.h"
 
 namespace spindrift::scene {
 namespace {
@@ -90,19 +91,6 @@ void checkInside(double centre_m, double reach_m, double side_m, const std::stri
   addRange(issues, path,
            metres(centre_m) + " puts it over the edge of the water; choose " + core::formatNumber(-max_m) + " to " +
                metres(max_m));
-}
-
-v1::WaveBoundary boundaryOf(const v1::WaveScene& wave, v1::Side side) {
-  switch (side) {
-    case v1::SIDE_MINUS_X:
-      return wave.boundary_minus_x();
-    case v1::SIDE_PLUS_Z:
-      return wave.boundary_plus_z();
-    case v1::SIDE_MINUS_Z:
-      return wave.boundary_minus_z();
-    default:
-      return wave.boundary_plus_x();
-  }
 }
 
 void checkPair(v1::WaveBoundary minus, v1::WaveBoundary plus, const char* minus_path, const char* plus_path,
@@ -239,6 +227,19 @@ void checkBoats(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
 
 }  // namespace
 
+v1::WaveBoundary boundaryOf(const v1::WaveScene& wave, v1::Side side) {
+  switch (side) {
+    case v1::SIDE_MINUS_X:
+      return wave.boundary_minus_x();
+    case v1::SIDE_PLUS_Z:
+      return wave.boundary_plus_z();
+    case v1::SIDE_MINUS_Z:
+      return wave.boundary_minus_z();
+    default:
+      return wave.boundary_plus_x();
+  }
+}
+
 core::WaveCells waveCellsOf(const v1::WaveScene& wave) {
   const google::protobuf::Descriptor& type = *v1::WaveScene::descriptor();
   const auto number = [&](const char* name) { return numberOf(wave, *type.FindFieldByName(name)); };
@@ -292,6 +293,7 @@ std::vector<FieldIssue> checkWater(const v1::Scene& scene) {
     checkObstacles(scene, issues);
     checkBeaches(scene, issues);
     checkBedNumbers(scene, issues);
+    checkMakerNumbers(scene, issues);
   }
   if (scene.has_boats()) checkBoats(scene, issues);
   return issues;

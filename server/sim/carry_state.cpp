@@ -108,7 +108,7 @@ class SurfaceCarrier {
     std::vector<std::int32_t> out;
     out.reserve(whole.size());
     for (const std::int64_t each : whole) out.push_back(static_cast<std::int32_t>(each));
-    (void)fillUp(to_.bed_units, out, isOpen(scene_) ? Lack::kComesFromOutside : Lack::kStays);
+    (void)fillUp(to_.bed_units, out, exchangesWater(scene_) ? Lack::kComesFromOutside : Lack::kStays);
     return out;
   }
 
@@ -300,7 +300,7 @@ bool isSameWater(const core::Scene& a, const core::Scene& b) {
   if (a.coupling && a.coupling->mode != b.coupling->mode) return false;
   if (a.wave && hasSurfaceFoam(a) != hasSurfaceFoam(b)) return false;
   if (a.boats && a.boats->capacity_count != b.boats->capacity_count) return false;
-  return a.obstacles == b.obstacles && a.beaches == b.beaches && a.bed == b.bed;
+  return a.obstacles == b.obstacles && a.beaches == b.beaches && a.bed == b.bed && a.wave_makers == b.wave_makers;
 }
 
 ResampledState resampleState(const CarriedState& before, const core::Scene& scene, const Derived& derived) {

@@ -46,6 +46,8 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"WAVE_PERIODIC_Z", flag(scene.wave && isPeriodicZ(*scene.wave))},
           {"VARIED", flag(scene.wave && isVaried(scene))},
           {"OPEN", flag(scene.wave && isOpen(scene))},
+          {"MAKERS", std::to_string(makerBits(scene))},
+          {"EXCHANGE", flag(scene.wave && exchangesWater(scene))},
           {"MATCHED", flag(hasMatchedLayer(scene))},
           {"NONLINEAR", flag(isNonlinear(scene))},
           {"DISPERSE", flag(disperses(scene))},

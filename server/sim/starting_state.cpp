@@ -35,6 +35,7 @@ core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core:
   core::Scene quiet = scene;
   quiet.events.clear();
   quiet.storm.reset();
+  quiet.wave_makers.clear();
   quiet.particles->settle_s = 0;
   auto water = WaterSim::create(ctx, quiet);
   if (!water) return water.error();

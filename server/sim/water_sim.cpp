@@ -42,9 +42,11 @@ void WaterSim::advanceWave() {
   if (!parts_->wave) return;
   const auto timer = timers_.scope("wave");
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
+    const double begin_s = time_s() + k * derived_.wave->dt_s;
     const double end_s = time_s() + (k + 1) * derived_.wave->dt_s;
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr,
-                          parts_->effects.advance(end_s, domainOf(*derived_.wave)), advanceSea(k));
+                          parts_->effects.advance(end_s, domainOf(*derived_.wave)), advanceSea(k),
+                          begin_s + 0.5 * derived_.wave->dt_s);
   }
   parts_->wave->clearPressure();  // hulls and falling particles set it again for the next tick
 }

@@ -98,6 +98,7 @@ void WaterSim::setCareful(bool careful) {
   if (derived) derived_ = *std::move(derived);
   parts_->uniforms.uploadValue(derived_.uniforms);
   uploadBasin();
+  if (parts_->wave && parts_->wave->makers()) parts_->wave->makers()->update(scene_, *derived_.wave);
   if (parts_->wind_sea) parts_->wind_sea->fadeTo(seaState(scene_, *derived_.wave));
 }
 

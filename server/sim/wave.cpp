@@ -25,7 +25,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   const bool wide_flow = nine || isNonlinear(scene);
   wave->flow_components_ = wide_flow ? 4 : 2;
   wave->is_varied_ = isVaried(scene);
-  wave->has_outflow_ = isOpen(scene);
+  wave->has_outflow_ = exchangesWater(scene);
   Creation create;
   create(wave->elevation_, TexelBuffer::create(ctx, "elevation", cells, TexelFormat::kR32I));
   create(wave->flow_, TexelBuffer::create(ctx, "flow", cells, wide_flow ? TexelFormat::kRGBA32F : TexelFormat::kRG32F));
@@ -70,6 +70,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
     create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
   }
   if (isNonlinear(scene)) create(wave->shallow_flow_, ShallowFlow::create(ctx, scene, layout, defines));
+  if (hasMakers(scene)) create(wave->makers_, WaveMakers::create(ctx, scene, layout, defines));
   if (create.error()) return *create.error();
   if (disperses(scene)) {
     auto dispersed = DispersedSlope::create(ctx, layout, layOutBasin(scene, layout), defines);
@@ -165,7 +166,7 @@ void Wave::bindBasin() const {
 }
 
 void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events,
-                   const gpu::TexelBuffer* incident_sea) {
+                   const gpu::TexelBuffer* incident_sea, double middle_s) {
   const bool sea = incident_sea != nullptr;
   accelerate(breaking, incident_sea);
   displace(events);
@@ -178,6 +179,7 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);  // other passes use its unit
   continuity_[sea].dispatch(count_.x, count_.z);
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  if (makers_) makers_->advance(middle_s);
 }
 
 /// Updates FLOW and writes TRANSFER; leaves both bound as storage, with LIMIT_ARGS.

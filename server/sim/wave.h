@@ -18,13 +18,14 @@
 
 #include "dispersed_slope.h"
 #include "shallow_flow.h"
+#include "wave_makers.h"
 
 namespace spindrift::sim {
 
 class Wave {
  public:
   /// `sampled`: particles or boats read the surface; creates the buffers for them, too. The basin has tables only if it
-  /// is varied, and outflow is counted only if a side is open.
+  /// is varied, and outflow is counted only if water can leave or enter.
   static core::Result<std::unique_ptr<Wave>> create(gpu::Context& ctx, const core::Scene& scene,
                                                     const WaveLayout& layout, const gpu::Defines& defines,
                                                     bool sampled);
@@ -44,14 +45,15 @@ class Wave {
   /// rare changes only.
   void fillUpToBed(const core::Scene& scene, const WaveLayout& layout);
 
-  /// Sets the volume that has left since the start, in units of a cell; 0 in basins without absorbing sides.
+  /// Sets the volume that has left since the start, in units of a cell; 0 in basins that no water leaves or enters.
   void setOutflow(std::int64_t units);
 
   /// Advances one wave step: the flow driven by the slope plus this step's share of the active effects, limited to the
   /// water that cells hold. `breaking` may be null; empty `events` mean that no effect is active. `incident_sea`: what
-  /// comes in through absorbing sides (wind_sea.h), null when nothing does.
+  /// comes in through absorbing sides (wind_sea.h), null when nothing does. `middle_s`: time in the middle of the step
+  /// since the start of the scene, for wave-makers.
   void advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms& events,
-               const gpu::TexelBuffer* incident_sea);
+               const gpu::TexelBuffer* incident_sea, double middle_s);
   /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
 
@@ -65,6 +67,8 @@ class Wave {
   /// nx x nz [units]: the part of the elevation that came through x faces, inside a matched layer
   /// (wave/continuity.comp); null in scenes without one. 0 outside the layer.
   [[nodiscard]] gpu::TexelBuffer* elevationX() { return has_matched_layer_ ? &elevation_x_ : nullptr; }
+  /// null in scenes without.
+  [[nodiscard]] WaveMakers* makers() { return makers_.get(); }
   /// Sum of the elevations of water at rest: ground above the still water counts in a nonlinear bulk.
   [[nodiscard]] std::int64_t restingUnits() const { return resting_units_; }
   /// 2, or 4 with the 9-point stencil or a nonlinear bulk.
@@ -105,6 +109,7 @@ class Wave {
   gpu::TexelBuffer surface_, surface_flow_;
   std::unique_ptr<DispersedSlope> dispersed_slope_;  ///< null in scenes without dispersion
   std::unique_ptr<ShallowFlow> shallow_flow_;        ///< null if the bulk is linear
+  std::unique_ptr<WaveMakers> makers_;               ///< null in scenes without wave-makers
   std::vector<std::int32_t> resting_elevation_;      ///< nx x nz [units]; empty if the bulk is linear
   std::int64_t resting_units_ = 0;
   gpu::Buffer event_uniforms_;

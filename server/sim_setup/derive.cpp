@@ -7,6 +7,7 @@
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/dispersion.h>
 #include <spindrift/sim_setup/ground.h>
+#include <spindrift/sim_setup/incident_waves.h>
 #include <spindrift/sim_setup/lattice.h>
 #include <spindrift/sim_setup/particle_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
@@ -85,7 +86,7 @@ std::uint64_t waveCellBytes(const core::Scene& scene) {
   std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
   if (isNonlinear(scene)) bytes += 2 * 16 - 8 + (disperses(scene) ? 8 : 0);  // FLOW twice; SURFACE_RISE
   if (isVaried(scene)) bytes += 16 + 16;
-  if (isOpen(scene)) bytes += 8;
+  if (exchangesWater(scene)) bytes += 8;
   if (hasMatchedLayer(scene)) bytes += 4;
   if (isSampled(scene)) bytes += 24 + (isVaried(scene) ? 20 : 0);
   if (hasPressureHead(scene)) bytes += 4;
@@ -219,9 +220,9 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     return invalid("coupling: needs both wave and particles: add the missing part or remove coupling");
   if (scene.foam && !scene.particles && !hasSurfaceFoam(scene))
     return invalid("foam: needs particles, or a wave and surface: true: add what is missing or remove foam");
-  if (!scene.wave &&
-      (scene.storm || !scene.obstacles.empty() || !scene.beaches.empty() || scene.bed || !scene.gauges.empty()))
-    return invalid("storm, obstacles, beaches, bed, gauges: need a wave: add one or remove them");
+  if (!scene.wave && (scene.storm || !scene.obstacles.empty() || !scene.beaches.empty() || scene.bed ||
+                      !scene.gauges.empty() || !scene.wave_makers.empty()))
+    return invalid("storm, obstacles, beaches, bed, gauges, wave_makers: need a wave: add one or remove them");
   if (auto checked = checkGround(scene); !checked) return checked.error();
 
   if (scene.coupling && scene.coupling->patch_follow != core::PatchFollow::kNothing) {
@@ -248,6 +249,7 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     auto layout = layOutWave(scene);
     if (!layout) return layout.error();
     d.wave = *layout;
+    if (auto fits = makersFit(scene, *d.wave); !fits) return fits.error();
   }
 
   // Particles decide the number of substeps, 1 without particles. The wave may divide the tick further.

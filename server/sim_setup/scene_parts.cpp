@@ -1,3 +1,5 @@
+#include <shared/maker_sides.h>
+
 #include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
@@ -25,6 +27,33 @@ bool isOpen(const core::Scene& scene) {
     if (side == WaveBoundary::kAbsorb) return true;
   }
   return false;
+}
+
+bool hasMakers(const core::Scene& scene) {
+  return scene.wave && !scene.wave_makers.empty();
+}
+
+std::uint32_t makerBit(core::Side side) {
+  switch (side) {
+    case core::Side::kMinusX:
+      return MAKER_MINUS_X;
+    case core::Side::kMinusZ:
+      return MAKER_MINUS_Z;
+    case core::Side::kPlusZ:
+      return MAKER_PLUS_Z;
+    default:
+      return MAKER_PLUS_X;
+  }
+}
+
+std::uint32_t makerBits(const core::Scene& scene) {
+  std::uint32_t out = 0;
+  for (const core::WaveMaker& maker : scene.wave_makers) out |= makerBit(maker.side);
+  return out;
+}
+
+bool exchangesWater(const core::Scene& scene) {
+  return hasMakers(scene) || isOpen(scene);
 }
 
 bool hasMatchedLayer(const core::Scene& scene) {

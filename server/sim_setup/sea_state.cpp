@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include <spindrift/sim_setup/random.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
+
+#include "distribution.h"
 
 namespace spindrift::sim {
 namespace {
@@ -26,32 +27,6 @@ constexpr double kWidthAbove = 0.09;
 /// Dimensionless fetch g F/U^2 at which the peak reaches the frequency of a fully developed sea, 0.88 g/U.
 constexpr double kDevelopedFetch = 15625.0;
 constexpr double kSmallestVariance_m2 = 1e-12;
-
-/// A density over an interval, for its integral and its quantiles.
-class Distribution {
- public:
-  Distribution(double from, double to, const std::function<double(double)>& density) : from_(from) {
-    constexpr int kSteps = 4000;
-    step_ = (to - from) / kSteps;
-    sums_.push_back(0.0);
-    for (int k = 0; k < kSteps; ++k) sums_.push_back(sums_.back() + density(from + (k + 0.5) * step_) * step_);
-  }
-  [[nodiscard]] double integral() const { return sums_.back(); }
-  /// Returns the place below which a share of the integral lies. Precondition: the integral is positive.
-  [[nodiscard]] double quantile(double share) const {
-    const double wanted = std::clamp(share, 0.0, 1.0) * integral();
-    const auto above = std::ranges::upper_bound(sums_, wanted);
-    if (above == sums_.end()) return from_ + static_cast<double>(sums_.size() - 1) * step_;
-    const auto k = above - sums_.begin() - 1;
-    const double low = sums_[static_cast<std::size_t>(k)];
-    return from_ + (static_cast<double>(k) + (wanted - low) / (*above - low)) * step_;
-  }
-
- private:
-  double from_;
-  double step_ = 0.0;
-  std::vector<double> sums_;
-};
 
 /// Sides of the water by what waves do there. Periodic sides are in neither set.
 struct Sides {

@@ -45,6 +45,7 @@ const std::vector<Case>& accuracyCases() {
         {"run-up", "Run-up of solitary waves on a plane beach", solitaryRunUp},
         {"island", "Solitary waves that meet a conical island", conicalIsland},
         {"solitary-wave", "A solitary wave that dispersion and nonlinearity hold in balance", solitaryWave},
+        {"wave-makers", "Waves that are made at a side, and what a maker does with those that come back", waveMakers},
         {"one-step", "One step on the device and in double precision", oneStep},
         {"still-water", "Particles on a level wave that should not move", stillWater},
         {"hydrostatic", "Pressure in a column at rest", hydrostaticColumn},

@@ -49,6 +49,9 @@ Outcome solitaryWave(gpu::Context& ctx, bool quick);
 Outcome damBreakOfShallowWater(gpu::Context& ctx, bool quick);
 Outcome lakeWithIslands(gpu::Context& ctx, bool quick);
 
+// wave_maker_case.cpp
+Outcome waveMakers(gpu::Context& ctx, bool quick);
+
 // sea_cases.cpp
 Outcome windSea(gpu::Context& ctx, bool quick);
 

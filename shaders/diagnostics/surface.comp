@@ -14,7 +14,7 @@ layout(local_size_x = REDUCE_GROUP) in;
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
-#if OPEN
+#if EXCHANGE
 layout(binding = OUTFLOW) uniform usamplerBuffer outflow;
 #endif
 #if HULLS
@@ -67,7 +67,7 @@ void main() {
 #endif
     volume.x += uint(units >> 16);
     volume.y += uint(units & 0xffff);
-#if OPEN
+#if EXCHANGE
     const uvec2 left_units = texelFetch(outflow, i).xy;
     volume.z += left_units.y;
     volume.w += left_units.x;

@@ -9,6 +9,7 @@
 #define SEA_UNIFORMS 3
 #define GAUGE_UNIFORMS 4
 #define DISPERSION_UNIFORMS 5
+#define MAKER_UNIFORMS 6
 
 // Particles: position.xyz [m] + id, velocity.xyz [m/s] + foam [0..1].
 #define POSITION 0

@@ -12,6 +12,7 @@
 // DISPERSE: slopes filtered by the dispersion take the place of those of the surface in water that is deep for its waves.
 // Invariants: no water leaves a dry cell; a level surface without flow does not change in any bit, at any level of any pond.
 #include "shared/groups.h"
+#include "shared/maker_sides.h"
 #include "wave/dispersed_share.glsl"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
@@ -122,10 +123,23 @@ void main() {
   const int i_z = cell.x + row_after;
 
   const vec4 own = texelFetch(flow, i);
-  const vec4 at_before_x = texelFetch(flow, x_before + row);
-  const vec4 at_x = texelFetch(flow, i_x);
-  const vec4 at_before_z = texelFetch(flow, cell.x + row_before);
-  const vec4 at_z = texelFetch(flow, i_z);
+  vec4 at_before_x = texelFetch(flow, x_before + row);
+  vec4 at_x = texelFetch(flow, i_x);
+  vec4 at_before_z = texelFetch(flow, cell.x + row_before);
+  vec4 at_z = texelFetch(flow, i_z);
+  // Through a side with a wave-maker water comes and goes as fast as beside it.
+#if MAKERS & MAKER_MINUS_X
+  if (cell.x == 0) at_before_x.xz = own.xz;
+#endif
+#if MAKERS & MAKER_PLUS_X
+  if (cell.x == n.x - 2) at_x.xz = own.xz;
+#endif
+#if MAKERS & MAKER_MINUS_Z
+  if (cell.y == 0) at_before_z.yw = own.yw;
+#endif
+#if MAKERS & MAKER_PLUS_Z
+  if (cell.y == n.y - 2) at_z.yw = own.yw;
+#endif
   const vec4 at_x_before_z = texelFetch(flow, x_after + row_before);
   const vec4 at_z_before_x = texelFetch(flow, x_before + row_after);
   const Face face_x = Face(at_before_x.x, own.x, at_x.x, at_before_z.x, at_z.x,

@@ -5,8 +5,10 @@
 // Equation: head_q = h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h. The equations of Serre (1953; Green & Naghdi 1976) have
 // this term with the factor 2/3, and dispersion by the real depth where ours takes the still one; with the factor 1 solitary waves
 // of 0.1 and 0.3 of the depth keep their height (docs/shore.md).
+// Not within two depths of wave-makers.
 // Invariant: exactly 0 between cells at the same level without flow, and beside a dry cell.
 #include "shared/groups.h"
+#include "shared/maker_sides.h"
 #include "wave/dispersed_share.glsl"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
@@ -24,6 +26,29 @@ float dynamicHead(Column water, vec4 u_mps) {
   const float stretch = water.water_m * (u_mps.x - u_mps.y + u_mps.z - u_mps.w) / sim.wave_cell_m;
   return min(stretch * stretch / max(sim.gravity_mps2, 1e-6), MAX_DYNAMIC_HEAD * water.water_m) * ELEVATION_UNITS_PER_M;
 }
+
+#if MAKERS
+/// Share of the dynamic head at a cell near wave-makers: within two depths water stretches as the maker lets it in, and its
+/// head would draw in more.
+float awayFromMakers(ivec2 cell, ivec2 n) {
+  const vec2 from_minus = vec2(cell) + 0.5;
+  const vec2 from_plus = vec2(n) - from_minus;
+  float cells = 1e9;
+#if MAKERS & MAKER_MINUS_X
+  cells = min(cells, from_minus.x);
+#endif
+#if MAKERS & MAKER_PLUS_X
+  cells = min(cells, from_plus.x);
+#endif
+#if MAKERS & MAKER_MINUS_Z
+  cells = min(cells, from_minus.y);
+#endif
+#if MAKERS & MAKER_PLUS_Z
+  cells = min(cells, from_plus.y);
+#endif
+  return smoothstep(0.0, 2.0 * sim.wave_depth_m, cells * sim.wave_cell_m);
+}
+#endif
 
 void main() {
   const ivec2 n = waveCounts();
@@ -43,9 +68,14 @@ void main() {
   const Column here = columnOf(i, texelFetch(elevation, i).x);
   const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
   const Column there_z = columnOf(i_z, texelFetch(elevation, i_z).x);
-  const float pressed = dynamicHead(here, vec4(own.x, texelFetch(flow, x_before + row).x, own.y, texelFetch(flow, cell.x + row_before).y));
-  const float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, texelFetch(flow, x_after + row_before).y));
-  const float pressed_z = dynamicHead(there_z, vec4(at_z.x, texelFetch(flow, x_before + row_after).x, at_z.y, own.y));
+  float pressed = dynamicHead(here, vec4(own.x, texelFetch(flow, x_before + row).x, own.y, texelFetch(flow, cell.x + row_before).y));
+  float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, texelFetch(flow, x_after + row_before).y));
+  float pressed_z = dynamicHead(there_z, vec4(at_z.x, texelFetch(flow, x_before + row_after).x, at_z.y, own.y));
+#if MAKERS
+  pressed *= awayFromMakers(cell, n);
+  pressed_x *= awayFromMakers(cell + ivec2(1, 0), n);
+  pressed_z *= awayFromMakers(cell + ivec2(0, 1), n);
+#endif
   const int head = headAt(i);
   const vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head) + pressed_x - pressed,
                          drivingRise(here, there_z, headAt(i_z) - head) + pressed_z - pressed);

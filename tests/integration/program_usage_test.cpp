@@ -149,14 +149,15 @@ TEST_F(Check, PrintsSidesSolverBoatsAndObstacles) {
       "  boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_REFLECT sponge_width_m: 3 }\n"
       "particles { count: 512 layers_count: 2 equation_of_state: EQUATION_OF_STATE_TAIT cohesion: true }\n"
       "obstacles { rock { x_m: 5 } }\nbeaches { width_m: 4 shore_depth_m: 0.25 }\n"
-      "boats { boats { x_m: -4 height_m: 0.5 density_ratio: 0.5 } }\nstorm { level_ratio: 0.75 }\n");
+      "boats { boats { x_m: -4 height_m: 0.5 density_ratio: 0.5 } }\nstorm { level_ratio: 0.75 }\n"
+      "wave_makers { begin_s: 2 solitary { height_m: 0.1 } }\n");
   const Outcome outcome = runProgram({"check", file});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const char* word :
        {"sides      -x absorbs, +x reflects, -z periodic, +z periodic, sponge of 3 m", "steepening 0.5",
         "weakly compressible, Tait's equation of state, conserving pressure force, cohesion", "obstacles  1",
-        "beach      at +x, 4 m wide, up to a depth of 0.25 m", "boats      1 of at most 8", "draught 0.25 m",
-        "storm      0.75"}) {
+        "beach      at +x, 4 m wide, up to a depth of 0.25 m", "maker      at +x: solitary wave of 0.1 m, from 2 s on",
+        "boats      1 of at most 8", "draught 0.25 m", "storm      0.75"}) {
     EXPECT_THAT(outcome.out, HasSubstr(word));
   }
 }

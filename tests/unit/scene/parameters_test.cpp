@@ -37,14 +37,14 @@ std::set<std::string> pathsOf(const v1::Scene& scene) {
   return paths;
 }
 
-/// Calls `visit` for every number field below `type`.
+/// Calls `visit` for every number field below `type`; the numbers of a list are data, checked where they are read.
 void forEachNumber(const Descriptor& type, const std::function<void(const FieldDescriptor&)>& visit) {
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
       forEachNumber(*field.message_type(), visit);
-    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
-               field.cpp_type() == FieldDescriptor::CPPTYPE_UINT32) {
+    } else if (!field.is_repeated() && (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
+                                        field.cpp_type() == FieldDescriptor::CPPTYPE_UINT32)) {
       visit(field);
     }
   }

@@ -10,6 +10,7 @@
 #include <shared/bindings.h>
 #include <shared/boats.h>
 #include <shared/event_uniforms.h>
+#include <shared/maker_uniforms.h>
 #include <shared/sea_uniforms.h>
 #include <shared/sim_uniforms.h>
 
@@ -103,6 +104,20 @@ TEST_F(SharedBlocks, SeaUniformsHaveTheLayoutOfTheDriver) {
   ASSERT_EQ(names.size(), sizeof(shared::SeaWaveUniform) / 4);
   for (std::size_t k = 0; k < names.size(); ++k)
     EXPECT_EQ(offsetOf(sea, "sea_waves[0]." + names[k]), 4 * k) << names[k];
+}
+
+TEST_F(SharedBlocks, MakerUniformsHaveTheLayoutOfTheDriver) {
+  core::Scene scene = smallScene();
+  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  scene.wave_makers = {core::WaveMaker{}};
+  const gpu::BlockLayout maker = block("wave/maker.comp", "MakerUniforms", scene);
+  EXPECT_EQ(maker.binding, static_cast<std::uint32_t>(MAKER_UNIFORMS));
+  EXPECT_LE(maker.size_bytes, sizeof(shared::MakerUniforms));
+  EXPECT_EQ(offsetOf(maker, "maker_side"), offsetof(shared::MakerUniforms, maker_side));
+  EXPECT_EQ(offsetOf(maker, "maker_flow_m2ps"), offsetof(shared::MakerUniforms, maker_flow_m2ps));
+  EXPECT_EQ(offsetOf(maker, "maker_elevation_m"), offsetof(shared::MakerUniforms, maker_elevation_m));
+  EXPECT_EQ(offsetOf(maker, "maker_absorbing_mps"), offsetof(shared::MakerUniforms, maker_absorbing_mps));
+  EXPECT_EQ(offsetOf(maker, "maker_depth_m"), offsetof(shared::MakerUniforms, maker_depth_m));
 }
 
 TEST_F(SharedBlocks, TheFollowerWritesTheFirstMembersOfTheSimUniforms) {

@@ -213,6 +213,54 @@ struct Gauge {
 /// At most this many gauges in a scene.
 inline constexpr std::uint32_t kMaxGauges = 64;
 
+/// Waves of one height (trough to crest) and one period.
+struct RegularWaves {
+  using Default = defaults::RegularWaves;
+  double height_m = Default::height_m;
+  double period_s = Default::period_s;
+
+  bool operator==(const RegularWaves&) const = default;
+};
+
+/// A JONSWAP spectrum as a sum of waves with random phases.
+struct IrregularWaves {
+  using Default = defaults::IrregularWaves;
+  double significant_height_m = Default::significant_height_m;
+  double peak_period_s = Default::peak_period_s;
+  double peak_enhancement_ratio = Default::peak_enhancement_ratio;
+  std::uint32_t waves_count = Default::waves_count;
+  std::uint64_t seed = 0;  ///< 0 = that of the scene
+
+  bool operator==(const IrregularWaves&) const = default;
+};
+
+/// One crest of permanent form.
+struct SolitaryWave {
+  using Default = defaults::SolitaryWave;
+  double height_m = Default::height_m;
+
+  bool operator==(const SolitaryWave&) const = default;
+};
+
+/// An elevation over time: as many numbers in both lists, times increasing. Level before and after.
+struct ElevationSeries {
+  std::vector<double> time_s;
+  std::vector<double> elevation_m;
+
+  bool operator==(const ElevationSeries&) const = default;
+};
+
+/// Makes waves along a side, which is a wall otherwise, and takes up those that come back (sim_setup/incident_waves.h).
+struct WaveMaker {
+  using Default = defaults::WaveMaker;
+  Side side = Side::kPlusX;
+  double begin_s = Default::begin_s;
+  double duration_s = Default::duration_s;  ///< of regular and irregular waves; 0 = without end
+  std::variant<RegularWaves, IrregularWaves, SolitaryWave, ElevationSeries> waves;
+
+  bool operator==(const WaveMaker&) const = default;
+};
+
 /// The SPH particles of a patch: a band of water, `layers` spacings thick, over part of the surface or all of it.
 struct ParticleScene {
   using Default = defaults::ParticleScene;
@@ -334,6 +382,7 @@ struct Scene {
   std::vector<Beach> beaches;             ///< need a wave
   std::optional<Bed> bed;                 ///< needs a wave
   std::vector<Gauge> gauges;              ///< need a wave
+  std::vector<WaveMaker> wave_makers;     ///< need a wave; at most one a side
   std::optional<BoatsScene> boats;        ///< on the wave, or among particles without a wave
   std::optional<StormScene> storm;        ///< needs a wave
   StreamScene stream;

@@ -20,6 +20,9 @@ inline constexpr int kSceneEventMaxCount = 256;
 /// Maximum number of obstacles, and of beaches (one per side).
 inline constexpr int kSceneObstacleMaxCount = 64;
 inline constexpr int kSceneBeachMaxCount = 4;
+/// Maximum number of wave-makers (one per side), and of rows of a series of elevations.
+inline constexpr int kSceneWaveMakerMaxCount = 4;
+inline constexpr int kSceneSeriesRowMaxCount = 16384;
 /// Maximum number of shapes of a bed.
 inline constexpr int kSceneBedShapeMaxCount = 64;
 
@@ -35,13 +38,14 @@ core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file,
 /// Parses and checks the text of a scene. `file_label` names it in errors; without folder and extension it is the
 /// default name of the scene. Error: kInvalidInput with every error found, one per line, in order of appearance:
 /// `FILE:LINE:COLUMN: field.path: value, bound, what to do`. Rules between fields are checked only if the text can be
-/// parsed. `folder`: where the files lie that the scene names (bed.grid.png); nullopt refuses such scenes.
+/// parsed. `folder`: where the files lie that the scene names (bed.grid.png, wave_makers[].series.file); nullopt
+/// refuses such scenes.
 core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
                                        std::optional<v1::Fidelity> fidelity = std::nullopt,
                                        const std::optional<std::filesystem::path>& folder = std::nullopt);
 
-/// Returns the scene as clients get it: without the depths of its grid, which are megabytes. They ask for the ground
-/// (GET /api/v1/rooms/NAME/ground).
+/// Returns the scene as clients get it: without the depths of its grid, which are megabytes (they ask for the ground,
+/// GET /api/v1/rooms/NAME/ground), and without the numbers of series of elevations.
 v1::Scene forClients(const v1::Scene& scene);
 
 /// Fills every field that was left out with its default, in the parts that are present (`stream` always is);

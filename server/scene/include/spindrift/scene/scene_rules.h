@@ -25,6 +25,9 @@ WaterExtents waterExtentsOf(const v1::Scene& scene);
 /// The cells of a wave; fields that are left out have their defaults.
 core::WaveCells waveCellsOf(const v1::WaveScene& wave);
 
+/// Returns what waves do at a side; at that toward +x for SIDE_UNSPECIFIED and SIDE_DIRECTION.
+v1::WaveBoundary boundaryOf(const v1::WaveScene& wave, v1::Side side);
+
 /// Checks that the width is a whole number of cells, and that there are not too many of them. Each field is valid.
 void checkCells(const v1::WaveScene& wave, std::vector<FieldIssue>& issues);
 
@@ -35,8 +38,8 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
 /// The scene has boats and a wave.
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix);
 
-/// Checks rules between the water and sides, sponge, obstacles, beaches and boats. They hold in a running scene too, so
-/// parameter changes are checked against them.
+/// Checks rules between the water and sides, sponge, obstacles, beaches, boats and wave-makers. They hold in a running
+/// scene too, so parameter changes are checked against them.
 std::vector<FieldIssue> checkWater(const v1::Scene& scene);
 
 /// Checks rules on texts and on which parts are present, independent of numbers. Defaults are filled in.
@@ -44,6 +47,8 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene);
 
 /// Checks rules between numbers, for a scene with defaults filled in and every single field valid.
 std::vector<FieldIssue> checkNumbers(const v1::Scene& scene);
+
+core::Side toCore(v1::Side side);
 
 /// Convert effects, with defaults for fields left out.
 core::Splash toCore(const v1::Splash& splash);

@@ -1,6 +1,8 @@
 // The parts that a scene has.
 #pragma once
 
+#include <cstdint>
+
 #include <spindrift/core/scene.h>
 
 namespace spindrift::sim {
@@ -12,8 +14,15 @@ bool isVaried(const core::Scene& scene);
 bool isNonlinear(const core::Scene& scene);
 /// Returns whether short waves are slower than long ones.
 bool disperses(const core::Scene& scene);
-/// Returns whether water can leave: a side absorbs.
+/// Returns whether a side absorbs waves in a layer.
 bool isOpen(const core::Scene& scene);
+/// Returns whether a side has a wave-maker.
+bool hasMakers(const core::Scene& scene);
+/// Bit of a side (shared/maker_sides.h), and those of all sides with a wave-maker.
+std::uint32_t makerBit(core::Side side);
+std::uint32_t makerBits(const core::Scene& scene);
+/// Returns whether water can leave or enter: a side absorbs, or has a wave-maker.
+bool exchangesWater(const core::Scene& scene);
 /// Returns whether absorbing sides have a perfectly matched layer, not a sponge.
 bool hasMatchedLayer(const core::Scene& scene);
 
