@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "canonical_run_up.h"
 #include "cases.h"
 #include "shallow_water.h"
 #include "ticks.h"
@@ -50,6 +53,15 @@ BeachChannel beachChannel(double cells_per_m, double offshore_m, double top_m, d
   return out;
 }
 
+/// Puts a wave before the beach that runs toward it with the speed of long waves.
+void startWave(sim::WaterSim& water, const BeachChannel& channel, const SolitaryWave& wave) {
+  const double speed_mps = std::sqrt(kGravity_mps2);
+  const double end_m = channel.toe_x_m + wave.halfLength_m();
+  setShallowState(
+      water, [&](double x, double) { return x < end_m ? wave.at(x) : 0.0; },
+      [&](double x, double) { return x < end_m ? wave.at(x) * speed_mps : 0.0; });
+}
+
 /// Highest place [m over the still water] that the water has reached after `duration_s`.
 core::Result<double> runUp(gpu::Context& ctx, double height_m, double cells_per_m, double manning_spm13) {
   const double half_m = kStartArgument / std::sqrt(0.75 * height_m);
@@ -61,9 +73,7 @@ core::Result<double> runUp(gpu::Context& ctx, double height_m, double cells_per_
   auto water = sim::WaterSim::create(ctx, channel.scene);
   if (!water) return water.error();
   const double speed_mps = std::sqrt(kGravity_mps2);
-  setShallowState(
-      **water, [&](double x, double) { return x < channel.toe_x_m + half_m ? wave.at(x) : 0.0; },
-      [&](double x, double) { return x < channel.toe_x_m + half_m ? wave.at(x) * speed_mps : 0.0; });
+  startWave(**water, channel, wave);
   const std::vector<double> depth_m = groundDepths(channel.scene, *(*water)->derived().wave);
   const std::size_t nx = (*water)->derived().wave->count_x;
   const double duration_s = (half_m + 1.7 * kBeachCotangent + 3.0 * kBeachCotangent * expected_m) / speed_mps;
@@ -81,6 +91,58 @@ core::Result<double> runUp(gpu::Context& ctx, double height_m, double cells_per_
   });
   if (!done) return done.error();
   return highest_m;
+}
+
+/// Root mean square of the differences over the span of the expected values; places that should be dry do not count.
+template <std::size_t N>
+double relativeError(const std::array<double, N>& measured, const std::array<double, N>& expected) {
+  double sum = 0.0, low = 0.0, high = 0.0;
+  int count = 0;
+  for (std::size_t k = 0; k < N; ++k) {
+    if (std::isnan(expected[k])) continue;
+    sum += std::pow(measured[k] - expected[k], 2);
+    low = std::min(low, expected[k]);
+    high = std::max(high, expected[k]);
+    ++count;
+  }
+  return std::sqrt(sum / count) / (high - low);
+}
+
+/// Errors of the surface at the times of the canonical profiles, then of the records of the canonical gauges.
+core::Result<std::vector<double>> canonicalErrors(gpu::Context& ctx, double cells_per_m) {
+  using namespace canonical;
+  SolitaryWave wave{0.019, 0.0};
+  BeachChannel channel = beachChannel(cells_per_m, 2.2 * wave.halfLength_m(), 0.2, 0.38);
+  wave.crest_x_m = channel.toe_x_m - wave.halfLength_m();
+  auto water = sim::WaterSim::create(ctx, channel.scene);
+  if (!water) return water.error();
+  startWave(**water, channel, wave);
+  const double shore_x_m = channel.toe_x_m + kBeachCotangent;
+  const double unit_s = 1.0 / std::sqrt(kGravity_mps2);
+  const auto levelAt = [&](const std::vector<double>& row, double place) {
+    const double at = (shore_x_m - place + channel.scene.wave->side_m / 2) * cells_per_m - 0.5;
+    const auto i = static_cast<std::size_t>(at);
+    return std::lerp(row[i], row[i + 1], at - static_cast<double>(i));
+  };
+  std::vector<double> out;
+  std::array<std::array<double, kGauges[0].level.size()>, kGauges.size()> record{};
+  const auto profile = [&](double time) {
+    const auto due = std::ranges::find(kProfiles, time, &Profile::time);
+    if (due == kProfiles.end()) return;
+    const std::vector<double> row = rowOf(**water);
+    std::array<double, kPlaces.size()> level{};
+    std::ranges::transform(kPlaces, level.begin(), [&](double place) { return levelAt(row, place); });
+    out.push_back(relativeError(level, due->level));
+  };
+  for (std::size_t sample = 0; sample < record[0].size(); ++sample) {
+    const double time = kFirstTime + kInterval * static_cast<double>(sample);
+    if (auto done = runTo(**water, time * unit_s); !done) return done.error();
+    profile(time);
+    const std::vector<double> row = rowOf(**water);
+    for (std::size_t g = 0; g < kGauges.size(); ++g) record[g][sample] = levelAt(row, kGauges[g].place);
+  }
+  for (std::size_t g = 0; g < kGauges.size(); ++g) out.push_back(relativeError(record[g], kGauges[g].level));
+  return out;
 }
 
 struct LaboratoryRun {
@@ -126,6 +188,26 @@ Outcome solitaryRunUp(gpu::Context& ctx, bool quick) {
   return CaseResult{std::move(rows), {}};
 }
 
+Outcome runUpProfiles(gpu::Context& ctx, bool quick) {
+  std::vector<Row> rows;
+  for (const double cells_per_m : {10.0, 20.0, 40.0}) {
+    if (quick && cells_per_m != 10.0) continue;
+    const auto errors = canonicalErrors(ctx, cells_per_m);
+    if (!errors) return errors.error();
+    const std::string name = fmt::format("slope 1:19.85, H/d = 0.019, {:.0f} cells a depth: ", cells_per_m);
+    const auto row = [&](std::string what, double error) {
+      rows.push_back({name + std::move(what), "%", 100 * error, 5.0, Tolerance::kAtMost, 0.0,
+                      "closed form (NTHMP benchmark 1), root mean square over the span"});
+    };
+    for (std::size_t k = 0; k < canonical::kProfiles.size(); ++k)
+      row(fmt::format("profile at t = {:.0f} sqrt(d/g)", canonical::kProfiles[k].time), (*errors)[k]);
+    for (std::size_t g = 0; g < canonical::kGauges.size(); ++g)
+      row(fmt::format("gauge at {} depths from the shore", canonical::kGauges[g].place),
+          (*errors)[canonical::kProfiles.size() + g]);
+  }
+  return CaseResult{std::move(rows), {}};
+}
+
 Outcome solitaryWave(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   for (const double height_m : {0.1, 0.3}) {
@@ -144,10 +226,10 @@ Outcome solitaryWave(gpu::Context& ctx, bool quick) {
       const auto eta = [&](double x) { return height_m / std::pow(std::cosh(gamma_pm * (x - from_m)), 2); };
       auto water = sim::WaterSim::create(ctx, scene);
       if (!water) return water.error();
-      const double ahead_m = 0.5 * speed_mps * (*water)->derived().wave->dt_s;  // flow is half a step ahead
+      const double half_step_m = 0.5 * speed_mps * (*water)->derived().wave->dt_s;
       setShallowState(
           **water, [&](double x, double) { return eta(x); },
-          [&](double x, double) { return speed_mps * eta(x - ahead_m) / (1.0 + eta(x - ahead_m)); });
+          [&](double x, double) { return speed_mps * eta(x + half_step_m) / (1.0 + eta(x + half_step_m)); });
       if (auto done = runTo(**water, kWay_m / speed_mps); !done) return done.error();
       const std::vector<double> eta_m = (*water)->copyState().elevation_m;
       const auto first = eta_m.begin() + cells;
