@@ -37,18 +37,30 @@ layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args
 /// and where slopes are dispersed this many times its static depth. Higher piles of water fall as slowly as if they were lower.
 #define STABLE_HEIGHT 0.4
 #define STABLE_DISPERSED 1.6
-/// In a step, velocities are divided by 1 plus this number where columns alternate between high and empty.
+/// In a step, velocities are divided by 1 plus this number where columns alternate between high and empty, and differ by
+/// more than the second share of the height that a step can bear; not at all below the first. Without these shares thin
+/// water at a shore and bores lost momentum: 0.13 % in 3,000 steps, 6e-5 with them (`study --case momentum`).
 #define ALTERNATING_LOSS 4.0
+#define ALTERNATING_FROM 0.1
+#define ALTERNATING_FULL 0.3
+
+/// Height of water that a step can bear. [m]
+float stableHeight_m() {
+  const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
+  return STABLE_HEIGHT * max_mps * max_mps / max(sim.gravity_mps2, 1e-6);
+}
 
 /// How much four columns in a row alternate, 0 to 1: 0 unless their levels go up and down from one to the next; then the
-/// square of the middle difference over the water there, less where an outer difference is under a quarter of it. Such a
-/// pattern is not a wave: a step would throw water from each cell into its neighbours, and the next one back.
+/// square of the middle difference over the water there, less where an outer difference is under a quarter of it or where
+/// the difference is one that a step bears well. Such a pattern is not a wave: a step would throw water from each cell into
+/// its neighbours, and the next one back.
 float alternates(Column behind, Column here, Column there, Column beyond) {
   const vec3 rises = vec3(here.eta - behind.eta, there.eta - here.eta, beyond.eta - there.eta) * ELEVATION_UNIT_M;
   const bool turns = rises.x * rises.y < 0.0 && rises.y * rises.z < 0.0;
   const vec3 size_m = abs(rises);
   const float share = min(size_m.y / max(max(here.water_m, there.water_m), 1e-6), 1.0);
-  return turns ? share * share * min(4.0 * min(size_m.x, size_m.z) / size_m.y, 1.0) : 0.0;
+  const float borne = smoothstep(ALTERNATING_FROM, ALTERNATING_FULL, size_m.y / stableHeight_m());
+  return turns ? borne * share * share * min(4.0 * min(size_m.x, size_m.z) / size_m.y, 1.0) : 0.0;
 }
 
 float vanLeer(float a, float b) { return a * b > 0.0 ? 2.0 * a * b / (a + b) : 0.0; }
@@ -74,12 +86,6 @@ float advected(Face f, Column here, Column there) {
   const vec2 closing = max(vec2(differs.x, -differs.y), vec2(0.0));
   const vec2 pressed = min(closing * per_m * vec2(here.water_m, there.water_m) / mean_m, vec2(MAX_PRESSED)) * closing;
   return change / max(dot(inflow, vec4(1.0)), 1.0) + pressed.x - pressed.y;
-}
-
-/// Height of water that a step can bear. [m]
-float stableHeight_m() {
-  const float max_mps = sim.wave_cell_m / sim.wave_dt_s;
-  return STABLE_HEIGHT * max_mps * max_mps / max(sim.gravity_mps2, 1e-6);
 }
 
 #if DISPERSE
