@@ -7,8 +7,8 @@
 
 namespace spindrift::study {
 
-/// The central-upwind scheme of Kurganov & Petrova (2007): second order, positive depth, level water stays level.
-/// Without friction, between walls. Places count from 0 at the first wall.
+/// The central-upwind scheme of Kurganov & Petrova (2007): second order, positive depth; level water stays level if its
+/// shore is at the edge of a cell. Without friction, between walls. Places count from 0 at the first wall.
 class ShallowReference {
  public:
   struct Water {
