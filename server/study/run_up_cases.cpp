@@ -154,15 +154,16 @@ struct LaboratoryRun {
   double height;  ///< H/d
   double run_up;  ///< R/d
   bool breaks;
+  const char* peer = "";
 };
 
 /// From Synolakis (1987), plane beach 1:19.85: means of the runs with nearly the same H/d.
-constexpr std::array<LaboratoryRun, 7> kLaboratory = {{{0.0185, 0.0758, false},
+constexpr std::array<LaboratoryRun, 7> kLaboratory = {{{0.0185, 0.0758, false, "; Celeris +0.11 %"},
                                                        {0.0275, 0.1155, false},
                                                        {0.039, 0.157, false},
                                                        {0.0765, 0.2545, true},
                                                        {0.16, 0.384, true},
-                                                       {0.28, 0.511, true},
+                                                       {0.28, 0.511, true, "; Celeris -0.04 % at 0.3"},
                                                        {0.39, 0.631, true}}};
 /// One roughness for all, as for the concrete of the island. The laboratory's water disperses: without dispersion waves
 /// of more than 0.2 of the depth break too early and reach 10 % less.

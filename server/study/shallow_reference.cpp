@@ -29,7 +29,6 @@ double halfRise(double before, double here, double after) {
 
 struct Side {
   double depth_m;
-  double level_m;
   double velocity_mps;
 };
 
@@ -43,7 +42,7 @@ double velocityOf(double depth_m, double flow_m2ps) {
 
 Side sideOf(double level_m, double flow_m2ps, double edge_m) {
   const double depth_m = std::max(level_m - edge_m, 0.0);
-  return {depth_m, level_m, velocityOf(depth_m, flow_m2ps)};
+  return {depth_m, velocityOf(depth_m, flow_m2ps)};
 }
 
 }  // namespace
@@ -67,7 +66,6 @@ double ShallowReference::findRates(const std::vector<double>& level_m, const std
   const std::size_t n = level_m.size();
   double fastest_mps = 0.0;
   double level_flux = 0.0, flow_flux = 0.0;  // of the edge before the cell
-  double before_m = 0.0;                     // depth on this cell's side of that edge
   // Water beyond a wall is the mirror image.
   const auto edgesOf = [&](std::size_t i, Side& left, Side& right) {
     const double level_before = level_m[i > 0 ? i - 1 : 0], level_after = level_m[i + 1 < n ? i + 1 : n - 1];
@@ -103,18 +101,18 @@ double ShallowReference::findRates(const std::vector<double>& level_m, const std
     return std::pair{(up * q_a - down * q_b) / (up - down) + spread * (level_b - level_a),
                      (up * f_a - down * f_b) / (up - down) + spread * (q_b - q_a)};
   };
-  const Side mirrored{left.depth_m, left.level_m, -left.velocity_mps};
+  const Side mirrored{left.depth_m, -left.velocity_mps};
   std::tie(level_flux, flow_flux) = fluxOf(mirrored, left, edge_m_[0]);
   for (std::size_t i = 0; i < n; ++i) {
-    before_m = left.depth_m;
+    const double depth_before_m = left.depth_m;
     if (i + 1 < n) {
       edgesOf(i + 1, next_left, next_right);
     } else {
-      next_left = {right.depth_m, right.level_m, -right.velocity_mps};
+      next_left = {right.depth_m, -right.velocity_mps};
     }
     const auto [level_next, flow_next] = fluxOf(right, next_left, edge_m_[i + 1]);
     // The pressure of the ground: exact for level water.
-    const double pressed = 0.5 * kGravity_mps2 * (right.depth_m + before_m) * (edge_m_[i + 1] - edge_m_[i]);
+    const double pressed = 0.5 * kGravity_mps2 * (right.depth_m + depth_before_m) * (edge_m_[i + 1] - edge_m_[i]);
     level_rate_mps_[i] = (level_flux - level_next) / cell_m_;
     flow_rate_m2ps2_[i] = (flow_flux - flow_next - pressed) / cell_m_;
     level_flux = level_next;
