@@ -41,8 +41,23 @@ Outcome greensLaw(gpu::Context& ctx, bool quick);
 // island_case.cpp
 Outcome conicalIsland(gpu::Context& ctx, bool quick);
 
+// bowl_cases.cpp
+Outcome thackersBowl(gpu::Context& ctx, bool quick);
+Outcome seiche(gpu::Context& ctx, bool quick);
+
+// bore_cases.cpp
+Outcome boreAtAWall(gpu::Context& ctx, bool quick);
+Outcome overtopping(gpu::Context& ctx, bool quick);
+
+// breaking_front_case.cpp
+Outcome breakingFront(gpu::Context& ctx, bool quick);
+
+// momentum_cases.cpp
+Outcome momentumAndEnergy(gpu::Context& ctx, bool quick);
+
 // run_up_cases.cpp
 Outcome solitaryRunUp(gpu::Context& ctx, bool quick);
+Outcome runUpProfiles(gpu::Context& ctx, bool quick);
 Outcome solitaryWave(gpu::Context& ctx, bool quick);
 
 // shore_cases.cpp

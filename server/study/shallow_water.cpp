@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include <spindrift/sim_setup/basin.h>
 
@@ -24,6 +26,54 @@ core::Scene shallowScene(std::uint32_t resolution_count, double cell_m, double d
   scene.allow_unstable = true;  // the tick is the step, whatever the rule would choose
   scene.tick_rate_hz = std::sqrt(scene.gravity_mps2 * depth_m) / (courant * cell_m);
   return scene;
+}
+
+core::Scene shallowChannel(std::uint32_t cells, double cell_m, double depth_m, double courant) {
+  constexpr int kAcross = 4;
+  core::Scene scene = shallowScene(cells, cell_m, depth_m, courant);
+  scene.wave->width_m = kAcross * cell_m;
+  return scene;
+}
+
+void makePeriodic(core::Scene& scene) {
+  scene.wave->setBoundaries(WaveBoundary::kPeriodic);
+}
+
+int fitTicks(core::Scene& scene, double duration_s, double longest_tick_s) {
+  const double count = std::ceil(duration_s / longest_tick_s);
+  scene.tick_rate_hz = count / duration_s;
+  return static_cast<int>(count);
+}
+
+void setBed(core::Scene& scene, const Field2& depth_m) {
+  const core::WaveCells water = scene.wave->cells();
+  core::DepthGrid grid;
+  grid.columns_count = 2 * water.count.x + 1;
+  grid.rows_count = 2 * water.count.z + 1;
+  std::vector<float> depths;
+  depths.reserve(std::size_t{grid.columns_count} * grid.rows_count);
+  for (std::uint32_t r = 0; r < grid.rows_count; ++r) {
+    const double z_m = 0.5 * r * water.cell_m - water.width_m / 2;
+    for (std::uint32_t c = 0; c < grid.columns_count; ++c) {
+      depths.push_back(static_cast<float>(depth_m(0.5 * c * water.cell_m - water.length_m / 2, z_m)));
+    }
+  }
+  grid.depths_m = std::make_shared<const std::vector<float>>(std::move(depths));
+  scene.bed.emplace().grid = std::move(grid);
+}
+
+std::vector<double> rowOf(sim::WaterSim& water) {
+  const std::size_t nx = water.derived().wave->count_x;
+  const std::vector<double> eta_m = water.copyState().elevation_m;
+  return {eta_m.begin() + static_cast<std::ptrdiff_t>(nx), eta_m.begin() + static_cast<std::ptrdiff_t>(2 * nx)};
+}
+
+std::vector<double> placesAlong(const sim::WaterSim& water) {
+  const sim::WaveLayout& layout = *water.derived().wave;
+  std::vector<double> out(layout.count_x);
+  for (std::size_t x = 0; x < out.size(); ++x)
+    out[x] = (static_cast<double>(x) + 0.5) * layout.cell_m - layout.length_m / 2;
+  return out;
 }
 
 std::vector<double> groundDepths(const core::Scene& scene, const sim::WaveLayout& layout) {
@@ -62,8 +112,10 @@ void setShallowState(sim::WaterSim& water, const Field2& eta_m, const Field2& u_
       state.flow_m2ps[4 * i + axis] = static_cast<float>(u);
       state.flow_m2ps[4 * i + 2 + axis] = static_cast<float>(u * carried_m);
     };
-    set(0, x + 1 < nx, i + 1, u_mps ? u_mps(x_m + cell_m / 2, z_m) : 0.0);
-    set(1, z + 1 < nz, i + nx, w_mps ? w_mps(x_m, z_m + cell_m / 2) : 0.0);
+    const auto isOpen = [](bool is_inside, WaveBoundary side) { return is_inside || side == WaveBoundary::kPeriodic; };
+    const core::WaveScene& w = *water.scene().wave;
+    set(0, isOpen(x + 1 < nx, w.boundary_plus_x), (x + 1) % nx + nx * z, u_mps ? u_mps(x_m + cell_m / 2, z_m) : 0.0);
+    set(1, isOpen(z + 1 < nz, w.boundary_plus_z), x + nx * ((z + 1) % nz), w_mps ? w_mps(x_m, z_m + cell_m / 2) : 0.0);
   }
   water.setState(state);
 }

@@ -15,6 +15,8 @@
 #include "exact_linear_waves.h"
 #include "fourier.h"
 #include "mild_slope.h"
+#include "shallow_reference.h"
+#include "shallow_water.h"
 #include "wave_packet.h"
 
 namespace spindrift::study {
@@ -273,6 +275,44 @@ TEST(HullHead, PressesWithTheVolumeThatTheHullDisplaces) {
   EXPECT_NEAR(volume(), 0.25 * 2.4 * 0.9 * 0.2, 0.005 * 2.4 * 0.9 * 0.2) << "a new boat presses gradually";
   hull.aloft = 1.0;
   EXPECT_EQ(volume(), 0.0);
+}
+
+TEST(ShallowReference, BreaksADamAsStokerSays) {
+  const DamBreak exact{9.81, 1.0, 0.1};
+  double before_m = 0.0;
+  for (const std::size_t cells : {std::size_t{200}, std::size_t{400}}) {
+    ShallowReference water(
+        20.0, cells, [](double) { return -1.0; },
+        [](double x_m) {
+          return ShallowReference::Water{x_m < 10 ? 0.0 : -0.9, 0.0};
+        });
+    water.advance(1.0);
+    EXPECT_NEAR(water.time_s(), 1.0, 1e-9);
+    double off_m = 0.0;
+    for (int k = 0; k < 200; ++k) {
+      const double x_m = 0.05 + 0.1 * k;
+      off_m += std::abs(water.levelAt(x_m) + 1.0 - exact.at(x_m - 10, 1.0).depth_m) / 200;
+    }
+    EXPECT_LT(off_m, 0.005);
+    if (before_m > 0) {
+      EXPECT_LT(off_m, 0.65 * before_m) << "first order at the bore";
+    }
+    before_m = off_m;
+  }
+}
+
+TEST(ShallowReference, KeepsLevelWaterBesideLandAndItsVolume) {
+  const auto ground = [](double x_m) { return 0.25 * x_m - 1.0; };  // dry beyond 4 m, an edge of cells
+  ShallowReference still(5.0, 100, ground, [](double) { return ShallowReference::Water{0.0, 0.0}; });
+  const double volume_m2 = still.waterBeyond(0.0);
+  EXPECT_NEAR(volume_m2, 2.0, 1e-9);
+  still.advance(2.0);
+  EXPECT_NEAR(still.levelAt(1.0), 0.0, 1e-9);
+  ShallowReference hump(5.0, 100, ground, [](double x_m) { return ShallowReference::Water{x_m < 1 ? 0.2 : 0.0, 0.0}; });
+  const double start_m2 = hump.waterBeyond(0.0);
+  hump.advance(2.0);
+  EXPECT_NEAR(hump.waterBeyond(0.0), start_m2, 1e-3 * start_m2);
+  EXPECT_GT(std::abs(hump.levelAt(1.0)), 1e-3) << "moves";
 }
 
 }  // namespace
