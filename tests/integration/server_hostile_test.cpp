@@ -54,7 +54,7 @@ class Hostile : public WaveServerTest {
 TEST_F(Hostile, WrongMajorVersionIsRefusedWithBothVersions) {
   ScriptedClient one(server().port());
   one.hello({.major = 2});
-  expectRefusal(one, "client speaks wire version 2.0, this server 1.1");
+  expectRefusal(one, "client speaks wire version 2.1, this server 1.1");
 }
 
 TEST_F(Hostile, SubscribeBeforeHelloIsRefused) {

@@ -28,6 +28,7 @@ core::SharedBytes bytesOf(const v1::ClientMessage& message) {
 core::SharedBytes helloOf(const std::string& token) {
   v1::ClientMessage message;
   message.mutable_hello()->mutable_version()->set_major(1);
+  message.mutable_hello()->mutable_version()->set_minor(1);
   message.mutable_hello()->set_token(token);
   return bytesOf(message);
 }
