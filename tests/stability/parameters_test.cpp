@@ -17,6 +17,7 @@
 #include <shared/fixed_point.h>
 
 #include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_rules.h>
 #include <spindrift/sim_setup/basin.h>
 
 #include "stability_scene.h"
@@ -82,12 +83,16 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
     water.reset();
     const std::uint64_t recovered = water.recoveredCount();
     const double depth_m = scene.wave ? scene.wave->depth_m : scene.particles->headroom_m;
-    ASSERT_TRUE(water.start(core::Splash{0.3, -0.2, 1.6, std::min(0.5, 0.9 * depth_m), 0.22}));
+    // A narrow channel takes a smaller one.
+    const double across_m = scene.wave ? std::min(scene.wave->cells().length_m, scene.wave->cells().width_m) : 8.0;
+    const double radius_m = std::min(1.6, 0.2 * across_m);
+    ASSERT_TRUE(water.start(core::Splash{0.3, -0.2, radius_m, std::min({0.5, 0.9 * depth_m, radius_m}), 0.22}));
     if (scene.wave) {
       // A sharp splash at a corner excites instabilities at the sides at once.
-      const double place_m = 0.5 * scene.wave->side_m - 6 * water.derived().wave->cell_m;
-      const double radius_m = 1.5 * water.derived().wave->cell_m;
-      ASSERT_TRUE(water.start(core::Splash{place_m, place_m, radius_m, std::min(0.1, 0.5 * depth_m), 0.05}));
+      const core::WaveCells cells = scene.wave->cells();
+      const double cell_m = water.derived().wave->cell_m;
+      ASSERT_TRUE(water.start(core::Splash{0.5 * cells.length_m - 6 * cell_m, 0.5 * cells.width_m - 6 * cell_m,
+                                           1.5 * cell_m, std::min(0.1, 0.5 * depth_m), 0.05}));
     }
     // The fastest sound speed needs hundreds of substeps per tick.
     const int most = std::max(ticks / static_cast<int>(water.derived().substeps_count), 2);
@@ -182,8 +187,14 @@ v1::Scene withSides(v1::Scene scene, v1::WaveBoundary side) {
   wave.set_boundary_plus_x(side);
   wave.set_boundary_minus_z(side);
   wave.set_boundary_plus_z(side);
-  wave.set_sponge_width_m(std::min(wave.sponge_width_m(), 0.5 * wave.side_m()));
-  if (side == v1::WAVE_BOUNDARY_PERIODIC) scene.clear_beaches();  // beaches need sides that are not periodic
+  const core::WaveCells cells = scene::waveCellsOf(wave);
+  wave.set_sponge_width_m(std::min(wave.sponge_width_m(), 0.5 * std::min(cells.length_m, cells.width_m)));
+  if (side != v1::WAVE_BOUNDARY_REFLECT) scene.clear_wave_makers();  // they stand at closed sides
+  if (side == v1::WAVE_BOUNDARY_PERIODIC) {
+    scene.clear_beaches();  // beaches need sides that are not periodic
+    // Dispersion halves the cells between periodic sides four times.
+    if (cells.count.x % 16 != 0 || cells.count.z % 16 != 0) wave.clear_dispersion();
+  }
   return scene;
 }
 
