@@ -9,8 +9,8 @@
 
 namespace spindrift::sim {
 
-/// Of one gauge at the end of one tick; shaders/diagnostics/gauges.comp. On dry ground without flow, at the ground's elevation
-/// with BULK_NONLINEAR and at 0 with BULK_LINEAR.
+/// Of one gauge at the end of one tick; shaders/diagnostics/gauges.comp. On dry ground without flow, at the ground's
+/// elevation with BULK_NONLINEAR and at 0 with BULK_LINEAR.
 struct GaugeReading {
   float elevation_m = 0.0F;     ///< over the rest level
   float velocity_x_mps = 0.0F;  ///< of the flow over the depth
