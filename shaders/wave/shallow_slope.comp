@@ -19,7 +19,9 @@ layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
 layout(std430, binding = SURFACE_RISE) restrict writeonly buffer SurfaceRise { vec2 surface_rise[]; };
 
-#define MAX_DYNAMIC_HEAD 0.1
+/// The share of the water that its dynamic head can be. A solitary wave of 0.3 of the depth has 0.01. With 0.1, steep waves shorter
+/// than the depth drove each other after breakers on a slope, at 20 cells a depth.
+#define MAX_DYNAMIC_HEAD 0.02
 
 /// head_q of a cell, for velocities through its faces toward + and - x, + and - z. [units]
 float dynamicHead(Column water, vec4 u_mps) {

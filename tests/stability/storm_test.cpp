@@ -138,6 +138,27 @@ TEST_F(Storm, WeatherAndBoatsAloneStayLow) {
   EXPECT_GT(extremes.highest_m, 0.1) << "no weather";
 }
 
+/// Backwash from breakers once began a disturbance that ran over the deep water and kept itself up: the dynamic head of
+/// short waves drove them.
+TEST_F(Storm, BreakersOnASlopeLeaveTheWaterBeforeItCalm) {
+  v1::Scene scene = shipped("flume");
+  scene.mutable_wave()->set_resolution_count(800);
+  scene.mutable_wave()->set_width_m(0.25);
+  v1::WaveMaker& maker = *scene.mutable_wave_makers(0);
+  maker.mutable_regular()->set_height_m(0.14);
+  maker.set_duration_s(10);
+  sim::WaterSim& water = make(scene::toCore(scene));
+  const auto energyAt_j = [&](double time_s) {
+    while (water.time_s() < time_s) water.step();
+    return water.health().wave_energy_j;
+  };
+  const double breaking_j = energyAt_j(14.0);
+  const double calm_j = energyAt_j(26.0);
+  std::printf("%.1f J while the last waves break, %.2f J 12 s later\n", breaking_j, calm_j);
+  EXPECT_LE(calm_j, 0.1 * breaking_j);
+  EXPECT_EQ(water.recoveredCount(), 0u);
+}
+
 std::vector<std::string> scenesWithWaves() {
   std::vector<std::string> out;
   for (const auto& file : std::filesystem::directory_iterator(Endurance::sceneFolder())) {
