@@ -8,7 +8,7 @@
 #include <spindrift/core/text.h>
 
 #include "gray_png.h"
-#include "scene_folder.h"
+#include "scene_files.h"
 
 namespace spindrift::scene {
 namespace {
@@ -65,11 +65,9 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
 void readImage(v1::DepthGrid& grid, const std::optional<fs::path>& folder, std::vector<FieldIssue>& issues) {
   constexpr const char* kPath = "bed.grid.png";
   const std::string shown = "\"" + core::cleanText(grid.png(), kPathEchoMaxBytes) + "\" ";
-  if (!folder)
-    return addRange(issues, kPath, shown + "cannot be read, because this scene is no file; give rows instead");
-  if (const std::string why = leavesFolder(*folder, grid.png()); !why.empty())
-    return addRange(issues, kPath, shown + why + "; put the image into the folder of the scene file");
-  const auto image = readGrayPng(*folder / grid.png());
+  const auto file = fileInFolder(folder, grid.png(), "rows");
+  if (!file) return addRange(issues, kPath, shown + file.error().message);
+  const auto image = readGrayPng(*file);
   if (!image) return addRange(issues, kPath, shown + image.error().message);
   if (!checkSide(static_cast<int>(image->width_count), kPath, "pixels along x", issues) ||
       !checkSide(static_cast<int>(image->height_count), kPath, "pixels along z", issues))

@@ -1,16 +1,15 @@
 #include "gray_png.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <csetjmp>
 #include <cstdio>
-#include <cstring>
-#include <memory>
 #include <string>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <png.h>
+
+#include "scene_files.h"
 
 namespace spindrift::scene {
 namespace {
@@ -84,20 +83,15 @@ std::string kindOf(const Reader& reader) {
 
 core::Result<GrayImage> readGrayPng(const std::filesystem::path& file) {
   const auto invalid = [](std::string message) { return Error{ErrorCode::kInvalidInput, std::move(message)}; };
+  const auto stream = openFile(file, "a PNG");
+  if (!stream) return stream.error();
   std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return Error{ErrorCode::kUnavailable, "there is no such file; check the name"};
-  if (!std::filesystem::is_regular_file(status)) return invalid("is no regular file; name a PNG");
   if (const auto bytes = std::filesystem::file_size(file, error); error || bytes > kFileMaxBytes)
     return invalid(fmt::format("is bigger than {} bytes; choose an image of at most {} x {} pixels", kFileMaxBytes,
                                kImageSideMaxCount, kImageSideMaxCount));
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!stream)
-    return Error{ErrorCode::kUnavailable,
-                 std::string("cannot be opened: ") + std::strerror(errno) + "; check its permissions"};
 
   Reader reader;
-  reader.stream = stream.get();
+  reader.stream = stream->get();
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, &fail, &ignore);
   reader.info = reader.png ? png_create_info_struct(reader.png) : nullptr;
   if (!reader.info) return Error{ErrorCode::kInternal, "libpng has no memory"};

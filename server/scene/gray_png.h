@@ -18,8 +18,8 @@ struct GrayImage {
   std::vector<std::uint16_t> values;  ///< width * height, the upper row first
 };
 
-/// Reads the file. Errors (kInvalidInput or kUnavailable) give the reason without the file's name: missing, no regular
-/// file, too big, no PNG, damaged, of another kind than 16-bit grayscale without transparency.
+/// Reads the file. Errors: those of openFile(); kInvalidInput with the reason, without the file's name: too big, no
+/// PNG, damaged, of another kind than 16-bit grayscale without transparency.
 core::Result<GrayImage> readGrayPng(const std::filesystem::path& file);
 
 }  // namespace spindrift::scene

@@ -1,9 +1,5 @@
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -18,6 +14,7 @@
 #include <spindrift/scene/scene_rules.h>
 
 #include "depth_grid.h"
+#include "scene_files.h"
 #include "wave_makers.h"
 
 namespace spindrift::scene {
@@ -205,10 +202,6 @@ std::string report(const std::string& file_label, std::vector<LocatedError> erro
   return text;
 }
 
-core::Error unavailable(const std::string& file, const std::string& why) {
-  return {core::ErrorCode::kUnavailable, file + ": " + why};
-}
-
 }  // namespace
 
 core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
@@ -256,27 +249,9 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
 
 core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file, std::optional<v1::Fidelity> fidelity) {
   const std::string label = file.string();
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return unavailable(label, "no such scene file; check the path");
-  if (std::filesystem::is_directory(status)) return unavailable(label, "is a directory; name a scene file in it");
-  if (!std::filesystem::is_regular_file(status)) return unavailable(label, "is no regular file; name a scene file");
-
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(label.c_str(), "rb"), &std::fclose);
-  if (!stream)
-    return unavailable(label, std::string("cannot be opened: ") + std::strerror(errno) + "; check its permissions");
-  // Read one byte more than allowed to detect a file that is too big, whatever its reported size.
-  std::string text(kSceneFileMaxBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
-  if (std::ferror(stream.get()) != 0) {
-    return unavailable(label, std::string("cannot be read: ") + std::strerror(errno) + "; check the file");
-  }
-  if (text.size() > kSceneFileMaxBytes) {
-    return core::Error{
-        core::ErrorCode::kInvalidInput,
-        label + ": is bigger than " + std::to_string(kSceneFileMaxBytes) + " bytes; a scene is a small text"};
-  }
-  return parseSceneText(text, label, fidelity, file.parent_path());
+  const auto text = readText(file, kSceneFileMaxBytes, "a scene file", "a scene is a small text");
+  if (!text) return core::Error{text.error().code, label + ": " + text.error().message};
+  return parseSceneText(*text, label, fidelity, file.parent_path());
 }
 
 }  // namespace spindrift::scene

@@ -1,9 +1,8 @@
 #include "wave_makers.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -11,7 +10,7 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
-#include "scene_folder.h"
+#include "scene_files.h"
 
 namespace spindrift::scene {
 namespace {
@@ -122,25 +121,11 @@ bool readRow(std::string_view line, double& time_s, double& elevation_m) {
 void readFile(v1::ElevationSeries& series, const std::optional<fs::path>& folder, const std::string& path,
               std::vector<FieldIssue>& issues) {
   const std::string shown = "\"" + core::cleanText(series.file(), kPathEchoMaxBytes) + "\" ";
-  if (!folder)
-    return addRange(issues, path,
-                    shown + "cannot be read, because this scene is no file; give time_s and elevation_m instead");
-  if (const std::string why = leavesFolder(*folder, series.file()); !why.empty())
-    return addRange(issues, path, shown + why + "; put the file into the folder of the scene file");
-  const fs::path file = *folder / series.file();
-  std::error_code error;
-  if (!fs::is_regular_file(file, error))
-    return addRange(issues, path, shown + "is no file in the folder of the scene file");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!stream) return addRange(issues, path, shown + "cannot be opened; check its permissions");
-  std::string text(kSeriesFileMaxBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
-  if (std::ferror(stream.get()) != 0) return addRange(issues, path, shown + "cannot be read; check the file");
-  if (text.size() > kSeriesFileMaxBytes) {
-    return addRange(issues, path,
-                    shown + "is bigger than " + std::to_string(kSeriesFileMaxBytes) + " bytes; give fewer rows");
-  }
-  std::string_view rest = text;
+  const auto file = fileInFolder(folder, series.file(), "time_s and elevation_m");
+  if (!file) return addRange(issues, path, shown + file.error().message);
+  const auto text = readText(*file, kSeriesFileMaxBytes, "a text file", "give fewer rows");
+  if (!text) return addRange(issues, path, shown + text.error().message);
+  std::string_view rest = *text;
   for (int number = 1; !rest.empty(); ++number) {
     const std::string_view whole = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(rest.size(), whole.size() + 1));

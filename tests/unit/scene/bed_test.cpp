@@ -181,7 +181,7 @@ TEST_F(BedImage, OfAnotherKindIsRefusedWithItsKind) {
 
 TEST_F(BedImage, ThatIsMissingOrDamagedIsNamedWithTheReason) {
   EXPECT_THAT(errorOf(load("none.png")), AllOf(HasSubstr("bed.grid.png: \"none.png\""), HasSubstr("no such file")));
-  EXPECT_THAT(errorOf(load(".")), HasSubstr("is no regular file"));
+  EXPECT_THAT(errorOf(load(".")), HasSubstr("is a directory; name a PNG in it"));
   std::ofstream(folder_ / "scenes" / "text.png") << "this is no image";
   EXPECT_THAT(errorOf(load("text.png")), HasSubstr("cannot be read as PNG: Not a PNG file"));
   writeImage("scenes/bed.png", 64, 64, std::vector<std::uint16_t>(64 * 64, 700));

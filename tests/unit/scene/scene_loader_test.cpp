@@ -282,7 +282,7 @@ TEST_F(SceneFile, ThatIsMissingIsUnavailable) {
   const auto scene = loadSceneFile(folder_ / "none.textproto");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().code, core::ErrorCode::kUnavailable);
-  EXPECT_THAT(scene.error().message, AllOf(HasSubstr("none.textproto"), HasSubstr("no such scene file")));
+  EXPECT_THAT(scene.error().message, AllOf(HasSubstr("none.textproto"), HasSubstr("there is no such file")));
 }
 
 TEST_F(SceneFile, ThatIsADirectoryIsUnavailable) {

@@ -143,8 +143,9 @@ TEST_F(SeriesFile, GivesARowPerTime) {
 
 TEST_F(SeriesFile, ThatIsMissingDamagedOrTooLongIsNamedWithTheReason) {
   EXPECT_THAT(errorOf(load("none.txt")),
-              AllOf(HasSubstr("flume.textproto:2:"), HasSubstr("wave_makers[0].series.file: \"none.txt\" is no file")));
-  EXPECT_THAT(errorOf(load(".")), HasSubstr("is no file in the folder"));
+              AllOf(HasSubstr("flume.textproto:2:"),
+                    HasSubstr("wave_makers[0].series.file: \"none.txt\" there is no such file")));
+  EXPECT_THAT(errorOf(load(".")), HasSubstr("is a directory; name a text file in it"));
   write("scenes/words.txt", "0 0\n1 high\n");
   EXPECT_THAT(errorOf(load("words.txt")), HasSubstr("line 2: \"1 high\" is no row"));
   write("scenes/three.txt", "0 0 0\n");
