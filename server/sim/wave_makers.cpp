@@ -9,6 +9,7 @@
 #include "create_all.h"
 
 namespace spindrift::sim {
+
 core::Result<std::unique_ptr<WaveMakers>> WaveMakers::create(gpu::Context& ctx, const core::Scene& scene,
                                                              const WaveLayout& layout, const gpu::Defines& defines) {
   auto out = std::unique_ptr<WaveMakers>(new WaveMakers(ctx));
@@ -27,7 +28,7 @@ core::Result<std::unique_ptr<WaveMakers>> WaveMakers::create(gpu::Context& ctx, 
 }
 
 void WaveMakers::update(const core::Scene& scene, const WaveLayout& layout) {
-  const Inputs inputs{.wave = *scene.wave, .gravity_mps2 = scene.gravity_mps2, .dt_s = layout.dt_s};
+  const Inputs inputs{.depth_m = scene.wave->depth_m, .gravity_mps2 = scene.gravity_mps2, .dt_s = layout.dt_s};
   if (inputs == inputs_) return;
   inputs_ = inputs;
   for (std::size_t k = 0; k < makers_.size(); ++k) {

@@ -37,8 +37,7 @@ class WaveMakers {
   };
   /// What the waves were computed from.
   struct Inputs {
-    core::WaveScene wave;
-    double gravity_mps2, dt_s;
+    double depth_m, gravity_mps2, dt_s;
     bool operator==(const Inputs&) const = default;
   };
 

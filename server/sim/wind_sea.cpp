@@ -52,10 +52,10 @@ std::vector<std::array<std::uint32_t, 4>> layerBlocks(const core::WaveScene& wav
   for (std::uint32_t z = 0; z < layout.count_z; z += SEA_BLOCK) {
     for (std::uint32_t x = 0; x < layout.count_x; x += SEA_BLOCK) {
       std::uint32_t sides = 0;
-      if (depth_in(wave.boundary_minus_x, x)) sides |= kMinusXBit;
-      if (depth_in(wave.boundary_plus_x, behind(layout.count_x, x))) sides |= kPlusXBit;
-      if (depth_in(wave.boundary_minus_z, z)) sides |= kMinusZBit;
-      if (depth_in(wave.boundary_plus_z, behind(layout.count_z, z))) sides |= kPlusZBit;
+      if (depth_in(wave.boundary_minus_x, x)) sides |= MINUS_X_BIT;
+      if (depth_in(wave.boundary_plus_x, behind(layout.count_x, x))) sides |= PLUS_X_BIT;
+      if (depth_in(wave.boundary_minus_z, z)) sides |= MINUS_Z_BIT;
+      if (depth_in(wave.boundary_plus_z, behind(layout.count_z, z))) sides |= PLUS_Z_BIT;
       if (sides != 0) out.push_back({x, z, sides, 0});
     }
   }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/sim_setup/effects.h>
+#include <spindrift/sim_setup/fourier.h>
 #include <spindrift/sim_setup/ground.h>
 #include <spindrift/sim_setup/incident_waves.h>
 #include <spindrift/sim_setup/random.h>
@@ -26,9 +27,6 @@ using Component = IncidentWaves::Component;
 /// The spectrum is taken between these shares of its peak's frequency: more than 99 % of its energy.
 constexpr double kLowestShare = 0.6;
 constexpr double kHighestShare = 3.5;
-/// JONSWAP: width of the peak below and above it.
-constexpr double kWidthBelow = 0.07;
-constexpr double kWidthAbove = 0.09;
 /// A solitary wave begins where it is this small: sech^2(x) = 2e-4.
 constexpr double kSolitaryReach = 5.0;
 /// A side's answer reaches so many depths over c before and after the level that it answers.
@@ -41,30 +39,6 @@ constexpr double kTaperShare = 0.75;
 /// Height of the steepest waves: 0.142 L tanh(k d) (Miche 1944); significant heights are at most this share of it.
 constexpr double kMicheRatio = 0.142;
 constexpr double kSignificantShare = 0.6;
-
-/// In place; `sign` -1 gives sum x exp(-i w t). Precondition: the size is a power of two.
-void fourier(std::vector<Complex>& x, double sign) {
-  const std::size_t n = x.size();
-  for (std::size_t i = 1, j = 0; i < n; ++i) {
-    std::size_t bit = n >> 1;
-    for (; (j & bit) != 0; bit >>= 1) j ^= bit;
-    j ^= bit;
-    if (i < j) std::swap(x[i], x[j]);
-  }
-  for (std::size_t length = 2; length <= n; length *= 2) {
-    std::vector<Complex> turn(length / 2);
-    for (std::size_t k = 0; k < turn.size(); ++k)
-      turn[k] = std::polar(1.0, sign * 2 * pi * static_cast<double>(k) / static_cast<double>(length));
-    for (std::size_t begin = 0; begin < n; begin += length) {
-      for (std::size_t k = 0; k < length / 2; ++k) {
-        const Complex even = x[begin + k];
-        const Complex odd = x[begin + k + length / 2] * turn[k];
-        x[begin + k] = even + odd;
-        x[begin + k + length / 2] = even - odd;
-      }
-    }
-  }
-}
 
 /// Factors from the level of a wave to its flow and to the level at the side.
 struct Gain {
@@ -149,7 +123,7 @@ void answer(IncidentWaves::Table& table, const SideResponse& side, FlowOf flowOf
   while (n < table.values.size()) n *= 2;
   std::vector<Complex> flow(n);
   for (std::size_t k = 0; k < table.values.size(); ++k) flow[k] = table.values[k].elevation_m;
-  fourier(flow, -1);
+  transform(flow, Transform::kForward);
   std::vector<Complex> edge = flow;
   for (std::size_t k = 0; k < n; ++k) {
     const bool is_negative = k > n / 2;
@@ -159,8 +133,8 @@ void answer(IncidentWaves::Table& table, const SideResponse& side, FlowOf flowOf
     flow[k] *= flowOf(gain) / static_cast<double>(n);
     edge[k] *= (is_negative ? std::conj(gain.edge) : gain.edge) / static_cast<double>(n);
   }
-  fourier(flow, 1);
-  fourier(edge, 1);
+  transform(flow, Transform::kInverse);
+  transform(edge, Transform::kInverse);
   for (std::size_t k = 0; k < table.values.size(); ++k)
     table.values[k] = {.elevation_m = edge[k].real(), .flow_m2ps = flow[k].real()};
 }
@@ -175,10 +149,9 @@ std::optional<Component> componentOf(const SideResponse& side, double amplitude_
                    .edge_phase_rad = phase_rad + std::arg(answered->edge)};
 }
 
+/// JONSWAP over the frequency's share of the peak's, without a factor.
 double jonswap(double ratio, double enhancement) {
-  const double width = ratio <= 1 ? kWidthBelow : kWidthAbove;
-  return std::pow(ratio, -5) * std::exp(-1.25 * std::pow(ratio, -4)) *
-         std::pow(enhancement, std::exp(-0.5 * std::pow((ratio - 1) / width, 2)));
+  return std::pow(ratio, -5) * std::exp(-1.25 * std::pow(ratio, -4)) * jonswapPeak(ratio, enhancement);
 }
 
 /// Waves of equal energy: the spectrum is cut into as many parts, and a random frequency is chosen from each. They are

@@ -1,4 +1,4 @@
-#include <shared/maker_sides.h>
+#include <shared/side_bits.h>
 
 #include <spindrift/sim_setup/scene_parts.h>
 
@@ -36,13 +36,13 @@ bool hasMakers(const core::Scene& scene) {
 std::uint32_t makerBit(core::Side side) {
   switch (side) {
     case core::Side::kMinusX:
-      return MAKER_MINUS_X;
+      return MINUS_X_BIT;
     case core::Side::kMinusZ:
-      return MAKER_MINUS_Z;
+      return MINUS_Z_BIT;
     case core::Side::kPlusZ:
-      return MAKER_PLUS_Z;
+      return PLUS_Z_BIT;
     default:
-      return MAKER_PLUS_X;
+      return PLUS_X_BIT;
   }
 }
 

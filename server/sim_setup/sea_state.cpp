@@ -20,10 +20,8 @@ constexpr double kLargestHeightShare = 0.5;
 /// Directions are spread like cos^(2s)(angle/2) about the wind. s of waves at the peak of a young sea (Mitsuyasu et al.
 /// 1975).
 constexpr double kSpreadExponent = 10.0;
-/// JONSWAP: peak enhancement, and width of the peak below and above it.
+/// Of a mean JONSWAP spectrum.
 constexpr double kPeakEnhancement = 3.3;
-constexpr double kWidthBelow = 0.07;
-constexpr double kWidthAbove = 0.09;
 /// Dimensionless fetch g F/U^2 at which the peak reaches the frequency of a fully developed sea, 0.88 g/U.
 constexpr double kDevelopedFetch = 15625.0;
 constexpr double kSmallestVariance_m2 = 1e-12;
@@ -34,18 +32,18 @@ struct Sides {
   std::uint32_t closed = 0;
 
   explicit Sides(const core::WaveScene& wave) {
-    add(wave.boundary_minus_x, kMinusXBit);
-    add(wave.boundary_plus_x, kPlusXBit);
-    add(wave.boundary_minus_z, kMinusZBit);
-    add(wave.boundary_plus_z, kPlusZBit);
+    add(wave.boundary_minus_x, MINUS_X_BIT);
+    add(wave.boundary_plus_x, PLUS_X_BIT);
+    add(wave.boundary_minus_z, MINUS_Z_BIT);
+    add(wave.boundary_plus_z, PLUS_Z_BIT);
   }
 
   /// Returns the sides in whose layers a wave of this direction is present. It enters at the sides that it comes from.
   /// If all of those are open it fills the whole water, so the layers of the other sides let it pass, too.
   [[nodiscard]] std::uint32_t of(double direction_x, double direction_z) const {
     std::uint32_t from = 0;
-    if (direction_x != 0.0) from |= direction_x > 0 ? kMinusXBit : kPlusXBit;
-    if (direction_z != 0.0) from |= direction_z > 0 ? kMinusZBit : kPlusZBit;
+    if (direction_x != 0.0) from |= direction_x > 0 ? MINUS_X_BIT : PLUS_X_BIT;
+    if (direction_z != 0.0) from |= direction_z > 0 ? MINUS_Z_BIT : PLUS_Z_BIT;
     if ((from & absorbing) == 0) return 0;
     return (from & closed) == 0 ? absorbing : from & absorbing;
   }
@@ -94,6 +92,11 @@ double waveNumber(double omega_radps, double gravity_mps2, double depth_m) {
   return x / depth_m;
 }
 
+double jonswapPeak(double ratio, double enhancement) {
+  const double width = ratio <= 1 ? 0.07 : 0.09;
+  return std::pow(enhancement, std::exp(-0.5 * std::pow((ratio - 1) / width, 2)));
+}
+
 WindSeaSpectrum WindSeaSpectrum::of(double wind_speed_mps, double fetch_m, double gravity_mps2, double depth_m) {
   const double square = wind_speed_mps * wind_speed_mps;
   const double fetch = std::min(gravity_mps2 * fetch_m / square, kDevelopedFetch);
@@ -107,8 +110,7 @@ WindSeaSpectrum WindSeaSpectrum::of(double wind_speed_mps, double fetch_m, doubl
 
 double WindSeaSpectrum::density(double omega_radps) const {
   const double ratio = omega_radps / peak_radps;
-  const double width = ratio <= 1 ? kWidthBelow : kWidthAbove;
-  const double peak = std::pow(kPeakEnhancement, std::exp(-0.5 * std::pow((ratio - 1) / width, 2)));
+  const double peak = jonswapPeak(ratio, kPeakEnhancement);
   const double deep =
       alpha * gravity_mps2 * gravity_mps2 * std::pow(omega_radps, -5) * std::exp(-1.25 * std::pow(ratio, -4)) * peak;
   const double kd = waveNumber(omega_radps, gravity_mps2, depth_m) * depth_m;

@@ -4,7 +4,7 @@
 
 #include "shared/bindings.h"
 #include "shared/dual.h"
-#include "shared/maker_sides.h"
+#include "shared/side_bits.h"
 
 #ifdef __cplusplus
 namespace spindrift::shared {
@@ -13,10 +13,10 @@ struct MakerUniforms {
 layout(std140, binding = MAKER_UNIFORMS) uniform MakerUniforms {
 #endif
   uint maker_side;
-  float maker_flow_m2ps;       // that comes in, toward the water
-  float maker_elevation_m;     // of the cells at the side while nothing comes back
-  float maker_absorbing_mps;   // flow per difference from that elevation
-  float maker_depth_m;         // that the three belong to
+  float maker_flow_m2ps;      // that comes in, toward the water
+  float maker_elevation_m;    // of the cells at the side while nothing comes back
+  float maker_absorbing_mps;  // flow per difference from that elevation
+  float maker_depth_m;        // that the three belong to
 #ifdef __cplusplus
   uint unused[3];
 };

@@ -14,12 +14,6 @@
 // Blocks of one work group.
 #define SEA_GROUP_BLOCKS 4
 
-// Sides of the water as bits.
-#define SEA_MINUS_X 1u
-#define SEA_PLUS_X 2u
-#define SEA_MINUS_Z 4u
-#define SEA_PLUS_Z 8u
-
 #ifdef __cplusplus
 namespace spindrift::shared {
 #endif
@@ -35,7 +29,7 @@ struct SeaWaveUniform {
   float next_im;
   float before_re;  // factor from one column of cells to the one before
   float before_im;
-  uint sides;  // absorbing sides in whose layers the wave is present (sim_setup/sea_state.h)
+  uint sides;        // absorbing sides in whose layers the wave is present (sim_setup/sea_state.h)
   float share_of_x;  // of the elevation: the part that the flow along x makes, kx^2/k^2
 };
 #ifdef __cplusplus

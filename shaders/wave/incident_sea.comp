@@ -9,6 +9,7 @@
 // Invariant: closed faces carry nothing, and nothing comes in over a bed that rises.
 #include "shared/groups.h"
 #include "shared/sea_uniforms.h"
+#include "shared/side_bits.h"
 #include "wave/water_column.glsl"
 
 layout(local_size_x = SEA_BLOCK, local_size_y = SEA_GROUP_BLOCKS) in;
@@ -40,7 +41,7 @@ void main() {
       sums[k] = vec4(0.0);
       before[k] = vec2(0.0);
     }
-    const bool at_begin = (x == 0 && (block.z & SEA_MINUS_X) != 0u) || (strip == 0 && (block.z & SEA_MINUS_Z) != 0u);
+    const bool at_begin = (x == 0 && (block.z & uint(MINUS_X_BIT)) != 0u) || (strip == 0 && (block.z & uint(MINUS_Z_BIT)) != 0u);
     const uint edge_wave_count = at_begin ? sea_wave_count : 0u;
     for (uint w = 0u; w < sea_wave_count; ++w) {
       const SeaWaveUniform each = sea_waves[w];
@@ -75,10 +76,10 @@ void main() {
       if (z >= n.y) break;
       const int i = x + n.x * z;
       vec2 inflow_m2ps = vec2(0.0);
-      if (x == 0 && (block.z & SEA_MINUS_X) != 0u) inflow_m2ps.x += before[k].x;
-      if (z == 0 && (block.z & SEA_MINUS_Z) != 0u) inflow_m2ps.y += before[k].y;
-      if (x == n.x - 1 && (block.z & SEA_PLUS_X) != 0u) inflow_m2ps.x -= sums[k].y;
-      if (z == n.y - 1 && (block.z & SEA_PLUS_Z) != 0u) inflow_m2ps.y -= sums[k].z;
+      if (x == 0 && (block.z & uint(MINUS_X_BIT)) != 0u) inflow_m2ps.x += before[k].x;
+      if (z == 0 && (block.z & uint(MINUS_Z_BIT)) != 0u) inflow_m2ps.y += before[k].y;
+      if (x == n.x - 1 && (block.z & uint(PLUS_X_BIT)) != 0u) inflow_m2ps.x -= sums[k].y;
+      if (z == n.y - 1 && (block.z & uint(PLUS_Z_BIT)) != 0u) inflow_m2ps.y -= sums[k].z;
       const vec4 ground = texelFetch(bed, i);
 #if MATCHED
       const vec2 loss_per_s = ground.yw;

@@ -21,9 +21,9 @@ layout(std430, binding = ELEVATION_X) restrict buffer ElevationX { int elevation
 void main() {
   const ivec2 n = waveCounts();
   const int along = int(gl_GlobalInvocationID.x);
-  const bool is_x = (maker_side & uint(MAKER_MINUS_X | MAKER_PLUS_X)) != 0u;
+  const bool is_x = (maker_side & uint(MINUS_X_BIT | PLUS_X_BIT)) != 0u;
   if (along >= (is_x ? n.y : n.x)) return;
-  const bool is_plus = (maker_side & uint(MAKER_PLUS_X | MAKER_PLUS_Z)) != 0u;
+  const bool is_plus = (maker_side & uint(PLUS_X_BIT | PLUS_Z_BIT)) != 0u;
   const int across = is_plus ? (is_x ? n.x : n.y) - 1 : 0;
   const ivec2 cell = is_x ? ivec2(across, along) : ivec2(along, across);
   const int i = cell.x + n.x * cell.y;

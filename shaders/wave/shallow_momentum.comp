@@ -8,11 +8,12 @@
 //   cells. It is bounded: a step takes at most all of the momentum that flows in.
 //   The height at a face is that of the giving cell, limited second order (van Leer 1979), over the higher bed.
 //   Where water runs together, cells press with h (du)^2 (von Neumann & Richtmyer 1950), so that bores stay without ripples.
+//   Waves and flow together cross at most about a cell in a step (FREE_COURANT); what is faster loses velocity.
 //   Friction of the bed (Manning) is implicit, so it stops thin films.
 // DISPERSE: slopes filtered by the dispersion take the place of those of the surface in water that is deep for its waves.
 // Invariants: no water leaves a dry cell; a level surface without flow does not change in any bit, at any level of any pond.
 #include "shared/groups.h"
-#include "shared/maker_sides.h"
+#include "shared/side_bits.h"
 #include "wave/dispersed_share.glsl"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
@@ -99,7 +100,6 @@ vec2 movedFlow(Face f, Column behind, Column here, Column there, Column beyond, 
   float passing_m = passingWater_m(from, to);
   if (passing_m <= 0.0) return vec2(0.0);
   u /= 1.0 + sim.wave_dt_s * sim.wave_friction * sqrt(u * u + f.across * f.across) * exp2(-1.3333333 * log2(passing_m));
-  u = clamp(u, -max_mps, max_mps);
   // No sill between: the height at the face follows the slope of the water behind it.
   if (passing_m >= from.water_m) {
     const float before_m = forward ? behind.water_m : beyond.water_m;
@@ -128,16 +128,16 @@ void main() {
   vec4 at_before_z = texelFetch(flow, cell.x + row_before);
   vec4 at_z = texelFetch(flow, i_z);
   // Through a side with a wave-maker water comes and goes as fast as beside it.
-#if MAKERS & MAKER_MINUS_X
+#if MAKERS & MINUS_X_BIT
   if (cell.x == 0) at_before_x.xz = own.xz;
 #endif
-#if MAKERS & MAKER_PLUS_X
+#if MAKERS & PLUS_X_BIT
   if (cell.x == n.x - 2) at_x.xz = own.xz;
 #endif
-#if MAKERS & MAKER_MINUS_Z
+#if MAKERS & MINUS_Z_BIT
   if (cell.y == 0) at_before_z.yw = own.yw;
 #endif
-#if MAKERS & MAKER_PLUS_Z
+#if MAKERS & PLUS_Z_BIT
   if (cell.y == n.y - 2) at_z.yw = own.yw;
 #endif
   const vec4 at_x_before_z = texelFetch(flow, x_after + row_before);

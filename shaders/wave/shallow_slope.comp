@@ -1,14 +1,14 @@
 // The slopes that the dispersion filters in nonlinear shallow water: of the surface, the pressure heads, and the pressure of
 // water that rises or falls faster below than a hydrostatic column would.
-// Reads ELEVATION [nx x nz, units], FLOW [velocities, m/s], PRESSURE_HEAD, BED. Writes SURFACE_RISE [nx x nz x 2, units per
-// cell] at the faces toward +x and +z of each cell.
+// Reads ELEVATION [nx x nz, units], FLOW [velocities, m/s], PRESSURE_HEAD, BED, BASIN, BREAKING. Writes SURFACE_RISE
+// [nx x nz x 2, units per cell] at the faces toward +x and +z of each cell: the slopes times the share that disperses there.
 // Equation: head_q = h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h. The equations of Serre (1953; Green & Naghdi 1976) have
 // this term with the factor 2/3, and dispersion by the real depth where ours takes the still one; with the factor 1 solitary waves
 // of 0.1 and 0.3 of the depth keep their height (docs/shore.md).
-// Not within two depths of wave-makers.
+// Toward wave-makers the dynamic head fades out, within two depths of them.
 // Invariant: exactly 0 between cells at the same level without flow, and beside a dry cell.
 #include "shared/groups.h"
-#include "shared/maker_sides.h"
+#include "shared/side_bits.h"
 #include "wave/dispersed_share.glsl"
 #include "wave/pressure_head.glsl"
 #include "wave/shallow_column.glsl"
@@ -36,16 +36,16 @@ float awayFromMakers(ivec2 cell, ivec2 n) {
   const vec2 from_minus = vec2(cell) + 0.5;
   const vec2 from_plus = vec2(n) - from_minus;
   float cells = 1e9;
-#if MAKERS & MAKER_MINUS_X
+#if MAKERS & MINUS_X_BIT
   cells = min(cells, from_minus.x);
 #endif
-#if MAKERS & MAKER_PLUS_X
+#if MAKERS & PLUS_X_BIT
   cells = min(cells, from_plus.x);
 #endif
-#if MAKERS & MAKER_MINUS_Z
+#if MAKERS & MINUS_Z_BIT
   cells = min(cells, from_minus.y);
 #endif
-#if MAKERS & MAKER_PLUS_Z
+#if MAKERS & PLUS_Z_BIT
   cells = min(cells, from_plus.y);
 #endif
   return smoothstep(0.0, 2.0 * sim.wave_depth_m, cells * sim.wave_cell_m);

@@ -169,7 +169,7 @@ TEST(SeaState, IsNoHigherThanTheSceneAndItsDepthAllow) {
 
 TEST(SeaState, EntersOnlyAtOpenSides) {
   core::Scene scene = openSea();
-  constexpr std::uint32_t kAll = kMinusXBit | kPlusXBit | kMinusZBit | kPlusZBit;
+  constexpr std::uint32_t kAll = MINUS_X_BIT | PLUS_X_BIT | MINUS_Z_BIT | PLUS_Z_BIT;
   for (const PlaneWave& wave : seaOf(scene).waves) EXPECT_EQ(wave.sides, kAll) << "nothing is in the way";
   scene.wave->boundary_plus_x = core::WaveBoundary::kReflect;
   scene.wave->boundary_plus_z = core::WaveBoundary::kReflect;
@@ -180,7 +180,7 @@ TEST(SeaState, EntersOnlyAtOpenSides) {
       EXPECT_EQ(wave.sides, 0u);
       comes_from_land = true;
     } else {
-      EXPECT_EQ(wave.sides, kMinusZBit) << "the other part of its front is behind the wall";
+      EXPECT_EQ(wave.sides, MINUS_Z_BIT) << "the other part of its front is behind the wall";
     }
   }
   EXPECT_TRUE(comes_from_land);
@@ -192,7 +192,7 @@ TEST(SeaState, FitsAWholeNumberOfWavesBetweenPeriodicSides) {
   for (const PlaneWave& wave : seaOf(scene).waves) {
     const double count = wave.kz_radpm * 30.0 / (2 * pi);
     EXPECT_NEAR(count, std::round(count), 1e-9);
-    EXPECT_EQ(wave.sides, kMinusXBit | kPlusXBit);
+    EXPECT_EQ(wave.sides, MINUS_X_BIT | PLUS_X_BIT);
     EXPECT_NEAR(wave.omega_radps, waveFrequency(std::hypot(wave.kx_radpm, wave.kz_radpm), 9.81, 2.0), 1e-9);
   }
 }

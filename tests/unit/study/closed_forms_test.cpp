@@ -4,7 +4,6 @@
 #include <complex>
 #include <numbers>
 #include <numeric>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,7 +12,6 @@
 #include "boat_track.h"
 #include "diffraction.h"
 #include "exact_linear_waves.h"
-#include "fourier.h"
 #include "mild_slope.h"
 #include "shallow_reference.h"
 #include "shallow_water.h"
@@ -71,22 +69,6 @@ TEST(AiryRings, OfVeryLongWavesFallAtTheMiddleByDawsonsIntegral) {
     const AiryRings rings(water, Hump::kGaussian, kWidth_m, q * kWidth_m / water.phaseSpeed_mps(0.0), 10.0);
     EXPECT_NEAR(rings.at(0.0), 1 - 2 * q * dawson, 1e-3) << q;
   }
-}
-
-TEST(FourierTransform, IsTheSumAndIsUndoneByItsInverse) {
-  std::vector<std::complex<double>> x(32);
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> any(-1.0, 1.0);
-  for (auto& value : x) value = {any(random), any(random)};
-  auto y = x;
-  transform(y, Transform::kForward);
-  for (const std::size_t k : {0u, 5u, 31u}) {
-    std::complex<double> sum;
-    for (std::size_t j = 0; j < x.size(); ++j) sum += x[j] * std::polar(1.0, -2 * pi * static_cast<double>(j * k) / 32);
-    EXPECT_NEAR(std::abs(y[k] - sum), 0.0, 1e-12);
-  }
-  transform(y, Transform::kInverse);
-  for (std::size_t j = 0; j < x.size(); ++j) EXPECT_NEAR(std::abs(y[j] / 32.0 - x[j]), 0.0, 1e-14);
 }
 
 TEST(LinearSea, SwingsUnderASuddenPressure) {

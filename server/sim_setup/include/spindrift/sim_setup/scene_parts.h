@@ -18,7 +18,7 @@ bool disperses(const core::Scene& scene);
 bool isOpen(const core::Scene& scene);
 /// Returns whether a side has a wave-maker.
 bool hasMakers(const core::Scene& scene);
-/// Bit of a side (shared/maker_sides.h), and those of all sides with a wave-maker.
+/// Bit of a side (shared/side_bits.h), and those of all sides with a wave-maker.
 std::uint32_t makerBit(core::Side side);
 std::uint32_t makerBits(const core::Scene& scene);
 /// Returns whether water can leave or enter: a side absorbs, or has a wave-maker.

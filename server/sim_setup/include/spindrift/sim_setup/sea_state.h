@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <shared/sea_uniforms.h>
+#include <shared/side_bits.h>
 
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
@@ -17,12 +18,6 @@ inline constexpr int kSeaWaveCount = 32;
 /// The shortest of them in cells: the model's phase speeds are within 1 % from this length on (docs/dispersion.md).
 inline constexpr double kShortestWave_cells = 8.0;
 
-/// Sides of the water as bits, for PlaneWave::sides and SEA_BLOCKS.
-inline constexpr std::uint32_t kMinusXBit = SEA_MINUS_X;
-inline constexpr std::uint32_t kPlusXBit = SEA_PLUS_X;
-inline constexpr std::uint32_t kMinusZBit = SEA_MINUS_Z;
-inline constexpr std::uint32_t kPlusZBit = SEA_PLUS_Z;
-
 /// amplitude cos(kx x + kz z - omega t + phase), x and z from the centre of the water.
 struct PlaneWave {
   double amplitude_m = 0.0;
@@ -30,8 +25,9 @@ struct PlaneWave {
   double kx_radpm = 0.0;
   double kz_radpm = 0.0;
   double phase_rad = 0.0;
-  double decay_pm = 0.0;    ///< the scene's damping lowers the amplitude by this share per metre along its way
-  std::uint32_t sides = 0;  ///< absorbing sides in whose layers it is present; 0: it comes from a closed side
+  double decay_pm = 0.0;  ///< the scene's damping lowers the amplitude by this share per metre along its way
+  std::uint32_t sides =
+      0;  ///< absorbing sides (side_bits.h) in whose layers it is present; 0: it comes from a closed side
   bool operator==(const PlaneWave&) const = default;
 };
 
@@ -49,6 +45,10 @@ struct SeaState {
 [[nodiscard]] double waveNumber(double omega_radps, double gravity_mps2, double depth_m);
 /// Returns omega. [rad/s]
 [[nodiscard]] double waveFrequency(double k_radpm, double gravity_mps2, double depth_m);
+
+/// Peak enhancement of JONSWAP (Hasselmann et al. 1973) at a share of the peak's frequency: `enhancement` at 1, 1 far
+/// from it.
+[[nodiscard]] double jonswapPeak(double ratio, double enhancement);
 
 /// JONSWAP spectrum for a wind speed and a fetch (Hasselmann et al. 1973), reduced in shallow water as in the TMA
 /// spectrum (Bouws et al. 1985).

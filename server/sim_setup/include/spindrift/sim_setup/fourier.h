@@ -4,7 +4,7 @@
 #include <complex>
 #include <span>
 
-namespace spindrift::study {
+namespace spindrift::sim {
 
 enum class Transform { kForward, kInverse };
 
@@ -12,4 +12,4 @@ enum class Transform { kForward, kInverse };
 /// power of two.
 void transform(std::span<std::complex<double>> x, Transform direction);
 
-}  // namespace spindrift::study
+}  // namespace spindrift::sim

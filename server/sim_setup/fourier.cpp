@@ -1,12 +1,12 @@
-#include "fourier.h"
-
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <utility>
 #include <vector>
 
-namespace spindrift::study {
+#include <spindrift/sim_setup/fourier.h>
+
+namespace spindrift::sim {
 
 void transform(std::span<std::complex<double>> x, Transform direction) {
   const std::size_t n = x.size();
@@ -36,4 +36,4 @@ void transform(std::span<std::complex<double>> x, Transform direction) {
   }
 }
 
-}  // namespace spindrift::study
+}  // namespace spindrift::sim
