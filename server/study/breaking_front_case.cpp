@@ -88,11 +88,7 @@ core::Result<Record> measuredRecord(gpu::Context& ctx, const core::Scene& scene)
   const auto sample = [&] {
     const std::vector<double> eta_m = rowOf(**water);
     std::array<double, 4> level_m{};
-    for (std::size_t g = 0; g < level_m.size(); ++g) {
-      const double at = kGauges_m[g] / layout.cell_m - 0.5;
-      const auto i = static_cast<std::size_t>(at);
-      level_m[g] = std::lerp(eta_m[i], eta_m[i + 1], at - static_cast<double>(i));
-    }
+    for (std::size_t g = 0; g < level_m.size(); ++g) level_m[g] = betweenCells(eta_m, kGauges_m[g] / layout.cell_m);
     out.level_m.push_back(level_m);
   };
   sample();

@@ -87,7 +87,7 @@ struct Energy {
   double at_end;
 };
 
-/// Energy of 1,500 steps of chop in periodic water, with islands or without.
+/// Energy of chop in periodic water, with islands or without.
 core::Result<Energy> chopEnergy(gpu::Context& ctx, bool islands, int step_count) {
   constexpr std::uint32_t kCells = 64;
   constexpr double kCell_m = 0.1;

@@ -10,6 +10,7 @@
 
 #include "canonical_run_up.h"
 #include "cases.h"
+#include "shallow_reference.h"
 #include "shallow_water.h"
 #include "ticks.h"
 
@@ -17,8 +18,6 @@ namespace spindrift::study {
 namespace {
 
 constexpr double kGravity_mps2 = 9.81;
-/// Cells across a channel. The waves do not vary there.
-constexpr std::uint32_t kAcross = 4;
 /// Water thinner than this share of the depth does not count as wet when the waterline is read.
 constexpr double kFilm = 1e-4;
 constexpr double kBeachCotangent = 19.85;
@@ -46,8 +45,7 @@ BeachChannel beachChannel(double cells_per_m, double offshore_m, double top_m, d
   const double cell_m = 1.0 / cells_per_m;
   const double beach_m = kBeachCotangent * (1.0 + top_m);
   const auto cells = static_cast<std::uint32_t>(std::ceil((offshore_m + beach_m) * cells_per_m));
-  BeachChannel out{shallowScene(cells, cell_m, 1.0, courant), 0.0};
-  out.scene.wave->width_m = kAcross * cell_m;
+  BeachChannel out{shallowChannel(cells, cell_m, 1.0, courant), 0.0};
   out.scene.beaches = {core::Beach{core::Side::kPlusX, beach_m, -top_m}};
   out.toe_x_m = out.scene.wave->side_m / 2 - beach_m;
   return out;
@@ -125,9 +123,7 @@ core::Result<std::vector<double>> canonicalErrors(gpu::Context& ctx, double cell
   const double shore_x_m = channel.toe_x_m + kBeachCotangent;
   const double unit_s = 1.0 / std::sqrt(kGravity_mps2);
   const auto levelAt = [&](const std::vector<double>& row, double place) {
-    const double at = (shore_x_m - place + channel.scene.wave->side_m / 2) * cells_per_m - 0.5;
-    const auto i = static_cast<std::size_t>(at);
-    return std::lerp(row[i], row[i + 1], at - static_cast<double>(i));
+    return betweenCells(row, (shore_x_m - place + channel.scene.wave->side_m / 2) * cells_per_m);
   };
   std::vector<double> out;
   std::array<std::array<double, kGauges[0].level.size()>, kGauges.size()> record{};
@@ -154,7 +150,7 @@ struct LaboratoryRun {
   double height;  ///< H/d
   double run_up;  ///< R/d
   bool breaks;
-  const char* peer = "";
+  const char* peer = "";  ///< what another solver reports
 };
 
 /// From Synolakis (1987), plane beach 1:19.85: means of the runs with nearly the same H/d.
@@ -190,7 +186,7 @@ Outcome solitaryRunUp(gpu::Context& ctx, bool quick) {
     rows.push_back({fmt::format("slope 1:19.85, H/d = {}, {}, Manning {}: run-up / d", run.height,
                                 run.breaks ? "breaking" : "not breaking", kLaboratoryManning),
                     "", *reached_m, run.run_up, Tolerance::kRelative, run.breaks ? 0.08 : 0.05,
-                    "laboratory, Synolakis 1987 (NTHMP benchmark 4)"});
+                    fmt::format("laboratory, Synolakis 1987 (NTHMP benchmark 4){}", run.peer)});
   }
   return CaseResult{std::move(rows), {}};
 }
@@ -223,8 +219,7 @@ Outcome solitaryWave(gpu::Context& ctx, bool quick) {
       constexpr double kWay_m = 30.0;
       constexpr double kStart_m = 15.0;
       const auto cells = static_cast<std::uint32_t>((kStart_m + kWay_m + 15.0) * cells_per_m);
-      core::Scene scene = shallowScene(cells, 1.0 / cells_per_m, 1.0, 0.3);
-      scene.wave->width_m = kAcross / cells_per_m;
+      core::Scene scene = shallowChannel(cells, 1.0 / cells_per_m, 1.0, 0.3);
       scene.wave->dispersion = core::Dispersion::kAiry;
       const double speed_mps = std::sqrt(kGravity_mps2 * (1.0 + height_m));
       const double from_m = kStart_m - scene.wave->side_m / 2;

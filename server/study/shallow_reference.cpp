@@ -47,6 +47,12 @@ Side sideOf(double level_m, double flow_m2ps, double edge_m) {
 
 }  // namespace
 
+double betweenCells(std::span<const double> values, double cells) {
+  const double at = std::clamp(cells - 0.5, 0.0, static_cast<double>(values.size()) - 1.0);
+  const std::size_t i = std::min(static_cast<std::size_t>(at), values.size() - 2);
+  return std::lerp(values[i], values[i + 1], at - static_cast<double>(i));
+}
+
 ShallowReference::ShallowReference(double length_m, std::size_t cell_count,
                                    const std::function<double(double x_m)>& ground_m,
                                    const std::function<Water(double x_m)>& start)
@@ -150,9 +156,7 @@ void ShallowReference::advance(double duration_s) {
 }
 
 double ShallowReference::levelAt(double x_m) const {
-  const double at = std::clamp(x_m / cell_m_ - 0.5, 0.0, static_cast<double>(level_m_.size()) - 1.0);
-  const std::size_t i = std::min(static_cast<std::size_t>(at), level_m_.size() - 2);
-  return std::lerp(level_m_[i], level_m_[i + 1], at - static_cast<double>(i));
+  return betweenCells(level_m_, x_m / cell_m_);
 }
 
 double ShallowReference::waterBeyond(double x_m) const {

@@ -3,9 +3,14 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace spindrift::study {
+
+/// Value at a place that is `cells` cells from the first edge, linear between the middles of the cells; beyond the
+/// first and the last middle theirs. Precondition: at least 2 values.
+double betweenCells(std::span<const double> values, double cells);
 
 /// The central-upwind scheme of Kurganov & Petrova (2007): second order, positive depth; level water stays level if its
 /// shore is at the edge of a cell. Without friction, between walls. Places count from 0 at the first wall.

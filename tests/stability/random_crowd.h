@@ -84,8 +84,8 @@ class Crowd {
 
  private:
   v1::Command any(const sim::WaterSim& water) {
-    const double half_m = scene_.wave().side_m() / 2;
-    const double half_z_m = scene_.wave().width_m() > 0 ? scene_.wave().width_m() / 2 : half_m;
+    const core::WaveCells cells = scene::waveCellsOf(scene_.wave());
+    const double half_m = cells.length_m / 2, half_z_m = cells.width_m / 2;
     const auto boats = water.boats();
     const auto anyBoat = [&] {
       return boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id;
