@@ -31,6 +31,7 @@ void WaterSim::step() {
     buildGrid();
     advanceParticles();
   }
+  mixLandedWater();
   fadeFoam();
   ++tick_;
   measure();
@@ -103,6 +104,12 @@ void WaterSim::movePatch() {
   if (parts_->follower) parts_->follower->move(parts_->uniforms, parts_->boats.get());
 }
 
+void WaterSim::mixLandedWater() {
+  if (!parts_->landed_water) return;
+  const auto timer = timers_.scope("coupling");
+  parts_->landed_water->mix(*parts_->wave);
+}
+
 void WaterSim::fadeFoam() {
   if (!parts_->foam) return;
   const auto timer = timers_.scope("foam");
@@ -147,6 +154,7 @@ void WaterSim::bindSurroundings() {
   parts_->wave->elevation().bindStorage(ELEVATION);
   parts_->wave->pressureHead().bindStorage(PRESSURE_HEAD);
   if (parts_->foam) parts_->foam->landed()->bindStorage(LANDED);
+  if (parts_->landed_water) parts_->landed_water->bind();
 }
 
 void WaterSim::measure() {
@@ -201,6 +209,8 @@ core::Result<void> WaterSim::build() {
   if (hasWindSea(scene_)) create(parts_->wind_sea, WindSea::create(ctx_, scene_, *derived_.wave, defines));
   if (hasBreakers(scene_)) create(parts_->breakers, Breakers::create(ctx_, *derived_.wave, defines));
   if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, *derived_.particles, defines));
+  if (isTwoWay(scene_) && isNonlinear(scene_))
+    create(parts_->landed_water, LandedWater::create(ctx_, *derived_.wave, defines));
   if (scene_.boats) create(parts_->boats, Boats::create(ctx_, scene_, derived_.uniforms.wave_cell_m, defines));
   if (hasSurfaceFoam(scene_)) create(parts_->foam, SurfaceFoam::create(ctx_, scene_, *derived_.wave, defines));
   if (!scene_.wave) create(parts_->stir, Stir::create(ctx_, defines));

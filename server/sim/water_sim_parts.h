@@ -14,6 +14,7 @@
 #include "checkpoints.h"
 #include "diagnostics.h"
 #include "frame_packer.h"
+#include "landed_water.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
@@ -54,6 +55,7 @@ struct WaterSim::Parts {
   std::unique_ptr<WindSea> wind_sea;  ///< in scenes with a storm whose waves come in at the sides
   std::unique_ptr<Breakers> breakers;
   std::unique_ptr<ParticlePool> pool;
+  std::unique_ptr<LandedWater> landed_water;  ///< in two-way scenes with a nonlinear bulk
   std::unique_ptr<Boats> boats;
   std::unique_ptr<SurfaceFoam> foam;
   std::unique_ptr<PatchFollower> follower;

@@ -37,9 +37,9 @@ bool meetSurroundings(inout vec3 x, inout vec3 v) {
   if (gap_m < 0.0) {
     const float approach_mps = floor_velocity_mps.y - v.y;
     if (approach_mps > 0.0 || gap_m < -sim.spacing_m) {
-      // Only the particle's own speed counts: with that of the rising surface, the surface would push itself, by more
+      // Only the particle's own velocity counts: with that of the rising surface, the surface would push itself, by more
       // than its weight where much water falls.
-      absorb(x.xz, max(-v.y, 0.0));
+      absorb(x.xz, v);
       return false;
     }
     x.y -= gap_m;  // the water below throws it out

@@ -102,6 +102,9 @@
 #define FOAM_FIELD 28
 #define FOAM_BEFORE 29
 #define LANDED 30
+// Water and momentum that particles brought back in this tick; coupling/landed_water.glsl (binding shared with OUTFLOW; no
+// pass has both).
+#define LANDED_WATER 20
 // The simulation's uniforms as storage, for the pass that moves the particle patch (binding shared with PARTIAL_SUM; no
 // pass has both).
 #define SIM_UNIFORMS_STORAGE 18

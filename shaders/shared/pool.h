@@ -30,4 +30,7 @@
 // position.w of an absorbed particle; the next sort drops it.
 #define DEAD_ID -1.0f
 
+// Words of LANDED_WATER per wave cell: water [units], its momentum along x and z (height times velocity, 2^-16 m^2/s).
+#define LANDED_WORDS 3
+
 #endif

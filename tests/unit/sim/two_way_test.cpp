@@ -1,7 +1,9 @@
 // Breaking water becomes particles and returns: the volume ledger, calm water, reproducibility.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <shared/fixed_point.h>
 #include <shared/groups.h>
 #include <shared/pool.h>
 
@@ -59,6 +61,50 @@ TEST_F(TwoWay, ASplashEmitsWaterThatAllReturns) {
   EXPECT_EQ(sim.health().particle_count, 0u) << "15 s later all of it is water again";
   EXPECT_EQ(sim.health().absorbed_count, sim.health().emitted_count);
   EXPECT_EQ(sim.escapedCount(), 0u);
+}
+
+TEST_F(TwoWay, DropsThatFallObliquelyBringTheirMomentumToNonlinearWater) {
+  core::Scene scene = twoWayScene();
+  scene.wave->bulk = core::Bulk::kNonlinear;
+  scene.wave->damping_per_s = 0.0;
+  scene.wave->manning_spm13 = 0.0;
+  WaterSim& sim = make(scene);
+  ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 1.5, 0.9, 0.15}));
+  stepAndSettle(sim, 30);
+  // The same drops over level water at rest, all with one velocity along the surface.
+  constexpr double kVelocity_mps = 2.0;
+  StateCopy state = sim.copyState();
+  const auto drops = state.position.size() / 4;
+  ASSERT_GT(drops, 20u);
+  for (std::size_t k = 0; k < drops; ++k) {
+    state.position[4 * k + 1] += 0.5f;
+    state.velocity[4 * k] = static_cast<float>(kVelocity_mps);
+    state.velocity[4 * k + 1] = 0.0f;
+    state.velocity[4 * k + 2] = 0.0f;
+  }
+  std::ranges::fill(state.elevation_m, 0.0);
+  std::ranges::fill(state.flow_m2ps, 0.0f);
+  sim.setState(state);
+  stepAndSettle(sim, 180);
+  const StateCopy after = sim.copyState();
+  ASSERT_EQ(after.position.size(), 0u) << "all have become water";
+  const std::size_t n = 64;
+  double momentum_m2ps = 0.0, across_m2ps = 0.0;
+  for (std::size_t z = 0; z < n; ++z) {
+    for (std::size_t x = 0; x < n; ++x) {
+      const auto water_m = [&](std::size_t at_x, std::size_t at_z) {
+        return 1.0 + after.elevation_m[at_x % n + n * (at_z % n)];
+      };
+      const std::size_t at = 4 * (x + n * z);
+      momentum_m2ps += after.flow_m2ps[at] * 0.5 * (water_m(x, z) + water_m(x + 1, z));
+      across_m2ps += after.flow_m2ps[at + 1] * 0.5 * (water_m(x, z) + water_m(x, z + 1));
+    }
+  }
+  const double cell_m2 = std::pow(sim.derived().wave->cell_m, 2);
+  const double drop_m3 = sim.derived().uniforms.droplet_units * double{ELEVATION_UNIT_M} * cell_m2;
+  const double brought_m4ps = static_cast<double>(drops) * drop_m3 * kVelocity_mps;
+  EXPECT_NEAR(momentum_m2ps * cell_m2, brought_m4ps, 0.05 * brought_m4ps);
+  EXPECT_NEAR(across_m2ps, 0.0, 0.05 * brought_m4ps / cell_m2);
 }
 
 TEST_F(TwoWay, LandingDropsWiderThanTheCellsAddNoWaveEnergy) {

@@ -182,6 +182,7 @@ class WaterSim {
   void leadSurface(std::uint32_t substep);
   void movePatch();
   void bindSurroundings();
+  void mixLandedWater();
   void fadeFoam();
   void predictParticles();
   void buildGrid();
