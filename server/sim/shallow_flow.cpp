@@ -17,7 +17,7 @@ core::Result<std::unique_ptr<ShallowFlow>> ShallowFlow::create(gpu::Context& ctx
   auto out = std::unique_ptr<ShallowFlow>(new ShallowFlow(ctx, layout));
   const std::size_t cells = layout.counts().total();
   Creation create;
-  create(out->next_flow_, TexelBuffer::create(ctx, "next flow", cells, gpu::TexelFormat::kRGBA32F));
+  create(out->next_flow_, TexelBuffer::create(ctx, "flow", cells, gpu::TexelFormat::kRGBA32F));
   for (const bool sea : {false, true}) {
     if (sea && !hasWindSea(scene)) continue;
     gpu::Defines of_sea = defines;

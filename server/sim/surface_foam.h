@@ -24,7 +24,7 @@ class SurfaceFoam {
   /// `boats` may be null.
   void advance(const Wave& wave, Breakers& breakers, const Boats* boats);
   /// Counts of absorbed particles per sample; null except in two-way scenes.
-  [[nodiscard]] const gpu::TexelBuffer* landed() const { return has_landings_ ? &landed_ : nullptr; }
+  [[nodiscard]] gpu::TexelBuffer* landed() { return has_landings_ ? &landed_ : nullptr; }
   /// Shares of white water by source: breaking, wake, landing, 0.
   [[nodiscard]] gpu::TexelBuffer& field() { return now_; }
 

@@ -224,7 +224,7 @@ core::Result<void> WaterSim::build() {
 
 WaterSim::Parts::Parts(gpu::Context& ctx) : ticks_in_flight(ctx) {}
 
-core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
+std::vector<gpu::Buffer*> WaterSim::Parts::checkpointBuffers() {
   std::vector<gpu::Buffer*> state;
   if (wave) {
     state = {&wave->elevation(), &wave->flow()};
@@ -235,7 +235,11 @@ core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
   if (pool) state.push_back(&pool->words());
   if (breakers) state.push_back(&breakers->state());
   if (foam) state.push_back(&foam->field());
-  auto made = Checkpoints::create(ctx, state);
+  return state;
+}
+
+core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
+  auto made = Checkpoints::create(ctx, checkpointBuffers());
   if (!made) return made.error();
   checkpoints = *std::move(made);
   return {};

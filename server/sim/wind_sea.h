@@ -34,6 +34,13 @@ class WindSea {
   /// clear() and fadeTo(), with the scene's time going on.
   [[nodiscard]] CarriedSea carried() const;
   void takeOver(const CarriedSea& carried);
+  /// Goes on exactly from there, with the content of incident() and after so many steps.
+  void resume(const CarriedSea& carried, std::uint64_t step_count) {
+    takeOver(carried);
+    step_count_ = step_count;
+  }
+  [[nodiscard]] std::uint64_t stepCount() const { return step_count_; }
+  [[nodiscard]] gpu::TexelBuffer& incident() { return incident_; }
 
   /// Returns the sea during the step of dt_s that begins at begin_s, nx x nz texels (wave/incident_sea.comp); null
   /// while calm. BASIN and BED must be bound.

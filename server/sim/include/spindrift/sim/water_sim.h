@@ -21,6 +21,7 @@
 #include <spindrift/sim/gauge_history.h>
 #include <spindrift/sim/health.h>
 #include <spindrift/sim/prepared_scene.h>
+#include <spindrift/sim/saved_state.h>
 #include <spindrift/sim/state_copy.h>
 #include <spindrift/sim_setup/derive.h>
 
@@ -121,6 +122,13 @@ class WaterSim {
   /// tick is run or after reset(). Parameters are not carried. kInvalidInput, with nothing changed, if it is not the
   /// same water.
   core::Result<void> takeOver(const CarriedState& carried);
+
+  /// Copies everything that another simulation of the same scene, with the same values of its parameters, needs to go on
+  /// from here bit for bit. Waits.
+  [[nodiscard]] SavedState savedState();
+  /// Goes on from there: same time since the start, water, particles, boats, effects and wind sea. Gauges record anew.
+  /// kInvalidInput, with nothing changed, if the scene lays out other buffers or steps.
+  core::Result<void> restore(const SavedState& saved);
 
   /// Packs a frame of the present state. Returns false when there will be none: all slots are still in use by earlier
   /// frames, or the scene has none of the requested layers.
