@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -183,7 +185,10 @@ ProgramCommand addServe(CLI::App& program) {
           [options, sources] {
             if (!options->prints_config) return serve(*options);
             const std::string text = configText(**sources);
-            std::fwrite(text.data(), 1, text.size(), stdout);
+            if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+              return fail({ErrorCode::kUnavailable,
+                           std::string("--print-config: standard output cannot be written: ") + std::strerror(errno)});
+            }
             return 0;
           },
           [&program, command, options, sources]() -> core::Result<void> {

@@ -84,6 +84,11 @@ TEST_F(Config, PrintedConfigurationIsAConfigurationFile) {
     EXPECT_THAT(second.out, HasSubstr(line));
 }
 
+TEST_F(Config, AnOutputThatIsFullIsReported) {
+  const Outcome outcome = runProgram({"-c", "'" SPINDRIFT_PROGRAM "' serve --print-config > /dev/full"}, {}, "/bin/sh");
+  expectOneErrorLine(outcome, 2, {"--print-config", "standard output cannot be written"});
+}
+
 TEST_F(Config, AWrongFileOrVariableEndsTheProgramWithOneLine) {
   const std::string file = config("\nport: 65536\n");
   expectOneErrorLine(runProgram({"serve", "--config", file}), 2, {file + ":2:1: port:", "65536", "65535"});

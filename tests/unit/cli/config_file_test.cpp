@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <sstream>
 
 #include "command_line.h"
@@ -80,6 +81,38 @@ TEST_F(ConfigFile, TextThatIsNoConfigurationIsRefused) {
     EXPECT_THAT(refused(text), HasSubstr("serve.textproto:1:")) << text;
   EXPECT_THAT(refused("room: \"a=b\\0.textproto\""), AllOf(HasSubstr(":1:1: room: "), HasSubstr("zero byte")));
   EXPECT_THAT(refused(std::string("port: 1\0", 8)), HasSubstr("serve.textproto:1:"));
+}
+
+TEST_F(ConfigFile, DamagedTextIsReadOrRefusedWithAPlace) {
+  const std::string whole = cli::configText(*CommandLine({"--room", "a=b", "--room", "c=d", "--adapt"}).sources);
+  std::mt19937 random(19);
+  const auto below = [&](std::size_t bound) { return static_cast<std::size_t>(random() % bound); };
+  int refused_count = 0;
+  for (int i = 0; i < 500; ++i) {
+    std::string text = whole;
+    for (std::size_t edits = 1 + below(4); edits > 0; --edits) {
+      const std::size_t at = below(text.size());
+      switch (below(4)) {
+        case 0:
+          text[at] = static_cast<char>(below(256));
+          break;
+        case 1:
+          text.erase(at, below(20));
+          break;
+        case 2:
+          text.insert(at, text.substr(below(text.size()), below(40)));
+          break;
+        default:
+          text[at] = ":\"{}[]<>#\n\t\\'-9"[below(15)];
+      }
+    }
+    CommandLine line({});
+    const auto taken = cli::takeConfigText(text, "damaged", *line.sources);
+    if (taken) continue;
+    ++refused_count;
+    EXPECT_THAT(taken.error().message, testing::ContainsRegex("^damaged:[0-9]+:[0-9]+: .")) << text;
+  }
+  EXPECT_GT(refused_count, 100);
 }
 
 TEST_F(ConfigFile, AnEmptyFileChangesNothing) {

@@ -1,6 +1,4 @@
 // Flags, environment and file of `serve`: which value counts, and what is refused.
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include <spindrift/v1/serve_config.pb.h>
@@ -48,14 +46,6 @@ TEST_F(Sources, OnlyConfigPrintConfigAndHelpAreNotConfigurable) {
   for (const CLI::Option* option : line.serve->get_options([](CLI::Option* o) { return !o->get_configurable(); }))
     names.insert(option->get_name());
   EXPECT_EQ(names, (std::set<std::string>{"--config", "--print-config", "--help"}));
-}
-
-TEST_F(Sources, TheReferenceListsEveryFlag) {
-  std::ifstream in(SPINDRIFT_SOURCE_DIR "/docs/cli.md");
-  const std::string reference{std::istreambuf_iterator<char>(in), {}};
-  const CommandLine line({});
-  for (const CLI::Option* option : line.serve->get_options())
-    EXPECT_THAT(reference, HasSubstr("`" + option->get_name())) << "docs/cli.md";
 }
 
 TEST_F(Sources, NamesFollowFromTheFlag) {
