@@ -5,23 +5,21 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include <spindrift/core/version.h>
 
 #include "commands.h"
+#include "logging.h"
+#include "option_sources.h"
 
 namespace {
 
 constexpr int kUsageError = 2;
 
-void setUpLogging(const std::string& level) {
-  // Standard output is for results (--json -, the address); the log goes to standard error.
-  auto logger = spdlog::stderr_color_mt("spindrift");
-  logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
-  logger->set_level(spdlog::level::from_str(level));
-  spdlog::set_default_logger(std::move(logger));
+/// Gives the options that have no flag the values of the environment, and those that the command takes from a file.
+spindrift::core::Result<void> completeOptions(CLI::App& program, const spindrift::cli::ProgramCommand& command) {
+  if (command.complete) return command.complete();
+  return spindrift::cli::OptionSources{&program}.takeEnvironment();
 }
 
 int run(int argc, char** argv) {
@@ -32,10 +30,8 @@ int run(int argc, char** argv) {
   cli.name("spindrift");
   cli.set_version_flag("--version", std::string(spindrift::core::nameAndVersion()));
   cli.require_subcommand(1);
-  std::string log_level = "info";
-  cli.add_option("--log-level", log_level, "Level of the log on standard error")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
+  LogOptions log;
+  addLogOptions(cli, log);
   cli.fallthrough();
 
   std::vector<ProgramCommand> commands;
@@ -53,9 +49,11 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "spindrift: %s; run 'spindrift --help'\n", what.c_str());
     return kUsageError;
   }
-  setUpLogging(log_level);
   for (const ProgramCommand& command : commands) {
-    if (command.parser->parsed()) return command.run();
+    if (!command.parser->parsed()) continue;
+    const auto completed = completeOptions(cli, command);
+    setUpLogging(log);  // also before a failure is reported, which has the form of the log
+    return completed ? command.run() : fail(completed.error());
   }
   return kUsageError;
 }
@@ -66,7 +64,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "spindrift: unexpected: %s\n", error.what());
+    spindrift::cli::reportFailure(std::string("unexpected: ") + error.what());
     return 1;
   }
 }

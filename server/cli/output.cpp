@@ -8,6 +8,7 @@
 #include <boost/json/serialize.hpp>
 
 #include "commands.h"
+#include "logging.h"
 
 namespace spindrift::cli {
 
@@ -28,7 +29,7 @@ core::Result<void> writeJson(const std::string& file, const boost::json::value& 
 }
 
 int fail(const core::Error& error) {
-  std::fprintf(stderr, "spindrift: %s\n", error.message.c_str());
+  reportFailure(error.message);
   return core::exitCode(error.code);
 }
 

@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pthread.h>
@@ -17,30 +20,11 @@
 #include <spindrift/service/water_server.h>
 
 #include "commands.h"
+#include "config_file.h"
+#include "serve_options.h"
 
 namespace spindrift::cli {
 namespace {
-
-struct ServeOptions {
-  std::string scene = "harbor";
-  std::vector<std::string> rooms;  ///< NAME=SCENE
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 8080;
-  std::string fidelity;  ///< replaces the fidelity of the scenes; empty: theirs
-  std::string device = "auto";
-  std::string web_root;       ///< empty: searched beside the program
-  std::string shader_folder;  ///< empty: the embedded shaders
-  std::size_t thread_count = 1;
-  double address_session_share = 0.5;  ///< share of the sessions that one address may hold
-  std::size_t max_room_count = 8;
-  std::string token_file;            ///< empty: SPINDRIFT_TOKENS in the environment, if set
-  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with tokens
-  std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
-  double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
-  std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs
-  std::uint32_t hash_interval_ticks = 60;
-  bool adapts = false;
-};
 
 using core::Error;
 using core::ErrorCode;
@@ -87,12 +71,13 @@ core::Result<service::Access> loadAccess(const ServeOptions& options) {
   bool has_tokens = false;
   if (!options.token_file.empty()) {
     std::ifstream file(options.token_file);
-    if (!file) return Error{ErrorCode::kUnavailable, "--tokens " + options.token_file + ": the file cannot be read"};
+    if (!file)
+      return Error{ErrorCode::kUnavailable, "--tokens-file " + options.token_file + ": the file cannot be read"};
     text.assign(std::istreambuf_iterator<char>(file), {});
     label = options.token_file;
     has_tokens = true;
-  } else if (const char* const set = std::getenv("SPINDRIFT_TOKENS"); set && *set) {
-    text = set;
+  } else if (!options.tokens.empty()) {
+    text = options.tokens;
     std::ranges::replace(text, ';', '\n');  // environment variables are awkward with several lines
     has_tokens = true;
   }
@@ -103,7 +88,8 @@ core::Result<service::Access> loadAccess(const ServeOptions& options) {
     return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
   }
   if (access && !guest && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput, "--guests none without tokens refuses every client: give --tokens FILE"};
+    return Error{ErrorCode::kInvalidInput,
+                 "--guests none without tokens refuses every client: give --tokens-file FILE"};
   }
   return access;
 }
@@ -171,8 +157,8 @@ int serve(const ServeOptions& options) {
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   if (is_open_to_all) {
     spdlog::warn(
-        "every client that can reach {} is an operator and may even close rooms: give --tokens or --guests player to "
-        "restrict this",
+        "every client that can reach {} is an operator and may even close rooms: give --tokens-file or --guests player "
+        "to restrict this",
         options.address);
   }
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
@@ -193,54 +179,24 @@ int serve(const ServeOptions& options) {
 ProgramCommand addServe(CLI::App& program) {
   const auto options = std::make_shared<ServeOptions>();
   CLI::App* command = program.add_subcommand("serve", "Simulate and serve rooms until interrupted");
-  command
-      ->add_option("--scene", options->scene,
-                   "Scene of the room 'main': a .textproto file or the name of a shipped scene")
-      ->capture_default_str();
-  addFidelity(*command, options->fidelity);
-  command->add_flag("--adapt", options->adapts,
-                    "Lower a room's fidelity while this machine cannot keep up, and raise it again when it can");
-  command->add_option("--room", options->rooms, "An additional room, NAME=SCENE; may be repeated");
-  command->add_option("--address", options->address, "Address to listen on")->capture_default_str();
-  command->add_option("--port", options->port, "Port to listen on; 0 = any free one")
-      ->check(CLI::Range(0, 65535))
-      ->capture_default_str();
-  addDevice(*command, options->device);
-  command->add_option("--web-root", options->web_root, "Folder of the built web client (default: next to the program)");
-  command
-      ->add_option("--shader-dir", options->shader_folder,
-                   "For shader development: read shaders from this folder (shaders/) and reload changed files")
-      ->check(CLI::ExistingDirectory);
-  command->add_option("--threads", options->thread_count, "I/O threads")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-
-  command
-      ->add_option("--address-share", options->address_session_share,
-                   "Share of the sessions that one address may use; 1 behind a proxy")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--max-rooms", options->max_room_count, "Maximum number of rooms, including those opened later")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  command->add_option("--tokens", options->token_file,
-                      "File with lines ROLE TOKEN (default: the environment variable SPINDRIFT_TOKENS)");
-  command
-      ->add_option("--guests", options->guest_role,
-                   "Role of clients without a token (default: operator without tokens, viewer with tokens)")
-      ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
-  command->add_option("--origin", options->origins,
-                      "Additional allowed Origin of pages, https://HOST; * = any; may be repeated");
-  command
-      ->add_option("--grace", options->grace_s,
-                   "Seconds for which a boat keeps its owner after the connection was lost")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  command->add_option("--record", options->record_folder, "Write the log of every room into this folder");
-  command->add_option("--hash-every", options->hash_interval_ticks, "Interval of the state hashes in the log, in ticks")
-      ->check(CLI::Range(1, 36000))
-      ->capture_default_str();
-  return {command, [options] { return serve(*options); }};
+  addServeOptions(*command, *options);
+  const auto sources = std::make_shared<std::optional<OptionSources>>();
+  return {command,
+          [options, sources] {
+            if (!options->prints_config) return serve(*options);
+            const std::string text = configText(**sources);
+            if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+              return fail({ErrorCode::kUnavailable,
+                           std::string("--print-config: standard output cannot be written: ") + std::strerror(errno)});
+            }
+            return 0;
+          },
+          [&program, command, options, sources]() -> core::Result<void> {
+            auto completed = completeServeOptions(program, *command, *options);
+            if (!completed) return completed.error();
+            *sources = *std::move(completed);
+            return {};
+          }};
 }
 
 }  // namespace spindrift::cli

@@ -101,7 +101,7 @@ TEST_F(People, TokensThatCannotBeReadAreReported) {
     if (outcome.exit_code == 3) return;
     expectOneErrorLine(outcome, 2, words);
   };
-  refused({"--tokens", "/nonexistent"}, {"--tokens /nonexistent"});
+  refused({"--tokens", "/nonexistent"}, {"--tokens-file /nonexistent"});
   refused({"--tokens", scene("# nobody\n", "tokens")}, {"no token"});
   refused({"--tokens", scene("king abcdefghijklmnop\n", "tokens")}, {"tokens:1:", "no role"});
   refused({"--guests", "none"}, {"--guests none"});

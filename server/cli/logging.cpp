@@ -1,0 +1,52 @@
+#include "logging.h"
+
+#include <cstdio>
+#include <memory>
+
+#include <spdlog/details/log_msg.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "json_log_formatter.h"
+
+namespace spindrift::cli {
+namespace {
+
+/// A failure can occur anywhere in main(), so its form cannot be passed down like an option.
+bool writes_json = false;
+
+}  // namespace
+
+void addLogOptions(CLI::App& program, LogOptions& options) {
+  program.add_option("--log-level", options.level, "Level of the log on standard error")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  program.add_option("--log-format", options.format, "Form of the log: text, or json (one object per line)")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+}
+
+void setUpLogging(const LogOptions& options) {
+  writes_json = options.format == "json";
+  auto logger = spdlog::stderr_color_mt("spindrift");
+  if (writes_json) {
+    logger->set_formatter(std::make_unique<JsonLogFormatter>());
+  } else {
+    logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
+  }
+  logger->set_level(spdlog::level::from_str(options.level));
+  spdlog::set_default_logger(std::move(logger));
+}
+
+void reportFailure(const std::string& message) {
+  if (!writes_json) {
+    std::fprintf(stderr, "spindrift: %s\n", message.c_str());
+    return;
+  }
+  // Not through the logger: --log-level off must not hide why the program ended.
+  spdlog::memory_buf_t line;
+  JsonLogFormatter().format(spdlog::details::log_msg("spindrift", spdlog::level::err, message), line);
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+}  // namespace spindrift::cli

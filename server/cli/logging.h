@@ -1,0 +1,24 @@
+// The log of the program, on standard error: standard output is for results (--json -, the address of the server).
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace spindrift::cli {
+
+struct LogOptions {
+  std::string level = "info";
+  std::string format = "text";  ///< text or json
+};
+
+/// Adds --log-level and --log-format.
+void addLogOptions(CLI::App& program, LogOptions& options);
+
+/// Makes spdlog's default logger. Call once, before other threads start.
+void setUpLogging(const LogOptions& options);
+
+/// Writes a failure that ends the program: "spindrift: MESSAGE", or a JSON object once setUpLogging() chose JSON.
+void reportFailure(const std::string& message);
+
+}  // namespace spindrift::cli

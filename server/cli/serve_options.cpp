@@ -1,0 +1,129 @@
+#include "serve_options.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "commands.h"
+#include "config_file.h"
+
+namespace spindrift::cli {
+namespace {
+
+constexpr const char* kTokensVariable = "SPINDRIFT_TOKENS";
+
+/// CLI::Range lets "nan" pass.
+CLI::Validator isNumber() {
+  return {[](std::string& text) {
+            double value = 0;
+            return CLI::detail::lexical_cast(text, value) && std::isfinite(value) ? std::string()
+                                                                                  : "Value " + text + " is no number";
+          },
+          ""};
+}
+
+/// An empty name would mean "no tokens": every client an operator.
+CLI::Validator isNotEmpty() {
+  return {[](std::string& text) { return text.empty() ? std::string("Value is empty; name a file") : std::string(); },
+          ""};
+}
+
+std::string variableOr(const char* name, const std::string& otherwise) {
+  const char* const text = std::getenv(name);
+  return text != nullptr && *text != '\0' ? text : otherwise;
+}
+
+}  // namespace
+
+void addServeOptions(CLI::App& command, ServeOptions& options) {
+  command
+      .add_option("--scene", options.scene,
+                  "Scene of the room 'main': a .textproto file or the name of a shipped scene")
+      ->capture_default_str();
+  addFidelity(command, options.fidelity);
+  command.add_flag("--adapt", options.adapts,
+                   "Lower a room's fidelity while this machine cannot keep up, and raise it again when it can");
+  command.add_option("--room", options.rooms, "An additional room, NAME=SCENE; may be repeated");
+  command.add_option("--address", options.address, "Address to listen on")->capture_default_str();
+  command.add_option("--port", options.port, "Port to listen on; 0 = any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  addDevice(command, options.device);
+  command.add_option("--web-root", options.web_root, "Folder of the built web client (default: next to the program)");
+  command
+      .add_option("--shader-dir", options.shader_folder,
+                  "For shader development: read shaders from this folder (shaders/) and reload changed files")
+      ->check(CLI::ExistingDirectory);
+  command.add_option("--threads", options.thread_count, "I/O threads")->check(CLI::Range(1, 64))->capture_default_str();
+
+  command
+      .add_option("--address-share", options.address_session_share,
+                  "Share of the sessions that one address may use; 1 behind a proxy")
+      ->check(isNumber())
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--max-rooms", options.max_room_count, "Maximum number of rooms, including those opened later")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command
+      .add_option("--tokens-file,--tokens", options.token_file,
+                  "File with lines ROLE TOKEN (default: the environment variable SPINDRIFT_TOKENS)")
+      ->check(isNotEmpty());
+  command
+      .add_option("--guests", options.guest_role,
+                  "Role of clients without a token (default: operator without tokens, viewer with tokens)")
+      ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
+  command.add_option("--origin", options.origins,
+                     "Additional allowed Origin of pages, https://HOST; * = any; may be repeated");
+  command
+      .add_option("--grace-s,--grace", options.grace_s,
+                  "Seconds for which a boat keeps its owner after the connection was lost")
+      ->check(isNumber())
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command.add_option("--record", options.record_folder, "Write the log of every room into this folder");
+  command
+      .add_option("--hash-every-ticks,--hash-every", options.hash_interval_ticks,
+                  "Interval of the state hashes in the log, in ticks")
+      ->check(CLI::Range(1, 36000))
+      ->capture_default_str();
+
+  command
+      .add_option(
+          "--config", options.config_file,
+          "File with options, as --print-config writes them (default: the environment variable SPINDRIFT_CONFIG)")
+      ->configurable(false);
+  command
+      .add_flag("--print-config", options.prints_config,
+                "Print the configuration, with the source of each value, and exit")
+      ->configurable(false);
+  command.footer(
+      "Each option is also an environment variable, SPINDRIFT_ and its first name in capitals with _ for -\n"
+      "(SPINDRIFT_MAX_ROOMS; ';' between repeated values), and a field of --config (max_rooms: 8).\n"
+      "A flag replaces the variable, and the variable replaces the file.");
+}
+
+core::Result<OptionSources> completeServeOptions(CLI::App& program, CLI::App& command, ServeOptions& options) {
+  OptionSources sources{&command, &program};
+  if (auto taken = sources.takeEnvironment(); !taken) return taken.error();
+
+  // SPINDRIFT_TOKENS holds the tokens themselves. It stands in for the file, at the rank of the environment.
+  if (const std::string tokens = variableOr(kTokensVariable, ""); !tokens.empty()) {
+    const OptionSource source = sources.at("tokens_file").source;
+    if (source == OptionSource::kEnvironment) {
+      return core::Error{core::ErrorCode::kInvalidInput,
+                         "SPINDRIFT_TOKENS and SPINDRIFT_TOKENS_FILE are both set: unset one of them"};
+    }
+    if (source == OptionSource::kDefault) {
+      options.tokens = tokens;
+      sources.replaceByVariable("tokens_file", kTokensVariable);
+    }
+  }
+
+  if (options.config_file.empty()) options.config_file = variableOr("SPINDRIFT_CONFIG", "");
+  if (!options.config_file.empty()) {
+    if (auto taken = takeConfigFile(options.config_file, sources); !taken) return taken.error();
+  }
+  return sources;
+}
+
+}  // namespace spindrift::cli

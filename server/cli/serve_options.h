@@ -1,0 +1,50 @@
+// The options of `spindrift serve`. The flags are the single list: environment and configuration file have the same
+// names and pass the same checks (option_sources.h, config_file.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <spindrift/core/result.h>
+
+#include "option_sources.h"
+
+namespace spindrift::cli {
+
+struct ServeOptions {
+  std::string scene = "harbor";
+  std::vector<std::string> rooms;  ///< NAME=SCENE
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8080;
+  std::string fidelity;  ///< replaces the fidelity of the scenes; empty: theirs
+  std::string device = "auto";
+  std::string web_root;       ///< empty: searched beside the program
+  std::string shader_folder;  ///< empty: the embedded shaders
+  std::size_t thread_count = 1;
+  double address_session_share = 0.5;  ///< share of the sessions that one address may hold
+  std::size_t max_room_count = 8;
+  std::string token_file;            ///< empty: `tokens`
+  std::string tokens;                ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
+  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with tokens
+  std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
+  double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
+  std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs
+  std::uint32_t hash_interval_ticks = 60;
+  bool adapts = false;
+
+  std::string config_file;     ///< empty: SPINDRIFT_CONFIG, or no file
+  bool prints_config = false;  ///< print the configuration instead of serving
+};
+
+/// Adds the flags. `options` outlives the parser.
+void addServeOptions(CLI::App& command, ServeOptions& options);
+
+/// Gives the options of `command` and `program` (--log-level …) that have no flag the values of the environment and of
+/// the configuration file. Call after parsing. kInvalidInput and kUnavailable name the variable, or file and line.
+core::Result<OptionSources> completeServeOptions(CLI::App& program, CLI::App& command, ServeOptions& options);
+
+}  // namespace spindrift::cli
