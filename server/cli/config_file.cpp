@@ -2,12 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <memory>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +9,7 @@
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 
+#include <spindrift/core/files.h>
 #include <spindrift/v1/serve_config.pb.h>
 
 namespace spindrift::cli {
@@ -145,33 +140,16 @@ void setField(v1::ServeConfig& config, const FieldDescriptor& field, const CLI::
   }
 }
 
-Error unavailable(const std::string& file, const std::string& why) {
-  return {ErrorCode::kUnavailable, "--config " + file + ": " + why};
-}
-
 }  // namespace
 
 core::Result<void> takeConfigFile(const std::string& file, OptionSources& options) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return unavailable(file, "no such file; check the path");
-  if (std::filesystem::is_directory(status)) return unavailable(file, "is a directory; name a file in it");
-  if (!std::filesystem::is_regular_file(status)) return unavailable(file, "is no regular file; name a text file");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!stream)
-    return unavailable(file, std::string("cannot be opened: ") + std::strerror(errno) + "; check its permissions");
-  std::string text(kConfigFileMaxBytes + 1, '\0');  // one byte more than allowed shows that it is too big
-  text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
-  if (std::ferror(stream.get()) != 0)
-    return unavailable(file, std::string("cannot be read: ") + std::strerror(errno) + "; check the file");
-  return takeConfigText(text, file, options);
+  const auto text =
+      core::readText(file, kConfigFileMaxBytes, "a configuration file", "a configuration is a small text");
+  if (!text) return Error{text.error().code, "--config " + file + ": " + text.error().message};
+  return takeConfigText(*text, file, options);
 }
 
 core::Result<void> takeConfigText(std::string_view text, const std::string& label, OptionSources& options) {
-  if (text.size() > kConfigFileMaxBytes) {
-    return Error{ErrorCode::kInvalidInput, fmt::format("{}: is bigger than {} bytes; a configuration is a small text",
-                                                       label, kConfigFileMaxBytes)};
-  }
   v1::ServeConfig config;
   FirstError errors(text, label, options);
   TextFormat::ParseInfoTree places;

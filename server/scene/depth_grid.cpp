@@ -8,7 +8,7 @@
 #include <spindrift/core/text.h>
 
 #include "gray_png.h"
-#include "scene_files.h"
+#include "scene_folder.h"
 
 namespace spindrift::scene {
 namespace {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include "scene_files.h"
+#include <spindrift/core/files.h>
 
 namespace spindrift::scene {
 namespace {
@@ -83,7 +83,7 @@ std::string kindOf(const Reader& reader) {
 
 core::Result<GrayImage> readGrayPng(const std::filesystem::path& file) {
   const auto invalid = [](std::string message) { return Error{ErrorCode::kInvalidInput, std::move(message)}; };
-  const auto stream = openFile(file, "a PNG");
+  const auto stream = core::openFile(file, "a PNG");
   if (!stream) return stream.error();
   std::error_code error;
   if (const auto bytes = std::filesystem::file_size(file, error); error || bytes > kFileMaxBytes)

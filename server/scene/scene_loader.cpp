@@ -8,13 +8,13 @@
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 
+#include <spindrift/core/files.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
 #include "depth_grid.h"
-#include "scene_files.h"
 #include "wave_makers.h"
 
 namespace spindrift::scene {
@@ -249,7 +249,7 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
 
 core::Result<v1::Scene> loadSceneFile(const std::filesystem::path& file, std::optional<v1::Fidelity> fidelity) {
   const std::string label = file.string();
-  const auto text = readText(file, kSceneFileMaxBytes, "a scene file", "a scene is a small text");
+  const auto text = core::readText(file, kSceneFileMaxBytes, "a scene file", "a scene is a small text");
   if (!text) return core::Error{text.error().code, label + ": " + text.error().message};
   return parseSceneText(*text, label, fidelity, file.parent_path());
 }

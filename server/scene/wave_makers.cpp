@@ -6,11 +6,12 @@
 #include <string>
 #include <string_view>
 
+#include <spindrift/core/files.h>
 #include <spindrift/core/text.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
-#include "scene_files.h"
+#include "scene_folder.h"
 
 namespace spindrift::scene {
 namespace {
@@ -123,7 +124,7 @@ void readFile(v1::ElevationSeries& series, const std::optional<fs::path>& folder
   const std::string shown = "\"" + core::cleanText(series.file(), kPathEchoMaxBytes) + "\" ";
   const auto file = fileInFolder(folder, series.file(), "time_s and elevation_m");
   if (!file) return addRange(issues, path, shown + file.error().message);
-  const auto text = readText(*file, kSeriesFileMaxBytes, "a text file", "give fewer rows");
+  const auto text = core::readText(*file, kSeriesFileMaxBytes, "a text file", "give fewer rows");
   if (!text) return addRange(issues, path, shown + text.error().message);
   std::string_view rest = *text;
   for (int number = 1; !rest.empty(); ++number) {

@@ -1,12 +1,11 @@
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 
+#include <spindrift/core/files.h>
 #include <spindrift/script/script_file.h>
 
 namespace spindrift::script {
@@ -92,19 +91,10 @@ core::Result<v1::Script> parseScript(const std::string& text, const std::string&
 }
 
 core::Result<v1::Script> loadScript(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    return Error{ErrorCode::kUnavailable, "there is no script " + file.string()};
-  }
-  constexpr std::uintmax_t kFileMaxBytes = 4u << 20;
-  if (std::filesystem::file_size(file, error) > kFileMaxBytes) {
-    return Error{ErrorCode::kInvalidInput,
-                 fmt::format("{}: a script has at most {} bytes", file.string(), kFileMaxBytes)};
-  }
-  std::ifstream in(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) return Error{ErrorCode::kUnavailable, "the script " + file.string() + " cannot be read"};
-  return parseScript(text, file.string());
+  constexpr std::size_t kFileMaxBytes = 4u << 20;
+  const auto text = core::readText(file, kFileMaxBytes, "a script", "give fewer steps");
+  if (!text) return Error{text.error().code, file.string() + ": " + text.error().message};
+  return parseScript(*text, file.string());
 }
 
 }  // namespace spindrift::script

@@ -125,7 +125,7 @@ TEST_F(ConfigFile, AnEmptyFileChangesNothing) {
 
 TEST_F(ConfigFile, AFileThatCannotBeReadIsNamedWithTheReason) {
   EXPECT_EQ(CommandLine({"--config", path("missing")}).error,
-            "--config " + path("missing") + ": no such file; check the path");
+            "--config " + path("missing") + ": there is no such file; check the path");
   EXPECT_EQ(CommandLine({"--config", folder().path().string()}).error,
             "--config " + folder().path().string() + ": is a directory; name a file in it");
   EXPECT_THAT(CommandLine({"--config", "/dev/zero"}).error, HasSubstr("is no regular file"));
