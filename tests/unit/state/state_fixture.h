@@ -91,7 +91,10 @@ struct StateTest : testing::Test {
     std::ifstream in(room / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  void setContent(const std::string& name, std::string_view content) const { folder.write("room/" + name, content); }
+  void setContent(const std::string& name, std::string_view content) const {
+    std::filesystem::remove(room / name);  // ext4 flushes a file that is emptied and written again, which takes long
+    folder.write("room/" + name, content);
+  }
   /// Leaves exactly these files in the folder.
   void setFiles(const std::vector<std::pair<std::string, std::string>>& files) const {
     std::filesystem::remove_all(room);
