@@ -77,23 +77,23 @@ std::optional<Fault> checkRecord(core::ByteView file, std::size_t at, std::size_
 std::array<std::uint8_t, kSnapshotHeaderBytes> snapshotHeader(std::uint64_t generation, core::ByteView payload) {
   std::array<std::uint8_t, kSnapshotHeaderBytes> header{};
   std::ranges::copy(kSnapshotMagic, header.begin());
-  put(&header[8], generation);
-  put(&header[16], static_cast<std::uint64_t>(payload.size()));
-  put(&header[24], core::crc32c(payload));
+  put(header.data() + 8, generation);
+  put(header.data() + 16, static_cast<std::uint64_t>(payload.size()));
+  put(header.data() + 24, core::crc32c(payload));
   return header;
 }
 
 std::array<std::uint8_t, kLogHeaderBytes> logHeader(std::uint64_t generation) {
   std::array<std::uint8_t, kLogHeaderBytes> header{};
   std::ranges::copy(kLogMagic, header.begin());
-  put(&header[8], generation);
+  put(header.data() + 8, generation);
   return header;
 }
 
 std::array<std::uint8_t, kRecordHeaderBytes> recordHeader(core::ByteView payload) {
   std::array<std::uint8_t, kRecordHeaderBytes> header{};
-  put(&header[0], static_cast<std::uint32_t>(payload.size()));
-  put(&header[4], core::crc32c(payload));
+  put(header.data(), static_cast<std::uint32_t>(payload.size()));
+  put(header.data() + 4, core::crc32c(payload));
   return header;
 }
 

@@ -1,4 +1,5 @@
-#include <algorithm>
+#include <functional>
+#include <iterator>
 #include <new>
 #include <set>
 #include <utility>

@@ -1,6 +1,7 @@
 #include "room_recovery.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,8 +25,6 @@ class Recovery {
   core::Result<RecoveredFolder> run();
 
  private:
-  using Files = std::map<std::uint64_t, FolderEntry>;
-
   core::Result<void> listFiles();
   core::Result<core::Bytes> readFile(const FolderEntry& entry, std::uint64_t max_bytes,
                                      std::optional<Fault>& fault) const;
@@ -40,7 +39,8 @@ class Recovery {
 
   const fs::path folder_;
   const bool is_forced_;
-  Files snapshots_, logs_;
+  std::map<std::uint64_t, FolderEntry, std::greater<>> snapshots_;  ///< newest first
+  std::map<std::uint64_t, FolderEntry> logs_;
   bool is_changed_ = false;
   RecoveredFolder out_;
 };
@@ -120,8 +120,7 @@ core::Result<core::Bytes> Recovery::readFile(const FolderEntry& entry, std::uint
 }
 
 core::Result<void> Recovery::findSnapshot() {
-  for (auto newest = snapshots_.rbegin(); newest != snapshots_.rend(); ++newest) {
-    const auto& [generation, entry] = *newest;
+  for (const auto& [generation, entry] : snapshots_) {
     std::optional<Fault> fault;
     auto bytes = readFile(entry, kSnapshotHeaderBytes + kSnapshotMaxBytes, fault);
     if (!bytes) return bytes.error();

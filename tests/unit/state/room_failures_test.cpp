@@ -23,6 +23,7 @@ bool is_sync_refused = false;
 bool is_cut_refused = false;
 }  // namespace
 
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): C library
 extern "C" int fdatasync(int descriptor) {
   if (is_sync_refused) {
     errno = EIO;
@@ -31,6 +32,7 @@ extern "C" int fdatasync(int descriptor) {
   return static_cast<int>(::syscall(SYS_fdatasync, descriptor));
 }
 
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): C library
 extern "C" int ftruncate(int descriptor, off_t size) noexcept {
   if (is_cut_refused) {
     errno = EIO;
@@ -208,7 +210,10 @@ TEST_F(RoomFailuresTest, AKilledProcessLosesNoRecordThatWasAppended) {
       if (!files || !(*files)->recover()) ::_exit(1);
       appendUntilKilled(**files, last, appended);
     }
-    while (appended == last) std::this_thread::yield();
+    while (appended == last) {
+      ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << "the child ended by itself, round " << round;
+      std::this_thread::yield();
+    }
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
     ::kill(child, SIGKILL);
     int status = 0;

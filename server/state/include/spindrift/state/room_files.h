@@ -36,10 +36,10 @@ class File;
 /// The files of one room: NNNNNNNNNNNN.snapshot and NNNNNNNNNNNN.log, one pair per generation. The log of a generation
 /// holds what happened after the state of its snapshot was copied. A folder has one RoomFiles at a time (FolderLock).
 ///
-/// recover() comes first, then beginGeneration(), then the rest. append(), flush(), writeSnapshot() and status() may be
-/// called by any thread at the same time; a flush or a snapshot does not delay append(). An error names the file, the
-/// reason and what to do; its code is kUnavailable when the file system refused something, kInvalidInput when a size is
-/// out of bounds, kInternal when the order of the calls is wrong.
+/// recover() comes first, then beginGeneration(), then the rest. All functions may be called by any thread at the same
+/// time; a flush or a snapshot does not delay append(). An error names the file, the reason and what to do; its code is
+/// kUnavailable when the file system refused something, kInvalidInput when a size is out of bounds, kInternal when the
+/// order of the calls is wrong.
 class RoomFiles {
  public:
   struct Options {
