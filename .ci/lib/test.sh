@@ -62,7 +62,7 @@ test_zink() {
 # sanitizers, in the tree of the fuzz targets, whose libraries are built with them already. Tests on a device stay out: the
 # shaders that the rasteriser compiles are not instrumented, and it is slow under the sanitizers. Without a named part only
 # the first ones run (label memory): clang takes minutes for the files of net and gpu.
-readonly memory_programs=(core_test codec_test scene_test wire_test sim_setup_test)
+readonly memory_programs=(core_test state_test codec_test scene_test wire_test sim_setup_test)
 readonly memory_programs_when_named=(net_test rooms_test service_test gpu_text_test)
 
 # write_skipped FILE NAME REASON: writes a report of one skipped test and prints the reason.
@@ -113,9 +113,9 @@ Builds everything and runs every test, or the parts named: unit, integration, ac
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents), fuzz (parsers and decoders under hostile input, some
-seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those of core, codec, scene, wire
-and sim_setup, or all of them when the part is named), threads (network and encoder under the thread sanitizer). The last
-three have presets of their own.
+seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those of core, state, codec, scene,
+wire and sim_setup, or all of them when the part is named), threads (network, encoder and files of the state under the
+thread sanitizer). The last three have presets of their own.
 Only when named: tidy (clang-tidy over every C++ file, a test per file).
 -R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only their programs.
 The last line is `N passed, N failed, N skipped`; exit code 1 when anything failed. Reports: build/reports/*.xml, logs:
@@ -202,7 +202,7 @@ prepare_tests() {
   [[ "$wanted" != *" fuzz "* ]] || build_fuzz
   [[ "$wanted" != *" memory "* ]] || build_memory_tests
   [[ "$wanted" != *" tidy "* ]] || prepare_tidy
-  [[ "$wanted" != *" threads "* ]] || build_server tsan net_test join_leave_test
+  [[ "$wanted" != *" threads "* ]] || build_server tsan net_test state_test join_leave_test
   [[ "$wanted" != *" web "* ]] || npm_install web-client web
   [[ ! "$wanted" =~ \ (wire|browser|tools)\  ]] || build_web
   [[ "$wanted" != *" browser "* ]] || npm_install tests/browser browser

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
+#include <spindrift/core/crc32c.h>
 #include <spindrift/core/text.h>
 
 namespace spindrift::codec {
@@ -44,7 +44,7 @@ std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer lay
     return invalid("time_s: " + core::formatNumber(frame.time_s()) + " is not finite");
   if (!std::isfinite(frame.server_time_s()))
     return invalid("server_time_s: " + core::formatNumber(frame.server_time_s()) + " is not finite");
-  if (const std::uint32_t crc = crc32c(viewOf(frame.payload())); crc != frame.crc32c()) {
+  if (const std::uint32_t crc = core::crc32c(viewOf(frame.payload())); crc != frame.crc32c()) {
     return invalid("crc32c: the frame says " + std::to_string(frame.crc32c()) + ", its payload has " +
                    std::to_string(crc));
   }

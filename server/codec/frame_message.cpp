@@ -6,9 +6,9 @@
 
 #include <google/protobuf/io/coded_stream.h>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/gauge_message.h>
 #include <spindrift/codec/stream.h>
+#include <spindrift/core/crc32c.h>
 
 namespace spindrift::codec {
 namespace {
@@ -62,7 +62,7 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   // The checksum is computed from the copy: the payload may be in memory mapped from the device, which is slow to read
   // twice.
   bytes.insert(bytes.end(), payload.begin(), payload.end());
-  const std::uint32_t crc = crc32c(core::ByteView(bytes).subspan(prefix_size));
+  const std::uint32_t crc = core::crc32c(core::ByteView(bytes).subspan(prefix_size));
 
   std::uint8_t* at = bytes.data();
   *at++ = static_cast<std::uint8_t>(kFrameTag);

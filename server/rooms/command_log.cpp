@@ -8,7 +8,7 @@
 #include <google/protobuf/stubs/logging.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/codec/crc32c.h>
+#include <spindrift/core/crc32c.h>
 #include <spindrift/rooms/command_log.h>
 
 namespace spindrift::rooms {
@@ -89,7 +89,7 @@ core::Result<std::unique_ptr<CommandLogWriter>> CommandLogWriter::create(const s
 void CommandLogWriter::write(const v1::Record& record) {
   if (ended_) return;
   const std::string payload = record.SerializeAsString();
-  const auto prefix = prefixOf(static_cast<std::uint32_t>(payload.size()), codec::crc32c(viewOf(payload)));
+  const auto prefix = prefixOf(static_cast<std::uint32_t>(payload.size()), core::crc32c(viewOf(payload)));
   if (size_bytes_ + prefix.size() + payload.size() > kLogMaxBytes) {
     spdlog::warn("the log {} ends here: it has reached {} bytes", file_.string(), kLogMaxBytes);
     ended_ = true;
@@ -143,7 +143,7 @@ std::optional<v1::Record> CommandLogReader::next() {
   if (in_.gcount() < static_cast<std::streamsize>(length)) return broken("a record breaks off");
   v1::Record record;
   const google::protobuf::LogSilencer silencer;
-  if (codec::crc32c(viewOf(payload)) != numberAt(prefix, 4) || !record.ParseFromString(payload)) {
+  if (core::crc32c(viewOf(payload)) != numberAt(prefix, 4) || !record.ParseFromString(payload)) {
     return broken("a record is damaged");
   }
   offset_bytes_ += prefix.size() + length;

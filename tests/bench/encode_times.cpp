@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
@@ -121,7 +121,7 @@ int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
         const double ms = threadCpu_ms() - begin_ms;
         const core::SharedBytes& bytes = encoded.delta ? encoded.delta : encoded.keyframe;
         if (round == 0) {
-          const std::uint32_t crc = codec::crc32c(*bytes);
+          const std::uint32_t crc = core::crc32c(*bytes);
           sums.insert(sums.end(), reinterpret_cast<const std::uint8_t*>(&crc),
                       reinterpret_cast<const std::uint8_t*>(&crc) + sizeof crc);
         }
@@ -144,7 +144,7 @@ int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
     mean_ms += mean;
   }
   std::printf("both             least %.3f ms, mean %.3f ms; %zu frames, %zu rounds, check sum %08x\n", least_ms,
-              mean_ms, frames.size() - 1, rounds, static_cast<unsigned>(codec::crc32c(sums)));
+              mean_ms, frames.size() - 1, rounds, static_cast<unsigned>(core::crc32c(sums)));
   return 0;
 }
 

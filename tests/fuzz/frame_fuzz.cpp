@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
+#include <spindrift/core/crc32c.h>
 
 #include "fuzz.h"
 #include "invariants.h"
@@ -43,7 +43,7 @@ bool isSmall(const v1::LayerFrame& frame) {
 
 void setChecksum(v1::LayerFrame& frame) {
   frame.set_crc32c(
-      codec::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
 
 template <typename Decoded>

@@ -7,6 +7,7 @@ Frames: sequences of golden messages that build on each other. Scenes and single
 copy, see CMakeLists.txt.
 """
 
+import struct
 import subprocess
 from pathlib import Path
 
@@ -111,6 +112,44 @@ SCENES = {
 }
 
 
+def crc32c(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+    return crc ^ 0xFFFFFFFF
+
+
+def snapshot(payload, generation=1, magic=b"spinsnp1"):
+    return magic + struct.pack("<QQI", generation, len(payload), crc32c(payload)) + payload
+
+
+def log(*records, generation=1, magic=b"spinlog1"):
+    return magic + struct.pack("<Q", generation) + b"".join(struct.pack("<II", len(r), crc32c(r)) + r for r in records)
+
+
+def state_files():
+    """Returns the files of a room's state, each after the byte that says what the target tries with it."""
+    plain, repaired, other_name = b"\0", b"\1", b"\2"
+    return {
+        "snapshot": plain + snapshot(b"state of the water"),
+        "snapshot_empty": plain + snapshot(b"", generation=7),
+        "snapshot_cut": plain + snapshot(b"state of the water")[:-3],
+        "snapshot_changed": repaired + snapshot(b"state of the water")[:-1] + b"!",
+        "snapshot_newer": plain + snapshot(b"state", magic=b"spinsnp2"),
+        "snapshot_huge": plain + b"spinsnp1" + struct.pack("<QQI", 1, 2**63, 0) + b"x",
+        "log": plain + log(b"a", b"splash", b"wave" * 10),
+        "log_empty": plain + log(),
+        "log_cut": plain + log(b"a", b"splash")[:-2],
+        "log_changed": repaired + log(b"a", b"splash")[:-1] + b"!",
+        "log_other_name": other_name + log(b"a", generation=2),
+        "log_older": plain + log(b"a", magic=b"spinlog0"),
+        "log_huge": plain + log(b"a") + struct.pack("<II", 2**32 - 1, 0) + b"x",
+        "log_zeros": repaired + log(b"a") + bytes(40),
+    }
+
+
 def encoded(text):
     command = ["protoc", f"--proto_path={PROTO}", "--encode=spindrift.v1.ClientMessage", "spindrift/v1/wire.proto"]
     return subprocess.run(command, input=text.encode(), stdout=subprocess.PIPE, check=True).stdout
@@ -132,6 +171,7 @@ def main():
     # The first byte is the size of the pieces in which a request arrives.
     pieces = (b"\xff", b"\x00", b"\x03")
     write("http", {name: pieces[i % 3] + text.encode("latin-1") for i, (name, text) in enumerate(REQUESTS.items())})
+    write("state_files", state_files())
     write("scene", {name: text.encode() for name, text in SCENES.items()})
 
 

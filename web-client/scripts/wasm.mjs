@@ -1,6 +1,6 @@
-// Compiles the frame reader (server/codec/decode) to WebAssembly and writes it to src/gen as base64 text: the worker needs no
-// second request, and tests and benchmarks use the same module. Needs Debian's clang, lld and libc++ for wasm32; CLANG names another
-// clang.
+// Compiles the frame reader (server/codec/decode, with the checksum of server/core) to WebAssembly and writes it to src/gen as
+// base64 text: the worker needs no second request, and tests and benchmarks use the same module. Needs Debian's clang, lld and
+// libc++ for wasm32; CLANG names another clang.
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -9,14 +9,18 @@ import { fileURLToPath } from "node:url";
 
 const clientRoot = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
 const codecRoot = path.join(clientRoot, "..", "server", "codec");
+const coreRoot = path.join(clientRoot, "..", "server", "core");
 const outFile = path.join(clientRoot, "src", "gen", "frame_reader_wasm.ts");
 const clang = process.env.CLANG ?? "clang";
 const kStackBytes = 64 * 1024;
 const kMemoryMaxBytes = 1024 * 1024 * 1024;
 
-const sources = ["decode", "wasm"].flatMap((folder) =>
-  readdirSync(path.join(codecRoot, folder)).filter((name) => name.endsWith(".cpp")).map((name) => path.join(codecRoot, folder, name)),
-);
+const sources = [
+  path.join(coreRoot, "crc32c_tables.cpp"),
+  ...["decode", "wasm"].flatMap((folder) =>
+    readdirSync(path.join(codecRoot, folder)).filter((name) => name.endsWith(".cpp")).map((name) => path.join(codecRoot, folder, name)),
+  ),
+];
 const options = [
   "--target=wasm32-wasi", "-std=c++20", "-O3", "-msimd128", "-mbulk-memory",
   "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wno-sign-conversion", "-Werror",
@@ -26,7 +30,7 @@ const options = [
 const folder = mkdtempSync(path.join(tmpdir(), "spindrift-wasm-"));
 try {
   const module = path.join(folder, "frame_reader.wasm");
-  const run = spawnSync(clang, [...options, `-I${codecRoot}`, ...sources, "-o", module], { stdio: "inherit" });
+  const run = spawnSync(clang, [...options, `-I${codecRoot}`, `-I${path.join(coreRoot, "include")}`, ...sources, "-o", module], { stdio: "inherit" });
   if (run.error || run.status !== 0) {
     const why = run.error ? run.error.message : `exit code ${run.status}`;
     console.error(`wasm: "${clang}" made no WebAssembly (${why}); it takes Debian's clang, lld and libc++-14-dev-wasm32`);

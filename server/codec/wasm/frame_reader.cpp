@@ -3,7 +3,8 @@
 // are valid until the next prepare call.
 #include <algorithm>
 
-#include "decode/checksum.h"
+#include <spindrift/core/crc32c_tables.h>
+
 #include "decode/particle_reader.h"
 #include "decode/plane_reader.h"
 
@@ -117,5 +118,5 @@ SPINDRIFT_EXPORT(prepareChecksum) std::uint8_t* prepareChecksum(std::uint32_t by
   return makeRoom(0, byte_count);
 }
 SPINDRIFT_EXPORT(checksum) std::uint32_t checksum() {
-  return crc32cByTables(payload, payload_bytes);
+  return spindrift::core::crc32cByTables(payload, payload_bytes);
 }

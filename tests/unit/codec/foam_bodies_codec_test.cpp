@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 
 namespace spindrift::codec {
 namespace {
@@ -27,7 +27,8 @@ v1::LayerFrame encoded(v1::Layer layer, const core::FrameView& view) {
 }
 
 void seal(v1::LayerFrame& frame) {
-  frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+  frame.set_crc32c(
+      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
 
 v1::LayerFrame foamFrame() {

@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 
 namespace spindrift::codec {
 namespace {
@@ -69,7 +69,8 @@ std::string textOf(const core::SharedBytes& bytes) {
 
 /// Recomputes the checksum, so that the check under test is reached.
 void seal(v1::LayerFrame& frame) {
-  frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+  frame.set_crc32c(
+      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
 
 v1::LayerFrame surfaceFrame() {

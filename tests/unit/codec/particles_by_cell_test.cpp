@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 
 namespace spindrift::codec {
 namespace {
@@ -203,7 +203,8 @@ TEST(ParticlesByCell, RefuseDamagedFrames) {
     v1::LayerFrame frame = good;
     bad.damage(frame);
     if (bad.reseal)
-      frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+      frame.set_crc32c(
+          core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
     const auto samples = decodePackedParticles(frame);
     ASSERT_FALSE(samples) << bad.name;
     EXPECT_EQ(samples.error().code, core::ErrorCode::kInvalidInput) << bad.name;
@@ -221,7 +222,8 @@ TEST(ParticlesByCell, ReadAnyBytesWithoutHarm) {
     for (std::uint32_t i = 0, count = 1 + random() % 8; i < count; ++i)
       payload[random() % payload.size()] = static_cast<char>(random());
     if (random() % 4 == 0) frame.mutable_particles_by_cell()->set_count(static_cast<std::uint32_t>(random() % 100000));
-    frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+    frame.set_crc32c(
+        core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
     if (const auto samples = decodePackedParticles(frame)) {
       ++accepted_count;
       for (const float x : samples->position_m) ASSERT_TRUE(std::isfinite(x));

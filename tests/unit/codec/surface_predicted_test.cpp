@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 
 namespace spindrift::codec {
 namespace {
@@ -54,7 +54,8 @@ v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
 }
 
 void seal(v1::LayerFrame& frame) {
-  frame.set_crc32c(crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+  frame.set_crc32c(
+      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
 
 /// The samples that the plain codec sends.

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 #include <spindrift/wire/server_message.h>
 
 #include "golden_boats.h"
@@ -305,7 +305,7 @@ std::vector<GoldenCase> goldenCases() {
   const core::Bytes bodies = bodiesBytes();
   const auto seal = [](v1::LayerFrame& frame) {
     frame.set_crc32c(
-        codec::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+        core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
   };
   const auto bad = [](std::string name, const core::Bytes& good, const std::string& why,
                       const std::function<void(v1::LayerFrame&)>& damage) {

@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <utility>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 
 namespace spindrift::wire {
 namespace {
@@ -49,7 +49,7 @@ GoldenCase damagedCase(const std::string& name, const std::string& why, const co
   v1::LayerFrame& frame = *message.mutable_frame();
   damage(frame);
   frame.set_crc32c(
-      codec::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
   core::Bytes bytes(message.ByteSizeLong());
   message.SerializeWithCachedSizesToArray(bytes.data());
   return {name, GoldenVerdict::kBadFrame, "\"why\": \"" + why + "\"", std::move(bytes)};

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <utility>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 
 #include "golden_packed.h"
 

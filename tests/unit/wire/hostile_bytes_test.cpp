@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/codec/crc32c.h>
 #include <spindrift/codec/frame_decoder.h>
+#include <spindrift/core/crc32c.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/client_message.h>
 
@@ -157,7 +157,7 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
     // A wrong checksum would refuse almost every case, so half of them get the right one and reach the checks after it.
     if (random.below(2) == 0) {
       frame.set_crc32c(
-          codec::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+          core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
     }
     codec::PackedSurfaceDecoder packed;
     codec::PackedFoamDecoder packed_foam;

@@ -3,17 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/codec/crc32c.h>
+#include <spindrift/core/crc32c.h>
 
-namespace spindrift::codec {
+namespace spindrift::core {
 namespace {
 
-core::ByteView viewOf(std::string_view text) {
+ByteView viewOf(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 /// The definition, bit by bit, as the reference for the fast implementations.
-std::uint32_t bitwiseCrc32c(core::ByteView bytes) {
+std::uint32_t bitwiseCrc32c(ByteView bytes) {
   std::uint32_t crc = ~0u;
   for (const std::uint8_t byte : bytes) {
     crc ^= byte;
@@ -42,11 +42,11 @@ TEST(Crc32c, OfNoBytesIsZero) {
 
 TEST(Crc32c, AgreesWithTheBitwiseDefinitionAtEveryLengthAndAlignment) {
   std::mt19937 random(20240611);
-  core::Bytes bytes(300);
+  Bytes bytes(300);
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
   for (std::size_t begin = 0; begin < 9; ++begin) {
     for (std::size_t size = 0; size + begin <= bytes.size(); size += 1 + size / 40) {
-      const auto part = core::ByteView(bytes).subspan(begin, size);
+      const auto part = ByteView(bytes).subspan(begin, size);
       const std::uint32_t expected = bitwiseCrc32c(part);
       ASSERT_EQ(crc32cTable(part), expected) << "begin " << begin << " size " << size;
       ASSERT_EQ(crc32c(part), expected) << "begin " << begin << " size " << size;
@@ -55,4 +55,4 @@ TEST(Crc32c, AgreesWithTheBitwiseDefinitionAtEveryLengthAndAlignment) {
 }
 
 }  // namespace
-}  // namespace spindrift::codec
+}  // namespace spindrift::core

@@ -1,10 +1,10 @@
-#include "checksum.h"
-
 #include <array>
 #include <bit>
 #include <cstring>
 
-namespace spindrift::codec {
+#include <spindrift/core/crc32c_tables.h>
+
+namespace spindrift::core {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "eight bytes are loaded as one little-endian word");
@@ -49,4 +49,4 @@ std::uint32_t crc32cByTables(const std::uint8_t* bytes, std::size_t byte_count) 
   return ~crc;
 }
 
-}  // namespace spindrift::codec
+}  // namespace spindrift::core

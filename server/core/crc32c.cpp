@@ -1,16 +1,14 @@
-#include <array>
 #include <bit>
 #include <cstring>
 
-#include <spindrift/codec/crc32c.h>
+#include <spindrift/core/crc32c.h>
+#include <spindrift/core/crc32c_tables.h>
 
 #if defined(__x86_64__)
 #include <nmmintrin.h>
 #endif
 
-#include "decode/checksum.h"
-
-namespace spindrift::codec {
+namespace spindrift::core {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "eight bytes are loaded as one little-endian word");
@@ -23,7 +21,7 @@ std::uint64_t load64(const std::uint8_t* at) {
 
 }  // namespace
 
-std::uint32_t crc32cTable(core::ByteView bytes) {
+std::uint32_t crc32cTable(ByteView bytes) {
   return crc32cByTables(bytes.data(), bytes.size());
 }
 
@@ -34,7 +32,7 @@ bool hasCrc32cInstruction() {
   return has;
 }
 
-__attribute__((target("sse4.2"))) std::uint32_t crc32cInstruction(core::ByteView bytes) {
+__attribute__((target("sse4.2"))) std::uint32_t crc32cInstruction(ByteView bytes) {
   std::uint64_t crc = 0xFFFFFFFFu;
   const std::uint8_t* at = bytes.data();
   std::size_t left = bytes.size();
@@ -50,14 +48,14 @@ bool hasCrc32cInstruction() {
   return false;
 }
 
-std::uint32_t crc32cInstruction(core::ByteView bytes) {
+std::uint32_t crc32cInstruction(ByteView bytes) {
   return crc32cTable(bytes);
 }
 
 #endif
 
-std::uint32_t crc32c(core::ByteView bytes) {
+std::uint32_t crc32c(ByteView bytes) {
   return hasCrc32cInstruction() ? crc32cInstruction(bytes) : crc32cTable(bytes);
 }
 
-}  // namespace spindrift::codec
+}  // namespace spindrift::core

@@ -1,0 +1,26 @@
+// The folders of all rooms of a server: FOLDER/rooms/NAME.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+
+namespace spindrift::state {
+
+/// Returns the folder of a room, which need not exist. kInvalidInput for a name that is empty, begins with a dot or
+/// contains a slash or a zero byte.
+core::Result<std::filesystem::path> roomFolder(const std::filesystem::path& folder, const std::string& name);
+
+/// Returns the names of the rooms that have a folder, sorted.
+core::Result<std::vector<std::string>> listRooms(const std::filesystem::path& folder);
+
+/// Removes the files of a closed room; no error if it has none. The folder is renamed first, so that a room is there as
+/// a whole or not at all.
+core::Result<void> removeRoom(const std::filesystem::path& folder, const std::string& name);
+
+/// Removes what is left of rooms whose removal was interrupted. Call it at the start, while the FolderLock is held.
+core::Result<void> finishRemovals(const std::filesystem::path& folder);
+
+}  // namespace spindrift::state

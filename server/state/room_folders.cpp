@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include <spindrift/state/room_folders.h>
+
+#include "posix_file.h"
+
+namespace spindrift::state {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The name of a room never begins with a dot.
+constexpr std::string_view kRemovedPrefix = ".removed.";
+
+fs::path roomsOf(const fs::path& folder) {
+  return folder / "rooms";
+}
+
+/// Returns the entries of FOLDER/rooms; none if it does not exist.
+core::Result<std::vector<FolderEntry>> entriesOf(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(roomsOf(folder), error) && !error) return std::vector<FolderEntry>();
+  return listFolder(roomsOf(folder));
+}
+
+core::Result<void> removeTree(const fs::path& path) {
+  std::error_code error;
+  fs::remove_all(path, error);
+  if (error) return systemError("remove", path, error.value());
+  return {};
+}
+
+}  // namespace
+
+core::Result<fs::path> roomFolder(const fs::path& folder, const std::string& name) {
+  const bool is_safe = !name.empty() && name.front() != '.' && name.find('/') == std::string::npos &&
+                       name.find('\0') == std::string::npos;
+  if (!is_safe) {
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       "the name of a room cannot be used for a folder: it is empty, begins with a dot, or contains a "
+                       "slash or a zero byte"};
+  }
+  return roomsOf(folder) / name;
+}
+
+core::Result<std::vector<std::string>> listRooms(const fs::path& folder) {
+  const auto entries = entriesOf(folder);
+  if (!entries) return entries.error();
+  std::vector<std::string> names;
+  for (const FolderEntry& entry : *entries) {
+    if (entry.is_folder && entry.name.front() != '.') names.push_back(entry.name);
+  }
+  return names;
+}
+
+core::Result<void> removeRoom(const fs::path& folder, const std::string& name) {
+  const auto room = roomFolder(folder, name);
+  if (!room) return room.error();
+  std::error_code error;
+  if (!fs::exists(*room, error) && !error) return {};
+  const fs::path removed = roomsOf(folder) / (std::string(kRemovedPrefix) + name);
+  // Left by a removal of an earlier room of this name.
+  if (auto cleared = removeTree(removed); !cleared) return cleared;
+  if (auto renamed = renameFile(*room, removed); !renamed) return renamed;
+  if (auto synced = syncFolder(roomsOf(folder)); !synced) return synced;
+  return removeTree(removed);
+}
+
+core::Result<void> finishRemovals(const fs::path& folder) {
+  const auto entries = entriesOf(folder);
+  if (!entries) return entries.error();
+  for (const FolderEntry& entry : *entries) {
+    if (!entry.name.starts_with(kRemovedPrefix)) continue;
+    if (auto removed = removeTree(roomsOf(folder) / entry.name); !removed) return removed;
+  }
+  return {};
+}
+
+}  // namespace spindrift::state

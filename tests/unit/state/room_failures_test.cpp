@@ -1,0 +1,236 @@
+// Disks that are full or refuse, and killed processes. A limit for the size of files makes writes short and then fail,
+// as a full disk does; calls that rarely fail are replaced by ones that fail on request.
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <spindrift/state/room_files.h>
+
+#include "state_fixture.h"
+
+namespace {
+bool is_sync_refused = false;
+bool is_cut_refused = false;
+}  // namespace
+
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): C library
+extern "C" int fdatasync(int descriptor) {
+  if (is_sync_refused) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_fdatasync, descriptor));
+}
+
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): C library
+extern "C" int ftruncate(int descriptor, off_t size) noexcept {
+  if (is_cut_refused) {
+    errno = EIO;
+    return -1;
+  }
+  return static_cast<int>(::syscall(SYS_ftruncate, descriptor, size));
+}
+
+namespace spindrift::state {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Limits the size of files that this process writes while it lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::uint64_t size_bytes) : action_(std::signal(SIGXFSZ, SIG_IGN)) {
+    EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &before_), 0);
+    const rlimit limit{size_bytes, before_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() {
+    EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &before_), 0);
+    std::signal(SIGXFSZ, action_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*action_)(int);
+};
+
+struct RoomFailuresTest : StateTest {
+  void TearDown() override { is_sync_refused = is_cut_refused = false; }
+};
+
+TEST_F(RoomFailuresTest, AFailedAppendLeavesWholeRecords) {
+  for (std::uint64_t room_bytes = 0; room_bytes < 8 + 6; ++room_bytes) {
+    std::filesystem::remove_all(room);
+    const auto files = openRecovered();
+    begin(*files);
+    append(*files, "first");
+    const std::string whole = content(kLog1);
+    {
+      const FileSizeLimit limit(whole.size() + room_bytes);
+      const auto done = files->append(viewOf("second"));
+      ASSERT_FALSE(done);
+      EXPECT_THAT(done.error().message, AllOf(HasSubstr(kLog1), HasSubstr("File too large"), HasSubstr("ulimit -f")));
+    }
+    ASSERT_EQ(content(kLog1), whole) << room_bytes;
+    append(*files, "third");
+    EXPECT_EQ(summary(recovered()), "0= | 1: first third");
+  }
+}
+
+TEST_F(RoomFailuresTest, APartOfARecordThatCannotBeCutIsCutBeforeTheNext) {
+  const auto files = openRecovered();
+  begin(*files);
+  append(*files, "first");
+  const std::string whole = content(kLog1);
+  is_cut_refused = true;
+  {
+    const FileSizeLimit limit(whole.size() + 12);
+    EXPECT_FALSE(files->append(viewOf("second")));
+  }
+  EXPECT_EQ(content(kLog1).size(), whole.size() + 12);
+  EXPECT_THAT(files->append(viewOf("x")).error().message, HasSubstr("could not cut"));
+  EXPECT_FALSE(files->beginGeneration());
+  is_cut_refused = false;
+  append(*files, "x");
+  begin(*files);
+  append(*files, "y");
+  const auto found = recovered();
+  EXPECT_EQ(summary(found), "0= | 1: first x | 2: y");
+  EXPECT_THAT(found.notes, IsEmpty());
+}
+
+TEST_F(RoomFailuresTest, AFailedSnapshotLeavesAllFilesAsTheyWere) {
+  const auto files = openRecovered();
+  writeSnapshot(*files, begin(*files), "one");
+  append(*files, "a");
+  begin(*files);
+  append(*files, "b");
+  const auto before = allFiles();
+  for (const std::uint64_t size_bytes : {0, 20, 28, 100}) {
+    const FileSizeLimit limit(size_bytes);
+    EXPECT_FALSE(files->writeSnapshot(2, core::Bytes(1000, 's')));
+  }
+  EXPECT_EQ(allFiles(), before);
+  EXPECT_EQ(files->status().snapshot_generation, 1U);
+  EXPECT_EQ(summary(recovered()), "1=one | 1: a | 2: b");
+  writeSnapshot(*files, 2, "two");
+  EXPECT_EQ(summary(recovered()), "2=two | 2: b");
+}
+
+TEST_F(RoomFailuresTest, ASnapshotThatTheDiskRefusesDoesNotReplaceTheOlderOne) {
+  const auto files = openRecovered({.sync = Sync::kSnapshots, .kept_generation_count = 1});
+  writeSnapshot(*files, begin(*files), "one");
+  begin(*files);
+  const auto before = allFiles();
+  is_sync_refused = true;
+  EXPECT_THAT(files->writeSnapshot(2, viewOf("two")).error().message, HasSubstr("check the disk"));
+  EXPECT_EQ(allFiles(), before);
+}
+
+TEST_F(RoomFailuresTest, AGenerationThatCannotBeginLeavesTheLogThatThereIs) {
+  const auto files = openRecovered();
+  begin(*files);
+  append(*files, "a");
+  {
+    const FileSizeLimit limit(8);
+    EXPECT_FALSE(files->beginGeneration());
+  }
+  append(*files, "b");
+  EXPECT_EQ(files->status().generation, 1U);
+  EXPECT_EQ(summary(recovered()), "0= | 1: a b");
+  EXPECT_EQ(begin(*files), 2U);
+}
+
+TEST_F(RoomFailuresTest, AfterTheDiskRefusedARecordOnlyASnapshotMakesFlushesSucceed) {
+  const auto files = openRecovered({.sync = Sync::kAlways});
+  writeSnapshot(*files, begin(*files), "one");
+  append(*files, "a");
+  EXPECT_TRUE(files->flush());
+  is_sync_refused = true;
+  EXPECT_THAT(files->flush().error().message, AllOf(HasSubstr("force to the disk"), HasSubstr(kLog1)));
+  is_sync_refused = false;
+  EXPECT_THAT(files->flush().error().message, HasSubstr("a snapshot of generation 2 makes up for it"));
+  begin(*files);
+  EXPECT_FALSE(files->flush());
+  writeSnapshot(*files, 2, "two");
+  EXPECT_TRUE(files->flush());
+}
+
+TEST_F(RoomFailuresTest, ALogThatTheDiskRefusesDoesNotKeepTheNextFromBeginning) {
+  const auto files = openRecovered({.sync = Sync::kAlways});
+  begin(*files);
+  append(*files, "a");
+  is_sync_refused = true;
+  EXPECT_FALSE(files->beginGeneration());  // the new log's header cannot be forced to the disk either
+  is_sync_refused = false;
+  EXPECT_EQ(begin(*files), 2U);
+  EXPECT_FALSE(files->flush());
+  writeSnapshot(*files, 2, "two");
+  EXPECT_TRUE(files->flush());
+}
+
+/// Appends 1, 2, 3, ... to the room until it is killed. The content of a snapshot is the number before it. `appended`
+/// is the last number whose append() has returned.
+[[noreturn]] void appendUntilKilled(RoomFiles& files, int last, std::atomic<int>& appended) {
+  for (int k = last + 1;; ++k) {
+    if (k % 20 == 0 || k == last + 1) {
+      const auto generation = files.beginGeneration();
+      if (!generation || !files.writeSnapshot(*generation, viewOf(std::to_string(k - 1)))) ::_exit(1);
+    }
+    if (!files.append(viewOf(std::to_string(k) + std::string(100, '.')))) ::_exit(1);
+    appended = k;
+  }
+}
+
+TEST_F(RoomFailuresTest, AKilledProcessLosesNoRecordThatWasAppended) {
+  void* shared = ::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(shared, MAP_FAILED);
+  auto& appended = *new (shared) std::atomic<int>(0);
+  std::mt19937 random(7);
+  int last = 0;
+  for (int round = 0; round < 40; ++round) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      const auto files = RoomFiles::open(room, {.sync = Sync::kNever});
+      if (!files || !(*files)->recover()) ::_exit(1);
+      appendUntilKilled(**files, last, appended);
+    }
+    while (appended == last) {
+      ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << "the child ended by itself, round " << round;
+      std::this_thread::yield();
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the child ended by itself, round " << round;
+    const auto found = recovered();
+    int next = found.generation == 0 ? 0 : std::stoi(textOf(found.snapshot));
+    for (const auto& log : found.logs) {
+      for (const core::ByteView record : log.records) ASSERT_EQ(std::stoi(textOf(record)), ++next);
+    }
+    ASSERT_GE(next, appended);
+    ASSERT_LE(next, appended + 1);
+    last = next;
+    appended = next;
+  }
+  ::munmap(shared, sizeof(std::atomic<int>));
+}
+
+}  // namespace
+}  // namespace spindrift::state
