@@ -118,6 +118,15 @@ std::string forUrl(const std::string& address) {
   return address.find(':') != std::string::npos ? "[" + address + "]" : address;
 }
 
+rooms::StateOptions stateOptions(const ServeOptions& options) {
+  return {.folder = options.state_folder,
+          .sync = options.sync == "never"    ? state::Sync::kNever
+                  : options.sync == "always" ? state::Sync::kAlways
+                                             : state::Sync::kSnapshots,
+          .snapshot_interval = std::chrono::milliseconds(
+              static_cast<std::chrono::milliseconds::rep>(options.snapshot_interval_s * 1e3))};
+}
+
 int serve(const ServeOptions& options) {
   StopSignals signals;
   auto device = gpu::parseDeviceChoice(options.device);
@@ -131,7 +140,16 @@ int serve(const ServeOptions& options) {
   const bool is_open_to_all =
       access->guest() == core::Role::kOperator && !options.address.starts_with("127.") && options.address != "::1";
 
+  std::shared_ptr<rooms::StateStore> states;
+  if (!options.state_folder.empty()) {
+    auto opened = rooms::StateStore::open(stateOptions(options));
+    if (!opened)
+      return fail({opened.error().code, "--state-dir " + options.state_folder + ": " + opened.error().message});
+    states = *std::move(opened);
+  }
+
   service::WaterServerOptions server_options;
+  server_options.rules.states = std::move(states);
   server_options.device = *device;
   server_options.device.shader_folder = options.shader_folder;
   server_options.rooms = *std::move(rooms);

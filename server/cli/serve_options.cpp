@@ -88,6 +88,23 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
       ->capture_default_str();
 
   command
+      .add_option("--state-dir", options.state_folder,
+                  "Keep the rooms in this folder, and go on from there after a restart, also after a crash")
+      ->check(isNotEmpty());
+  command
+      .add_option("--snapshot-every-s,--snapshot-every", options.snapshot_interval_s,
+                  "Seconds between two snapshots of a room in --state-dir")
+      ->check(isNumber())
+      ->check(CLI::Range(0.5, 86400.0))
+      ->capture_default_str();
+  command
+      .add_option("--sync", options.sync,
+                  "When the disk is forced to write what is in --state-dir: never, for snapshots, or always before a "
+                  "command is answered. A crash of the program loses nothing with any; a power failure may")
+      ->check(CLI::IsMember({"never", "snapshots", "always"}))
+      ->capture_default_str();
+
+  command
       .add_option(
           "--config", options.config_file,
           "File with options, as --print-config writes them (default: the environment variable SPINDRIFT_CONFIG)")

@@ -34,6 +34,9 @@ struct ServeOptions {
   double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
   std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs
   std::uint32_t hash_interval_ticks = 60;
+  std::string state_folder;  ///< folder in which the rooms are kept; empty: nowhere
+  double snapshot_interval_s = 10.0;
+  std::string sync = "snapshots";  ///< never, snapshots, always
   bool adapts = false;
 
   std::string config_file;     ///< empty: SPINDRIFT_CONFIG, or no file

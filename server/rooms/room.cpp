@@ -54,7 +54,7 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, Room
 }
 
 core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
-                                                 WaterBuilder& builder, RoomOutlets& outlets) {
+                                                 WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place) {
   auto room_water = std::make_unique<RoomWater>(std::move(water));
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty()) {
@@ -69,8 +69,15 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
     log = *std::move(opened);
     spdlog::info("room {}: recorded to {}", name, log->file().string());
   }
-  return std::shared_ptr<Room>(
-      new Room(std::move(name), rules, builder, outlets, std::move(room_water), std::move(log)));
+  auto room =
+      std::shared_ptr<Room>(new Room(std::move(name), rules, builder, outlets, std::move(room_water), std::move(log)));
+  if (!place.keeper) return room;
+  if (place.kept) {
+    if (auto restored = room->restore(*place.kept); !restored) return restored.error();
+  }
+  room->keeper_ = std::move(place.keeper);
+  if (auto kept = room->keepAtEnd(); !kept) return kept.error();
+  return room;
 }
 
 bool isRoomName(const std::string& name) {
@@ -88,6 +95,17 @@ void Room::publishSnapshot() {
       RoomSnapshot{water_->scene(), water_->sceneVersion(), paused_, clock_.speed(), boats_, water_->sim().gauges()});
   const std::lock_guard lock(snapshot_mutex_);
   snapshot_ = std::move(fresh);
+}
+
+bool Room::askForSnapshot() {
+  if (!keeper_) return false;
+  keeper_->ask();
+  return true;
+}
+
+std::optional<StateKeeper::Status> Room::keptStatus() const {
+  if (!keeper_) return std::nullopt;
+  return keeper_->status();
 }
 
 std::shared_ptr<const RoomVitals> Room::vitals() const {
@@ -163,6 +181,7 @@ void Room::run(TimePoint now, double thread_load) {
     step(now);
   }
   announceRecovery(now);
+  keepState(now);
   handOverFrames();
   if (now >= next_vitals_) publishVitals(now);
 }

@@ -79,6 +79,9 @@ void Room::finishChange() {
   const bool is_taken = !outcome;
   if (is_taken) {
     recordCommand(change.command);
+    v1::StateRecord line;
+    *line.mutable_command() = change.command.message;
+    keepWhatHappened(std::move(line));
     parameterChanged(change.command.message.set_parameter());
   }
   change.others.tried.push_back({std::move(change.command), std::move(outcome)});

@@ -147,6 +147,7 @@ void Room::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
 }
 
 Room::Outcome Room::applyToWater(const Command& command) {
+  if (auto refused = keep(command)) return refused;
   if (auto rejected = water_->apply(command.message)) return rejected;
   recordCommand(command);
   return {};
@@ -170,6 +171,7 @@ Room::Outcome Room::reset(const Command& command) {
 }
 
 Room::Outcome Room::setPaused(const Command& command) {
+  if (auto refused = keep(command)) return refused;
   const bool paused = command.message.set_paused().paused();
   if (paused_ && !paused) clock_.restart(std::chrono::steady_clock::now());
   paused_ = paused;
@@ -179,6 +181,7 @@ Room::Outcome Room::setPaused(const Command& command) {
 }
 
 Room::Outcome Room::setSpeed(const Command& command) {
+  if (auto refused = keep(command)) return refused;
   clock_.setSpeed(command.message.set_speed().speed());
   news_.state = true;
   return {};
@@ -280,6 +283,7 @@ Room::Outcome Room::advance(const Command& command) {
                      fmt::format("{} ticks more than the {} still to come are above {}; try again when they are done",
                                  tick_count, pending_tick_count_, kPendingTickMaxCount));
   }
+  if (auto refused = keep(command)) return refused;
   pending_tick_count_ += tick_count;
   return {};
 }
@@ -294,6 +298,8 @@ void Room::announce() {
   if (news.reset) outlets_.wasReset(*this);
   if (news.rebuilt) outlets_.hasRecovered(*this, "the device failed; the scene began again on a new one");
   if (news.boats) announceBoats();
+  keepPeople();
+  flushKept();
   deliverAnswers();
 }
 

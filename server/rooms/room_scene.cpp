@@ -136,6 +136,13 @@ void Room::restartScene(bool goes_on) {
     *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
     record(std::move(line));
   }
+  if (keeper_) {
+    v1::StateRecord line;
+    *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
+    keepWhatHappened(std::move(line));
+    kept_recovery_count_ = water_->sim().recoveredCount();
+    keeper_->ask();
+  }
   const double speed = clock_.speed();
   clock_ = RealTimeClock(water_->sim().derived().tick_s);
   clock_.setSpeed(speed);

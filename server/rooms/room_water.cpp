@@ -1,7 +1,10 @@
 #include <cassert>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <spindrift/rooms/room_water.h>
+#include <spindrift/rooms/water_state.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
@@ -159,6 +162,31 @@ core::Result<void> RoomWater::continueIn(std::unique_ptr<Water>& next) {
   }
   next->scene() = std::move(wanted);
   exchange(next);
+  return {};
+}
+
+void RoomWater::save(v1::KeptState& state) {
+  state.set_tick(tick());
+  *state.mutable_start_scene() = water_->startScene();
+  *state.mutable_scene() = scene();
+  *state.mutable_water() = toMessage(sim().savedState());
+  state.set_state_hash(sim().stateHash());
+}
+
+core::Result<void> RoomWater::restore(const v1::KeptState& state) {
+  const auto saved = toSavedState(state.water());
+  if (!saved) return saved.error();
+  v1::Scene now = state.scene();
+  if (auto set = sim().setScene(scene::toCore(now)); !set) return set;
+  if (auto done = sim().restore(*saved); !done) return done;
+  if (const std::uint64_t hash = sim().stateHash(); hash != state.state_hash()) {
+    return core::Error{
+        core::ErrorCode::kInvalidInput,
+        fmt::format("the saved water is damaged: its hash is {:016x}, {:016x} was expected", hash, state.state_hash())};
+  }
+  setScene(std::move(now));
+  tick_shift_ = state.tick() - sim().tick();
+  ++state_id_;
   return {};
 }
 

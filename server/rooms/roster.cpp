@@ -22,11 +22,16 @@ std::string newSecret() {
   return out;
 }
 
+core::Role roleOf(v1::Role role) {
+  if (role == v1::ROLE_OPERATOR) return core::Role::kOperator;
+  return role == v1::ROLE_PLAYER ? core::Role::kPlayer : core::Role::kViewer;
+}
+
 }  // namespace
 
 Admission Roster::arrive(const Arrival& arrival) {
   const std::lock_guard lock(mutex_);
-  is_news_ = true;
+  changed();
   Admission out;
   const auto known = std::ranges::find_if(people_, [&](const auto& entry) {
     return !arrival.resume_key.empty() && entry.second.resume_key == arrival.resume_key;
@@ -45,6 +50,7 @@ Admission Roster::arrive(const Arrival& arrival) {
   person.role = arrival.role;
   person.session = arrival.session;
   person.boats_stopped = false;
+  person.waits = false;
   out.resume_key = person.resume_key;
   return out;
 }
@@ -53,7 +59,7 @@ void Roster::leave(core::SessionId session, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find_if(people_, [&](const auto& entry) { return entry.second.session == session; });
   if (session == 0 || found == people_.end()) return;
-  is_news_ = true;
+  changed();
   if (found->second.boats.empty()) {
     people_.erase(found);
     return;
@@ -82,13 +88,13 @@ void Roster::give(std::uint32_t boat_id, std::uint32_t person_id) {
   if (found == people_.end()) return;
   for (auto& [id, person] : people_) person.boats.erase(boat_id);
   found->second.boats.insert(boat_id);
-  is_news_ = true;
+  changed();
 }
 
 void Roster::keepOnly(const std::set<std::uint32_t>& boat_ids) {
   const std::lock_guard lock(mutex_);
   for (auto& [id, person] : people_) {
-    is_news_ |= std::erase_if(person.boats, [&](std::uint32_t boat) { return !boat_ids.contains(boat); }) > 0;
+    if (std::erase_if(person.boats, [&](std::uint32_t boat) { return !boat_ids.contains(boat); }) > 0) changed();
   }
 }
 
@@ -101,9 +107,10 @@ Roster::Turn Roster::settle(Clock::time_point now) {
       person.boats_stopped = true;
       out.boats_to_stop.insert(out.boats_to_stop.end(), person.boats.begin(), person.boats.end());
     }
-    if (person.session == 0 && (person.boats.empty() || now - person.away_since >= grace_)) {
+    const bool is_kept = person.waits || !person.boats.empty();
+    if (person.session == 0 && (!is_kept || now - person.away_since >= grace_)) {
       it = people_.erase(it);
-      is_news_ = true;
+      changed();
     } else {
       ++it;
     }
@@ -125,6 +132,44 @@ v1::People Roster::people() const {
     wire.set_away(person.session == 0);
   }
   return out;
+}
+
+std::uint64_t Roster::version() const {
+  const std::lock_guard lock(mutex_);
+  return version_;
+}
+
+v1::RoomPeople Roster::kept() const {
+  const std::lock_guard lock(mutex_);
+  v1::RoomPeople out;
+  for (const auto& [id, person] : people_) {
+    v1::KeptPerson& kept = *out.add_people();
+    kept.set_person_id(id);
+    kept.set_name(person.name);
+    kept.set_color_rgb(person.color_rgb);
+    kept.set_role(wire::toWire(person.role));
+    kept.set_resume_key(person.resume_key);
+    for (const std::uint32_t boat : person.boats) kept.add_boat_ids(boat);
+  }
+  out.set_last_person_id(last_person_id_);
+  return out;
+}
+
+void Roster::restore(const v1::RoomPeople& people, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  people_.clear();
+  for (const v1::KeptPerson& kept : people.people()) {
+    Person& person = people_[kept.person_id()];
+    person.name = kept.name();
+    person.color_rgb = kept.color_rgb();
+    person.role = roleOf(kept.role());
+    person.resume_key = kept.resume_key();
+    person.boats.insert(kept.boat_ids().begin(), kept.boat_ids().end());
+    person.away_since = now;
+    person.waits = true;
+  }
+  last_person_id_ = people.last_person_id();
+  changed();
 }
 
 }  // namespace spindrift::rooms

@@ -2,8 +2,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/scene/scene_loader.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -74,10 +76,52 @@ SimulationThread::~SimulationThread() {
 
 core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
   for (RoomSetup& setup : setups) {
-    auto water = builder_->build(std::move(setup.scene)).get();
-    if (auto added = add(std::move(setup.name), std::move(water)); !added) return added.error();
+    const std::string name = setup.name;
+    if (auto built = buildRoom(name, std::move(setup)); !built) return built;
   }
+  if (!rules_.states) return {};
+  const auto kept = rules_.states->rooms();
+  if (!kept) return kept.error();
+  for (const std::string& name : *kept) {
+    if (find(name)) continue;
+    if (auto built = buildRoom(name, std::nullopt); !built) return built;
+  }
+  max_room_count_ = std::max(max_room_count_, rooms().size());
   return {};
+}
+
+core::Result<RoomPlace> SimulationThread::placeOf(const std::string& name) const {
+  if (!rules_.states) return RoomPlace{};
+  auto place = rules_.states->place(name);
+  if (!place) return Error{place.error().code, "room " + name + ": " + place.error().message};
+  return place;
+}
+
+core::Result<void> SimulationThread::buildRoom(const std::string& name, std::optional<RoomSetup> setup) {
+  auto place = placeOf(name);
+  if (!place) return place.error();
+  if (place->kept) {
+    v1::Scene start = place->kept->state.start_scene();
+    scene::fillDefaults(start);
+    v1::Scene scene = place->kept->state.scene();
+    scene::fillDefaults(scene);
+    auto added = add(name, builder_->build(std::move(start)).get(), *std::move(place));
+    if (added) return added;
+    const auto aside = rules_.states->setAside(name);
+    if (!aside) return Error{aside.error().code, "room " + name + ": " + aside.error().message};
+    spdlog::error(
+        "room {}: it cannot go on from its state on disk, which is now in {}: {}; it begins anew with scene {}", name,
+        aside->string(), added.error().message, scene.name());
+    place = placeOf(name);
+    if (!place) return place.error();
+    setup = RoomSetup{name, std::move(scene)};
+  }
+  if (!setup) {
+    spdlog::warn("room {}: nothing of it on disk can be used, so it is not opened; {} stays as it is", name,
+                 rules_.states->folder().string());
+    return {};
+  }
+  return add(name, builder_->build(std::move(setup->scene)).get(), *std::move(place));
 }
 
 void SimulationThread::run() {
@@ -156,7 +200,11 @@ void SimulationThread::open(RoomSetup setup, Done done) {
   if (find(setup.name) || std::ranges::any_of(openings_, [&](const auto& one) { return one.name == setup.name; })) {
     return done(Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"});
   }
-  openings_.push_back({std::move(setup.name), builder_->build(std::move(setup.scene)), std::move(done)});
+  auto place = placeOf(setup.name);
+  if (!place) return done(place.error());
+  place->kept.reset();  // of a room of this name that could not be opened: the new one has nothing to do with it
+  openings_.push_back(
+      {std::move(setup.name), *std::move(place), builder_->build(std::move(setup.scene)), std::move(done)});
 }
 
 void SimulationThread::finishOpenings() {
@@ -168,16 +216,16 @@ void SimulationThread::finishOpenings() {
       ++opening;
       continue;
     }
-    opening->done(add(std::move(opening->name), opening->water.get()));
+    opening->done(add(std::move(opening->name), opening->water.get(), std::move(opening->place)));
     opening = openings_.erase(opening);
   }
 }
 
-core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water) {
+core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water, RoomPlace place) {
   if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
   (*water)->bind();
   if (device_line_.empty()) device_line_ = (*water)->context().device().name;
-  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_);
+  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place));
   if (!room) return room.error();
   (*room)->start(std::chrono::steady_clock::now());
   const std::lock_guard lock(rooms_mutex_);
@@ -200,7 +248,7 @@ core::Result<void> SimulationThread::close(const std::string& name, const std::f
   summarise(*room);
   outlets_.closed(*room);
   room->releaseDevice();
-  return {};
+  return rules_.states ? rules_.states->remove(name) : core::Result<void>{};
 }
 
 void SimulationThread::summarise(const Room& room) {
@@ -239,6 +287,8 @@ void SimulationThread::loop() {
   for (Opening& opening : std::exchange(openings_, {}))
     opening.done(Error{ErrorCode::kUnavailable, "the server shuts down"});
   for (const auto& room : rooms_) {
+    if (auto kept = room->keepAtEnd(); !kept)
+      spdlog::error("room {}: its last snapshot could not be written: {}", room->name(), kept.error().message);
     summarise(*room);
     room->releaseDevice();
   }

@@ -58,7 +58,11 @@ core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& devi
 
 Water::Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
              double warm_tick_ms)
-    : context_(std::move(context)), sim_(std::move(sim)), scene_(std::move(scene)), warm_tick_ms_(warm_tick_ms) {}
+    : context_(std::move(context)),
+      sim_(std::move(sim)),
+      scene_(std::move(scene)),
+      start_scene_(scene_),
+      warm_tick_ms_(warm_tick_ms) {}
 
 Water::~Water() {
   bind();

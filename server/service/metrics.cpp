@@ -43,6 +43,32 @@ struct RoomSample {
   std::shared_ptr<const rooms::RoomVitals> vitals;
 };
 
+/// Of the rooms that are kept on disk.
+void writeKept(Page& page, const std::vector<std::shared_ptr<rooms::Room>>& rooms) {
+  using Status = rooms::StateKeeper::Status;
+  std::vector<std::pair<std::string, Status>> kept;
+  for (const auto& room : rooms) {
+    if (auto status = room->keptStatus()) kept.emplace_back(fmt::format("room=\"{}\"", room->name()), *status);
+  }
+  if (kept.empty()) return;
+  const auto each = [&](const char* name, const char* type, const char* help, auto&& value) {
+    page.head(name, type, help);
+    for (const auto& [label, status] : kept) page.sample(label, value(status));
+  };
+  each("state_snapshots_total", "counter", "Snapshots of a room written to disk.",
+       [](const Status& s) { return s.snapshot_count; });
+  each("state_failures_total", "counter", "Snapshots and records that could not be written to disk.",
+       [](const Status& s) { return s.failure_count; });
+  each("state_snapshot_age_seconds", "gauge", "Time since the state in the newest snapshot.",
+       [](const Status& s) { return s.since_snapshot_s; });
+  each("state_snapshot_bytes", "gauge", "Size of the newest snapshot.",
+       [](const Status& s) { return s.files.snapshot_bytes; });
+  each("state_snapshot_write_seconds", "gauge", "Time that the last snapshot took to write, beside the room.",
+       [](const Status& s) { return s.write_s; });
+  each("state_log_bytes", "gauge", "Size of the log since that snapshot.",
+       [](const Status& s) { return s.files.log_bytes; });
+}
+
 void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
   const auto each = [&](const char* name, const char* type, const char* help, auto&& value) {
     page.head(name, type, help);
@@ -171,6 +197,7 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   }
   Page page;
   writeRooms(page, samples);
+  writeKept(page, rooms.rooms());
   if (const net::Server* network = sources.network) writeNetwork(page, network->stats());
   if (const rooms::EncoderThread* encoder = sources.encoder) writeEncoder(page, *encoder);
   writeCommands(page, commands);

@@ -196,6 +196,10 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     if (method != "POST") return respond(wrongMethod("POST"));
     return command(call, room, std::move(respond));
   }
+  if (part == "snapshot") {
+    if (method != "POST") return respond(wrongMethod("POST"));
+    return snapshot(call, *room, respond);
+  }
   if (part != "scene" && part != "parameters" && part != "people" && part != "ground") return respond(std::nullopt);
   if (method != "GET") return respond(wrongMethod("GET"));
   if (part == "ground") {
@@ -210,6 +214,13 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     *out.add_parameters() = std::move(known);
   }
   respond(json(200, out));
+}
+
+void RestApi::snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond) {
+  if (call.role < core::Role::kOperator) return respond(problem(403, "a snapshot takes the role of operator"));
+  if (!room.askForSnapshot())
+    return respond(problem(409, "the server keeps no state on disk: start it with --state-dir FOLDER"));
+  respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
 }
 
 void RestApi::gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond) {

@@ -37,6 +37,8 @@ class Boats {
   /// Everything but the device's state, and its replacement; that of state() is copied apart.
   [[nodiscard]] CarriedBoats carried() const { return {places_, first_id_, next_id_}; }
   void takeOver(const CarriedBoats& carried);
+  /// Returns whether takeOver() may be called: as many places as here.
+  [[nodiscard]] bool fits(const CarriedBoats& carried) const { return carried.places.size() == places_.size(); }
   /// Returns the new boat's id. kUnavailable when all places or all ids are taken.
   core::Result<std::uint32_t> spawn(const core::Boat& boat);
   /// kInvalidInput for an unknown boat.

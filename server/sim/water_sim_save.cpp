@@ -74,6 +74,7 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
       return differs(fmt::format("its buffer {} has {} words, here it has {}", from.name, from.words.size(),
                                  buffers[k]->sizeBytes() / sizeof(std::uint32_t)));
   }
+  if (parts_->boats && !parts_->boats->fits(saved.boats)) return differs("it has another number of places for boats");
   for (std::size_t k = 0; k < buffers.size(); ++k) buffers[k]->upload(saved.buffers[k].words);
   parts_->effects = saved.effects;
   if (parts_->boats) {

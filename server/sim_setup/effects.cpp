@@ -128,6 +128,13 @@ core::Result<void> Effects::start(const core::Effect& effect, double time_s, std
   return {};
 }
 
+bool Effects::resume(std::vector<Active> active) {
+  const auto splashes = std::ranges::count_if(active, [](const Active& a) { return isSplash(a.effect); });
+  if (splashes > MAX_SPLASHES || std::ssize(active) - splashes > MAX_CRESTS) return false;
+  active_ = std::move(active);
+  return true;
+}
+
 shared::EventUniforms Effects::advance(double time_s, const EffectDomain& domain) {
   shared::EventUniforms out{};
   for (const Active& a : active_) {

@@ -55,6 +55,20 @@ core::Result<std::vector<std::string>> listRooms(const fs::path& folder) {
   return names;
 }
 
+core::Result<fs::path> setRoomAside(const fs::path& folder, const std::string& name) {
+  const auto room = roomFolder(folder, name);
+  if (!room) return room.error();
+  const fs::path aside = folder / "aside";
+  std::error_code error;
+  fs::create_directories(aside, error);
+  if (error) return systemError("make", aside, error.value());
+  fs::path target = aside / name;
+  for (int k = 2; fs::exists(target, error); ++k) target = aside / (name + "." + std::to_string(k));
+  if (auto renamed = renameFile(*room, target); !renamed) return renamed.error();
+  if (auto synced = syncFolder(roomsOf(folder)); !synced) return synced.error();
+  return target;
+}
+
 core::Result<void> removeRoom(const fs::path& folder, const std::string& name) {
   const auto room = roomFolder(folder, name);
   if (!room) return room.error();

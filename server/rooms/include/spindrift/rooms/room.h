@@ -25,6 +25,7 @@
 #include <spindrift/rooms/room_water.h>
 #include <spindrift/rooms/roster.h>
 #include <spindrift/rooms/scene_catalog.h>
+#include <spindrift/rooms/state_store.h>
 #include <spindrift/rooms/tick_cost.h>
 #include <spindrift/rooms/water_builder.h>
 #include <spindrift/rooms/work_budget.h>
@@ -48,6 +49,7 @@ struct RoomRules {
   std::chrono::milliseconds grace{20'000};  ///< how long a lost connection's person and boats are kept
   std::filesystem::path record_folder;      ///< folder for logs; empty: no logs
   std::uint32_t hash_interval_ticks = 60;   ///< interval of the state hashes in logs
+  std::shared_ptr<StateStore> states;       ///< where the rooms are kept on disk; null: nowhere
   bool adapts = false;                      ///< lowers a room's fidelity where the machine cannot keep up
 };
 
@@ -80,10 +82,11 @@ class Room {
   using TimePoint = RealTimeClock::TimePoint;
 
   /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes the
-  /// water of scene changes. `builder` and `outlets` outlive the room. Errors: those of the log.
+  /// water of scene changes. `builder` and `outlets` outlive the room. With a kept room in `place`, the room goes on
+  /// from there; `water` is then built from its start_scene. Errors: those of the log and of the first snapshot.
   static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
-                                                    const RoomRules& rules, WaterBuilder& builder,
-                                                    RoomOutlets& outlets);
+                                                    const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
+                                                    RoomPlace place = {});
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -95,6 +98,10 @@ class Room {
   /// The only entry for commands, from sessions and requests: checks the sender's role and the scene, then queues the
   /// command. Otherwise returns the rejection with the command's number; a full queue is BUSY.
   [[nodiscard]] std::optional<wire::CommandRejection> admit(Command command);
+  /// Asks for a snapshot on disk as soon as possible; returns false if the room is not kept.
+  bool askForSnapshot();
+  /// nullopt if the room is not kept on disk.
+  [[nodiscard]] std::optional<StateKeeper::Status> keptStatus() const;
 
   // Simulation thread.
   void start(TimePoint now);
@@ -111,8 +118,13 @@ class Room {
   [[nodiscard]] std::uint64_t tick() const { return water_->tick(); }
   /// Rejects the commands that still wait.
   void abandonCommands();
+  /// Writes a last snapshot and waits for it. Errors: those of the files; kUnavailable when the device does not answer.
+  core::Result<void> keepAtEnd();
   /// Ends the simulation; only the any-thread functions may be called afterwards.
-  void releaseDevice() { water_.reset(); }
+  void releaseDevice() {
+    water_.reset();
+    if (keeper_) keeper_->finish();
+  }
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
   [[nodiscard]] std::uint64_t droppedFrameCount() const { return dropped_frames_; }
 
@@ -202,6 +214,23 @@ class Room {
   void announceBoats();
   void announceRecovery(TimePoint now);
 
+  // room_keeping.cpp
+  /// Writes the command to the log on disk before it is carried out; a rejection if that is not possible.
+  [[nodiscard]] Outcome keep(const Command& command);
+  void keepWhatHappened(v1::StateRecord record);
+  /// Writes who is here if that has changed.
+  void keepPeople();
+  /// Call it before answers are sent: they must not promise what the disk refused.
+  void flushKept();
+  /// Writes a snapshot when one is due, and how far the room has come.
+  void keepState(TimePoint now);
+  /// The state between two ticks; nullopt when the device does not answer.
+  std::optional<v1::KeptState> stateNow();
+  /// Goes on from there. After an error the water may have any state.
+  core::Result<void> restore(const KeptRoom& kept);
+  /// Does again what a record says. `steps_until`: the tick up to which Step commands lead.
+  core::Result<void> repeat(const v1::StateRecord& record, std::uint64_t& steps_until);
+
   // room_change.cpp
   void setParameters(Batch values);
   void applyNewest(Values values);
@@ -270,6 +299,11 @@ class Room {
   RoomOutlets& outlets_;
   std::unique_ptr<RoomWater> water_;
   std::unique_ptr<CommandLogWriter> log_;  ///< null: no log
+  std::unique_ptr<StateKeeper> keeper_;    ///< null: the room is not kept on disk
+  std::uint64_t kept_people_version_ = 0;
+  std::uint64_t kept_recovery_count_ = 0;
+  std::uint64_t kept_state_id_ = 0;  ///< of the last record that the room runs
+  TimePoint next_running_{};
   CommandQueue commands_;
   WorkBudget heavy_budget_;
   std::vector<Answer> answers_;    ///< since the last announce()

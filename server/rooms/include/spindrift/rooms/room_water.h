@@ -12,6 +12,7 @@
 #include <spindrift/rooms/water.h>
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/water_sim.h>
+#include <spindrift/v1/kept_state.pb.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/wire/client_message.h>
 
@@ -72,6 +73,11 @@ class RoomWater {
   /// with replaceWater(). Errors leave both as they were: kUnavailable when the device failed, kInvalidInput when it
   /// is not the same water or a parameter changed meanwhile to what it cannot take.
   core::Result<void> continueIn(std::unique_ptr<Water>& next);
+  /// Writes tick, scenes, water and its hash. Waits for the device.
+  void save(v1::KeptState& state);
+  /// Goes on from there; the water was built from `state.start_scene()`. kInvalidInput if it does not fit: then the
+  /// water may have any state.
+  core::Result<void> restore(const v1::KeptState& state);
   /// Makes its GL context current. Call it first whenever another context may be current.
   void bind() { water_->bind(); }
   /// gpu::Context::reloadChangedShaders().

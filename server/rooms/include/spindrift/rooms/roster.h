@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <spindrift/core/sender.h>
+#include <spindrift/v1/kept_state.pb.h>
 #include <spindrift/v1/wire.pb.h>
 
 namespace spindrift::rooms {
@@ -60,6 +61,14 @@ class Roster {
   Turn settle(Clock::time_point now);
 
   [[nodiscard]] v1::People people() const;
+
+  /// Everybody with their keys, to be kept on disk.
+  [[nodiscard]] v1::RoomPeople kept() const;
+  /// Grows with every change of kept().
+  [[nodiscard]] std::uint64_t version() const;
+  /// Puts kept people back, as if their connections had just been lost: they have the grace time to come back. Call it
+  /// before anybody arrives.
+  void restore(const v1::RoomPeople& people, Clock::time_point now);
   [[nodiscard]] std::chrono::milliseconds grace() const { return grace_; }
 
  private:
@@ -72,6 +81,7 @@ class Roster {
     Clock::time_point away_since{};
     bool boats_stopped = false;  ///< since the connection was lost
     std::set<std::uint32_t> boats;
+    bool waits = false;  ///< was here before a restart: kept for the grace time also without a boat
   };
 
   const std::chrono::milliseconds grace_;
@@ -79,6 +89,12 @@ class Roster {
   std::map<std::uint32_t, Person> people_;
   std::uint32_t last_person_id_ = 0;
   bool is_news_ = false;
+  std::uint64_t version_ = 1;
+
+  void changed() {
+    is_news_ = true;
+    ++version_;
+  }
 };
 
 }  // namespace spindrift::rooms

@@ -8,6 +8,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,8 +22,8 @@ namespace spindrift::rooms {
 
 class SimulationThread {
  public:
-  /// Makes the rooms and waits for them. They call `outlets` only after run(). Errors: those of the device and the
-  /// rooms.
+  /// Makes the rooms and waits for them, with RoomRules::states also those that were kept on disk. They call `outlets`
+  /// only after run(). Errors: those of the device and the rooms.
   static core::Result<std::unique_ptr<SimulationThread>> start(const gpu::DeviceChoice& device,
                                                                std::vector<RoomSetup> setups, RoomRules rules,
                                                                std::size_t max_room_count, RoomOutlets& outlets);
@@ -65,6 +66,7 @@ class SimulationThread {
   /// A room whose water is being built.
   struct Opening {
     std::string name;
+    RoomPlace place;
     std::future<WaterBuilder::Built> water;
     Done done;
   };
@@ -77,7 +79,10 @@ class SimulationThread {
   void open(RoomSetup setup, Done done);
   /// Finishes the openings whose water is built.
   void finishOpenings();
-  core::Result<void> add(std::string name, WaterBuilder::Built water);
+  core::Result<void> add(std::string name, WaterBuilder::Built water, RoomPlace place);
+  /// Builds a room where it was kept on disk, or else as `setup` says; without a setup only where it was kept.
+  core::Result<void> buildRoom(const std::string& name, std::optional<RoomSetup> setup);
+  core::Result<RoomPlace> placeOf(const std::string& name) const;
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void summarise(const Room& room);
 

@@ -41,6 +41,8 @@ class Water {
   [[nodiscard]] const sim::WaterSim& sim() const { return *sim_; }
   [[nodiscard]] v1::Scene& scene() { return scene_; }  ///< with current parameter values
   [[nodiscard]] const v1::Scene& scene() const { return scene_; }
+  /// As it was built.
+  [[nodiscard]] const v1::Scene& startScene() const { return start_scene_; }
 
  private:
   Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
@@ -49,6 +51,7 @@ class Water {
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<sim::WaterSim> sim_;
   v1::Scene scene_;
+  const v1::Scene start_scene_;
   double warm_tick_ms_ = 0.0;
 };
 

@@ -51,6 +51,7 @@ class RestApi {
   void room(const Call& call, net::HttpResponder respond);
   void closeRoom(const Call& call, net::HttpResponder respond);
   void command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
+  void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
   net::HttpResponder takePending(std::uint64_t request_id);

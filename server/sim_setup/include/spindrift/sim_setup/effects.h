@@ -40,11 +40,15 @@ class Effects {
   [[nodiscard]] bool idle() const { return active_.empty(); }
   void clear() { active_.clear(); }
 
- private:
   struct Active {
     core::Effect effect;
     double start_s = 0.0;
   };
+  [[nodiscard]] const std::vector<Active>& active() const { return active_; }
+  /// Replaces them all. Returns false, with nothing changed, if there are more of a kind than can be active.
+  bool resume(std::vector<Active> active);
+
+ private:
   std::vector<Active> active_;
 };
 

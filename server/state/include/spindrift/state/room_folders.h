@@ -16,6 +16,9 @@ core::Result<std::filesystem::path> roomFolder(const std::filesystem::path& fold
 /// Returns the names of the rooms that have a folder, sorted.
 core::Result<std::vector<std::string>> listRooms(const std::filesystem::path& folder);
 
+/// Moves the folder of a room whose files cannot be used to FOLDER/aside/NAME, NAME.2 and so on; returns the new place.
+core::Result<std::filesystem::path> setRoomAside(const std::filesystem::path& folder, const std::string& name);
+
 /// Removes the files of a closed room; no error if it has none. The folder is renamed first, so that a room is there as
 /// a whole or not at all.
 core::Result<void> removeRoom(const std::filesystem::path& folder, const std::string& name);

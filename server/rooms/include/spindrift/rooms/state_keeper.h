@@ -1,0 +1,88 @@
+// Keeps the state of one room on disk: a log of what happens, and snapshots from time to time (state/room_files.h).
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/rooms/worker.h>
+#include <spindrift/state/room_files.h>
+#include <spindrift/v1/kept_state.pb.h>
+
+namespace spindrift::rooms {
+
+/// What was found on disk of a room when the server started.
+struct KeptRoom {
+  v1::KeptState state;
+  std::vector<v1::StateRecord> records;  ///< after the state, in order
+};
+
+/// Lives on the simulation thread, except for the functions marked "any thread".
+class StateKeeper {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  /// Takes over files that recover() was called on. `writer` writes the snapshots; it outlives this.
+  StateKeeper(std::string room, std::unique_ptr<state::RoomFiles> files, std::chrono::milliseconds interval,
+              Worker& writer);
+  /// Waits for a snapshot that is being written.
+  ~StateKeeper();
+  StateKeeper(const StateKeeper&) = delete;
+  StateKeeper& operator=(const StateKeeper&) = delete;
+
+  /// Appends what is about to happen; when it returns, a killed process does not lose it. After an error it must not
+  /// happen.
+  core::Result<void> append(const v1::StateRecord& record);
+  /// The same for what has happened already. A failure opens a gap().
+  void appendWhatHappened(const v1::StateRecord& record);
+  /// Call before the senders of appended commands get their answers: with Sync::kAlways, forces the log to the disk. A
+  /// failure opens a gap().
+  core::Result<void> flush();
+  /// Why the log does not say everything, and what to do; nullopt if it does. The next snapshot closes the gap.
+  [[nodiscard]] std::optional<std::string> gap() const;
+
+  /// Returns whether a snapshot is due now: the interval has passed, somebody asked, or a write failed. Never while one
+  /// is being written.
+  [[nodiscard]] bool isDue(TimePoint now) const;
+  /// Any thread. A snapshot as soon as possible.
+  void ask() { is_asked_ = true; }
+  /// Begins a new log and writes the snapshot beside the room. `state` is of this moment.
+  void save(v1::KeptState state, TimePoint now);
+  /// The same, and waits for it.
+  core::Result<void> saveAndWait(v1::KeptState state);
+
+  /// Waits for a snapshot that is being written.
+  void finish();
+
+  /// Any thread.
+  struct Status {
+    state::RoomFiles::Status files;
+    std::uint64_t snapshot_count = 0;  ///< written since the start
+    std::uint64_t failure_count = 0;   ///< failed snapshots and records
+    double since_snapshot_s = 0.0;     ///< since the state of the newest one was copied; since the start without one
+    double write_s = 0.0;              ///< duration of the last write
+  };
+  [[nodiscard]] Status status() const;
+
+ private:
+  /// Shared with the writer, whose work may end after this.
+  struct Shared;
+
+  std::uint64_t begin(TimePoint now);
+  void openGap(const core::Error& error);
+
+  const std::string room_;
+  const std::chrono::milliseconds interval_;
+  Worker& writer_;
+  std::shared_ptr<Shared> shared_;
+  TimePoint next_{};
+  std::atomic<bool> is_asked_ = false;
+};
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,57 @@
+// The state of all rooms of a server on disk: what was found there at the start, and who keeps it from now on.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/rooms/state_keeper.h>
+#include <spindrift/rooms/worker.h>
+#include <spindrift/state/folder_lock.h>
+#include <spindrift/state/room_files.h>
+
+namespace spindrift::rooms {
+
+struct StateOptions {
+  std::filesystem::path folder;
+  state::Sync sync = state::Sync::kSnapshots;
+  std::chrono::milliseconds snapshot_interval{10'000};
+  std::uint32_t kept_generation_count = 2;  ///< snapshots per room that stay on disk
+};
+
+/// A room's place on disk.
+struct RoomPlace {
+  std::optional<KeptRoom> kept;         ///< nullopt: nothing usable was there
+  std::unique_ptr<StateKeeper> keeper;  ///< null: the state is not kept
+};
+
+class StateStore {
+ public:
+  /// Takes the folder for this server. Errors: kUnavailable when another server uses it, or it cannot be written.
+  static core::Result<std::shared_ptr<StateStore>> open(const StateOptions& options);
+  StateStore(const StateStore&) = delete;
+  StateStore& operator=(const StateStore&) = delete;
+
+  /// Returns the names of the rooms that have files, sorted.
+  [[nodiscard]] core::Result<std::vector<std::string>> rooms() const;
+  /// Reads what there is of a room and logs what cannot be used. One place per room at a time.
+  core::Result<RoomPlace> place(const std::string& room);
+  /// Moves the files of a room that cannot be used out of the way; returns where to.
+  core::Result<std::filesystem::path> setAside(const std::string& room) const;
+  /// Removes the files of a closed room.
+  core::Result<void> remove(const std::string& room) const;
+  [[nodiscard]] const std::filesystem::path& folder() const { return options_.folder; }
+
+ private:
+  StateStore(StateOptions options, state::FolderLock lock);
+
+  const StateOptions options_;
+  state::FolderLock lock_;
+  Worker writer_;
+};
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,194 @@
+// The state of a room on disk: what it writes while it runs, and how it goes on from there after a restart.
+#include <chrono>
+#include <utility>
+#include <variant>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/core/version.h>
+#include <spindrift/rooms/room.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/client_message.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A room that comes back lost at most so much simulated time after the last command.
+constexpr auto kRunningInterval = 500ms;
+
+wire::CommandRejection notKept(const std::string& why) {
+  return rejection(v1::REJECT_REASON_BUSY, "", "the server cannot keep this on disk and does not carry it out: " + why);
+}
+
+std::int64_t nowUnix_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+// While it runs
+
+Room::Outcome Room::keep(const Command& command) {
+  if (!keeper_) return {};
+  if (const auto gap = keeper_->gap()) return notKept(*gap);
+  v1::StateRecord record;
+  record.set_tick(tick());
+  *record.mutable_command() = command.message;
+  if (auto appended = keeper_->append(record); !appended) return notKept(appended.error().message);
+  return {};
+}
+
+void Room::keepWhatHappened(v1::StateRecord record) {
+  if (!keeper_) return;
+  record.set_tick(tick());
+  keeper_->appendWhatHappened(record);
+}
+
+void Room::keepPeople() {
+  if (!keeper_) return;
+  const std::uint64_t version = roster_.version();
+  if (version == std::exchange(kept_people_version_, version)) return;
+  v1::StateRecord record;
+  *record.mutable_people() = roster_.kept();
+  keepWhatHappened(std::move(record));
+}
+
+void Room::flushKept() {
+  if (!keeper_ || answers_.empty()) return;
+  const auto flushed = keeper_->flush();
+  if (flushed) return;
+  for (Answer& answer : answers_) {
+    if (answer.rejected) continue;
+    answer.rejected =
+        rejection(v1::REJECT_REASON_BUSY, "",
+                  "it was carried out, but the server cannot keep it on disk: " + flushed.error().message);
+  }
+}
+
+void Room::keepState(TimePoint now) {
+  if (!keeper_ || is_lost_ || change_) return;
+  // What the watchdog restored does not follow from the log.
+  const std::uint64_t recovered_count = water_->sim().recoveredCount();
+  if (recovered_count != std::exchange(kept_recovery_count_, recovered_count)) keeper_->ask();
+  if (keeper_->isDue(now)) {
+    if (auto state = stateNow()) keeper_->save(*std::move(state), now);
+    next_running_ = now + kRunningInterval;
+  } else if (now >= next_running_ && water_->stateId() != kept_state_id_) {
+    kept_state_id_ = water_->stateId();
+    next_running_ = now + kRunningInterval;
+    v1::StateRecord record;
+    record.set_running(true);
+    keepWhatHappened(std::move(record));
+  }
+}
+
+core::Result<void> Room::keepAtEnd() {
+  if (!keeper_ || is_lost_) return {};
+  water_->bind();
+  auto state = stateNow();
+  if (!state) return core::Error{core::ErrorCode::kUnavailable, "the device does not answer"};
+  return keeper_->saveAndWait(*std::move(state));
+}
+
+std::optional<v1::KeptState> Room::stateNow() {
+  v1::KeptState out;
+  out.set_server(std::string(core::nameAndVersion()));
+  out.set_device(water_->device().name);
+  out.set_gl_version(water_->device().gl_version);
+  out.set_room(name_);
+  out.set_saved_at_ms(nowUnix_ms());
+  water_->save(out);
+  if (water_->failure()) return std::nullopt;  // a lost device reads as zeros
+  out.set_paused(paused_);
+  out.set_speed(clock_.speed());
+  out.set_pending_tick_count(pending_tick_count_);
+  out.set_chosen_fidelity(chosen_fidelity_);
+  *out.mutable_people() = roster_.kept();
+  return out;
+}
+
+// After a restart
+
+core::Result<void> Room::restore(const KeptRoom& kept) {
+  const v1::KeptState& state = kept.state;
+  if (auto done = water_->restore(state); !done) return done;
+  clock_ = RealTimeClock(water_->sim().derived().tick_s);
+  if (state.speed() > 0) clock_.setSpeed(state.speed());
+  paused_ = state.paused();
+  chosen_fidelity_ = state.chosen_fidelity();
+  std::uint64_t steps_until = tick() + state.pending_tick_count();
+  v1::RoomPeople people = state.people();
+  for (const v1::StateRecord& record : kept.records) {
+    if (auto done = repeat(record, steps_until); !done) return done;
+    if (record.has_people()) people = record.people();
+  }
+  pending_tick_count_ = paused_ && steps_until > tick() ? static_cast<std::uint32_t>(steps_until - tick()) : 0;
+  roster_.restore(people, std::chrono::steady_clock::now());
+  boatsChanged();
+  boats_ = water_->boats();
+  tick_cost_.restart(water_->warmTick_ms(), water_->work());
+  recovery_news_.restart(water_->sim().recoveredCount());
+  kept_recovery_count_ = water_->sim().recoveredCount();
+  publishSnapshot();
+  publishVitals({});
+  const auto when = std::chrono::system_clock::time_point(std::chrono::milliseconds(state.saved_at_ms()));
+  spdlog::info("room {}: goes on at tick {} of scene {}, {} ticks and {} records after its snapshot of {:%F %T} UTC",
+               name_, tick(), water_->scene().name(), tick() - state.tick(), kept.records.size(),
+               fmt::gmtime(std::chrono::system_clock::to_time_t(when)));
+  return {};
+}
+
+core::Result<void> Room::repeat(const v1::StateRecord& record, std::uint64_t& steps_until) {
+  const bool changes_water =
+      record.has_scene() || record.has_continued_scene();  // written after it, which takes a tick
+  while (tick() + (changes_water ? 1 : 0) < record.tick()) {
+    water_->step();
+    if (const auto& error = water_->sim().deviceError()) return *error;
+  }
+  if (changes_water) {
+    v1::Scene scene = record.has_scene() ? record.scene() : record.continued_scene();
+    scene::fillDefaults(scene);
+    chosen_fidelity_ = scene.fidelity();
+    auto next = builder_.build(std::move(scene)).get();
+    if (!next) return next.error();
+    if (record.has_scene()) {
+      builder_.dispose(water_->replaceWater(*std::move(next)));
+    } else {
+      if (auto done = water_->continueIn(*next); !done) return done;
+      builder_.dispose(*std::move(next));
+    }
+    water_->bind();
+    return {};
+  }
+  if (!record.has_command()) return {};
+  const auto checked = wire::checkCommand(record.command());
+  const auto* command = std::get_if<v1::Command>(&checked);
+  if (!command) return {};
+  switch (command->action_case()) {
+    case v1::Command::kSetPaused:
+      paused_ = command->set_paused().paused();
+      steps_until = 0;
+      return {};
+    case v1::Command::kSetSpeed:
+      clock_.setSpeed(command->set_speed().speed());
+      return {};
+    case v1::Command::kStep:
+      steps_until = std::max(steps_until, tick()) + command->step().tick_count();
+      return {};
+    case v1::Command::kReset:
+      steps_until = 0;
+      break;
+    default:
+      break;
+  }
+  // What the water refused then, it refuses again.
+  if (RoomWater::takes(*command)) (void)water_->apply(*command);
+  return {};
+}
+
+}  // namespace spindrift::rooms

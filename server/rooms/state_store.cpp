@@ -1,0 +1,88 @@
+#include <utility>
+
+#include <fmt/format.h>
+#include <google/protobuf/stubs/logging.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/rooms/state_store.h>
+#include <spindrift/state/room_folders.h>
+
+namespace spindrift::rooms {
+namespace {
+
+/// Lower priority than the ticks of running rooms.
+constexpr int kWriterNiceness = 5;
+
+template <typename Message>
+bool parse(Message& message, core::ByteView bytes) {
+  const google::protobuf::LogSilencer silencer;
+  return message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
+}
+
+/// Records after the first one that is no message are not used: each changes what the later ones mean.
+std::vector<v1::StateRecord> parseRecords(const std::string& room, const std::vector<state::RoomFiles::Log>& logs) {
+  std::vector<v1::StateRecord> out;
+  for (const state::RoomFiles::Log& log : logs) {
+    for (const core::ByteView bytes : log.records) {
+      v1::StateRecord record;
+      if (!parse(record, bytes)) {
+        spdlog::error(
+            "room {}: record {} of its state is of another version of this program; it and the later ones are not used",
+            room, out.size() + 1);
+        return out;
+      }
+      out.push_back(std::move(record));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+core::Result<std::shared_ptr<StateStore>> StateStore::open(const StateOptions& options) {
+  auto lock = state::FolderLock::take(options.folder);
+  if (!lock) return lock.error();
+  if (auto finished = state::finishRemovals(options.folder); !finished) return finished.error();
+  return std::shared_ptr<StateStore>(new StateStore(options, *std::move(lock)));
+}
+
+StateStore::StateStore(StateOptions options, state::FolderLock lock)
+    : options_(std::move(options)), lock_(std::move(lock)), writer_(kWriterNiceness) {}
+
+core::Result<std::vector<std::string>> StateStore::rooms() const {
+  return state::listRooms(options_.folder);
+}
+
+core::Result<RoomPlace> StateStore::place(const std::string& room) {
+  const auto folder = state::roomFolder(options_.folder, room);
+  if (!folder) return folder.error();
+  auto files =
+      state::RoomFiles::open(*folder, {.sync = options_.sync, .kept_generation_count = options_.kept_generation_count});
+  if (!files) return files.error();
+  auto recovered = (*files)->recover();
+  if (!recovered) return recovered.error();
+  for (const std::string& note : recovered->notes) spdlog::warn("room {}: {}", room, note);
+  RoomPlace out;
+  if (recovered->generation > 0) {
+    KeptRoom kept;
+    if (parse(kept.state, recovered->snapshot)) {
+      kept.records = parseRecords(room, recovered->logs);
+      out.kept = std::move(kept);
+    } else {
+      spdlog::error("room {}: its snapshot {} is of another version of this program and is not used", room,
+                    recovered->generation);
+    }
+  }
+  out.keeper = std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_);
+  return out;
+}
+
+core::Result<std::filesystem::path> StateStore::setAside(const std::string& room) const {
+  return state::setRoomAside(options_.folder, room);
+}
+
+core::Result<void> StateStore::remove(const std::string& room) const {
+  return state::removeRoom(options_.folder, room);
+}
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,179 @@
+#include <bit>
+#include <cstring>
+#include <utility>
+#include <variant>
+
+#include <spindrift/rooms/water_state.h>
+#include <spindrift/scene/scene_rules.h>
+
+namespace spindrift::rooms {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "words are little-endian in messages");
+
+std::string bytesOf(const std::vector<std::uint32_t>& words) {
+  return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)};
+}
+
+/// Returns false if the bytes are no whole words.
+bool readWords(const std::string& bytes, std::vector<std::uint32_t>& words) {
+  if (bytes.size() % sizeof(std::uint32_t) != 0) return false;
+  words.resize(bytes.size() / sizeof(std::uint32_t));
+  if (!words.empty()) std::memcpy(words.data(), bytes.data(), bytes.size());
+  return true;
+}
+
+v1::Side sideOf(core::Side side) {
+  switch (side) {
+    case core::Side::kPlusX:
+      return v1::SIDE_PLUS_X;
+    case core::Side::kMinusX:
+      return v1::SIDE_MINUS_X;
+    case core::Side::kPlusZ:
+      return v1::SIDE_PLUS_Z;
+    case core::Side::kMinusZ:
+      return v1::SIDE_MINUS_Z;
+    case core::Side::kDirection:
+      break;
+  }
+  return v1::SIDE_DIRECTION;
+}
+
+void fill(v1::ActiveEffect& out, const core::Splash& splash) {
+  v1::Splash& message = *out.mutable_splash();
+  message.set_x_m(splash.x_m);
+  message.set_z_m(splash.z_m);
+  message.set_radius_m(splash.radius_m);
+  message.set_depth_m(splash.depth_m);
+  message.set_duration_s(splash.duration_s);
+}
+
+void fill(v1::ActiveEffect& out, const core::BreakingWave& wave) {
+  v1::BreakingWave& message = *out.mutable_breaking_wave();
+  message.set_side(sideOf(wave.side));
+  message.set_amplitude_m(wave.amplitude_m);
+  message.set_length_m(wave.length_m);
+  message.set_duration_s(wave.duration_s);
+  message.set_shape(wave.shape == core::WaveShape::kSwell ? v1::WAVE_SHAPE_SWELL : v1::WAVE_SHAPE_BREAKING);
+  message.set_direction_deg(wave.direction_deg);
+}
+
+void fill(v1::Boat& out, const core::Boat& boat) {
+  out.set_x_m(boat.x_m);
+  out.set_z_m(boat.z_m);
+  out.set_heading_deg(boat.heading_deg);
+  out.set_length_m(boat.length_m);
+  out.set_beam_m(boat.beam_m);
+  out.set_height_m(boat.height_m);
+  out.set_density_ratio(boat.density_ratio);
+  out.set_max_speed_mps(boat.max_speed_mps);
+  out.set_throttle_ratio(boat.throttle_ratio);
+  out.set_rudder_ratio(boat.rudder_ratio);
+}
+
+void fill(v1::SeaState& out, const sim::SeaState& sea) {
+  out.set_wind_speed_mps(sea.wind_speed_mps);
+  out.set_significant_height_m(sea.significant_height_m);
+  out.set_peak_period_s(sea.peak_period_s);
+  out.set_peak_length_m(sea.peak_length_m);
+  for (const sim::PlaneWave& wave : sea.waves) {
+    v1::SeaWave& message = *out.add_waves();
+    message.set_amplitude_m(wave.amplitude_m);
+    message.set_omega_radps(wave.omega_radps);
+    message.set_kx_radpm(wave.kx_radpm);
+    message.set_kz_radpm(wave.kz_radpm);
+    message.set_phase_rad(wave.phase_rad);
+    message.set_decay_pm(wave.decay_pm);
+    message.set_sides(wave.sides);
+  }
+}
+
+sim::SeaState toSea(const v1::SeaState& message) {
+  sim::SeaState out{.wind_speed_mps = message.wind_speed_mps(),
+                    .significant_height_m = message.significant_height_m(),
+                    .peak_period_s = message.peak_period_s(),
+                    .peak_length_m = message.peak_length_m(),
+                    .waves = {}};
+  for (const v1::SeaWave& wave : message.waves())
+    out.waves.push_back({.amplitude_m = wave.amplitude_m(),
+                         .omega_radps = wave.omega_radps(),
+                         .kx_radpm = wave.kx_radpm(),
+                         .kz_radpm = wave.kz_radpm(),
+                         .phase_rad = wave.phase_rad(),
+                         .decay_pm = wave.decay_pm(),
+                         .sides = wave.sides()});
+  return out;
+}
+
+}  // namespace
+
+v1::WaterState toMessage(const sim::SavedState& state) {
+  v1::WaterState out;
+  out.set_run_tick(state.run_tick);
+  out.set_careful_ticks(state.careful_ticks);
+  out.set_layout(bytesOf(state.layout));
+  for (const sim::SavedBuffer& buffer : state.buffers) {
+    v1::WaterBuffer& message = *out.add_buffers();
+    message.set_name(buffer.name);
+    message.set_words(bytesOf(buffer.words));
+  }
+  for (const sim::Effects::Active& active : state.effects.active()) {
+    v1::ActiveEffect& message = *out.add_effects();
+    message.set_start_s(active.start_s);
+    std::visit([&](const auto& effect) { fill(message, effect); }, active.effect);
+  }
+  for (const sim::BoatPlace& place : state.boats.places) {
+    v1::BoatPlace& message = *out.add_boats();
+    message.set_boat_id(place.boat_id);
+    fill(*message.mutable_boat(), place.boat);
+  }
+  out.set_first_boat_id(state.boats.first_id);
+  out.set_next_boat_id(state.boats.next_id);
+  fill(*out.mutable_sea(), state.sea.shown);
+  fill(*out.mutable_next_sea(), state.sea.next);
+  if (state.sea.fade_begin_s) out.set_fade_begin_s(*state.sea.fade_begin_s);
+  out.set_sea_step_count(state.sea_step_count);
+  out.set_patch_x_m(state.patch_x_m);
+  out.set_patch_z_m(state.patch_z_m);
+  return out;
+}
+
+core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
+  const auto invalid = [](const char* what) {
+    return core::Error{core::ErrorCode::kInvalidInput, std::string("the saved water is damaged: ") + what};
+  };
+  sim::SavedState out;
+  out.run_tick = message.run_tick();
+  out.careful_ticks = message.careful_ticks();
+  if (!readWords(message.layout(), out.layout)) return invalid("its layout has no whole words");
+  for (const v1::WaterBuffer& buffer : message.buffers()) {
+    if (!readWords(buffer.words(), out.buffers.emplace_back(sim::SavedBuffer{buffer.name(), {}}).words))
+      return invalid("a buffer has no whole words");
+  }
+  std::vector<sim::Effects::Active> active;
+  for (const v1::ActiveEffect& effect : message.effects()) {
+    if (effect.has_splash()) {
+      active.push_back({scene::toCore(effect.splash()), effect.start_s()});
+    } else if (effect.has_breaking_wave()) {
+      active.push_back({scene::toCore(effect.breaking_wave()), effect.start_s()});
+    } else {
+      return invalid("an effect is neither splash nor wave");
+    }
+  }
+  if (!out.effects.resume(std::move(active))) return invalid("it has more effects than there can be");
+  for (const v1::BoatPlace& place : message.boats())
+    out.boats.places.push_back({place.boat_id(), scene::toCore(place.boat())});
+  out.boats.first_id = message.first_boat_id();
+  out.boats.next_id = message.next_boat_id();
+  out.sea.shown = toSea(message.sea());
+  out.sea.next = toSea(message.next_sea());
+  if (out.sea.shown.waves.size() + out.sea.next.waves.size() > MAX_SEA_WAVES)
+    return invalid("it has more waves than there can be");
+  if (message.has_fade_begin_s()) out.sea.fade_begin_s = message.fade_begin_s();
+  out.sea_step_count = message.sea_step_count();
+  out.patch_x_m = message.patch_x_m();
+  out.patch_z_m = message.patch_z_m();
+  return out;
+}
+
+}  // namespace spindrift::rooms
