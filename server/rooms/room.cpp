@@ -57,7 +57,11 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
                                                  WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place) {
   auto room_water = std::make_unique<RoomWater>(std::move(water));
   std::unique_ptr<CommandLogWriter> log;
-  if (!rules.record_folder.empty()) {
+  if (!rules.record_folder.empty() && place.kept) {
+    spdlog::warn(
+        "room {}: is not recorded, because it goes on from its state on disk, and a log has to begin with a scene",
+        name);
+  } else if (!rules.record_folder.empty()) {
     v1::RecordHeader header;
     header.set_server(std::string(core::nameAndVersion()));
     describeDevice(header, room_water->device());

@@ -59,7 +59,7 @@ class RoomTest : public testing::Test {
     ASSERT_TRUE(water);
     context_ = &(*water)->context();
     builder_ = std::make_unique<rooms::WaterBuilder>(device_);
-    auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_, outlets_);
+    auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_, outlets_, place());
     ASSERT_TRUE(room);
     room_ = *std::move(room);
     room_->start(Clock::now());
@@ -70,6 +70,8 @@ class RoomTest : public testing::Test {
 
   virtual std::string sceneText() const { return kStillPool; }
   virtual std::string sceneName() const { return "main"; }
+  /// Where the room is kept on disk.
+  virtual rooms::RoomPlace place() { return {}; }
 
   /// Runs the room until the condition holds; false after kPatience.
   bool runUntil(const std::function<bool()>& holds) {

@@ -64,6 +64,8 @@ class ServerTest : public testing::Test {
   }
 
   service::WaterServer& server() { return *server_; }
+  /// Ends the server; SetUp() starts another one.
+  void stop() { server_.reset(); }
   const rooms::EncoderThread& encoder() const { return server_->encoder(); }
 
   /// Frames of a stream encoded so far, of all levels and rooms.

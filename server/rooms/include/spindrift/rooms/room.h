@@ -116,6 +116,8 @@ class Room {
   [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
   /// Ticks since the room started, across scene changes: never decreases.
   [[nodiscard]] std::uint64_t tick() const { return water_->tick(); }
+  /// Of the water: sim::WaterSim::stateHash(). Waits for the device.
+  [[nodiscard]] std::uint64_t stateHash() { return water_->sim().stateHash(); }
   /// Rejects the commands that still wait.
   void abandonCommands();
   /// Writes a last snapshot and waits for it. Errors: those of the files; kUnavailable when the device does not answer.

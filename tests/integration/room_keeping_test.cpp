@@ -1,0 +1,303 @@
+// Rooms that are kept on disk: what a crash leaves of them, and what a damaged or full disk does.
+#include <csignal>
+
+#include <sys/resource.h>
+
+#include <spindrift/rooms/state_store.h>
+
+#include "room_fixture.h"
+#include "temporary_folder.h"
+
+namespace spindrift::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// Waves that break, spray, boats, foam and weather: every part that has a state.
+constexpr const char* kHarbor = R"(
+  wave { resolution_count: 48 side_m: 12 depth_m: 1 bulk: BULK_NONLINEAR dispersion: DISPERSION_AIRY
+         boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_REFLECT
+         boundary_minus_z: WAVE_BOUNDARY_REFLECT boundary_plus_z: WAVE_BOUNDARY_REFLECT }
+  particles { count: 1000 headroom_m: 3 }
+  coupling { mode: COUPLING_MODE_TWO_WAY droplet_spacing_m: 0.15 }
+  foam { surface: true }
+  boats { capacity_count: 4 boats { x_m: 2 throttle_ratio: 0.5 } }
+  storm { level_ratio: 0.6 wind_direction_deg: 10 }
+)";
+
+class KeptRoomTest : public RoomTest {
+ protected:
+  void SetUp() override {
+    folder_.write("harbor.textproto", kHarbor);
+    folder_.write("box.textproto", kStillPool);
+    rules_.scenes = rooms::SceneCatalog(folder_.path());
+    openStore();
+    RoomTest::SetUp();
+  }
+  std::string sceneText() const override { return kHarbor; }
+  std::string sceneName() const override { return "harbor"; }
+  rooms::RoomPlace place() override {
+    auto place = rules_.states->place("main");
+    EXPECT_TRUE(place) << place.error().message;
+    return place ? *std::move(place) : rooms::RoomPlace{};
+  }
+  void openStore() {
+    auto store = rooms::StateStore::open({.folder = folder_.path() / "state", .snapshot_interval = interval_});
+    ASSERT_TRUE(store) << store.error().message;
+    rules_.states = *std::move(store);
+  }
+
+  /// What a killed server leaves: nothing more is written.
+  void crash() {
+    room_->releaseDevice();
+    room_.reset();
+    outlets_ = {};
+    rules_.states.reset();
+  }
+  /// As a server that starts again.
+  void comeBack() {
+    openStore();
+    rooms::RoomPlace kept = place();
+    ASSERT_TRUE(kept.kept);
+    v1::Scene start = kept.kept->state.start_scene();
+    scene::fillDefaults(start);
+    auto water = rooms::Water::create(device_, std::move(start));
+    ASSERT_TRUE(water) << water.error().message;
+    context_ = &(*water)->context();
+    auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_, outlets_, std::move(kept));
+    ASSERT_TRUE(room) << room.error().message;
+    room_ = *std::move(room);
+    room_->start(Clock::now());
+  }
+  void crashAndComeBack() {
+    crash();
+    comeBack();
+  }
+
+  bool runTicks(std::uint64_t count) {
+    const std::uint64_t end = room_->tick() + count;
+    return runUntil([&] { return room_->tick() >= end; });
+  }
+  /// Runs to a tick and pauses there, so that two rooms can be compared.
+  std::uint64_t hashAt(std::uint64_t tick) {
+    EXPECT_TRUE(runUntil([&] { return room_->tick() >= tick; }));
+    EXPECT_EQ(room_->tick(), tick);
+    return room_->stateHash();
+  }
+  bool isAnswered(std::size_t count) {
+    return runUntil([&] { return outlets_.applied.size() + outlets_.rejected.size() >= count; });
+  }
+  v1::Scene scene() const { return room_->snapshot()->scene; }
+
+  TemporaryFolder folder_;
+  std::chrono::milliseconds interval_{3'600'000};
+};
+
+TEST_F(KeptRoomTest, GoesOnBitForBitFromItsFirstSnapshotAndTheLog) {
+  send(1, splash(0.4, 1.5));
+  send(2, spawnBoat(-2, 1));
+  ASSERT_TRUE(runTicks(20));
+  send(3, controlBoat(1, 1.0, -0.5));
+  send(4, setParameter("storm.level_ratio", 0.9));
+  ASSERT_TRUE(runTicks(20));
+  send(5, splash(0.3, 1.0));
+  ASSERT_TRUE(isAnswered(5));
+  ASSERT_THAT(outlets_.rejected, IsEmpty());
+  const std::uint64_t compared = room_->tick() + 12;
+  const std::uint64_t expected = hashAt(compared);
+
+  crashAndComeBack();
+  EXPECT_LE(room_->tick(), compared);
+  EXPECT_EQ(scene().storm().level_ratio(), 0.9);
+  EXPECT_EQ(hashAt(compared), expected);
+  EXPECT_THAT(room_->water().boats(), SizeIs(2));
+}
+
+TEST_F(KeptRoomTest, GoesOnBitForBitFromASnapshotInTheMiddle) {
+  send(1, splash(0.4, 1.5));
+  ASSERT_TRUE(runTicks(25));
+  ASSERT_TRUE(room_->askForSnapshot());
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count == 2; }));
+  send(2, splash(0.3, 1.0));
+  ASSERT_TRUE(isAnswered(2));
+  const std::uint64_t compared = room_->tick() + 10;
+  const std::uint64_t expected = hashAt(compared);
+  crashAndComeBack();
+  EXPECT_EQ(hashAt(compared), expected);
+}
+
+TEST_F(KeptRoomTest, OfAReplacedSceneGoesOnInThatSceneAtItsLevel) {
+  ASSERT_TRUE(runTicks(5));
+  send(1, changeScene("box"));
+  ASSERT_TRUE(isAnswered(1));
+  ASSERT_THAT(outlets_.applied, ElementsAre(1));
+  send(2, splash(0.3, 1.0));
+  send(3, setParameter("particles.count", 700));
+  ASSERT_TRUE(isAnswered(3));
+  ASSERT_THAT(outlets_.rejected, IsEmpty());
+  const std::uint64_t compared = room_->tick() + 8;
+  const std::uint64_t expected = hashAt(compared);
+  crashAndComeBack();
+  EXPECT_EQ(scene().name(), "box");
+  EXPECT_EQ(scene().particles().count(), 700u);
+  EXPECT_EQ(hashAt(compared), expected);
+}
+
+TEST_F(KeptRoomTest, AtAnotherLevelGoesOnAtThatLevel) {
+  send(1, splash(0.4, 1.5));
+  ASSERT_TRUE(runTicks(10));
+  v1::Command coarser = changeScene("harbor");
+  coarser.mutable_change_scene()->set_fidelity(v1::FIDELITY_DRAFT);
+  send(2, coarser);
+  ASSERT_TRUE(isAnswered(2));
+  ASSERT_THAT(outlets_.rejected, IsEmpty());
+  const std::uint64_t compared = room_->tick() + 8;
+  const std::uint64_t expected = hashAt(compared);
+  crashAndComeBack();
+  EXPECT_EQ(scene().fidelity(), v1::FIDELITY_DRAFT);
+  EXPECT_EQ(hashAt(compared), expected);
+}
+
+TEST_F(KeptRoomTest, IsPausedAsFastAndHasAsManyStepsToGoAsBefore) {
+  send(1, setSpeed(0.25));
+  send(2, setPaused(true));
+  ASSERT_TRUE(isAnswered(2));
+  const std::uint64_t end = room_->tick() + 5;
+  send(3, step(5));
+  ASSERT_TRUE(isAnswered(3));
+  crashAndComeBack();
+  EXPECT_TRUE(room_->snapshot()->paused);
+  EXPECT_EQ(room_->snapshot()->speed, 0.25);
+  EXPECT_TRUE(runUntil([&] { return room_->tick() == end; }));
+  for (int k = 0; k < 20; ++k) room_->run(Clock::now());
+  EXPECT_EQ(room_->tick(), end) << "and no further";
+}
+
+TEST_F(KeptRoomTest, GivesPeopleTheirBoatsBackWhenTheyReturnInTime) {
+  const rooms::Admission captain = room_->roster().arrive({.session = 7, .role = core::Role::kPlayer, .name = "Ada"});
+  const rooms::Admission guest = room_->roster().arrive({.session = 8, .role = core::Role::kViewer, .name = ""});
+  send(1, spawnBoat(-2, 1), 7, captain.person_id);
+  ASSERT_TRUE(isAnswered(1));
+  const std::uint32_t boat_id = room_->roster().people().people(0).boat_ids(0);
+  crashAndComeBack();
+  EXPECT_EQ(room_->roster().ownerOf(boat_id), captain.person_id);
+  const rooms::Admission again =
+      room_->roster().arrive({.session = 1, .role = core::Role::kPlayer, .resume_key = captain.resume_key});
+  EXPECT_TRUE(again.resumed);
+  EXPECT_EQ(again.person_id, captain.person_id);
+  const rooms::Admission guest_again =
+      room_->roster().arrive({.session = 2, .role = core::Role::kViewer, .resume_key = guest.resume_key});
+  EXPECT_TRUE(guest_again.resumed) << "also without a boat";
+  const rooms::Admission other = room_->roster().arrive({.session = 3, .role = core::Role::kViewer});
+  EXPECT_GT(other.person_id, guest.person_id) << "nobody gets the number of another";
+}
+
+TEST_F(KeptRoomTest, ForgetsPeopleWhoDoNotReturnInTime) {
+  const rooms::Admission captain = room_->roster().arrive({.session = 7, .role = core::Role::kPlayer});
+  send(1, spawnBoat(-2, 1), 7, captain.person_id);
+  ASSERT_TRUE(isAnswered(1));
+  crash();
+  rules_.grace = 0ms;
+  comeBack();
+  ASSERT_TRUE(runTicks(2));
+  EXPECT_THAT(room_->roster().people().people(), IsEmpty());
+}
+
+TEST_F(KeptRoomTest, ReachesTheDiskWithAllThatItDidWhenItIsStopped) {
+  send(1, splash(0.4, 1.5));
+  ASSERT_TRUE(runTicks(15));
+  const std::uint64_t tick = room_->tick();
+  const std::uint64_t expected = room_->stateHash();
+  ASSERT_TRUE(room_->keepAtEnd());
+  crashAndComeBack();
+  EXPECT_EQ(room_->tick(), tick);
+  EXPECT_EQ(room_->stateHash(), expected);
+}
+
+/// Files of this process cannot grow beyond `bytes` while this lives.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit bound{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &bound);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(KeptRoomTest, RefusesWhatTheDiskDoesNotTakeAndCarriesItOutWhenThereIsRoomAgain) {
+  ASSERT_TRUE(runTicks(3));
+  {
+    const FullDisk full(1);
+    send(1, splash());
+    send(2, setPaused(true));
+    ASSERT_TRUE(isAnswered(2));
+    EXPECT_THAT(outlets_.applied, IsEmpty());
+    ASSERT_THAT(outlets_.rejected, SizeIs(2));
+    EXPECT_THAT(outlets_.rejected[0], HasSubstr("cannot keep this on disk"));
+    EXPECT_FALSE(room_->snapshot()->paused);
+    room_->roster().arrive({.session = 9, .role = core::Role::kViewer});  // happens, whatever the disk says
+    EXPECT_TRUE(runTicks(3)) << "the water runs on";
+    EXPECT_EQ(room_->keptStatus()->snapshot_count, 1u);
+  }
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count >= 2; }))
+      << "what is missing comes in a snapshot";
+  send(3, splash());
+  ASSERT_TRUE(isAnswered(3));
+  EXPECT_THAT(outlets_.applied, ElementsAre(3));
+  const std::uint64_t compared = room_->tick() + 8;
+  const std::uint64_t expected = hashAt(compared);
+  crashAndComeBack();
+  EXPECT_EQ(hashAt(compared), expected);
+}
+
+/// The whole server, with rooms that are opened and closed.
+class KeptServerTest : public ServerTest {
+ protected:
+  void adjust(service::WaterServerOptions& options) const override {
+    auto store = rooms::StateStore::open({.folder = folder_.path()});
+    ASSERT_TRUE(store) << store.error().message;
+    options.rules.states = *std::move(store);
+  }
+  void TearDown() override { stop(); }  // while the folder is there
+  TemporaryFolder folder_;
+};
+
+TEST_F(KeptServerTest, KeepsItsFolderForItself) {
+  const auto second = rooms::StateStore::open({.folder = folder_.path()});
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, HasSubstr("in use by process"));
+}
+
+TEST_F(KeptServerTest, BeginsARoomAnewWhoseStateIsOfAnotherProgramAndSetsItAside) {
+  ScriptedClient first = client();
+  ASSERT_TRUE(first.apply(splash()));
+  stop();
+  {
+    auto files = state::RoomFiles::open(folder_.path() / "rooms" / "main", {});
+    ASSERT_TRUE(files);
+    auto recovered = (*files)->recover();
+    ASSERT_TRUE(recovered);
+    v1::KeptState kept;
+    ASSERT_TRUE(kept.ParseFromArray(recovered->snapshot.data(), static_cast<int>(recovered->snapshot.size())));
+    kept.mutable_water()->mutable_buffers(0)->mutable_words()->resize(8);
+    const auto generation = (*files)->beginGeneration();
+    ASSERT_TRUE(generation);
+    const std::string bytes = kept.SerializeAsString();
+    ASSERT_TRUE(
+        (*files)->writeSnapshot(*generation, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
+  }
+  SetUp();
+  EXPECT_TRUE(client().apply(splash())) << "the room is there, from its start";
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "aside" / "main"));
+}
+
+}  // namespace
+}  // namespace spindrift::test
