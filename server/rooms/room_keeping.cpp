@@ -76,7 +76,10 @@ void Room::keepState(TimePoint now) {
   const std::uint64_t recovered_count = water_->sim().recoveredCount();
   if (recovered_count != std::exchange(kept_recovery_count_, recovered_count)) keeper_->ask();
   if (keeper_->isDue(now)) {
-    if (auto state = stateNow()) keeper_->save(*std::move(state), now);
+    const auto begin = std::chrono::steady_clock::now();
+    auto state = stateNow();
+    const double copy_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (state) keeper_->save(*std::move(state), now, copy_s);
     next_running_ = now + kRunningInterval;
   } else if (now >= next_running_ && water_->stateId() != kept_state_id_) {
     kept_state_id_ = water_->stateId();

@@ -35,6 +35,7 @@ struct StateKeeper::Shared {
   std::uint64_t snapshot_count = 0;
   std::uint64_t failure_count = 0;
   Clock::time_point newest_copy = Clock::now();
+  double copy_s = 0.0;
   double write_s = 0.0;
 
   core::Result<void> write(std::uint64_t generation, const v1::KeptState& state, Clock::time_point copied) {
@@ -133,7 +134,11 @@ std::uint64_t StateKeeper::begin(TimePoint now) {
   return 0;
 }
 
-void StateKeeper::save(v1::KeptState state, TimePoint now) {
+void StateKeeper::save(v1::KeptState state, TimePoint now, double copy_s) {
+  {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->copy_s = copy_s;
+  }
   const std::uint64_t generation = begin(now);
   if (generation == 0) return;
   writer_.push([shared = shared_, generation, now, state = std::move(state)](bool) {
@@ -155,6 +160,7 @@ StateKeeper::Status StateKeeper::status() const {
           .snapshot_count = shared_->snapshot_count,
           .failure_count = shared_->failure_count,
           .since_snapshot_s = std::chrono::duration<double>(Clock::now() - shared_->newest_copy).count(),
+          .copy_s = shared_->copy_s,
           .write_s = shared_->write_s};
 }
 

@@ -63,6 +63,8 @@ void writeKept(Page& page, const std::vector<std::shared_ptr<rooms::Room>>& room
        [](const Status& s) { return s.since_snapshot_s; });
   each("state_snapshot_bytes", "gauge", "Size of the newest snapshot.",
        [](const Status& s) { return s.files.snapshot_bytes; });
+  each("state_snapshot_copy_seconds", "gauge", "Time for which the room stood still for the last snapshot.",
+       [](const Status& s) { return s.copy_s; });
   each("state_snapshot_write_seconds", "gauge", "Time that the last snapshot took to write, beside the room.",
        [](const Status& s) { return s.write_s; });
   each("state_log_bytes", "gauge", "Size of the log since that snapshot.",

@@ -52,8 +52,8 @@ class StateKeeper {
   [[nodiscard]] bool isDue(TimePoint now) const;
   /// Any thread. A snapshot as soon as possible.
   void ask() { is_asked_ = true; }
-  /// Begins a new log and writes the snapshot beside the room. `state` is of this moment.
-  void save(v1::KeptState state, TimePoint now);
+  /// Begins a new log and writes the snapshot beside the room. `state` is of this moment; copying it took `copy_s`.
+  void save(v1::KeptState state, TimePoint now, double copy_s);
   /// The same, and waits for it.
   core::Result<void> saveAndWait(v1::KeptState state);
 
@@ -66,7 +66,8 @@ class StateKeeper {
     std::uint64_t snapshot_count = 0;  ///< written since the start
     std::uint64_t failure_count = 0;   ///< failed snapshots and records
     double since_snapshot_s = 0.0;     ///< since the state of the newest one was copied; since the start without one
-    double write_s = 0.0;              ///< duration of the last write
+    double copy_s = 0.0;               ///< for which the room stood still for the last snapshot
+    double write_s = 0.0;              ///< duration of the last write, beside the room
   };
   [[nodiscard]] Status status() const;
 
