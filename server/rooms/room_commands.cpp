@@ -296,7 +296,7 @@ void Room::announce() {
   if (news.state) outlets_.timeChanged(*this, paused_, clock_.speed());
   for (const auto& [path, value] : news.parameters) outlets_.parameterChanged(*this, path, value);
   if (news.reset) outlets_.wasReset(*this);
-  if (news.rebuilt) outlets_.hasRecovered(*this, "the device failed; the scene began again on a new one");
+  if (!news.rebuilt.empty()) outlets_.hasRecovered(*this, news.rebuilt);
   if (news.boats) announceBoats();
   keepPeople();
   flushKept();

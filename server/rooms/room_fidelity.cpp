@@ -33,7 +33,7 @@ Room::Outcome Room::goOnIn(std::unique_ptr<Water>& next, const std::string& why)
         kField, firstLine(done.error().message));
   }
   builder_.dispose(std::move(next));
-  restartScene(true);
+  restartScene(Restart::kLevel);
   const std::string news = fmt::format("{}fidelity is now {} instead of {}", why.empty() ? why : why + ": ",
                                        scene::fidelityName(water_->scene().fidelity()), before);
   spdlog::info("room {}: {}", name_, news);

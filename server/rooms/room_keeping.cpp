@@ -118,25 +118,15 @@ std::optional<v1::KeptState> Room::stateNow() {
 // After a restart
 
 core::Result<void> Room::restore(const KeptRoom& kept) {
-  const v1::KeptState& state = kept.state;
-  if (auto done = water_->restore(state); !done) return done;
-  clock_ = RealTimeClock(water_->sim().derived().tick_s);
-  if (state.speed() > 0) clock_.setSpeed(state.speed());
-  paused_ = state.paused();
-  chosen_fidelity_ = state.chosen_fidelity();
-  std::uint64_t steps_until = tick() + state.pending_tick_count();
+  const v1::KeptState& state = *kept.state;
   v1::RoomPeople people = state.people();
   for (const v1::StateRecord& record : kept.records) {
-    if (auto done = repeat(record, steps_until); !done) return done;
     if (record.has_people()) people = record.people();
   }
-  pending_tick_count_ = paused_ && steps_until > tick() ? static_cast<std::uint32_t>(steps_until - tick()) : 0;
+  if (auto done = restoreWater(kept); !done) return done;
   roster_.restore(people, std::chrono::steady_clock::now());
   boatsChanged();
   boats_ = water_->boats();
-  tick_cost_.restart(water_->warmTick_ms(), water_->work());
-  recovery_news_.restart(water_->sim().recoveredCount());
-  kept_recovery_count_ = water_->sim().recoveredCount();
   publishSnapshot();
   publishVitals({});
   const auto when = std::chrono::system_clock::time_point(std::chrono::milliseconds(state.saved_at_ms()));
@@ -144,6 +134,46 @@ core::Result<void> Room::restore(const KeptRoom& kept) {
                name_, tick(), water_->scene().name(), tick() - state.tick(), kept.records.size(),
                fmt::gmtime(std::chrono::system_clock::to_time_t(when)));
   return {};
+}
+
+core::Result<void> Room::restoreWater(const KeptRoom& kept) {
+  const v1::KeptState& state = *kept.state;
+  if (auto done = water_->restore(state); !done) return done;
+  clock_ = RealTimeClock(water_->sim().derived().tick_s);
+  if (state.speed() > 0) clock_.setSpeed(state.speed());
+  paused_ = state.paused();
+  chosen_fidelity_ = state.chosen_fidelity();
+  std::uint64_t steps_until = tick() + state.pending_tick_count();
+  for (const v1::StateRecord& record : kept.records) {
+    if (auto done = repeat(record, steps_until); !done) return done;
+  }
+  pending_tick_count_ = paused_ && steps_until > tick() ? static_cast<std::uint32_t>(steps_until - tick()) : 0;
+  tick_cost_.restart(water_->warmTick_ms(), water_->work());
+  recovery_news_.restart(water_->sim().recoveredCount());
+  kept_recovery_count_ = water_->sim().recoveredCount();
+  return {};
+}
+
+bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
+  const auto kept = keeper_ ? keeper_->newest() : std::nullopt;
+  if (!kept) return false;
+  const std::uint64_t lost_tick = tick();
+  builder_.dispose(water_->replaceWater(std::move(water)));
+  if (auto done = restoreWater(*kept); !done) {
+    spdlog::error("room {}: its state cannot be restored: {}", name_, done.error().message);
+    water_->sim().reset();
+    is_lost_ = false;
+    restartScene(Restart::kScene);
+    return true;
+  }
+  water_->goOnAfter(lost_tick);
+  is_lost_ = false;
+  restartScene(Restart::kSameWater);
+  boatsChanged();
+  // Ticks have gone on since the snapshot without the log saying so.
+  if (auto saved = keepAtEnd(); !saved)
+    spdlog::error("room {}: its state could not be written after the device failed: {}", name_, saved.error().message);
+  return true;
 }
 
 core::Result<void> Room::repeat(const v1::StateRecord& record, std::uint64_t& steps_until) {

@@ -4,6 +4,7 @@
 
 #include <spindrift/core/monotonic.h>
 #include <spindrift/rooms/room.h>
+#include <spindrift/scene/scene_loader.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -77,7 +78,7 @@ void Room::adoptWater(TimePoint now) {
 void Room::replaceWater(std::unique_ptr<Water> water) {
   builder_.dispose(water_->replaceWater(std::move(water)));
   is_lost_ = false;
-  restartScene(false);
+  restartScene(Restart::kScene);
 }
 
 Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
@@ -98,7 +99,7 @@ bool Room::isLost(TimePoint now) {
   if (!is_lost_) {
     const auto failure = water_->failure();
     if (!failure) return false;
-    spdlog::error("room {}: {}; scene {} is rebuilt from its start", name_, *failure, water_->scene().name());
+    spdlog::error("room {}: {}; scene {} is rebuilt", name_, *failure, water_->scene().name());
     is_lost_ = true;
     rebuild_pause_ = 1s;
     next_rebuild_ = now;
@@ -106,7 +107,7 @@ bool Room::isLost(TimePoint now) {
   }
   if (!build_ && now >= next_rebuild_) {
     build_.emplace(WaterBuild{
-        .commands = {}, .water = builder_.build(water_->scene()), .cause = WaterBuild::Cause::kDeviceFailure});
+        .commands = {}, .water = builder_.build(sceneAfterLoss()), .cause = WaterBuild::Cause::kDeviceFailure});
   }
   const auto failed =
       rejection(v1::REJECT_REASON_BUSY, "", "the device failed and the room's water is being built anew: try again");
@@ -124,19 +125,35 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
     rebuild_pause_ = std::min(2 * rebuild_pause_, kLongestPause);
     return;
   }
-  replaceWater(*std::move(water));
-  news_.rebuilt = true;
+  const bool is_restored = restoreAfterLoss(*water);
+  if (!is_restored) replaceWater(*std::move(water));
+  news_.rebuilt = is_restored ? "the device failed; the room goes on where it was, on a new one"
+                              : "the device failed; the scene began again on a new one";
   publishVitals(now);
-  spdlog::warn("room {}: runs again from the start of scene {}", name_, water_->scene().name());
+  spdlog::warn("room {}: runs again, scene {} {}", name_, water_->scene().name(),
+               is_restored ? "where it was" : "from its start");
 }
 
-void Room::restartScene(bool goes_on) {
-  if (log_) {
+v1::Scene Room::sceneAfterLoss() const {
+  const auto kept = keeper_ ? keeper_->newest() : std::nullopt;
+  if (!kept) return water_->scene();
+  v1::Scene out = kept->state->start_scene();
+  scene::fillDefaults(out);
+  return out;
+}
+
+void Room::restartScene(Restart what) {
+  const bool goes_on = what != Restart::kScene;
+  if (log_ && what == Restart::kSameWater) {
+    v1::Record line;
+    line.set_recovered(true);  // a replay does not repeat it
+    record(std::move(line));
+  } else if (log_) {
     v1::Record line;
     *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
     record(std::move(line));
   }
-  if (keeper_) {
+  if (keeper_ && what != Restart::kSameWater) {
     v1::StateRecord line;
     *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
     keepWhatHappened(std::move(line));

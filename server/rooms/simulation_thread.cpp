@@ -101,9 +101,9 @@ core::Result<void> SimulationThread::buildRoom(const std::string& name, std::opt
   auto place = placeOf(name);
   if (!place) return place.error();
   if (place->kept) {
-    v1::Scene start = place->kept->state.start_scene();
+    v1::Scene start = place->kept->state->start_scene();
     scene::fillDefaults(start);
-    v1::Scene scene = place->kept->state.scene();
+    v1::Scene scene = place->kept->state->scene();
     scene::fillDefaults(scene);
     auto added = add(name, builder_->build(std::move(start)).get(), *std::move(place));
     if (added) return added;

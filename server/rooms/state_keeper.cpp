@@ -14,6 +14,8 @@ using Clock = std::chrono::steady_clock;
 /// After a failed write the next snapshot is tried this much later.
 constexpr auto kRetryPause = 1s;
 constexpr auto kSameErrorPause = 60s;
+/// Of the records since the newest state in memory. Beyond it, a device that fails costs the room its state.
+constexpr std::size_t kRememberedMaxBytes = 16u << 20;
 
 core::ByteView viewOf(const std::string& bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
@@ -84,8 +86,14 @@ void StateKeeper::finish() {
 }
 
 core::Result<void> StateKeeper::append(const v1::StateRecord& record) {
-  auto appended = shared_->files->append(viewOf(record.SerializeAsString()));
-  if (appended) return appended;
+  const std::string bytes = record.SerializeAsString();
+  auto appended = shared_->files->append(viewOf(bytes));
+  if (appended) {
+    records_bytes_ += bytes.size();
+    if (records_bytes_ > kRememberedMaxBytes) newest_ = {};
+    if (newest_.state) newest_.records.push_back(record);
+    return appended;
+  }
   const std::lock_guard lock(shared_->mutex);
   shared_->note(appended.error());
   return appended;
@@ -141,9 +149,20 @@ void StateKeeper::save(v1::KeptState state, TimePoint now, double copy_s) {
   }
   const std::uint64_t generation = begin(now);
   if (generation == 0) return;
-  writer_.push([shared = shared_, generation, now, state = std::move(state)](bool) {
-    (void)shared->write(generation, state, now);  // also when the server ends: the state is there
+  remember(std::move(state));
+  writer_.push([shared = shared_, generation, now, kept = newest_.state](bool) {
+    (void)shared->write(generation, *kept, now);  // also when the server ends: the state is there
   });
+}
+
+void StateKeeper::remember(v1::KeptState state) {
+  newest_ = {std::make_shared<const v1::KeptState>(std::move(state)), {}};
+  records_bytes_ = 0;
+}
+
+std::optional<KeptRoom> StateKeeper::newest() const {
+  if (!newest_.state || gap()) return std::nullopt;
+  return newest_;
 }
 
 core::Result<void> StateKeeper::saveAndWait(v1::KeptState state) {
@@ -151,7 +170,8 @@ core::Result<void> StateKeeper::saveAndWait(v1::KeptState state) {
   const auto now = Clock::now();
   const std::uint64_t generation = begin(now);
   if (generation == 0) return core::Error{core::ErrorCode::kUnavailable, "no new log could be begun"};
-  return shared_->write(generation, state, now);
+  remember(std::move(state));
+  return shared_->write(generation, *newest_.state, now);
 }
 
 StateKeeper::Status StateKeeper::status() const {

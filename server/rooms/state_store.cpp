@@ -64,10 +64,9 @@ core::Result<RoomPlace> StateStore::place(const std::string& room) {
   for (const std::string& note : recovered->notes) spdlog::warn("room {}: {}", room, note);
   RoomPlace out;
   if (recovered->generation > 0) {
-    KeptRoom kept;
-    if (parse(kept.state, recovered->snapshot)) {
-      kept.records = parseRecords(room, recovered->logs);
-      out.kept = std::move(kept);
+    v1::KeptState state;
+    if (parse(state, recovered->snapshot)) {
+      out.kept = KeptRoom{std::make_shared<const v1::KeptState>(std::move(state)), parseRecords(room, recovered->logs)};
     } else {
       spdlog::error("room {}: its snapshot {} is of another version of this program and is not used", room,
                     recovered->generation);

@@ -62,7 +62,7 @@ class KeptRoomTest : public RoomTest {
     openStore();
     rooms::RoomPlace kept = place();
     ASSERT_TRUE(kept.kept);
-    v1::Scene start = kept.kept->state.start_scene();
+    v1::Scene start = kept.kept->state->start_scene();
     scene::fillDefaults(start);
     auto water = rooms::Water::create(device_, std::move(start));
     ASSERT_TRUE(water) << water.error().message;
@@ -215,6 +215,34 @@ TEST_F(KeptRoomTest, ReachesTheDiskWithAllThatItDidWhenItIsStopped) {
   crashAndComeBack();
   EXPECT_EQ(room_->tick(), tick);
   EXPECT_EQ(room_->stateHash(), expected);
+}
+
+TEST_F(KeptRoomTest, GoesOnWhereItWasWhenTheDeviceFails) {
+  const rooms::Admission captain = room_->roster().arrive({.session = 7, .role = core::Role::kPlayer});
+  send(1, splash(0.4, 1.5));
+  send(2, spawnBoat(-2, 1), 7, captain.person_id);
+  ASSERT_TRUE(runTicks(20));
+  send(3, setParameter("storm.level_ratio", 0.9));
+  ASSERT_TRUE(isAnswered(3));
+  const std::uint64_t tick = room_->tick();
+  const double time_s = room_->water().time_s();
+  context_->simulateLoss();
+  room_->run(Clock::now());
+  ASSERT_TRUE(room_->vitals()->lost);
+  ASSERT_TRUE(runUntil([&] { return !room_->vitals()->lost; }));
+  EXPECT_GT(room_->tick(), tick) << "ticks never go back";
+  EXPECT_NEAR(room_->water().time_s(), time_s, 0.1) << "not at the start";
+  EXPECT_EQ(scene().storm().level_ratio(), 0.9);
+  EXPECT_THAT(room_->water().boats(), SizeIs(2));
+  EXPECT_EQ(room_->roster().ownerOf(room_->water().boats()[1].boat_id), captain.person_id);
+  EXPECT_EQ(outlets_.recovered_count, 1);
+  EXPECT_EQ(outlets_.scene_count, 1) << "all clients get a new greeting";
+  send(4, splash());
+  ASSERT_TRUE(isAnswered(4));
+  const std::uint64_t compared = room_->tick() + 6;
+  const std::uint64_t expected = hashAt(compared);
+  crashAndComeBack();
+  EXPECT_EQ(hashAt(compared), expected) << "what is on disk goes on from there";
 }
 
 /// Files of this process cannot grow beyond `bytes` while this lives.

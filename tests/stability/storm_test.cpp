@@ -51,7 +51,7 @@ Extremes extremesOf(sim::WaterSim& water) {
 }
 
 /// Largest allowed elevations. 168 splashes, waves and boats per second, each as large as the scene accepts, pile up
-/// water at rocks and walls (harbor: 10.5 m in 400 ticks); full storm and boats at full speed do not.
+/// water at rocks and walls (harbor: 10.2 m in 400 ticks); full storm and boats at full speed do not.
 constexpr double kHighestOfCrowd_m = 16.0;
 constexpr double kHighestOfWeather_m = 2.0;
 /// With every depth and gravity that a scene accepts; half the range of the elevation.

@@ -144,7 +144,7 @@ class Room {
     bool state = false;
     bool boats = false;
     bool reset = false;
-    bool rebuilt = false;
+    std::string rebuilt{};  ///< for people, after the device failed
     std::map<std::string, double> parameters;  ///< current values by path
   };
   /// New water that is being built while the old one runs.
@@ -230,6 +230,11 @@ class Room {
   std::optional<v1::KeptState> stateNow();
   /// Goes on from there. After an error the water may have any state.
   core::Result<void> restore(const KeptRoom& kept);
+  /// The same for the water, pause, speed and steps, without the people.
+  core::Result<void> restoreWater(const KeptRoom& kept);
+  /// Goes on in new water after the device failed, from what is kept; returns false, with nothing changed, if nothing
+  /// is.
+  bool restoreAfterLoss(std::unique_ptr<Water>& water);
   /// Does again what a record says. `steps_until`: the tick up to which Step commands lead.
   core::Result<void> repeat(const v1::StateRecord& record, std::uint64_t& steps_until);
 
@@ -256,8 +261,11 @@ class Room {
   void beginScene(Batch batch);
   /// Adopts the new water if it is built.
   void adoptWater(TimePoint now);
-  /// Clears the state that belonged to the previous water. `goes_on`: the boats keep their owners.
-  void restartScene(bool goes_on);
+  /// What comes with new water: another scene, the present scene at another level, or the present state on another
+  /// device.
+  enum class Restart { kScene, kLevel, kSameWater };
+  /// Clears the state that belonged to the previous water. Boats keep their owners unless the scene is another.
+  void restartScene(Restart what);
   /// Rejects if ticks would take longer than `max_ms` and longer than now while others than the sender are connected.
   [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                    double max_ms) const;
@@ -280,6 +288,8 @@ class Room {
   /// commands meanwhile. Returns true until that is done.
   bool isLost(TimePoint now);
   void finishRebuild(TimePoint now, WaterBuilder::Built water);
+  /// From which new water is built after the device failed.
+  [[nodiscard]] v1::Scene sceneAfterLoss() const;
   /// Marks the device as failed in the vitals, without calling it.
   void publishLoss();
 

@@ -78,6 +78,10 @@ class RoomWater {
   /// Goes on from there; the water was built from `state.start_scene()`. kInvalidInput if it does not fit: then the
   /// water may have any state.
   core::Result<void> restore(const v1::KeptState& state);
+  /// Numbers the next ticks from after `tick` on, if they would come before it.
+  void goOnAfter(std::uint64_t tick) {
+    if (this->tick() <= tick) tick_shift_ += tick + 1 - this->tick();
+  }
   /// Makes its GL context current. Call it first whenever another context may be current.
   void bind() { water_->bind(); }
   /// gpu::Context::reloadChangedShaders().

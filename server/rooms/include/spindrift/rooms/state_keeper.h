@@ -17,10 +17,10 @@
 
 namespace spindrift::rooms {
 
-/// What was found on disk of a room when the server started.
+/// What is kept of a room: a state, and what happened after it.
 struct KeptRoom {
-  v1::KeptState state;
-  std::vector<v1::StateRecord> records;  ///< after the state, in order
+  std::shared_ptr<const v1::KeptState> state;  ///< never null
+  std::vector<v1::StateRecord> records;        ///< after the state, in order
 };
 
 /// Lives on the simulation thread, except for the functions marked "any thread".
@@ -59,6 +59,8 @@ class StateKeeper {
 
   /// Waits for a snapshot that is being written.
   void finish();
+  /// What a restart would find; nullopt if more happened since than this remembers, or there is a gap.
+  [[nodiscard]] std::optional<KeptRoom> newest() const;
 
   /// Any thread.
   struct Status {
@@ -76,6 +78,7 @@ class StateKeeper {
   struct Shared;
 
   std::uint64_t begin(TimePoint now);
+  void remember(v1::KeptState state);
   void openGap(const core::Error& error);
 
   const std::string room_;
@@ -84,6 +87,8 @@ class StateKeeper {
   std::shared_ptr<Shared> shared_;
   TimePoint next_{};
   std::atomic<bool> is_asked_ = false;
+  KeptRoom newest_{};  ///< without a state if there was too much since
+  std::size_t records_bytes_ = 0;
 };
 
 }  // namespace spindrift::rooms
