@@ -21,6 +21,7 @@
 
 #include "commands.h"
 #include "config_file.h"
+#include "inherited_socket.h"
 #include "serve_options.h"
 
 namespace spindrift::cli {
@@ -127,8 +128,16 @@ rooms::StateOptions stateOptions(const ServeOptions& options) {
               static_cast<std::chrono::milliseconds::rep>(options.snapshot_interval_s * 1e3))};
 }
 
-int serve(const ServeOptions& options) {
+int serve(ServeOptions options) {
   StopSignals signals;
+  auto inherited = takeInheritedSocket();
+  if (!inherited) return fail(inherited.error());
+  if (*inherited) {
+    options.address = (*inherited)->address;
+    options.port = (*inherited)->port;
+    spdlog::info("a listening socket was passed on: {} port {}; --address and --port have no effect", options.address,
+                 options.port);
+  }
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
   rooms::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
@@ -164,6 +173,7 @@ int serve(const ServeOptions& options) {
   server_options.network.allowed_origins = options.origins;
   server_options.network.address = options.address;
   server_options.network.port = options.port;
+  if (*inherited) server_options.network.listening_socket = (*inherited)->descriptor;
   server_options.network.thread_count = options.thread_count;
   server_options.network.address_session_share = options.address_session_share;
   server_options.network.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;

@@ -49,6 +49,7 @@ class ServerImpl final : public Server {
   void stop() override;
 
  private:
+  core::Result<void> bind(const asio::ip::address& address);
   asio::awaitable<void> acceptLoop();
 
   ServerContext context_;
@@ -69,13 +70,32 @@ core::Error unavailable(std::string message) {
 
 core::Result<void> ServerImpl::listen() {
   const ServerOptions& options = context_.options;
-  const std::string port_text = std::to_string(options.port);
   boost::system::error_code error;
   const auto address = asio::ip::make_address(options.address, error);
   if (error) {
-    return unavailable("the address \"" + options.address + "\" (port " + port_text +
+    return unavailable("the address \"" + options.address + "\" (port " + std::to_string(options.port) +
                        ") is not an IP address: give one such as 127.0.0.1, 0.0.0.0 or ::1 with --address");
   }
+  if (options.listening_socket) {
+    acceptor_.assign(address.is_v6() ? tcp::v6() : tcp::v4(), *options.listening_socket, error);
+    if (error) {
+      return unavailable("the listening socket in descriptor " + std::to_string(*options.listening_socket) +
+                         " cannot be used (" + error.message() + "): pass a TCP socket that listens");
+    }
+  } else if (const core::Result<void> bound = bind(address); !bound) {
+    return bound;
+  }
+  port_ = acceptor_.local_endpoint().port();
+  // Logged before any thread exists: the first line initialises shared state of the logger, unseen by the thread
+  // sanitizer.
+  spdlog::debug("port {} is open", port_);
+  return {};
+}
+
+core::Result<void> ServerImpl::bind(const asio::ip::address& address) {
+  const ServerOptions& options = context_.options;
+  const std::string port_text = std::to_string(options.port);
+  boost::system::error_code error;
   const tcp::endpoint endpoint(address, options.port);
   const auto step = [&error](auto&& action) {
     if (!error) action();
@@ -97,10 +117,6 @@ core::Result<void> ServerImpl::listen() {
     return unavailable(where + " needs more rights than this user has: choose one above 1023 with --port");
   }
   if (error) return unavailable(where + " cannot be listened on (" + error.message() + "): choose another");
-  port_ = acceptor_.local_endpoint().port();
-  // Logged before any thread exists: the first line initialises shared state of the logger, unseen by the thread
-  // sanitizer.
-  spdlog::debug("port {} is open", port_);
   return {};
 }
 

@@ -39,7 +39,7 @@ struct RoomSample {
   std::string label;
   std::size_t session_count;
   int person_count;
-  std::size_t fidelity_rank;
+  std::shared_ptr<const rooms::RoomSnapshot> snapshot;
   std::shared_ptr<const rooms::RoomVitals> vitals;
 };
 
@@ -80,10 +80,14 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
   each("room_ticks_total", "counter", "Ticks since the room opened.", [](Sample r) { return r.vitals->tick; });
   each("room_real_time_factor", "gauge", "Simulated seconds per second over the last second; 0 while paused or asleep.",
        [](Sample r) { return r.vitals->diagnostics.real_time_factor; });
+  each("room_speed", "gauge", "Simulated seconds per second that are asked for; 0 while paused.",
+       [](Sample r) { return r.snapshot->paused ? 0.0 : r.snapshot->speed; });
   each("room_fidelity", "gauge", "Fidelity level: 0 draft, 1 balanced, 2 fine, 3 reference.",
-       [](Sample r) { return r.fidelity_rank; });
+       [](Sample r) { return scene::rankOf(r.snapshot->scene.fidelity()); });
   each("room_asleep", "gauge", "1 while nobody is connected and the scene sleeps then.",
        [](Sample r) { return r.vitals->asleep ? 1 : 0; });
+  each("room_lost", "gauge", "1 while the device has failed and the water is built anew.",
+       [](Sample r) { return r.vitals->lost ? 1 : 0; });
   each("room_step_seconds", "gauge", "Time of a tick on the simulation thread, mean of the last quarter second.",
        [](Sample r) { return r.vitals->diagnostics.step_ms / 1e3; });
   each("room_substeps", "gauge", "Substeps a tick.", [](Sample r) { return r.vitals->diagnostics.substeps_count; });
@@ -101,6 +105,8 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
        [](Sample r) { return r.vitals->diagnostics.nonfinite_count; });
   each("room_escaped_total", "counter", "Particles that left the domain, seen by the watchdog.",
        [](Sample r) { return r.vitals->diagnostics.escaped_count; });
+  each("room_volume_error_units", "gauge", "Error of the ledger of the water's volume; 0 in a healthy room.",
+       [](Sample r) { return r.vitals->diagnostics.volume_error_units; });
   using Reading = core::DiagnosticsView::GaugeNow;
   const auto eachGauge = [&](const char* name, const char* help, double Reading::*value) {
     page.head(name, "gauge", help);
@@ -194,8 +200,7 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {
     samples.push_back({fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
-                       room->roster().people().people_size(), scene::rankOf(room->snapshot()->scene.fidelity()),
-                       room->vitals()});
+                       room->roster().people().people_size(), room->snapshot(), room->vitals()});
   }
   Page page;
   writeRooms(page, samples);

@@ -47,7 +47,7 @@ bool append(int pipe, std::string& text) {
 }  // namespace
 
 ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
-                           const std::vector<std::string>& extra_environment) {
+                           const std::vector<std::string>& extra_environment, int passed_descriptor) {
   int out[2];
   int err[2];
   if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
@@ -56,6 +56,8 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err[1], STDERR_FILENO);
+  // Last, because the pipes may have number 3 here. It stays open across exec, also if it is number 3 already.
+  if (passed_descriptor >= 0) posix_spawn_file_actions_adddup2(&actions, passed_descriptor, 3);
   std::vector<std::string> words = {program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> environment = environmentWith(extra_environment);

@@ -15,9 +15,10 @@ namespace spindrift::test {
 class ChildProcess {
  public:
   /// Starts `program` with `arguments`, this process's environment plus `extra_environment` ("NAME=value"), and an
-  /// empty standard input. Throws std::runtime_error on failure.
+  /// empty standard input. `passed_descriptor` >= 0 becomes descriptor 3 of the program. Throws std::runtime_error on
+  /// failure.
   ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
-               const std::vector<std::string>& extra_environment = {});
+               const std::vector<std::string>& extra_environment = {}, int passed_descriptor = -1);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ~ChildProcess();  ///< kills it if it still runs

@@ -266,9 +266,10 @@ TEST_F(Rest, MetricsCountSessionsCommandsFramesAndRefusals) {
         "spindrift_refused_total{reason=\"origin\"} 1\n",
         "spindrift_encoded_frames_total{layer=\"surface\",packing=\"plain\",level=\"full\"} ",
         "spindrift_encode_seconds_total{layer=\"surface\",packing=\"packed\",level=\"full\"} 0\n",
-        "spindrift_room_nonfinite_total{room=\"main\"} 0\n", "spindrift_room_pass_seconds{room=\"main\",pass=\"",
-        "spindrift_room_command_queue{room=\"main\"} ", "spindrift_control_queue 0\n",
-        "# TYPE spindrift_sent_bytes_total counter\n"}) {
+        "spindrift_room_speed{room=\"main\"} 1\n", "spindrift_room_lost{room=\"main\"} 0\n",
+        "spindrift_room_volume_error_units{room=\"main\"} 0\n", "spindrift_room_nonfinite_total{room=\"main\"} 0\n",
+        "spindrift_room_pass_seconds{room=\"main\",pass=\"", "spindrift_room_command_queue{room=\"main\"} ",
+        "spindrift_control_queue 0\n", "# TYPE spindrift_sent_bytes_total counter\n"}) {
     EXPECT_THAT(answer.body, HasSubstr(line));
   }
   EXPECT_EQ(ask("POST", "/metrics", "{}").status, 405U);

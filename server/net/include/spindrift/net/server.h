@@ -171,7 +171,10 @@ class Application {
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;  ///< 0 = any free port; read the real one from Server::port()
-  std::string web_root{};     ///< folder of the built web client; empty = no page is served
+  /// Descriptor of a TCP socket that listens already, bound to `address` and `port`: used instead of a new one. The
+  /// Server takes it over and closes it.
+  std::optional<int> listening_socket{};
+  std::string web_root{};  ///< folder of the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
   /// Share of max_session_count that one address may use (IPv6: one /64), at least one session. Use 1 behind a proxy,
@@ -235,8 +238,8 @@ struct ServerStats {
 /// A running server. Created by start(); the destructor stops it.
 class Server {
  public:
-  /// Binds the port and starts the I/O threads. Error kUnavailable (port in use, bad address) names address, port and
-  /// what to do.
+  /// Binds the port and starts the I/O threads. Error kUnavailable (port in use, bad address, a descriptor that is no
+  /// socket) names address, port and what to do.
   static core::Result<std::unique_ptr<Server>> start(const ServerOptions& options, Application& application);
   virtual ~Server() = default;
 
