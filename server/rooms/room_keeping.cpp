@@ -191,9 +191,11 @@ core::Result<void> Room::repeat(const v1::StateRecord& record, std::uint64_t& st
     if (!next) return next.error();
     if (record.has_scene()) {
       builder_.dispose(water_->replaceWater(*std::move(next)));
+      steps_until = 0;
     } else {
       if (auto done = water_->continueIn(*next); !done) return done;
       builder_.dispose(*std::move(next));
+      if (steps_until >= tick()) ++steps_until;  // the change took a tick, which is none of Step's
     }
     water_->bind();
     return {};
@@ -216,6 +218,9 @@ core::Result<void> Room::repeat(const v1::StateRecord& record, std::uint64_t& st
     case v1::Command::kReset:
       steps_until = 0;
       break;
+    case v1::Command::kChangeScene:  // to the level that the room had: only the choice counts
+      chosen_fidelity_ = command->change_scene().fidelity();
+      return {};
     default:
       break;
   }

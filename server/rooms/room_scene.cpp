@@ -23,6 +23,7 @@ void Room::beginScene(Batch batch) {
   const bool names_level = wanted.fidelity() != v1::FIDELITY_UNSPECIFIED;
   const bool goes_on = names_level && name == water_->scene().name();
   if (goes_on && wanted.fidelity() == water_->scene().fidelity()) {
+    if (auto refused = keep(batch.front())) return answer(std::move(batch), refused);
     chosen_fidelity_ = wanted.fidelity();
     return answer(std::move(batch), {});
   }

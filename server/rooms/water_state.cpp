@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -105,12 +107,69 @@ sim::SeaState toSea(const v1::SeaState& message) {
   return out;
 }
 
+void fill(v1::ParticleLayout& out, const sim::ParticleLayout& layout) {
+  out.set_count(layout.count);
+  out.set_columns_x_count(layout.columns_x_count);
+  out.set_columns_z_count(layout.columns_z_count);
+  out.set_layers_count(layout.layers_count);
+  out.set_spacing_m(layout.spacing_m);
+  out.set_pitch_x_m(layout.pitch_x_m);
+  out.set_pitch_z_m(layout.pitch_z_m);
+  out.set_volume_m3(layout.volume_m3);
+  out.set_support_radius_m(layout.support_radius_m);
+  out.set_mass_kg(layout.mass_kg);
+  out.set_virtual_mass_kg(layout.virtual_mass_kg);
+  out.set_floor_drag_pm2(layout.floor_drag_pm2);
+  out.set_wall_share(layout.wall_share);
+  out.set_wall_reach_m(layout.wall_reach_m);
+  out.set_constraint_softness_pm2(layout.constraint_softness_pm2);
+  out.set_band_m(layout.band_m);
+  out.set_splat_reach_count(layout.splat_reach_count);
+  out.set_neighbours_count(layout.neighbours_count);
+  out.set_cell_count(layout.cell_count);
+  out.mutable_layer_heights_m()->Add(layout.layer_heights_m.begin(), layout.layer_heights_m.end());
+  out.mutable_min_m()->Add(layout.min_m.begin(), layout.min_m.end());
+  out.mutable_max_m()->Add(layout.max_m.begin(), layout.max_m.end());
+  out.mutable_cells()->Add(layout.cells.begin(), layout.cells.end());
+}
+
+/// nullopt if a corner or the cells do not have three numbers.
+std::optional<sim::ParticleLayout> toLayout(const v1::ParticleLayout& message) {
+  sim::ParticleLayout out;
+  if (message.min_m_size() != 3 || message.max_m_size() != 3 || message.cells_size() != 3) return std::nullopt;
+  out.count = message.count();
+  out.columns_x_count = message.columns_x_count();
+  out.columns_z_count = message.columns_z_count();
+  out.layers_count = message.layers_count();
+  out.spacing_m = message.spacing_m();
+  out.pitch_x_m = message.pitch_x_m();
+  out.pitch_z_m = message.pitch_z_m();
+  out.volume_m3 = message.volume_m3();
+  out.support_radius_m = message.support_radius_m();
+  out.mass_kg = message.mass_kg();
+  out.virtual_mass_kg = message.virtual_mass_kg();
+  out.floor_drag_pm2 = message.floor_drag_pm2();
+  out.wall_share = message.wall_share();
+  out.wall_reach_m = message.wall_reach_m();
+  out.constraint_softness_pm2 = message.constraint_softness_pm2();
+  out.band_m = message.band_m();
+  out.splat_reach_count = message.splat_reach_count();
+  out.neighbours_count = message.neighbours_count();
+  out.cell_count = message.cell_count();
+  out.layer_heights_m.assign(message.layer_heights_m().begin(), message.layer_heights_m().end());
+  std::ranges::copy(message.min_m(), out.min_m.begin());
+  std::ranges::copy(message.max_m(), out.max_m.begin());
+  std::ranges::copy(message.cells(), out.cells.begin());
+  return out;
+}
+
 }  // namespace
 
 v1::WaterState toMessage(const sim::SavedState& state) {
   v1::WaterState out;
   out.set_run_tick(state.run_tick);
-  out.set_careful_ticks(state.careful_ticks);
+  if (state.careful_ticks) out.set_careful_ticks(*state.careful_ticks);
+  if (state.particles) fill(*out.mutable_particles(), *state.particles);
   out.set_layout(bytesOf(state.layout));
   for (const sim::SavedBuffer& buffer : state.buffers) {
     v1::WaterBuffer& message = *out.add_buffers();
@@ -144,7 +203,11 @@ core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
   };
   sim::SavedState out;
   out.run_tick = message.run_tick();
-  out.careful_ticks = message.careful_ticks();
+  if (message.has_careful_ticks()) out.careful_ticks = message.careful_ticks();
+  if (message.has_particles()) {
+    out.particles = toLayout(message.particles());
+    if (!out.particles) return invalid("its particles have no box");
+  }
   if (!readWords(message.layout(), out.layout)) return invalid("its layout has no whole words");
   for (const v1::WaterBuffer& buffer : message.buffers()) {
     if (!readWords(buffer.words(), out.buffers.emplace_back(sim::SavedBuffer{buffer.name(), {}}).words))

@@ -64,10 +64,11 @@ struct WaterSim::Parts {
   std::unique_ptr<Diagnostics> diagnostics;
   std::unique_ptr<Checkpoints> checkpoints;
   TicksInFlight ticks_in_flight;
-  std::vector<float> settled_positions;     ///< starting positions; empty: the lattice
-  std::vector<float> starting_positions;    ///< the lattice; computed when first needed
-  double start_jitter_ratio = 0.0;          ///< of starting_positions
-  std::optional<BasinInputs> basin_inputs;  ///< inputs of the wave's present tables
+  std::vector<float> settled_positions;        ///< starting positions; empty: the lattice
+  std::vector<float> starting_positions;       ///< the lattice; computed when first needed
+  std::optional<ParticleLayout> start_layout;  ///< of starting_positions
+  double start_jitter_ratio = 0.0;             ///< likewise
+  std::optional<BasinInputs> basin_inputs;     ///< inputs of the wave's present tables
 
   /// Starting positions, 4 floats per particle.
   const std::vector<float>& startOf(const core::Scene& scene, const ParticleLayout& layout);

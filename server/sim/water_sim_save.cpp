@@ -35,7 +35,8 @@ std::vector<gpu::Buffer*> WaterSim::Parts::lastingBuffers() {
 SavedState WaterSim::savedState() {
   SavedState out;
   out.run_tick = tick_ - start_tick_;
-  out.careful_ticks = is_careful_ && careful_until_tick_ > tick_ ? careful_until_tick_ - tick_ : 0;
+  if (is_careful_) out.careful_ticks = careful_until_tick_ > tick_ ? careful_until_tick_ - tick_ : 0;
+  out.particles = derived_.particles;
   out.layout = layoutWords(derived_);
   for (const gpu::Buffer* buffer : parts_->lastingBuffers())
     out.buffers.push_back(
@@ -60,7 +61,22 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
                                    "cannot go on from there",
                                    scene_.name, what)};
   };
-  if (saved.careful_ticks > 0) setCareful(true);
+  if (saved.particles != derived_.particles) {
+    if (!saved.particles || !derived_.particles || parts_->pool)
+      return differs("its particles are laid out differently");
+    // Refused before anything of that size is allocated.
+    const auto has_positions = [&](const SavedBuffer& buffer) {
+      return buffer.name == parts_->particles->position.name() &&
+             buffer.words.size() == std::size_t{saved.particles->count} * 4;
+    };
+    if (std::ranges::none_of(saved.buffers, has_positions)) return differs("it has another number of particles");
+    auto derived = derive(scene_, &*saved.particles);
+    if (!derived) return derived.error();
+    if (auto sized = parts_->resize(ctx_, scene_, *derived); !sized) return sized;
+    derived_ = *std::move(derived);
+    parts_->particles->setDensity(scene_.particles->rest_density_kgpm3);
+  }
+  setCareful(saved.careful_ticks.has_value());
   const std::vector<gpu::Buffer*> buffers = parts_->lastingBuffers();
   if (saved.layout != layoutWords(derived_)) {
     setCareful(false);
@@ -84,7 +100,7 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
   if (parts_->wind_sea) parts_->wind_sea->resume(saved.sea, saved.sea_step_count);
   if (parts_->follower) parts_->follower->goTo(saved.patch_x_m, saved.patch_z_m);
   start_tick_ = tick_ - saved.run_tick;  // modulo 2^64
-  careful_until_tick_ = tick_ + saved.careful_ticks;
+  careful_until_tick_ = tick_ + saved.careful_ticks.value_or(0);
   abandoned_until_tick_ = tick_;  // health in flight belongs to the start
   parts_->checkpoints->forget();
   parts_->checkpoints->save(tick_);  // confirmed by the health of the next ticks

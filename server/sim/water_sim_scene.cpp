@@ -62,9 +62,10 @@ core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
 const std::vector<float>& WaterSim::Parts::startOf(const core::Scene& scene, const ParticleLayout& layout) {
   const std::size_t wanted = std::size_t{layout.count} * 4;
   if (settled_positions.size() == wanted) return settled_positions;  // false after a change of the particle count
-  const bool is_known = starting_positions.size() == wanted && start_jitter_ratio == scene.particles->jitter_ratio;
+  const bool is_known = start_layout == layout && start_jitter_ratio == scene.particles->jitter_ratio;
   if (!is_known) {
     starting_positions = startingPositions(scene, layout);
+    start_layout = layout;
     start_jitter_ratio = scene.particles->jitter_ratio;
   }
   return starting_positions;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <spindrift/sim/carried_state.h>
+#include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/effects.h>
 
 namespace spindrift::sim {
@@ -20,8 +22,11 @@ struct SavedBuffer {
 /// Made by WaterSim::savedState(). Plain values. Not part of it: the scene with its parameters, and what gauges have
 /// recorded.
 struct SavedState {
-  std::uint64_t run_tick = 0;         ///< ticks since the start or the last reset
-  std::uint64_t careful_ticks = 0;    ///< ticks for which the watchdog's half steps still last; 0: none
+  std::uint64_t run_tick = 0;  ///< ticks since the start or the last reset
+  /// Ticks for which the watchdog's half steps still last, 0 in the last of them; nullopt: none are taken.
+  std::optional<std::uint64_t> careful_ticks;
+  /// Of the particles. It is that of the moment when their number changed last, whatever the parameters are now.
+  std::optional<ParticleLayout> particles;
   std::vector<std::uint32_t> layout;  ///< sizes and steps that follow from the scene; restore() compares them
   std::vector<SavedBuffer> buffers;
   Effects effects;

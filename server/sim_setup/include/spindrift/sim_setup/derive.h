@@ -48,6 +48,8 @@ struct ParticleLayout {
   std::array<double, 3> max_m{};
   std::array<std::uint32_t, 3> cells{};
   std::uint32_t cell_count = 0;
+
+  bool operator==(const ParticleLayout&) const = default;
 };
 
 struct WaveLayout {

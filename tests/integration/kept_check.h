@@ -1,0 +1,42 @@
+// What state_kill_test finds in the files that a killed server has left behind.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/gpu/device.h>
+#include <spindrift/rooms/state_store.h>
+#include <spindrift/v1/kept_state.pb.h>
+
+#include "kill_load.h"
+
+namespace spindrift::test {
+
+/// Removes the newest snapshot of each room that has several: the rooms then go on from an older one with more logs.
+void removeNewestSnapshots(const std::filesystem::path& state_folder);
+
+/// Numbers of a room's snapshots, ascending.
+std::vector<std::uint64_t> snapshotNumbers(const std::filesystem::path& state_folder, const std::string& room);
+/// Highest number of a room's snapshots and logs; 0: there are none.
+std::uint64_t lastGeneration(const std::filesystem::path& state_folder, const std::string& room);
+/// The content of a snapshot as the program wrote it; nullopt if the file is not there (any more).
+std::optional<v1::KeptState> readSnapshot(const std::filesystem::path& state_folder, const std::string& room,
+                                          std::uint64_t number);
+
+/// The room as a restarted server has it: its snapshot with the logs carried out, and then run to `least_tick`, because
+/// a newer snapshot may be ahead of the last record. nullopt: nothing usable is there.
+core::Result<std::optional<v1::KeptState>> restoredRoom(rooms::StateStore& store, const std::string& room,
+                                                        const gpu::DeviceChoice& device, std::uint64_t least_tick = 0);
+
+/// Names what differs, with values; empty if the water, the time and the people are the same bit for bit.
+std::vector<std::string> differences(const v1::KeptState& a, const v1::KeptState& b);
+
+/// How a command is kept.
+enum class Found { kInLog, kBeforeSnapshot, kNowhere };
+/// `all`: every command sent to the room in this round.
+Found find(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vector<SentCommand>& all);
+
+}  // namespace spindrift::test

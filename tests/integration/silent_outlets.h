@@ -1,0 +1,26 @@
+// Outlets of a room that nobody watches.
+#pragma once
+
+#include <spindrift/rooms/room.h>
+
+namespace spindrift::test {
+
+struct SilentOutlets final : rooms::RoomOutlets {
+  void sceneChanged(const rooms::Room&) override {}
+  void timeChanged(const rooms::Room&, bool, double) override {}
+  void parameterChanged(const rooms::Room&, const std::string&, double) override {}
+  void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
+  void peopleChanged(const rooms::Room&, const v1::People&) override {}
+  void wasReset(const rooms::Room&) override {}
+  void fidelityChanged(const rooms::Room&, const std::string&) override {}
+  void hasRecovered(const rooms::Room&, const std::string&) override {}
+  void closed(const rooms::Room&) override {}
+  void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override {}
+  void commandRejected(const rooms::Command&, const wire::CommandRejection&) override {}
+  void frameReady(const rooms::Room&, core::FrameView) override {}
+  rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&) const override { return {}; }
+  std::size_t sessionCount(const rooms::Room&) const override { return 0; }
+  std::size_t sessionCount() const override { return 0; }
+};
+
+}  // namespace spindrift::test
