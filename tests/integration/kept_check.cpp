@@ -87,7 +87,7 @@ bool isScene(const v1::Scene& scene, const v1::ChangeScene& wanted) {
 Found findScene(const SentCommand& sent, const rooms::KeptRoom& kept) {
   const v1::ChangeScene& wanted = sent.command.change_scene();
   // A change to what the room has already is acknowledged and changes nothing.
-  bool is_there = isScene(kept.state.scene(), wanted);
+  bool is_there = isScene(kept.state->scene(), wanted);
   for (const v1::StateRecord& record : kept.records) {
     if (record.tick() > sent.tick) break;
     if (record.has_scene()) is_there = isScene(record.scene(), wanted);
@@ -98,7 +98,7 @@ Found findScene(const SentCommand& sent, const rooms::KeptRoom& kept) {
 
 Found findOwner(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vector<SentCommand>& all) {
   const std::uint32_t boat_id = sent.command.take_boat().boat_id();
-  bool is_owner = owns(kept.state.people(), sent.person_id, boat_id);
+  bool is_owner = owns(kept.state->people(), sent.person_id, boat_id);
   for (const v1::StateRecord& record : kept.records) {
     if (record.tick() > sent.tick) break;
     if (record.has_people()) is_owner = owns(record.people(), sent.person_id, boat_id);
@@ -161,7 +161,7 @@ core::Result<std::optional<v1::KeptState>> restoredRoom(rooms::StateStore& store
   rooms::WaterBuilder builder(device);
   const rooms::RoomRules rules;
   SilentOutlets outlets;
-  v1::Scene start = place->kept->state.start_scene();
+  v1::Scene start = place->kept->state->start_scene();
   scene::fillDefaults(start);
   auto water = builder.build(std::move(start)).get();
   if (!water) return water.error();
@@ -176,7 +176,7 @@ core::Result<std::optional<v1::KeptState>> restoredRoom(rooms::StateStore& store
   if (!now) return now.error();
   if (!now->kept || !now->kept->records.empty())
     return core::Error{core::ErrorCode::kInternal, "room " + room + ": its first snapshot cannot be read back"};
-  return std::optional(std::move(now->kept->state));
+  return std::optional(*now->kept->state);
 }
 
 std::vector<std::string> differences(const v1::KeptState& a, const v1::KeptState& b) {
@@ -217,7 +217,7 @@ Found find(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vect
   const bool is_recorded =
       std::ranges::any_of(kept.records, [&](const v1::StateRecord& record) { return says(record, sent); });
   if (is_recorded) return Found::kInLog;
-  if (sent.tick <= kept.state.tick()) return Found::kBeforeSnapshot;
+  if (sent.tick <= kept.state->tick()) return Found::kBeforeSnapshot;
   if (sent.command.has_change_scene()) return findScene(sent, kept);
   if (sent.command.has_take_boat()) return findOwner(sent, kept, all);
   return Found::kNowhere;
