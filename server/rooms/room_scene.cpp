@@ -132,15 +132,17 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
 }
 
 void Room::restartScene(bool goes_on) {
-  if (log_) {
+  if (log_ && !goes_on) {  // otherwise goOnIn() has written it
     v1::Record line;
-    *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
+    *line.mutable_scene() = water_->scene();
     record(std::move(line));
   }
   if (keeper_) {
-    v1::StateRecord line;
-    *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
-    keepWhatHappened(std::move(line));
+    if (!goes_on) {
+      v1::StateRecord line;
+      *line.mutable_scene() = water_->scene();
+      keepWhatHappened(std::move(line));
+    }
     kept_recovery_count_ = water_->sim().recoveredCount();
     keeper_->ask();
   }
