@@ -27,13 +27,22 @@ core::Result<v1::Scene> Room::sceneAt(v1::Fidelity level) const {
 
 Room::Outcome Room::goOnIn(std::unique_ptr<Water>& next, const std::string& why) {
   const std::string before = scene::fidelityName(water_->scene().fidelity());
+  const v1::Scene built = next->startScene();
   if (auto done = water_->continueIn(next); !done) {
     return rejection(
         done.error().code == core::ErrorCode::kUnavailable ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_NEEDS_RESTART,
         kField, firstLine(done.error().message));
   }
   builder_.dispose(std::move(next));
-  restartScene(Restart::kLevel);
+  // As it was built: the lattice of its particles follows from the parameters of that moment, and the present ones from
+  // the commands before.
+  v1::Record line;
+  *line.mutable_continued_scene() = built;
+  record(std::move(line));
+  v1::StateRecord kept;
+  *kept.mutable_continued_scene() = built;
+  keepWhatHappened(std::move(kept));
+  restartScene(true);
   const std::string news = fmt::format("{}fidelity is now {} instead of {}", why.empty() ? why : why + ": ",
                                        scene::fidelityName(water_->scene().fidelity()), before);
   spdlog::info("room {}: {}", name_, news);

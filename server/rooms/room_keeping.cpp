@@ -163,12 +163,15 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
     spdlog::error("room {}: its state cannot be restored: {}", name_, done.error().message);
     water_->sim().reset();
     is_lost_ = false;
-    restartScene(Restart::kScene);
+    restartScene(false);
     return true;
   }
   water_->goOnAfter(lost_tick);
   is_lost_ = false;
-  restartScene(Restart::kSameWater);
+  v1::Record line;
+  line.set_recovered(true);  // a replay does not repeat it
+  record(std::move(line));
+  restartScene(true);
   boatsChanged();
   // Ticks have gone on since the snapshot without the log saying so.
   if (auto saved = keepAtEnd(); !saved)

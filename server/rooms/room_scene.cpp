@@ -79,7 +79,7 @@ void Room::adoptWater(TimePoint now) {
 void Room::replaceWater(std::unique_ptr<Water> water) {
   builder_.dispose(water_->replaceWater(std::move(water)));
   is_lost_ = false;
-  restartScene(Restart::kScene);
+  restartScene(false);
 }
 
 Room::Outcome Room::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
@@ -143,21 +143,16 @@ v1::Scene Room::sceneAfterLoss() const {
   return out;
 }
 
-void Room::restartScene(Restart what) {
-  const bool goes_on = what != Restart::kScene;
-  if (log_ && what == Restart::kSameWater) {
+void Room::restartScene(bool goes_on) {
+  if (!goes_on) {
     v1::Record line;
-    line.set_recovered(true);  // a replay does not repeat it
+    *line.mutable_scene() = water_->scene();
     record(std::move(line));
-  } else if (log_) {
-    v1::Record line;
-    *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
-    record(std::move(line));
+    v1::StateRecord kept;
+    *kept.mutable_scene() = water_->scene();
+    keepWhatHappened(std::move(kept));
   }
-  if (keeper_ && what != Restart::kSameWater) {
-    v1::StateRecord line;
-    *(goes_on ? line.mutable_continued_scene() : line.mutable_scene()) = water_->scene();
-    keepWhatHappened(std::move(line));
+  if (keeper_) {
     kept_recovery_count_ = water_->sim().recoveredCount();
     keeper_->ask();
   }

@@ -232,7 +232,7 @@ class StateKill : public ProgramTest {
         case Found::kNowhere:
           ADD_FAILURE() << fmt::format(
               "acknowledged at tick {} and lost: {} of person {}; the kept state begins at tick {} and has {} records",
-              sent.tick, sent.command.ShortDebugString(), sent.person_id, place->kept->state.tick(),
+              sent.tick, sent.command.ShortDebugString(), sent.person_id, place->kept->state->tick(),
               place->kept->records.size());
       }
       ++checked_count_;

@@ -144,7 +144,7 @@ class Room {
     bool state = false;
     bool boats = false;
     bool reset = false;
-    std::string rebuilt{};  ///< for people, after the device failed
+    std::string rebuilt{};                     ///< for people, after the device failed
     std::map<std::string, double> parameters;  ///< current values by path
   };
   /// New water that is being built while the old one runs.
@@ -261,11 +261,9 @@ class Room {
   void beginScene(Batch batch);
   /// Adopts the new water if it is built.
   void adoptWater(TimePoint now);
-  /// What comes with new water: another scene, the present scene at another level, or the present state on another
-  /// device.
-  enum class Restart { kScene, kLevel, kSameWater };
-  /// Clears the state that belonged to the previous water. Boats keep their owners unless the scene is another.
-  void restartScene(Restart what);
+  /// Clears the state that belonged to the previous water, and records another scene. `goes_on`: the same water at
+  /// another level or on another device, which the caller records; boats keep their owners.
+  void restartScene(bool goes_on);
   /// Rejects if ticks would take longer than `max_ms` and longer than now while others than the sender are connected.
   [[nodiscard]] Outcome refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                    double max_ms) const;
