@@ -187,12 +187,13 @@ class StateKill : public ProgramTest {
     const auto names = (*newest_store)->rooms();
     ASSERT_TRUE(names);
     for (const auto& [name, fact] : ledger_.rooms()) {
-      if (fact.state == RoomFact::State::kUnknown) continue;
+      if (fact.state == RoomFact::State::kUnknown || neverOpened(name)) continue;
       EXPECT_EQ(std::ranges::count(*names, name), fact.state == RoomFact::State::kOpen ? 1 : 0) << name;
     }
     expected_.clear();
     for (const std::string& name : *names) {
       SCOPED_TRACE("room " + name);
+      if (neverOpened(name)) continue;
       checkCommands(**older_store, name);
       const auto from_newest = restoredRoom(**newest_store, name, device_);
       const auto from_older =
@@ -202,7 +203,7 @@ class StateKill : public ProgramTest {
           << "\nfrom the older one: " << (from_older ? "restored" : from_older.error().message);
       EXPECT_EQ(from_newest->has_value(), from_older->has_value());
       if (!*from_newest || !*from_older) {
-        EXPECT_EQ(ledger_.rooms()[name].state, RoomFact::State::kUnknown) << "its files cannot be used";
+        ADD_FAILURE() << "its files cannot be used";
         continue;
       }
       EXPECT_THAT(differences(**from_newest, **from_older), testing::IsEmpty());
@@ -210,6 +211,11 @@ class StateKill : public ProgramTest {
       expected_[name] = **from_newest;
       last_generation_[name] = lastGeneration(stateFolder(), name);
     }
+  }
+
+  /// A room whose opening was not answered before the kill leaves a log without a snapshot.
+  [[nodiscard]] bool neverOpened(const std::string& room) const {
+    return ledger_.rooms()[room].state != RoomFact::State::kOpen && snapshotNumbers(stateFolder(), room).empty();
   }
 
   void checkCommands(rooms::StateStore& store, const std::string& room) {
