@@ -123,8 +123,8 @@ class WaterSim {
   /// same water.
   core::Result<void> takeOver(const CarriedState& carried);
 
-  /// Copies everything that another simulation of the same scene, with the same values of its parameters, needs to go on
-  /// from here bit for bit. Waits.
+  /// Copies everything that another simulation of the same scene, with the same values of its parameters, needs to go
+  /// on from here bit for bit. Waits.
   [[nodiscard]] SavedState savedState();
   /// Goes on from there: same time since the start, water, particles, boats, effects and wind sea. Gauges record anew.
   /// kInvalidInput, with nothing changed, if the scene lays out other buffers or steps.
