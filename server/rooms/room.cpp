@@ -80,7 +80,11 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
     if (auto restored = room->restore(*place.kept); !restored) return restored.error();
   }
   room->keeper_ = std::move(place.keeper);
-  if (auto kept = room->keepAtEnd(); !kept) return kept.error();
+  if (auto saved = room->saveAndWait(); !saved) {
+    // Not a fault of what was kept, whatever the reason.
+    return core::Error{core::ErrorCode::kUnavailable,
+                       "room " + room->name() + ": its state cannot be written: " + saved.error().message};
+  }
   return room;
 }
 

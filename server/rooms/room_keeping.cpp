@@ -90,7 +90,7 @@ void Room::keepState(TimePoint now) {
   }
 }
 
-core::Result<void> Room::keepAtEnd() {
+core::Result<void> Room::saveAndWait() {
   if (!keeper_ || is_lost_) return {};
   water_->bind();
   auto state = stateNow();
@@ -174,7 +174,7 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   restartScene(true);
   boatsChanged();
   // Ticks have gone on since the snapshot without the log saying so.
-  if (auto saved = keepAtEnd(); !saved)
+  if (auto saved = saveAndWait(); !saved)
     spdlog::error("room {}: its state could not be written after the device failed: {}", name_, saved.error().message);
   return true;
 }

@@ -106,7 +106,8 @@ core::Result<void> SimulationThread::buildRoom(const std::string& name, std::opt
     v1::Scene scene = place->kept->state->scene();
     scene::fillDefaults(scene);
     auto added = add(name, builder_->build(std::move(start)).get(), *std::move(place));
-    if (added) return added;
+    // A full disk or a device that fails is no reason to give up what is there.
+    if (added || added.error().code != ErrorCode::kInvalidInput) return added;
     const auto aside = rules_.states->setAside(name);
     if (!aside) return Error{aside.error().code, "room " + name + ": " + aside.error().message};
     spdlog::error(
@@ -287,7 +288,7 @@ void SimulationThread::loop() {
   for (Opening& opening : std::exchange(openings_, {}))
     opening.done(Error{ErrorCode::kUnavailable, "the server shuts down"});
   for (const auto& room : rooms_) {
-    if (auto kept = room->keepAtEnd(); !kept)
+    if (auto kept = room->saveAndWait(); !kept)
       spdlog::error("room {}: its last snapshot could not be written: {}", room->name(), kept.error().message);
     summarise(*room);
     room->releaseDevice();

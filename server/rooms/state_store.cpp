@@ -68,8 +68,13 @@ core::Result<RoomPlace> StateStore::place(const std::string& room) {
     if (parse(state, recovered->snapshot)) {
       out.kept = KeptRoom{std::make_shared<const v1::KeptState>(std::move(state)), parseRecords(room, recovered->logs)};
     } else {
-      spdlog::error("room {}: its snapshot {} is of another version of this program and is not used", room,
-                    recovered->generation);
+      const std::uint64_t generation = recovered->generation;
+      files->reset();  // they hold no file yet
+      const auto aside = setAside(room);
+      if (!aside) return aside.error();
+      spdlog::error("room {}: its snapshot {} is of another version of this program; its files are now in {}", room,
+                    generation, aside->string());
+      return place(room);
     }
   }
   out.keeper = std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_);

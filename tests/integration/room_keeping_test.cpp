@@ -211,7 +211,7 @@ TEST_F(KeptRoomTest, ReachesTheDiskWithAllThatItDidWhenItIsStopped) {
   ASSERT_TRUE(runTicks(15));
   const std::uint64_t tick = room_->tick();
   const std::uint64_t expected = room_->stateHash();
-  ASSERT_TRUE(room_->keepAtEnd());
+  ASSERT_TRUE(room_->saveAndWait());
   crashAndComeBack();
   EXPECT_EQ(room_->tick(), tick);
   EXPECT_EQ(room_->stateHash(), expected);
@@ -302,6 +302,46 @@ TEST_F(KeptServerTest, KeepsItsFolderForItself) {
   const auto second = rooms::StateStore::open({.folder = folder_.path()});
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error().message, HasSubstr("in use by process"));
+}
+
+TEST_F(KeptServerTest, DoesNotStartWhileTheDiskIsFullAndLosesNothingByIt) {
+  ScriptedClient first = client();
+  const auto tick = first.apply(setSpeed(0.5));
+  ASSERT_TRUE(tick);
+  stop();
+  {
+    const FullDisk full(10);  // room for the process id in the lock file
+    service::WaterServerOptions options;
+    options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
+    options.network.port = 0;
+    options.rooms.push_back({"main", *scene::parseSceneText(kStillPool, "main")});
+    auto store = rooms::StateStore::open({.folder = folder_.path()});
+    ASSERT_TRUE(store) << store.error().message;
+    options.rules.states = *std::move(store);
+    const auto server = service::WaterServer::start(std::move(options));
+    ASSERT_FALSE(server);
+    EXPECT_THAT(server.error().message, HasSubstr("cannot be written"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "aside"));
+  SetUp();
+  EXPECT_EQ(client().greeting().room_state().speed(), 0.5) << "the room goes on where it was";
+}
+
+TEST_F(KeptServerTest, SetsASnapshotAsideThatIsNoStateOfARoom) {
+  ASSERT_TRUE(client().apply(splash()));
+  stop();
+  {
+    auto files = state::RoomFiles::open(folder_.path() / "rooms" / "main", {});
+    ASSERT_TRUE(files);
+    ASSERT_TRUE((*files)->recover());
+    const auto generation = (*files)->beginGeneration();
+    ASSERT_TRUE(generation);
+    const core::Bytes words(100, 0xff);
+    ASSERT_TRUE((*files)->writeSnapshot(*generation, words));
+  }
+  SetUp();
+  EXPECT_TRUE(client().apply(splash()));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "aside" / "main"));
 }
 
 TEST_F(KeptServerTest, BeginsARoomAnewWhoseStateIsOfAnotherProgramAndSetsItAside) {

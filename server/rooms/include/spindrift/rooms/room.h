@@ -83,7 +83,9 @@ class Room {
 
   /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes the
   /// water of scene changes. `builder` and `outlets` outlive the room. With a kept room in `place`, the room goes on
-  /// from there; `water` is then built from its start_scene. Errors: those of the log and of the first snapshot.
+  /// from there; `water` is then built from its start_scene. Errors:
+  /// kInvalidInput if the room cannot go on from there; those of the log; kUnavailable if the first snapshot cannot be
+  /// written.
   static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
                                                     const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
                                                     RoomPlace place = {});
@@ -120,8 +122,9 @@ class Room {
   [[nodiscard]] std::uint64_t stateHash() { return water_->sim().stateHash(); }
   /// Rejects the commands that still wait.
   void abandonCommands();
-  /// Writes a last snapshot and waits for it. Errors: those of the files; kUnavailable when the device does not answer.
-  core::Result<void> keepAtEnd();
+  /// Writes a snapshot and waits for it: at the start, after a device failed, at the end. Errors: those of the files;
+  /// kUnavailable when the device does not answer.
+  core::Result<void> saveAndWait();
   /// Ends the simulation; only the any-thread functions may be called afterwards.
   void releaseDevice() {
     water_.reset();
