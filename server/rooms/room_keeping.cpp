@@ -75,7 +75,8 @@ void Room::keepState(TimePoint now) {
   // What the watchdog restored does not follow from the log.
   const std::uint64_t recovered_count = water_->sim().recoveredCount();
   if (recovered_count != std::exchange(kept_recovery_count_, recovered_count)) keeper_->ask();
-  if (keeper_->isDue(now)) {
+  const bool stands_still = keeper_->isUpToDate() && water_->stateId() == saved_state_id_;
+  if (!stands_still && keeper_->isDue(now)) {
     const auto begin = std::chrono::steady_clock::now();
     auto state = stateNow();
     const double copy_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -106,6 +107,7 @@ std::optional<v1::KeptState> Room::stateNow() {
   out.set_room(name_);
   out.set_saved_at_ms(nowUnix_ms());
   water_->save(out);
+  saved_state_id_ = water_->stateId();
   if (water_->failure()) return std::nullopt;  // a lost device reads as zeros
   out.set_paused(paused_);
   out.set_speed(clock_.speed());

@@ -176,6 +176,23 @@ TEST_F(KeptRoomTest, IsPausedAsFastAndHasAsManyStepsToGoAsBefore) {
   EXPECT_EQ(room_->tick(), end) << "and no further";
 }
 
+TEST_F(KeptRoomTest, WritesNoSnapshotsWhileItStandsStill) {
+  crash();
+  interval_ = 5ms;
+  comeBack();
+  send(1, setPaused(true));
+  ASSERT_TRUE(isAnswered(1));
+  std::uint64_t count = 0;
+  // The last change may still be on its way to the disk.
+  ASSERT_TRUE(runUntil([&] { return std::exchange(count, room_->keptStatus()->snapshot_count) >= 2; }));
+  const auto until = Clock::now() + 200ms;
+  while (Clock::now() < until) room_->run(Clock::now());
+  EXPECT_LE(room_->keptStatus()->snapshot_count, count + 2);
+  ASSERT_TRUE(room_->askForSnapshot());
+  const std::uint64_t before = room_->keptStatus()->snapshot_count;
+  EXPECT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count > before; })) << "but when somebody asks";
+}
+
 TEST_F(KeptRoomTest, GivesPeopleTheirBoatsBackWhenTheyReturnInTime) {
   const rooms::Admission captain = room_->roster().arrive({.session = 7, .role = core::Role::kPlayer, .name = "Ada"});
   const rooms::Admission guest = room_->roster().arrive({.session = 8, .role = core::Role::kViewer, .name = ""});

@@ -1,3 +1,4 @@
+// Bystanders and commands of a storm. Long because it holds the clients of every kind of storm.
 #include "storm.h"
 
 #include <algorithm>

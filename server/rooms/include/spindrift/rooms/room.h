@@ -315,7 +315,8 @@ class Room {
   std::unique_ptr<StateKeeper> keeper_;    ///< null: the room is not kept on disk
   std::uint64_t kept_people_version_ = 0;
   std::uint64_t kept_recovery_count_ = 0;
-  std::uint64_t kept_state_id_ = 0;  ///< of the last record that the room runs
+  std::uint64_t kept_state_id_ = 0;   ///< of the last record that the room runs
+  std::uint64_t saved_state_id_ = 0;  ///< of the last snapshot
   TimePoint next_running_{};
   CommandQueue commands_;
   WorkBudget heavy_budget_;

@@ -50,6 +50,8 @@ class StateKeeper {
   /// Returns whether a snapshot is due now: the interval has passed, somebody asked, or a write failed. Never while one
   /// is being written.
   [[nodiscard]] bool isDue(TimePoint now) const;
+  /// Returns whether nothing was appended since the newest snapshot, and nobody asked for another one.
+  [[nodiscard]] bool isUpToDate() const { return newest_.state && newest_.records.empty() && !is_asked_; }
   /// Any thread. A snapshot as soon as possible.
   void ask() { is_asked_ = true; }
   /// Begins a new log and writes the snapshot beside the room. `state` is of this moment; copying it took `copy_s`.
