@@ -21,6 +21,7 @@ struct ProgramCommand {
 
 // Add a command with its flags to the program.
 ProgramCommand addServe(CLI::App& program);
+ProgramCommand addEdge(CLI::App& program);
 ProgramCommand addReplay(CLI::App& program);
 ProgramCommand addScript(CLI::App& program);
 ProgramCommand addInfo(CLI::App& program);

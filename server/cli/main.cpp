@@ -35,7 +35,7 @@ int run(int argc, char** argv) {
   cli.fallthrough();
 
   std::vector<ProgramCommand> commands;
-  for (const auto add : {addServe, addReplay, addScript, addInfo, addCheck, addBench, addStudy})
+  for (const auto add : {addServe, addEdge, addReplay, addScript, addInfo, addCheck, addBench, addStudy})
     commands.push_back(add(cli));
 
   try {

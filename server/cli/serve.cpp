@@ -1,26 +1,21 @@
-#include <algorithm>
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/cluster/node.h>
 #include <spindrift/core/paths.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/water_server.h>
 
 #include "commands.h"
-#include "config_file.h"
+#include "front.h"
 #include "inherited_socket.h"
 #include "serve_options.h"
 
@@ -65,67 +60,54 @@ core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& option
   return rooms;
 }
 
-/// Reads the tokens from the file or from the environment, and the role of clients without a token.
-core::Result<service::Access> loadAccess(const ServeOptions& options) {
-  std::string text;
-  std::string label = "SPINDRIFT_TOKENS";
-  bool has_tokens = false;
-  if (!options.token_file.empty()) {
-    std::ifstream file(options.token_file);
-    if (!file)
-      return Error{ErrorCode::kUnavailable, "--tokens-file " + options.token_file + ": the file cannot be read"};
-    text.assign(std::istreambuf_iterator<char>(file), {});
-    label = options.token_file;
-    has_tokens = true;
-  } else if (!options.tokens.empty()) {
-    text = options.tokens;
-    std::ranges::replace(text, ';', '\n');  // environment variables are awkward with several lines
-    has_tokens = true;
-  }
-  std::optional<core::Role> guest = has_tokens ? core::Role::kViewer : core::Role::kOperator;
-  if (!options.guest_role.empty()) guest = core::parseRole(options.guest_role);  // "none" is not a role
-  auto access = service::Access::parse(text, label, guest);
-  if (access && has_tokens && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
-  }
-  if (access && !guest && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput,
-                 "--guests none without tokens refuses every client: give --tokens-file FILE"};
-  }
-  return access;
-}
-
-/// Blocks SIGINT and SIGTERM in this thread and in those that it starts, so that wait() receives them.
-class StopSignals {
- public:
-  StopSignals() {
-    sigemptyset(&set_);
-    sigaddset(&set_, SIGINT);
-    sigaddset(&set_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
-    std::signal(SIGPIPE, SIG_IGN);
-  }
-  int wait() {
-    int signal = 0;
-    sigwait(&set_, &signal);
-    return signal;
-  }
-
- private:
-  sigset_t set_{};
-};
-
-std::string forUrl(const std::string& address) {
-  return address.find(':') != std::string::npos ? "[" + address + "]" : address;
-}
-
 rooms::StateOptions stateOptions(const ServeOptions& options) {
   return {.folder = options.state_folder,
           .sync = options.sync == "never"    ? state::Sync::kNever
                   : options.sync == "always" ? state::Sync::kAlways
                                              : state::Sync::kSnapshots,
-          .snapshot_interval = std::chrono::milliseconds(
-              static_cast<std::chrono::milliseconds::rep>(options.snapshot_interval_s * 1e3))};
+          .snapshot_interval =
+              std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(options.snapshot_interval_s * 1e3)),
+          .is_shared = !options.nats_url.empty()};
+}
+
+/// Of the rooms that this server shall run: all, or in a cluster those that no other server runs.
+core::Result<std::vector<rooms::RoomSetup>> chooseRooms(const ServeOptions& options, cluster::Node* node,
+                                                        rooms::SceneCatalog& catalog) {
+  auto rooms = loadRooms(options, catalog);
+  if (!rooms || !node) return rooms;
+  return node->claim(*std::move(rooms));
+}
+
+core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& options, cluster::Node* node) {
+  service::WaterServerOptions out;
+  auto device = gpu::parseDeviceChoice(options.device);
+  if (!device) return device.error();
+  out.device = *device;
+  out.device.shader_folder = options.shader_folder;
+  if (!options.state_folder.empty()) {
+    auto states = rooms::StateStore::open(stateOptions(options));
+    if (!states) {
+      return Error{states.error().code, "--state-dir " + options.state_folder + ": " + states.error().message};
+    }
+    out.rules.states = *std::move(states);
+  }
+  rooms::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
+  auto rooms = chooseRooms(options, node, catalog);
+  if (!rooms) return rooms.error();
+  out.rooms = *std::move(rooms);
+  auto access = loadAccess(options);
+  if (!access) return access.error();
+  out.access = *std::move(access);
+  out.rules.scenes = std::move(catalog);
+  out.rules.adapts = options.adapts;
+  out.rules.opens_kept_rooms = !node;
+  out.rules.grace = std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(options.grace_s * 1e3));
+  out.rules.record_folder = options.record_folder;
+  out.rules.hash_interval_ticks = options.hash_interval_ticks;
+  out.max_room_count = options.max_room_count;
+  out.network = networkOptions(options);
+  if (node) out.cluster = node->hooks();
+  return out;
 }
 
 int serve(ServeOptions options) {
@@ -138,67 +120,43 @@ int serve(ServeOptions options) {
     spdlog::info("a listening socket was passed on: {} port {}; --address and --port have no effect", options.address,
                  options.port);
   }
-  auto device = gpu::parseDeviceChoice(options.device);
-  if (!device) return fail(device.error());
-  rooms::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
-  auto rooms = loadRooms(options, catalog);
-  if (!rooms) return fail(rooms.error());
-
-  auto access = loadAccess(options);
-  if (!access) return fail(access.error());
-  const bool is_open_to_all =
-      access->guest() == core::Role::kOperator && !options.address.starts_with("127.") && options.address != "::1";
-
-  std::shared_ptr<rooms::StateStore> states;
-  if (!options.state_folder.empty()) {
-    auto opened = rooms::StateStore::open(stateOptions(options));
-    if (!opened)
-      return fail({opened.error().code, "--state-dir " + options.state_folder + ": " + opened.error().message});
-    states = *std::move(opened);
+  std::unique_ptr<cluster::Node> node;
+  if (!options.nats_url.empty()) {
+    cluster::NodeOptions node_options = nodeOptions(options, true);
+    node_options.room_max_count = options.max_room_count;
+    auto connected = cluster::Node::connect(node_options);
+    if (!connected) return fail(connected.error());
+    node = *std::move(connected);
   }
-
-  service::WaterServerOptions server_options;
-  server_options.rules.states = std::move(states);
-  server_options.device = *device;
-  server_options.device.shader_folder = options.shader_folder;
-  server_options.rooms = *std::move(rooms);
-  server_options.rules.scenes = std::move(catalog);
-  server_options.rules.adapts = options.adapts;
-  server_options.rules.grace =
-      std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(options.grace_s * 1e3));
-  server_options.rules.record_folder = options.record_folder;
-  server_options.rules.hash_interval_ticks = options.hash_interval_ticks;
-  server_options.max_room_count = options.max_room_count;
-  server_options.access = *std::move(access);
-  server_options.network.allowed_origins = options.origins;
-  server_options.network.address = options.address;
-  server_options.network.port = options.port;
-  if (*inherited) server_options.network.listening_socket = (*inherited)->descriptor;
-  server_options.network.thread_count = options.thread_count;
-  server_options.network.address_session_share = options.address_session_share;
-  server_options.network.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;
-  const bool has_page = !server_options.network.web_root.empty();
-  auto server = service::WaterServer::start(std::move(server_options));
+  auto server_options = serverOptions(options, node.get());
+  if (!server_options) return fail(server_options.error());
+  if (*inherited) server_options->network.listening_socket = (*inherited)->descriptor;
+  const bool is_open_to_all = isOpenToAll(options, server_options->access);
+  const bool has_page = !server_options->network.web_root.empty();
+  auto server = service::WaterServer::start(*std::move(server_options));
   if (!server) return fail(server.error());
-
-  spdlog::info("simulation runs on {}", (*server)->deviceLine());
-  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
-  if (is_open_to_all) {
-    spdlog::warn(
-        "every client that can reach {} is an operator and may even close rooms: give --tokens-file or --guests player "
-        "to restrict this",
-        options.address);
+  if (node) {
+    service::Gateway& gateway = (*server)->gateway();
+    node->serve(gateway.sessions(), &(*server)->simulation(),
+                [&gateway](const net::HttpRequest& request, net::HttpResponder respond) {
+                  gateway.rest().answer(request, std::move(respond));
+                });
   }
+
+  if (const std::string device = (*server)->deviceLine(); !device.empty())
+    spdlog::info("simulation runs on {}", device);
+  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
+  if (is_open_to_all) warnOpenToAll(options);
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
   std::fflush(stdout);
   const int signal = signals.wait();
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
+  if (node) node->leave();
   (*server)->stop();
-  const net::ServerStats stats = (*server)->networkStats();
+  if (node) node->release();
+  node.reset();  // it uses the server
   for (const std::string& line : (*server)->summary()) spdlog::info("{}", line);
-  spdlog::info("{} sessions, {} frames and {:.1f} MB sent, {} frames dropped for slow clients, {} sessions evicted",
-               stats.accepted_session_count, stats.sent_frame_count, static_cast<double>(stats.sent_bytes_count) / 1e6,
-               stats.dropped_frame_count, stats.evicted_session_count);
+  logNetwork((*server)->networkStats());
   return 0;
 }
 
@@ -209,18 +167,9 @@ ProgramCommand addServe(CLI::App& program) {
   CLI::App* command = program.add_subcommand("serve", "Simulate and serve rooms until interrupted");
   addServeOptions(*command, *options);
   const auto sources = std::make_shared<std::optional<OptionSources>>();
-  return {command,
-          [options, sources] {
-            if (!options->prints_config) return serve(*options);
-            const std::string text = configText(**sources);
-            if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-              return fail({ErrorCode::kUnavailable,
-                           std::string("--print-config: standard output cannot be written: ") + std::strerror(errno)});
-            }
-            return 0;
-          },
+  return {command, [options, sources] { return options->prints_config ? printConfig(**sources) : serve(*options); },
           [&program, command, options, sources]() -> core::Result<void> {
-            auto completed = completeServeOptions(program, *command, *options);
+            auto completed = completeFrontOptions(program, *command, *options);
             if (!completed) return completed.error();
             *sources = *std::move(completed);
             return {};

@@ -32,37 +32,22 @@ std::string variableOr(const char* name, const std::string& otherwise) {
   return text != nullptr && *text != '\0' ? text : otherwise;
 }
 
-}  // namespace
-
-void addServeOptions(CLI::App& command, ServeOptions& options) {
-  command
-      .add_option("--scene", options.scene,
-                  "Scene of the room 'main': a .textproto file or the name of a shipped scene")
-      ->capture_default_str();
-  addFidelity(command, options.fidelity);
-  command.add_flag("--adapt", options.adapts,
-                   "Lower a room's fidelity while this machine cannot keep up, and raise it again when it can");
-  command.add_option("--room", options.rooms, "An additional room, NAME=SCENE; may be repeated");
+/// Those of everything that serves clients.
+void addFrontOptions(CLI::App& command, FrontOptions& options) {
   command.add_option("--address", options.address, "Address to listen on")->capture_default_str();
   command.add_option("--port", options.port, "Port to listen on; 0 = any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  addDevice(command, options.device);
   command.add_option("--web-root", options.web_root, "Folder of the built web client (default: next to the program)");
-  command
-      .add_option("--shader-dir", options.shader_folder,
-                  "For shader development: read shaders from this folder (shaders/) and reload changed files")
-      ->check(CLI::ExistingDirectory);
   command.add_option("--threads", options.thread_count, "I/O threads")->check(CLI::Range(1, 64))->capture_default_str();
-
+  command.add_option("--max-sessions", options.max_session_count, "Maximum number of sessions at a time")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
   command
       .add_option("--address-share", options.address_session_share,
                   "Share of the sessions that one address may use; 1 behind a proxy")
       ->check(isNumber())
       ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command.add_option("--max-rooms", options.max_room_count, "Maximum number of rooms, including those opened later")
-      ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command
       .add_option("--tokens-file,--tokens", options.token_file,
@@ -74,6 +59,64 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
       ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
   command.add_option("--origin", options.origins,
                      "Additional allowed Origin of pages, https://HOST; * = any; may be repeated");
+}
+
+void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_required) {
+  command
+      .add_option("--nats", options.nats_url,
+                  is_required
+                      ? "NATS server of the cluster, nats://[USER:PASSWORD@]HOST:PORT or tls://…; several with ','"
+                      : "Be a server of a cluster, over this NATS server, nats://[USER:PASSWORD@]HOST:PORT or "
+                        "tls://…; several with ','")
+      ->check(isNotEmpty());
+  command
+      .add_option("--nats-ca", options.nats_ca_file, "Certificates that sign the NATS server's (default: the system's)")
+      ->check(isNotEmpty());
+  command
+      .add_option("--node", options.node, "Name of this process in the cluster (default: the host's name and the port)")
+      ->check(isNotEmpty());
+  command.add_option("--cluster", options.cluster, "Name of the cluster; several can share a NATS server")
+      ->check(isNotEmpty())
+      ->capture_default_str();
+}
+
+/// Added last: where the values come from.
+void addSourceOptions(CLI::App& command, FrontOptions& options) {
+  command
+      .add_option(
+          "--config", options.config_file,
+          "File with options, as --print-config writes them (default: the environment variable SPINDRIFT_CONFIG)")
+      ->configurable(false);
+  command
+      .add_flag("--print-config", options.prints_config,
+                "Print the configuration, with the source of each value, and exit")
+      ->configurable(false);
+  command.footer(
+      "Each option is also an environment variable, SPINDRIFT_ and its first name in capitals with _ for -\n"
+      "(SPINDRIFT_MAX_SESSIONS; ';' between repeated values), and a field of --config (max_sessions: 8).\n"
+      "A flag replaces the variable, and the variable replaces the file.");
+}
+
+}  // namespace
+
+void addServeOptions(CLI::App& command, ServeOptions& options) {
+  command
+      .add_option("--scene", options.scene,
+                  "Scene of the room 'main': a .textproto file or the name of a shipped scene")
+      ->capture_default_str();
+  addFidelity(command, options.fidelity);
+  command.add_flag("--adapt", options.adapts,
+                   "Lower a room's fidelity while this machine cannot keep up, and raise it again when it can");
+  command.add_option("--room", options.rooms, "An additional room, NAME=SCENE; may be repeated");
+  addDevice(command, options.device);
+  command
+      .add_option("--shader-dir", options.shader_folder,
+                  "For shader development: read shaders from this folder (shaders/) and reload changed files")
+      ->check(CLI::ExistingDirectory);
+  command.add_option("--max-rooms", options.max_room_count, "Maximum number of rooms, including those opened later")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  addFrontOptions(command, options);
   command
       .add_option("--grace-s,--grace", options.grace_s,
                   "Seconds for which a boat keeps its owner after the connection was lost")
@@ -103,23 +146,17 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
                   "command is answered. A crash of the program loses nothing with any; a power failure may")
       ->check(CLI::IsMember({"never", "snapshots", "always"}))
       ->capture_default_str();
-
-  command
-      .add_option(
-          "--config", options.config_file,
-          "File with options, as --print-config writes them (default: the environment variable SPINDRIFT_CONFIG)")
-      ->configurable(false);
-  command
-      .add_flag("--print-config", options.prints_config,
-                "Print the configuration, with the source of each value, and exit")
-      ->configurable(false);
-  command.footer(
-      "Each option is also an environment variable, SPINDRIFT_ and its first name in capitals with _ for -\n"
-      "(SPINDRIFT_MAX_ROOMS; ';' between repeated values), and a field of --config (max_rooms: 8).\n"
-      "A flag replaces the variable, and the variable replaces the file.");
+  addClusterOptions(command, options, false);
+  addSourceOptions(command, options);
 }
 
-core::Result<OptionSources> completeServeOptions(CLI::App& program, CLI::App& command, ServeOptions& options) {
+void addEdgeOptions(CLI::App& command, FrontOptions& options) {
+  addClusterOptions(command, options, true);
+  addFrontOptions(command, options);
+  addSourceOptions(command, options);
+}
+
+core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& command, FrontOptions& options) {
   OptionSources sources{&command, &program};
   if (auto taken = sources.takeEnvironment(); !taken) return taken.error();
 

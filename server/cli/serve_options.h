@@ -1,5 +1,5 @@
-// The options of `spindrift serve`. The flags are the single list: environment and configuration file have the same
-// names and pass the same checks (option_sources.h, config_file.h).
+// The options of `spindrift serve` and `spindrift edge`. The flags are the single list: environment and configuration
+// file have the same names and pass the same checks (option_sources.h, config_file.h).
 #pragma once
 
 #include <cstddef>
@@ -15,39 +15,49 @@
 
 namespace spindrift::cli {
 
-struct ServeOptions {
-  std::string scene = "harbor";
-  std::vector<std::string> rooms;  ///< NAME=SCENE
+/// What serves clients, with or without rooms of its own.
+struct FrontOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;
-  std::string fidelity;  ///< replaces the fidelity of the scenes; empty: theirs
-  std::string device = "auto";
-  std::string web_root;       ///< empty: searched beside the program
-  std::string shader_folder;  ///< empty: the embedded shaders
+  std::string web_root;  ///< empty: searched beside the program
   std::size_t thread_count = 1;
+  std::size_t max_session_count = 256;
   double address_session_share = 0.5;  ///< share of the sessions that one address may hold
-  std::size_t max_room_count = 8;
-  std::string token_file;            ///< empty: `tokens`
+  std::string token_file;              ///< empty: `tokens`
   std::string tokens;                ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
   std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with tokens
   std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
-  double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
-  std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs
-  std::uint32_t hash_interval_ticks = 60;
-  std::string state_folder;  ///< folder in which the rooms are kept; empty: nowhere
-  double snapshot_interval_s = 10.0;
-  std::string sync = "snapshots";  ///< never, snapshots, always
-  bool adapts = false;
+  std::string nats_url;              ///< empty: the process is alone
+  std::string nats_ca_file;          ///< empty: the system's certificates
+  std::string cluster = "spindrift";
+  std::string node;  ///< empty: made from the host's name and the port
 
   std::string config_file;     ///< empty: SPINDRIFT_CONFIG, or no file
   bool prints_config = false;  ///< print the configuration instead of serving
 };
 
-/// Adds the flags. `options` outlives the parser.
+struct ServeOptions : FrontOptions {
+  std::string scene = "harbor";
+  std::vector<std::string> rooms;  ///< NAME=SCENE
+  std::string fidelity;            ///< replaces the fidelity of the scenes; empty: theirs
+  std::string device = "auto";
+  std::string shader_folder;  ///< empty: the embedded shaders
+  std::size_t max_room_count = 8;
+  double grace_s = 20.0;      ///< how long the boat of a lost connection is kept
+  std::string record_folder;  ///< folder for the logs of the rooms; empty: no logs
+  std::uint32_t hash_interval_ticks = 60;
+  std::string state_folder;  ///< folder in which the rooms are kept; empty: nowhere
+  double snapshot_interval_s = 10.0;
+  std::string sync = "snapshots";  ///< never, snapshots, always
+  bool adapts = false;
+};
+
+/// Add the flags. `options` outlives the parser.
 void addServeOptions(CLI::App& command, ServeOptions& options);
+void addEdgeOptions(CLI::App& command, FrontOptions& options);
 
 /// Gives the options of `command` and `program` (--log-level …) that have no flag the values of the environment and of
 /// the configuration file. Call after parsing. kInvalidInput and kUnavailable name the variable, or file and line.
-core::Result<OptionSources> completeServeOptions(CLI::App& program, CLI::App& command, ServeOptions& options);
+core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& command, FrontOptions& options);
 
 }  // namespace spindrift::cli

@@ -47,13 +47,14 @@ void RoomHub::publish(const std::string& room, StreamIndex stream, const FrameBy
   for (const Watcher& watcher : found->second.watchers[stream]) watcher.link->offerFrame(stream, frame);
 }
 
-core::StreamDemand RoomHub::demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count) const {
+core::StreamDemand RoomHub::demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
+                                   std::chrono::steady_clock::duration ahead) const {
   const std::lock_guard lock(mutex_);
   core::StreamDemand out;
   const auto found = rooms_.find(room);
   if (found == rooms_.end() || stream >= kMaxStreamCount) return out;
   for (const Watcher& watcher : found->second.watchers[stream]) {
-    const Outbox::Demand one = watcher.link->demand(stream, reduced_count);
+    const Outbox::Demand one = watcher.link->demand(stream, reduced_count, ahead);
     core::LevelDemand& of_level = out[indexOf(one.level)];
     ++of_level.watcher_count;
     of_level.wants_keyframe = of_level.wants_keyframe || one.wants_keyframe;

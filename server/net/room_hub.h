@@ -23,7 +23,8 @@ class SessionLink {
   virtual void sendAnswer(core::SharedBytes message) = 0;
   virtual void sendState(const StateTopic& topic, core::SharedBytes message) = 0;
   virtual void offerFrame(StreamIndex stream, const FrameBytes& frame) = 0;
-  virtual Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count) const = 0;
+  virtual Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count,
+                                std::chrono::steady_clock::duration ahead) const = 0;
   /// Sets the watch of a stream; nullopt stops it.
   virtual void setWatch(StreamIndex stream, const std::optional<Watch>& watch) = 0;
   virtual void clearFrames() = 0;
@@ -44,7 +45,8 @@ class RoomHub final : public Hub {
   void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) override;
   void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) override;
   void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) override;
-  core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count) const override;
+  core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
+                            std::chrono::steady_clock::duration ahead = {}) const override;
   void join(SessionId session, const std::string& room) override;
   std::size_t sessionCount(const std::string& room) const override;
   std::size_t sessionCount() const override;

@@ -273,8 +273,8 @@ void Session::offerFrame(StreamIndex stream, const FrameBytes& frame) {
   if (outcome.wake) wakeWriter();
 }
 
-Outbox::Demand Session::demand(StreamIndex stream, std::uint32_t reduced_count) const {
-  return outbox_.demand(stream, reduced_count, Clock::now());
+Outbox::Demand Session::demand(StreamIndex stream, std::uint32_t reduced_count, Clock::duration ahead) const {
+  return outbox_.demand(stream, reduced_count, Clock::now() + ahead);
 }
 
 void Session::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {

@@ -79,7 +79,7 @@ core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
     const std::string name = setup.name;
     if (auto built = buildRoom(name, std::move(setup)); !built) return built;
   }
-  if (!rules_.states) return {};
+  if (!rules_.states || !rules_.opens_kept_rooms) return {};
   const auto kept = rules_.states->rooms();
   if (!kept) return kept.error();
   for (const std::string& name : *kept) {
@@ -154,6 +154,11 @@ std::shared_ptr<Room> SimulationThread::find(const std::string& name) const {
   return it == rooms_.end() ? nullptr : *it;
 }
 
+std::string SimulationThread::deviceLine() const {
+  const std::lock_guard lock(rooms_mutex_);
+  return device_line_;
+}
+
 double SimulationThread::sinceLastRound_s() const {
   const std::lock_guard lock(mutex_);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_round_).count();
@@ -203,7 +208,13 @@ void SimulationThread::open(RoomSetup setup, Done done) {
   }
   auto place = placeOf(setup.name);
   if (!place) return done(place.error());
-  place->kept.reset();  // of a room of this name that could not be opened: the new one has nothing to do with it
+  if (!setup.goes_on) place->kept.reset();  // of a room of this name that could not be opened: the new one is another
+  if (place->kept) {
+    setup.scene = place->kept->state->start_scene();
+    scene::fillDefaults(setup.scene);
+  } else if (setup.scene.name().empty()) {
+    return done(Error{ErrorCode::kInvalidInput, "room " + setup.name + ": nothing of it on disk can be used"});
+  }
   openings_.push_back(
       {std::move(setup.name), *std::move(place), builder_->build(std::move(setup.scene)), std::move(done)});
 }
@@ -225,7 +236,10 @@ void SimulationThread::finishOpenings() {
 core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water, RoomPlace place) {
   if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
   (*water)->bind();
-  if (device_line_.empty()) device_line_ = (*water)->context().device().name;
+  {
+    const std::lock_guard lock(rooms_mutex_);
+    if (device_line_.empty()) device_line_ = (*water)->context().device().name;
+  }
   auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place));
   if (!room) return room.error();
   (*room)->start(std::chrono::steady_clock::now());
@@ -281,6 +295,7 @@ void SimulationThread::loop() {
     const auto idle_since = Clock::now();
     wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty() || std::exchange(was_built_, false); });
     busy.waited(idle_since, Clock::now());
+    busy_share_ = busy.value();
   }
   const auto changes = std::exchange(changes_, {});
   lock.unlock();

@@ -25,6 +25,7 @@ core::ByteView viewOf(const std::string& bytes) {
 
 struct StateKeeper::Shared {
   std::string room;
+  std::shared_ptr<state::FolderLock> room_lock;  ///< before the files, which end first
   std::unique_ptr<state::RoomFiles> files;
   mutable std::mutex mutex;
   std::condition_variable finished;
@@ -70,9 +71,10 @@ struct StateKeeper::Shared {
 };
 
 StateKeeper::StateKeeper(std::string room, std::unique_ptr<state::RoomFiles> files, std::chrono::milliseconds interval,
-                         Worker& writer)
+                         Worker& writer, std::shared_ptr<state::FolderLock> lock)
     : room_(std::move(room)), interval_(interval), writer_(writer), shared_(std::make_shared<Shared>()) {
   shared_->room = room_;
+  shared_->room_lock = std::move(lock);
   shared_->files = std::move(files);
 }
 

@@ -40,13 +40,15 @@ std::vector<v1::StateRecord> parseRecords(const std::string& room, const std::ve
 }  // namespace
 
 core::Result<std::shared_ptr<StateStore>> StateStore::open(const StateOptions& options) {
+  // A removal that was cut off in a shared folder is finished by the next one of a room of that name.
+  if (options.is_shared) return std::shared_ptr<StateStore>(new StateStore(options, std::nullopt));
   auto lock = state::FolderLock::take(options.folder);
   if (!lock) return lock.error();
   if (auto finished = state::finishRemovals(options.folder); !finished) return finished.error();
   return std::shared_ptr<StateStore>(new StateStore(options, *std::move(lock)));
 }
 
-StateStore::StateStore(StateOptions options, state::FolderLock lock)
+StateStore::StateStore(StateOptions options, std::optional<state::FolderLock> lock)
     : options_(std::move(options)), lock_(std::move(lock)), writer_(kWriterNiceness) {}
 
 core::Result<std::vector<std::string>> StateStore::rooms() const {
@@ -56,6 +58,12 @@ core::Result<std::vector<std::string>> StateStore::rooms() const {
 core::Result<RoomPlace> StateStore::place(const std::string& room) {
   const auto folder = state::roomFolder(options_.folder, room);
   if (!folder) return folder.error();
+  std::shared_ptr<state::FolderLock> room_lock;
+  if (options_.is_shared) {
+    auto taken = state::FolderLock::take(options_.folder / "locks" / room);
+    if (!taken) return taken.error();
+    room_lock = std::make_shared<state::FolderLock>(*std::move(taken));
+  }
   auto files =
       state::RoomFiles::open(*folder, {.sync = options_.sync, .kept_generation_count = options_.kept_generation_count});
   if (!files) return files.error();
@@ -70,6 +78,7 @@ core::Result<RoomPlace> StateStore::place(const std::string& room) {
     } else {
       const std::uint64_t generation = recovered->generation;
       files->reset();  // they hold no file yet
+      room_lock.reset();
       const auto aside = setAside(room);
       if (!aside) return aside.error();
       spdlog::error("room {}: its snapshot {} is of another version of this program; its files are now in {}", room,
@@ -77,7 +86,8 @@ core::Result<RoomPlace> StateStore::place(const std::string& room) {
       return place(room);
     }
   }
-  out.keeper = std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_);
+  out.keeper = std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_,
+                                             std::move(room_lock));
   return out;
 }
 

@@ -195,6 +195,20 @@ void writeCommands(Page& page, const CommandCounters& commands) {
 
 }  // namespace
 
+std::string metricsText(const net::ServerStats& network, const CommandCounters& commands) {
+  Page page;
+  writeNetwork(page, network);
+  writeCommands(page, commands);
+  return page.take();
+}
+
+std::string metric(const char* name, const char* type, const char* help, double value) {
+  Page page;
+  page.head(name, type, help);
+  page.sample("", value);
+  return page.take();
+}
+
 std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
                         const MetricsSources& sources) {
   std::vector<RoomSample> samples;

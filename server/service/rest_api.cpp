@@ -117,7 +117,8 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   if (request.path == "/metrics") {
     return respond(HttpReply{.status = 200,
                              .content_type = "text/plain; version=0.0.4; charset=utf-8",
-                             .body = metricsText(*rooms_, *hub_, counters_, sources_)});
+                             .body = metricsText(*rooms_, *hub_, counters_, sources_) +
+                                     (cluster_.metrics ? cluster_.metrics() : std::string())});
   }
   if (!request.path.starts_with(kRoot)) return respond(std::nullopt);
 
@@ -163,14 +164,15 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
       wanted->fidelity() == v1::FIDELITY_UNSPECIFIED ? std::nullopt : std::optional(wanted->fidelity());
   auto scene = rooms_->rules().scenes.load(wanted->scene(), fidelity);
   if (!scene) return respond(problem(500, "scene: " + rooms::firstLine(scene.error().message)));
-  rooms_->openRoom({wanted->name(), *std::move(scene)},
-                   [this, name = wanted->name(), respond = std::move(respond)](const core::Result<void>& opened) {
-                     if (!opened)
-                       return respond(problem(statusOf(opened.error()), rooms::firstLine(opened.error().message)));
-                     v1::RoomInfo out;
-                     if (const auto room = rooms_->find(name)) fillRoomInfo(*room, out);
-                     respond(json(201, out));
-                   });
+  const auto done = [this, name = wanted->name(), respond = std::move(respond)](const core::Result<void>& opened) {
+    if (!opened) return respond(problem(statusOf(opened.error()), rooms::firstLine(opened.error().message)));
+    v1::RoomInfo out;
+    if (const auto room = rooms_->find(name)) fillRoomInfo(*room, out);
+    respond(json(201, out));
+  };
+  rooms::RoomSetup setup{wanted->name(), *std::move(scene)};
+  if (cluster_.cluster) return cluster_.cluster->openRoom(std::move(setup), done);
+  rooms_->openRoom(std::move(setup), done);
 }
 
 void RestApi::room(const Call& call, net::HttpResponder respond) {

@@ -4,12 +4,13 @@ namespace spindrift::service {
 
 core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions options) {
   auto self = std::unique_ptr<WaterServer>(new WaterServer);
-  self->gateway_ = std::make_unique<Gateway>(GatewayOptions{.access = std::move(options.access),
-                                                            .message_max_bytes = options.network.read_message_max_bytes,
-                                                            .messages_per_s = options.network.messages_per_s,
-                                                            .message_burst_count = options.network.message_burst_count,
-                                                            .hello_patience = options.hello_patience},
+  self->gateway_ = std::make_unique<Gateway>(SessionRules{.access = std::move(options.access),
+                                                          .message_max_bytes = options.network.read_message_max_bytes,
+                                                          .messages_per_s = options.network.messages_per_s,
+                                                          .message_burst_count = options.network.message_burst_count,
+                                                          .hello_patience = options.hello_patience},
                                              self->sources_);
+  self->gateway_->join(options.cluster);
   self->encoder_ = std::make_unique<rooms::EncoderThread>(*self->gateway_);
   self->sources_.encoder = self->encoder_.get();
   auto simulation = rooms::SimulationThread::start(options.device, std::move(options.rooms), std::move(options.rules),

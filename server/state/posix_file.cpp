@@ -176,7 +176,8 @@ core::Result<void> makeFolder(const fs::path& folder) {
   if (parent != folder) {
     if (auto made = makeFolder(parent); !made) return made;
   }
-  if (::mkdir(folder.c_str(), static_cast<mode_t>(kFolderMode)) != 0)
+  // Another process may have been faster.
+  if (::mkdir(folder.c_str(), static_cast<mode_t>(kFolderMode)) != 0 && errno != EEXIST)
     return systemError("make the folder", folder, errno);
   return syncFolder(parent);
 }

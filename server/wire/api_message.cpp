@@ -83,4 +83,12 @@ core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {
   return create;
 }
 
+core::Result<v1::RoomList> parseRoomListJson(std::string_view json) {
+  v1::RoomList list;
+  if (std::string why = readJson(json, list); !why.empty()) {
+    return core::Error{core::ErrorCode::kInvalidInput, std::move(why)};
+  }
+  return list;
+}
+
 }  // namespace spindrift::wire

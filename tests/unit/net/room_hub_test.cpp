@@ -23,7 +23,7 @@ struct RecordingLink final : SessionLink {
   void sendAnswer(core::SharedBytes) override { ++control_count; }
   void sendState(const StateTopic&, core::SharedBytes) override { ++control_count; }
   void offerFrame(StreamIndex, const FrameBytes&) override { ++frame_count; }
-  Outbox::Demand demand(StreamIndex, std::uint32_t reduced_count) const override {
+  Outbox::Demand demand(StreamIndex, std::uint32_t reduced_count, Clock::duration) const override {
     return {.level = core::effectiveLevel(level, reduced_count), .wants_keyframe = wants_keyframe};
   }
   void setWatch(StreamIndex, const std::optional<Watch>& watch) override {

@@ -124,7 +124,9 @@ class Hub {
 
   /// Returns which levels of the stream are watched now, and in which form, so that unwatched levels are not encoded.
   /// `reduced_count`: number of levels that downsample its layer; requests for higher levels count as kFull.
-  virtual core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count) const = 0;
+  /// `ahead`: how long from now the frame will come.
+  virtual core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
+                                    std::chrono::steady_clock::duration ahead = {}) const = 0;
 
   /// Moves the session into a room. It leaves its previous room; its watches stay, unsent frames are dropped.
   virtual void join(SessionId session, const std::string& room) = 0;

@@ -40,7 +40,9 @@ bool isRoomName(const std::string& name);
 /// Name in the URL (see isRoomName()), and the checked scene with its defaults filled in.
 struct RoomSetup {
   std::string name;
-  v1::Scene scene;
+  v1::Scene scene{};
+  /// Goes on where the room is kept on disk; `scene` is for a room of which nothing is there, and may then be empty.
+  bool goes_on = false;
 };
 
 /// Settings shared by all rooms of a server. Outlives the rooms.
@@ -50,6 +52,7 @@ struct RoomRules {
   std::filesystem::path record_folder;      ///< folder for logs; empty: no logs
   std::uint32_t hash_interval_ticks = 60;   ///< interval of the state hashes in logs
   std::shared_ptr<StateStore> states;       ///< where the rooms are kept on disk; null: nowhere
+  bool opens_kept_rooms = true;             ///< at the start; false where a cluster decides which server runs a room
   bool adapts = false;                      ///< lowers a room's fidelity where the machine cannot keep up
 };
 

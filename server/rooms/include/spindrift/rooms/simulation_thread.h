@@ -2,6 +2,7 @@
 // Other threads hold rooms by shared pointers and call only their any-thread functions.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -54,8 +55,10 @@ class SimulationThread {
   [[nodiscard]] const RoomRules& rules() const { return rules_; }
   /// Returns seconds since the last round over all rooms; large while the thread is stuck or compiles.
   [[nodiscard]] double sinceLastRound_s() const;
-  /// One line: the device and why it was chosen.
-  [[nodiscard]] const std::string& deviceLine() const { return device_line_; }
+  /// One line: the device and why it was chosen. Empty until the first room was opened.
+  [[nodiscard]] std::string deviceLine() const;
+  /// Share of its time that the thread worked lately, 0 to 1.
+  [[nodiscard]] double busyShare() const { return busy_share_; }
   /// One line per room; filled by stop().
   [[nodiscard]] const std::vector<std::string>& summary() const { return summary_; }
 
@@ -97,7 +100,8 @@ class SimulationThread {
   std::vector<Opening> openings_;  ///< used by the thread only
   mutable std::mutex rooms_mutex_;
   std::vector<std::shared_ptr<Room>> rooms_;
-  std::string device_line_;
+  std::string device_line_;  ///< guarded by rooms_mutex_
+  std::atomic<double> busy_share_{0.0};
   std::vector<std::string> summary_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};

@@ -12,6 +12,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/rooms/worker.h>
+#include <spindrift/state/folder_lock.h>
 #include <spindrift/state/room_files.h>
 #include <spindrift/v1/kept_state.pb.h>
 
@@ -28,9 +29,10 @@ class StateKeeper {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// Takes over files that recover() was called on. `writer` writes the snapshots; it outlives this.
+  /// Takes over files that recover() was called on. `writer` writes the snapshots; it outlives this. `lock` is held as
+  /// long as the files are; it may be null.
   StateKeeper(std::string room, std::unique_ptr<state::RoomFiles> files, std::chrono::milliseconds interval,
-              Worker& writer);
+              Worker& writer, std::shared_ptr<state::FolderLock> lock = nullptr);
   /// Waits for a snapshot that is being written.
   ~StateKeeper();
   StateKeeper(const StateKeeper&) = delete;

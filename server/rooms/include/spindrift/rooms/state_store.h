@@ -21,6 +21,8 @@ struct StateOptions {
   state::Sync sync = state::Sync::kSnapshots;
   std::chrono::milliseconds snapshot_interval{10'000};
   std::uint32_t kept_generation_count = 2;  ///< snapshots per room that stay on disk
+  /// Several servers use the folder: each room is locked by the one that runs it, instead of the folder.
+  bool is_shared = false;
 };
 
 /// A room's place on disk.
@@ -31,14 +33,16 @@ struct RoomPlace {
 
 class StateStore {
  public:
-  /// Takes the folder for this server. Errors: kUnavailable when another server uses it, or it cannot be written.
+  /// Takes the folder for this server unless it is shared. Errors: kUnavailable when another server uses it, or it
+  /// cannot be written.
   static core::Result<std::shared_ptr<StateStore>> open(const StateOptions& options);
   StateStore(const StateStore&) = delete;
   StateStore& operator=(const StateStore&) = delete;
 
   /// Returns the names of the rooms that have files, sorted.
   [[nodiscard]] core::Result<std::vector<std::string>> rooms() const;
-  /// Reads what there is of a room and logs what cannot be used. One place per room at a time.
+  /// Reads what there is of a room and logs what cannot be used. One place per room at a time. Error kUnavailable when
+  /// another server runs the room, in a shared folder.
   core::Result<RoomPlace> place(const std::string& room);
   /// Moves the files of a room that cannot be used out of the way; returns where to.
   core::Result<std::filesystem::path> setAside(const std::string& room) const;
@@ -47,10 +51,10 @@ class StateStore {
   [[nodiscard]] const std::filesystem::path& folder() const { return options_.folder; }
 
  private:
-  StateStore(StateOptions options, state::FolderLock lock);
+  StateStore(StateOptions options, std::optional<state::FolderLock> lock);
 
   const StateOptions options_;
-  state::FolderLock lock_;
+  std::optional<state::FolderLock> lock_;  ///< of the whole folder
   Worker writer_;
 };
 

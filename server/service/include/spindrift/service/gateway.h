@@ -1,49 +1,43 @@
-// Connects the network to the rooms: handles the messages of sessions and requests. Implements net::Application; runs
-// on I/O threads.
+// Connects the network to the rooms of this process: their sessions, their requests and their frames. Implements
+// net::Application; called on I/O threads, the simulation thread and the encoder thread.
 #pragma once
 
-#include <chrono>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 
-#include <spindrift/core/token_bucket.h>
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
 #include <spindrift/rooms/frame_outlet.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/simulation_thread.h>
-#include <spindrift/service/access.h>
+#include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/service/rest_api.h>
+#include <spindrift/service/sessions.h>
 
 namespace spindrift::service {
-
-struct GatewayOptions {
-  Access access;
-  std::size_t message_max_bytes = 16 * 1024;  ///< same value as in the network; sent in greetings
-  double messages_per_s = 500.0;              ///< same
-  double message_burst_count = 1000.0;        ///< same
-  double commands_per_s = 200.0;              ///< token bucket per session; commands beyond it are rejected as BUSY
-  double command_burst_count = 400.0;
-  std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
-};
 
 class Gateway final : public net::Application, public rooms::RoomOutlets, public rooms::FrameOutlet {
  public:
   /// `sources` outlives the gateway.
-  Gateway(GatewayOptions options, const MetricsSources& sources);
+  Gateway(SessionRules rules, const MetricsSources& sources);
   /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
   /// network calls the gateway, though their threads may have ended.
   void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
+  /// Makes the server part of a cluster; call it before the network starts. What the hooks point to outlives the rooms
+  /// and the network.
+  void join(const ClusterHooks& cluster);
+  [[nodiscard]] Sessions& sessions() { return sessions_; }
+  [[nodiscard]] RestApi& rest() { return rest_; }
 
   void serverStarts(net::Hub& served) override;
   core::Result<void> acceptSession(const std::string& room) override;
   void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
-  void sessionMessage(net::SessionId session, core::ByteView message) override;
-  void sessionLevelChanged(net::SessionId session, core::Level level) override;
-  void sessionClosed(net::SessionId session, const net::SessionEnd& end) override;
+  void sessionMessage(net::SessionId session, core::ByteView message) override { sessions_.message(session, message); }
+  void sessionLevelChanged(net::SessionId session, core::Level level) override {
+    sessions_.levelChanged(session, level);
+  }
+  void sessionClosed(net::SessionId session, const net::SessionEnd& end) override { sessions_.closed(session, end); }
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
   // RoomOutlets interface
@@ -71,37 +65,19 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
                std::uint32_t reduced_count) override;
 
  private:
-  struct SessionState {
-    std::shared_ptr<rooms::Room> room;
-    std::shared_ptr<const rooms::RoomSnapshot> greeted;  ///< the state sent in the last greeting
-    core::TokenBucket commands;
-    bool said_hello = false;
-    std::uint32_t wire_minor = 0;  ///< of the client, once it has said hello
-    core::Role role = core::Role::kViewer;
-    std::uint32_t person_id = 0;
-  };
-
-  [[nodiscard]] net::Hub& hub() const { return *hub_; }
+  [[nodiscard]] net::Hub& hub() const { return sessions_.hub(); }
   [[nodiscard]] rooms::SimulationThread& simulation() const { return *rooms_; }
-  /// Sends a greeting with the room's present state and stores that state.
-  void greet(net::SessionId session, const rooms::Room& room);
-  void hello(net::SessionId session, const SessionState& state, const wire::Hello& hello);
-  void subscribe(net::SessionId session, const SessionState& state, const wire::Subscribe& subscribe);
-  void command(net::SessionId session, const SessionState& state, v1::Command message);
-  /// Takes a token of the session's command rate; returns false if there is none.
-  bool takeCommand(net::SessionId session);
-  void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
-  /// Closes all sessions of a room that is about to close.
-  void dismiss(const rooms::Room& room);
+  /// The room of that name, here or in the cluster; null: there is none.
+  [[nodiscard]] std::shared_ptr<Venue> find(const std::string& room);
+  /// To all sessions of the room, in this process and in others.
+  void tell(const rooms::Room& room, const net::StateTopic& topic, const core::SharedBytes& message);
 
-  const GatewayOptions options_;
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any session exists
   rooms::EncoderThread* encoder_ = nullptr;   ///< set before any session exists
+  ClusterHooks cluster_;                      ///< set before any session exists
   CommandCounters counters_;
+  Sessions sessions_;
   RestApi rest_;
-  net::Hub* hub_ = nullptr;  ///< set before any session exists
-  std::mutex mutex_;
-  std::map<net::SessionId, SessionState> sessions_;
 };
 
 }  // namespace spindrift::service

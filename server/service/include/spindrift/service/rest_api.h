@@ -13,6 +13,7 @@
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/simulation_thread.h>
 #include <spindrift/service/access.h>
+#include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/ground_answers.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/v1/api.pb.h>
@@ -31,6 +32,8 @@ class RestApi {
 
   /// Sets the rooms; call it before the network starts.
   void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
+  /// Makes the server part of a cluster; call it before the network starts.
+  void join(const ClusterHooks& cluster) { cluster_ = cluster; }
   void serverStarts(net::Hub& hub) { hub_ = &hub; }
   /// Answers any request that net passes to the application.
   void answer(const net::HttpRequest& request, net::HttpResponder respond);
@@ -62,6 +65,7 @@ class RestApi {
   const std::function<void(const rooms::Room&)> dismiss_;
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
   net::Hub* hub_ = nullptr;                   ///< set before any request arrives
+  ClusterHooks cluster_;                      ///< set before any request arrives
   GroundAnswers ground_;
   std::atomic<std::uint64_t> last_request_id_{0};
   std::mutex mutex_;

@@ -18,10 +18,11 @@ namespace spindrift::service {
 struct WaterServerOptions {
   gpu::DeviceChoice device;
   net::ServerOptions network;
-  std::vector<rooms::RoomSetup> rooms;  ///< at least one; the first is the default room
+  std::vector<rooms::RoomSetup> rooms;  ///< the first is the default room; none only in a cluster
   rooms::RoomRules rules;               ///< settings that the rooms share
   std::size_t max_room_count = 8;
   Access access;
+  ClusterHooks cluster{};                            ///< what they point to outlives stop()
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
 };
 
@@ -37,9 +38,11 @@ class WaterServer {
   void stop();
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  [[nodiscard]] const std::string& deviceLine() const { return simulation_->deviceLine(); }
+  [[nodiscard]] std::string deviceLine() const { return simulation_->deviceLine(); }
   /// Real-time factor of the default room over the last second.
   [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
+  [[nodiscard]] Gateway& gateway() { return *gateway_; }
+  [[nodiscard]] rooms::SimulationThread& simulation() { return *simulation_; }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
   [[nodiscard]] const rooms::EncoderThread& encoder() const { return *encoder_; }
   /// One line per room; filled by stop().

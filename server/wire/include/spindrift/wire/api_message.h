@@ -24,4 +24,7 @@ std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::str
 /// Error: kInvalidInput with one line. Does not check whether the name is free or the scene exists.
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json);
 
+/// Parses a list as toJson() writes it; kInvalidInput with one line.
+core::Result<v1::RoomList> parseRoomListJson(std::string_view json);
+
 }  // namespace spindrift::wire

@@ -1,0 +1,61 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/cluster/edge_server.h>
+
+#include "commands.h"
+#include "front.h"
+#include "serve_options.h"
+
+namespace spindrift::cli {
+namespace {
+
+int runEdge(const FrontOptions& options) {
+  StopSignals signals;
+  if (options.nats_url.empty()) {
+    return fail(
+        {core::ErrorCode::kInvalidInput, "an edge needs the NATS server of its cluster: --nats nats://HOST:4222"});
+  }
+  auto access = loadAccess(options);
+  if (!access) return fail(access.error());
+  const bool is_open_to_all = isOpenToAll(options, *access);
+  cluster::EdgeOptions edge_options;
+  edge_options.node = nodeOptions(options, false);
+  edge_options.network = networkOptions(options);
+  edge_options.sessions.access = *std::move(access);
+  const bool has_page = !edge_options.network.web_root.empty();
+  auto edge = cluster::EdgeServer::start(std::move(edge_options));
+  if (!edge) return fail(edge.error());
+  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
+  if (is_open_to_all) warnOpenToAll(options);
+  std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*edge)->port());
+  std::fflush(stdout);
+  const int signal = signals.wait();
+  spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
+  (*edge)->stop();
+  logNetwork((*edge)->networkStats());
+  return 0;
+}
+
+}  // namespace
+
+ProgramCommand addEdge(CLI::App& program) {
+  const auto options = std::make_shared<FrontOptions>();
+  CLI::App* command = program.add_subcommand(
+      "edge", "Serve the rooms of a cluster to many clients, without rooms of its own, until interrupted");
+  addEdgeOptions(*command, *options);
+  const auto sources = std::make_shared<std::optional<OptionSources>>();
+  return {command, [options, sources] { return options->prints_config ? printConfig(**sources) : runEdge(*options); },
+          [&program, command, options, sources]() -> core::Result<void> {
+            auto completed = completeFrontOptions(program, *command, *options);
+            if (!completed) return completed.error();
+            *sources = *std::move(completed);
+            return {};
+          }};
+}
+
+}  // namespace spindrift::cli

@@ -1,0 +1,250 @@
+#include "directory.h"
+
+#include <future>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/scene/fidelity.h>
+
+namespace spindrift::cluster {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// The server to which a room falls has this time; then any server takes it.
+constexpr auto kChosenPatience = 3s;
+/// A state without an entry may be that of a room that is being closed.
+constexpr auto kStrayPatience = 2s;
+constexpr auto kRetryPause = 1s;
+
+core::Bytes serialize(const v1::RoomRecord& record) {
+  core::Bytes bytes(record.ByteSizeLong());
+  record.SerializeWithCachedSizesToArray(bytes.data());
+  return bytes;
+}
+
+}  // namespace
+
+Directory::Directory(std::unique_ptr<bus::KeyValues> values, std::string self, LookAt servers)
+    : values_(std::move(values)), self_(std::move(self)), servers_(std::move(servers)), worker_(0) {}
+
+Directory::~Directory() = default;
+
+core::Result<std::map<std::string, Directory::Entry>> Directory::read() {
+  const auto values = values_->all();
+  if (!values) return values.error();
+  std::map<std::string, Entry> out;
+  for (const auto& [room, value] : *values) {
+    Entry entry{.record = {}, .revision = value.revision};
+    if (entry.record.ParseFromArray(value.value.data(), static_cast<int>(value.value.size())) &&
+        rooms::isRoomName(room)) {
+      out.emplace(room, std::move(entry));
+    }
+  }
+  return out;
+}
+
+core::Result<bool> Directory::write(const std::string& room, const v1::RoomRecord& record, std::uint64_t revision) {
+  const auto written = values_->set(room, serialize(record), revision);
+  if (!written) return written.error();
+  return written->has_value();
+}
+
+void Directory::fail(const std::string& what, const core::Error& error) {
+  ++failure_count_;
+  if (std::exchange(said_, what + error.message) != what + error.message) spdlog::error("{}: {}", what, error.message);
+}
+
+core::Result<std::vector<rooms::RoomSetup>> Directory::claim(std::vector<rooms::RoomSetup> rooms) {
+  auto entries = read();
+  if (!entries) return entries.error();
+  const Servers servers = servers_();
+  const auto now = Clock::now();
+  std::vector<rooms::RoomSetup> out;
+  for (rooms::RoomSetup& room : rooms) {
+    const Entry entry = (*entries)[room.name];
+    const std::string& owner = entry.record.server();
+    if (!owner.empty() && owner != self_ && servers.isAlive(owner, now)) {
+      spdlog::info("room {} runs on server {}; it is not opened here", room.name, owner);
+      continue;
+    }
+    v1::RoomRecord record;
+    record.set_server(self_);
+    record.set_scene(room.scene.name());
+    record.set_fidelity(room.scene.fidelity());
+    const auto mine = write(room.name, record, entry.revision);
+    if (!mine) return mine.error();
+    if (*mine)
+      out.push_back(std::move(room));
+    else
+      spdlog::info("room {} was just taken by another server; it is not opened here", room.name);
+  }
+  return out;
+}
+
+void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done) {
+  {
+    const std::lock_guard lock(mutex_);
+    opening_.insert(setup.name);
+  }
+  auto shared = std::make_shared<rooms::RoomSetup>(std::move(setup));
+  worker_.push([this, shared, done = std::move(done)](bool runs) {
+    const std::string name = shared->name;
+    const auto finish = [this, name, done](const core::Result<void>& outcome) {
+      {
+        const std::lock_guard lock(mutex_);
+        opening_.erase(name);
+      }
+      done(outcome);
+    };
+    if (!runs) return finish(core::Error{core::ErrorCode::kUnavailable, "the server shuts down"});
+    v1::RoomRecord record;
+    record.set_server(self_);
+    record.set_scene(shared->scene.name());
+    record.set_fidelity(shared->scene.fidelity());
+    const auto entered = write(name, record, 0);
+    if (!entered) return finish(entered.error());
+    if (!*entered) {
+      return finish(core::Error{core::ErrorCode::kInvalidInput,
+                                "there is a room '" + name + "' in the cluster already: choose another name"});
+    }
+    simulation_->openRoom(std::move(*shared), [this, name, finish](const core::Result<void>& opened) {
+      if (!opened) remove(name);
+      finish(opened);
+    });
+  });
+}
+
+void Directory::remove(const std::string& room) {
+  worker_.push([this, room](bool runs) {
+    if (!runs) return;
+    if (const auto removed = values_->remove(room); !removed)
+      fail("room " + room + " stays in the directory of rooms", removed.error());
+  });
+}
+
+void Directory::review() {
+  if (!simulation_ || leaving_ || reviewing_.exchange(true)) return;
+  worker_.push([this](bool runs) {
+    if (runs) reviewNow();
+    reviewing_ = false;
+  });
+}
+
+void Directory::reviewNow() {
+  auto entries = read();
+  if (!entries) return fail("the directory of rooms cannot be read", entries.error());
+  said_.clear();
+  if (const auto& states = simulation_->rules().states) {
+    if (const auto kept = states->rooms()) {
+      for (const std::string& room : *kept) {
+        if (rooms::isRoomName(room)) entries->try_emplace(room);
+      }
+    }
+  }
+  const Servers servers = servers_();
+  const auto now = Clock::now();
+  std::map<std::string, int> placed;
+  std::map<std::string, Clock::time_point> orphans;
+  for (const auto& [room, entry] : *entries) {
+    if (simulation_->find(room)) {
+      if (entry.record.server() != self_) settle(room, entry, servers, now);
+      continue;
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      if (opening_.contains(room)) continue;
+    }
+    const std::string& owner = entry.record.server();
+    if (owner != self_ && servers.isAlive(owner, now)) continue;
+    const auto since = orphans_.contains(room) ? orphans_.at(room) : now;
+    orphans[room] = since;
+    if (entry.revision == 0 && now - since < kStrayPatience) continue;
+    const std::string chosen = servers.choose(now, placed);
+    ++placed[chosen];
+    if (chosen != self_ && now - since < kChosenPatience) continue;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto retry = retry_after_.find(room);
+      if (retry != retry_after_.end() && now < retry->second) continue;
+    }
+    take(room, entry);
+  }
+  orphans_ = std::move(orphans);
+}
+
+void Directory::settle(const std::string& room, const Entry& entry, const Servers& servers, Clock::time_point now) {
+  const std::string& other = entry.record.server();
+  const bool runs_elsewhere = servers.isAlive(other, now) && servers.serverOf(room) == other;
+  if (runs_elsewhere && !simulation_->rules().states) {
+    // Without a shared state there is no lock: this server was cut off, and the other one took the room.
+    spdlog::error("room {} runs on server {} as well, which took it while this one was cut off: closing it here", room,
+                  other);
+    simulation_->closeRoom(
+        room, [](const rooms::Room&) {}, [](const core::Result<void>&) {});
+    return;
+  }
+  v1::RoomRecord record = entry.record;
+  record.set_server(self_);
+  if (record.scene().empty()) record.set_scene(simulation_->find(room)->snapshot()->scene.name());
+  if (const auto mine = write(room, record, entry.revision); !mine)
+    fail("room " + room + " could not be entered in the directory of rooms", mine.error());
+}
+
+void Directory::take(const std::string& room, const Entry& entry) {
+  v1::RoomRecord record = entry.record;
+  const std::string before = record.server();
+  record.set_server(self_);
+  const auto mine = write(room, record, entry.revision);
+  if (!mine) return fail("room " + room + " could not be taken", mine.error());
+  if (!*mine) return;  // another server was faster
+  spdlog::warn("room {}: taken over from {}", room,
+               before.empty()    ? "nobody"
+               : before == self_ ? "this server's earlier run"
+                                 : "server " + before);
+  rooms::RoomSetup setup{.name = room, .scene = {}, .goes_on = true};
+  if (simulation_->rules().scenes.has(record.scene())) {
+    const auto fidelity =
+        record.fidelity() == v1::FIDELITY_UNSPECIFIED ? std::nullopt : std::optional(record.fidelity());
+    if (auto scene = simulation_->rules().scenes.load(record.scene(), fidelity)) setup.scene = *std::move(scene);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    opening_.insert(room);
+  }
+  simulation_->openRoom(std::move(setup), [this, room](const core::Result<void>& opened) {
+    {
+      const std::lock_guard lock(mutex_);
+      opening_.erase(room);
+      if (!opened) retry_after_[room] = Clock::now() + kRetryPause;
+    }
+    if (opened) {
+      ++taken_count_;
+      spdlog::info("room {} runs here now", room);
+    } else {
+      ++failure_count_;
+      spdlog::error("room {} could not be taken over, it is tried again: {}", room, opened.error().message);
+    }
+  });
+}
+
+void Directory::release() {
+  leaving_ = true;
+  std::promise<void> done;
+  auto finished = done.get_future();
+  worker_.push([this, &done](bool) {
+    if (const auto entries = read()) {
+      for (const auto& [room, entry] : *entries) {
+        if (entry.record.server() != self_) continue;
+        v1::RoomRecord record = entry.record;
+        record.clear_server();
+        (void)write(room, record, entry.revision);
+      }
+    }
+    done.set_value();
+  });
+  finished.wait();
+}
+
+}  // namespace spindrift::cluster

@@ -1,0 +1,388 @@
+#include "feed.h"
+
+#include <random>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/core/monotonic.h>
+#include <spindrift/wire/client_message.h>
+
+#include "frame_head.h"
+
+namespace spindrift::cluster {
+namespace {
+
+/// Session ids of this process are below; those of nodes have their link's prefix above.
+constexpr unsigned kPrefixShift = 40;
+constexpr std::size_t kRequestsWaitingMaxBytes = 8u << 20;
+/// Of one node in one room.
+constexpr std::size_t kArrivedMaxCount = 4096;
+
+core::Role roleOf(v1::Role role) {
+  if (role == v1::ROLE_OPERATOR) return core::Role::kOperator;
+  return role == v1::ROLE_PLAYER ? core::Role::kPlayer : core::Role::kViewer;
+}
+
+core::SessionId sessionOf(std::uint32_t prefix, std::uint64_t session) {
+  return (core::SessionId{prefix} << kPrefixShift) | session;
+}
+
+std::uint64_t newRun() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 32u) | device();
+}
+
+}  // namespace
+
+void Feed::review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
+                  Clock::time_point now) {
+  std::vector<std::unique_ptr<bus::Subscription>> ended;  // destroyed without the lock, which their handlers take
+  const std::lock_guard lock(mutex_);
+  for (const auto& room : rooms) {
+    FedRoom& fed = rooms_[room->name()];
+    if (fed.room == room) continue;
+    ended.push_back(std::move(fed.requests));
+    fed = FedRoom{};
+    fed.room = room;
+    fed.run = newRun();
+    fed.device = simulation.deviceLine();
+    fed.scenes = simulation.rules().scenes.names();
+    fed.requests = bus_.subscribe(subjects_.room(room->name()), kRequestsWaitingMaxBytes,
+                                  [this, name = room->name()](core::ByteView message) { take(name, message); });
+  }
+  const bool is_pulse_due = now >= next_pulse_;
+  if (is_pulse_due) next_pulse_ = now + kPulseInterval;
+  for (auto& [name, room] : rooms_) {
+    for (auto link = room.links.begin(); link != room.links.end();) {
+      if (now - link->second.heard > kLinkPatience) {
+        spdlog::warn("room {}: node {} with {} sessions is silent; its people leave", name, link->first,
+                     link->second.session_count);
+        ++lost_link_count_;
+        endLink(room, link->second);
+        by_prefix_.erase(link->second.prefix);
+        link = room.links.erase(link);
+        continue;
+      }
+      if (is_pulse_due) {
+        v1::FromRoom pulse;
+        pulse.mutable_pulse();
+        send(name, link->first, link->second, std::move(pulse));
+      }
+      ++link;
+    }
+  }
+}
+
+void Feed::send(const std::string& room, const std::string& node, Link& link, v1::FromRoom message) const {
+  message.set_room(room);
+  message.set_link(link.number);
+  message.set_sequence(++link.sequence);
+  v1::ToNode out;
+  *out.mutable_from_room() = std::move(message);
+  core::Bytes bytes(out.ByteSizeLong());
+  out.SerializeWithCachedSizesToArray(bytes.data());
+  bus_.publish(subjects_.node(node), bytes);
+}
+
+void Feed::sendView(const std::string& name, FedRoom& room, const std::string& node, Link& link,
+                    double node_time_s) const {
+  const auto snapshot = room.room->snapshot();
+  v1::FromRoom message;
+  v1::RoomView& view = *message.mutable_view();
+  *view.mutable_scene() = snapshot->scene;
+  view.set_paused(snapshot->paused);
+  view.set_speed(snapshot->speed);
+  *view.mutable_boats() = snapshot->boats;
+  view.set_device(room.device);
+  for (const std::string& scene : room.scenes) view.add_scenes(scene);
+  view.set_grace_s(std::chrono::duration<double>(room.room->roster().grace()).count());
+  *view.mutable_people() = room.room->roster().people();
+  view.set_node_time_s(node_time_s);
+  view.set_room_time_s(core::monotonic_s());
+  view.set_run(room.run);
+  if (room.knows_reduced_counts) {
+    for (const std::uint32_t count : room.reduced_counts) view.mutable_reduced_counts()->add_counts(count);
+  }
+  send(name, node, link, std::move(message));
+}
+
+void Feed::endLink(FedRoom& room, const Link& link) {
+  const auto now = rooms::Roster::Clock::now();
+  for (const std::uint64_t session : link.arrived) room.room->roster().leave(sessionOf(link.prefix, session), now);
+}
+
+// From nodes
+
+void Feed::attach(FedRoom& room, const v1::ToRoom& message) {
+  Link& link = room.links[message.node()];
+  if (link.number != message.link()) {
+    endLink(room, link);
+    by_prefix_.erase(link.prefix);
+    link = Link{};
+    link.number = message.link();
+    link.prefix = ++last_prefix_;
+    by_prefix_[link.prefix] = {room.room->name(), message.node()};
+  }
+  link.heard = Clock::now();
+  if (message.attach().version() != kClusterVersion) {
+    v1::FromRoom refused;
+    refused.set_refused("this server speaks version " + std::to_string(kClusterVersion) +
+                        " of the cluster's messages, the node version " + std::to_string(message.attach().version()) +
+                        ": run the same version of the program on all machines");
+    return send(room.room->name(), message.node(), link, std::move(refused));
+  }
+  spdlog::info("room {}: node {} attaches", room.room->name(), message.node());
+  sendView(room.room->name(), room, message.node(), link, message.attach().node_time_s());
+}
+
+void Feed::take(const std::string& name, core::ByteView bytes) {
+  v1::ToRoom message;
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) || message.node().empty()) return;
+  std::unique_lock lock(mutex_);
+  const auto found = rooms_.find(name);
+  if (found == rooms_.end()) return;
+  FedRoom& room = found->second;
+  if (message.has_attach()) return attach(room, message);
+  const auto known = room.links.find(message.node());
+  if (known == room.links.end() || known->second.number != message.link()) return;  // it will notice, and attach again
+  Link& link = known->second;
+  link.heard = Clock::now();
+  switch (message.message_case()) {
+    case v1::ToRoom::kWatching: {
+      link.session_count = message.watching().session_count();
+      StreamTable watched{};
+      for (const v1::Watching::Stream& stream : message.watching().streams()) {
+        const auto level = codec::fromWire(stream.level());
+        if (stream.stream() >= codec::kStreamCount || !level) continue;
+        Watched& entry = watched[stream.stream()][core::indexOf(*level)];
+        const Watched& before = link.watched[stream.stream()][core::indexOf(*level)];
+        entry.watcher_count = stream.watcher_count();
+        entry.wants_keyframe = stream.wants_keyframe() || (before.wants_keyframe && before.watcher_count > 0);
+      }
+      link.watched = watched;
+      return;
+    }
+    case v1::ToRoom::kArrive: {
+      const v1::Arrive& who = message.arrive();
+      if (link.arrived.size() >= kArrivedMaxCount) return;
+      const rooms::Admission admission = room.room->roster().arrive({.session = sessionOf(link.prefix, who.session()),
+                                                                     .role = roleOf(who.role()),
+                                                                     .name = who.name(),
+                                                                     .color_rgb = who.color_rgb(),
+                                                                     .resume_key = who.resume_key()});
+      link.arrived.insert(who.session());
+      v1::FromRoom answer;
+      v1::Admitted& admitted = *answer.mutable_admitted();
+      admitted.set_session(who.session());
+      admitted.set_person_id(admission.person_id);
+      admitted.set_resume_key(admission.resume_key);
+      admitted.set_resumed(admission.resumed);
+      send(name, message.node(), link, std::move(answer));
+      if (!admission.displaced) return;
+      const core::SessionId displaced = *admission.displaced;
+      if (displaced >> kPrefixShift == 0) {
+        lock.unlock();
+        return displaceHere_(displaced);
+      }
+      v1::FromRoom notice;
+      notice.set_displaced_session(displaced & ((core::SessionId{1} << kPrefixShift) - 1));
+      lock.unlock();
+      sendOutcome(displaced, std::move(notice));
+      return;
+    }
+    case v1::ToRoom::kLeaveSession: {
+      if (link.arrived.erase(message.leave_session()) > 0)
+        room.room->roster().leave(sessionOf(link.prefix, message.leave_session()), rooms::Roster::Clock::now());
+      return;
+    }
+    case v1::ToRoom::kCommand: {
+      v1::RoomCommand& sent = *message.mutable_command();
+      const rooms::Command command{.sender = {.session_id = sessionOf(link.prefix, sent.session()),
+                                              .person_id = sent.person_id(),
+                                              .role = roleOf(sent.role())},
+                                   .message = std::move(*sent.mutable_command())};
+      const std::shared_ptr<rooms::Room> target = room.room;
+      lock.unlock();
+      if (const auto rejection = target->admit(command)) commandRejected(command, *rejection);
+      return;
+    }
+    case v1::ToRoom::kDetach:
+      endLink(room, link);
+      by_prefix_.erase(link.prefix);
+      room.links.erase(known);
+      return;
+    default:
+      return;
+  }
+}
+
+// To nodes
+
+void Feed::sceneChanged(const rooms::Room& room) {
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room.name());
+  if (found == rooms_.end() || found->second.room.get() != &room) return;
+  for (auto& [node, link] : found->second.links) sendView(room.name(), found->second, node, link, 0.0);
+}
+
+void Feed::stateChanged(const rooms::Room& room, const net::StateTopic& topic, const core::SharedBytes& message) {
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room.name());
+  if (found == rooms_.end()) return;
+  for (auto& [node, link] : found->second.links) {
+    v1::FromRoom out;
+    out.mutable_news()->set_topic(topic.name);
+    out.mutable_news()->set_scope(static_cast<std::uint32_t>(topic.scope));
+    out.mutable_news()->set_message(message->data(), message->size());
+    send(room.name(), node, link, std::move(out));
+  }
+}
+
+void Feed::closed(const rooms::Room& room) {
+  roomClosed_(room.name());
+  std::unique_ptr<bus::Subscription> ended;  // destroyed without the lock, which its handler takes
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room.name());
+  if (found == rooms_.end() || found->second.room.get() != &room) return;
+  for (auto& [node, link] : found->second.links) {
+    v1::FromRoom out;
+    out.mutable_closed();
+    send(room.name(), node, link, std::move(out));
+    by_prefix_.erase(link.prefix);
+  }
+  ended = std::move(found->second.requests);
+  rooms_.erase(found);
+}
+
+bool Feed::sendOutcome(core::SessionId session, v1::FromRoom message) {
+  const auto prefix = static_cast<std::uint32_t>(session >> kPrefixShift);
+  if (prefix == 0) return false;
+  const std::lock_guard lock(mutex_);
+  const auto whose = by_prefix_.find(prefix);
+  if (whose == by_prefix_.end()) return true;  // its link has ended: nobody waits for the answer
+  const auto& [name, node] = whose->second;
+  const auto room = rooms_.find(name);
+  if (room == rooms_.end()) return true;
+  const auto link = room->second.links.find(node);
+  if (link != room->second.links.end()) send(name, node, link->second, std::move(message));
+  return true;
+}
+
+bool Feed::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+  const core::SessionId session = command.sender.session_id;
+  v1::FromRoom message;
+  v1::Outcome& outcome = *message.mutable_outcome();
+  outcome.set_session(session & ((core::SessionId{1} << kPrefixShift) - 1));
+  outcome.mutable_ack()->set_command_id(command.id());
+  outcome.mutable_ack()->set_applied_tick(tick);
+  outcome.mutable_ack()->set_boat_id(boat_id);
+  return sendOutcome(session, std::move(message));
+}
+
+bool Feed::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
+  const core::SessionId session = command.sender.session_id;
+  v1::FromRoom message;
+  v1::Outcome& outcome = *message.mutable_outcome();
+  outcome.set_session(session & ((core::SessionId{1} << kPrefixShift) - 1));
+  *outcome.mutable_reject() = wire::toWire(rejection);
+  return sendOutcome(session, std::move(message));
+}
+
+// Frames
+
+void Feed::addDemand(const std::string& name, codec::Stream stream, std::uint32_t reduced_count,
+                     core::StreamDemand& demand) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(name);
+  if (found == rooms_.end()) return;
+  FedRoom& room = found->second;
+  const std::size_t index = codec::indexOf(stream);
+  if (!room.knows_reduced_counts || room.reduced_counts[index] != reduced_count) {
+    room.reduced_counts[index] = reduced_count;
+    // The last stream completes the table.
+    room.knows_reduced_counts = room.knows_reduced_counts || index == codec::indexOf(codec::allStreams().back());
+    if (room.knows_reduced_counts) {
+      for (auto& [node, link] : room.links) {
+        v1::FromRoom out;
+        for (const std::uint32_t count : room.reduced_counts) out.mutable_reduced_counts()->add_counts(count);
+        send(name, node, link, std::move(out));
+      }
+    }
+  }
+  for (const auto& [node, link] : room.links) {
+    for (const core::Level level : core::kLevels) {
+      const Watched& watched = link.watched[index][core::indexOf(level)];
+      core::LevelDemand& total = demand[core::indexOf(core::effectiveLevel(level, reduced_count))];
+      total.watcher_count += watched.watcher_count;
+      total.wants_keyframe = total.wants_keyframe || (watched.watcher_count > 0 && watched.wants_keyframe);
+    }
+  }
+}
+
+void Feed::publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
+                   std::uint32_t reduced_count) {
+  const std::size_t index = codec::indexOf(stream);
+  FrameHead head{.reduced_count = reduced_count};
+  bool is_watched = false;
+  bool wants_keyframe = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = rooms_.find(name);
+    if (found == rooms_.end()) return;
+    FedRoom& room = found->second;
+    head.run = room.run;
+    head.sequence = ++room.sequences[index][core::indexOf(level)];
+    for (auto& [node, link] : room.links) {
+      for (const core::Level asked : core::kLevels) {
+        if (core::effectiveLevel(asked, reduced_count) != level) continue;
+        Watched& watched = link.watched[index][core::indexOf(asked)];
+        is_watched = is_watched || watched.watcher_count > 0;
+        wants_keyframe = wants_keyframe || (watched.watcher_count > 0 && watched.wants_keyframe);
+        if (frame.keyframe) watched.wants_keyframe = false;
+      }
+    }
+  }
+  if (!is_watched) return;
+  const auto send = [&](const std::string& subject, const core::SharedBytes& keyframe, const core::SharedBytes& delta) {
+    head.keyframe_bytes = keyframe ? static_cast<std::uint32_t>(keyframe->size()) : 0;
+    head.delta_bytes = delta ? static_cast<std::uint32_t>(delta->size()) : 0;
+    core::Bytes bytes;
+    bytes.reserve(kFrameHeadBytes + head.keyframe_bytes);
+    const auto first = toBytes(head);
+    bytes.insert(bytes.end(), first.begin(), first.end());
+    if (keyframe) bytes.insert(bytes.end(), keyframe->begin(), keyframe->end());
+    bus_.publish(subject, bytes, delta ? core::ByteView(*delta) : core::ByteView());
+    frame_bytes_count_ += bytes.size() + head.delta_bytes;
+  };
+  ++frame_count_;
+  if (frame.keyframe && frame.delta && wants_keyframe)
+    send(subjects_.keyframes(name, index, level), frame.keyframe, frame.delta);
+  if (frame.delta)
+    send(subjects_.frames(name, index, level), nullptr, frame.delta);
+  else
+    send(subjects_.frames(name, index, level), frame.keyframe, nullptr);
+}
+
+std::size_t Feed::sessionCount(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  std::size_t count = 0;
+  for (const auto& [known, room] : rooms_) {
+    if (!name.empty() && known != name) continue;
+    for (const auto& [node, link] : room.links) count += link.session_count;
+  }
+  return count;
+}
+
+FeedStats Feed::stats() const {
+  FeedStats out{
+      .frame_count = frame_count_, .frame_bytes_count = frame_bytes_count_, .lost_link_count = lost_link_count_};
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, room] : rooms_) {
+    out.link_count += room.links.size();
+    for (const auto& [node, link] : room.links) out.session_count += link.session_count;
+  }
+  return out;
+}
+
+}  // namespace spindrift::cluster

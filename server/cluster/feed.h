@@ -1,0 +1,125 @@
+// Rooms of this server, for nodes of the cluster: publishes each watched stream and level once a frame, tells the nodes
+// what changes, and takes their people and commands in. What it costs depends on the number of nodes that watch a room,
+// not on the number of their clients.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <spindrift/bus/bus.h>
+#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/service/cluster_hooks.h>
+#include <spindrift/v1/cluster.pb.h>
+
+#include "subjects.h"
+
+namespace spindrift::cluster {
+
+/// Version of cluster.proto and the frames' head.
+inline constexpr std::uint32_t kClusterVersion = 1;
+/// A link whose other end was silent for so long is dead.
+inline constexpr std::chrono::milliseconds kLinkPatience{1'500};
+/// Interval of the messages that show that an end of a link is alive.
+inline constexpr std::chrono::milliseconds kPulseInterval{200};
+
+struct FeedStats {
+  std::size_t link_count = 0;
+  std::size_t session_count = 0;
+  std::uint64_t frame_count = 0;
+  std::uint64_t frame_bytes_count = 0;
+  std::uint64_t lost_link_count = 0;  ///< whose node fell silent
+};
+
+/// Thread-safe: called by the simulation thread, the encoder thread, the bus and the thread of the node.
+class Feed final : public service::RemoteAudience {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  using Displace = std::function<void(core::SessionId)>;
+  using Closed = std::function<void(const std::string& room)>;
+  /// `displace_here`: closes a session of this process in whose place another goes on. `room_closed`: called when a
+  /// room was closed for good. `bus` outlives it.
+  Feed(bus::Bus& bus, Subjects subjects, Displace displace_here, Closed room_closed)
+      : bus_(bus),
+        subjects_(std::move(subjects)),
+        displaceHere_(std::move(displace_here)),
+        roomClosed_(std::move(room_closed)) {}
+
+  /// Opens the rooms that are new to the nodes, drops silent links, sends pulses. Call it some twenty times per second.
+  void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
+              Clock::time_point now);
+  [[nodiscard]] FeedStats stats() const;
+
+  // RemoteAudience
+  void sceneChanged(const rooms::Room& room) override;
+  void stateChanged(const rooms::Room& room, const net::StateTopic& topic, const core::SharedBytes& message) override;
+  void closed(const rooms::Room& room) override;
+  bool commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
+  bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
+  void addDemand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count,
+                 core::StreamDemand& demand) const override;
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
+               std::uint32_t reduced_count) override;
+  [[nodiscard]] std::size_t sessionCount(const std::string& room) const override;
+
+ private:
+  struct Watched {
+    std::uint32_t watcher_count = 0;
+    bool wants_keyframe = false;
+  };
+  using StreamTable = std::array<std::array<Watched, core::kLevelCount>, codec::kStreamCount>;
+  /// One node that has attached to one room.
+  struct Link {
+    std::uint64_t number = 0;    ///< of the node
+    std::uint32_t prefix = 0;    ///< of the ids of its sessions in this process
+    std::uint64_t sequence = 0;  ///< of the last message sent
+    Clock::time_point heard{};
+    StreamTable watched{};
+    std::uint32_t session_count = 0;
+    std::set<std::uint64_t> arrived;  ///< sessions of the node whose people are in the roster
+  };
+  struct FedRoom {
+    std::shared_ptr<rooms::Room> room;
+    std::uint64_t run = 0;
+    std::map<std::string, Link> links;  ///< by node
+    std::array<std::array<std::uint64_t, core::kLevelCount>, codec::kStreamCount> sequences{};
+    std::array<std::uint32_t, codec::kStreamCount> reduced_counts{};
+    bool knows_reduced_counts = false;
+    std::string device;
+    std::vector<std::string> scenes;
+    std::unique_ptr<bus::Subscription> requests;
+  };
+
+  void take(const std::string& room, core::ByteView message);
+  void attach(FedRoom& room, const v1::ToRoom& message);
+  /// The people of a link leave the room.
+  static void endLink(FedRoom& room, const Link& link);
+  /// Call with the mutex held.
+  void send(const std::string& room, const std::string& node, Link& link, v1::FromRoom message) const;
+  void sendView(const std::string& name, FedRoom& room, const std::string& node, Link& link, double node_time_s) const;
+  /// Sends the outcome to the node of the command's sender; false: it is of this process.
+  bool sendOutcome(core::SessionId session, v1::FromRoom message);
+
+  bus::Bus& bus_;
+  const Subjects subjects_;
+  const Displace displaceHere_;
+  const Closed roomClosed_;
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, FedRoom> rooms_;
+  std::uint32_t last_prefix_ = 0;
+  std::map<std::uint32_t, std::pair<std::string, std::string>> by_prefix_;  ///< room and node
+  Clock::time_point next_pulse_{};
+  std::atomic<std::uint64_t> frame_count_{0};
+  std::atomic<std::uint64_t> frame_bytes_count_{0};
+  std::atomic<std::uint64_t> lost_link_count_{0};
+};
+
+}  // namespace spindrift::cluster

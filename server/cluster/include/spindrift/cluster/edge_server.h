@@ -1,0 +1,55 @@
+// A whole edge in one object: serves sessions of the rooms of a cluster, and runs none.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include <spindrift/cluster/node.h>
+#include <spindrift/core/result.h>
+#include <spindrift/net/server.h>
+#include <spindrift/service/metrics.h>
+#include <spindrift/service/sessions.h>
+
+namespace spindrift::cluster {
+
+struct EdgeOptions {
+  NodeOptions node;
+  net::ServerOptions network;
+  service::SessionRules sessions;
+};
+
+class EdgeServer final : public net::Application {
+ public:
+  /// Errors: those of Node::connect() and of the port.
+  static core::Result<std::unique_ptr<EdgeServer>> start(EdgeOptions options);
+  ~EdgeServer() override;
+  EdgeServer(const EdgeServer&) = delete;
+  EdgeServer& operator=(const EdgeServer&) = delete;
+
+  /// Closes the sessions with 1001. Idempotent.
+  void stop();
+  [[nodiscard]] std::uint16_t port() const { return network_->port(); }
+  [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
+
+  // net::Application
+  void serverStarts(net::Hub& hub) override;
+  core::Result<void> acceptSession(const std::string& room) override;
+  void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
+  void sessionLevelChanged(net::SessionId session, core::Level level) override {
+    sessions_.levelChanged(session, level);
+  }
+  void sessionMessage(net::SessionId session, core::ByteView message) override { sessions_.message(session, message); }
+  void sessionClosed(net::SessionId session, const net::SessionEnd& end) override { sessions_.closed(session, end); }
+  void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
+
+ private:
+  explicit EdgeServer(service::SessionRules rules) : sessions_(std::move(rules), counters_) {}
+
+  service::CommandCounters counters_;
+  service::Sessions sessions_;
+  std::unique_ptr<net::Server> network_;
+  std::atomic<net::Server*> started_{nullptr};
+  std::unique_ptr<Node> node_;  ///< before the network ends its links use the sessions
+};
+
+}  // namespace spindrift::cluster

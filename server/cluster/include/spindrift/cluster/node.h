@@ -1,0 +1,50 @@
+// This process as a part of a cluster of servers and edges that talk over NATS. A server runs rooms and says which; an
+// edge runs none. Both serve sessions of any room of the cluster. docs/cluster.md describes what happens when a part
+// fails.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <spindrift/core/result.h>
+#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/service/cluster_hooks.h>
+#include <spindrift/service/sessions.h>
+
+namespace spindrift::cluster {
+
+struct NodeOptions {
+  std::string nats_url;
+  std::string ca_file;                ///< certificates that sign the NATS server's; empty: the system's
+  std::string cluster = "spindrift";  ///< letters, digits, '_', '-': begins all subjects
+  std::string name;                   ///< of this process, unique in the cluster, as isRoomName()
+  bool runs_rooms = false;            ///< a server, not an edge
+  std::size_t room_max_count = 0;     ///< of a server
+};
+
+class Node : public service::Cluster {
+ public:
+  /// Connects to NATS and, for a server, opens the directory of rooms. Errors: kInvalidInput for a name, kUnavailable
+  /// when NATS does not answer or lacks JetStream.
+  static core::Result<std::unique_ptr<Node>> connect(const NodeOptions& options);
+
+  /// Takes those of the rooms that no other server runs; blocks for about a second, in which the others are heard.
+  /// Before WaterServer::start(). Error kUnavailable when the directory does not answer.
+  virtual core::Result<std::vector<rooms::RoomSetup>> claim(std::vector<rooms::RoomSetup> rooms) = 0;
+  [[nodiscard]] virtual service::ClusterHooks hooks() = 0;
+
+  using Answer = std::function<void(const net::HttpRequest&, net::HttpResponder)>;
+  /// Starts the work. `sessions` outlives the node; `simulation` and `answer` (requests of this server) are null for an
+  /// edge.
+  virtual void serve(service::Sessions& sessions, rooms::SimulationThread* simulation, Answer answer) = 0;
+  /// Whether sessions can be served: NATS is connected and, for an edge, a server is alive. One line says why not.
+  [[nodiscard]] virtual core::Result<void> ready() const = 0;
+  /// Takes no rooms any more. The rooms go on.
+  virtual void leave() = 0;
+  /// The rooms have ended and their state is saved: lets others take them at once.
+  virtual void release() = 0;
+};
+
+}  // namespace spindrift::cluster

@@ -1,0 +1,412 @@
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/bus/bus.h>
+#include <spindrift/cluster/node.h>
+#include <spindrift/service/metrics.h>
+#include <spindrift/wire/api_message.h>
+
+#include "directory.h"
+#include "feed.h"
+#include "placement.h"
+#include "remote_room.h"
+#include "requests.h"
+#include "subjects.h"
+
+namespace spindrift::cluster {
+namespace {
+
+using namespace std::chrono_literals;
+using core::Error;
+using core::ErrorCode;
+
+constexpr const char* kDefaultRoom = "main";
+constexpr auto kRound = 50ms;
+constexpr auto kDirectoryInterval = 250ms;
+/// claim() hears the pulses of the others meanwhile.
+constexpr auto kListenTime = 700ms;
+constexpr std::size_t kInboxWaitingMaxBytes = 64u << 20;
+constexpr std::size_t kPulsesWaitingMaxBytes = 4u << 20;
+constexpr std::string_view kApi = "/api/v1/";
+
+template <typename Message>
+std::optional<Message> parse(core::ByteView bytes) {
+  Message message;
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
+  return message;
+}
+
+net::HttpReply problem(unsigned status, std::string line) {
+  v1::Problem out;
+  out.set_message(std::move(line));
+  return {.status = status, .content_type = "application/json", .body = wire::toJson(out) + "\n"};
+}
+
+class NodeImpl final : public Node {
+ public:
+  NodeImpl(const NodeOptions& options, std::unique_ptr<bus::Bus> bus)
+      : options_(options),
+        subjects_(options.cluster),
+        bus_(std::move(bus)),
+        requests_(*bus_, subjects_, options.name) {}
+  NodeImpl(const NodeImpl&) = delete;
+  NodeImpl& operator=(const NodeImpl&) = delete;
+  ~NodeImpl() override { stop(); }
+
+  core::Result<void> start();
+
+  core::Result<std::vector<rooms::RoomSetup>> claim(std::vector<rooms::RoomSetup> rooms) override {
+    std::this_thread::sleep_for(kListenTime);
+    return directory_->claim(std::move(rooms));
+  }
+  service::ClusterHooks hooks() override {
+    return {.audience = feed_.get(), .cluster = this, .metrics = [this] { return metrics(); }};
+  }
+  void serve(service::Sessions& sessions, rooms::SimulationThread* simulation, Answer answer) override;
+  [[nodiscard]] core::Result<void> ready() const override;
+  void leave() override {
+    leaving_ = true;
+    if (directory_) directory_->leave();
+  }
+  void release() override {
+    if (directory_) directory_->release();
+  }
+
+  // service::Cluster
+  std::shared_ptr<service::Venue> find(const std::string& room) override;
+  bool takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) override;
+  void openRoom(rooms::RoomSetup setup, const rooms::SimulationThread::Done& done) override {
+    directory_->open(std::move(setup), done);
+  }
+  [[nodiscard]] std::string names() const override;
+
+ private:
+  void stop();
+  void loop();
+  void round(Clock::time_point now);
+  void sendPulse(Clock::time_point now);
+  void takeMail(core::ByteView message);
+  [[nodiscard]] std::string metrics() const;
+  [[nodiscard]] Servers servers() const {
+    const std::lock_guard lock(mutex_);
+    return servers_;
+  }
+
+  const NodeOptions options_;
+  const Subjects subjects_;
+  const std::unique_ptr<bus::Bus> bus_;
+  std::unique_ptr<Feed> feed_;            ///< of a server
+  std::unique_ptr<Directory> directory_;  ///< of a server
+  Requests requests_;
+  service::Sessions* sessions_ = nullptr;
+  rooms::SimulationThread* simulation_ = nullptr;  ///< of a server
+  Answer answer_;
+  std::atomic<bool> leaving_{false};
+  std::atomic<bool> serving_{false};
+  mutable std::mutex mutex_;
+  Servers servers_;
+  std::map<std::string, std::shared_ptr<RemoteRoom>> remote_;
+  LinkStats ended_;  ///< of links that are gone
+  Clock::time_point next_pulse_{};
+  Clock::time_point next_review_{};
+  std::condition_variable wake_;
+  bool stopping_ = false;
+  std::thread thread_;
+  // Last: their handlers use all of the above.
+  std::unique_ptr<bus::Subscription> inbox_;
+  std::unique_ptr<bus::Subscription> pulses_;
+  std::unique_ptr<bus::Subscription> forwards_;
+};
+
+core::Result<void> NodeImpl::start() {
+  if (options_.runs_rooms) {
+    auto values = bus::KeyValues::open(*bus_, subjects_.directory());
+    if (!values) return values.error();
+    directory_ = std::make_unique<Directory>(*std::move(values), options_.name, [this] { return servers(); });
+    feed_ = std::make_unique<Feed>(
+        *bus_, subjects_, [this](core::SessionId session) { sessions_->displace(session); },
+        [this](const std::string& room) { directory_->remove(room); });
+  }
+  pulses_ = bus_->subscribe(subjects_.servers(), kPulsesWaitingMaxBytes, [this](core::ByteView message) {
+    if (const auto pulse = parse<v1::ServerPulse>(message)) {
+      const std::lock_guard lock(mutex_);
+      servers_.note(*pulse, Clock::now());
+    }
+  });
+  inbox_ = bus_->subscribe(subjects_.node(options_.name), kInboxWaitingMaxBytes,
+                           [this](core::ByteView message) { takeMail(message); });
+  if (!pulses_ || !inbox_) return Error{ErrorCode::kUnavailable, "NATS: the node's subjects cannot be subscribed to"};
+  return {};
+}
+
+void NodeImpl::serve(service::Sessions& sessions, rooms::SimulationThread* simulation, Answer answer) {
+  sessions_ = &sessions;
+  simulation_ = simulation;
+  answer_ = std::move(answer);
+  if (directory_) directory_->serve(*simulation);
+  if (simulation_) {
+    forwards_ = bus_->subscribe(subjects_.server(options_.name), kInboxWaitingMaxBytes, [this](core::ByteView message) {
+      if (const auto forward = parse<v1::HttpForward>(message)) answerForward(*bus_, subjects_, *forward, answer_);
+    });
+  }
+  serving_ = true;
+  thread_ = std::thread([this] { loop(); });
+}
+
+void NodeImpl::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+  inbox_.reset();
+  pulses_.reset();
+  forwards_.reset();
+  std::map<std::string, std::shared_ptr<RemoteRoom>> remote;
+  {
+    const std::lock_guard lock(mutex_);
+    remote.swap(remote_);
+  }
+  for (const auto& [name, room] : remote) room->detach();
+}
+
+void NodeImpl::loop() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    lock.unlock();
+    round(Clock::now());
+    lock.lock();
+    wake_.wait_for(lock, kRound, [this] { return stopping_; });
+  }
+}
+
+void NodeImpl::round(Clock::time_point now) {
+  std::vector<std::shared_ptr<RemoteRoom>> rooms;
+  std::vector<std::shared_ptr<RemoteRoom>> idle;
+  {
+    const std::lock_guard lock(mutex_);
+    servers_.review(now);
+    for (auto it = remote_.begin(); it != remote_.end();) {
+      // A reference here, one in `remote_`: no session has it.
+      if (it->second.use_count() == 1 && it->second->isIdle(now)) {
+        idle.push_back(std::move(it->second));
+        it = remote_.erase(it);
+      } else {
+        rooms.push_back(it->second);
+        ++it;
+      }
+    }
+  }
+  for (const auto& room : idle) {
+    room->detach();
+    const LinkStats stats = room->stats();
+    const std::lock_guard lock(mutex_);
+    ended_.frame_count += stats.frame_count;
+    ended_.frame_bytes_count += stats.frame_bytes_count;
+    ended_.gap_count += stats.gap_count;
+    ended_.lost_link_count += stats.lost_link_count;
+  }
+  for (const auto& room : rooms) room->review(now);
+  requests_.review(now);
+  if (!simulation_) return;
+  feed_->review(simulation_->rooms(), *simulation_, now);
+  if (now >= next_pulse_) {
+    next_pulse_ = now + kPulseInterval;
+    sendPulse(now);
+  }
+  if (now >= next_review_) {
+    next_review_ = now + kDirectoryInterval;
+    directory_->review();
+  }
+}
+
+void NodeImpl::sendPulse(Clock::time_point now) {
+  v1::ServerPulse pulse;
+  pulse.set_server(options_.name);
+  for (const auto& room : simulation_->rooms()) pulse.add_rooms(room->name());
+  pulse.set_load(simulation_->busyShare());
+  pulse.set_room_max_count(static_cast<std::uint32_t>(options_.room_max_count));
+  pulse.set_is_leaving(leaving_);
+  core::Bytes bytes(pulse.ByteSizeLong());
+  pulse.SerializeWithCachedSizesToArray(bytes.data());
+  bus_->publish(subjects_.servers(), bytes);
+  const std::lock_guard lock(mutex_);
+  servers_.note(pulse, now);  // NATS sends no message back to its sender
+}
+
+void NodeImpl::takeMail(core::ByteView message) {
+  const auto mail = parse<v1::ToNode>(message);
+  if (!mail || !serving_) return;
+  if (mail->has_http_answer()) return requests_.take(mail->http_answer());
+  std::shared_ptr<RemoteRoom> room;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = remote_.find(mail->from_room().room());
+    if (found != remote_.end()) room = found->second;
+  }
+  if (room) room->take(mail->from_room());
+}
+
+core::Result<void> NodeImpl::ready() const {
+  if (!bus_->isConnected()) return Error{ErrorCode::kUnavailable, "there is no connection to NATS"};
+  const std::lock_guard lock(mutex_);
+  if (!options_.runs_rooms && servers_.alive(Clock::now()).empty())
+    return Error{ErrorCode::kUnavailable, "no server of the cluster is alive"};
+  return {};
+}
+
+std::shared_ptr<service::Venue> NodeImpl::find(const std::string& asked) {
+  const std::string& name = asked.empty() ? kDefaultRoom : asked;
+  if (!serving_ || !rooms::isRoomName(name)) return nullptr;
+  const std::lock_guard lock(mutex_);
+  const auto known = remote_.find(name);
+  if (known != remote_.end() && known->second->isOpen()) return known->second;
+  if (servers_.serverOf(name).empty()) return nullptr;
+  auto room = std::make_shared<RemoteRoom>(name, options_.name, *bus_, subjects_, *sessions_);
+  remote_[name] = room;
+  return room;
+}
+
+std::string NodeImpl::names() const {
+  std::string out;
+  for (const std::string& room : servers().rooms()) out += (out.empty() ? "" : ", ") + room;
+  return out;
+}
+
+bool NodeImpl::takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) {
+  if (!serving_ || !request.path.starts_with(kApi)) return false;
+  const std::string_view rest = std::string_view(request.path).substr(kApi.size());
+  const auto now = Clock::now();
+  const Servers known = servers();
+  const std::string& self = options_.name;
+  if (rest == "rooms" && request.method == "GET") {
+    std::vector<std::string> others = known.alive(now);
+    std::erase(others, self);
+    if (!simulation_) {
+      requests_.askForRooms(others, request, "", respond);
+      return true;
+    }
+    std::optional<net::HttpReply> own;
+    answer_(request, [&own](std::optional<net::HttpReply> reply) { own = std::move(reply); });
+    if (!own || own->status != 200)
+      respond(std::move(own));
+    else
+      requests_.askForRooms(others, request, std::move(own->body), respond);
+    return true;
+  }
+  std::string target;
+  if (rest.starts_with("rooms/")) {
+    const std::string_view named = rest.substr(std::string_view("rooms/").size());
+    const std::string room(named.substr(0, named.find('/')));
+    if (simulation_ && simulation_->find(room)) return false;
+    target = known.serverOf(room);
+    if (!target.empty() && !known.isAlive(target, now)) {
+      respond(problem(503, "the server of room '" + room + "' has failed; the room starts elsewhere: try again"));
+      return true;
+    }
+  } else {
+    // Any server can answer; a new room goes to the least loaded one.
+    target = known.choose(now);
+    if (simulation_ && rest != "rooms") return false;
+    if (target.empty() && rest == "rooms" && request.method == "POST" && simulation_) return false;
+  }
+  if (target == self || (target.empty() && simulation_)) return false;
+  if (target.empty()) {
+    const bool is_alone = known.alive(now).empty();
+    if (!is_alone && rest.starts_with("rooms/")) target = known.alive(now).front();  // it says that there is none
+    if (is_alone) {
+      respond(problem(503, "no server of the cluster is alive"));
+      return true;
+    }
+    if (target.empty()) {
+      respond(problem(503, "no server of the cluster has a place for a room: close one, or add a server"));
+      return true;
+    }
+  }
+  requests_.ask(target, request, respond);
+  return true;
+}
+
+std::string NodeImpl::metrics() const {
+  using service::metric;
+  const bus::BusStats bus = bus_->stats();
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  LinkStats links;
+  std::size_t link_count = 0;
+  std::size_t alive_count = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    links = ended_;
+    link_count = remote_.size();
+    alive_count = servers_.alive(Clock::now()).size();
+    for (const auto& [name, room] : remote_) {
+      const LinkStats one = room->stats();
+      links.frame_count += one.frame_count;
+      links.frame_bytes_count += one.frame_bytes_count;
+      links.gap_count += one.gap_count;
+      links.lost_link_count += one.lost_link_count;
+    }
+  }
+  std::string out;
+  out += metric("nats_connected", "gauge", "1 while there is a connection to NATS.", bus.is_connected ? 1 : 0);
+  out += metric("nats_reconnects_total", "counter", "Times the connection to NATS came back.",
+                number(bus.reconnect_count));
+  out += metric("nats_sent_bytes_total", "counter", "Bytes sent to NATS.", number(bus.sent_bytes_count));
+  out += metric("nats_received_bytes_total", "counter", "Bytes received from NATS.", number(bus.received_bytes_count));
+  out += metric("nats_sent_messages_total", "counter", "Messages sent to NATS.", number(bus.sent_message_count));
+  out += metric("nats_received_messages_total", "counter", "Messages received from NATS.",
+                number(bus.received_message_count));
+  out += metric("nats_dropped_messages_total", "counter",
+                "Messages lost: not sent while disconnected, or more than a receiver took.",
+                number(bus.dropped_message_count));
+  out += metric("cluster_servers", "gauge", "Servers of the cluster that are alive.", number(alive_count));
+  out += metric("cluster_remote_rooms", "gauge", "Rooms of other servers that sessions of this process watch.",
+                number(link_count));
+  out += metric("cluster_remote_frames_total", "counter", "Frames received from rooms of other servers.",
+                number(links.frame_count));
+  out += metric("cluster_remote_gaps_total", "counter", "Times that frames or messages of a room were missing.",
+                number(links.gap_count));
+  out += metric("cluster_lost_links_total", "counter", "Times that the server of a room fell silent.",
+                number(links.lost_link_count));
+  if (!feed_) return out;
+  const FeedStats feed = feed_->stats();
+  out += metric("cluster_links", "gauge", "Nodes that watch rooms of this server, counted per room.",
+                number(feed.link_count));
+  out += metric("cluster_node_sessions", "gauge", "Sessions behind those nodes.", number(feed.session_count));
+  out += metric("cluster_published_frames_total", "counter", "Frames published for nodes.", number(feed.frame_count));
+  out += metric("cluster_lost_nodes_total", "counter", "Nodes that fell silent while they watched a room.",
+                number(feed.lost_link_count));
+  out += metric("cluster_rooms_taken_total", "counter", "Rooms taken over from other servers.",
+                number(directory_->takenCount()));
+  out += metric("cluster_directory_failures_total", "counter",
+                "Rooms that could not be taken over, and failures of the directory of rooms.",
+                number(directory_->failureCount()));
+  return out;
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<Node>> Node::connect(const NodeOptions& options) {
+  for (const auto& [what, name] : {std::pair("--node", options.name), std::pair("--cluster", options.cluster)}) {
+    if (!rooms::isRoomName(name)) {
+      return Error{ErrorCode::kInvalidInput,
+                   std::string(what) + " '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
+    }
+  }
+  auto bus =
+      bus::Bus::connect({.url = options.nats_url, .name = "spindrift " + options.name, .ca_file = options.ca_file});
+  if (!bus) return bus.error();
+  auto node = std::make_unique<NodeImpl>(options, *std::move(bus));
+  if (auto started = node->start(); !started) return started.error();
+  return std::unique_ptr<Node>(std::move(node));
+}
+
+}  // namespace spindrift::cluster

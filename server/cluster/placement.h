@@ -1,0 +1,46 @@
+// Where rooms run: which servers are alive, and which of them takes a room that has none. Pure decisions without a
+// clock or a network, so that all servers come to the same ones.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <spindrift/v1/cluster.pb.h>
+
+namespace spindrift::cluster {
+
+using Clock = std::chrono::steady_clock;
+
+/// A server whose last pulse is older is dead.
+inline constexpr std::chrono::milliseconds kServerPatience{1'000};
+
+/// The servers of the cluster, from their pulses.
+class Servers {
+ public:
+  void note(const v1::ServerPulse& pulse, Clock::time_point now);
+  /// Forgets servers that have been dead for a minute.
+  void review(Clock::time_point now);
+
+  [[nodiscard]] bool isAlive(const std::string& server, Clock::time_point now) const;
+  /// Names of those alive, in order.
+  [[nodiscard]] std::vector<std::string> alive(Clock::time_point now) const;
+  /// The server that says that it runs the room; also a dead one, until another has the room. Empty: none.
+  [[nodiscard]] std::string serverOf(const std::string& room) const;
+  /// All rooms that a server runs, or ran until it died, in order.
+  [[nodiscard]] std::vector<std::string> rooms() const;
+  /// The server to open one more room: the least loaded with a free place, that is alive and not leaving. `placed`:
+  /// rooms placed on servers too lately for their pulses to show it. Empty: none has a place.
+  [[nodiscard]] std::string choose(Clock::time_point now, const std::map<std::string, int>& placed = {}) const;
+
+ private:
+  struct Server {
+    v1::ServerPulse pulse;
+    Clock::time_point heard{};
+  };
+  std::map<std::string, Server> servers_;
+};
+
+}  // namespace spindrift::cluster

@@ -1,0 +1,509 @@
+#include "remote_room.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/core/monotonic.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/service/state_topics.h>
+#include <spindrift/wire/client_message.h>
+#include <spindrift/wire/server_message.h>
+
+#include "feed.h"
+
+namespace spindrift::cluster {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How often a lost room is looked for.
+constexpr auto kAttachInterval = 150ms;
+/// A room that is silent for so long is looked for anew.
+constexpr auto kRoomPatience = 900ms;
+/// Sessions that wait for a room longer than this are told so.
+constexpr auto kArrivalPatience = 10s;
+/// The link stays so long after the last session.
+constexpr auto kIdlePatience = 10s;
+/// The stream of keyframes is taken so long after the last need of one.
+constexpr auto kKeyframePatience = 2s;
+/// Unanswered commands of a session; a room's queue takes no more from one sender either.
+constexpr std::size_t kCommandMaxCount = 512;
+/// Frames of one stream that wait in this process: more than a few are out of date.
+constexpr std::size_t kFramesWaitingMaxBytes = 16u << 20;
+/// Person numbers of watchers that the room does not list.
+constexpr std::uint32_t kUnlistedPerson = 0x8000'0000u;
+
+std::uint64_t newLinkNumber() {
+  // Unique for this node also across its restarts.
+  return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+}
+
+wire::CommandRejection unreachable(std::uint64_t command_id, const std::string& why) {
+  return {.command_id = command_id, .reason = v1::REJECT_REASON_BUSY, .field = "", .message = why};
+}
+
+}  // namespace
+
+RemoteRoom::RemoteRoom(std::string name, std::string node, bus::Bus& bus, const Subjects& subjects,
+                       service::Sessions& sessions)
+    : name_(std::move(name)),
+      node_(std::move(node)),
+      bus_(bus),
+      subjects_(subjects),
+      sessions_(sessions),
+      used_(Clock::now()) {
+  const std::lock_guard lock(mutex_);
+  attach(Clock::now());
+}
+
+void RemoteRoom::send(v1::ToRoom message) {
+  message.set_node(node_);
+  message.set_link(link_);
+  core::Bytes bytes(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(bytes.data());
+  bus_.publish(subjects_.room(name_), bytes);
+}
+
+void RemoteRoom::attach(Clock::time_point now) {
+  tried_ = now;
+  attached_ = false;
+  link_ = std::max(newLinkNumber(), link_ + 1);
+  sequence_ = 0;
+  v1::ToRoom message;
+  message.mutable_attach()->set_version(kClusterVersion);
+  message.mutable_attach()->set_node_time_s(core::monotonic_s());
+  send(std::move(message));
+}
+
+void RemoteRoom::detach() {
+  Dropped dropped;
+  const std::lock_guard lock(mutex_);
+  v1::ToRoom message;
+  message.mutable_detach();
+  send(std::move(message));
+  attached_ = false;
+  closed_ = true;
+  for (auto& levels : feeds_) {
+    for (Feed& one : levels) {
+      dropped.push_back(std::move(one.frames));
+      dropped.push_back(std::move(one.keyframes));
+    }
+  }
+}
+
+void RemoteRoom::review(Clock::time_point now) {
+  std::vector<Refused> refused;
+  std::vector<Arrived> hopeless;
+  {
+    Dropped dropped;
+    const std::lock_guard lock(mutex_);
+    if (closed_) return;
+    if (attached_ && now - heard_ > kRoomPatience) {
+      spdlog::warn("room {}: its server is silent; looking for the room elsewhere", name_);
+      ++stats_.lost_link_count;
+      refused = loseLink("the room's server is silent");
+    }
+    if (!attached_ && now - tried_ > kAttachInterval) attach(now);
+    for (auto guest = guests_.begin(); guest != guests_.end();) {
+      if (guest->second.arrived && now - guest->second.since > kArrivalPatience) {
+        hopeless.push_back(std::move(guest->second.arrived));
+        guest = guests_.erase(guest);
+      } else {
+        ++guest;
+      }
+    }
+    if (attached_) reviewStreams(now, now - told_ >= kPulseInterval, dropped);
+  }
+  reject(refused);
+  for (const Arrived& arrived : hopeless)
+    arrived(core::Error{core::ErrorCode::kUnavailable, "the room cannot be reached now: try again later"});
+}
+
+std::vector<RemoteRoom::Refused> RemoteRoom::loseLink(const std::string& why) {
+  std::vector<Refused> out;
+  attached_ = false;
+  if (!lost_since_) lost_since_ = heard_;
+  for (auto& [session, guest] : guests_) {
+    for (const std::uint64_t id : std::exchange(guest.commands, {})) {
+      rooms::Command command{.sender = {.session_id = session}};
+      command.message.set_command_id(id);
+      out.push_back({std::move(command), why + "; whether the command was carried out is not known"});
+    }
+  }
+  return out;
+}
+
+void RemoteRoom::reject(const std::vector<Refused>& commands) {
+  for (const Refused& one : commands) sessions_.commandRejected(one.command, unreachable(one.command.id(), one.why));
+}
+
+bool RemoteRoom::isIdle(Clock::time_point now) const {
+  const std::lock_guard lock(mutex_);
+  return closed_ || (guests_.empty() && now - used_ > kIdlePatience);
+}
+
+LinkStats RemoteRoom::stats() const {
+  const std::lock_guard lock(mutex_);
+  return stats_;
+}
+
+std::shared_ptr<const service::VenueView> RemoteRoom::view() const {
+  const std::lock_guard lock(mutex_);
+  return view_;
+}
+
+v1::People RemoteRoom::people() const {
+  const std::lock_guard lock(mutex_);
+  return people_;
+}
+
+bool RemoteRoom::isOpen() const {
+  const std::lock_guard lock(mutex_);
+  return !closed_;
+}
+
+// From the sessions
+
+void RemoteRoom::arrive(const rooms::Arrival& arrival, Arrived arrived) {
+  rooms::Admission unlisted;
+  {
+    const std::lock_guard lock(mutex_);
+    used_ = Clock::now();
+    Guest& guest = guests_[arrival.session];
+    guest.arrival = arrival;
+    guest.since = used_;
+    guest.is_listed = arrival.role != core::Role::kViewer || people_.people_size() < kListedPeopleMaxCount;
+    if (guest.is_listed) {
+      guest.arrived = std::move(arrived);
+      if (attached_) sendArrival(guest);
+      return;
+    }
+    unlisted.person_id = kUnlistedPerson + ++last_unlisted_ % kUnlistedPerson;
+  }
+  arrived(unlisted);
+}
+
+void RemoteRoom::sendArrival(const Guest& guest) {
+  v1::ToRoom message;
+  v1::Arrive& who = *message.mutable_arrive();
+  who.set_session(guest.arrival.session);
+  who.set_role(wire::toWire(guest.arrival.role));
+  who.set_name(guest.arrival.name);
+  who.set_color_rgb(guest.arrival.color_rgb);
+  who.set_resume_key(guest.arrival.resume_key);
+  send(std::move(message));
+}
+
+void RemoteRoom::leave(core::SessionId session) {
+  const std::lock_guard lock(mutex_);
+  used_ = Clock::now();
+  const auto node = guests_.extract(session);
+  if (!node || !node.mapped().is_listed || !attached_) return;
+  v1::ToRoom message;
+  message.set_leave_session(session);
+  send(std::move(message));
+}
+
+void RemoteRoom::watchesChanged() {
+  Dropped dropped;
+  const std::lock_guard lock(mutex_);
+  if (attached_) reviewStreams(Clock::now(), false, dropped);
+}
+
+void RemoteRoom::command(const rooms::Command& command) {
+  std::optional<std::string> why;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto guest = guests_.find(command.sender.session_id);
+    if (!attached_ || guest == guests_.end()) {
+      why = "the room cannot be reached now: try again";
+    } else if (guest->second.commands.size() >= kCommandMaxCount) {
+      why = fmt::format("{} commands wait for an answer: wait for some", kCommandMaxCount);
+    } else {
+      guest->second.commands.push_back(command.id());
+      v1::ToRoom message;
+      v1::RoomCommand& sent = *message.mutable_command();
+      sent.set_session(command.sender.session_id);
+      sent.set_person_id(command.sender.person_id);
+      sent.set_role(wire::toWire(command.sender.role));
+      *sent.mutable_command() = command.message;
+      send(std::move(message));
+    }
+  }
+  if (why) sessions_.commandRejected(command, unreachable(command.id(), *why));
+}
+
+// From the room
+
+void RemoteRoom::take(const v1::FromRoom& message) {
+  std::vector<Refused> refused;
+  {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || message.link() != link_) return;
+    heard_ = Clock::now();
+    if (message.sequence() != sequence_ + 1 || (!attached_ && !message.has_view() && !message.has_refused())) {
+      // Messages were lost, and with them perhaps answers and news: begin anew, which repeats all state.
+      ++stats_.gap_count;
+      refused = loseLink("a message of the room's server was lost");
+      attach(Clock::now());
+    } else {
+      ++sequence_;
+    }
+  }
+  if (!refused.empty()) reject(refused);
+  {
+    const std::lock_guard lock(mutex_);
+    if (message.link() != link_) return;
+  }
+  switch (message.message_case()) {
+    case v1::FromRoom::kView:
+      return takeView(message.view());
+    case v1::FromRoom::kNews:
+      return takeNews(message.news());
+    case v1::FromRoom::kAdmitted:
+      return takeAdmission(message.admitted());
+    case v1::FromRoom::kOutcome:
+      return takeOutcome(message.outcome());
+    case v1::FromRoom::kDisplacedSession:
+      return sessions_.displace(message.displaced_session());
+    case v1::FromRoom::kClosed:
+      return takeClosed();
+    case v1::FromRoom::kReducedCounts: {
+      Dropped dropped;
+      const std::lock_guard lock(mutex_);
+      reduced_counts_.emplace();
+      std::ranges::copy_n(message.reduced_counts().counts().begin(),
+                          std::min<std::ptrdiff_t>(message.reduced_counts().counts_size(), codec::kStreamCount),
+                          reduced_counts_->begin());
+      return reviewStreams(Clock::now(), true, dropped);
+    }
+    case v1::FromRoom::kRefused:
+      return spdlog::error("room {}: {}", name_, message.refused());
+    default:
+      return;
+  }
+}
+
+void RemoteRoom::takeView(const v1::RoomView& message) {
+  {
+    Dropped dropped;
+    const std::lock_guard lock(mutex_);
+    const double now_s = core::monotonic_s();
+    auto room = std::make_shared<rooms::RoomSnapshot>();
+    room->scene = message.scene();
+    room->paused = message.paused();
+    room->speed = message.speed();
+    room->boats = message.boats();
+    // Half of the round trip has passed since the room read its clock.
+    double offset_s = view_ ? view_->clock_offset_s : 0.0;
+    if (message.node_time_s() > 0.0) offset_s = message.room_time_s() - (message.node_time_s() + now_s) / 2.0;
+    view_ = std::make_shared<const service::VenueView>(
+        service::VenueView{.room = std::move(room),
+                           .device = message.device(),
+                           .scenes = {message.scenes().begin(), message.scenes().end()},
+                           .grace = std::chrono::milliseconds(static_cast<std::int64_t>(message.grace_s() * 1e3)),
+                           .clock_offset_s = offset_s});
+    people_ = message.people();
+    reduced_counts_.reset();
+    if (message.has_reduced_counts()) {
+      reduced_counts_.emplace();
+      std::ranges::copy_n(message.reduced_counts().counts().begin(),
+                          std::min<std::ptrdiff_t>(message.reduced_counts().counts_size(), codec::kStreamCount),
+                          reduced_counts_->begin());
+    }
+    if (!attached_) {
+      attached_ = true;
+      for (const auto& [session, guest] : guests_) {
+        if (guest.is_listed) sendArrival(guest);
+      }
+      if (lost_since_) {
+        stats_.last_gap_s = std::chrono::duration<double>(Clock::now() - *lost_since_).count();
+        spdlog::info("room {}: reached again after {:.2f} s", name_, stats_.last_gap_s);
+        lost_since_.reset();
+      }
+    }
+    reviewStreams(Clock::now(), true, dropped);
+  }
+  sessions_.roomChanged(*this);
+  sessions_.hub().broadcastState(name_, service::topic::kPeople, wire::people(people()));
+}
+
+void RemoteRoom::takeNews(const v1::RoomNews& message) {
+  v1::ServerMessage content;
+  if (!content.ParseFromString(message.message())) return;
+  {
+    // Keeps the view as the room has it, for the greetings of later sessions.
+    const std::lock_guard lock(mutex_);
+    if (!view_) return;
+    if (content.has_people()) {
+      people_ = content.people();
+    } else if (content.has_room_state() || content.has_boat_list() || content.has_parameter_changed()) {
+      auto room = std::make_shared<rooms::RoomSnapshot>(*view_->room);
+      if (content.has_room_state()) {
+        room->paused = content.room_state().paused();
+        room->speed = content.room_state().speed();
+      } else if (content.has_boat_list()) {
+        room->boats = content.boat_list();
+      } else if (const auto error = scene::setParameter(room->scene, content.parameter_changed().path(),
+                                                        content.parameter_changed().value())) {
+        spdlog::error("room {}: the change of {} could not be followed: {}", name_, error->field, error->message);
+      }
+      auto view = std::make_shared<service::VenueView>(*view_);
+      view->room = std::move(room);
+      view_ = std::move(view);
+    }
+  }
+  const net::StateTopic topic{.name = message.topic(), .scope = static_cast<net::StateTopic::Scope>(message.scope())};
+  sessions_.hub().broadcastState(name_, topic, core::share({message.message().begin(), message.message().end()}));
+}
+
+void RemoteRoom::takeAdmission(const v1::Admitted& message) {
+  const rooms::Admission admission{.person_id = message.person_id(),
+                                   .resume_key = message.resume_key(),
+                                   .resumed = message.resumed(),
+                                   .displaced = std::nullopt};
+  Arrived arrived;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto guest = guests_.find(message.session());
+    if (guest == guests_.end()) return;
+    guest->second.arrival.resume_key = admission.resume_key;  // after a loss of the link the same person comes back
+    arrived = std::exchange(guest->second.arrived, nullptr);
+  }
+  if (arrived) return arrived(admission);
+  sessions_.readmitted(message.session(), admission);
+}
+
+void RemoteRoom::takeOutcome(const v1::Outcome& message) {
+  const std::uint64_t id = message.has_ack() ? message.ack().command_id() : message.reject().command_id();
+  {
+    const std::lock_guard lock(mutex_);
+    const auto guest = guests_.find(message.session());
+    if (guest == guests_.end()) return;
+    auto& commands = guest->second.commands;
+    const auto sent = std::ranges::find(commands, id);
+    if (sent == commands.end()) return;
+    commands.erase(sent);
+  }
+  rooms::Command command{.sender = {.session_id = message.session()}};
+  command.message.set_command_id(id);
+  if (message.has_ack())
+    return sessions_.commandApplied(command, message.ack().applied_tick(), message.ack().boat_id());
+  sessions_.commandRejected(command, {.command_id = id,
+                                      .reason = message.reject().reason(),
+                                      .field = message.reject().field(),
+                                      .message = message.reject().message()});
+}
+
+void RemoteRoom::takeClosed() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    attached_ = false;
+  }
+  sessions_.dismiss(name_);
+}
+
+// Frames
+
+void RemoteRoom::reviewStreams(Clock::time_point now, bool must_tell, Dropped& dropped) {
+  if (!reduced_counts_) return;
+  v1::ToRoom message;
+  v1::Watching& watching = *message.mutable_watching();
+  for (const codec::Stream stream : codec::allStreams()) {
+    const std::size_t index = codec::indexOf(stream);
+    const core::StreamDemand demand =
+        sessions_.hub().demand(name_, static_cast<net::StreamIndex>(index), (*reduced_counts_)[index], aheadOf(index));
+    for (const core::Level level : core::kLevels) {
+      const core::LevelDemand& wanted = demand[core::indexOf(level)];
+      Feed& one = feed(index, level);
+      if (wanted.watcher_count == 0) {
+        if (one.frames) {
+          dropped.push_back(std::move(one.frames));
+          dropped.push_back(std::move(one.keyframes));
+          one = Feed{};
+          must_tell = true;
+        }
+        continue;
+      }
+      const auto subscribe = [&](const std::string& subject) {
+        return bus_.subscribe(subject, kFramesWaitingMaxBytes,
+                              [this, index, level](core::ByteView frame) { takeFrame(index, level, frame); });
+      };
+      if (!one.frames) {
+        one.frames = subscribe(subjects_.frames(name_, index, level));
+        must_tell = true;
+      }
+      const bool wants_keyframe = wanted.wants_keyframe || !one.is_whole;
+      if (wants_keyframe) {
+        one.keyframe_wanted = now;
+        if (!one.keyframes) one.keyframes = subscribe(subjects_.keyframes(name_, index, level));
+        must_tell = must_tell || !one.asked;
+        one.asked = true;
+      } else if (one.keyframes && now - one.keyframe_wanted > kKeyframePatience) {
+        dropped.push_back(std::move(one.keyframes));
+      }
+      v1::Watching::Stream& entry = *watching.add_streams();
+      entry.set_stream(static_cast<std::uint32_t>(index));
+      entry.set_level(codec::toWire(level));
+      entry.set_watcher_count(static_cast<std::uint32_t>(wanted.watcher_count));
+      entry.set_wants_keyframe(wants_keyframe);
+    }
+  }
+  if (!must_tell) return;
+  told_ = now;
+  watching.set_session_count(static_cast<std::uint32_t>(sessions_.hub().sessionCount(name_)));
+  watching.set_unlisted_count(static_cast<std::uint32_t>(
+      std::ranges::count_if(guests_, [](const auto& guest) { return !guest.second.is_listed; })));
+  send(std::move(message));
+}
+
+void RemoteRoom::takeFrame(std::size_t stream, core::Level level, core::ByteView message) {
+  const auto frame = readFrame(message);
+  if (!frame) return;
+  const auto now = Clock::now();
+  net::FrameBytes out{
+      .keyframe = nullptr, .delta = nullptr, .level = level, .reduced_count = frame->head.reduced_count};
+  {
+    const std::lock_guard lock(mutex_);
+    Feed& one = feed(stream, level);
+    if (frame->head.run == one.run && frame->head.sequence <= one.sequence) return;  // came with its keyframe
+    const bool follows = one.is_whole && frame->head.run == one.run && frame->head.sequence == one.sequence + 1;
+    if (!follows && one.is_whole) ++stats_.gap_count;
+    if (one.sequence != 0) {
+      constexpr int kSmoothing = 8;
+      one.interval += (std::min<Clock::duration>(now - one.came, 200ms) - one.interval) / kSmoothing;
+    }
+    one.came = now;
+    one.run = frame->head.run;
+    one.sequence = frame->head.sequence;
+    one.is_whole = follows || !frame->keyframe.empty();
+    one.asked = false;
+    ++stats_.frame_count;
+    stats_.frame_bytes_count += message.size();
+    if (!frame->keyframe.empty()) out.keyframe = core::share({frame->keyframe.begin(), frame->keyframe.end()});
+    // Without the frame before, nobody in this process can use the delta.
+    if (follows && !frame->delta.empty()) out.delta = core::share({frame->delta.begin(), frame->delta.end()});
+  }
+  if (out.keyframe || out.delta) sessions_.hub().publish(name_, static_cast<net::StreamIndex>(stream), out);
+  Dropped dropped;
+  const std::lock_guard lock(mutex_);
+  if (!attached_ || !reduced_counts_) return;
+  // Sessions may need a keyframe now. Only this stream is looked at, because this runs for every frame.
+  const core::StreamDemand demand =
+      sessions_.hub().demand(name_, static_cast<net::StreamIndex>(stream), (*reduced_counts_)[stream], aheadOf(stream));
+  const bool wants_keyframe = std::ranges::any_of(demand, &core::LevelDemand::wants_keyframe);
+  if (wants_keyframe || !feed(stream, level).is_whole) reviewStreams(now, false, dropped);
+}
+
+RemoteRoom::Clock::duration RemoteRoom::aheadOf(std::size_t stream) const {
+  // All levels of a stream have frames at similar intervals; the longest is that of the slowest level.
+  Clock::duration ahead{};
+  for (const Feed& one : feeds_[stream]) ahead = std::max(ahead, one.interval);
+  return ahead;
+}
+
+}  // namespace spindrift::cluster

@@ -1,0 +1,61 @@
+// What a server that is part of a cluster adds to its gateway; implemented by server/cluster.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/bytes.h>
+#include <spindrift/core/level_demand.h>
+#include <spindrift/net/server.h>
+#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/service/venue.h>
+
+namespace spindrift::service {
+
+/// Those who follow this server's rooms from other processes. Thread-safe; no call blocks.
+class RemoteAudience {
+ public:
+  virtual ~RemoteAudience() = default;
+  /// The scene was replaced.
+  virtual void sceneChanged(const rooms::Room& room) = 0;
+  /// The same message goes to the sessions of this process.
+  virtual void stateChanged(const rooms::Room& room, const net::StateTopic& topic,
+                            const core::SharedBytes& message) = 0;
+  virtual void closed(const rooms::Room& room) = 0;
+  /// Return whether the command came from another process; it gets the answer.
+  virtual bool commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
+  virtual bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) = 0;
+  /// Adds what they watch.
+  virtual void addDemand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count,
+                         core::StreamDemand& demand) const = 0;
+  virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
+                       core::Level level, std::uint32_t reduced_count) = 0;
+  /// Sessions in other processes; with an empty name in all rooms.
+  [[nodiscard]] virtual std::size_t sessionCount(const std::string& room) const = 0;
+};
+
+/// The other servers and their rooms. Thread-safe; no call blocks.
+class Cluster {
+ public:
+  virtual ~Cluster() = default;
+  /// Returns the room of that name, wherever it runs, or null. The empty name is the default room.
+  virtual std::shared_ptr<Venue> find(const std::string& room) = 0;
+  /// Takes a request that another server has to answer, or several together; returns false if this process should.
+  virtual bool takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) = 0;
+  /// Opens a room on this server, under a name that no server of the cluster uses. Errors: as
+  /// SimulationThread::openRoom(), and kUnavailable when the directory of rooms does not answer.
+  virtual void openRoom(rooms::RoomSetup setup, const rooms::SimulationThread::Done& done) = 0;
+  /// Names of all rooms, for messages.
+  [[nodiscard]] virtual std::string names() const = 0;
+};
+
+/// All empty: the server is alone.
+struct ClusterHooks {
+  RemoteAudience* audience = nullptr;
+  Cluster* cluster = nullptr;
+  std::function<std::string()> metrics{};  ///< added to the page of metrics
+};
+
+}  // namespace spindrift::service

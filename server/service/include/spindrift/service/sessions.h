@@ -1,0 +1,103 @@
+// The client protocol: what a session may say and what it is told, whatever process its room runs in. Called on I/O
+// threads and by the rooms.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include <spindrift/core/token_bucket.h>
+#include <spindrift/net/server.h>
+#include <spindrift/service/access.h>
+#include <spindrift/service/metrics.h>
+#include <spindrift/service/venue.h>
+
+namespace spindrift::service {
+
+struct SessionRules {
+  Access access;
+  std::size_t message_max_bytes = 16 * 1024;  ///< same value as in the network; sent in greetings
+  double messages_per_s = 500.0;              ///< same
+  double message_burst_count = 1000.0;        ///< same
+  double commands_per_s = 200.0;              ///< token bucket per session; commands beyond it are rejected as BUSY
+  double command_burst_count = 400.0;
+  std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
+};
+
+/// Thread-safe. Messages of one session are handled one at a time, in their order.
+class Sessions {
+ public:
+  /// `counters` outlives it.
+  Sessions(SessionRules rules, CommandCounters& counters) : rules_(std::move(rules)), counters_(counters) {}
+  /// Call it before the first session.
+  void serve(net::Hub& hub) { hub_ = &hub; }
+  [[nodiscard]] const SessionRules& rules() const { return rules_; }
+  [[nodiscard]] net::Hub& hub() const { return *hub_; }
+
+  // From the network.
+  void opened(net::SessionId session, std::shared_ptr<Venue> venue, const std::string& peer);
+  void message(net::SessionId session, core::ByteView message);
+  void levelChanged(net::SessionId session, core::Level level);
+  void closed(net::SessionId session, const net::SessionEnd& end);
+
+  // From the rooms.
+  /// The room has another scene, or can be reached again: sends a new greeting to its sessions. Their subscriptions
+  /// stay valid.
+  void roomChanged(const Venue& venue);
+  /// The same, and the session may now be another person, or have another key.
+  void readmitted(net::SessionId session, const rooms::Admission& admission);
+  /// Closes all sessions of a room that is about to close.
+  void dismiss(const std::string& room);
+  /// Sends the answer to the session that sent the command; counts are the caller's.
+  void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
+  /// The same; counts the rejection.
+  void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
+  /// Another connection goes on in the session's place.
+  void displace(net::SessionId session);
+  /// Tells the client why, and closes.
+  void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
+
+ private:
+  enum class Stage : std::uint8_t {
+    kNew,       ///< Hello has not come
+    kArriving,  ///< the room was asked; messages wait
+    kIn
+  };
+  struct State {
+    std::shared_ptr<Venue> venue;
+    std::shared_ptr<const VenueView> greeted;  ///< what the last greeting said; null: none was sent
+    core::TokenBucket commands;
+    Stage stage = Stage::kNew;
+    std::deque<core::Bytes> waiting{};  ///< while kArriving; bounded
+    std::uint32_t wire_minor = 0;       ///< of the client, once it has said hello
+    core::Role role = core::Role::kViewer;
+    std::uint32_t person_id = 0;
+    std::string resume_key{};
+  };
+
+  /// Sends a greeting with the room's present state and stores that state. Does nothing while the room cannot be
+  /// reached.
+  void greet(net::SessionId session, const Venue& venue);
+  void handle(net::SessionId session, const State& state, core::ByteView message);
+  void hello(net::SessionId session, const State& state, const wire::Hello& hello);
+  void arrived(net::SessionId session, const wire::Hello& hello, core::Role role,
+               const core::Result<rooms::Admission>& admission);
+  /// Handles what came while the session arrived.
+  void handleWaiting(net::SessionId session);
+  void welcome(net::SessionId session, const rooms::Admission& admission, core::Role role, const Venue& venue);
+  void subscribe(net::SessionId session, const State& state, const wire::Subscribe& subscribe);
+  void command(net::SessionId session, const State& state, v1::Command message);
+  /// Takes a token of the session's command rate; returns false if there is none.
+  bool takeCommand(net::SessionId session);
+
+  const SessionRules rules_;
+  CommandCounters& counters_;
+  net::Hub* hub_ = nullptr;  ///< set before any session exists
+  std::mutex mutex_;
+  std::map<net::SessionId, State> sessions_;
+};
+
+}  // namespace spindrift::service

@@ -1,0 +1,345 @@
+#include <optional>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/core/monotonic.h>
+#include <spindrift/core/overloaded.h>
+#include <spindrift/core/version.h>
+#include <spindrift/service/sessions.h>
+#include <spindrift/service/state_topics.h>
+#include <spindrift/service/stream_index.h>
+#include <spindrift/wire/client_message.h>
+#include <spindrift/wire/server_message.h>
+
+namespace spindrift::service {
+namespace {
+
+constexpr double kFrameRateMax_hz = 60.0;
+/// Messages that a client may send before its Hello is answered: its subscriptions and first commands.
+constexpr std::size_t kWaitingMaxCount = 256;
+
+std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
+  std::vector<v1::Layer> layers;
+  if (scene.has_wave()) layers.push_back(v1::LAYER_SURFACE);
+  if (scene.has_particles()) layers.push_back(v1::LAYER_PARTICLES);
+  if (scene.has_boats()) layers.push_back(v1::LAYER_BODIES);
+  if (scene.foam().surface()) layers.push_back(v1::LAYER_FOAM);
+  layers.push_back(v1::LAYER_DIAGNOSTICS);
+  return layers;
+}
+
+}  // namespace
+
+void Sessions::opened(net::SessionId session, std::shared_ptr<Venue> venue, const std::string& peer) {
+  const auto now = std::chrono::steady_clock::now();
+  {
+    const std::lock_guard lock(mutex_);
+    sessions_.emplace(session, State{.venue = venue,
+                                     .greeted = nullptr,
+                                     .commands = {rules_.commands_per_s, rules_.command_burst_count, now}});
+  }
+  spdlog::info("session {} from {} joins room {}", session, peer, venue->name());
+  greet(session, *venue);
+  hub().closeAt(session, now + rules_.hello_patience, net::CloseCode::kPolicy,
+                "no hello came in time: send ClientMessage.hello first");
+  // The room may have closed meanwhile, and dismiss() may have run before this session was in its list.
+  if (!venue->isOpen()) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+}
+
+void Sessions::greet(net::SessionId session, const Venue& venue) {
+  const auto view = venue.view();
+  if (!view) return;
+  const rooms::RoomSnapshot& room = *view->room;
+  wire::GreetingFacts facts;
+  facts.server = core::nameAndVersion();
+  facts.device = view->device;
+  facts.room = venue.name();
+  facts.session_id = session;
+  facts.layers = layersOf(room.scene);
+  facts.message_max_bytes = static_cast<std::uint32_t>(rules_.message_max_bytes);
+  facts.commands_per_s = rules_.commands_per_s;
+  facts.command_burst_count = rules_.command_burst_count;
+  facts.messages_per_s = rules_.messages_per_s;
+  facts.message_burst_count = rules_.message_burst_count;
+  facts.hello_within_s = std::chrono::duration<double>(rules_.hello_patience).count();
+  facts.frame_rate_max_hz = kFrameRateMax_hz;
+  facts.server_time_s = core::monotonic_s() + view->clock_offset_s;
+  facts.paused = room.paused;
+  facts.speed = room.speed;
+  facts.boats = room.boats;
+  facts.scenes = view->scenes;
+  hub().sendState(session, topic::kGreeting, wire::greeting(facts, room.scene));
+  const std::lock_guard lock(mutex_);
+  if (const auto known = sessions_.find(session); known != sessions_.end()) known->second.greeted = view;
+}
+
+void Sessions::roomChanged(const Venue& venue) {
+  std::vector<net::SessionId> members;
+  std::vector<std::pair<net::SessionId, std::string>> outdated;
+  const auto view = venue.view();
+  if (!view) return;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [session, state] : sessions_) {
+      if (state.venue->name() != venue.name()) continue;
+      auto why = state.stage == Stage::kIn ? wire::checkWater(state.wire_minor, view->room->scene) : std::nullopt;
+      if (why)
+        outdated.emplace_back(session, *std::move(why));
+      else
+        members.push_back(session);
+    }
+  }
+  for (const net::SessionId session : members) greet(session, venue);
+  for (const auto& [session, why] : outdated) refuse(session, net::CloseCode::kPolicy, why);
+}
+
+void Sessions::dismiss(const std::string& room) {
+  std::vector<net::SessionId> members;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [session, state] : sessions_) {
+      if (state.venue->name() == room) members.push_back(session);
+    }
+  }
+  for (const net::SessionId session : members) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+}
+
+void Sessions::displace(net::SessionId session) {
+  refuse(session, net::CloseCode::kResumedElsewhere, "another connection goes on in your place");
+}
+
+void Sessions::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {
+  constexpr std::size_t kReasonMaxBytes = 120;
+  hub().sendAnswer(session, wire::refusal(why));
+  hub().close(session, code, why.substr(0, kReasonMaxBytes));
+}
+
+void Sessions::message(net::SessionId session, core::ByteView message) {
+  std::optional<State> known;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto it = sessions_.find(session);
+    if (it == sessions_.end()) return;
+    State& state = it->second;
+    if (state.stage != Stage::kArriving) {
+      known = state;
+    } else if (state.waiting.size() < kWaitingMaxCount) {
+      state.waiting.emplace_back(message.begin(), message.end());
+      return;
+    }
+  }
+  if (!known) {
+    return refuse(session, net::CloseCode::kTryAgainLater,
+                  fmt::format("more than {} messages before the answer to hello: wait for it", kWaitingMaxCount));
+  }
+  handle(session, *known, message);
+}
+
+void Sessions::handleWaiting(net::SessionId session) {
+  while (true) {
+    core::Bytes message;
+    std::optional<State> known;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto it = sessions_.find(session);
+      if (it == sessions_.end()) return;
+      State& state = it->second;
+      if (state.waiting.empty()) {
+        state.stage = Stage::kIn;  // from here on messages are handled where they come in
+        return;
+      }
+      message = std::move(state.waiting.front());
+      state.waiting.pop_front();
+      known = state;
+      known->waiting.clear();
+      known->stage = Stage::kIn;
+    }
+    handle(session, *known, message);
+  }
+}
+
+void Sessions::handle(net::SessionId session, const State& state, core::ByteView message) {
+  std::visit(core::Overloaded{
+                 [&](const wire::Hello& said) { hello(session, state, said); },
+                 [&](const wire::Subscribe& asked) { subscribe(session, state, asked); },
+                 [&](v1::Command&& parsed) { command(session, state, std::move(parsed)); },
+                 [&](const wire::Ping& ping) {
+                   const double offset_s = state.greeted ? state.greeted->clock_offset_s : 0.0;
+                   hub().sendAnswer(session, wire::pong(ping.client_time_s, core::monotonic_s() + offset_s));
+                 },
+                 [&](const wire::CommandRejection& rejection) {
+                   counters_.rejected(rejection.reason);
+                   hub().sendAnswer(session, wire::reject(rejection));
+                 },
+                 [&](const wire::Malformed& malformed) { refuse(session, net::CloseCode::kPolicy, malformed.message); },
+             },
+             wire::parseClientMessage(message));
+}
+
+void Sessions::hello(net::SessionId session, const State& state, const wire::Hello& hello) {
+  if (auto why = wire::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
+  if (const auto view = state.venue->view()) {
+    if (auto why = wire::checkWater(hello.minor, view->room->scene))
+      return refuse(session, net::CloseCode::kPolicy, *why);
+  }
+  if (state.stage != Stage::kNew)
+    return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
+  const auto now = std::chrono::system_clock::now();
+  const auto grant = rules_.access.resolve(hello.token, now);
+  if (!grant) return refuse(session, net::CloseCode::kUnauthorized, grant.error().message);
+  auto end = std::chrono::steady_clock::time_point::max();  // replaces the deadline for Hello
+  if (grant->expires) {
+    const auto left = std::chrono::duration_cast<std::chrono::steady_clock::duration>(*grant->expires - now);
+    end = std::chrono::steady_clock::now() + left;
+  }
+  hub().closeAt(session, end, net::CloseCode::kUnauthorized, "the token has expired: ask for a new one");
+  {
+    const std::lock_guard lock(mutex_);
+    const auto it = sessions_.find(session);
+    if (it == sessions_.end()) return;
+    it->second.stage = Stage::kArriving;
+  }
+  state.venue->arrive({.session = session,
+                       .role = grant->role,
+                       .name = hello.name,
+                       .color_rgb = hello.color_rgb,
+                       .resume_key = hello.resume_key},
+                      [this, session, hello, role = grant->role](const core::Result<rooms::Admission>& admission) {
+                        arrived(session, hello, role, admission);
+                      });
+}
+
+void Sessions::arrived(net::SessionId session, const wire::Hello& hello, core::Role role,
+                       const core::Result<rooms::Admission>& admission) {
+  if (!admission) return refuse(session, net::CloseCode::kTryAgainLater, admission.error().message);
+  if (admission->displaced) displace(*admission->displaced);
+  std::shared_ptr<Venue> venue;
+  std::shared_ptr<const VenueView> greeted;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto it = sessions_.find(session);
+    if (it == sessions_.end()) return;  // it ended meanwhile; closed() has told the room
+    State& kept = it->second;
+    venue = kept.venue;
+    greeted = kept.greeted;
+    kept.wire_minor = hello.minor;
+    kept.role = role;
+  }
+  spdlog::info("session {} is person {} ({}), {} {}", session, admission->person_id, core::roleName(role), hello.client,
+               admission->resumed ? "resumed" : "");
+  welcome(session, *admission, role, *venue);
+  // From here on the session gets the room's news, and the frames that it subscribes to. Send the changes since the
+  // greeting.
+  hub().join(session, venue->name());
+  if (const auto now_there = venue->view(); now_there && (!greeted || now_there->room != greeted->room)) {
+    if (auto why = wire::checkWater(hello.minor, now_there->room->scene))
+      return refuse(session, net::CloseCode::kPolicy, *why);
+    greet(session, *venue);
+  }
+  hub().sendState(session, topic::kPeople, wire::people(venue->people()));
+  handleWaiting(session);
+}
+
+void Sessions::welcome(net::SessionId session, const rooms::Admission& admission, core::Role role, const Venue& venue) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto it = sessions_.find(session);
+    if (it == sessions_.end()) return;
+    it->second.person_id = admission.person_id;
+    it->second.resume_key = admission.resume_key;
+  }
+  v1::Welcome message;
+  message.set_role(wire::toWire(role));
+  message.set_person_id(admission.person_id);
+  message.set_resume_key(admission.resume_key);
+  if (const auto view = venue.view()) message.set_grace_s(std::chrono::duration<double>(view->grace).count());
+  message.set_resumed(admission.resumed);
+  hub().sendAnswer(session, wire::welcome(message));
+}
+
+void Sessions::readmitted(net::SessionId session, const rooms::Admission& admission) {
+  std::shared_ptr<Venue> venue;
+  core::Role role{};
+  {
+    const std::lock_guard lock(mutex_);
+    const auto it = sessions_.find(session);
+    if (it == sessions_.end()) return;
+    const State& state = it->second;
+    if (state.person_id == admission.person_id && state.resume_key == admission.resume_key) return;
+    venue = state.venue;
+    role = state.role;
+  }
+  spdlog::info("session {} is now person {}", session, admission.person_id);
+  welcome(session, admission, role, *venue);
+}
+
+void Sessions::subscribe(net::SessionId session, const State& state, const wire::Subscribe& subscribe) {
+  if (state.stage != Stage::kIn) {
+    return refuse(session, net::CloseCode::kPolicy, "subscribe before hello: send ClientMessage.hello first");
+  }
+  // One packing at a time: a subscription to the other packing stops this one.
+  const codec::Stream wanted = codec::streamOf(subscribe.layer, subscribe.packing);
+  const bool has_levels = codec::hasLevels(subscribe.layer);
+  for (const codec::Stream stream : codec::allStreams()) {
+    if (stream.layer != wanted.layer) continue;
+    const bool is_wanted = stream.packing == wanted.packing;
+    hub().watch(session, streamIndex(stream),
+                {.max_rate_hz = is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0,
+                 .level = has_levels ? subscribe.level : core::Level::kFull,
+                 .adapts = has_levels && subscribe.adapts});
+  }
+  state.venue->watchesChanged();
+}
+
+void Sessions::levelChanged(net::SessionId session, core::Level level) {
+  spdlog::info("session {} now gets level {}", session, codec::nameOf(level));
+  hub().sendState(session, topic::kLevel, wire::levelChanged(level));
+}
+
+void Sessions::command(net::SessionId session, const State& state, v1::Command message) {
+  const rooms::Command command{.sender = {.session_id = session, .person_id = state.person_id, .role = state.role},
+                               .message = std::move(message)};
+  if (state.stage != Stage::kIn) {
+    return commandRejected(command, {.command_id = command.id(),
+                                     .reason = v1::REJECT_REASON_NO_HELLO,
+                                     .field = "",
+                                     .message = "say hello before the first command"});
+  }
+  if (!takeCommand(session)) {
+    return commandRejected(command,
+                           {.command_id = command.id(),
+                            .reason = v1::REJECT_REASON_BUSY,
+                            .field = "",
+                            .message = fmt::format("more than {:g} commands a second after a burst of {:g}: slow down",
+                                                   rules_.commands_per_s, rules_.command_burst_count)});
+  }
+  state.venue->command(command);
+}
+
+bool Sessions::takeCommand(net::SessionId session) {
+  const std::lock_guard lock(mutex_);
+  const auto known = sessions_.find(session);
+  return known != sessions_.end() && known->second.commands.take(std::chrono::steady_clock::now());
+}
+
+void Sessions::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+  hub().sendAnswer(command.sender.session_id, wire::ack(command.id(), tick, boat_id));
+}
+
+void Sessions::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
+  counters_.rejected(rejection.reason);
+  hub().sendAnswer(command.sender.session_id, wire::reject(rejection));
+}
+
+void Sessions::closed(net::SessionId session, const net::SessionEnd& end) {
+  std::shared_ptr<Venue> venue;
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto node = sessions_.extract(session)) venue = std::move(node.mapped().venue);
+  }
+  if (venue) venue->leave(session);
+  spdlog::info("session {} ended: {} {}", session, end.code, end.reason);
+}
+
+}  // namespace spindrift::service
