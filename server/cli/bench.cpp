@@ -10,7 +10,9 @@
 
 #include <spindrift/bench/codecs.h>
 #include <spindrift/bench/fanout.h>
+#include <spindrift/bench/load.h>
 #include <spindrift/bench/steps.h>
+#include <spindrift/codec/stream.h>
 #include <spindrift/core/paths.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/scene/fidelity.h>
@@ -23,12 +25,14 @@ namespace spindrift::cli {
 namespace {
 
 struct BenchOptions {
-  std::string suite = "all";  ///< step, codec, fanout; all: step and codec
+  std::string suite = "all";  ///< step, codec, fanout, load; all: step and codec
   std::string scene = "harbor";
   std::string fidelity;  ///< as in ServeOptions
   std::string device = "auto";
   std::string json_file;
   double seconds = 2.0;  ///< measured time per case
+  bench::LoadOptions load;
+  std::string level = "coarse";
 };
 
 /// Runs apart from the other suites, because the server that it measures has its own GL context.
@@ -40,7 +44,21 @@ int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
   return 0;
 }
 
+/// Of servers that run already.
+int benchLoad(const BenchOptions& options) {
+  bench::LoadOptions load = options.load;
+  load.seconds = options.seconds;
+  for (const core::Level level : core::kLevels) {
+    if (codec::nameOf(level) == options.level) load.level = level;
+  }
+  auto result = bench::measureLoad(load, options.json_file == "-" ? stderr : stdout);
+  if (!result) return fail(result.error());
+  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
+  return 0;
+}
+
 int bench(const BenchOptions& options) {
+  if (options.suite == "load") return benchLoad(options);
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
   auto file = core::findScene(options.scene);
@@ -82,13 +100,24 @@ ProgramCommand addBench(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "bench", "Time the passes of a step, the stream's codecs on real frames, and a crowd of clients");
   command->add_option("--suite", options->suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "codec", "fanout"}))
+      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load"}))
       ->capture_default_str();
   command->add_option("--scene", options->scene, "Scene file or name of a shipped scene")->capture_default_str();
   addFidelity(*command, options->fidelity);
   addDevice(*command, options->device);
   command->add_option("--seconds", options->seconds, "Measured time per case")
       ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command->add_option("--url", options->load.urls,
+                      "For --suite load: a server that runs, ws://HOST:PORT/ws/ROOM; may be repeated");
+  command->add_option("--clients", options->load.client_count, "For --suite load: number of clients")
+      ->check(CLI::Range(1, 20000))
+      ->capture_default_str();
+  command->add_option("--level", options->level, "For --suite load: level of detail that they watch")
+      ->check(CLI::IsMember({"coarse", "medium", "fine", "full"}))
+      ->capture_default_str();
+  command->add_option("--commands-per-s", options->load.commands_per_s, "For --suite load: splashes of each client")
+      ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   addJson(*command, options->json_file);
   return {command, [options] { return bench(*options); }};
