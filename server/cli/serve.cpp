@@ -19,6 +19,7 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/water_server.h>
 
+#include "access_files.h"
 #include "commands.h"
 #include "config_file.h"
 #include "inherited_socket.h"
@@ -65,43 +66,14 @@ core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& option
   return rooms;
 }
 
-/// Reads the tokens from the file or from the environment, and the role of clients without a token.
-core::Result<service::Access> loadAccess(const ServeOptions& options) {
-  std::string text;
-  std::string label = "SPINDRIFT_TOKENS";
-  bool has_tokens = false;
-  if (!options.token_file.empty()) {
-    std::ifstream file(options.token_file);
-    if (!file)
-      return Error{ErrorCode::kUnavailable, "--tokens-file " + options.token_file + ": the file cannot be read"};
-    text.assign(std::istreambuf_iterator<char>(file), {});
-    label = options.token_file;
-    has_tokens = true;
-  } else if (!options.tokens.empty()) {
-    text = options.tokens;
-    std::ranges::replace(text, ';', '\n');  // environment variables are awkward with several lines
-    has_tokens = true;
-  }
-  std::optional<core::Role> guest = has_tokens ? core::Role::kViewer : core::Role::kOperator;
-  if (!options.guest_role.empty()) guest = core::parseRole(options.guest_role);  // "none" is not a role
-  auto access = service::Access::parse(text, label, guest);
-  if (access && has_tokens && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
-  }
-  if (access && !guest && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput,
-                 "--guests none without tokens refuses every client: give --tokens-file FILE"};
-  }
-  return access;
-}
-
-/// Blocks SIGINT and SIGTERM in this thread and in those that it starts, so that wait() receives them.
+/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and in those that it starts, so that wait() receives them.
 class StopSignals {
  public:
   StopSignals() {
     sigemptyset(&set_);
     sigaddset(&set_, SIGINT);
     sigaddset(&set_, SIGTERM);
+    sigaddset(&set_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
   }
@@ -128,6 +100,19 @@ rooms::StateOptions stateOptions(const ServeOptions& options) {
               static_cast<std::chrono::milliseconds::rep>(options.snapshot_interval_s * 1e3))};
 }
 
+/// Reads the files of tokens and keys again. With a wrong one, everything stays as it was.
+void reload(const ServeOptions& options, service::WaterServer& server, access::AuditFile* audit_file) {
+  if (audit_file != nullptr) audit_file->reopen();
+  auto access = loadAccess(options);
+  if (!access) {
+    spdlog::error("SIGHUP: tokens and keys stay as they were: {}", access.error().message);
+    return;
+  }
+  spdlog::info("SIGHUP: {} tokens and {} keys for JWTs were read; sessions that are open keep their rights",
+               access->tokenCount(), access->jwtKeyCount());
+  server.replaceAccess(*std::move(access));
+}
+
 int serve(ServeOptions options) {
   StopSignals signals;
   auto inherited = takeInheritedSocket();
@@ -149,6 +134,13 @@ int serve(ServeOptions options) {
   const bool is_open_to_all =
       access->guest() == core::Role::kOperator && !options.address.starts_with("127.") && options.address != "::1";
 
+  std::shared_ptr<access::AuditFile> audit_file;
+  if (!options.audit_file.empty()) {
+    auto opened = access::AuditFile::open(options.audit_file);
+    if (!opened) return fail(opened.error());
+    audit_file = *std::move(opened);
+  }
+
   std::shared_ptr<rooms::StateStore> states;
   if (!options.state_folder.empty()) {
     auto opened = rooms::StateStore::open(stateOptions(options));
@@ -169,7 +161,8 @@ int serve(ServeOptions options) {
   server_options.rules.record_folder = options.record_folder;
   server_options.rules.hash_interval_ticks = options.hash_interval_ticks;
   server_options.max_room_count = options.max_room_count;
-  server_options.access = *std::move(access);
+  server_options.access = {
+      .access = *std::move(access), .person_commands_per_s = options.person_commands_per_s, .audit_file = audit_file};
   server_options.network.allowed_origins = options.origins;
   server_options.network.address = options.address;
   server_options.network.port = options.port;
@@ -191,7 +184,8 @@ int serve(ServeOptions options) {
   }
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
   std::fflush(stdout);
-  const int signal = signals.wait();
+  int signal = signals.wait();
+  for (; signal == SIGHUP; signal = signals.wait()) reload(options, **server, audit_file.get());
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
   (*server)->stop();
   const net::ServerStats stats = (*server)->networkStats();

@@ -27,9 +27,15 @@ struct ServeOptions {
   std::size_t thread_count = 1;
   double address_session_share = 0.5;  ///< share of the sessions that one address may hold
   std::size_t max_room_count = 8;
-  std::string token_file;            ///< empty: `tokens`
-  std::string tokens;                ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
-  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with tokens
+  std::string token_file;             ///< empty: `tokens`
+  std::string tokens;                 ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
+  std::string guest_role;             ///< "none", or a role; empty: operator without tokens, viewer with tokens
+  std::vector<std::string> jwt_keys;  ///< FILE: a public key; hs256:FILE: a secret
+  std::string jwt_key_set;            ///< file of a JWK set; empty: none
+  std::string jwt_issuer;             ///< empty: not checked
+  std::string jwt_audience;           ///< empty: not checked
+  double person_commands_per_s = 200.0;
+  std::string audit_file;            ///< empty: no audit log
   std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
   double grace_s = 20.0;             ///< how long the boat of a lost connection is kept
   std::string record_folder;         ///< folder for the logs of the rooms; empty: no logs

@@ -6,6 +6,7 @@
 
 #include <spindrift/core/monotonic.h>
 #include <spindrift/core/overloaded.h>
+#include <spindrift/core/text.h>
 #include <spindrift/core/version.h>
 #include <spindrift/service/gateway.h>
 #include <spindrift/service/state_topics.h>
@@ -32,7 +33,8 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
 
 Gateway::Gateway(GatewayOptions options, const MetricsSources& sources)
     : options_(std::move(options)),
-      rest_(options_.access, counters_, sources, [this](const rooms::Room& room) { dismiss(room); }) {}
+      access_(options_.access),
+      rest_(access_, counters_, sources, [this](const rooms::Room& room) { dismiss(room); }) {}
 
 void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
   rooms_ = &rooms;
@@ -60,7 +62,8 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room_name
     const std::lock_guard lock(mutex_);
     sessions_.emplace(session, SessionState{.room = room,
                                             .greeted = nullptr,
-                                            .commands = {options_.commands_per_s, options_.command_burst_count, now}});
+                                            .commands = {options_.commands_per_s, options_.command_burst_count, now},
+                                            .peer = peer});
   }
   spdlog::info("session {} from {} joins room {}", session, peer, room->name());
   greet(session, *room);
@@ -162,8 +165,16 @@ void Gateway::hello(net::SessionId session, const SessionState& state, const wir
     return refuse(session, net::CloseCode::kPolicy, *why);
   if (state.said_hello) return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
   const auto now = std::chrono::system_clock::now();
-  const auto grant = options_.access.resolve(hello.token, now);
-  if (!grant) return refuse(session, net::CloseCode::kUnauthorized, grant.error().message);
+  const auto grant = access_.resolve(hello.token, simulation().rooms(), now);
+  core::SenderDetails details{.room = state.room->name(), .name = hello.name, .peer = state.peer};
+  if (!grant || !grant->allows(details.room)) {
+    const std::string why = grant ? access::otherRoom(details.room) : grant.error().message;
+    if (grant) details.subject = grant->subject;
+    access_.audit().refused(details, why);
+    return refuse(session, net::CloseCode::kUnauthorized, why);
+  }
+  details.subject = grant->subject;
+  if (!grant->name.empty()) details.name = core::cleanName(grant->name, wire::kPersonNameMaxBytes);
   auto end = std::chrono::steady_clock::time_point::max();  // replaces the deadline for Hello
   if (grant->expires) {
     const auto left = std::chrono::duration_cast<std::chrono::steady_clock::duration>(*grant->expires - now);
@@ -172,7 +183,7 @@ void Gateway::hello(net::SessionId session, const SessionState& state, const wir
   hub().closeAt(session, end, net::CloseCode::kUnauthorized, "the token has expired: ask for a new one");
   const rooms::Admission admission = state.room->roster().arrive({.session = session,
                                                                   .role = grant->role,
-                                                                  .name = hello.name,
+                                                                  .name = details.name,
                                                                   .color_rgb = hello.color_rgb,
                                                                   .resume_key = hello.resume_key});
   if (admission.displaced) {
@@ -187,6 +198,8 @@ void Gateway::hello(net::SessionId session, const SessionState& state, const wir
     kept.wire_minor = hello.minor;
     kept.role = grant->role;
     kept.person_id = admission.person_id;
+    if (grant->is_person) kept.person = grant->subject;
+    kept.details = std::make_shared<const core::SenderDetails>(std::move(details));
   }
   spdlog::info("session {} is person {} ({}), {} {}", session, admission.person_id, core::roleName(grant->role),
                hello.client, admission.resumed ? "resumed" : "");
@@ -231,8 +244,9 @@ void Gateway::sessionLevelChanged(net::SessionId session, core::Level level) {
 }
 
 void Gateway::command(net::SessionId session, const SessionState& state, v1::Command message) {
-  const rooms::Command command{.sender = {.session_id = session, .person_id = state.person_id, .role = state.role},
-                               .message = std::move(message)};
+  const rooms::Command command{
+      .sender = {.session_id = session, .person_id = state.person_id, .role = state.role, .details = state.details},
+      .message = std::move(message)};
   if (!state.said_hello) {
     return commandRejected(command, {.command_id = command.id(),
                                      .reason = v1::REJECT_REASON_NO_HELLO,
@@ -246,6 +260,11 @@ void Gateway::command(net::SessionId session, const SessionState& state, v1::Com
                             .field = "",
                             .message = fmt::format("more than {:g} commands a second after a burst of {:g}: slow down",
                                                    options_.commands_per_s, options_.command_burst_count)});
+  }
+  if (!access_.takeCommand(state.person)) {
+    return commandRejected(
+        command,
+        {.command_id = command.id(), .reason = v1::REJECT_REASON_BUSY, .field = "", .message = access_.busy()});
   }
   if (auto rejection = state.room->admit(command)) return commandRejected(command, *rejection);
 }
@@ -346,12 +365,14 @@ void Gateway::publish(const std::string& room, codec::Stream stream, const codec
 
 void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
   counters_.applied();
+  access_.audit().applied(command, tick);
   if (command.sender.request_id != 0) return rest_.commandApplied(command, tick, boat_id);
   hub().sendAnswer(command.sender.session_id, wire::ack(command.id(), tick, boat_id));
 }
 
 void Gateway::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   counters_.rejected(rejection.reason);
+  access_.audit().rejected(command, rejection);
   if (command.sender.request_id != 0) return rest_.commandRejected(command, rejection);
   hub().sendAnswer(command.sender.session_id, wire::reject(rejection));
 }

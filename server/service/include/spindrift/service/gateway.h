@@ -14,14 +14,14 @@
 #include <spindrift/rooms/frame_outlet.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/simulation_thread.h>
-#include <spindrift/service/access.h>
+#include <spindrift/service/access_control.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/service/rest_api.h>
 
 namespace spindrift::service {
 
 struct GatewayOptions {
-  Access access;
+  AccessOptions access;
   std::size_t message_max_bytes = 16 * 1024;  ///< same value as in the network; sent in greetings
   double messages_per_s = 500.0;              ///< same
   double message_burst_count = 1000.0;        ///< same
@@ -34,6 +34,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
  public:
   /// `sources` outlives the gateway.
   Gateway(GatewayOptions options, const MetricsSources& sources);
+  [[nodiscard]] AccessControl& access() { return access_; }
   /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
   /// network calls the gateway, though their threads may have ended.
   void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
@@ -79,6 +80,9 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
     std::uint32_t wire_minor = 0;  ///< of the client, once it has said hello
     core::Role role = core::Role::kViewer;
     std::uint32_t person_id = 0;
+    std::string peer{};
+    std::string person{};  ///< whose budget commands take; empty: none but the session's own
+    std::shared_ptr<const core::SenderDetails> details{};  ///< once it has said hello
   };
 
   [[nodiscard]] net::Hub& hub() const { return *hub_; }
@@ -98,6 +102,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any session exists
   rooms::EncoderThread* encoder_ = nullptr;   ///< set before any session exists
   CommandCounters counters_;
+  AccessControl access_;
   RestApi rest_;
   net::Hub* hub_ = nullptr;  ///< set before any session exists
   std::mutex mutex_;

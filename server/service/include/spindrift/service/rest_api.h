@@ -12,7 +12,7 @@
 
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/simulation_thread.h>
-#include <spindrift/service/access.h>
+#include <spindrift/service/access_control.h>
 #include <spindrift/service/ground_answers.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/v1/api.pb.h>
@@ -26,7 +26,7 @@ unsigned httpStatusOf(v1::RejectReason reason);
 class RestApi {
  public:
   /// All references must outlive it. `dismiss` closes a room's sessions before the room closes.
-  RestApi(const Access& access, CommandCounters& counters, const MetricsSources& sources,
+  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
           std::function<void(const rooms::Room&)> dismiss);
 
   /// Sets the rooms; call it before the network starts.
@@ -43,7 +43,13 @@ class RestApi {
   struct Call {
     const net::HttpRequest& request;
     std::vector<std::string> path;  ///< after /api/v1/: {"rooms", "main", "commands"}
-    core::Role role = core::Role::kViewer;
+    access::Grant grant;
+
+    [[nodiscard]] bool isOperator() const { return grant.role >= core::Role::kOperator; }
+    /// For the audit log.
+    [[nodiscard]] core::SenderDetails details(const std::string& room) const {
+      return {.room = room, .subject = grant.subject, .name = "", .peer = request.peer};
+    }
   };
 
   void rooms(const Call& call, net::HttpResponder respond);
@@ -56,7 +62,7 @@ class RestApi {
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
   net::HttpResponder takePending(std::uint64_t request_id);
 
-  const Access& access_;
+  AccessControl& access_;
   CommandCounters& counters_;
   const MetricsSources& sources_;
   const std::function<void(const rooms::Room&)> dismiss_;

@@ -21,7 +21,7 @@ struct WaterServerOptions {
   std::vector<rooms::RoomSetup> rooms;  ///< at least one; the first is the default room
   rooms::RoomRules rules;               ///< settings that the rooms share
   std::size_t max_room_count = 8;
-  Access access;
+  AccessOptions access;
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
 };
 
@@ -35,6 +35,9 @@ class WaterServer {
 
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
+
+  /// Replaces tokens and keys; sessions that are open keep what they have.
+  void replaceAccess(access::Access access) { gateway_->access().replace(std::move(access)); }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const std::string& deviceLine() const { return simulation_->deviceLine(); }
