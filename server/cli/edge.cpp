@@ -20,13 +20,14 @@ int runEdge(const FrontOptions& options) {
     return fail(
         {core::ErrorCode::kInvalidInput, "an edge needs the NATS server of its cluster: --nats nats://HOST:4222"});
   }
-  auto access = loadAccess(options);
+  auto access = accessOptions(options);
   if (!access) return fail(access.error());
-  const bool is_open_to_all = isOpenToAll(options, *access);
+  const bool is_open_to_all = isOpenToAll(options, access->access);
+  const auto audit_file = access->audit_file;
   cluster::EdgeOptions edge_options;
   edge_options.node = nodeOptions(options, false);
   edge_options.network = networkOptions(options);
-  edge_options.sessions.access = *std::move(access);
+  edge_options.access = *std::move(access);
   const bool has_page = !edge_options.network.web_root.empty();
   auto edge = cluster::EdgeServer::start(std::move(edge_options));
   if (!edge) return fail(edge.error());
@@ -34,7 +35,7 @@ int runEdge(const FrontOptions& options) {
   if (is_open_to_all) warnOpenToAll(options);
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*edge)->port());
   std::fflush(stdout);
-  const int signal = signals.wait();
+  const int signal = signals.wait([&] { reload(options, (*edge)->access(), audit_file.get()); });
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
   (*edge)->stop();
   logNetwork((*edge)->networkStats());

@@ -1,12 +1,9 @@
 #include "front.h"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
@@ -14,55 +11,53 @@
 
 #include <spindrift/core/paths.h>
 
+#include "access_files.h"
 #include "commands.h"
 #include "config_file.h"
 
 namespace spindrift::cli {
 
-using core::Error;
 using core::ErrorCode;
 
-core::Result<service::Access> loadAccess(const FrontOptions& options) {
-  std::string text;
-  std::string label = "SPINDRIFT_TOKENS";
-  bool has_tokens = false;
-  if (!options.token_file.empty()) {
-    std::ifstream file(options.token_file);
-    if (!file)
-      return Error{ErrorCode::kUnavailable, "--tokens-file " + options.token_file + ": the file cannot be read"};
-    text.assign(std::istreambuf_iterator<char>(file), {});
-    label = options.token_file;
-    has_tokens = true;
-  } else if (!options.tokens.empty()) {
-    text = options.tokens;
-    std::ranges::replace(text, ';', '\n');  // environment variables are awkward with several lines
-    has_tokens = true;
+core::Result<service::AccessOptions> accessOptions(const FrontOptions& options) {
+  auto access = loadAccess(options);
+  if (!access) return access.error();
+  service::AccessOptions out{.access = *std::move(access), .person_commands_per_s = options.person_commands_per_s};
+  if (options.audit_file.empty()) return out;
+  auto opened = access::AuditFile::open(options.audit_file);
+  if (!opened) return opened.error();
+  out.audit_file = *std::move(opened);
+  return out;
+}
+
+void reload(const FrontOptions& options, service::AccessControl& control, access::AuditFile* audit_file) {
+  if (audit_file != nullptr) audit_file->reopen();
+  auto access = loadAccess(options);
+  if (!access) {
+    spdlog::error("SIGHUP: tokens and keys stay as they were: {}", access.error().message);
+    return;
   }
-  std::optional<core::Role> guest = has_tokens ? core::Role::kViewer : core::Role::kOperator;
-  if (!options.guest_role.empty()) guest = core::parseRole(options.guest_role);  // "none" is not a role
-  auto access = service::Access::parse(text, label, guest);
-  if (access && has_tokens && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
-  }
-  if (access && !guest && access->tokenCount() == 0) {
-    return Error{ErrorCode::kInvalidInput,
-                 "--guests none without tokens refuses every client: give --tokens-file FILE"};
-  }
-  return access;
+  spdlog::info("SIGHUP: {} tokens and {} keys for JWTs were read; sessions that are open keep their rights",
+               access->tokenCount(), access->jwtKeyCount());
+  control.replace(*std::move(access));
 }
 
 StopSignals::StopSignals() {
   sigemptyset(&set_);
   sigaddset(&set_, SIGINT);
   sigaddset(&set_, SIGTERM);
+  sigaddset(&set_, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &set_, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-int StopSignals::wait() {
-  int signal = 0;
-  sigwait(&set_, &signal);
-  return signal;
+int StopSignals::wait(const std::function<void()>& reload) {
+  while (true) {
+    int signal = 0;
+    sigwait(&set_, &signal);
+    if (signal != SIGHUP) return signal;
+    reload();
+  }
 }
 
 std::string forUrl(const std::string& address) {
@@ -81,7 +76,7 @@ net::ServerOptions networkOptions(const FrontOptions& options) {
   return out;
 }
 
-bool isOpenToAll(const FrontOptions& options, const service::Access& access) {
+bool isOpenToAll(const FrontOptions& options, const access::Access& access) {
   return access.guest() == core::Role::kOperator && !options.address.starts_with("127.") && options.address != "::1";
 }
 

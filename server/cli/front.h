@@ -2,6 +2,7 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,20 +10,25 @@
 #include <spindrift/cluster/node.h>
 #include <spindrift/core/result.h>
 #include <spindrift/net/server.h>
-#include <spindrift/service/access.h>
+#include <spindrift/service/access_control.h>
 
 #include "serve_options.h"
 
 namespace spindrift::cli {
 
-/// Reads the tokens from the file or from the environment, and the role of clients without a token.
-core::Result<service::Access> loadAccess(const FrontOptions& options);
+/// Reads tokens and keys, and opens the audit log.
+core::Result<service::AccessOptions> accessOptions(const FrontOptions& options);
 
-/// Blocks SIGINT and SIGTERM in this thread and in those that it starts, so that wait() receives them.
+/// Reads the files of tokens and keys again, and opens the audit log anew. With a wrong file, everything stays as it
+/// was.
+void reload(const FrontOptions& options, service::AccessControl& access, access::AuditFile* audit_file);
+
+/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and in those that it starts, so that wait() receives them.
 class StopSignals {
  public:
   StopSignals();
-  int wait();
+  /// Returns the signal that ends the program; calls `reload` for each SIGHUP before it.
+  int wait(const std::function<void()>& reload);
 
  private:
   sigset_t set_{};
@@ -35,7 +41,7 @@ std::string forUrl(const std::string& address);
 net::ServerOptions networkOptions(const FrontOptions& options);
 
 /// Whether anybody who can reach the address is an operator.
-bool isOpenToAll(const FrontOptions& options, const service::Access& access);
+bool isOpenToAll(const FrontOptions& options, const access::Access& access);
 void warnOpenToAll(const FrontOptions& options);
 
 /// `runs_rooms`: a server. The name of the node is made if it is not given.

@@ -95,7 +95,7 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
   auto rooms = chooseRooms(options, node, catalog);
   if (!rooms) return rooms.error();
   out.rooms = *std::move(rooms);
-  auto access = loadAccess(options);
+  auto access = accessOptions(options);
   if (!access) return access.error();
   out.access = *std::move(access);
   out.rules.scenes = std::move(catalog);
@@ -131,16 +131,18 @@ int serve(ServeOptions options) {
   auto server_options = serverOptions(options, node.get());
   if (!server_options) return fail(server_options.error());
   if (*inherited) server_options->network.listening_socket = (*inherited)->descriptor;
-  const bool is_open_to_all = isOpenToAll(options, server_options->access);
+  const bool is_open_to_all = isOpenToAll(options, server_options->access.access);
+  const auto audit_file = server_options->access.audit_file;
   const bool has_page = !server_options->network.web_root.empty();
   auto server = service::WaterServer::start(*std::move(server_options));
   if (!server) return fail(server.error());
   if (node) {
     service::Gateway& gateway = (*server)->gateway();
-    node->serve(gateway.sessions(), &(*server)->simulation(),
-                [&gateway](const net::HttpRequest& request, net::HttpResponder respond) {
-                  gateway.rest().answer(request, std::move(respond));
-                });
+    node->serve(gateway.sessions(), {.simulation = &(*server)->simulation(),
+                                     .outlets = &gateway,
+                                     .answer = [&gateway](const net::HttpRequest& request, net::HttpResponder respond) {
+                                       gateway.rest().answer(request, std::move(respond));
+                                     }});
   }
 
   if (const std::string device = (*server)->deviceLine(); !device.empty())
@@ -149,7 +151,7 @@ int serve(ServeOptions options) {
   if (is_open_to_all) warnOpenToAll(options);
   std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
   std::fflush(stdout);
-  const int signal = signals.wait();
+  const int signal = signals.wait([&] { reload(options, (*server)->gateway().access(), audit_file.get()); });
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
   if (node) node->leave();
   (*server)->stop();

@@ -23,7 +23,9 @@ CLI::Validator isNumber() {
 
 /// An empty name would mean "no tokens": every client an operator.
 CLI::Validator isNotEmpty() {
-  return {[](std::string& text) { return text.empty() ? std::string("Value is empty; name a file") : std::string(); },
+  return {[](std::string& text) {
+            return text.empty() ? std::string("Value is empty; leave the option out instead") : std::string();
+          },
           ""};
 }
 
@@ -57,6 +59,26 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
       .add_option("--guests", options.guest_role,
                   "Role of clients without a token (default: operator without tokens, viewer with tokens)")
       ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
+  command
+      .add_option("--jwt-key", options.jwt_keys,
+                  "Accept JSON Web Tokens of this key: FILE with a public key (RS256, EdDSA), or hs256:FILE with a "
+                  "secret; may be repeated")
+      ->check(isNotEmpty());
+  command.add_option("--jwt-keys", options.jwt_key_set, "The same for the keys of a JWK set")->check(isNotEmpty());
+  command.add_option("--jwt-issuer", options.jwt_issuer, "What iss of a JWT has to be (default: anything)")
+      ->check(isNotEmpty());
+  command.add_option("--jwt-audience", options.jwt_audience, "What aud of a JWT has to contain (default: anything)")
+      ->check(isNotEmpty());
+  command
+      .add_option("--person-commands-per-s", options.person_commands_per_s,
+                  "Commands a second of one person over all sessions and rooms; bursts of twice as many")
+      ->check(isNumber())
+      ->check(CLI::Range(1.0, 10'000.0))
+      ->capture_default_str();
+  command
+      .add_option("--audit-log", options.audit_file,
+                  "Append what operators do, and who is refused, to this file: one JSON object per line")
+      ->check(isNotEmpty());
   command.add_option("--origin", options.origins,
                      "Additional allowed Origin of pages, https://HOST; * = any; may be repeated");
 }

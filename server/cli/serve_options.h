@@ -24,8 +24,14 @@ struct FrontOptions {
   std::size_t max_session_count = 256;
   double address_session_share = 0.5;  ///< share of the sessions that one address may hold
   std::string token_file;              ///< empty: `tokens`
-  std::string tokens;                ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
-  std::string guest_role;            ///< "none", or a role; empty: operator without tokens, viewer with tokens
+  std::string tokens;                 ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
+  std::string guest_role;             ///< "none", or a role; empty: operator without tokens, viewer with tokens
+  std::vector<std::string> jwt_keys;  ///< FILE: a public key; hs256:FILE: a secret
+  std::string jwt_key_set;            ///< file of a JWK set; empty: none
+  std::string jwt_issuer;             ///< empty: not checked
+  std::string jwt_audience;           ///< empty: not checked
+  double person_commands_per_s = 200.0;
+  std::string audit_file;            ///< empty: no audit log
   std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
   std::string nats_url;              ///< empty: the process is alone
   std::string nats_ca_file;          ///< empty: the system's certificates

@@ -12,7 +12,7 @@ net::HttpReply text(unsigned status, std::string body) {
 }  // namespace
 
 core::Result<std::unique_ptr<EdgeServer>> EdgeServer::start(EdgeOptions options) {
-  auto self = std::unique_ptr<EdgeServer>(new EdgeServer(std::move(options.sessions)));
+  auto self = std::unique_ptr<EdgeServer>(new EdgeServer(std::move(options.access), options.sessions));
   options.node.runs_rooms = false;
   auto node = Node::connect(options.node);
   if (!node) return node.error();
@@ -35,7 +35,7 @@ void EdgeServer::stop() {
 
 void EdgeServer::serverStarts(net::Hub& hub) {
   sessions_.serve(hub);
-  node_->serve(sessions_, nullptr, {});
+  node_->serve(sessions_, {});
 }
 
 core::Result<void> EdgeServer::acceptSession(const std::string& room) {

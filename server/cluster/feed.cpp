@@ -101,6 +101,7 @@ void Feed::sendView(const std::string& name, FedRoom& room, const std::string& n
   view.set_node_time_s(node_time_s);
   view.set_room_time_s(core::monotonic_s());
   view.set_run(room.run);
+  *view.mutable_access() = room.room->access();
   if (room.knows_reduced_counts) {
     for (const std::uint32_t count : room.reduced_counts) view.mutable_reduced_counts()->add_counts(count);
   }
@@ -183,7 +184,7 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
       const core::SessionId displaced = *admission.displaced;
       if (displaced >> kPrefixShift == 0) {
         lock.unlock();
-        return displaceHere_(displaced);
+        return events_.displaced(displaced);
       }
       v1::FromRoom notice;
       notice.set_displaced_session(displaced & ((core::SessionId{1} << kPrefixShift) - 1));
@@ -198,13 +199,16 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
     }
     case v1::ToRoom::kCommand: {
       v1::RoomCommand& sent = *message.mutable_command();
-      const rooms::Command command{.sender = {.session_id = sessionOf(link.prefix, sent.session()),
-                                              .person_id = sent.person_id(),
-                                              .role = roleOf(sent.role())},
-                                   .message = std::move(*sent.mutable_command())};
+      const rooms::Command command{
+          .sender = {.session_id = sessionOf(link.prefix, sent.session()),
+                     .person_id = sent.person_id(),
+                     .role = roleOf(sent.role()),
+                     .details = std::make_shared<const core::SenderDetails>(core::SenderDetails{
+                         .room = name, .subject = sent.subject(), .name = sent.name(), .peer = sent.peer()})},
+          .message = std::move(*sent.mutable_command())};
       const std::shared_ptr<rooms::Room> target = room.room;
       lock.unlock();
-      if (const auto rejection = target->admit(command)) commandRejected(command, *rejection);
+      if (const auto rejection = target->admit(command)) events_.rejected(command, *rejection);
       return;
     }
     case v1::ToRoom::kDetach:
@@ -240,7 +244,7 @@ void Feed::stateChanged(const rooms::Room& room, const net::StateTopic& topic, c
 }
 
 void Feed::closed(const rooms::Room& room) {
-  roomClosed_(room.name());
+  events_.closed(room.name());
   std::unique_ptr<bus::Subscription> ended;  // destroyed without the lock, which its handler takes
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room.name());

@@ -43,15 +43,17 @@ class Feed final : public service::RemoteAudience {
  public:
   using Clock = std::chrono::steady_clock;
 
-  using Displace = std::function<void(core::SessionId)>;
-  using Closed = std::function<void(const std::string& room)>;
-  /// `displace_here`: closes a session of this process in whose place another goes on. `room_closed`: called when a
-  /// room was closed for good. `bus` outlives it.
-  Feed(bus::Bus& bus, Subjects subjects, Displace displace_here, Closed room_closed)
-      : bus_(bus),
-        subjects_(std::move(subjects)),
-        displaceHere_(std::move(displace_here)),
-        roomClosed_(std::move(room_closed)) {}
+  struct Events {
+    /// Another session goes on in the place of one of this process.
+    std::function<void(core::SessionId)> displaced;
+    /// A room was closed for good.
+    std::function<void(const std::string& room)> closed;
+    /// A command of a node was not admitted; the feed gets it back through commandRejected().
+    std::function<void(const rooms::Command&, const wire::CommandRejection&)> rejected;
+  };
+  /// `bus` outlives it.
+  Feed(bus::Bus& bus, Subjects subjects, Events events)
+      : bus_(bus), subjects_(std::move(subjects)), events_(std::move(events)) {}
 
   /// Opens the rooms that are new to the nodes, drops silent links, sends pulses. Call it some twenty times per second.
   void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
@@ -110,8 +112,7 @@ class Feed final : public service::RemoteAudience {
 
   bus::Bus& bus_;
   const Subjects subjects_;
-  const Displace displaceHere_;
-  const Closed roomClosed_;
+  const Events events_;
   mutable std::mutex mutex_;
   mutable std::map<std::string, FedRoom> rooms_;
   std::uint32_t last_prefix_ = 0;

@@ -69,7 +69,7 @@ class NodeImpl final : public Node {
   service::ClusterHooks hooks() override {
     return {.audience = feed_.get(), .cluster = this, .metrics = [this] { return metrics(); }};
   }
-  void serve(service::Sessions& sessions, rooms::SimulationThread* simulation, Answer answer) override;
+  void serve(service::Sessions& sessions, const ServerParts& server) override;
   [[nodiscard]] core::Result<void> ready() const override;
   void leave() override {
     leaving_ = true;
@@ -107,6 +107,7 @@ class NodeImpl final : public Node {
   Requests requests_;
   service::Sessions* sessions_ = nullptr;
   rooms::SimulationThread* simulation_ = nullptr;  ///< of a server
+  rooms::RoomOutlets* outlets_ = nullptr;          ///< likewise
   Answer answer_;
   std::atomic<bool> leaving_{false};
   std::atomic<bool> serving_{false};
@@ -131,8 +132,13 @@ core::Result<void> NodeImpl::start() {
     if (!values) return values.error();
     directory_ = std::make_unique<Directory>(*std::move(values), options_.name, [this] { return servers(); });
     feed_ = std::make_unique<Feed>(
-        *bus_, subjects_, [this](core::SessionId session) { sessions_->displace(session); },
-        [this](const std::string& room) { directory_->remove(room); });
+        *bus_, subjects_,
+        Feed::Events{.displaced = [this](core::SessionId session) { sessions_->displace(session); },
+                     .closed = [this](const std::string& room) { directory_->remove(room); },
+                     .rejected =
+                         [this](const rooms::Command& command, const wire::CommandRejection& rejection) {
+                           outlets_->commandRejected(command, rejection);
+                         }});
   }
   pulses_ = bus_->subscribe(subjects_.servers(), kPulsesWaitingMaxBytes, [this](core::ByteView message) {
     if (const auto pulse = parse<v1::ServerPulse>(message)) {
@@ -146,11 +152,12 @@ core::Result<void> NodeImpl::start() {
   return {};
 }
 
-void NodeImpl::serve(service::Sessions& sessions, rooms::SimulationThread* simulation, Answer answer) {
+void NodeImpl::serve(service::Sessions& sessions, const ServerParts& server) {
   sessions_ = &sessions;
-  simulation_ = simulation;
-  answer_ = std::move(answer);
-  if (directory_) directory_->serve(*simulation);
+  simulation_ = server.simulation;
+  outlets_ = server.outlets;
+  answer_ = server.answer;
+  if (directory_) directory_->serve(*simulation_);
   if (simulation_) {
     forwards_ = bus_->subscribe(subjects_.server(options_.name), kInboxWaitingMaxBytes, [this](core::ByteView message) {
       if (const auto forward = parse<v1::HttpForward>(message)) answerForward(*bus_, subjects_, *forward, answer_);

@@ -45,6 +45,14 @@ wire::CommandRejection unreachable(std::uint64_t command_id, const std::string& 
   return {.command_id = command_id, .reason = v1::REJECT_REASON_BUSY, .field = "", .message = why};
 }
 
+/// What the answer to a command needs of it.
+rooms::Command commandOf(core::SessionId session, std::uint64_t id) {
+  rooms::Command command;
+  command.sender.session_id = session;
+  command.message.set_command_id(id);
+  return command;
+}
+
 }  // namespace
 
 RemoteRoom::RemoteRoom(std::string name, std::string node, bus::Bus& bus, const Subjects& subjects,
@@ -128,9 +136,7 @@ std::vector<RemoteRoom::Refused> RemoteRoom::loseLink(const std::string& why) {
   if (!lost_since_) lost_since_ = heard_;
   for (auto& [session, guest] : guests_) {
     for (const std::uint64_t id : std::exchange(guest.commands, {})) {
-      rooms::Command command{.sender = {.session_id = session}};
-      command.message.set_command_id(id);
-      out.push_back({std::move(command), why + "; whether the command was carried out is not known"});
+      out.push_back({commandOf(session, id), why + "; whether the command was carried out is not known"});
     }
   }
   return out;
@@ -229,6 +235,11 @@ void RemoteRoom::command(const rooms::Command& command) {
       sent.set_session(command.sender.session_id);
       sent.set_person_id(command.sender.person_id);
       sent.set_role(wire::toWire(command.sender.role));
+      if (command.sender.details) {
+        sent.set_subject(command.sender.details->subject);
+        sent.set_name(command.sender.details->name);
+        sent.set_peer(command.sender.details->peer);
+      }
       *sent.mutable_command() = command.message;
       send(std::move(message));
     }
@@ -304,6 +315,7 @@ void RemoteRoom::takeView(const v1::RoomView& message) {
         service::VenueView{.room = std::move(room),
                            .device = message.device(),
                            .scenes = {message.scenes().begin(), message.scenes().end()},
+                           .room_access = message.access(),
                            .grace = std::chrono::milliseconds(static_cast<std::int64_t>(message.grace_s() * 1e3)),
                            .clock_offset_s = offset_s});
     people_ = message.people();
@@ -388,8 +400,7 @@ void RemoteRoom::takeOutcome(const v1::Outcome& message) {
     if (sent == commands.end()) return;
     commands.erase(sent);
   }
-  rooms::Command command{.sender = {.session_id = message.session()}};
-  command.message.set_command_id(id);
+  const rooms::Command command = commandOf(message.session(), id);
   if (message.has_ack())
     return sessions_.commandApplied(command, message.ack().applied_tick(), message.ack().boat_id());
   sessions_.commandRejected(command, {.command_id = id,

@@ -47,6 +47,7 @@ void Requests::send(const std::string& server, const net::HttpRequest& request, 
   message.set_body(request.body.data(), request.body.size());
   message.set_authorization(request.authorization);
   message.set_content_type(request.content_type);
+  message.set_peer(request.peer);
   {
     const std::lock_guard lock(mutex_);
     message.set_request(++last_request_);
@@ -128,7 +129,8 @@ void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForwar
                                  .query = forward.query(),
                                  .body = {reinterpret_cast<const std::uint8_t*>(body.data()), body.size()},
                                  .authorization = forward.authorization(),
-                                 .content_type = forward.content_type()};
+                                 .content_type = forward.content_type(),
+                                 .peer = forward.peer()};
   answer(request, [&bus, subject = subjects.node(forward.node()),
                    number = forward.request()](std::optional<net::HttpReply> reply) {
     v1::ToNode message;

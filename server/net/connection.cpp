@@ -168,6 +168,7 @@ asio::awaitable<void> Connection::run() {
       question.body = bodyOf(request);
       question.authorization = std::string(request[http::field::authorization]);
       question.content_type = std::string(request[http::field::content_type]);
+      question.peer = peer_;
       std::optional<Reply> answer = co_await ask(question);
       if (!answer) break;
       reply = *std::move(answer);

@@ -54,7 +54,8 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, Room
 }
 
 core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
-                                                 WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place) {
+                                                 WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place,
+                                                 v1::RoomAccess access) {
   auto room_water = std::make_unique<RoomWater>(std::move(water));
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty() && place.kept) {
@@ -75,6 +76,7 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
   }
   auto room =
       std::shared_ptr<Room>(new Room(std::move(name), rules, builder, outlets, std::move(room_water), std::move(log)));
+  room->access_ = std::move(access);
   if (!place.keeper) return room;
   if (place.kept) {
     if (auto restored = room->restore(*place.kept); !restored) return restored.error();

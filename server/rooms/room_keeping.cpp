@@ -114,6 +114,7 @@ std::optional<v1::KeptState> Room::stateNow() {
   out.set_pending_tick_count(pending_tick_count_);
   out.set_chosen_fidelity(chosen_fidelity_);
   *out.mutable_people() = roster_.kept();
+  *out.mutable_access() = access_;
   return out;
 }
 
@@ -127,6 +128,7 @@ core::Result<void> Room::restore(const KeptRoom& kept) {
   }
   if (auto done = restoreWater(kept); !done) return done;
   roster_.restore(people, std::chrono::steady_clock::now());
+  access_ = state.access();
   boatsChanged();
   boats_ = water_->boats();
   publishSnapshot();

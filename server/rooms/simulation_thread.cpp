@@ -104,8 +104,9 @@ core::Result<void> SimulationThread::buildRoom(const std::string& name, std::opt
     v1::Scene start = place->kept->state->start_scene();
     scene::fillDefaults(start);
     v1::Scene scene = place->kept->state->scene();
+    v1::RoomAccess access = place->kept->state->access();
     scene::fillDefaults(scene);
-    auto added = add(name, builder_->build(std::move(start)).get(), *std::move(place));
+    auto added = add(name, builder_->build(std::move(start)).get(), *std::move(place), {});
     // A full disk or a device that fails is no reason to give up what is there.
     if (added || added.error().code != ErrorCode::kInvalidInput) return added;
     const auto aside = rules_.states->setAside(name);
@@ -115,14 +116,14 @@ core::Result<void> SimulationThread::buildRoom(const std::string& name, std::opt
         aside->string(), added.error().message, scene.name());
     place = placeOf(name);
     if (!place) return place.error();
-    setup = RoomSetup{name, std::move(scene)};
+    setup = RoomSetup{.name = name, .scene = std::move(scene), .access = std::move(access)};
   }
   if (!setup) {
     spdlog::warn("room {}: nothing of it on disk can be used, so it is not opened; {} stays as it is", name,
                  rules_.states->folder().string());
     return {};
   }
-  return add(name, builder_->build(std::move(setup->scene)).get(), *std::move(place));
+  return add(name, builder_->build(std::move(setup->scene)).get(), *std::move(place), std::move(setup->access));
 }
 
 void SimulationThread::run() {
@@ -215,8 +216,8 @@ void SimulationThread::open(RoomSetup setup, Done done) {
   } else if (setup.scene.name().empty()) {
     return done(Error{ErrorCode::kInvalidInput, "room " + setup.name + ": nothing of it on disk can be used"});
   }
-  openings_.push_back(
-      {std::move(setup.name), *std::move(place), builder_->build(std::move(setup.scene)), std::move(done)});
+  openings_.push_back({std::move(setup.name), *std::move(place), std::move(setup.access),
+                       builder_->build(std::move(setup.scene)), std::move(done)});
 }
 
 void SimulationThread::finishOpenings() {
@@ -228,19 +229,22 @@ void SimulationThread::finishOpenings() {
       ++opening;
       continue;
     }
-    opening->done(add(std::move(opening->name), opening->water.get(), std::move(opening->place)));
+    opening->done(
+        add(std::move(opening->name), opening->water.get(), std::move(opening->place), std::move(opening->access)));
     opening = openings_.erase(opening);
   }
 }
 
-core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water, RoomPlace place) {
+core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water, RoomPlace place,
+                                         v1::RoomAccess access) {
   if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
   (*water)->bind();
   {
     const std::lock_guard lock(rooms_mutex_);
     if (device_line_.empty()) device_line_ = (*water)->context().device().name;
   }
-  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place));
+  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place),
+                           std::move(access));
   if (!room) return room.error();
   (*room)->start(std::chrono::steady_clock::now());
   const std::lock_guard lock(rooms_mutex_);

@@ -8,10 +8,10 @@
 
 namespace spindrift::service {
 
-Gateway::Gateway(SessionRules rules, const MetricsSources& sources)
-    : sessions_(std::move(rules), counters_),
-      rest_(sessions_.rules().access, counters_, sources,
-            [this](const rooms::Room& room) { sessions_.dismiss(room.name()); }) {}
+Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources)
+    : access_(std::move(access)),
+      sessions_(rules, access_, counters_),
+      rest_(access_, counters_, sources, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); }) {}
 
 void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
   rooms_ = &rooms;
@@ -153,6 +153,7 @@ void Gateway::publish(const std::string& room, codec::Stream stream, const codec
 
 void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
   counters_.applied();
+  access_.audit().applied(command, tick);
   if (command.sender.request_id != 0) return rest_.commandApplied(command, tick, boat_id);
   if (cluster_.audience && cluster_.audience->commandApplied(command, tick, boat_id)) return;
   sessions_.commandApplied(command, tick, boat_id);
@@ -161,10 +162,13 @@ void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, 
 void Gateway::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   if (command.sender.request_id != 0) {
     counters_.rejected(rejection.reason);
+    access_.audit().rejected(command, rejection);
     return rest_.commandRejected(command, rejection);
   }
-  if (cluster_.audience && cluster_.audience->commandRejected(command, rejection))
-    return counters_.rejected(rejection.reason);
+  if (cluster_.audience && cluster_.audience->commandRejected(command, rejection)) {
+    counters_.rejected(rejection.reason);
+    return access_.audit().rejected(command, rejection);
+  }
   sessions_.commandRejected(command, rejection);
 }
 

@@ -8,6 +8,7 @@ std::shared_ptr<const VenueView> LocalRoom::view() const {
   return std::make_shared<const VenueView>(VenueView{.room = room_->snapshot(),
                                                      .device = rooms_.deviceLine(),
                                                      .scenes = rooms_.rules().scenes.names(),
+                                                     .room_access = room_->access(),
                                                      .grace = room_->roster().grace()});
 }
 

@@ -193,6 +193,18 @@ void writeCommands(Page& page, const CommandCounters& commands) {
   }
 }
 
+void writeAccess(Page& page, const AccessControl& access) {
+  page.head("person_busy_total", "counter", "Commands rejected because one person sent too many, over all sessions.");
+  page.sample("", access.people().refusedCount());
+  if (!access.audit().isOn()) return;
+  page.head("audit_lines_total", "counter", "Lines written to the audit log.");
+  page.sample("", access.audit().writtenCount());
+  page.head("audit_lost_total", "counter", "Lines of the audit log that could not be written.");
+  page.sample("", access.audit().lostCount());
+  page.head("audit_left_out_total", "counter", "Refusals that the rate of the audit log left out.");
+  page.sample("", access.audit().leftOutCount());
+}
+
 }  // namespace
 
 std::string metricsText(const net::ServerStats& network, const CommandCounters& commands) {
@@ -210,7 +222,7 @@ std::string metric(const char* name, const char* type, const char* help, double 
 }
 
 std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
-                        const MetricsSources& sources) {
+                        const AccessControl& access, const MetricsSources& sources) {
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {
     samples.push_back({fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
@@ -222,6 +234,7 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   if (const net::Server* network = sources.network) writeNetwork(page, network->stats());
   if (const rooms::EncoderThread* encoder = sources.encoder) writeEncoder(page, *encoder);
   writeCommands(page, commands);
+  writeAccess(page, access);
   return page.take();
 }
 

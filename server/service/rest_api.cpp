@@ -94,7 +94,7 @@ unsigned httpStatusOf(v1::RejectReason reason) {
   }
 }
 
-RestApi::RestApi(const Access& access, CommandCounters& counters, const MetricsSources& sources,
+RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
                  std::function<void(const rooms::Room&)> dismiss)
     : access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
 
@@ -117,16 +117,19 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   if (request.path == "/metrics") {
     return respond(HttpReply{.status = 200,
                              .content_type = "text/plain; version=0.0.4; charset=utf-8",
-                             .body = metricsText(*rooms_, *hub_, counters_, sources_) +
+                             .body = metricsText(*rooms_, *hub_, counters_, access_, sources_) +
                                      (cluster_.metrics ? cluster_.metrics() : std::string())});
   }
   if (!request.path.starts_with(kRoot)) return respond(std::nullopt);
 
-  const auto token = Access::bearerToken(request.authorization);
-  const auto grant =
-      token ? access_.resolve(*token, std::chrono::system_clock::now()) : core::Result<Grant>(token.error());
-  if (!grant) return respond(unauthorized(grant.error().message));
-  const Call call{request, split(std::string_view(request.path).substr(kRoot.size())), grant->role};
+  const auto token = access::Access::bearerToken(request.authorization);
+  const auto grant = token ? access_.resolve(*token, roomTokens(), std::chrono::system_clock::now())
+                           : core::Result<access::Grant>(token.error());
+  if (!grant) {
+    access_.audit().refused({.peer = request.peer}, grant.error().message);
+    return respond(unauthorized(grant.error().message));
+  }
+  const Call call{request, split(std::string_view(request.path).substr(kRoot.size())), *grant};
   if (call.path.empty()) return respond(std::nullopt);
   if (call.path[0] == "scenes" && call.path.size() == 1) {
     if (request.method != "GET") return respond(wrongMethod("GET"));
@@ -139,16 +142,24 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   room(call, std::move(respond));
 }
 
+std::vector<RoomTokens> RestApi::roomTokens() const {
+  std::vector<RoomTokens> out;
+  for (const auto& room : rooms_->rooms()) out.push_back({room->name(), room->access()});
+  return out;
+}
+
 void RestApi::rooms(const Call& call, net::HttpResponder respond) {
   if (call.request.method == "POST") return createRoom(call, std::move(respond));
   if (call.request.method != "GET") return respond(wrongMethod("GET, POST"));
   v1::RoomList out;
-  for (const auto& room : rooms_->rooms()) fillRoomInfo(*room, *out.add_rooms());
+  for (const auto& room : rooms_->rooms()) {
+    if (call.grant.allows(room->name())) fillRoomInfo(*room, *out.add_rooms());
+  }
   respond(json(200, out));
 }
 
 void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
-  if (call.role < core::Role::kOperator) return respond(problem(403, "opening a room takes the role of operator"));
+  if (!call.isOperator()) return respond(problem(403, "opening a room takes the role of operator"));
   if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
   const core::ByteView body = call.request.body;
   const auto wanted = wire::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
@@ -156,6 +167,9 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
   if (!rooms::isRoomName(wanted->name())) {
     return respond(problem(422, "name: a room's name has 1 to 32 letters, digits, '_' or '-'"));
   }
+  if (!call.grant.allows(wanted->name())) return respond(problem(403, access::otherRoom(wanted->name())));
+  auto tokens = makeTokens(*wanted);
+  if (!tokens) return respond(problem(422, tokens.error().message));
   if (!rooms_->rules().scenes.has(wanted->scene())) {
     return respond(problem(404, "scene: there is none of that name; /api/v1/scenes lists what there is"));
   }
@@ -164,18 +178,25 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
       wanted->fidelity() == v1::FIDELITY_UNSPECIFIED ? std::nullopt : std::optional(wanted->fidelity());
   auto scene = rooms_->rules().scenes.load(wanted->scene(), fidelity);
   if (!scene) return respond(problem(500, "scene: " + rooms::firstLine(scene.error().message)));
-  const auto done = [this, name = wanted->name(), respond = std::move(respond)](const core::Result<void>& opened) {
-    if (!opened) return respond(problem(statusOf(opened.error()), rooms::firstLine(opened.error().message)));
+  const auto done = [this, wanted = *wanted, who = call.details(wanted->name()), role = call.grant.role,
+                     shown = std::move(tokens->shown),
+                     respond = std::move(respond)](const core::Result<void>& opened) mutable {
+    const std::string error = opened ? "" : rooms::firstLine(opened.error().message);
+    access_.audit().request("room_opened", who, role, wire::toJson(wanted), error);
+    if (!opened) return respond(problem(statusOf(opened.error()), error));
     v1::RoomInfo out;
-    if (const auto room = rooms_->find(name)) fillRoomInfo(*room, out);
+    if (const auto room = rooms_->find(wanted.name())) fillRoomInfo(*room, out);
+    out.mutable_tokens()->Swap(&shown);
     respond(json(201, out));
   };
-  rooms::RoomSetup setup{wanted->name(), *std::move(scene)};
+  rooms::RoomSetup setup{.name = wanted->name(), .scene = *std::move(scene), .access = std::move(tokens->kept)};
   if (cluster_.cluster) return cluster_.cluster->openRoom(std::move(setup), done);
   rooms_->openRoom(std::move(setup), done);
 }
 
 void RestApi::room(const Call& call, net::HttpResponder respond) {
+  if (!call.grant.allows(call.path[1]) && rooms::isRoomName(call.path[1]))
+    return respond(problem(403, access::otherRoom(call.path[1])));
   const auto room = rooms_->find(call.path[1]);
   if (!room || call.path[1].empty()) {
     // Repeat only a valid room name: any other could contain arbitrary bytes.
@@ -219,9 +240,11 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
 }
 
 void RestApi::snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond) {
-  if (call.role < core::Role::kOperator) return respond(problem(403, "a snapshot takes the role of operator"));
-  if (!room.askForSnapshot())
-    return respond(problem(409, "the server keeps no state on disk: start it with --state-dir FOLDER"));
+  if (!call.isOperator()) return respond(problem(403, "a snapshot takes the role of operator"));
+  const bool is_kept = room.askForSnapshot();
+  access_.audit().request("snapshot_asked", call.details(room.name()), call.grant.role, "",
+                          is_kept ? "" : "the server keeps no state on disk");
+  if (!is_kept) return respond(problem(409, "the server keeps no state on disk: start it with --state-dir FOLDER"));
   respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
 }
 
@@ -254,8 +277,12 @@ void RestApi::gauges(const Call& call, const rooms::Room& room, const net::HttpR
 }
 
 void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
-  if (call.role < core::Role::kOperator) return respond(problem(403, "closing a room takes the role of operator"));
-  rooms_->closeRoom(call.path[1], dismiss_, [respond = std::move(respond)](const core::Result<void>& closed) {
+  if (!call.isOperator()) return respond(problem(403, "closing a room takes the role of operator"));
+  const auto report = [this, who = call.details(call.path[1]), role = call.grant.role](const std::string& error) {
+    access_.audit().request("room_closed", who, role, "", error);
+  };
+  rooms_->closeRoom(call.path[1], dismiss_, [report, respond = std::move(respond)](const core::Result<void>& closed) {
+    report(closed ? "" : closed.error().message);
     if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
     respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
   });
@@ -274,14 +301,23 @@ void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room
     counters_.rejected(rejection->reason);
     return respond(rejected(*rejection));
   }
-  const rooms::Command command{.sender = {.request_id = ++last_request_id_, .role = call.role},
-                               .message = std::get<v1::Command>(std::move(parsed))};
+  rooms::Command command;
+  command.sender.request_id = ++last_request_id_;
+  command.sender.role = call.grant.role;
+  command.sender.details = std::make_shared<const core::SenderDetails>(call.details(room->name()));
+  command.message = std::get<v1::Command>(std::move(parsed));
   {
     const std::lock_guard lock(mutex_);
     pending_[command.sender.request_id] = std::move(respond);
   }
-  if (const auto rejection = room->admit(command)) {
+  const auto rejection =
+      access_.takeCommand(call.grant.is_person ? call.grant.subject : "")
+          ? room->admit(command)
+          : wire::CommandRejection{
+                .command_id = command.id(), .reason = v1::REJECT_REASON_BUSY, .field = "", .message = access_.busy()};
+  if (rejection) {
     counters_.rejected(rejection->reason);
+    access_.audit().rejected(command, *rejection);
     commandRejected(command, *rejection);
   }
 }

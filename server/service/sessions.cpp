@@ -5,6 +5,7 @@
 
 #include <spindrift/core/monotonic.h>
 #include <spindrift/core/overloaded.h>
+#include <spindrift/core/text.h>
 #include <spindrift/core/version.h>
 #include <spindrift/service/sessions.h>
 #include <spindrift/service/state_topics.h>
@@ -37,7 +38,8 @@ void Sessions::opened(net::SessionId session, std::shared_ptr<Venue> venue, cons
     const std::lock_guard lock(mutex_);
     sessions_.emplace(session, State{.venue = venue,
                                      .greeted = nullptr,
-                                     .commands = {rules_.commands_per_s, rules_.command_burst_count, now}});
+                                     .commands = {rules_.commands_per_s, rules_.command_burst_count, now},
+                                     .peer = peer});
   }
   spdlog::info("session {} from {} joins room {}", session, peer, venue->name());
   greet(session, *venue);
@@ -179,15 +181,27 @@ void Sessions::handle(net::SessionId session, const State& state, core::ByteView
 
 void Sessions::hello(net::SessionId session, const State& state, const wire::Hello& hello) {
   if (auto why = wire::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
-  if (const auto view = state.venue->view()) {
+  const auto view = state.venue->view();
+  if (view) {
     if (auto why = wire::checkWater(hello.minor, view->room->scene))
       return refuse(session, net::CloseCode::kPolicy, *why);
   }
   if (state.stage != Stage::kNew)
     return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
   const auto now = std::chrono::system_clock::now();
-  const auto grant = rules_.access.resolve(hello.token, now);
-  if (!grant) return refuse(session, net::CloseCode::kUnauthorized, grant.error().message);
+  const std::string& room = state.venue->name();
+  const auto grant = access_.resolve(hello.token, {{room, view ? view->room_access : v1::RoomAccess{}}}, now);
+  auto details = std::make_shared<core::SenderDetails>(core::SenderDetails{
+      .room = room, .subject = grant ? grant->subject : "", .name = hello.name, .peer = state.peer});
+  if (!grant && !view) {  // it may be a token of the room
+    return refuse(session, net::CloseCode::kTryAgainLater, "the room cannot be reached now: try again later");
+  }
+  if (!grant || !grant->allows(room)) {
+    const std::string why = grant ? access::otherRoom(room) : grant.error().message;
+    access_.audit().refused(*details, why);
+    return refuse(session, net::CloseCode::kUnauthorized, why);
+  }
+  if (!grant->name.empty()) details->name = core::cleanName(grant->name, wire::kPersonNameMaxBytes);
   auto end = std::chrono::steady_clock::time_point::max();  // replaces the deadline for Hello
   if (grant->expires) {
     const auto left = std::chrono::duration_cast<std::chrono::steady_clock::duration>(*grant->expires - now);
@@ -199,10 +213,12 @@ void Sessions::hello(net::SessionId session, const State& state, const wire::Hel
     const auto it = sessions_.find(session);
     if (it == sessions_.end()) return;
     it->second.stage = Stage::kArriving;
+    it->second.details = details;
+    if (grant->is_person) it->second.person = grant->subject;
   }
   state.venue->arrive({.session = session,
                        .role = grant->role,
-                       .name = hello.name,
+                       .name = details->name,
                        .color_rgb = hello.color_rgb,
                        .resume_key = hello.resume_key},
                       [this, session, hello, role = grant->role](const core::Result<rooms::Admission>& admission) {
@@ -298,8 +314,9 @@ void Sessions::levelChanged(net::SessionId session, core::Level level) {
 }
 
 void Sessions::command(net::SessionId session, const State& state, v1::Command message) {
-  const rooms::Command command{.sender = {.session_id = session, .person_id = state.person_id, .role = state.role},
-                               .message = std::move(message)};
+  const rooms::Command command{
+      .sender = {.session_id = session, .person_id = state.person_id, .role = state.role, .details = state.details},
+      .message = std::move(message)};
   if (state.stage != Stage::kIn) {
     return commandRejected(command, {.command_id = command.id(),
                                      .reason = v1::REJECT_REASON_NO_HELLO,
@@ -313,6 +330,11 @@ void Sessions::command(net::SessionId session, const State& state, v1::Command m
                             .field = "",
                             .message = fmt::format("more than {:g} commands a second after a burst of {:g}: slow down",
                                                    rules_.commands_per_s, rules_.command_burst_count)});
+  }
+  if (!access_.takeCommand(state.person)) {
+    return commandRejected(
+        command,
+        {.command_id = command.id(), .reason = v1::REJECT_REASON_BUSY, .field = "", .message = access_.busy()});
   }
   state.venue->command(command);
 }
@@ -329,6 +351,7 @@ void Sessions::commandApplied(const rooms::Command& command, std::uint64_t tick,
 
 void Sessions::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   counters_.rejected(rejection.reason);
+  access_.audit().rejected(command, rejection);
   hub().sendAnswer(command.sender.session_id, wire::reject(rejection));
 }
 

@@ -4,8 +4,8 @@ namespace spindrift::service {
 
 core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions options) {
   auto self = std::unique_ptr<WaterServer>(new WaterServer);
-  self->gateway_ = std::make_unique<Gateway>(SessionRules{.access = std::move(options.access),
-                                                          .message_max_bytes = options.network.read_message_max_bytes,
+  self->gateway_ = std::make_unique<Gateway>(std::move(options.access),
+                                             SessionRules{.message_max_bytes = options.network.read_message_max_bytes,
                                                           .messages_per_s = options.network.messages_per_s,
                                                           .message_burst_count = options.network.message_burst_count,
                                                           .hello_patience = options.hello_patience},

@@ -102,10 +102,10 @@ ClientMessage parseChecked(core::ByteView bytes) {
       return Hello{hello.version().major(),
                    hello.version().minor(),
                    core::cleanName(hello.client(), kClientNameMaxBytes),
-                   hello.token().substr(0, kSecretMaxBytes),
+                   hello.token(),
                    core::cleanName(hello.name(), kPersonNameMaxBytes),
                    hello.color_rgb() & 0xFFFFFFu,
-                   hello.resume_key().substr(0, kSecretMaxBytes)};
+                   hello.resume_key().substr(0, kResumeKeyMaxBytes)};
     }
     case v1::ClientMessage::kSubscribe:
       return parseSubscribe(message.subscribe());

@@ -7,6 +7,10 @@ Frames: sequences of golden messages that build on each other. Scenes and single
 copy, see CMakeLists.txt.
 """
 
+import base64
+import hashlib
+import hmac
+import json
 import struct
 import subprocess
 from pathlib import Path
@@ -150,6 +154,45 @@ def state_files():
     }
 
 
+def base64url(data):
+    return base64.urlsafe_b64encode(data).rstrip(b"=")
+
+
+def access():
+    """Returns tokens and files of keys, each after the byte that says what the target tries with it."""
+    token, signed, key_set, pem, file = b"\0", b"\1", b"\2", b"\3", b"\4"
+    secret = b"a-secret-of-at-least-32-characters"
+    claims = '{"role":"player","exp":1800003600,"sub":"ada","name":"Ada","room":["main","lab"],"nbf":1,"iat":1.5}'
+
+    def jwt(header, text):
+        content = base64url(header.encode()) + b"." + base64url(text.encode())
+        return content + b"." + base64url(hmac.new(secret, content, hashlib.sha256).digest())
+
+    modulus = base64url(bytes([255] * 255 + [1])).decode()
+    keys = [
+        {"kty": "oct", "k": base64url(secret).decode(), "kid": "a", "alg": "HS256"},
+        {"kty": "RSA", "n": modulus, "e": "AQAB", "use": "sig"},
+        {"kty": "OKP", "crv": "Ed25519", "x": "11qYAYKxCrfVS_7TyWQHOg7hcvPapiMlrwIaaPcHURo"},
+        {"kty": "EC", "crv": "P-256", "x": "AA", "y": "AA"},
+    ]
+    ed25519 = base64.b64encode(bytes.fromhex("302a300506032b6570032100") + bytes(range(32))).decode()
+    return {
+        "jwt": token + jwt('{"alg":"HS256"}', claims),
+        "jwt_expired": token + jwt('{"alg":"HS256"}', '{"role":"player","exp":1}'),
+        "jwt_none": token + base64url(b'{"alg":"none"}') + b"." + base64url(claims.encode()) + b".",
+        "jwt_other": token + jwt('{"alg":"RS256","kid":"b"}', claims),
+        "signed": signed + b'{"alg":"HS256","kid":"a"}\n' + claims.encode(),
+        "signed_crit": signed + b'{"alg":"HS256","crit":["b64"]}\n' + claims.encode(),
+        "signed_wrong": signed + b'{"alg":"HS256"}\n{"role":5,"exp":"x","room":[{}],"sub":[[[[]]]]}',
+        "signed_big": signed + b'{"alg":"HS256"}\n{"role":"operator","exp":1e300}',
+        "keys": key_set + json.dumps({"keys": keys}).encode(),
+        "keys_private": key_set + json.dumps({"keys": [keys[2] | {"d": "AA"}]}).encode(),
+        "pem": pem + f"-----BEGIN PUBLIC KEY-----\n{ed25519}\n-----END PUBLIC KEY-----\n".encode(),
+        "tokens": file + b"# class\noperator aaaaaaaaaaaaaaaa room=a,b sub=ada until=2030-01-31T12:00:00Z\nplayer bbbbbbbbbbbbbbbb\n",
+        "tokens_wrong": file + b"king aaaaaaaaaaaaaaaa\n",
+    }
+
+
 def encoded(text):
     command = ["protoc", f"--proto_path={PROTO}", "--encode=spindrift.v1.ClientMessage", "spindrift/v1/wire.proto"]
     return subprocess.run(command, input=text.encode(), stdout=subprocess.PIPE, check=True).stdout
@@ -171,6 +214,7 @@ def main():
     # The first byte is the size of the pieces in which a request arrives.
     pieces = (b"\xff", b"\x00", b"\x03")
     write("http", {name: pieces[i % 3] + text.encode("latin-1") for i, (name, text) in enumerate(REQUESTS.items())})
+    write("access", access())
     write("state_files", state_files())
     write("scene", {name: text.encode() for name, text in SCENES.items()})
 

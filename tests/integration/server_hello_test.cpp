@@ -36,9 +36,9 @@ TEST_F(HelloDeadline, ASessionThatSaidHelloStays) {
 class BeforeHello : public WaveServerTest {
  protected:
   void adjust(service::WaterServerOptions& options) const override {
-    auto access = service::Access::parse("operator token-of-some-operator\n", "tokens", std::nullopt);
+    auto access = access::Access::parse("operator token-of-some-operator\n", "tokens", std::nullopt);
     ASSERT_TRUE(access);
-    options.access = *access;
+    options.access.access = *access;
   }
 };
 

@@ -29,9 +29,9 @@ class People : public ServerTest {
     std::strftime(until, sizeof until, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&at));
     const std::string tokens = std::string("operator ") + kOperator + "\nplayer " + kPlayer + "\nplayer " + kBrief +
                                " until=" + until + "\nplayer expired-expired-1 until=2020-01-01T00:00:00Z\n";
-    auto access = service::Access::parse(tokens, "tokens", guests());
+    auto access = access::Access::parse(tokens, "tokens", guests());
     ASSERT_TRUE(access) << access.error().message;
-    options.access = *std::move(access);
+    options.access.access = *std::move(access);
     options.rules.grace = grace();
   }
   virtual std::optional<core::Role> guests() const { return core::Role::kViewer; }

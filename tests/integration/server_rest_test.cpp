@@ -70,10 +70,10 @@ class Rest : public ServerTest {
 
 class RestByRole : public Rest {
   void adjust(service::WaterServerOptions& options) const override {
-    auto access = service::Access::parse(std::string("operator ") + kOperator + "\nplayer " + kPlayer, "tokens",
-                                         core::Role::kViewer);
+    auto access = access::Access::parse(std::string("operator ") + kOperator + "\nplayer " + kPlayer, "tokens",
+                                        core::Role::kViewer);
     ASSERT_TRUE(access);
-    options.access = *std::move(access);
+    options.access.access = *std::move(access);
   }
 };
 

@@ -87,10 +87,10 @@ class StormOfEveryRole : public Storm {
   static constexpr const char* kOperator = "token-of-some-operator";
 
   void adjust(service::WaterServerOptions& options) const override {
-    auto access = service::Access::parse(
-        fmt::format("viewer {}\nplayer {}\noperator {}\n", kViewer, kPlayer, kOperator), "tokens", core::Role::kViewer);
+    auto access = access::Access::parse(fmt::format("viewer {}\nplayer {}\noperator {}\n", kViewer, kPlayer, kOperator),
+                                        "tokens", core::Role::kViewer);
     ASSERT_TRUE(access) << access.error().message;
-    options.access = *access;
+    options.access.access = *access;
   }
 };
 

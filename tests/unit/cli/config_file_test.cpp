@@ -45,7 +45,8 @@ TEST_F(ConfigFile, ErrorsNamePlaceFieldValueAndBound) {
             "serve.textproto:2:9: grace_s: Value 3601 not in range 0.000000 to 3600.000000");
   EXPECT_EQ(refused("grace_s: nan"), "serve.textproto:1:1: grace_s: Value nan is no number");
   EXPECT_EQ(refused("guests: \"king\""), "serve.textproto:1:1: guests: king not in {none,viewer,player,operator}");
-  EXPECT_EQ(refused("tokens_file: \"\""), "serve.textproto:1:1: tokens_file: Value is empty; name a file");
+  EXPECT_EQ(refused("tokens_file: \"\""),
+            "serve.textproto:1:1: tokens_file: Value is empty; leave the option out instead");
   EXPECT_EQ(refused("threads: 2 log_level: \"loud\""),
             "serve.textproto:1:12: log_level: loud not in {trace,debug,info,warning,error,off}");
 }

@@ -15,7 +15,8 @@ namespace spindrift::cluster {
 struct EdgeOptions {
   NodeOptions node;
   net::ServerOptions network;
-  service::SessionRules sessions;
+  service::AccessOptions access;
+  service::SessionRules sessions{};
 };
 
 class EdgeServer final : public net::Application {
@@ -28,6 +29,7 @@ class EdgeServer final : public net::Application {
 
   /// Closes the sessions with 1001. Idempotent.
   void stop();
+  [[nodiscard]] service::AccessControl& access() { return access_; }
   [[nodiscard]] std::uint16_t port() const { return network_->port(); }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
 
@@ -43,9 +45,11 @@ class EdgeServer final : public net::Application {
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
  private:
-  explicit EdgeServer(service::SessionRules rules) : sessions_(std::move(rules), counters_) {}
+  EdgeServer(service::AccessOptions access, const service::SessionRules& rules)
+      : access_(std::move(access)), sessions_(rules, access_, counters_) {}
 
   service::CommandCounters counters_;
+  service::AccessControl access_;
   service::Sessions sessions_;
   std::unique_ptr<net::Server> network_;
   std::atomic<net::Server*> started_{nullptr};

@@ -36,9 +36,14 @@ class Node : public service::Cluster {
   [[nodiscard]] virtual service::ClusterHooks hooks() = 0;
 
   using Answer = std::function<void(const net::HttpRequest&, net::HttpResponder)>;
-  /// Starts the work. `sessions` outlives the node; `simulation` and `answer` (requests of this server) are null for an
-  /// edge.
-  virtual void serve(service::Sessions& sessions, rooms::SimulationThread* simulation, Answer answer) = 0;
+  /// What a server has and an edge has not.
+  struct ServerParts {
+    rooms::SimulationThread* simulation = nullptr;
+    rooms::RoomOutlets* outlets = nullptr;  ///< of the rooms
+    Answer answer{};                        ///< to requests
+  };
+  /// Starts the work. `sessions` and the parts outlive the node.
+  virtual void serve(service::Sessions& sessions, const ServerParts& server) = 0;
   /// Whether sessions can be served: NATS is connected and, for an edge, a server is alive. One line says why not.
   [[nodiscard]] virtual core::Result<void> ready() const = 0;
   /// Takes no rooms any more. The rooms go on.

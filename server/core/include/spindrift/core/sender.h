@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace spindrift::core {
@@ -18,6 +20,14 @@ std::optional<Role> parseRole(std::string_view name);
 /// Identifies one connection for the life of the process; never 0, never reused.
 using SessionId = std::uint64_t;
 
+/// Who sent a command, in words: for the audit log.
+struct SenderDetails {
+  std::string room{};
+  std::string subject{};  ///< whom the token names; empty: a guest
+  std::string name{};     ///< what the client calls itself; empty for requests
+  std::string peer{};     ///< address and port
+};
+
 /// The sender of a command: a session or an HTTP request. Exactly one id is not 0, unless the room itself is the
 /// sender.
 struct Sender {
@@ -25,6 +35,7 @@ struct Sender {
   std::uint64_t request_id = 0;
   std::uint32_t person_id = 0;  ///< the session's person in its room; 0: none
   Role role = Role::kOperator;
+  std::shared_ptr<const SenderDetails> details{};  ///< null: the room itself
 };
 
 }  // namespace spindrift::core

@@ -84,6 +84,7 @@ struct HttpRequest {
   core::ByteView body;          ///< at most ServerOptions::request_body_max_bytes; valid during the call
   std::string authorization{};  ///< the Authorization header, unparsed
   std::string content_type{};   ///< the Content-Type header, unparsed
+  std::string peer{};           ///< address and port of the client
 };
 
 /// Answers one request; nullopt = 404. Call it at most once, from any thread; if every copy is dropped without a call,

@@ -43,6 +43,7 @@ struct RoomSetup {
   v1::Scene scene{};
   /// Goes on where the room is kept on disk; `scene` is for a room of which nothing is there, and may then be empty.
   bool goes_on = false;
+  v1::RoomAccess access{};  ///< digests of its tokens: kept with the room, not looked at
 };
 
 /// Settings shared by all rooms of a server. Outlives the rooms.
@@ -91,10 +92,12 @@ class Room {
   /// written.
   static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
                                                     const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
-                                                    RoomPlace place = {});
+                                                    RoomPlace place = {}, v1::RoomAccess access = {});
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// Digests of the tokens that were made for this room; never changes.
+  [[nodiscard]] const v1::RoomAccess& access() const { return access_; }
   [[nodiscard]] std::shared_ptr<const RoomSnapshot> snapshot() const;
   [[nodiscard]] std::shared_ptr<const RoomVitals> vitals() const;
   /// The people in the room.
@@ -310,6 +313,7 @@ class Room {
   void record(v1::Record record);
 
   const std::string name_;
+  v1::RoomAccess access_;  ///< set by create() only
   const RoomRules& rules_;
   WaterBuilder& builder_;
   RoomOutlets& outlets_;

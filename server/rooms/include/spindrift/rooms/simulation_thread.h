@@ -70,6 +70,7 @@ class SimulationThread {
   struct Opening {
     std::string name;
     RoomPlace place;
+    v1::RoomAccess access;
     std::future<WaterBuilder::Built> water;
     Done done;
   };
@@ -82,7 +83,7 @@ class SimulationThread {
   void open(RoomSetup setup, Done done);
   /// Finishes the openings whose water is built.
   void finishOpenings();
-  core::Result<void> add(std::string name, WaterBuilder::Built water, RoomPlace place);
+  core::Result<void> add(std::string name, WaterBuilder::Built water, RoomPlace place, v1::RoomAccess access);
   /// Builds a room where it was kept on disk, or else as `setup` says; without a setup only where it was kept.
   core::Result<void> buildRoom(const std::string& name, std::optional<RoomSetup> setup);
   core::Result<RoomPlace> placeOf(const std::string& name) const;

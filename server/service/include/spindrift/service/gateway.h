@@ -20,7 +20,8 @@ namespace spindrift::service {
 class Gateway final : public net::Application, public rooms::RoomOutlets, public rooms::FrameOutlet {
  public:
   /// `sources` outlives the gateway.
-  Gateway(SessionRules rules, const MetricsSources& sources);
+  Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources);
+  [[nodiscard]] AccessControl& access() { return access_; }
   /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
   /// network calls the gateway, though their threads may have ended.
   void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
@@ -76,6 +77,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   rooms::EncoderThread* encoder_ = nullptr;   ///< set before any session exists
   ClusterHooks cluster_;                      ///< set before any session exists
   CommandCounters counters_;
+  AccessControl access_;
   Sessions sessions_;
   RestApi rest_;
 };

@@ -9,6 +9,7 @@
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
 #include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/service/access_control.h>
 #include <spindrift/v1/wire.pb.h>
 
 namespace spindrift::service {
@@ -42,6 +43,6 @@ std::string metric(const char* name, const char* type, const char* help, double 
 
 /// Returns the whole page. Times in seconds, sizes in bytes; names of counters end in _total.
 std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
-                        const MetricsSources& sources);
+                        const AccessControl& access, const MetricsSources& sources);
 
 }  // namespace spindrift::service

@@ -12,7 +12,7 @@
 
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/simulation_thread.h>
-#include <spindrift/service/access.h>
+#include <spindrift/service/access_control.h>
 #include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/ground_answers.h>
 #include <spindrift/service/metrics.h>
@@ -27,7 +27,7 @@ unsigned httpStatusOf(v1::RejectReason reason);
 class RestApi {
  public:
   /// All references must outlive it. `dismiss` closes a room's sessions before the room closes.
-  RestApi(const Access& access, CommandCounters& counters, const MetricsSources& sources,
+  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
           std::function<void(const rooms::Room&)> dismiss);
 
   /// Sets the rooms; call it before the network starts.
@@ -46,7 +46,13 @@ class RestApi {
   struct Call {
     const net::HttpRequest& request;
     std::vector<std::string> path;  ///< after /api/v1/: {"rooms", "main", "commands"}
-    core::Role role = core::Role::kViewer;
+    access::Grant grant;
+
+    [[nodiscard]] bool isOperator() const { return grant.role >= core::Role::kOperator; }
+    /// For the audit log.
+    [[nodiscard]] core::SenderDetails details(const std::string& room) const {
+      return {.room = room, .subject = grant.subject, .name = "", .peer = request.peer};
+    }
   };
 
   void rooms(const Call& call, net::HttpResponder respond);
@@ -57,9 +63,10 @@ class RestApi {
   void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
+  [[nodiscard]] std::vector<RoomTokens> roomTokens() const;
   net::HttpResponder takePending(std::uint64_t request_id);
 
-  const Access& access_;
+  AccessControl& access_;
   CommandCounters& counters_;
   const MetricsSources& sources_;
   const std::function<void(const rooms::Room&)> dismiss_;

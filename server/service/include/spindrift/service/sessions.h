@@ -11,14 +11,13 @@
 
 #include <spindrift/core/token_bucket.h>
 #include <spindrift/net/server.h>
-#include <spindrift/service/access.h>
+#include <spindrift/service/access_control.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/service/venue.h>
 
 namespace spindrift::service {
 
 struct SessionRules {
-  Access access;
   std::size_t message_max_bytes = 16 * 1024;  ///< same value as in the network; sent in greetings
   double messages_per_s = 500.0;              ///< same
   double message_burst_count = 1000.0;        ///< same
@@ -30,11 +29,11 @@ struct SessionRules {
 /// Thread-safe. Messages of one session are handled one at a time, in their order.
 class Sessions {
  public:
-  /// `counters` outlives it.
-  Sessions(SessionRules rules, CommandCounters& counters) : rules_(std::move(rules)), counters_(counters) {}
+  /// `access` and `counters` outlive it.
+  Sessions(const SessionRules& rules, AccessControl& access, CommandCounters& counters)
+      : rules_(rules), access_(access), counters_(counters) {}
   /// Call it before the first session.
   void serve(net::Hub& hub) { hub_ = &hub; }
-  [[nodiscard]] const SessionRules& rules() const { return rules_; }
   [[nodiscard]] net::Hub& hub() const { return *hub_; }
 
   // From the network.
@@ -51,9 +50,9 @@ class Sessions {
   void readmitted(net::SessionId session, const rooms::Admission& admission);
   /// Closes all sessions of a room that is about to close.
   void dismiss(const std::string& room);
-  /// Sends the answer to the session that sent the command; counts are the caller's.
+  /// Sends the answer to the session that sent the command; counts and the audit log are the caller's.
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
-  /// The same; counts the rejection.
+  /// The same; counts the rejection, and enters it into the audit log.
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
   /// Another connection goes on in the session's place.
   void displace(net::SessionId session);
@@ -76,6 +75,9 @@ class Sessions {
     core::Role role = core::Role::kViewer;
     std::uint32_t person_id = 0;
     std::string resume_key{};
+    std::string peer{};
+    std::string person{};  ///< whose budget commands take; empty: only the session's own
+    std::shared_ptr<const core::SenderDetails> details{};  ///< once it has said hello
   };
 
   /// Sends a greeting with the room's present state and stores that state. Does nothing while the room cannot be
@@ -94,6 +96,7 @@ class Sessions {
   bool takeCommand(net::SessionId session);
 
   const SessionRules rules_;
+  AccessControl& access_;
   CommandCounters& counters_;
   net::Hub* hub_ = nullptr;  ///< set before any session exists
   std::mutex mutex_;

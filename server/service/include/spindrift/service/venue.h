@@ -19,6 +19,7 @@ struct VenueView {
   std::shared_ptr<const rooms::RoomSnapshot> room;
   std::string device;               ///< one line: the device of the simulation
   std::vector<std::string> scenes;  ///< names that ChangeScene accepts
+  v1::RoomAccess room_access;       ///< digests of tokens that were made for the room
   std::chrono::milliseconds grace{};
   double clock_offset_s = 0.0;  ///< add it to this process's monotonic clock to get that of the simulation
 };

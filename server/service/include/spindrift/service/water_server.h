@@ -21,8 +21,8 @@ struct WaterServerOptions {
   std::vector<rooms::RoomSetup> rooms;  ///< the first is the default room; none only in a cluster
   rooms::RoomRules rules;               ///< settings that the rooms share
   std::size_t max_room_count = 8;
-  Access access;
-  ClusterHooks cluster{};                            ///< what they point to outlives stop()
+  ClusterHooks cluster{};  ///< what they point to outlives stop()
+  AccessOptions access;
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
 };
 
@@ -36,6 +36,9 @@ class WaterServer {
 
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
+
+  /// Replaces tokens and keys; sessions that are open keep what they have.
+  void replaceAccess(access::Access access) { gateway_->access().replace(std::move(access)); }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string deviceLine() const { return simulation_->deviceLine(); }

@@ -25,17 +25,17 @@ inline constexpr std::uint32_t kRectangleMinor = 1;
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.
 inline constexpr std::size_t kPersonNameMaxBytes = 32;
-/// Maximum length of tokens and resume keys; the rest is ignored.
-inline constexpr std::size_t kSecretMaxBytes = 256;
+/// Hello.resume_key is cut to this length.
+inline constexpr std::size_t kResumeKeyMaxBytes = 256;
 
 struct Hello {
   std::uint32_t major = 0;
   std::uint32_t minor = 0;
   std::string client;           ///< at most kClientNameMaxBytes of cleaned UTF-8 (see text.h); may be empty
-  std::string token{};          ///< at most kSecretMaxBytes of arbitrary bytes; empty: a client without a token
+  std::string token{};          ///< arbitrary bytes, as long as the message allows; empty: a client without a token
   std::string name{};           ///< at most kPersonNameMaxBytes, likewise; empty if it had no visible characters
   std::uint32_t color_rgb = 0;  ///< 24 bits; 0: the server chooses
-  std::string resume_key{};     ///< as token
+  std::string resume_key{};     ///< at most kResumeKeyMaxBytes of arbitrary bytes
 };
 
 struct Subscribe {

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
-#include <spindrift/service/access.h>
+#include <spindrift/access/access.h>
 
-namespace spindrift::service {
+namespace spindrift::access {
 namespace {
 
 using core::Role;
@@ -74,6 +74,51 @@ TEST(Access, BadLinesAreReportedWithoutTheirToken) {
   EXPECT_THAT(refusal("operator secretsecretsecret\nviewer secretsecretsecret"), HasSubstr("earlier line"));
 }
 
+TEST(Access, ALineCanNameRoomsAPersonAndAnEnd) {
+  const Access access = parsed(
+      "operator aaaaaaaaaaaaaaaa room=lab,tank until=2026-11-22T00:00:00Z sub=ada\nplayer bbbbbbbbbbbbbbbb # the "
+      "class");
+  const auto grant = access.resolve("aaaaaaaaaaaaaaaa", "tank", kNow);
+  ASSERT_TRUE(grant) << grant.error().message;
+  EXPECT_EQ(grant->subject, "ada");
+  EXPECT_TRUE(grant->is_person);
+  EXPECT_TRUE(grant->expires);
+  const auto elsewhere = access.resolve("aaaaaaaaaaaaaaaa", "main", kNow);
+  ASSERT_FALSE(elsewhere);
+  EXPECT_THAT(elsewhere.error().message, HasSubstr("not for room 'main'"));
+  const auto shared = access.resolve("bbbbbbbbbbbbbbbb", "main", kNow);
+  ASSERT_TRUE(shared);
+  EXPECT_EQ(shared->subject, "tokens:2") << "the audit log can name the line";
+  EXPECT_FALSE(shared->is_person) << "several people may use it";
+}
+
+TEST(Access, BadOptionsOfALineAreReportedWithoutTheirText) {
+  const auto with = [](const std::string& options) { return refusal("operator aaaaaaaaaaaaaaaa " + options); };
+  for (const char* options : {"room=", "room=a,,b", "room=a,", "room=a room=b", "sub=", "sub=a sub=b",
+                              "until=2026-11-22T00:00:00Z until=2026-11-22T00:00:00Z"}) {
+    EXPECT_THAT(with(options), HasSubstr("tokens:1:")) << options;
+  }
+  EXPECT_THAT(with("room=" + std::string(33, 'a')), HasSubstr("1 to 32"));
+  EXPECT_THAT(with("secret"), Not(HasSubstr("secret")));
+}
+
+TEST(Access, TokensOverTheLimitAreRefused) {
+  const Access access = parsed("player aaaaaaaaaaaaaaaa");
+  const auto grant = access.resolve(std::string(kTokenMaxBytes + 1, 'a'), kNow);
+  ASSERT_FALSE(grant);
+  EXPECT_THAT(grant.error().message, HasSubstr("8192"));
+  EXPECT_THAT(refusal("player " + std::string(kTokenMaxBytes + 1, 'a')), HasSubstr("at most 8192"));
+}
+
+TEST(LiveAccess, CanBeReplacedWhileItIsUsed) {
+  LiveAccess live(parsed("player aaaaaaaaaaaaaaaa"));
+  const auto before = live.get();
+  live.set(parsed("player bbbbbbbbbbbbbbbb"));
+  EXPECT_TRUE(before->resolve("aaaaaaaaaaaaaaaa", kNow));
+  EXPECT_FALSE(live.get()->resolve("aaaaaaaaaaaaaaaa", kNow));
+  EXPECT_TRUE(live.get()->resolve("bbbbbbbbbbbbbbbb", kNow));
+}
+
 TEST(Access, ReadsABearerHeader) {
   EXPECT_EQ(*Access::bearerToken(""), "");
   EXPECT_EQ(*Access::bearerToken("Bearer abc"), "abc");
@@ -82,4 +127,4 @@ TEST(Access, ReadsABearerHeader) {
 }
 
 }  // namespace
-}  // namespace spindrift::service
+}  // namespace spindrift::access

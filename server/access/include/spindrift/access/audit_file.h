@@ -1,0 +1,61 @@
+// A file that lines are appended to by a thread of its own, so that a slow disk delays nobody.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <spindrift/core/result.h>
+
+namespace spindrift::access {
+
+/// Any thread. What cannot be written is counted and never repeated; the server goes on without it.
+class AuditFile {
+ public:
+  /// Lines that wait for the disk; further ones are lost.
+  static constexpr std::size_t kWaitingMaxCount = 4096;
+
+  /// Opens the file for appending, or creates it with mode 0600. Error kUnavailable names it and the reason.
+  static core::Result<std::unique_ptr<AuditFile>> open(std::filesystem::path file);
+  /// Writes what still waits.
+  ~AuditFile();
+  AuditFile(const AuditFile&) = delete;
+  AuditFile& operator=(const AuditFile&) = delete;
+
+  /// Adds a line, which ends with its line break. Never blocks for the disk.
+  void add(std::string line);
+  /// Closes the file after the lines that were added before, and opens (or creates) the one of this name: for programs
+  /// that rename logs. If that fails, the old one stays in use and the log of the program says so.
+  void reopen();
+
+  [[nodiscard]] std::uint64_t writtenCount() const;
+  [[nodiscard]] std::uint64_t lostCount() const;
+
+ private:
+  AuditFile(std::filesystem::path file, int descriptor);
+  void run();
+  /// Writes a line as a whole or not at all.
+  bool write(const std::string& line);
+  void noteFailure(int error_number);
+
+  const std::filesystem::path file_;
+  int descriptor_;  ///< used by the thread only
+  std::chrono::steady_clock::time_point complained_{};
+  bool has_complained_ = false;
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::string> lines_;  ///< an empty one asks for reopening
+  std::uint64_t written_count_ = 0;
+  std::uint64_t lost_count_ = 0;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace spindrift::access

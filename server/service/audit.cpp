@@ -1,0 +1,119 @@
+#include <cctype>
+
+#include <spindrift/service/audit.h>
+#include <spindrift/wire/api_message.h>
+
+namespace spindrift::service {
+namespace {
+
+/// Lines that anybody can cause: with 300 bytes each at most 26 MB a day.
+constexpr double kRareLinesPerSecond = 1.0;
+constexpr double kRareBurstCount = 60.0;
+
+/// The field of Command that is set; null if none is.
+const google::protobuf::FieldDescriptor* actionOf(const v1::Command& command) {
+  return command.GetReflection()->GetOneofFieldDescriptor(command,
+                                                          v1::Command::descriptor()->FindOneofByName("action"));
+}
+
+/// "REJECT_REASON_OUT_OF_RANGE" -> "out_of_range", as the metrics name it.
+std::string nameOf(v1::RejectReason reason) {
+  std::string out = v1::RejectReason_Name(reason).substr(sizeof("REJECT_REASON"));
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+bool isOperatorsCommand(const v1::Command& command) {
+  return rooms::traitsOf(command).role >= core::Role::kOperator;
+}
+
+/// Players may do the same with their own boats; of an operator it may be anybody's.
+bool concernsBoatsOfOthers(const v1::Command& command) {
+  return command.has_take_boat() || command.has_remove_boat();
+}
+
+}  // namespace
+
+Audit::Audit(std::shared_ptr<access::AuditFile> file)
+    : file_(std::move(file)), rare_(kRareLinesPerSecond, kRareBurstCount, std::chrono::steady_clock::now()) {}
+
+void Audit::applied(const rooms::Command& command, std::uint64_t tick) {
+  if (!file_) return;
+  this->command(command, {.event = "command", .outcome = "applied", .tick = tick, .has_tick = true});
+}
+
+void Audit::rejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
+  if (!file_) return;
+  this->command(
+      command,
+      {.event = "command", .outcome = "rejected", .reason = nameOf(rejection.reason), .message = rejection.message});
+}
+
+void Audit::command(const rooms::Command& command, access::AuditEvent event) {
+  const core::Sender& sender = command.sender;
+  const google::protobuf::FieldDescriptor* const action = actionOf(command.message);
+  if (!sender.details || !action) return;  // the room's own
+  const bool is_operator = sender.role >= core::Role::kOperator;
+  if (!isOperatorsCommand(command.message) && !(is_operator && concernsBoatsOfOthers(command.message))) return;
+  event.room = sender.details->room;
+  event.kind = action->name();
+  event.content = wire::toJson(command.message.GetReflection()->GetMessage(command.message, action));
+  event.role = core::roleName(sender.role);
+  event.subject = sender.details->subject;
+  event.name = sender.details->name;
+  event.person_id = sender.person_id;
+  event.session_id = sender.session_id;
+  event.peer = sender.details->peer;
+  // A flood of operators' commands ends here as BUSY.
+  const bool anybody_can = !is_operator || event.reason == nameOf(v1::REJECT_REASON_BUSY);
+  if (anybody_can)
+    writeRarely(std::move(event));
+  else
+    write(event);
+}
+
+void Audit::request(std::string_view event, const core::SenderDetails& who, core::Role role, std::string content,
+                    const std::string& error) {
+  if (!file_) return;
+  access::AuditEvent line{.event = event,
+                          .room = who.room,
+                          .content = std::move(content),
+                          .outcome = error.empty() ? "applied" : "rejected",
+                          .message = error,
+                          .role = core::roleName(role),
+                          .subject = who.subject,
+                          .peer = who.peer};
+  if (role >= core::Role::kOperator)
+    write(line);
+  else
+    writeRarely(std::move(line));
+}
+
+void Audit::refused(const core::SenderDetails& who, const std::string& why) {
+  if (!file_) return;
+  writeRarely({.event = "refused",
+               .room = who.room,
+               .message = why,
+               .subject = who.subject,
+               .name = who.name,
+               .peer = who.peer});
+}
+
+void Audit::write(const access::AuditEvent& event) {
+  file_->add(access::auditLine(event, std::chrono::system_clock::now()));
+}
+
+void Audit::writeRarely(access::AuditEvent event) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!rare_.take(std::chrono::steady_clock::now())) {
+      ++left_out_count_;
+      ++left_out_since_;
+      return;
+    }
+    event.left_out_count = std::exchange(left_out_since_, 0);
+  }
+  write(event);
+}
+
+}  // namespace spindrift::service
