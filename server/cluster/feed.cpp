@@ -199,13 +199,13 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
     }
     case v1::ToRoom::kCommand: {
       v1::RoomCommand& sent = *message.mutable_command();
-      const rooms::Command command{
-          .sender = {.session_id = sessionOf(link.prefix, sent.session()),
-                     .person_id = sent.person_id(),
-                     .role = roleOf(sent.role()),
-                     .details = std::make_shared<const core::SenderDetails>(core::SenderDetails{
-                         .room = name, .subject = sent.subject(), .name = sent.name(), .peer = sent.peer()})},
-          .message = std::move(*sent.mutable_command())};
+      rooms::Command command;
+      command.sender.session_id = sessionOf(link.prefix, sent.session());
+      command.sender.person_id = sent.person_id();
+      command.sender.role = roleOf(sent.role());
+      command.sender.details = std::make_shared<const core::SenderDetails>(
+          core::SenderDetails{.room = name, .subject = sent.subject(), .name = sent.name(), .peer = sent.peer()});
+      command.message = std::move(*sent.mutable_command());
       const std::shared_ptr<rooms::Room> target = room.room;
       lock.unlock();
       if (const auto rejection = target->admit(command)) events_.rejected(command, *rejection);
