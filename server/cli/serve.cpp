@@ -175,6 +175,7 @@ int serve(ServeOptions options) {
   server_options.network.port = options.port;
   if (*inherited) server_options.network.listening_socket = (*inherited)->descriptor;
   server_options.network.thread_count = options.thread_count;
+  server_options.network.trusted_proxies = options.trusted_proxies;
   server_options.network.address_session_share = options.address_session_share;
   server_options.network.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;
   const bool has_page = !server_options.network.web_root.empty();

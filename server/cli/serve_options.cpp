@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <spindrift/net/network_text.h>
+
 #include "commands.h"
 #include "config_file.h"
 
@@ -24,6 +26,14 @@ CLI::Validator isNumber() {
 /// An empty name would mean "no tokens": every client an operator.
 CLI::Validator isNotEmpty() {
   return {[](std::string& text) { return text.empty() ? std::string("Value is empty; name a file") : std::string(); },
+          ""};
+}
+
+CLI::Validator isNetwork() {
+  return {[](std::string& text) {
+            const auto checked = net::checkNetwork(text);
+            return checked ? std::string() : "Value " + checked.error().message;
+          },
           ""};
 }
 
@@ -56,8 +66,12 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
   command.add_option("--threads", options.thread_count, "I/O threads")->check(CLI::Range(1, 64))->capture_default_str();
 
   command
+      .add_option("--trust-proxy", options.trusted_proxies,
+                  "Network of a proxy, ADDRESS/BITS: what its X-Forwarded-For names is the client; may be repeated")
+      ->check(isNetwork());
+  command
       .add_option("--address-share", options.address_session_share,
-                  "Share of the sessions that one address may use; 1 behind a proxy")
+                  "Share of the sessions that one address may use; 1 behind a proxy that is not trusted")
       ->check(isNumber())
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

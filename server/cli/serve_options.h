@@ -25,7 +25,8 @@ struct ServeOptions {
   std::string web_root;       ///< empty: searched beside the program
   std::string shader_folder;  ///< empty: the embedded shaders
   std::size_t thread_count = 1;
-  double address_session_share = 0.5;  ///< share of the sessions that one address may hold
+  std::vector<std::string> trusted_proxies;  ///< networks, ADDRESS/BITS
+  double address_session_share = 0.5;        ///< share of the sessions that one address may hold
   std::size_t max_room_count = 8;
   std::string token_file;            ///< empty: `tokens`
   std::string tokens;                ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.

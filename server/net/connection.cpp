@@ -4,10 +4,10 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/ip/network_v6.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http.hpp>
@@ -48,20 +48,15 @@ void tune(asio::ip::tcp::socket& socket) {
   socket.set_option(UnsentLowWater(kUnsentLowWaterBytes), ignored);
 }
 
-/// Returns the key for address limits: the address, or for IPv6 its /64 network.
-std::string addressOf(const asio::ip::tcp::socket& socket) {
-  constexpr unsigned kNetworkBits = 64;
-  boost::system::error_code error;
-  const auto address = socket.remote_endpoint(error).address();
-  if (error) return "";
-  if (!address.is_v6() || address.to_v6().is_v4_mapped()) return address.to_string();
-  return asio::ip::network_v6(address.to_v6(), kNetworkBits).canonical().to_string();
-}
-
-std::string peerName(const asio::ip::tcp::socket& socket) {
+/// Returns 0.0.0.0 and port 0 for a peer that has left already.
+asio::ip::tcp::endpoint peerOf(const asio::ip::tcp::socket& socket) {
   boost::system::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
-  return error ? "a peer that left" : endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
+  return error ? asio::ip::tcp::endpoint() : asio::ip::tcp::endpoint(unmapped(endpoint.address()), endpoint.port());
+}
+
+std::string nameOf(const asio::ip::tcp::endpoint& peer) {
+  return peer.address().to_string() + ":" + std::to_string(peer.port());
 }
 
 template <typename Fields>
@@ -83,8 +78,10 @@ Connection::Connection(std::uint64_t id, asio::ip::tcp::socket socket, ServerCon
     : id_(id),
       context_(context),
       strand_(socket.get_executor()),
-      peer_(peerName(socket)),
-      address_(addressOf(socket)),
+      endpoint_(peerOf(socket)),
+      is_by_proxy_(context.proxies.contains(endpoint_.address())),
+      peer_(nameOf(endpoint_)),
+      address_(limitKey(endpoint_.address())),
       stream_(std::move(socket)),
       buffer_(kReadBufferMaxBytes) {
   tune(stream_.socket());
@@ -132,6 +129,7 @@ asio::awaitable<void> Connection::run() {
     stream_.expires_after(context_.options.handshake_timeout);
     auto [error, bytes_count] = co_await http::async_read_header(stream_, buffer_, parser, kToken);
     auto refusal = error ? std::nullopt : refuseHead(parser);
+    if (!error && !refusal) refusal = identify(parser.get());
     if (!error && !refusal) {
       std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
     }
@@ -168,6 +166,7 @@ asio::awaitable<void> Connection::run() {
       question.body = bodyOf(request);
       question.authorization = std::string(request[http::field::authorization]);
       question.content_type = std::string(request[http::field::content_type]);
+      question.client = peer_;
       std::optional<Reply> answer = co_await ask(question);
       if (!answer) break;
       reply = *std::move(answer);
@@ -201,6 +200,26 @@ bool Connection::isPreflight(const UpgradeRequest& request) const {
   return request.method() == http::verb::options && request.count(http::field::access_control_request_method) > 0 &&
          isApiTarget({target.data(), target.size()}) &&
          isOriginListed({origin.data(), origin.size()}, context_.options.allowed_origins);
+}
+
+std::optional<Reply> Connection::identify(const UpgradeRequest& request) {
+  if (!is_by_proxy_) return std::nullopt;
+  // A proxy may send the requests of several clients through one connection.
+  peer_ = nameOf(endpoint_);
+  address_ = limitKey(endpoint_.address());
+  std::vector<std::string_view> lines;
+  const auto [first, end] = request.equal_range("X-Forwarded-For");
+  for (auto line = first; line != end; ++line) lines.emplace_back(line->value().data(), line->value().size());
+  const auto client = forwardedClient(lines, context_.proxies);
+  if (!client) {
+    spdlog::debug("{}: {}", peer_, client.error().message);
+    return textReply(400, client.error().message);
+  }
+  if (*client) {
+    peer_ = (*client)->to_string() + " by " + nameOf(endpoint_);
+    address_ = limitKey(**client);
+  }
+  return std::nullopt;
 }
 
 std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {

@@ -38,6 +38,9 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   Reply fitted(const UpgradeRequest& request, Reply reply) const;
   /// Returns whether this is a CORS preflight of an allowed Origin for the REST interface.
   bool isPreflight(const UpgradeRequest& request) const;
+  /// Sets peer_ and address_ for this request, whose client a trusted proxy may name; returns the refusal of a
+  /// malformed X-Forwarded-For.
+  std::optional<Reply> identify(const UpgradeRequest& request);
   /// Returns a refusal for a request over its address's rate or from a foreign page, upgrade or not; else nullopt.
   std::optional<Reply> refuseAny(const UpgradeRequest& request);
   /// Returns false if the connection is gone.
@@ -48,8 +51,10 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   const std::uint64_t id_;
   ServerContext& context_;
   const boost::asio::any_io_executor strand_;
-  const std::string peer_;     ///< address and port, for the log
-  const std::string address_;  ///< key of this peer in AddressLimits
+  const boost::asio::ip::tcp::endpoint endpoint_;  ///< of the TCP peer
+  const bool is_by_proxy_;                         ///< the TCP peer is a trusted proxy
+  std::string peer_;                               ///< client of the present request, for the log
+  std::string address_;                            ///< its key in AddressLimits
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_;
   std::shared_ptr<Session> session_;  ///< owns the stream after the upgrade

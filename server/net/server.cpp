@@ -33,8 +33,10 @@ constexpr std::chrono::seconds kStopGrace{1};
 
 class ServerImpl final : public Server {
  public:
-  ServerImpl(const ServerOptions& options, Application& application)
-      : context_(options, application), accept_strand_(asio::make_strand(io_)), acceptor_(accept_strand_) {}
+  ServerImpl(const ServerOptions& options, TrustedNetworks proxies, Application& application)
+      : context_(options, std::move(proxies), application),
+        accept_strand_(asio::make_strand(io_)),
+        acceptor_(accept_strand_) {}
   ServerImpl(const ServerImpl&) = delete;
   ServerImpl& operator=(const ServerImpl&) = delete;
   // stop() throws only without memory, or for a thread that does not exist.
@@ -208,7 +210,9 @@ void ServerImpl::stop() {
 }  // namespace
 
 core::Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Application& application) {
-  auto server = std::make_unique<ServerImpl>(options, application);
+  auto proxies = TrustedNetworks::parse(options.trusted_proxies);
+  if (!proxies) return core::Error{proxies.error().code, "--trust-proxy " + proxies.error().message};
+  auto server = std::make_unique<ServerImpl>(options, *std::move(proxies), application);
   const core::Result<void> listening = server->listen();
   if (!listening) return listening.error();
   server->run();

@@ -13,6 +13,7 @@
 #include "connection_set.h"
 #include "room_hub.h"
 #include "static_files.h"
+#include "trusted_networks.h"
 
 namespace spindrift::net {
 
@@ -62,8 +63,9 @@ inline bool isLoopback(std::string_view address) {
 }
 
 struct ServerContext {
-  ServerContext(const ServerOptions& chosen, Application& served)
+  ServerContext(const ServerOptions& chosen, TrustedNetworks trusted, Application& served)
       : options(chosen),
+        proxies(std::move(trusted)),
         application(served),
         files(chosen.web_root),
         connections(chosen.max_session_count + kSpareConnectionCount),
@@ -71,6 +73,7 @@ struct ServerContext {
         listens_on_loopback(isLoopback(chosen.address)) {}
 
   const ServerOptions options;
+  const TrustedNetworks proxies;
   Application& application;
   RoomHub hub;
   StaticFiles files;

@@ -151,7 +151,7 @@ TEST_F(ConfigFile, TheExampleOfTheDocumentsIsACompleteConfiguration) {
     const std::string field = cli::fieldName(*entry.option);
     EXPECT_NE(entry.source == cli::OptionSource::kFile, field == "web_root" || field == "shader_dir") << field;
   }
-  EXPECT_EQ(line.sources->at("threads").place, "file, line 13") << "as the text says below";
+  EXPECT_EQ(line.sources->at("threads").place, "file, line 14") << "as the text says below";
 }
 
 TEST_F(ConfigFile, PrintedTextReadAgainIsTheSameConfiguration) {

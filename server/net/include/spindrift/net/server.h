@@ -84,6 +84,7 @@ struct HttpRequest {
   core::ByteView body;          ///< at most ServerOptions::request_body_max_bytes; valid during the call
   std::string authorization{};  ///< the Authorization header, unparsed
   std::string content_type{};   ///< the Content-Type header, unparsed
+  std::string client{};         ///< for logs: the client's address, and the proxy if a trusted one passed it on
 };
 
 /// Answers one request; nullopt = 404. Call it at most once, from any thread; if every copy is dropped without a call,
@@ -177,8 +178,8 @@ struct ServerOptions {
   std::string web_root{};  ///< folder of the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
-  /// Share of max_session_count that one address may use (IPv6: one /64), at least one session. Use 1 behind a proxy,
-  /// where all clients have the proxy's address.
+  /// Share of max_session_count that one address may use (IPv6: one /64), at least one session. Use 1 behind a proxy
+  /// that is not in trusted_proxies: all its clients have its address.
   double address_session_share = 0.5;
   std::size_t read_message_max_bytes = 16 * 1024;  ///< client messages are small
   std::size_t request_body_max_bytes = 64 * 1024;
@@ -196,6 +197,9 @@ struct ServerOptions {
   /// Additional allowed Origins ("https://water.example"); "*" = any. Clients that are no browsers send no Origin and
   /// are not checked.
   std::vector<std::string> allowed_origins{};
+  /// Networks of proxies (checkNetwork()). Where the TCP peer is in one of them, the client's address, for all limits
+  /// and logs, is the one in X-Forwarded-For; from any other peer that header is ignored.
+  std::vector<std::string> trusted_proxies{};
   /// Token buckets per address (IPv6: one /64): excess requests get 429, excess messages wait unread.
   double address_requests_per_s = 50.0;
   double address_request_burst_count = 1000.0;
@@ -239,7 +243,7 @@ struct ServerStats {
 class Server {
  public:
   /// Binds the port and starts the I/O threads. Error kUnavailable (port in use, bad address, a descriptor that is no
-  /// socket) names address, port and what to do.
+  /// socket) names address, port and what to do; kInvalidInput: trusted_proxies.
   static core::Result<std::unique_ptr<Server>> start(const ServerOptions& options, Application& application);
   virtual ~Server() = default;
 
