@@ -95,13 +95,15 @@ core::Result<service::Access> loadAccess(const ServeOptions& options) {
   return access;
 }
 
-/// Blocks SIGINT and SIGTERM in this thread and in those that it starts, so that wait() receives them.
+/// Blocks the signals in this thread and in those that it starts, so that wait() receives them.
 class StopSignals {
  public:
-  StopSignals() {
+  /// `takes_hangup`: SIGHUP as well.
+  explicit StopSignals(bool takes_hangup) {
     sigemptyset(&set_);
     sigaddset(&set_, SIGINT);
     sigaddset(&set_, SIGTERM);
+    if (takes_hangup) sigaddset(&set_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &set_, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
   }
@@ -129,7 +131,8 @@ rooms::StateOptions stateOptions(const ServeOptions& options) {
 }
 
 int serve(ServeOptions options) {
-  StopSignals signals;
+  const bool is_tls = !options.tls_cert_file.empty();
+  StopSignals signals(is_tls);
   auto inherited = takeInheritedSocket();
   if (!inherited) return fail(inherited.error());
   if (*inherited) {
@@ -175,6 +178,7 @@ int serve(ServeOptions options) {
   server_options.network.port = options.port;
   if (*inherited) server_options.network.listening_socket = (*inherited)->descriptor;
   server_options.network.thread_count = options.thread_count;
+  if (is_tls) server_options.network.tls = net::TlsFiles{options.tls_cert_file, options.tls_key_file};
   server_options.network.trusted_proxies = options.trusted_proxies;
   server_options.network.address_session_share = options.address_session_share;
   server_options.network.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;
@@ -190,9 +194,11 @@ int serve(ServeOptions options) {
         "to restrict this",
         options.address);
   }
-  std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
+  std::printf("Spindrift is ready: %s://%s:%u/\n", is_tls ? "https" : "http", forUrl(options.address).c_str(),
+              (*server)->port());
   std::fflush(stdout);
-  const int signal = signals.wait();
+  int signal = signals.wait();
+  for (; signal == SIGHUP; signal = signals.wait()) (*server)->reloadCertificate();
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
   (*server)->stop();
   const net::ServerStats stats = (*server)->networkStats();

@@ -66,6 +66,12 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
   command.add_option("--threads", options.thread_count, "I/O threads")->check(CLI::Range(1, 64))->capture_default_str();
 
   command
+      .add_option("--tls-cert", options.tls_cert_file,
+                  "Speak TLS on the port: PEM file with the server's certificate and its chain")
+      ->check(isNotEmpty());
+  command.add_option("--tls-key", options.tls_key_file, "PEM file with the private key of --tls-cert")
+      ->check(isNotEmpty());
+  command
       .add_option("--trust-proxy", options.trusted_proxies,
                   "Network of a proxy, ADDRESS/BITS: what its X-Forwarded-For names is the client; may be repeated")
       ->check(isNetwork());
@@ -153,6 +159,12 @@ core::Result<OptionSources> completeServeOptions(CLI::App& program, CLI::App& co
   if (options.config_file.empty()) options.config_file = variableOr("SPINDRIFT_CONFIG", "");
   if (!options.config_file.empty()) {
     if (auto taken = takeConfigFile(options.config_file, sources); !taken) return taken.error();
+  }
+  if (options.tls_cert_file.empty() != options.tls_key_file.empty()) {
+    const char* const given = options.tls_cert_file.empty() ? "--tls-key" : "--tls-cert";
+    const char* const missing = options.tls_cert_file.empty() ? "--tls-cert" : "--tls-key";
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       std::string(given) + " is given without " + missing + ": TLS needs both files"};
   }
   return sources;
 }

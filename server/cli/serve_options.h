@@ -25,6 +25,8 @@ struct ServeOptions {
   std::string web_root;       ///< empty: searched beside the program
   std::string shader_folder;  ///< empty: the embedded shaders
   std::size_t thread_count = 1;
+  std::string tls_cert_file;                 ///< empty: no TLS
+  std::string tls_key_file;                  ///< empty if and only if tls_cert_file is
   std::vector<std::string> trusted_proxies;  ///< networks, ADDRESS/BITS
   double address_session_share = 0.5;        ///< share of the sessions that one address may hold
   std::size_t max_room_count = 8;

@@ -122,6 +122,10 @@ void Connection::cut() {
 }
 
 asio::awaitable<void> Connection::run() {
+  if (context_.credentials) {
+    const bool is_secure = co_await secure();
+    if (!is_secure) co_return;
+  }
   while (!stopping_) {
     RequestParser parser;
     bound(parser, context_.options.request_body_max_bytes);
@@ -178,6 +182,47 @@ asio::awaitable<void> Connection::run() {
     const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
     if (!sent || !keep_alive) break;
   }
+  stream_.expires_after(kLingerTime);
+  co_await finish();
+}
+
+asio::awaitable<bool> Connection::secure() {
+  constexpr std::uint8_t kHandshakeRecord = 0x16;  // RFC 8446 section 5.1: the first byte of every TLS connection
+  if (!is_by_proxy_ && !context_.addresses.takeRequest(address_, Clock::now())) {
+    context_.counters.refused(Refused::kRate);  // a handshake costs more than a request
+    stream_.close();
+    co_return false;
+  }
+  std::array<std::uint8_t, 1> first{};
+  // One deadline for the whole handshake: single bytes do not extend it.
+  stream_.expires_after(context_.options.handshake_timeout);
+  auto [error, bytes_count] = co_await stream_.async_read_some(asio::buffer(first), kToken);
+  if (error) {
+    // Probes of the port open a connection and close it without a byte; they are no failures.
+    if (error != asio::error::eof) ++context_.counters.failed_tls_handshake_count;
+    co_return false;
+  }
+  if (first[0] != kHandshakeRecord) {
+    ++context_.counters.failed_tls_handshake_count;
+    if (first[0] >= 'A' && first[0] <= 'Z') {
+      co_await sendLast(textReply(400, "This port speaks TLS: use https:// and wss://."), false);
+    }
+    co_return false;
+  }
+  stream_.useTls(makeServerTls(stream_.tcp(), *context_.credentials->context()));
+  std::tie(error, std::ignore) = co_await stream_.async_handshake(asio::buffer(first), kToken);
+  if (error) {
+    ++context_.counters.failed_tls_handshake_count;
+    spdlog::debug("{}: the TLS handshake failed: {}", peer_, error.message());
+    stream_.close();
+    co_return false;
+  }
+  ++context_.counters.tls_handshake_count;
+  co_return true;
+}
+
+asio::awaitable<void> Connection::finish() {
+  if (stream_.isTls()) (void)co_await stream_.async_shutdown(kToken);
   boost::system::error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
 }
@@ -338,12 +383,11 @@ asio::awaitable<void> Connection::sendLast(Reply reply, bool head_only) {
   constexpr unsigned kHttp11 = 11;
   const bool sent = co_await send(reply, head_only, kHttp11, false);
   if (!sent) co_return;
-  boost::system::error_code ignored;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
   std::array<char, 4096> scratch;
   stream_.expires_after(kLingerTime);
+  co_await finish();
   for (std::size_t read_bytes = 0; read_bytes < kLingerBytes;) {
-    const auto [error, bytes_count] = co_await stream_.async_read_some(asio::buffer(scratch), kToken);
+    const auto [error, bytes_count] = co_await stream_.tcp().async_read_some(asio::buffer(scratch), kToken);
     if (error) co_return;
     read_bytes += bytes_count;
   }

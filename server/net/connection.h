@@ -9,12 +9,12 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 
 #include "http_routes.h"
 #include "pending_answer.h"
 #include "server_context.h"
 #include "session.h"
+#include "transport.h"
 
 namespace spindrift::net {
 
@@ -31,6 +31,10 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
 
  private:
   boost::asio::awaitable<void> run();
+  /// Makes the connection a TLS one; returns false if it is over.
+  boost::asio::awaitable<bool> secure();
+  /// Ends this side of the stream: with TLS by close_notify, which waits for the peer's until the deadline.
+  boost::asio::awaitable<void> finish();
   /// Asks the application. Returns nullopt if the connection was closed meanwhile.
   boost::asio::awaitable<std::optional<Reply>> ask(const HttpRequest& request);
   boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
@@ -55,7 +59,7 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   const bool is_by_proxy_;                         ///< the TCP peer is a trusted proxy
   std::string peer_;                               ///< client of the present request, for the log
   std::string address_;                            ///< its key in AddressLimits
-  boost::beast::tcp_stream stream_;
+  Transport stream_;
   boost::beast::flat_buffer buffer_;
   std::shared_ptr<Session> session_;  ///< owns the stream after the upgrade
   PendingAnswer* pending_ = nullptr;  ///< while a request waits for the application

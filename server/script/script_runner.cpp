@@ -39,7 +39,8 @@ double quantile(std::vector<double> values, double ratio) {
 
 class Runner {
  public:
-  Runner(const v1::Script& script, const net::ClientUrl& url) : script_(script), pool_(net::ClientPool::create(0)) {
+  Runner(const v1::Script& script, const net::ClientUrl& url, const std::string& ca_file)
+      : script_(script), pool_(net::ClientPool::create(0, ca_file)) {
     for (const v1::ScriptClient& setup : script.clients()) {
       clients_.emplace(setup.name(), std::make_unique<ScriptClient>(setup, *pool_, url));
     }
@@ -361,8 +362,8 @@ bool ScriptReport::passed() const {
   return static_cast<int>(steps.size()) == step_count && std::ranges::all_of(steps, &StepReport::passed);
 }
 
-ScriptReport runScript(const v1::Script& script, const net::ClientUrl& url) {
-  return Runner(script, url).run();
+ScriptReport runScript(const v1::Script& script, const net::ClientUrl& url, const std::string& ca_file) {
+  return Runner(script, url, ca_file).run();
 }
 
 }  // namespace spindrift::script

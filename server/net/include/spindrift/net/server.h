@@ -169,12 +169,21 @@ class Application {
   virtual void httpRequest(const HttpRequest& request, HttpResponder respond) = 0;
 };
 
+/// PEM files: the chain of certificates, the server's own first, and its private key without a passphrase.
+struct TlsFiles {
+  std::string certificate_file;
+  std::string key_file;
+};
+
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;  ///< 0 = any free port; read the real one from Server::port()
   /// Descriptor of a TCP socket that listens already, bound to `address` and `port`: used instead of a new one. The
   /// Server takes it over and closes it.
   std::optional<int> listening_socket{};
+  /// If set, the port speaks TLS only. The files are read again when they change.
+  std::optional<TlsFiles> tls{};
+  std::chrono::milliseconds tls_watch_interval{2'000};  ///< between two looks at the files
   std::string web_root{};  ///< folder of the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
@@ -236,6 +245,12 @@ struct ServerStats {
   std::uint64_t waiting_frame_count = 0;    ///< frames waiting now, over all sessions
   std::uint64_t delayed_message_count = 0;  ///< messages delayed by their address's token bucket
   std::array<std::uint64_t, kRefusedCount> refused_count{};  ///< by Refused
+  std::uint64_t tls_handshake_count = 0;         ///< completed ones
+  std::uint64_t failed_tls_handshake_count = 0;  ///< neither TLS nor in time, or broken off
+  std::uint64_t tls_reload_count = 0;            ///< times that a changed certificate was taken over
+  std::uint64_t failed_tls_reload_count = 0;     ///< times that a changed certificate could not be used
+  /// When the certificate in use, or one of its chain, expires; nullopt without TLS.
+  std::optional<std::chrono::system_clock::time_point> certificate_expires{};
   std::map<std::uint16_t, std::uint64_t> closed_by_code{};   ///< ended sessions by close code; 0: the connection broke
 };
 
@@ -243,13 +258,15 @@ struct ServerStats {
 class Server {
  public:
   /// Binds the port and starts the I/O threads. Error kUnavailable (port in use, bad address, a descriptor that is no
-  /// socket) names address, port and what to do; kInvalidInput: trusted_proxies.
+  /// socket) names address, port and what to do; kInvalidInput: trusted_proxies, tls.
   static core::Result<std::unique_ptr<Server>> start(const ServerOptions& options, Application& application);
   virtual ~Server() = default;
 
   virtual std::uint16_t port() const = 0;
   virtual Hub& hub() = 0;
   virtual ServerStats stats() const = 0;
+  /// With TLS: reads certificate and key again, in the background. Thread-safe.
+  virtual void reloadCertificate() = 0;
   /// Stops accepting, closes every session with 1001, waits at most close_timeout + 1 s, closes the remaining sockets
   /// and joins the threads. sessionClosed has been called for every open session when it returns. Idempotent; not from
   /// an I/O thread.

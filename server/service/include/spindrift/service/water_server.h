@@ -36,6 +36,9 @@ class WaterServer {
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
 
+  /// See net::Server::reloadCertificate().
+  void reloadCertificate() { network_->reloadCertificate(); }
+
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] const std::string& deviceLine() const { return simulation_->deviceLine(); }
   /// Real-time factor of the default room over the last second.
