@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -13,6 +15,7 @@
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <spindrift/core/paths.h>
 #include <spindrift/scene/fidelity.h>
@@ -112,10 +115,33 @@ class StopSignals {
     sigwait(&set_, &signal);
     return signal;
   }
+  /// Returns 0 if none comes in time.
+  int waitFor(std::chrono::milliseconds duration) {
+    const timespec time{.tv_sec = duration.count() / 1000, .tv_nsec = duration.count() % 1000 * 1'000'000};
+    return std::max(0, sigtimedwait(&set_, nullptr, &time));
+  }
 
  private:
   sigset_t set_{};
 };
+
+/// Gives the clients the time to go; returns when all have gone, the time is over, or another signal asks for the end.
+void drain(service::WaterServer& server, StopSignals& signals, const ServeOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kLook{20};
+  const auto duration =
+      std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(std::ceil(options.drain_s * 1e3)));
+  const std::uint64_t session_count = server.networkStats().open_session_count;
+  if (duration.count() == 0 || session_count == 0) return;
+  spdlog::info("draining: {} sessions have {:g} s to go{}", session_count, options.drain_s,
+               options.drain_to.empty() ? "" : " to " + options.drain_to);
+  server.drain(duration, options.drain_to);
+  for (const auto end = Clock::now() + duration; Clock::now() < end;) {
+    if (server.networkStats().open_session_count == 0) return;
+    const int signal = signals.waitFor(kLook);
+    if (signal == SIGINT || signal == SIGTERM) return spdlog::info("draining ends: a second signal");
+  }
+}
 
 std::string forUrl(const std::string& address) {
   return address.find(':') != std::string::npos ? "[" + address + "]" : address;
@@ -182,6 +208,8 @@ int serve(ServeOptions options) {
   server_options.network.trusted_proxies = options.trusted_proxies;
   server_options.network.address_session_share = options.address_session_share;
   server_options.network.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;
+  // An operator's request has the effect of SIGTERM.
+  server_options.on_drain = [] { ::kill(::getpid(), SIGTERM); };
   const bool has_page = !server_options.network.web_root.empty();
   auto server = service::WaterServer::start(std::move(server_options));
   if (!server) return fail(server.error());
@@ -200,6 +228,7 @@ int serve(ServeOptions options) {
   int signal = signals.wait();
   for (; signal == SIGHUP; signal = signals.wait()) (*server)->reloadCertificate();
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
+  drain(**server, signals, options);
   (*server)->stop();
   const net::ServerStats stats = (*server)->networkStats();
   for (const std::string& line : (*server)->summary()) spdlog::info("{}", line);

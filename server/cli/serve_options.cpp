@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <spindrift/net/client.h>
 #include <spindrift/net/network_text.h>
 
 #include "commands.h"
@@ -26,6 +27,15 @@ CLI::Validator isNumber() {
 /// An empty name would mean "no tokens": every client an operator.
 CLI::Validator isNotEmpty() {
   return {[](std::string& text) { return text.empty() ? std::string("Value is empty; name a file") : std::string(); },
+          ""};
+}
+
+CLI::Validator isServer() {
+  return {[](std::string& text) {
+            const auto url = net::ClientUrl::parse(text);
+            return url && url->path == "/" ? std::string()
+                                           : "Value " + text + " is no server: write ws://HOST:PORT or wss://HOST:PORT";
+          },
           ""};
 }
 
@@ -123,6 +133,17 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
                   "command is answered. A crash of the program loses nothing with any; a power failure may")
       ->check(CLI::IsMember({"never", "snapshots", "always"}))
       ->capture_default_str();
+
+  command
+      .add_option("--drain-s,--drain", options.drain_s,
+                  "Seconds between SIGTERM and the end of the sessions, in which clients learn where to go")
+      ->check(isNumber())
+      ->check(CLI::Range(0.0, 4.0))
+      ->capture_default_str();
+  command
+      .add_option("--drain-to", options.drain_to,
+                  "ws://HOST[:PORT] or wss://HOST[:PORT] of the server to which clients go then (default: this one)")
+      ->check(isServer());
 
   command
       .add_option(

@@ -41,6 +41,8 @@ struct ServeOptions {
   double snapshot_interval_s = 10.0;
   std::string sync = "snapshots";  ///< never, snapshots, always
   bool adapts = false;
+  double drain_s = 1.0;  ///< from SIGTERM to the end of the sessions
+  std::string drain_to;  ///< URL of the server that clients are sent to; empty: here
 
   std::string config_file;     ///< empty: SPINDRIFT_CONFIG, or no file
   bool prints_config = false;  ///< print the configuration instead of serving

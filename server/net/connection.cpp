@@ -177,7 +177,7 @@ asio::awaitable<void> Connection::run() {
     } else {
       reply = std::get<Reply>(std::move(routed));
     }
-    const bool keep_alive = request.keep_alive() && !stopping_;
+    const bool keep_alive = request.keep_alive() && !stopping_ && context_.retry_after_s == 0;
     reply = fitted(request, std::move(reply));
     const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
     if (!sent || !keep_alive) break;
@@ -336,6 +336,13 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
       --context.reserved_session_count;
     }
   };
+  if (const std::int64_t retry_after_s = context_.retry_after_s; retry_after_s > 0) {
+    context_.counters.refused(Refused::kDraining);
+    Reply reply = textReply(503, "The server is about to end: try again in " + std::to_string(retry_after_s) + " s.");
+    reply.headers.emplace_back("Retry-After", std::to_string(retry_after_s));
+    co_await sendLast(std::move(reply), false);
+    co_return;
+  }
   const Place place(context_, address_);
   UpgradeDecision decision;
   const std::string max_count = std::to_string(context_.options.max_session_count);

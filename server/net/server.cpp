@@ -47,6 +47,9 @@ class ServerImpl final : public Server {
 
   core::Result<void> listen();
   void run();
+  void drain(std::chrono::seconds retry_after) override {
+    context_.retry_after_s = std::max<std::int64_t>(1, retry_after.count());
+  }
   void reloadCertificate() override;
 
   std::uint16_t port() const override { return port_; }

@@ -87,6 +87,7 @@ struct ServerContext {
   AddressLimits addresses;
   const bool listens_on_loopback;
   Counters counters;
+  std::atomic<std::int64_t> retry_after_s{0};  ///< > 0: draining, see Server::drain()
   std::atomic<std::uint64_t> last_session_id{0};
   /// Sessions open or in their handshake; at most max_session_count.
   std::atomic<std::size_t> reserved_session_count{0};

@@ -32,7 +32,8 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
 
 Gateway::Gateway(GatewayOptions options, const MetricsSources& sources)
     : options_(std::move(options)),
-      rest_(options_.access, counters_, sources, [this](const rooms::Room& room) { dismiss(room); }) {}
+      rest_(options_.access, counters_, sources,
+            {[this](const rooms::Room& room) { dismiss(room); }, options_.on_drain}) {}
 
 void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
   rooms_ = &rooms;
@@ -123,6 +124,16 @@ void Gateway::dismiss(const rooms::Room& room) {
     }
   }
   for (const net::SessionId session : members) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+}
+
+void Gateway::drain(const v1::Draining& draining) {
+  rest_.drain();
+  const core::SharedBytes message = wire::draining(draining);
+  const std::lock_guard lock(mutex_);
+  for (const auto& [session, state] : sessions_) {
+    if (state.said_hello && state.wire_minor >= wire::kDrainingMinor)
+      hub().sendState(session, topic::kDraining, message);
+  }
 }
 
 void Gateway::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <spindrift/service/water_server.h>
 
 namespace spindrift::service {
@@ -8,7 +11,8 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
                                                             .message_max_bytes = options.network.read_message_max_bytes,
                                                             .messages_per_s = options.network.messages_per_s,
                                                             .message_burst_count = options.network.message_burst_count,
-                                                            .hello_patience = options.hello_patience},
+                                                            .hello_patience = options.hello_patience,
+                                                            .on_drain = std::move(options.on_drain)},
                                              self->sources_);
   self->encoder_ = std::make_unique<rooms::EncoderThread>(*self->gateway_);
   self->sources_.encoder = self->encoder_.get();
@@ -28,6 +32,21 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
 
 WaterServer::~WaterServer() {
   stop();
+}
+
+void WaterServer::drain(std::chrono::milliseconds closes_in, const std::string& go_to) {
+  /// A server that is started again can take this many clients a second: handshake, greeting and keyframes.
+  constexpr double kReturnsPerS = 200.0;
+  constexpr double kRestart_s = 1.0;  // shortest time in which a server comes back
+  const double closes_in_s = std::chrono::duration<double>(closes_in).count();
+  const double spread_s = static_cast<double>(network_->stats().open_session_count) / kReturnsPerS;
+  v1::Draining out;
+  out.set_closes_in_s(closes_in_s);
+  out.set_go_to(go_to);
+  out.set_reconnect_after_min_s(go_to.empty() ? closes_in_s + kRestart_s : 0.0);
+  out.set_reconnect_after_max_s(go_to.empty() ? closes_in_s + kRestart_s + std::max(0.5, spread_s) : closes_in_s);
+  network_->drain(std::chrono::seconds(static_cast<std::int64_t>(std::ceil(closes_in_s + kRestart_s))));
+  gateway_->drain(out);
 }
 
 void WaterServer::stop() {

@@ -184,7 +184,7 @@ struct ServerOptions {
   /// If set, the port speaks TLS only. The files are read again when they change.
   std::optional<TlsFiles> tls{};
   std::chrono::milliseconds tls_watch_interval{2'000};  ///< between two looks at the files
-  std::string web_root{};  ///< folder of the built web client; empty = no page is served
+  std::string web_root{};                               ///< folder of the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
   /// Share of max_session_count that one address may use (IPv6: one /64), at least one session. Use 1 behind a proxy
@@ -225,11 +225,12 @@ enum class Refused : std::uint8_t {
   kHandshake,   ///< 400, 404, 426: not a supported WebSocket upgrade
   kRequest,     ///< 400, 411, 413, 431: invalid HTTP, no length, or too large
   kConnection,  ///< closed without a reply: too many connections
+  kDraining,    ///< 503: the server is about to end
 };
-inline constexpr std::size_t kRefusedCount = 7;
+inline constexpr std::size_t kRefusedCount = 8;
 /// Names indexed by Refused: "origin", "rate", ...
-inline constexpr std::array<std::string_view, kRefusedCount> kRefusedNames{"origin",    "rate",    "full",      "room",
-                                                                           "handshake", "request", "connection"};
+inline constexpr std::array<std::string_view, kRefusedCount> kRefusedNames{
+    "origin", "rate", "full", "room", "handshake", "request", "connection", "draining"};
 
 /// Counters since the start (open_session_count: current value).
 struct ServerStats {
@@ -245,13 +246,13 @@ struct ServerStats {
   std::uint64_t waiting_frame_count = 0;    ///< frames waiting now, over all sessions
   std::uint64_t delayed_message_count = 0;  ///< messages delayed by their address's token bucket
   std::array<std::uint64_t, kRefusedCount> refused_count{};  ///< by Refused
-  std::uint64_t tls_handshake_count = 0;         ///< completed ones
-  std::uint64_t failed_tls_handshake_count = 0;  ///< neither TLS nor in time, or broken off
-  std::uint64_t tls_reload_count = 0;            ///< times that a changed certificate was taken over
-  std::uint64_t failed_tls_reload_count = 0;     ///< times that a changed certificate could not be used
+  std::uint64_t tls_handshake_count = 0;                     ///< completed ones
+  std::uint64_t failed_tls_handshake_count = 0;              ///< neither TLS nor in time, or broken off
+  std::uint64_t tls_reload_count = 0;                        ///< times that a changed certificate was taken over
+  std::uint64_t failed_tls_reload_count = 0;                 ///< times that a changed certificate could not be used
   /// When the certificate in use, or one of its chain, expires; nullopt without TLS.
   std::optional<std::chrono::system_clock::time_point> certificate_expires{};
-  std::map<std::uint16_t, std::uint64_t> closed_by_code{};   ///< ended sessions by close code; 0: the connection broke
+  std::map<std::uint16_t, std::uint64_t> closed_by_code{};  ///< ended sessions by close code; 0: the connection broke
 };
 
 /// A running server. Created by start(); the destructor stops it.
@@ -265,6 +266,9 @@ class Server {
   virtual std::uint16_t port() const = 0;
   virtual Hub& hub() = 0;
   virtual ServerStats stats() const = 0;
+  /// From now on refuses new sessions with 503 and Retry-After, and ends HTTP connections after their next reply. Open
+  /// sessions go on. Thread-safe.
+  virtual void drain(std::chrono::seconds retry_after) = 0;
   /// With TLS: reads certificate and key again, in the background. Thread-safe.
   virtual void reloadCertificate() = 0;
   /// Stops accepting, closes every session with 1001, waits at most close_timeout + 1 s, closes the remaining sockets

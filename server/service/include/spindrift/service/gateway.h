@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -28,6 +29,7 @@ struct GatewayOptions {
   double commands_per_s = 200.0;              ///< token bucket per session; commands beyond it are rejected as BUSY
   double command_burst_count = 400.0;
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
+  std::function<void()> on_drain{};                  ///< an operator asks for the server's end; empty: not offered
 };
 
 class Gateway final : public net::Application, public rooms::RoomOutlets, public rooms::FrameOutlet {
@@ -37,6 +39,9 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
   /// network calls the gateway, though their threads may have ended.
   void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
+
+  /// Tells every client that knows the message, and refuses new rooms from now on. /readyz answers 503.
+  void drain(const v1::Draining& draining);
 
   void serverStarts(net::Hub& served) override;
   core::Result<void> acceptSession(const std::string& room) override;

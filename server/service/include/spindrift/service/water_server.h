@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct WaterServerOptions {
   std::size_t max_room_count = 8;
   Access access;
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
+  std::function<void()> on_drain{};                  ///< see GatewayOptions
 };
 
 class WaterServer {
@@ -33,6 +35,9 @@ class WaterServer {
   WaterServer(const WaterServer&) = delete;
   WaterServer& operator=(const WaterServer&) = delete;
 
+  /// Prepares the end, `closes_in` from now on: tells the clients to go to `go_to` (empty: to come back here), refuses
+  /// new sessions and rooms, and lets /readyz answer 503. stop() comes next.
+  void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
 
