@@ -3,12 +3,13 @@
 # rasteriser for machines without a driver. Sourced by ./dev; the launcher is .ci/bundle/spindrift.
 #
 # bin/spindrift finds lib/ by its RUNPATH. Libraries that drivers of the machine use, too, are in lib/fallback/NAME/ and
-# are used only if the machine has none, because a newer driver must not load an older library. Mesa's libraries find
+# are used only if the machine has none, because a newer driver must not load an older library; OpenSSL as well, because
+# the machine's own gets security updates. Mesa's libraries find
 # each other by RUNPATH, and no other program sees them.
 
 # The C library is not bundled; it is the machine's.
 readonly glibc_libraries='^(ld-linux-.*|lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|nsl)\.so\..*|libnss_.*|linux-vdso\.so.*)$'
-readonly shared_with_drivers='^(libstdc\+\+\.so\.6|libgcc_s\.so\.1|libz\.so\.1|libEGL\.so\.1|libGLdispatch\.so\.0)$'
+readonly shared_with_drivers='^(libstdc\+\+\.so\.6|libgcc_s\.so\.1|libz\.so\.1|libssl\.so\.3|libcrypto\.so\.3|libEGL\.so\.1|libGLdispatch\.so\.0)$'
 
 # library_closure FILE…: prints "NAME PATH" of every shared library that the files need, directly or indirectly, except
 # the C library.

@@ -4,7 +4,7 @@
 # group:package …; the text of a group gives the reason.
 declare -rA package_groups=(
   [server]="git ca-certificates g++ cmake ninja-build ccache pkg-config python3 python3-glad libboost1.81-dev
-    libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev libpng-dev libssl-dev glslang-tools spirv-tools libegl-dev googletest libbenchmark-dev"
+    libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev libpng-dev libssl-dev libnats-dev nats-server glslang-tools spirv-tools libegl-dev googletest libbenchmark-dev"
   [driver]="libegl1 libegl-mesa0 libgl1-mesa-dri"
   [zink]="mesa-vulkan-drivers libvulkan1"
   [browser]="chromium"

@@ -29,7 +29,7 @@ struct Spectator {
 class Crowd {
  public:
   Crowd(const net::ClientUrl& url, const CrowdOptions& options)
-      : url_(url), options_(options), pool_(net::ClientPool::create(0)) {}
+      : url_(url), options_(options), pool_(net::ClientPool::create(0, options.ca_file)) {}
 
   CrowdReport run(const std::function<void()>& begin, const std::function<void()>& end) {
     for (std::size_t k = 0; k < options_.client_count; ++k) {

@@ -117,11 +117,16 @@ struct FanoutRow {
   double real_time_factor = 0.0;
 };
 
-core::Result<FanoutRow> measure(const FanoutCase& test) {
+core::Result<net::ClientUrl> urlOf(std::uint16_t port, const std::optional<net::TlsFiles>& tls) {
+  return net::ClientUrl::parse((tls ? "wss://127.0.0.1:" : "ws://127.0.0.1:") + std::to_string(port) + "/ws");
+}
+
+core::Result<FanoutRow> measure(const FanoutCase& test, const std::optional<net::TlsFiles>& tls) {
   EchoApplication application;
   net::ServerOptions options;
   options.port = 0;
   options.max_session_count = 1024;
+  options.tls = tls;
   auto server = net::Server::start(options, application);
   if (!server) return server.error();
   std::atomic<bool> stopping{false};
@@ -134,7 +139,7 @@ core::Result<FanoutRow> measure(const FanoutCase& test) {
     }
   });
   FanoutRow out{.name = test.name};
-  const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string((*server)->port()) + "/ws");
+  const auto url = urlOf((*server)->port(), tls);
   double begin_cpu_s = 0.0;
   double begin_mb = 0.0;
   out.crowd = runCrowd(
@@ -154,19 +159,23 @@ core::Result<FanoutRow> measure(const FanoutCase& test) {
   return out;
 }
 
-core::Result<FanoutRow> measureServer(const v1::Scene& scene, const gpu::DeviceChoice& device, double seconds) {
+core::Result<FanoutRow> measureServer(const v1::Scene& scene, const gpu::DeviceChoice& device, double seconds,
+                                      const std::optional<net::TlsFiles>& tls) {
   service::WaterServerOptions options;
   options.device = device;
   options.network.port = 0;
   options.network.max_session_count = 1024;
+  options.network.tls = tls;
   options.rooms.push_back({"main", scene});
   auto server = service::WaterServer::start(std::move(options));
   if (!server) return server.error();
   FanoutRow out{.name = fmt::format("{}, 200 clients", scene.name())};
-  const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string((*server)->port()) + "/ws");
+  const auto url = urlOf((*server)->port(), tls);
   double begin_mb = 0.0;
+  CrowdOptions crowd = sceneCrowd(scene, 200, seconds);
+  if (tls) crowd.ca_file = tls->certificate_file;
   out.crowd = runCrowd(
-      *url, sceneCrowd(scene, 200, seconds),
+      *url, crowd,
       [&] {
         out.before = (*server)->networkStats();
         begin_mb = resident_mb();
@@ -222,7 +231,7 @@ boost::json::object toJson(const FanoutRow& row) {
 }  // namespace
 
 core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const std::string& device, double seconds,
-                                                std::FILE* out) {
+                                                const std::optional<net::TlsFiles>& tls, std::FILE* out) {
   const auto choice = gpu::parseDeviceChoice(device);
   if (!choice) return choice.error();
   /// Long enough for the server to evict the clients that never read.
@@ -230,6 +239,7 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
   const auto crowd = [&](std::size_t clients, std::size_t deaf, std::chrono::duration<double> duration) {
     CrowdOptions options;
     options.client_count = clients;
+    if (tls) options.ca_file = tls->certificate_file;
     options.deaf_count = deaf;
     options.duration = duration;
     options.commands_per_s = 1.0;
@@ -242,18 +252,18 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
       {"the same, 10 never read", 200'000, 20.0, crowd(100, 10, slow_case)},
       {"200 readers, 25 kB, visitors", 25'000, 20.0, crowd(200, 0, std::chrono::duration<double>(seconds))}};
   cases.back().crowd.visitors_per_s = 5.0;
-  fmt::print(out, "fan-out, clients and server in this process\n");
+  fmt::print(out, "fan-out, clients and server in this process{}\n", tls ? ", TLS" : "");
   fmt::print(out, "{:<30} {:>6} {:>17} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8} {:>8} {:>7} {:>5}\n", "case", "there",
              "frames, each", "p50 ms", "p99 ms", "last p99", "us/frame", "drops", "evicted", "ack p50", "ack p99",
              "+MB", "lost");
   boost::json::array rows;
   for (const FanoutCase& test : cases) {
-    auto row = measure(test);
+    auto row = measure(test, tls);
     if (!row) return row.error();
     print(out, *row);
     rows.push_back(toJson(*row));
   }
-  auto row = measureServer(scene, *choice, seconds);
+  auto row = measureServer(scene, *choice, seconds, tls);
   if (!row) return row.error();
   print(out, *row);
   rows.push_back(toJson(*row));

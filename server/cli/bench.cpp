@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -30,6 +31,7 @@ struct BenchOptions {
   std::string fidelity;  ///< as in ServeOptions
   std::string device = "auto";
   std::string json_file;
+  net::TlsFiles tls;     ///< for fanout; empty: plain
   double seconds = 2.0;  ///< measured time per case
   bench::LoadOptions load;
   std::string level = "coarse";
@@ -37,8 +39,9 @@ struct BenchOptions {
 
 /// Runs apart from the other suites, because the server that it measures has its own GL context.
 int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
+  const auto tls = options.tls.certificate_file.empty() ? std::nullopt : std::optional(options.tls);
   auto result =
-      bench::measureFanout(scene, options.device, options.seconds, options.json_file == "-" ? stderr : stdout);
+      bench::measureFanout(scene, options.device, options.seconds, tls, options.json_file == "-" ? stderr : stdout);
   if (!result) return fail(result.error());
   if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
   return 0;
@@ -119,6 +122,11 @@ ProgramCommand addBench(CLI::App& program) {
   command->add_option("--commands-per-s", options->load.commands_per_s, "For --suite load: splashes of each client")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
+  CLI::Option* const cert = command->add_option("--tls-cert", options->tls.certificate_file,
+                                                "For fanout over TLS: a PEM certificate for 127.0.0.1");
+  CLI::Option* const key = command->add_option("--tls-key", options->tls.key_file, "Its private key");
+  cert->needs(key);
+  key->needs(cert);
   addJson(*command, options->json_file);
   return {command, [options] { return bench(*options); }};
 }

@@ -33,10 +33,15 @@ int runEdge(const FrontOptions& options) {
   if (!edge) return fail(edge.error());
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   if (is_open_to_all) warnOpenToAll(options);
-  std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*edge)->port());
-  std::fflush(stdout);
-  const int signal = signals.wait([&] { reload(options, (*edge)->access(), audit_file.get()); });
+  sayReady(options, (*edge)->port());
+  const int signal = signals.wait([&] {
+    (*edge)->reloadCertificate();
+    reload(options, (*edge)->access(), audit_file.get());
+  });
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
+  drain(
+      options, signals, [&] { return (*edge)->networkStats().open_session_count; },
+      [&](std::chrono::milliseconds closes_in) { (*edge)->drain(closes_in, options.drain_to); });
   (*edge)->stop();
   logNetwork((*edge)->networkStats());
   return 0;

@@ -1,7 +1,9 @@
 #include "front.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -60,8 +62,39 @@ int StopSignals::wait(const std::function<void()>& reload) {
   }
 }
 
-std::string forUrl(const std::string& address) {
-  return address.find(':') != std::string::npos ? "[" + address + "]" : address;
+int StopSignals::waitFor(std::chrono::milliseconds duration) {
+  const timespec time{.tv_sec = duration.count() / 1000, .tv_nsec = duration.count() % 1000 * 1'000'000};
+  return std::max(0, sigtimedwait(&set_, nullptr, &time));
+}
+
+void endThisProcess() {
+  ::kill(::getpid(), SIGTERM);
+}
+
+void drain(const FrontOptions& options, StopSignals& signals, const std::function<std::uint64_t()>& session_count,
+           const std::function<void(std::chrono::milliseconds)>& begin) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kLook{20};
+  const auto duration =
+      std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(std::ceil(options.drain_s * 1e3)));
+  const std::uint64_t count = session_count();
+  if (duration.count() == 0 || count == 0) return;
+  spdlog::info("draining: {} sessions have {:g} s to go{}", count, options.drain_s,
+               options.drain_to.empty() ? "" : " to " + options.drain_to);
+  begin(duration);
+  for (const auto end = Clock::now() + duration; Clock::now() < end;) {
+    if (session_count() == 0) return;
+    const int signal = signals.waitFor(kLook);
+    if (signal == SIGINT || signal == SIGTERM) return spdlog::info("draining ends: a second signal");
+  }
+}
+
+void sayReady(const FrontOptions& options, std::uint16_t port) {
+  const std::string& address = options.address;
+  const std::string host = address.find(':') != std::string::npos ? "[" + address + "]" : address;
+  std::printf("Spindrift is ready: %s://%s:%u/\n", options.tls_cert_file.empty() ? "http" : "https", host.c_str(),
+              port);
+  std::fflush(stdout);
 }
 
 net::ServerOptions networkOptions(const FrontOptions& options) {
@@ -71,6 +104,8 @@ net::ServerOptions networkOptions(const FrontOptions& options) {
   out.port = options.port;
   out.thread_count = options.thread_count;
   out.max_session_count = options.max_session_count;
+  if (!options.tls_cert_file.empty()) out.tls = net::TlsFiles{options.tls_cert_file, options.tls_key_file};
+  out.trusted_proxies = options.trusted_proxies;
   out.address_session_share = options.address_session_share;
   out.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;
   return out;

@@ -1,7 +1,9 @@
 // What `serve` and `edge` share: access, signals, the network's options, printing the configuration.
 #pragma once
 
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -29,13 +31,23 @@ class StopSignals {
   StopSignals();
   /// Returns the signal that ends the program; calls `reload` for each SIGHUP before it.
   int wait(const std::function<void()>& reload);
+  /// Returns 0 if no signal comes in time.
+  int waitFor(std::chrono::milliseconds duration);
 
  private:
   sigset_t set_{};
 };
 
-/// An address as it stands in a URL.
-std::string forUrl(const std::string& address);
+/// Has the effect of SIGTERM; for an operator's request.
+void endThisProcess();
+
+/// Gives the clients the time to go: returns when all have gone, the time is over, or another signal asks for the end.
+/// `begin` tells them.
+void drain(const FrontOptions& options, StopSignals& signals, const std::function<std::uint64_t()>& session_count,
+           const std::function<void(std::chrono::milliseconds)>& begin);
+
+/// Prints the URL of the page.
+void sayReady(const FrontOptions& options, std::uint16_t port);
 
 /// Options of the network; the address may be that of an inherited socket.
 net::ServerOptions networkOptions(const FrontOptions& options);

@@ -15,6 +15,7 @@ namespace {
 
 struct ScriptOptions {
   std::string url = "ws://127.0.0.1:8080";
+  std::string ca_file;
   std::string file;
   std::string json_file;
 };
@@ -75,7 +76,7 @@ int script(const ScriptOptions& options) {
   if (!url) return fail(url.error());
   const auto loaded = script::loadScript(options.file);
   if (!loaded) return fail(loaded.error());
-  const script::ScriptReport report = script::runScript(*loaded, *url);
+  const script::ScriptReport report = script::runScript(*loaded, *url, options.ca_file);
   if (options.json_file != "-") print(report);
   if (auto written = writeJson(options.json_file, toJson(report)); !written) return fail(written.error());
   return report.passed() ? 0 : core::exitCode(core::ErrorCode::kCheckFailed);
@@ -87,7 +88,9 @@ ProgramCommand addScript(CLI::App& program) {
   const auto options = std::make_shared<ScriptOptions>();
   CLI::App* command = program.add_subcommand("script", "Run scripted clients against a server and check what they see");
   command->add_option("file", options->file, "The script, a .textproto of spindrift.v1.Script")->required();
-  command->add_option("--url", options->url, "The server, ws://HOST:PORT")->capture_default_str();
+  command->add_option("--url", options->url, "The server, ws://HOST:PORT or wss://HOST:PORT")->capture_default_str();
+  command->add_option("--tls-ca", options->ca_file,
+                      "For wss://: PEM file with authorities to trust beside those of the system");
   addJson(*command, options->json_file);
   return {command, [options] { return script(*options); }};
 }

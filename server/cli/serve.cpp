@@ -107,6 +107,7 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
   out.max_room_count = options.max_room_count;
   out.network = networkOptions(options);
   if (node) out.cluster = node->hooks();
+  out.on_drain = endThisProcess;
   return out;
 }
 
@@ -149,11 +150,16 @@ int serve(ServeOptions options) {
     spdlog::info("simulation runs on {}", device);
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   if (is_open_to_all) warnOpenToAll(options);
-  std::printf("Spindrift is ready: http://%s:%u/\n", forUrl(options.address).c_str(), (*server)->port());
-  std::fflush(stdout);
-  const int signal = signals.wait([&] { reload(options, (*server)->gateway().access(), audit_file.get()); });
+  sayReady(options, (*server)->port());
+  const int signal = signals.wait([&] {
+    (*server)->reloadCertificate();
+    reload(options, (*server)->gateway().access(), audit_file.get());
+  });
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
   if (node) node->leave();
+  drain(
+      options, signals, [&] { return (*server)->networkStats().open_session_count; },
+      [&](std::chrono::milliseconds closes_in) { (*server)->drain(closes_in, options.drain_to); });
   (*server)->stop();
   if (node) node->release();
   node.reset();  // it uses the server

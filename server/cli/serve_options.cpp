@@ -3,6 +3,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <spindrift/net/client.h>
+#include <spindrift/net/network_text.h>
+
 #include "commands.h"
 #include "config_file.h"
 
@@ -29,6 +32,23 @@ CLI::Validator isNotEmpty() {
           ""};
 }
 
+CLI::Validator isServer() {
+  return {[](std::string& text) {
+            const auto url = net::ClientUrl::parse(text);
+            return url && url->path == "/" ? std::string()
+                                           : "Value " + text + " is no server: write ws://HOST:PORT or wss://HOST:PORT";
+          },
+          ""};
+}
+
+CLI::Validator isNetwork() {
+  return {[](std::string& text) {
+            const auto checked = net::checkNetwork(text);
+            return checked ? std::string() : "Value " + checked.error().message;
+          },
+          ""};
+}
+
 std::string variableOr(const char* name, const std::string& otherwise) {
   const char* const text = std::getenv(name);
   return text != nullptr && *text != '\0' ? text : otherwise;
@@ -42,12 +62,22 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
       ->capture_default_str();
   command.add_option("--web-root", options.web_root, "Folder of the built web client (default: next to the program)");
   command.add_option("--threads", options.thread_count, "I/O threads")->check(CLI::Range(1, 64))->capture_default_str();
+  command
+      .add_option("--tls-cert", options.tls_cert_file,
+                  "Speak TLS on the port: PEM file with the server's certificate and its chain")
+      ->check(isNotEmpty());
+  command.add_option("--tls-key", options.tls_key_file, "PEM file with the private key of --tls-cert")
+      ->check(isNotEmpty());
+  command
+      .add_option("--trust-proxy", options.trusted_proxies,
+                  "Network of a proxy, ADDRESS/BITS: what its X-Forwarded-For names is the client; may be repeated")
+      ->check(isNetwork());
   command.add_option("--max-sessions", options.max_session_count, "Maximum number of sessions at a time")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();
   command
       .add_option("--address-share", options.address_session_share,
-                  "Share of the sessions that one address may use; 1 behind a proxy")
+                  "Share of the sessions that one address may use; 1 behind a proxy that is not trusted")
       ->check(isNumber())
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
@@ -102,8 +132,18 @@ void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_require
       ->capture_default_str();
 }
 
-/// Added last: where the values come from.
-void addSourceOptions(CLI::App& command, FrontOptions& options) {
+/// Added last: the end of the process, and where the values come from.
+void addLastOptions(CLI::App& command, FrontOptions& options) {
+  command
+      .add_option("--drain-s,--drain", options.drain_s,
+                  "Seconds between SIGTERM and the end of the sessions, in which clients learn where to go")
+      ->check(isNumber())
+      ->check(CLI::Range(0.0, 4.0))
+      ->capture_default_str();
+  command
+      .add_option("--drain-to", options.drain_to,
+                  "ws://HOST[:PORT] or wss://HOST[:PORT] of the server to which clients go then (default: this one)")
+      ->check(isServer());
   command
       .add_option(
           "--config", options.config_file,
@@ -169,13 +209,13 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
       ->check(CLI::IsMember({"never", "snapshots", "always"}))
       ->capture_default_str();
   addClusterOptions(command, options, false);
-  addSourceOptions(command, options);
+  addLastOptions(command, options);
 }
 
 void addEdgeOptions(CLI::App& command, FrontOptions& options) {
   addClusterOptions(command, options, true);
   addFrontOptions(command, options);
-  addSourceOptions(command, options);
+  addLastOptions(command, options);
 }
 
 core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& command, FrontOptions& options) {
@@ -198,6 +238,12 @@ core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& co
   if (options.config_file.empty()) options.config_file = variableOr("SPINDRIFT_CONFIG", "");
   if (!options.config_file.empty()) {
     if (auto taken = takeConfigFile(options.config_file, sources); !taken) return taken.error();
+  }
+  if (options.tls_cert_file.empty() != options.tls_key_file.empty()) {
+    const char* const given = options.tls_cert_file.empty() ? "--tls-key" : "--tls-cert";
+    const char* const missing = options.tls_cert_file.empty() ? "--tls-cert" : "--tls-key";
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       std::string(given) + " is given without " + missing + ": TLS needs both files"};
   }
   return sources;
 }

@@ -22,8 +22,11 @@ struct FrontOptions {
   std::string web_root;  ///< empty: searched beside the program
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
-  double address_session_share = 0.5;  ///< share of the sessions that one address may hold
-  std::string token_file;              ///< empty: `tokens`
+  std::string tls_cert_file;                 ///< empty: no TLS
+  std::string tls_key_file;                  ///< empty if and only if tls_cert_file is
+  std::vector<std::string> trusted_proxies;  ///< networks, ADDRESS/BITS
+  double address_session_share = 0.5;        ///< share of the sessions that one address may hold
+  std::string token_file;                    ///< empty: `tokens`
   std::string tokens;                 ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
   std::string guest_role;             ///< "none", or a role; empty: operator without tokens, viewer with tokens
   std::vector<std::string> jwt_keys;  ///< FILE: a public key; hs256:FILE: a secret
@@ -36,7 +39,9 @@ struct FrontOptions {
   std::string nats_url;              ///< empty: the process is alone
   std::string nats_ca_file;          ///< empty: the system's certificates
   std::string cluster = "spindrift";
-  std::string node;  ///< empty: made from the host's name and the port
+  std::string node;      ///< empty: made from the host's name and the port
+  double drain_s = 1.0;  ///< from SIGTERM to the end of the sessions
+  std::string drain_to;  ///< URL of the server that clients are sent to; empty: here
 
   std::string config_file;     ///< empty: SPINDRIFT_CONFIG, or no file
   bool prints_config = false;  ///< print the configuration instead of serving

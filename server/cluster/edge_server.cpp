@@ -1,6 +1,7 @@
 #include <utility>
 
 #include <spindrift/cluster/edge_server.h>
+#include <spindrift/service/drain.h>
 
 namespace spindrift::cluster {
 namespace {
@@ -26,6 +27,11 @@ core::Result<std::unique_ptr<EdgeServer>> EdgeServer::start(EdgeOptions options)
 
 EdgeServer::~EdgeServer() {
   stop();
+}
+
+void EdgeServer::drain(std::chrono::milliseconds closes_in, const std::string& go_to) {
+  is_draining_ = true;
+  sessions_.drain(service::beginDrain(*network_, closes_in, go_to));
 }
 
 void EdgeServer::stop() {
@@ -54,6 +60,7 @@ void EdgeServer::httpRequest(const net::HttpRequest& request, net::HttpResponder
   if (is_probe && request.method != "GET") return respond(text(405, "the method is not allowed here: use GET\n"));
   if (request.path == "/healthz") return respond(text(200, "ok\n"));
   if (request.path == "/readyz") {
+    if (is_draining_) return respond(text(503, "draining\n"));
     const auto ready = node_->ready();
     return respond(ready ? text(200, "ready\n") : text(503, ready.error().message + "\n"));
   }

@@ -1,4 +1,6 @@
 #include <deque>
+#include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -18,6 +20,9 @@
 
 #include <spindrift/net/client.h>
 
+#include "tls_context.h"
+#include "transport.h"
+
 namespace spindrift::net {
 namespace {
 
@@ -29,11 +34,16 @@ using asio::ip::tcp;
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 constexpr std::chrono::seconds kCloseTimeout{2};
 
+using TlsResult = core::Result<std::shared_ptr<TlsContext>>;
+
 class ClientImpl final : public Client, public std::enable_shared_from_this<ClientImpl> {
  public:
-  ClientImpl(asio::any_io_executor strand, ClientUrl url, const ClientOptions& options, ClientEvents events)
+  /// `tls`: of the pool; not used for ws://.
+  ClientImpl(asio::any_io_executor strand, ClientUrl url, TlsResult tls, const ClientOptions& options,
+             ClientEvents events)
       : strand_(std::move(strand)),
         ws_(strand_),
+        tls_(std::move(tls)),
         wake_(strand_),
         url_(std::move(url)),
         options_(options),
@@ -90,17 +100,25 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
 
   /// Opens the session; returns an empty string, or the reason of the failure.
   asio::awaitable<std::string> open() {
+    if (!tls_) co_return tls_.error().message;
     tcp::resolver resolver(strand_);
     const auto [resolve_error, places] = co_await resolver.async_resolve(url_.host, url_.port, kToken);
     if (resolve_error) co_return url_.host + " is not known: " + resolve_error.message();
-    auto& stream = beast::get_lowest_layer(ws_);
+    Transport& stream = ws_.next_layer();
     stream.expires_after(options_.connect_timeout);
-    const auto [connect_error, place] = co_await stream.async_connect(places, kToken);
+    const auto [connect_error, place] = co_await stream.tcp().async_connect(places, kToken);
     if (connect_error) co_return "no connection to " + url_.host + ":" + url_.port + ": " + connect_error.message();
     boost::system::error_code ignored;
     stream.socket().set_option(tcp::no_delay(true), ignored);
     if (options_.receive_buffer_bytes > 0) {
       stream.socket().set_option(asio::socket_base::receive_buffer_size(options_.receive_buffer_bytes), ignored);
+    }
+    if (url_.is_tls) {
+      stream.useTls(makeClientTls(stream.tcp(), **tls_, url_.host));
+      const auto [tls_error, bytes_count] = co_await stream.async_handshake({}, kToken);
+      if (tls_error) {
+        co_return "no TLS with " + url_.host + ":" + url_.port + ": " + stream.tls()->reasonOf(tls_error);
+      }
     }
     stream.expires_never();
     ws_.set_option(websocket::stream_base::timeout{options_.connect_timeout, websocket::stream_base::none(), false});
@@ -168,7 +186,8 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
   }
 
   const asio::any_io_executor strand_;
-  websocket::stream<beast::tcp_stream> ws_;
+  websocket::stream<Transport> ws_;
+  const TlsResult tls_;
   asio::steady_timer wake_;
   const ClientUrl url_;
   const ClientOptions options_;
@@ -185,7 +204,8 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
 
 class ClientPoolImpl final : public ClientPool {
  public:
-  explicit ClientPoolImpl(std::size_t thread_count) : work_(io_.get_executor()) {
+  ClientPoolImpl(std::size_t thread_count, std::string ca_file)
+      : work_(io_.get_executor()), ca_file_(std::move(ca_file)) {
     for (std::size_t k = 0; k < thread_count; ++k) threads_.emplace_back([this] { io_.run(); });
   }
   ClientPoolImpl(const ClientPoolImpl&) = delete;
@@ -196,7 +216,8 @@ class ClientPoolImpl final : public ClientPool {
   }
 
   std::shared_ptr<Client> connect(const ClientUrl& url, const ClientOptions& options, ClientEvents events) override {
-    auto client = std::make_shared<ClientImpl>(asio::make_strand(io_), url, options, std::move(events));
+    TlsResult tls = url.is_tls ? tlsContext() : TlsResult(std::shared_ptr<TlsContext>());
+    auto client = std::make_shared<ClientImpl>(asio::make_strand(io_), url, std::move(tls), options, std::move(events));
     client->start();
     return client;
   }
@@ -209,8 +230,17 @@ class ClientPoolImpl final : public ClientPool {
   }
 
  private:
+  TlsResult tlsContext() {
+    const std::lock_guard lock(mutex_);
+    if (!tls_) tls_ = TlsContext::forClient(ca_file_);
+    return *tls_;
+  }
+
   asio::io_context io_;
   asio::executor_work_guard<asio::io_context::executor_type> work_;
+  const std::string ca_file_;
+  std::mutex mutex_;
+  std::optional<TlsResult> tls_;  ///< made for the first wss://
   std::vector<std::thread> threads_;
 };
 
@@ -220,14 +250,16 @@ core::Result<ClientUrl> ClientUrl::parse(const std::string& url) {
   const auto refuse = [&](const std::string& why) {
     return core::Error{core::ErrorCode::kInvalidInput, "--url '" + url + "': " + why};
   };
-  constexpr std::string_view kScheme = "ws://";
-  if (url.starts_with("wss://"))
-    return refuse("TLS is not spoken here; connect to the server behind the proxy by ws://");
-  if (!url.starts_with(kScheme)) return refuse("write ws://HOST:PORT");
-  const std::string rest = url.substr(kScheme.size());
+  constexpr const char* kForm = "write ws://HOST:PORT or wss://HOST:PORT";
+  const bool is_tls = url.starts_with("wss://");
+  if (!is_tls && !url.starts_with("ws://")) return refuse(kForm);
+  const std::string rest = url.substr(url.find("//") + 2);
   const std::size_t slash = rest.find('/');
   const std::string authority = rest.substr(0, slash);
-  ClientUrl out{.host = authority, .port = "80", .path = slash == std::string::npos ? "/" : rest.substr(slash)};
+  ClientUrl out{.host = authority,
+                .port = is_tls ? "443" : "80",
+                .path = slash == std::string::npos ? "/" : rest.substr(slash),
+                .is_tls = is_tls};
   const std::size_t bracket = authority.rfind(']');
   const std::size_t colon = authority.rfind(':');
   if (colon != std::string::npos && (bracket == std::string::npos || colon > bracket)) {
@@ -237,12 +269,12 @@ core::Result<ClientUrl> ClientUrl::parse(const std::string& url) {
   if (out.host.starts_with('[') && out.host.ends_with(']')) out.host = out.host.substr(1, out.host.size() - 2);
   const bool is_port = !out.port.empty() && out.port.size() <= 5 &&
                        out.port.find_first_not_of("0123456789") == std::string::npos && std::stoi(out.port) <= 65535;
-  if (out.host.empty() || !is_port) return refuse("write ws://HOST:PORT");
+  if (out.host.empty() || !is_port) return refuse(kForm);
   return out;
 }
 
-std::unique_ptr<ClientPool> ClientPool::create(std::size_t thread_count) {
-  return std::make_unique<ClientPoolImpl>(thread_count);
+std::unique_ptr<ClientPool> ClientPool::create(std::size_t thread_count, const std::string& ca_file) {
+  return std::make_unique<ClientPoolImpl>(thread_count, ca_file);
 }
 
 }  // namespace spindrift::net

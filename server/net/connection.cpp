@@ -4,10 +4,10 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/ip/network_v6.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http.hpp>
@@ -48,20 +48,15 @@ void tune(asio::ip::tcp::socket& socket) {
   socket.set_option(UnsentLowWater(kUnsentLowWaterBytes), ignored);
 }
 
-/// Returns the key for address limits: the address, or for IPv6 its /64 network.
-std::string addressOf(const asio::ip::tcp::socket& socket) {
-  constexpr unsigned kNetworkBits = 64;
-  boost::system::error_code error;
-  const auto address = socket.remote_endpoint(error).address();
-  if (error) return "";
-  if (!address.is_v6() || address.to_v6().is_v4_mapped()) return address.to_string();
-  return asio::ip::network_v6(address.to_v6(), kNetworkBits).canonical().to_string();
-}
-
-std::string peerName(const asio::ip::tcp::socket& socket) {
+/// Returns 0.0.0.0 and port 0 for a peer that has left already.
+asio::ip::tcp::endpoint peerOf(const asio::ip::tcp::socket& socket) {
   boost::system::error_code error;
   const auto endpoint = socket.remote_endpoint(error);
-  return error ? "a peer that left" : endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
+  return error ? asio::ip::tcp::endpoint() : asio::ip::tcp::endpoint(unmapped(endpoint.address()), endpoint.port());
+}
+
+std::string nameOf(const asio::ip::tcp::endpoint& peer) {
+  return peer.address().to_string() + ":" + std::to_string(peer.port());
 }
 
 template <typename Fields>
@@ -83,8 +78,10 @@ Connection::Connection(std::uint64_t id, asio::ip::tcp::socket socket, ServerCon
     : id_(id),
       context_(context),
       strand_(socket.get_executor()),
-      peer_(peerName(socket)),
-      address_(addressOf(socket)),
+      endpoint_(peerOf(socket)),
+      is_by_proxy_(context.proxies.contains(endpoint_.address())),
+      peer_(nameOf(endpoint_)),
+      address_(limitKey(endpoint_.address())),
       stream_(std::move(socket)),
       buffer_(kReadBufferMaxBytes) {
   tune(stream_.socket());
@@ -125,6 +122,10 @@ void Connection::cut() {
 }
 
 asio::awaitable<void> Connection::run() {
+  if (context_.credentials) {
+    const bool is_secure = co_await secure();
+    if (!is_secure) co_return;
+  }
   while (!stopping_) {
     RequestParser parser;
     bound(parser, context_.options.request_body_max_bytes);
@@ -132,6 +133,7 @@ asio::awaitable<void> Connection::run() {
     stream_.expires_after(context_.options.handshake_timeout);
     auto [error, bytes_count] = co_await http::async_read_header(stream_, buffer_, parser, kToken);
     auto refusal = error ? std::nullopt : refuseHead(parser);
+    if (!error && !refusal) refusal = identify(parser.get());
     if (!error && !refusal) {
       std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
     }
@@ -175,11 +177,52 @@ asio::awaitable<void> Connection::run() {
     } else {
       reply = std::get<Reply>(std::move(routed));
     }
-    const bool keep_alive = request.keep_alive() && !stopping_;
+    const bool keep_alive = request.keep_alive() && !stopping_ && context_.retry_after_s == 0;
     reply = fitted(request, std::move(reply));
     const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
     if (!sent || !keep_alive) break;
   }
+  stream_.expires_after(kLingerTime);
+  co_await finish();
+}
+
+asio::awaitable<bool> Connection::secure() {
+  constexpr std::uint8_t kHandshakeRecord = 0x16;  // RFC 8446 section 5.1: the first byte of every TLS connection
+  if (!is_by_proxy_ && !context_.addresses.takeRequest(address_, Clock::now())) {
+    context_.counters.refused(Refused::kRate);  // a handshake costs more than a request
+    stream_.close();
+    co_return false;
+  }
+  std::array<std::uint8_t, 1> first{};
+  // One deadline for the whole handshake: single bytes do not extend it.
+  stream_.expires_after(context_.options.handshake_timeout);
+  auto [error, bytes_count] = co_await stream_.async_read_some(asio::buffer(first), kToken);
+  if (error) {
+    // Probes of the port open a connection and close it without a byte; they are no failures.
+    if (error != asio::error::eof) ++context_.counters.failed_tls_handshake_count;
+    co_return false;
+  }
+  if (first[0] != kHandshakeRecord) {
+    ++context_.counters.failed_tls_handshake_count;
+    if (first[0] >= 'A' && first[0] <= 'Z') {
+      co_await sendLast(textReply(400, "This port speaks TLS: use https:// and wss://."), false);
+    }
+    co_return false;
+  }
+  stream_.useTls(makeServerTls(stream_.tcp(), *context_.credentials->context()));
+  std::tie(error, std::ignore) = co_await stream_.async_handshake(asio::buffer(first), kToken);
+  if (error) {
+    ++context_.counters.failed_tls_handshake_count;
+    spdlog::debug("{}: the TLS handshake failed: {}", peer_, error.message());
+    stream_.close();
+    co_return false;
+  }
+  ++context_.counters.tls_handshake_count;
+  co_return true;
+}
+
+asio::awaitable<void> Connection::finish() {
+  if (stream_.isTls()) (void)co_await stream_.async_shutdown(kToken);
   boost::system::error_code ignored;
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
 }
@@ -202,6 +245,26 @@ bool Connection::isPreflight(const UpgradeRequest& request) const {
   return request.method() == http::verb::options && request.count(http::field::access_control_request_method) > 0 &&
          isApiTarget({target.data(), target.size()}) &&
          isOriginListed({origin.data(), origin.size()}, context_.options.allowed_origins);
+}
+
+std::optional<Reply> Connection::identify(const UpgradeRequest& request) {
+  if (!is_by_proxy_) return std::nullopt;
+  // A proxy may send the requests of several clients through one connection.
+  peer_ = nameOf(endpoint_);
+  address_ = limitKey(endpoint_.address());
+  std::vector<std::string_view> lines;
+  const auto [first, end] = request.equal_range("X-Forwarded-For");
+  for (auto line = first; line != end; ++line) lines.emplace_back(line->value().data(), line->value().size());
+  const auto client = forwardedClient(lines, context_.proxies);
+  if (!client) {
+    spdlog::debug("{}: {}", peer_, client.error().message);
+    return textReply(400, client.error().message);
+  }
+  if (*client) {
+    peer_ = (*client)->to_string() + " by " + nameOf(endpoint_);
+    address_ = limitKey(**client);
+  }
+  return std::nullopt;
 }
 
 std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {
@@ -273,6 +336,13 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
       --context.reserved_session_count;
     }
   };
+  if (const std::int64_t retry_after_s = context_.retry_after_s; retry_after_s > 0) {
+    context_.counters.refused(Refused::kDraining);
+    Reply reply = textReply(503, "The server is about to end: try again in " + std::to_string(retry_after_s) + " s.");
+    reply.headers.emplace_back("Retry-After", std::to_string(retry_after_s));
+    co_await sendLast(std::move(reply), false);
+    co_return;
+  }
   const Place place(context_, address_);
   UpgradeDecision decision;
   const std::string max_count = std::to_string(context_.options.max_session_count);
@@ -320,12 +390,11 @@ asio::awaitable<void> Connection::sendLast(Reply reply, bool head_only) {
   constexpr unsigned kHttp11 = 11;
   const bool sent = co_await send(reply, head_only, kHttp11, false);
   if (!sent) co_return;
-  boost::system::error_code ignored;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
   std::array<char, 4096> scratch;
   stream_.expires_after(kLingerTime);
+  co_await finish();
   for (std::size_t read_bytes = 0; read_bytes < kLingerBytes;) {
-    const auto [error, bytes_count] = co_await stream_.async_read_some(asio::buffer(scratch), kToken);
+    const auto [error, bytes_count] = co_await stream_.tcp().async_read_some(asio::buffer(scratch), kToken);
     if (error) co_return;
     read_bytes += bytes_count;
   }

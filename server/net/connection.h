@@ -9,12 +9,12 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 
 #include "http_routes.h"
 #include "pending_answer.h"
 #include "server_context.h"
 #include "session.h"
+#include "transport.h"
 
 namespace spindrift::net {
 
@@ -31,6 +31,10 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
 
  private:
   boost::asio::awaitable<void> run();
+  /// Makes the connection a TLS one; returns false if it is over.
+  boost::asio::awaitable<bool> secure();
+  /// Ends this side of the stream: with TLS by close_notify, which waits for the peer's until the deadline.
+  boost::asio::awaitable<void> finish();
   /// Asks the application. Returns nullopt if the connection was closed meanwhile.
   boost::asio::awaitable<std::optional<Reply>> ask(const HttpRequest& request);
   boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
@@ -38,6 +42,9 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   Reply fitted(const UpgradeRequest& request, Reply reply) const;
   /// Returns whether this is a CORS preflight of an allowed Origin for the REST interface.
   bool isPreflight(const UpgradeRequest& request) const;
+  /// Sets peer_ and address_ for this request, whose client a trusted proxy may name; returns the refusal of a
+  /// malformed X-Forwarded-For.
+  std::optional<Reply> identify(const UpgradeRequest& request);
   /// Returns a refusal for a request over its address's rate or from a foreign page, upgrade or not; else nullopt.
   std::optional<Reply> refuseAny(const UpgradeRequest& request);
   /// Returns false if the connection is gone.
@@ -48,9 +55,11 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   const std::uint64_t id_;
   ServerContext& context_;
   const boost::asio::any_io_executor strand_;
-  const std::string peer_;     ///< address and port, for the log
-  const std::string address_;  ///< key of this peer in AddressLimits
-  boost::beast::tcp_stream stream_;
+  const boost::asio::ip::tcp::endpoint endpoint_;  ///< of the TCP peer
+  const bool is_by_proxy_;                         ///< the TCP peer is a trusted proxy
+  std::string peer_;                               ///< client of the present request, for the log
+  std::string address_;                            ///< its key in AddressLimits
+  Transport stream_;
   boost::beast::flat_buffer buffer_;
   std::shared_ptr<Session> session_;  ///< owns the stream after the upgrade
   PendingAnswer* pending_ = nullptr;  ///< while a request waits for the application

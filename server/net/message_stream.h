@@ -1,4 +1,4 @@
-// The TCP stream below a session's WebSocket. It differs from its base class in three points: the rest of a message is
+// The stream below a session's WebSocket. It differs from its base class in three points: the rest of a message is
 // written in one kernel call, incoming fragments are counted, and the reply to a close frame can be replaced.
 //
 // Writing. Asio's composed write passes at most 64 KiB per call, and each call costs a turn of the event loop. Beast
@@ -23,13 +23,12 @@
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/compose.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/websocket/teardown.hpp>
 #include <boost/version.hpp>
 
 #include <spindrift/core/bytes.h>
 
 #include "fragment_counter.h"
+#include "transport.h"
 
 namespace spindrift::net {
 
@@ -37,9 +36,9 @@ namespace spindrift::net {
 inline constexpr bool kWriteTakesRestAlong = BOOST_VERSION == 108100;
 
 /// Used on one strand, as its base class is.
-class MessageStream : public boost::beast::tcp_stream {
+class MessageStream : public Transport {
  public:
-  explicit MessageStream(boost::beast::tcp_stream&& stream) : boost::beast::tcp_stream(std::move(stream)) {}
+  explicit MessageStream(Transport&& stream) : Transport(std::move(stream)) {}
 
   /// Sets the message that is written next, until the next call. Its bytes must stay valid until the write is done.
   /// Empty: none.
@@ -59,7 +58,7 @@ class MessageStream : public boost::beast::tcp_stream {
         [this, buffers, began = false](auto& self, boost::system::error_code error = {},
                                        std::size_t bytes_count = 0) mutable {
           if (!std::exchange(began, true)) {
-            if (!is_reading_stopped_) return boost::beast::tcp_stream::async_read_some(buffers, std::move(self));
+            if (!is_reading_stopped_) return Transport::async_read_some(buffers, std::move(self));
             return socket().async_wait(asio::socket_base::wait_error, std::move(self));
           }
           if (!error && is_reading_stopped_) error = asio::error::connection_aborted;
@@ -82,13 +81,13 @@ class MessageStream : public boost::beast::tcp_stream {
     }
     if (count == 1 && isReplacedClose(parts[0])) {
       const auto rest = asio::buffer(kProtocolErrorClose) + (kProtocolErrorClose.size() - parts[0].size());
-      return boost::beast::tcp_stream::async_write_some(rest, std::forward<Handler>(handler));
+      return Transport::async_write_some(rest, std::forward<Handler>(handler));
     }
     if (!kWriteTakesRestAlong || count == 0 || count > parts.size() || !isOfMessage(parts[count - 1]))
-      return boost::beast::tcp_stream::async_write_some(buffers, std::forward<Handler>(handler));
+      return Transport::async_write_some(buffers, std::forward<Handler>(handler));
     const auto* first = static_cast<const std::uint8_t*>(parts[count - 1].data());
     parts[count - 1] = asio::const_buffer(first, static_cast<std::size_t>(message_.data() + message_.size() - first));
-    return boost::beast::tcp_stream::async_write_some(parts, std::forward<Handler>(handler));
+    return Transport::async_write_some(parts, std::forward<Handler>(handler));
   }
 
  private:
@@ -133,10 +132,10 @@ class MessageStream : public boost::beast::tcp_stream {
 /// Beast closes a connection with this function, found by the type of the stream.
 template <typename Handler>
 void async_teardown(boost::beast::role_type role, MessageStream& stream, Handler&& handler) {
-  boost::beast::websocket::async_teardown(role, stream.socket(), std::forward<Handler>(handler));
+  async_teardown(role, static_cast<Transport&>(stream), std::forward<Handler>(handler));
 }
 inline void teardown(boost::beast::role_type role, MessageStream& stream, boost::system::error_code& error) {
-  boost::beast::websocket::teardown(role, stream.socket(), error);
+  teardown(role, static_cast<Transport&>(stream), error);
 }
 
 }  // namespace spindrift::net

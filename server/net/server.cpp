@@ -1,10 +1,12 @@
 // The listener and the I/O threads: start, accept, stop.
 #include <cerrno>
 #include <exception>
+#include <memory>
 #include <thread>
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -33,8 +35,11 @@ constexpr std::chrono::seconds kStopGrace{1};
 
 class ServerImpl final : public Server {
  public:
-  ServerImpl(const ServerOptions& options, Application& application)
-      : context_(options, application), accept_strand_(asio::make_strand(io_)), acceptor_(accept_strand_) {}
+  ServerImpl(const ServerOptions& options, TrustedNetworks proxies, std::unique_ptr<TlsCredentials> credentials,
+             Application& application)
+      : context_(options, std::move(proxies), std::move(credentials), application),
+        accept_strand_(asio::make_strand(io_)),
+        acceptor_(accept_strand_) {}
   ServerImpl(const ServerImpl&) = delete;
   ServerImpl& operator=(const ServerImpl&) = delete;
   // stop() throws only without memory, or for a thread that does not exist.
@@ -42,6 +47,10 @@ class ServerImpl final : public Server {
 
   core::Result<void> listen();
   void run();
+  void drain(std::chrono::seconds retry_after) override {
+    context_.retry_after_s = std::max<std::int64_t>(1, retry_after.count());
+  }
+  void reloadCertificate() override;
 
   std::uint16_t port() const override { return port_; }
   Hub& hub() override { return context_.hub; }
@@ -51,6 +60,7 @@ class ServerImpl final : public Server {
  private:
   core::Result<void> bind(const asio::ip::address& address);
   asio::awaitable<void> acceptLoop();
+  asio::awaitable<void> watchCertificate();
 
   ServerContext context_;
   asio::io_context io_;
@@ -59,6 +69,7 @@ class ServerImpl final : public Server {
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
   std::uint16_t port_ = 0;
   std::uint64_t last_connection_id_ = 0;
+  asio::steady_timer watch_timer_{accept_strand_};  ///< of watchCertificate()
   std::mutex stop_mutex_;
   bool stopped_ = false;
   std::vector<std::thread> threads_;
@@ -129,6 +140,7 @@ void ServerImpl::run() {
       spdlog::critical("the listener failed: {}", error.what());
     }
   });
+  if (context_.credentials) asio::co_spawn(accept_strand_, watchCertificate(), asio::detached);
   const std::size_t thread_count = std::max<std::size_t>(1, context_.options.thread_count);
   for (std::size_t k = 0; k < thread_count; ++k) {
     threads_.emplace_back([this] {
@@ -165,6 +177,20 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
   }
 }
 
+asio::awaitable<void> ServerImpl::watchCertificate() {
+  while (acceptor_.is_open()) {
+    watch_timer_.expires_after(context_.options.tls_watch_interval);
+    const auto [error] = co_await watch_timer_.async_wait(kToken);
+    if (error) co_return;
+    context_.credentials->reloadIfChanged();
+  }
+}
+
+void ServerImpl::reloadCertificate() {
+  if (!context_.credentials) return;
+  asio::post(accept_strand_, [this] { context_.credentials->reload(); });
+}
+
 ServerStats ServerImpl::stats() const {
   const Counters& counters = context_.counters;
   ServerStats out{.open_session_count = counters.open_session_count,
@@ -176,7 +202,14 @@ ServerStats ServerImpl::stats() const {
                   .raised_level_count = counters.raised_level_count,
                   .evicted_session_count = counters.evicted_session_count,
                   .delayed_message_count = counters.delayed_message_count,
+                  .tls_handshake_count = counters.tls_handshake_count,
+                  .failed_tls_handshake_count = counters.failed_tls_handshake_count,
                   .closed_by_code = counters.closedByCode()};
+  if (const TlsCredentials* const credentials = context_.credentials.get()) {
+    out.tls_reload_count = credentials->reloadCount();
+    out.failed_tls_reload_count = credentials->failureCount();
+    out.certificate_expires = credentials->expires();
+  }
   const Outbox::Waiting waiting = context_.hub.waiting();
   out.waiting_control_count = waiting.answer_count + waiting.state_count;
   out.waiting_frame_count = waiting.frame_count;
@@ -191,6 +224,7 @@ void ServerImpl::stop() {
   asio::post(accept_strand_, [this] {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
+    watch_timer_.cancel();
   });
   context_.connections.close();
   for (const auto& connection : context_.connections.all()) connection->shutDown();
@@ -208,7 +242,15 @@ void ServerImpl::stop() {
 }  // namespace
 
 core::Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Application& application) {
-  auto server = std::make_unique<ServerImpl>(options, application);
+  auto proxies = TrustedNetworks::parse(options.trusted_proxies);
+  if (!proxies) return core::Error{proxies.error().code, "--trust-proxy " + proxies.error().message};
+  std::unique_ptr<TlsCredentials> credentials;
+  if (options.tls) {
+    auto loaded = TlsCredentials::load(*options.tls);
+    if (!loaded) return loaded.error();
+    credentials = *std::move(loaded);
+  }
+  auto server = std::make_unique<ServerImpl>(options, *std::move(proxies), std::move(credentials), application);
   const core::Result<void> listening = server->listen();
   if (!listening) return listening.error();
   server->run();

@@ -13,6 +13,8 @@
 #include "connection_set.h"
 #include "room_hub.h"
 #include "static_files.h"
+#include "tls_credentials.h"
+#include "trusted_networks.h"
 
 namespace spindrift::net {
 
@@ -26,6 +28,8 @@ struct Counters {
   std::atomic<std::uint64_t> raised_level_count{0};
   std::atomic<std::uint64_t> evicted_session_count{0};
   std::atomic<std::uint64_t> delayed_message_count{0};
+  std::atomic<std::uint64_t> tls_handshake_count{0};
+  std::atomic<std::uint64_t> failed_tls_handshake_count{0};
   std::array<std::atomic<std::uint64_t>, kRefusedCount> refused_count{};
 
   void refused(Refused why) { ++refused_count[static_cast<std::size_t>(why)]; }
@@ -62,8 +66,11 @@ inline bool isLoopback(std::string_view address) {
 }
 
 struct ServerContext {
-  ServerContext(const ServerOptions& chosen, Application& served)
+  ServerContext(const ServerOptions& chosen, TrustedNetworks trusted, std::unique_ptr<TlsCredentials> tls_credentials,
+                Application& served)
       : options(chosen),
+        proxies(std::move(trusted)),
+        credentials(std::move(tls_credentials)),
         application(served),
         files(chosen.web_root),
         connections(chosen.max_session_count + kSpareConnectionCount),
@@ -71,6 +78,8 @@ struct ServerContext {
         listens_on_loopback(isLoopback(chosen.address)) {}
 
   const ServerOptions options;
+  const TrustedNetworks proxies;
+  const std::unique_ptr<TlsCredentials> credentials;  ///< null: the port speaks plain HTTP
   Application& application;
   RoomHub hub;
   StaticFiles files;
@@ -78,6 +87,7 @@ struct ServerContext {
   AddressLimits addresses;
   const bool listens_on_loopback;
   Counters counters;
+  std::atomic<std::int64_t> retry_after_s{0};  ///< > 0: draining, see Server::drain()
   std::atomic<std::uint64_t> last_session_id{0};
   /// Sessions open or in their handshake; at most max_session_count.
   std::atomic<std::size_t> reserved_session_count{0};

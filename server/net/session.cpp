@@ -44,7 +44,7 @@ websocket::close_reason closeFrame(const SessionEnd& end) {
 
 }  // namespace
 
-Session::Session(beast::tcp_stream stream, ServerContext& context)
+Session::Session(Transport stream, ServerContext& context)
     : context_(context),
       id_(++context.last_session_id),
       ws_(std::move(stream)),

@@ -8,7 +8,6 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/websocket/stream.hpp>
@@ -26,7 +25,7 @@ using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_bo
 class Session final : public SessionLink, public std::enable_shared_from_this<Session> {
  public:
   /// Takes over the stream; its executor is the session's strand.
-  Session(boost::beast::tcp_stream stream, ServerContext& context);
+  Session(Transport stream, ServerContext& context);
 
   /// Answers the upgrade, serves until the connection is gone, then returns. Calls sessionOpened first and
   /// sessionClosed last; neither if the handshake fails. Call it on the strand.

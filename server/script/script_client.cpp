@@ -1,6 +1,9 @@
 #include "script_client.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <random>
 #include <utility>
 
 #include <spindrift/codec/frame_decoder.h>
@@ -28,6 +31,7 @@ void ScriptClient::connect() {
   const std::uint64_t number = ++connection_number_;
   welcome_.reset();
   end_.reset();
+  last_end_.reset();
   refusal_.clear();
   const auto if_current = [this, number](auto action) {
     return [this, number, action](auto&&... values) {
@@ -52,12 +56,56 @@ void ScriptClient::connect() {
        }),
        .message = if_current([this](core::ByteView bytes) { take(bytes); }),
        .closed = if_current([this](std::uint16_t code, const std::string& reason) {
-         end_ = End{code, refusal_.empty() ? reason : refusal_};
+         ended({code, refusal_.empty() ? reason : refusal_});
        })});
+}
+
+void ScriptClient::ended(const End& end) {
+  constexpr std::chrono::milliseconds kPause{500};
+  last_end_ = end;
+  welcome_.reset();
+  const auto now = Clock::now();
+  if (!move_ || now >= move_->gives_up) {
+    move_.reset();
+    end_ = end;
+  } else if (move_->next == Clock::time_point::max()) {  // an attempt failed
+    move_->next = now + kPause;
+  }
+}
+
+void ScriptClient::planMove(const v1::Draining& draining) {
+  constexpr std::chrono::seconds kPatience{30};
+  Move move{.url = url_, .next = {}, .gives_up = {}};
+  if (!draining.go_to().empty()) {
+    const auto url = net::ClientUrl::parse(draining.go_to());
+    if (!url) {
+      ++malformed_count_;
+      return;
+    }
+    move.url = *url;
+    move.url.path = url_.path;
+  }
+  const double range_s = std::max(0.0, draining.reconnect_after_max_s() - draining.reconnect_after_min_s());
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::random_device entropy;
+  const double wait_s = std::clamp(draining.reconnect_after_min_s() + range_s * share(entropy), 0.0, 60.0);
+  move.next = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
+  move.gives_up = move.next + kPatience;
+  move_ = std::move(move);
+}
+
+void ScriptClient::followDraining() {
+  if (!move_ || Clock::now() < move_->next) return;
+  if (isWelcome()) connection_->close();
+  url_ = move_->url;
+  move_->next = Clock::time_point::max();  // until this attempt has failed
+  connect();
 }
 
 void ScriptClient::disconnect(bool vanish) {
   if (!connection_) return;
+  if (move_ && !isWelcome()) end_ = last_end_;
+  move_.reset();
   vanish ? connection_->vanish() : connection_->close();
 }
 
@@ -128,6 +176,7 @@ void ScriptClient::take(core::ByteView bytes) {
     case v1::ServerMessage::kWelcome:
       welcome_ = parsed->welcome();
       resume_key_ = welcome_->resume_key();
+      move_.reset();
       return;
     case v1::ServerMessage::kPeople:
       people_ = std::move(*parsed->mutable_people());
@@ -135,6 +184,8 @@ void ScriptClient::take(core::ByteView bytes) {
     case v1::ServerMessage::kRoomEvent:
       ++events_[parsed->room_event().kind()];
       return;
+    case v1::ServerMessage::kDraining:
+      return planMove(parsed->draining());
     case v1::ServerMessage::kRefusal:
       refusal_ = parsed->refusal().message();
       return;

@@ -38,6 +38,9 @@ class ScriptClient {
   /// `setup` and the pool must outlive the client.
   ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, net::ClientUrl url);
 
+  /// Call it often: after a Draining message it leaves and connects again when the time has come. A script does not see
+  /// that as the end of a connection.
+  void followDraining();
   /// Connects, then sends Hello and the subscriptions. After the end of a connection: as the same person.
   void connect();
   void disconnect(bool vanish);
@@ -57,6 +60,8 @@ class ScriptClient {
     std::string reason;
   };
   [[nodiscard]] const std::optional<End>& end() const { return end_; }
+  /// The same, but also while the client is about to come back after a Draining message.
+  [[nodiscard]] const std::optional<End>& lastEnd() const { return last_end_; }
   [[nodiscard]] const Answer* answerTo(std::uint64_t command_id) const;
   [[nodiscard]] const v1::LayerFrame* newest(v1::Layer layer) const;
   /// The newest diagnostics; null before the first.
@@ -73,16 +78,26 @@ class ScriptClient {
   [[nodiscard]] std::uint64_t malformedCount() const { return malformed_count_; }
 
  private:
+  /// Where and when to connect again, after a Draining message.
+  struct Move {
+    net::ClientUrl url;
+    Clock::time_point next;      ///< of the next attempt
+    Clock::time_point gives_up;  ///< an attempt that fails later is the end
+  };
+  void planMove(const v1::Draining& draining);
+  void ended(const End& end);
   void take(core::ByteView bytes);
   void frame(v1::Layer layer, std::uint64_t state_id);
 
   const v1::ScriptClient& setup_;
   net::ClientPool& pool_;
-  const net::ClientUrl url_;
+  net::ClientUrl url_;
   std::shared_ptr<net::Client> connection_;
   std::uint64_t connection_number_ = 0;  ///< callbacks of an earlier connection are ignored
   std::optional<v1::Welcome> welcome_;
   std::optional<End> end_;
+  std::optional<End> last_end_;
+  std::optional<Move> move_;
   std::string refusal_;
   std::string resume_key_;
   std::map<v1::Layer, v1::Subscribe> subscriptions_;

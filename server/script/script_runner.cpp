@@ -39,7 +39,8 @@ double quantile(std::vector<double> values, double ratio) {
 
 class Runner {
  public:
-  Runner(const v1::Script& script, const net::ClientUrl& url) : script_(script), pool_(net::ClientPool::create(0)) {
+  Runner(const v1::Script& script, const net::ClientUrl& url, const std::string& ca_file)
+      : script_(script), pool_(net::ClientPool::create(0, ca_file)) {
     for (const v1::ScriptClient& setup : script.clients()) {
       clients_.emplace(setup.name(), std::make_unique<ScriptClient>(setup, *pool_, url));
     }
@@ -79,8 +80,14 @@ class Runner {
   bool wait(double duration_s, const std::function<bool()>& holds) {
     if (holds()) return true;
     if (duration_s <= 0) return false;
-    pool_->runFor(std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(std::ceil(1e3 * duration_s))),
-                  holds);
+    constexpr std::chrono::milliseconds kLook{20};  // at clients that have to move to another server
+    const auto duration =
+        std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(std::ceil(1e3 * duration_s)));
+    for (const auto end = Clock::now() + duration; !holds() && Clock::now() < end;) {
+      for (const auto& [name, client] : clients_) client->followDraining();
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
+      pool_->runFor(std::min(kLook, left), holds);
+    }
     return holds();
   }
 
@@ -96,7 +103,7 @@ class Runner {
   }
 
   static std::string endOf(const ScriptClient& client) {
-    return fmt::format("{} {}", client.end()->code, client.end()->reason);
+    return fmt::format("{} {}", client.lastEnd()->code, client.lastEnd()->reason);
   }
 
   Outcome connected(ScriptClient& client) {
@@ -314,9 +321,9 @@ class Runner {
   }
 
   Outcome expectClosed(const v1::ExpectClosed& step, ScriptClient& client) {
-    if (!wait(patience_s(step), [&] { return client.end().has_value(); }))
+    if (!wait(patience_s(step), [&] { return client.lastEnd().has_value(); }))
       return {false, "the connection is still open"};
-    const bool passed = step.code() == 0 || client.end()->code == step.code();
+    const bool passed = step.code() == 0 || client.lastEnd()->code == step.code();
     return {passed, endOf(client) + (passed ? "" : fmt::format("; wanted {}", step.code()))};
   }
 
@@ -361,8 +368,8 @@ bool ScriptReport::passed() const {
   return static_cast<int>(steps.size()) == step_count && std::ranges::all_of(steps, &StepReport::passed);
 }
 
-ScriptReport runScript(const v1::Script& script, const net::ClientUrl& url) {
-  return Runner(script, url).run();
+ScriptReport runScript(const v1::Script& script, const net::ClientUrl& url, const std::string& ca_file) {
+  return Runner(script, url, ca_file).run();
 }
 
 }  // namespace spindrift::script

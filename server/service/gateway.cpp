@@ -8,10 +8,12 @@
 
 namespace spindrift::service {
 
-Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources)
+Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources,
+                 std::function<void()> on_drain)
     : access_(std::move(access)),
       sessions_(rules, access_, counters_),
-      rest_(access_, counters_, sources, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); }) {}
+      rest_(access_, counters_, sources,
+            {[this](const rooms::Room& room) { sessions_.dismiss(room.name()); }, std::move(on_drain)}) {}
 
 void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
   rooms_ = &rooms;
@@ -48,6 +50,11 @@ core::Result<void> Gateway::acceptSession(const std::string& room) {
 void Gateway::sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) {
   if (auto venue = find(room)) return sessions_.opened(session, std::move(venue), peer);
   sessions_.refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+}
+
+void Gateway::drain(const v1::Draining& draining) {
+  rest_.drain();
+  sessions_.drain(draining);
 }
 
 // Reports of rooms

@@ -1,4 +1,5 @@
 #include <cctype>
+#include <chrono>
 
 #include <fmt/format.h>
 
@@ -150,6 +151,17 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
   one("control_queue", "gauge", "Control messages that wait to be sent, over all sessions.",
       stats.waiting_control_count);
   one("frame_queue", "gauge", "Layer frames that wait to be sent, over all sessions.", stats.waiting_frame_count);
+  one("tls_handshakes_total", "counter", "TLS handshakes that were completed.", stats.tls_handshake_count);
+  one("tls_handshakes_failed_total", "counter", "Connections to the TLS port that came to no session of TLS.",
+      stats.failed_tls_handshake_count);
+  one("tls_reloads_total", "counter", "Times that a changed certificate was taken over.", stats.tls_reload_count);
+  one("tls_reloads_failed_total", "counter", "Times that a changed certificate could not be used.",
+      stats.failed_tls_reload_count);
+  page.head("tls_certificate_expires_seconds", "gauge", "Time until the certificate expires; only with TLS.");
+  if (stats.certificate_expires) {
+    const auto left = *stats.certificate_expires - std::chrono::system_clock::now();
+    page.sample("", std::chrono::duration<double>(left).count());
+  }
   page.head("refused_total", "counter", "Requests and upgrades refused before they reached a room.");
   for (std::size_t k = 0; k < net::kRefusedCount; ++k) {
     page.sample(fmt::format("reason=\"{}\"", net::kRefusedNames[k]), stats.refused_count[k]);

@@ -94,9 +94,8 @@ unsigned httpStatusOf(v1::RejectReason reason) {
   }
 }
 
-RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
-                 std::function<void(const rooms::Room&)> dismiss)
-    : access_(access), counters_(counters), sources_(sources), dismiss_(std::move(dismiss)) {}
+RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Requests requests)
+    : access_(access), counters_(counters), sources_(sources), requests_(std::move(requests)) {}
 
 void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond) {
   /// Far longer than any tick that a room allows while people are connected.
@@ -105,6 +104,7 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   if (is_probe && request.method != "GET") return respond(wrongMethod("GET"));
   if (request.path == "/healthz") return respond(text(200, "ok\n"));
   if (request.path == "/readyz") {
+    if (is_draining_) return respond(text(503, "draining\n"));
     const double since_s = rooms_->sinceLastRound_s();
     if (since_s >= kStuck_s)
       return respond(text(503, "the simulation has stood still for " + std::to_string(since_s) + " s\n"));
@@ -137,6 +137,7 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
     for (const std::string& name : rooms_->rules().scenes.names()) out.add_scenes(name);
     return respond(json(200, out));
   }
+  if (call.path[0] == "drain" && call.path.size() == 1) return drainServer(call, respond);
   if (call.path[0] != "rooms") return respond(std::nullopt);
   if (call.path.size() == 1) return rooms(call, std::move(respond));
   room(call, std::move(respond));
@@ -160,6 +161,11 @@ void RestApi::rooms(const Call& call, net::HttpResponder respond) {
 
 void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
   if (!call.isOperator()) return respond(problem(403, "opening a room takes the role of operator"));
+  if (is_draining_) {
+    HttpReply out = problem(503, "the server is about to end: it opens no more rooms");
+    out.headers.emplace_back("Retry-After", "5");
+    return respond(std::move(out));
+  }
   if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
   const core::ByteView body = call.request.body;
   const auto wanted = wire::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
@@ -276,16 +282,27 @@ void RestApi::gauges(const Call& call, const rooms::Room& room, const net::HttpR
   respond(json(200, out));
 }
 
+void RestApi::drainServer(const Call& call, const net::HttpResponder& respond) {
+  if (call.request.method != "POST") return respond(wrongMethod("POST"));
+  if (!call.isOperator() || call.grant.rooms)
+    return respond(problem(403, "ending the server takes the role of operator in all rooms"));
+  if (!requests_.drain) return respond(problem(409, "this server is part of another program, which has to end it"));
+  access_.audit().request("drain_asked", call.details(""), call.grant.role, "", "");
+  requests_.drain();
+  respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
+}
+
 void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
   if (!call.isOperator()) return respond(problem(403, "closing a room takes the role of operator"));
   const auto report = [this, who = call.details(call.path[1]), role = call.grant.role](const std::string& error) {
     access_.audit().request("room_closed", who, role, "", error);
   };
-  rooms_->closeRoom(call.path[1], dismiss_, [report, respond = std::move(respond)](const core::Result<void>& closed) {
-    report(closed ? "" : closed.error().message);
-    if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
-    respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
-  });
+  rooms_->closeRoom(call.path[1], requests_.dismiss,
+                    [report, respond = std::move(respond)](const core::Result<void>& closed) {
+                      report(closed ? "" : closed.error().message);
+                      if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
+                      respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
+                    });
 }
 
 void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond) {

@@ -107,6 +107,15 @@ void Sessions::dismiss(const std::string& room) {
   for (const net::SessionId session : members) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 
+void Sessions::drain(const v1::Draining& draining) {
+  const core::SharedBytes message = wire::draining(draining);
+  const std::lock_guard lock(mutex_);
+  for (const auto& [session, state] : sessions_) {
+    if (state.stage != Stage::kNew && state.wire_minor >= wire::kDrainingMinor)
+      hub().sendState(session, topic::kDraining, message);
+  }
+}
+
 void Sessions::displace(net::SessionId session) {
   refuse(session, net::CloseCode::kResumedElsewhere, "another connection goes on in your place");
 }

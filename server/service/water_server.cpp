@@ -1,3 +1,4 @@
+#include <spindrift/service/drain.h>
 #include <spindrift/service/water_server.h>
 
 namespace spindrift::service {
@@ -9,7 +10,7 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
                                                           .messages_per_s = options.network.messages_per_s,
                                                           .message_burst_count = options.network.message_burst_count,
                                                           .hello_patience = options.hello_patience},
-                                             self->sources_);
+                                             self->sources_, std::move(options.on_drain));
   self->gateway_->join(options.cluster);
   self->encoder_ = std::make_unique<rooms::EncoderThread>(*self->gateway_);
   self->sources_.encoder = self->encoder_.get();
@@ -29,6 +30,10 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
 
 WaterServer::~WaterServer() {
   stop();
+}
+
+void WaterServer::drain(std::chrono::milliseconds closes_in, const std::string& go_to) {
+  gateway_->drain(beginDrain(*network_, closes_in, go_to));
 }
 
 void WaterServer::stop() {

@@ -109,6 +109,12 @@ core::SharedBytes levelChanged(core::Level level) {
   return serialize(message);
 }
 
+core::SharedBytes draining(const v1::Draining& draining) {
+  v1::ServerMessage message;
+  *message.mutable_draining() = draining;
+  return serialize(message);
+}
+
 core::SharedBytes pong(double client_time_s, double server_time_s) {
   v1::ServerMessage message;
   message.mutable_pong()->set_client_time_s(client_time_s);

@@ -4,7 +4,7 @@ import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
 
 export const repository = fileURLToPath(new URL("../..", import.meta.url));
-const binary = process.env.SPINDRIFT_BINARY ?? `${repository}/build/release/bin/spindrift`;
+export const binary = process.env.SPINDRIFT_BINARY ?? `${repository}/build/release/bin/spindrift`;
 /** A reload on a busy machine takes longer than the default grace of 20 s. */
 const kGrace = ["--grace", "300"];
 const kTestScenes = [...kGrace, "--scene", `${repository}/tests/browser/scene.textproto`, "--room", `marina=${repository}/tests/browser/marina.textproto`, "--room", `sea=${repository}/tests/browser/sea.textproto`, "--room", `tank=${repository}/tests/browser/tank.textproto`];
@@ -15,7 +15,7 @@ const STOP_LIMIT_MS = 30_000;
  * Starts `spindrift serve` with the built page.
  * @param {number} port 0 = any free port
  * @param {string[]} scenes options that choose scenes; by default those of this folder
- * @returns {Promise<{url: string, port: number, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
+ * @returns {Promise<{url: string, port: number, ended: Promise<{code: number | null, signal: string | null}>, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
  *   rejects with the server's output if it ends before it is ready, or after 120 s
  */
 export function startServer(port = 0, scenes = kTestScenes) {
@@ -43,10 +43,10 @@ export function startServer(port = 0, scenes = kTestScenes) {
       reject(error ?? new Error(`the server ended before it was ready (code ${code}, signal ${signal}):\n${words}`));
     });
     createInterface({ input: child.stdout }).on("line", (line) => {
-      const match = /^Spindrift is ready: (http:\/\/[^/]+:(\d+)\/)/.exec(line);
+      const match = /^Spindrift is ready: (https?:\/\/[^/]+:(\d+)\/)/.exec(line);
       if (!match) return;
       clearTimeout(timer);
-      resolve({ url: match[1], port: Number(match[2]), stop: (signal) => stop(child, ended, signal) });
+      resolve({ url: match[1], port: Number(match[2]), ended, stop: (signal) => stop(child, ended, signal) });
     });
   });
 }

@@ -99,6 +99,19 @@ REQUESTS = {
     "endless": "GET / HTTP/1.1\r\nHost: " + "a" * 300,
 }
 
+FORWARDED = {
+    "one": "203.0.113.9",
+    "chain": "198.51.100.1, 203.0.113.9:4711,10.0.0.2\n10.0.0.3",
+    "ipv6": "[2001:db8::9]:4711, fd00::1 , ::1",
+    "mapped": "::ffff:203.0.113.9, ::ffff:10.0.0.2",
+    "proxies": "10.0.0.4,10.0.0.3",
+    "unknown": "unknown, 10.0.0.1",
+    "empty_entries": ",, ,\n\n,",
+    "zone": "fe80::1%eth0",
+    "network": "10.0.0.0/8",
+    "network_v6": "2001:db8::/33",
+}
+
 SCENES = {
     "wave": "wave {}\n",
     "particles": "particles { count: 100 boundary_x: BOUNDARY_WALL }\n",
@@ -215,6 +228,7 @@ def main():
     pieces = (b"\xff", b"\x00", b"\x03")
     write("http", {name: pieces[i % 3] + text.encode("latin-1") for i, (name, text) in enumerate(REQUESTS.items())})
     write("access", access())
+    write("forwarded", {name: text.encode() for name, text in FORWARDED.items()})
     write("state_files", state_files())
     write("scene", {name: text.encode() for name, text in SCENES.items()})
 

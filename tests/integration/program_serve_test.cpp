@@ -187,6 +187,35 @@ TEST_F(RunningServe, EndsCleanlyOnSigint) {
   expectCleanEndOn(SIGINT);
 }
 
+TEST_F(RunningServe, EndsAtOnceWithoutClients) {
+  const auto begin = std::chrono::steady_clock::now();
+  child_->signal(SIGTERM);
+  EXPECT_EQ(child_->wait(kStopBound), 0);
+  EXPECT_THAT(child_->err(), testing::Not(HasSubstr("draining")));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, kStopBound);
+}
+
+TEST_F(RunningServe, TellsItsClientsBeforeItEnds) {
+  ScriptedClient client(port_);
+  client.hello({.minor = 2});
+  ScriptedClient older(port_);
+  older.hello({.minor = 1});
+  ASSERT_NE(client.welcome().person_id(), 0u);
+  ASSERT_NE(older.welcome().person_id(), 0u);
+  child_->signal(SIGTERM);
+  const auto draining = client.waitFor(v1::ServerMessage::kDraining);
+  ASSERT_TRUE(draining);
+  EXPECT_DOUBLE_EQ(draining->draining().closes_in_s(), 1.0);
+  EXPECT_EQ(draining->draining().go_to(), "");
+  EXPECT_GE(draining->draining().reconnect_after_min_s(), 1.0);
+  EXPECT_GT(draining->draining().reconnect_after_max_s(), draining->draining().reconnect_after_min_s());
+  EXPECT_TRUE(client.ws().waitClosed());
+  EXPECT_EQ(client.ws().closeCode(), 1001);
+  EXPECT_FALSE(older.waitFor(v1::ServerMessage::kDraining)) << "wire 1.1 does not have this message";
+  EXPECT_EQ(older.ws().closeCode(), 1001);
+  EXPECT_EQ(child_->wait(kStopBound), 0);
+}
+
 TEST_F(RunningServe, EndsInTimeWithAClientThatDoesNotAnswer) {
   ScriptedClient deaf(port_);
   deaf.hello();

@@ -209,6 +209,27 @@ TEST_F(Rest, ImpossibleRoomsAreRefusedWithTheReason) {
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/zzz").status, 404U);
 }
 
+TEST_F(Rest, AServerInsideAnotherProgramIsNotEndedByARequest) {
+  EXPECT_EQ(ask("GET", "/api/v1/drain").status, 405U);
+  const Answer answer = ask("POST", "/api/v1/drain");
+  EXPECT_EQ(answer.status, 409U);
+  EXPECT_THAT(answer.text("message"), HasSubstr("part of another program"));
+  EXPECT_EQ(httpRequest(server().port(), "GET", "/readyz").status, 200U);
+}
+
+TEST_F(Rest, WhileDrainingNoRoomsOpenAndTheServerIsNotReady) {
+  server().drain(std::chrono::seconds(2), "");
+  const HttpAnswer ready = httpRequest(server().port(), "GET", "/readyz");
+  EXPECT_EQ(ready.status, 503U);
+  EXPECT_EQ(ready.body, "draining\n");
+  EXPECT_EQ(httpRequest(server().port(), "GET", "/healthz").status, 200U);
+  const HttpAnswer room = httpRequest(server().port(), "POST", "/api/v1/rooms", "Content-Type: application/json\r\n",
+                                      R"({"name": "late", "scene": "pond"})");
+  EXPECT_EQ(room.status, 503U);
+  EXPECT_EQ(room.headers.at("retry-after"), "5");
+  EXPECT_EQ(ask("GET", "/api/v1/rooms").status, 200U);
+}
+
 TEST_F(RestByRole, RequestsThatChangeSomethingNeedAToken) {
   const std::string splash = R"({"splash": {"depth_m": 0.3}})";
   const std::string reset = R"({"reset": {}})";
@@ -220,6 +241,7 @@ TEST_F(RestByRole, RequestsThatChangeSomethingNeedAToken) {
   EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kOperator).status, 200U);
   EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kPlayer).status, 403U);
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/main", "", kPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/drain", "", kPlayer).status, 403U);
   EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kOperator).status, 201U);
   const Answer wrong = ask("GET", "/api/v1/rooms", "", "wrong-wrong-wrong-1");
   EXPECT_EQ(wrong.status, 401U);

@@ -107,7 +107,7 @@ describe("parse", () => {
 
   it("ignores an empty message and a kind it does not know", () => {
     expect(parse(new ArrayBuffer(0)).kind).toBe("unknown");
-    expect(parse(Uint8Array.of(0x7a, 0x01, 0x00).buffer).kind).toBe("unknown");
+    expect(parse(Uint8Array.of(0xa2, 0x06, 0x01, 0x00).buffer).kind).toBe("unknown");
   });
 
   it("refuses frames whose payload does not fit their header", () => {

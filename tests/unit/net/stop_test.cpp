@@ -12,6 +12,7 @@ using test::bytes;
 using test::eventually;
 using test::RawTcp;
 using test::TestServer;
+using test::text;
 using test::WsClient;
 using Clock = std::chrono::steady_clock;
 
@@ -36,6 +37,24 @@ TEST(Stop, SaysGoingAwayToClientsThatListen) {
     EXPECT_EQ(closed.end.code, 1001);
     EXPECT_EQ(closed.end.reason, "server is shutting down");
   }
+}
+
+TEST(Stop, WhileDrainingNewSessionsAreRefusedAndOldOnesGoOn) {
+  TestServer served;
+  WsClient old = served.client();
+  RawTcp keep_alive;
+  ASSERT_TRUE(keep_alive.connect("127.0.0.1", served.server->port()));
+  served.server->drain(std::chrono::seconds(7));
+  WsClient late;
+  EXPECT_FALSE(late.connect("127.0.0.1", served.server->port()));
+  EXPECT_EQ(late.handshakeStatus(), 503u);
+  EXPECT_EQ(late.handshakeHeader("Retry-After"), "7");
+  EXPECT_TRUE(old.sendBinary(bytes("echo still here")));
+  EXPECT_EQ(text(old.receive()), "echo still here");
+  ASSERT_TRUE(keep_alive.send("GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n"));
+  EXPECT_TRUE(keep_alive.receiveAll().starts_with("HTTP/1.1 200")) << "the reply comes, and is the last";
+  EXPECT_TRUE(keep_alive.closed());
+  EXPECT_EQ(served.server->stats().refused_count[static_cast<std::size_t>(Refused::kDraining)], 1u);
 }
 
 TEST(Stop, DoesNotWaitForUnresponsiveClients) {

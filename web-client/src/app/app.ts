@@ -175,6 +175,7 @@ export class App {
         this.boats.setBoats(boats);
         this.tags.setBoats(boats);
       },
+      draining: ({ draining }) => this.toast.show(draining.goTo === "" ? "the server restarts, reconnecting" : "moving to another server, reconnecting", "warn"),
       roomEvent: ({ event, message }) => this.toast.show(message || kRoomEventTexts[event], event === "recovered" || event === "fidelity" ? "warn" : "good"),
       clock: ({ leadS }) => this.display.scene.clock.sync(leadS + performance.timeOrigin / 1000),
       stats: ({ stats, supersededCount }) => {

@@ -12,6 +12,7 @@ import {
   type Diagnostics,
   type ServerMessage,
 } from "../gen/spindrift/v1/wire_pb";
+import { readDraining } from "./draining";
 import { readBoatList, readGreeting } from "./greeting";
 import type { PackedFrame, PlainFrame } from "./frame_types";
 import { levelName } from "./level";
@@ -41,6 +42,10 @@ const kReaders = {
   welcome: (welcome) => ({ welcome: readWelcome(welcome) }),
   people: (people) => ({ people: readPeople(people) }),
   levelChanged: ({ level }) => ({ level: levelName(level) }),
+  draining: ({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS }) => {
+    const draining = readDraining({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS });
+    return typeof draining === "string" ? malformed(draining) : { draining };
+  },
   pong: ({ clientTimeS, serverTimeS }) => ({ clientTimeS, serverTimeS }),
   refusal: ({ message }) => ({ message }),
 } satisfies { [K in Kind]: ReaderOf<K> };

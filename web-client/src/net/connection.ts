@@ -2,6 +2,7 @@
 // Socket, clock and timers are injected, so tests need no network. Runs in the worker.
 import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 
+import type { DrainingInfo } from "../codec/draining";
 import type { PlainFrame } from "../codec/frame_types";
 import { FrameUnpacker } from "../codec/frame_unpacker";
 import { kWireMajor, kWireMinor, type GreetingInfo } from "../codec/greeting";
@@ -12,6 +13,7 @@ import { ClientMessageSchema, Packing } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import { LinkMeter } from "./link_meter";
 import { LoadGovernor } from "./load_governor";
+import { planMove, type MovePlan } from "./move_plan";
 import type { CommandAction, ConnectionCalls, ConnectionEvent, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
 import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
@@ -73,6 +75,8 @@ export class Connection implements ConnectionCalls {
   private lastPingMs = 0;
   private pingCount = 0;
   private retryTimer: number | undefined;
+  /** Set while the server is about to end: when and where to connect anew. */
+  private move: MovePlan | undefined;
   private tickTimer: number | undefined;
   private greeting: GreetingInfo | undefined;
   private visible = true;
@@ -89,7 +93,7 @@ export class Connection implements ConnectionCalls {
   private lastKeyframeRequestMs = -Infinity;
 
   constructor(
-    private readonly url: string,
+    private url: string,
     private readonly world: ConnectionWorld,
     private readonly sink: ConnectionSink,
     private identity: Identity = { name: "", token: "", resumeKey: "" },
@@ -161,6 +165,8 @@ export class Connection implements ConnectionCalls {
   private connect(): void {
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     this.retryTimer = undefined;
+    if (this.move) this.url = this.move.url;
+    this.move = undefined;
     this.dropSocket();
     this.setState({ name: "connecting" });
     this.lastHeardMs = this.world.nowMs();
@@ -217,6 +223,8 @@ export class Connection implements ConnectionCalls {
       case "levelChanged":
         this.linkLevel = parsed.level;
         return;
+      case "draining":
+        return this.drained(parsed.draining);
       case "pong":
         return this.ponged(parsed.clientTimeS * 1000, parsed.serverTimeS);
       case "refusal":
@@ -236,6 +244,18 @@ export class Connection implements ConnectionCalls {
       default:
         return this.sink.event(parsed);
     }
+  }
+
+  /** Stays until the planned moment if the server lets it, and connects anew then. */
+  private drained(draining: DrainingInfo): void {
+    this.move = planMove(draining, this.url, this.world.random(), this.world.nowMs());
+    if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
+    this.retryTimer = this.world.setTimer(() => {
+      this.failedCount = 0;
+      this.failPending("the page moves to another server");
+      this.connect();
+    }, this.move.atMs - this.world.nowMs());
+    this.sink.event({ kind: "draining", draining });
   }
 
   private deliver(frame: PlainFrame): void {
@@ -328,6 +348,11 @@ export class Connection implements ConnectionCalls {
 
   private lost(why: string): void {
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
+    if (this.move) {
+      this.dropSocket();
+      this.failPending("the server restarts");
+      return this.setState({ name: "retrying", inS: Math.max(0, this.move.atMs - this.world.nowMs()) / 1000, why: "the server restarts" });
+    }
     this.failedCount = this.state.name === "live" && this.world.nowMs() - this.liveSinceMs >= kSettledMs ? 1 : this.failedCount + 1;
     this.dropSocket();
     this.failPending("the connection was lost before the answer came");

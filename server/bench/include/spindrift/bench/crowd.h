@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <spindrift/core/bytes.h>
@@ -22,6 +23,7 @@ struct Sighting {
 
 struct CrowdOptions {
   std::size_t client_count = 100;
+  std::string ca_file;                        ///< of ClientPool, for wss://
   std::size_t deaf_count = 0;                 ///< this many of them never read
   double visitors_per_s = 0.0;                ///< additional clients that connect, watch for a second, and leave
   double commands_per_s = 0.0;                ///< of each client that reads

@@ -27,6 +27,10 @@ class EdgeServer final : public net::Application {
   EdgeServer(const EdgeServer&) = delete;
   EdgeServer& operator=(const EdgeServer&) = delete;
 
+  /// As WaterServer::drain().
+  void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
+  /// See net::Server::reloadCertificate().
+  void reloadCertificate() { network_->reloadCertificate(); }
   /// Closes the sessions with 1001. Idempotent.
   void stop();
   [[nodiscard]] service::AccessControl& access() { return access_; }
@@ -48,6 +52,7 @@ class EdgeServer final : public net::Application {
   EdgeServer(service::AccessOptions access, const service::SessionRules& rules)
       : access_(std::move(access)), sessions_(rules, access_, counters_) {}
 
+  std::atomic<bool> is_draining_{false};
   service::CommandCounters counters_;
   service::AccessControl access_;
   service::Sessions sessions_;

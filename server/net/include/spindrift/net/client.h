@@ -12,11 +12,12 @@
 
 namespace spindrift::net {
 
-/// Address of a server: "ws://HOST[:PORT][/PATH]". No wss://: TLS ends in a proxy before the server.
+/// Address of a server: "ws://HOST[:PORT][/PATH]", or "wss://..." for TLS.
 struct ClientUrl {
   std::string host;
   std::string port;
   std::string path;  ///< with its leading slash
+  bool is_tls = false;
 
   /// Parses the URL; kInvalidInput says what is wrong.
   static core::Result<ClientUrl> parse(const std::string& url);
@@ -55,7 +56,9 @@ inline constexpr std::size_t kClientQueueMaxCount = 4096;
 class ClientPool {
  public:
   /// With 0 threads callbacks come from runFor() only.
-  static std::unique_ptr<ClientPool> create(std::size_t thread_count);
+  /// For wss:// the server's certificate must come from an authority of the system or of `ca_file` (PEM; read at the
+  /// first such connection), and must have the URL's host.
+  static std::unique_ptr<ClientPool> create(std::size_t thread_count, const std::string& ca_file = "");
   virtual ~ClientPool() = default;  ///< closes open connections at once; no callback comes after it
 
   virtual std::shared_ptr<Client> connect(const ClientUrl& url, const ClientOptions& options, ClientEvents events) = 0;

@@ -84,7 +84,7 @@ struct HttpRequest {
   core::ByteView body;          ///< at most ServerOptions::request_body_max_bytes; valid during the call
   std::string authorization{};  ///< the Authorization header, unparsed
   std::string content_type{};   ///< the Content-Type header, unparsed
-  std::string peer{};           ///< address and port of the client
+  std::string peer{};           ///< for logs: the client's address, and the proxy if a trusted one passed it on
 };
 
 /// Answers one request; nullopt = 404. Call it at most once, from any thread; if every copy is dropped without a call,
@@ -171,17 +171,26 @@ class Application {
   virtual void httpRequest(const HttpRequest& request, HttpResponder respond) = 0;
 };
 
+/// PEM files: the chain of certificates, the server's own first, and its private key without a passphrase.
+struct TlsFiles {
+  std::string certificate_file;
+  std::string key_file;
+};
+
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;  ///< 0 = any free port; read the real one from Server::port()
   /// Descriptor of a TCP socket that listens already, bound to `address` and `port`: used instead of a new one. The
   /// Server takes it over and closes it.
   std::optional<int> listening_socket{};
-  std::string web_root{};  ///< folder of the built web client; empty = no page is served
+  /// If set, the port speaks TLS only. The files are read again when they change.
+  std::optional<TlsFiles> tls{};
+  std::chrono::milliseconds tls_watch_interval{2'000};  ///< between two looks at the files
+  std::string web_root{};                               ///< folder of the built web client; empty = no page is served
   std::size_t thread_count = 1;
   std::size_t max_session_count = 256;
-  /// Share of max_session_count that one address may use (IPv6: one /64), at least one session. Use 1 behind a proxy,
-  /// where all clients have the proxy's address.
+  /// Share of max_session_count that one address may use (IPv6: one /64), at least one session. Use 1 behind a proxy
+  /// that is not in trusted_proxies: all its clients have its address.
   double address_session_share = 0.5;
   std::size_t read_message_max_bytes = 16 * 1024;  ///< client messages are small
   std::size_t request_body_max_bytes = 64 * 1024;
@@ -199,6 +208,9 @@ struct ServerOptions {
   /// Additional allowed Origins ("https://water.example"); "*" = any. Clients that are no browsers send no Origin and
   /// are not checked.
   std::vector<std::string> allowed_origins{};
+  /// Networks of proxies (checkNetwork()). Where the TCP peer is in one of them, the client's address, for all limits
+  /// and logs, is the one in X-Forwarded-For; from any other peer that header is ignored.
+  std::vector<std::string> trusted_proxies{};
   /// Token buckets per address (IPv6: one /64): excess requests get 429, excess messages wait unread.
   double address_requests_per_s = 50.0;
   double address_request_burst_count = 1000.0;
@@ -215,11 +227,12 @@ enum class Refused : std::uint8_t {
   kHandshake,   ///< 400, 404, 426: not a supported WebSocket upgrade
   kRequest,     ///< 400, 411, 413, 431: invalid HTTP, no length, or too large
   kConnection,  ///< closed without a reply: too many connections
+  kDraining,    ///< 503: the server is about to end
 };
-inline constexpr std::size_t kRefusedCount = 7;
+inline constexpr std::size_t kRefusedCount = 8;
 /// Names indexed by Refused: "origin", "rate", ...
-inline constexpr std::array<std::string_view, kRefusedCount> kRefusedNames{"origin",    "rate",    "full",      "room",
-                                                                           "handshake", "request", "connection"};
+inline constexpr std::array<std::string_view, kRefusedCount> kRefusedNames{
+    "origin", "rate", "full", "room", "handshake", "request", "connection", "draining"};
 
 /// Counters since the start (open_session_count: current value).
 struct ServerStats {
@@ -235,20 +248,31 @@ struct ServerStats {
   std::uint64_t waiting_frame_count = 0;    ///< frames waiting now, over all sessions
   std::uint64_t delayed_message_count = 0;  ///< messages delayed by their address's token bucket
   std::array<std::uint64_t, kRefusedCount> refused_count{};  ///< by Refused
-  std::map<std::uint16_t, std::uint64_t> closed_by_code{};   ///< ended sessions by close code; 0: the connection broke
+  std::uint64_t tls_handshake_count = 0;                     ///< completed ones
+  std::uint64_t failed_tls_handshake_count = 0;              ///< neither TLS nor in time, or broken off
+  std::uint64_t tls_reload_count = 0;                        ///< times that a changed certificate was taken over
+  std::uint64_t failed_tls_reload_count = 0;                 ///< times that a changed certificate could not be used
+  /// When the certificate in use, or one of its chain, expires; nullopt without TLS.
+  std::optional<std::chrono::system_clock::time_point> certificate_expires{};
+  std::map<std::uint16_t, std::uint64_t> closed_by_code{};  ///< ended sessions by close code; 0: the connection broke
 };
 
 /// A running server. Created by start(); the destructor stops it.
 class Server {
  public:
   /// Binds the port and starts the I/O threads. Error kUnavailable (port in use, bad address, a descriptor that is no
-  /// socket) names address, port and what to do.
+  /// socket) names address, port and what to do; kInvalidInput: trusted_proxies, tls.
   static core::Result<std::unique_ptr<Server>> start(const ServerOptions& options, Application& application);
   virtual ~Server() = default;
 
   virtual std::uint16_t port() const = 0;
   virtual Hub& hub() = 0;
   virtual ServerStats stats() const = 0;
+  /// From now on refuses new sessions with 503 and Retry-After, and ends HTTP connections after their next reply. Open
+  /// sessions go on. Thread-safe.
+  virtual void drain(std::chrono::seconds retry_after) = 0;
+  /// With TLS: reads certificate and key again, in the background. Thread-safe.
+  virtual void reloadCertificate() = 0;
   /// Stops accepting, closes every session with 1001, waits at most close_timeout + 1 s, closes the remaining sockets
   /// and joins the threads. sessionClosed has been called for every open session when it returns. Idempotent; not from
   /// an I/O thread.

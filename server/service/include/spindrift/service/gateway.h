@@ -2,6 +2,7 @@
 // net::Application; called on I/O threads, the simulation thread and the encoder thread.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -19,8 +20,9 @@ namespace spindrift::service {
 
 class Gateway final : public net::Application, public rooms::RoomOutlets, public rooms::FrameOutlet {
  public:
-  /// `sources` outlives the gateway.
-  Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources);
+  /// `sources` outlives the gateway. `on_drain`: an operator asks for the server's end; empty: not offered.
+  Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources,
+          std::function<void()> on_drain = {});
   [[nodiscard]] AccessControl& access() { return access_; }
   /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
   /// network calls the gateway, though their threads may have ended.
@@ -30,6 +32,9 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void join(const ClusterHooks& cluster);
   [[nodiscard]] Sessions& sessions() { return sessions_; }
   [[nodiscard]] RestApi& rest() { return rest_; }
+
+  /// Tells every client that knows the message, and refuses new rooms from now on. /readyz answers 503.
+  void drain(const v1::Draining& draining);
 
   void serverStarts(net::Hub& served) override;
   core::Result<void> acceptSession(const std::string& room) override;

@@ -26,15 +26,21 @@ unsigned httpStatusOf(v1::RejectReason reason);
 
 class RestApi {
  public:
-  /// All references must outlive it. `dismiss` closes a room's sessions before the room closes.
-  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
-          std::function<void(const rooms::Room&)> dismiss);
+  /// What it asks of the server around it.
+  struct Requests {
+    std::function<void(const rooms::Room&)> dismiss;  ///< closes a room's sessions before the room closes
+    std::function<void()> drain{};                    ///< ends the server; empty: refused
+  };
+  /// All references must outlive it.
+  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Requests requests);
 
   /// Sets the rooms; call it before the network starts.
   void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
   /// Makes the server part of a cluster; call it before the network starts.
   void join(const ClusterHooks& cluster) { cluster_ = cluster; }
   void serverStarts(net::Hub& hub) { hub_ = &hub; }
+  /// From now on /readyz answers 503 and rooms are not opened. Thread-safe.
+  void drain() { is_draining_ = true; }
   /// Answers any request that net passes to the application.
   void answer(const net::HttpRequest& request, net::HttpResponder respond);
 
@@ -58,6 +64,7 @@ class RestApi {
   void rooms(const Call& call, net::HttpResponder respond);
   void createRoom(const Call& call, net::HttpResponder respond);
   void room(const Call& call, net::HttpResponder respond);
+  void drainServer(const Call& call, const net::HttpResponder& respond);
   void closeRoom(const Call& call, net::HttpResponder respond);
   void command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
   void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
@@ -69,7 +76,8 @@ class RestApi {
   AccessControl& access_;
   CommandCounters& counters_;
   const MetricsSources& sources_;
-  const std::function<void(const rooms::Room&)> dismiss_;
+  const Requests requests_;
+  std::atomic<bool> is_draining_{false};
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
   net::Hub* hub_ = nullptr;                   ///< set before any request arrives
   ClusterHooks cluster_;                      ///< set before any request arrives

@@ -56,6 +56,8 @@ class Sessions {
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
   /// Another connection goes on in the session's place.
   void displace(net::SessionId session);
+  /// Tells every client that knows the message.
+  void drain(const v1::Draining& draining);
   /// Tells the client why, and closes.
   void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct WaterServerOptions {
   ClusterHooks cluster{};  ///< what they point to outlives stop()
   AccessOptions access;
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
+  std::function<void()> on_drain{};                  ///< see Gateway
 };
 
 class WaterServer {
@@ -34,11 +36,14 @@ class WaterServer {
   WaterServer(const WaterServer&) = delete;
   WaterServer& operator=(const WaterServer&) = delete;
 
+  /// Prepares the end, `closes_in` from now on: tells the clients to go to `go_to` (empty: to come back here), refuses
+  /// new sessions and rooms, and lets /readyz answer 503. stop() comes next.
+  void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
 
-  /// Replaces tokens and keys; sessions that are open keep what they have.
-  void replaceAccess(access::Access access) { gateway_->access().replace(std::move(access)); }
+  /// See net::Server::reloadCertificate().
+  void reloadCertificate() { network_->reloadCertificate(); }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] std::string deviceLine() const { return simulation_->deviceLine(); }

@@ -47,6 +47,7 @@ core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::str
 core::SharedBytes welcome(const v1::Welcome& welcome);
 core::SharedBytes people(const v1::People& people);
 core::SharedBytes levelChanged(core::Level level);
+core::SharedBytes draining(const v1::Draining& draining);
 core::SharedBytes pong(double client_time_s, double server_time_s);
 core::SharedBytes refusal(std::string_view text);
 
