@@ -222,8 +222,9 @@ TEST_F(ProgramAccess, APersonHasOneBudgetOverAllSessionsAndRooms) {
 
 TEST_F(ProgramAccess, TheAuditLogSaysWhatOperatorsDidAndWhoWasRefused) {
   if (!serve()) GTEST_SKIP() << "no device";
-  ScriptedClient chief = client(jwt("operator", R"(,"sub":"ada\"}\n{","name":"A\"da\n{"})"));
-  ASSERT_TRUE(chief.apply(setParameter("wave.depth_m", 1.25)));
+  ScriptedClient chief = client(jwt("operator", R"(,"sub":"ada\"}\n{","name":"A\"da\n{")"));
+  const v1::ServerMessage set = chief.ask(setParameter("wave.depth_m", 1.25));
+  ASSERT_TRUE(set.has_ack()) << set.DebugString() << chief.welcome().DebugString();
   ASSERT_TRUE(chief.apply(splash())) << "players may do it, too: not in the log";
   EXPECT_EQ(chief.rejected(step(1)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
   ScriptedClient player = client(jwt("player", R"(,"sub":"bob")"));
