@@ -146,6 +146,19 @@ TEST_F(ProgramAccess, AJwtGivesRoleNameAndRoomToSessionsAndRequests) {
   stop();
 }
 
+TEST_F(ProgramAccess, TokensUpTo8KiBPassBothWays) {
+  if (!serve()) GTEST_SKIP() << "no device";
+  const std::string token = jwt("player", R"(,"more":")" + std::string(5800, 'm') + "\"");
+  ASSERT_GT(token.size(), 7900U);
+  ASSERT_LE(token.size(), 8192U);
+  EXPECT_EQ(client(token).welcome().role(), v1::ROLE_PLAYER);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", token, R"({"splash": {}})").status, 200U);
+  const HttpAnswer answer = ask("GET", "/api/v1/rooms", token + std::string(400, 'm'));
+  EXPECT_EQ(answer.status, 401U);
+  EXPECT_THAT(answer.body, HasSubstr("8192 bytes"));
+  stop();
+}
+
 TEST_F(ProgramAccess, AnOperatorOfOneRoomOpensAndClosesThatRoomOnly) {
   if (!serve()) GTEST_SKIP() << "no device";
   const std::string token = jwt("operator", R"(,"sub":"bob","room":["race"])");
