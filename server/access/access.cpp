@@ -23,8 +23,9 @@ std::optional<system_clock::time_point> parseUtc(const std::string& text) {
   using namespace std::chrono;
   const year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                             std::chrono::day(static_cast<unsigned>(day))};
-  constexpr int kLastYear = 2200;  // clocks count nanoseconds in 64 bits
-  if (!date.ok() || year > kLastYear || hour < 0 || hour > 23 || minute < 0 || minute > 59 || second < 0 || second > 59)
+  constexpr int kFirstYear = 1970, kLastYear = 2200;  // clocks count nanoseconds in 64 bits
+  if (!date.ok() || year < kFirstYear || year > kLastYear || hour < 0 || hour > 23 || minute < 0 || minute > 59 ||
+      second < 0 || second > 59)
     return std::nullopt;
   return sys_days(date) + hours(hour) + minutes(minute) + seconds(second);
 }

@@ -17,13 +17,20 @@ using std::chrono::system_clock;
 const std::string kSecret = "a-secret-of-at-least-32-characters";
 const system_clock::time_point kNow{std::chrono::seconds(1'800'000'000)};
 
-void checkError(const core::Error& error, std::string_view secret_text) {
+/// Tokens are long words. The fuzzer knows the words of the messages, so these cannot be looked for in the input.
+bool hasLongWord(std::string_view text) {
+  constexpr std::size_t kWordMaxBytes = 32;
+  for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1) {
+    end = text.find(' ', begin);
+    if (text.substr(begin, end == std::string_view::npos ? end : end - begin).size() > kWordMaxBytes) return true;
+  }
+  return false;
+}
+
+void checkError(const core::Error& error) {
   must(!error.message.empty() && std::ranges::none_of(error.message, [](char c) { return c >= 0 && c < ' '; }),
        "a refusal is one line");
-  constexpr std::size_t kTellingBytes = 24;  // longer than any word of the messages
-  must(secret_text.size() < kTellingBytes ||
-           error.message.find(secret_text.substr(0, kTellingBytes)) == std::string::npos,
-       "a refusal does not repeat a token");
+  must(!hasLongWord(error.message), "a refusal does not repeat a token");
 }
 
 void checkGrant(const access::Grant& grant) {
@@ -46,7 +53,7 @@ core::Result<access::Grant> verified(std::string_view token) {
   static const std::vector<access::JwtKey> keys{
       {.algorithm = access::JwtAlgorithm::kHs256, .id = "", .secret = kSecret, .public_key = {}}};
   auto grant = access::verifyJwt(token, keys, {}, kNow);
-  if (!grant) checkError(grant.error(), token);
+  if (!grant) checkError(grant.error());
   return grant;
 }
 
@@ -69,7 +76,7 @@ void trySigned(std::string_view text) {
 
 void tryKeySet(std::string_view text) {
   const auto keys = access::parseKeySet(text, "keys");
-  if (!keys) return checkError(keys.error(), {});
+  if (!keys) return checkError(keys.error());
   must(!keys->empty() && keys->size() <= access::kJwtKeyMaxCount, "a set has keys, up to its bound");
   for (const access::JwtKey& key : *keys) {
     const bool is_secret = key.algorithm == access::JwtAlgorithm::kHs256;
@@ -80,13 +87,13 @@ void tryKeySet(std::string_view text) {
 }
 
 void tryPem(std::string_view text) {
-  if (const auto key = access::parsePublicKey(text, "key"); !key) checkError(key.error(), {});
-  if (const auto key = access::parseSecret(text, "key"); !key) checkError(key.error(), text);
+  if (const auto key = access::parsePublicKey(text, "key"); !key) checkError(key.error());
+  if (const auto key = access::parseSecret(text, "key"); !key) checkError(key.error());
 }
 
 void tryTokenFile(std::string_view text) {
   const auto access = access::Access::parse(text, "tokens", std::nullopt);
-  if (!access) return checkError(access.error(), {});
+  if (!access) return checkError(access.error());
   (void)access->resolve(text, kNow);
   must(!access->resolve("", kNow), "without guests every client needs a token");
 }

@@ -146,6 +146,19 @@ TEST_F(ProgramAccess, AJwtGivesRoleNameAndRoomToSessionsAndRequests) {
   stop();
 }
 
+TEST_F(ProgramAccess, TokensUpTo8KiBPassBothWays) {
+  if (!serve()) GTEST_SKIP() << "no device";
+  const std::string token = jwt("player", R"(,"more":")" + std::string(5900, 'm') + "\"");
+  ASSERT_GT(token.size(), 7900U);
+  ASSERT_LE(token.size(), 8192U);
+  EXPECT_EQ(client(token).welcome().role(), v1::ROLE_PLAYER);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", token, R"({"splash": {}})").status, 200U);
+  const HttpAnswer answer = ask("GET", "/api/v1/rooms", token + std::string(400, 'm'));
+  EXPECT_EQ(answer.status, 401U);
+  EXPECT_THAT(answer.body, HasSubstr("8192 bytes"));
+  stop();
+}
+
 TEST_F(ProgramAccess, AnOperatorOfOneRoomOpensAndClosesThatRoomOnly) {
   if (!serve()) GTEST_SKIP() << "no device";
   const std::string token = jwt("operator", R"(,"sub":"bob","room":["race"])");
@@ -222,8 +235,9 @@ TEST_F(ProgramAccess, APersonHasOneBudgetOverAllSessionsAndRooms) {
 
 TEST_F(ProgramAccess, TheAuditLogSaysWhatOperatorsDidAndWhoWasRefused) {
   if (!serve()) GTEST_SKIP() << "no device";
-  ScriptedClient chief = client(jwt("operator", R"(,"sub":"ada\"}\n{","name":"A\"da\n{"})"));
-  ASSERT_TRUE(chief.apply(setParameter("wave.depth_m", 1.25)));
+  ScriptedClient chief = client(jwt("operator", R"(,"sub":"ada\"}\n{","name":"A\"da\n{")"));
+  const v1::ServerMessage set = chief.ask(setParameter("wave.depth_m", 1.25));
+  ASSERT_TRUE(set.has_ack()) << set.DebugString() << chief.welcome().DebugString();
   ASSERT_TRUE(chief.apply(splash())) << "players may do it, too: not in the log";
   EXPECT_EQ(chief.rejected(step(1)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
   ScriptedClient player = client(jwt("player", R"(,"sub":"bob")"));

@@ -128,7 +128,7 @@ describe("the metrics of a running server", () => {
     folder = mkdtempSync(join(tmpdir(), "spindrift metrics "));
     mkdirSync(join(folder, "state"));
     writeFileSync(join(folder, "pond.textproto"), 'wave { resolution_count: 32 side_m: 8 depth_m: 1 }\ngauges { name: "shore" x_m: 3 z_m: 3 }\n');
-    const args = ["serve", "--scene", join(folder, "pond.textproto"), "--device", "software", "--port", "0", "--state-dir", join(folder, "state")];
+    const args = ["serve", "--scene", join(folder, "pond.textproto"), "--device", "software", "--port", "0", "--state-dir", join(folder, "state"), "--audit-log", join(folder, "audit.jsonl")];
     server = spawn(process.env.SPINDRIFT_BINARY, args, { stdio: ["ignore", "pipe", "pipe"] });
     let errors = "";
     server.stderr.on("data", (chunk) => (errors += chunk));

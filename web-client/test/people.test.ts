@@ -53,6 +53,15 @@ describe("the identity of the page", () => {
     expect(rig.socket.url).not.toContain("secret");
   });
 
+  it("sends a long token, such as a JSON Web Token, as a whole", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    const token = `${"a".repeat(40)}.${"b".repeat(4000)}.${"c".repeat(342)}`;
+    rig.connection.introduce("Ada", token);
+    rig.socket.open();
+    expect(rig.socket.sent[0]).toMatchObject({ value: { token } });
+  });
+
   it("is kept for a reload, the resume key for the same room only", () => {
     const kept = storage();
     const ada = { name: "Ada", token: "secret", resumeKey: "key" };

@@ -70,6 +70,7 @@ TEST(Access, BadLinesAreReportedWithoutTheirToken) {
   EXPECT_THAT(refusal("operator secretsecretsecret for=ever"), HasSubstr("until="));
   EXPECT_THAT(refusal("operator secretsecretsecret until=2026-02-30T00:00:00Z"), HasSubstr("until="));
   EXPECT_THAT(refusal("operator secretsecretsecret until=9999-02-03T00:00:00Z"), HasSubstr("until="));
+  EXPECT_THAT(refusal("operator secretsecretsecret until=1015-02-03T00:00:00Z"), HasSubstr("until="));
   EXPECT_THAT(refusal("operator secretsecretsecret until=2026-02-03T00:00:00Z more"), Not(HasSubstr("secretsecret")));
   EXPECT_THAT(refusal("operator secretsecretsecret\nviewer secretsecretsecret"), HasSubstr("earlier line"));
 }
