@@ -2,6 +2,7 @@
 // Other threads hold rooms by shared pointers and call only their any-thread functions.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -15,6 +16,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/device.h>
+#include <spindrift/rooms/clock_watch.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/rooms/water_builder.h>
 
@@ -54,6 +56,10 @@ class SimulationThread {
   [[nodiscard]] const RoomRules& rules() const { return rules_; }
   /// Returns seconds since the last round over all rooms; large while the thread is stuck or compiles.
   [[nodiscard]] double sinceLastRound_s() const;
+  /// Returns how many waters could not be built since the start, for one cause.
+  [[nodiscard]] std::uint64_t waterFailureCount(core::ErrorCode cause) const { return builder_->failureCount(cause); }
+  /// Returns how often the system's clock was set while the rooms ran.
+  [[nodiscard]] std::uint64_t clockStepCount() const { return clock_step_count_; }
   /// One line: the device and why it was chosen.
   [[nodiscard]] const std::string& deviceLine() const { return device_line_; }
   /// One line per room; filled by stop().
@@ -101,6 +107,8 @@ class SimulationThread {
   std::vector<std::string> summary_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};
+  ClockWatch clock_watch_;  ///< used by the thread only
+  std::atomic<std::uint64_t> clock_step_count_{0};
   bool running_ = false;
   bool stopping_ = false;
   std::thread thread_;
