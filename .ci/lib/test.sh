@@ -193,6 +193,7 @@ build_memory_tests() {
 # Installs and builds everything that the parts need.
 prepare_tests() {
   local groups=(server driver) wanted=" $* " with_native=false with_node=false
+  [[ ! "$wanted" =~ \ (native|integration)\  ]] || groups+=(faults)
   [[ "$wanted" != *" zink "* ]] || groups+=(zink)
   [[ "$wanted" != *" browser "* ]] || groups+=(browser)
   [[ "$wanted" != *" tools "* ]] || groups+=(bundle format lint)

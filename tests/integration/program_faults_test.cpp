@@ -1,5 +1,5 @@
-// Faults of the machine beneath the program (docs/faults.md): no file descriptors, a clock that is set, shaders that do not
-// compile at the start.
+// Faults of the machine beneath the program (docs/faults.md): no file descriptors, a clock that is set, shaders that do
+// not compile at the start.
 #include <ctime>
 #include <filesystem>
 #include <thread>
@@ -134,8 +134,8 @@ TEST_F(FaultyMachine, WithoutDescriptorsServesThoseItHasSaysSoSeldomAndRecovers)
   EXPECT_EQ(countOf("could not be accepted", log), 1u) << log;
 }
 
-/// The clock of the system is that of libfaketime (Debian's package libfaketime), whose offset a file holds; the monotonic clock
-/// stays the machine's.
+/// The clock of the system is that of libfaketime (Debian's package libfaketime), whose offset a file holds; the
+/// monotonic clock stays the machine's.
 class SetClock : public FaultyMachine {
  protected:
   static constexpr const char* kLibrary = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1";
@@ -207,13 +207,13 @@ TEST_F(FaultyMachine, WithABrokenShaderEndsAtTheStartNamingFileLineAndDriver) {
   std::filesystem::copy(SPINDRIFT_SOURCE_DIR "/shaders", folder().path() / "shaders",
                         std::filesystem::copy_options::recursive);
   folder().write("shaders/wave/continuity.comp", "layout(local_size_x = 8) in;\nvoid main() { not_glsl(); }\n");
-  const Outcome outcome =
-      runProgram(arguments({"--shader-dir", (folder().path() / "shaders").string()}));
+  const Outcome outcome = runProgram(arguments({"--shader-dir", (folder().path() / "shaders").string()}));
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_EQ(outcome.out, "") << "it was never ready";
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("room main: "), HasSubstr("wave/continuity.comp does not compile on llvmpipe"),
-                                 HasSubstr("Mesa"), HasSubstr("not_glsl"), HasSubstr("continuity.comp:2")));
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("room main: "), HasSubstr("wave/continuity.comp does not compile on llvmpipe"),
+                    HasSubstr("Mesa"), HasSubstr("not_glsl"), HasSubstr("continuity.comp:2")));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Floods of commands from every client of a server at once: nobody is closed who keeps to the limit of messages, the room
-// keeps its ticks, queues stay bounded; only those beyond that limit lose their connection.
+// Floods of commands from every client of a server at once: nobody is closed who keeps to the limit of messages, the
+// room keeps its ticks, queues stay bounded; only those beyond that limit lose their connection.
 #include <atomic>
 #include <thread>
 
@@ -21,6 +21,7 @@ struct FloodReport {
   std::uint64_t applied_count = 0;
   std::uint64_t busy_count = 0;
   std::uint64_t other_count = 0;  ///< rejected for another reason
+  [[nodiscard]] std::uint64_t answerCount() const { return applied_count + busy_count + other_count; }
   bool is_closed = false;
   std::uint16_t close_code = 0;
 };
@@ -36,7 +37,6 @@ FloodReport flood(ScriptedClient& client, double messages_per_s) {
       if (message.has_reject()) {
         ++(message.reject().reason() == v1::REJECT_REASON_BUSY ? report.busy_count : report.other_count);
       }
-      if (message.has_pong()) break;
     }
   };
   const auto begin = Clock::now();
@@ -45,17 +45,15 @@ FloodReport flood(ScriptedClient& client, double messages_per_s) {
     const auto due_count = static_cast<std::uint64_t>(elapsed_s * messages_per_s);
     for (; report.sent_count < due_count && !client.ws().closed(); ++report.sent_count) {
       v1::ClientMessage message;
-      *message.mutable_command() = splash(0.001);
+      *message.mutable_command() = splash(0.01);
       message.mutable_command()->set_command_id(report.sent_count + 1);
       client.send(message);
     }
     read(1ms);
   }
-  // Whatever was queued for this client has come when the pong is there.
-  v1::ClientMessage ping;
-  ping.mutable_ping()->set_client_time_s(1.0);
-  if (!client.ws().closed()) client.send(ping);
-  read(kPatience);
+  // Commands that were accepted are answered at a tick.
+  const auto deadline = Clock::now() + kPatience;
+  while (report.answerCount() < report.sent_count && !client.ws().closed() && Clock::now() < deadline) read(100ms);
   report.is_closed = client.ws().closed();
   report.close_code = client.ws().closeCode();
   return report;
@@ -82,10 +80,10 @@ class FloodOfCommands : public WaveServerTest {
 };
 
 TEST_F(FloodOfCommands, BelowTheLimitOfMessagesIsAnsweredBusyAndClosesNobody) {
+  constexpr double kTicksPerSecond = 60.0;
   ScriptedClient watcher = client();
-  watcher.subscribe(v1::LAYER_SURFACE);
-  const auto first = watcher.nextFrame(v1::LAYER_SURFACE);
-  ASSERT_TRUE(first);
+  const auto first_tick = watcher.apply(setSpeed(1.0));
+  ASSERT_TRUE(first_tick);
   const auto begin = Clock::now();
   std::atomic<bool> done{false};
   std::uint64_t most_waiting_count = 0;
@@ -97,12 +95,10 @@ TEST_F(FloodOfCommands, BelowTheLimitOfMessagesIsAnsweredBusyAndClosesNobody) {
   const auto reports = floodFromAll(450.0);
   done = true;
   sampler.join();
-  const auto last = watcher.waitFor([&](const v1::ServerMessage& message) {
-    return message.has_frame() && message.frame().sim_time_s() > first->sim_time_s() + 1.0;
-  });
-  ASSERT_TRUE(last);
+  const auto last_tick = watcher.apply(setSpeed(1.0));
+  ASSERT_TRUE(last_tick);
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
-  const double ratio = (last->frame().sim_time_s() - first->sim_time_s()) / elapsed_s;
+  const double ratio = static_cast<double>(*last_tick - *first_tick) / kTicksPerSecond / elapsed_s;
   FloodReport all;
   for (const FloodReport& report : reports) {
     EXPECT_FALSE(report.is_closed) << report.close_code;
@@ -114,10 +110,13 @@ TEST_F(FloodOfCommands, BelowTheLimitOfMessagesIsAnsweredBusyAndClosesNobody) {
     all.applied_count += report.applied_count;
     all.busy_count += report.busy_count;
   }
-  fmt::print("{} clients sent {} commands in {:.1f} s: {} applied, {} busy; real-time factor about {:.2f}; at most {} answers waited\n",
-             kFlooderCount, all.sent_count, elapsed_s, all.applied_count, all.busy_count, ratio, most_waiting_count);
+  fmt::print(
+      "{} clients sent {} commands in {:.1f} s: {} applied, {} busy; real-time factor {:.2f}; at most {} answers "
+      "waited\n",
+      kFlooderCount, all.sent_count, elapsed_s, all.applied_count, all.busy_count, ratio, most_waiting_count);
   EXPECT_LE(most_waiting_count, kFlooderCount * 2048u);
-  EXPECT_TRUE(watcher.apply(splash(0.01)));
+  EXPECT_GT(ratio, 0.5) << "0.9 and more on a quiet machine";
+  EXPECT_TRUE(watcher.apply(setSpeed(1.0)));
 }
 
 TEST_F(FloodOfCommands, TenTimesTheLimitClosesOnlyThoseThatSendIt) {
@@ -128,7 +127,7 @@ TEST_F(FloodOfCommands, TenTimesTheLimitClosesOnlyThoseThatSendIt) {
     EXPECT_EQ(report.close_code, 1008) << "policy";
   }
   EXPECT_TRUE(watcher.nextFrame(v1::LAYER_SURFACE));
-  EXPECT_TRUE(watcher.apply(splash(0.01)));
+  EXPECT_TRUE(watcher.apply(setSpeed(1.0)));
   EXPECT_TRUE(client().runFor(5)) << "a new client is served";
 }
 
