@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, realpathSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
 import { createInterface } from "node:readline";
@@ -10,6 +11,7 @@ import { after, before, describe, it } from "node:test";
 
 import { repository } from "./workshop.mjs";
 
+const { Spec, Validation } = createRequire(join(repository, "tests/containers/package.json"))("@cyclonedx/cyclonedx-library");
 const TOOLS = ["/bin/sh", "/usr/bin/readlink", "/usr/bin/dirname", "/usr/bin/basename", "/usr/bin/sed", "/usr/bin/head"];
 /** The whole environment. */
 const TOOL_PATH = { PATH: "/usr/sbin:/usr/bin:/sbin:/bin" };
@@ -81,8 +83,10 @@ describe("the bundle", () => {
     for (const part of ["libprotobuf", "libegl-mesa0", "libgl1-mesa-dri", "libllvm", "three", "libboost", "libcli11"]) assert.ok(licences.includes(part), part);
   });
 
-  it("lists its parts with versions and licences: libraries, compiled headers, the page's packages", () => {
-    const { metadata, components } = JSON.parse(readFileSync(join(bundle, "share/sbom.cdx.json"), "utf8"));
+  it("lists its parts with versions and licences: libraries, compiled headers, the page's packages", async () => {
+    const text = readFileSync(join(bundle, "share/sbom.cdx.json"), "utf8");
+    assert.equal(await new Validation.JsonStrictValidator(Spec.Version.v1dot5).validate(text), null, "no valid CycloneDX");
+    const { metadata, components } = JSON.parse(text);
     assert.deepEqual(metadata.component.licenses, [{ license: { id: "MIT" } }]);
     const licencesOf = (name) => components.find((component) => component["bom-ref"] === name)?.licenses;
     assert.deepEqual(licencesOf("npm:three"), [{ expression: "MIT" }]);
