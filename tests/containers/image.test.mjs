@@ -19,8 +19,8 @@ const NEEDED_BYTES = 8 * 2 ** 30;
 const BUILD_LIMIT_MS = 50 * 60_000;
 const START_LIMIT_MS = 120_000;
 const folder = process.env.SPINDRIFT_CONTAINERS_ROOT ?? join(tmpdir(), `spindrift-images-${process.pid}`);
-const storage = ["--root", join(folder, "storage"), "--runroot", join(folder, "run")];
-const environment = { ...process.env, STORAGE_DRIVER: "vfs", BUILDAH_ISOLATION: "chroot", SPINDRIFT_CONTAINERS_ROOT: folder };
+const storage = ["--storage-driver", "vfs", "--root", join(folder, "storage"), "--runroot", join(folder, "run")];
+const environment = { ...process.env, BUILDAH_ISOLATION: "chroot", SPINDRIFT_CONTAINERS_ROOT: folder };
 
 function problem() {
   if (process.getuid() !== 0) return "buildah with chroot isolation and debootstrap need root";
