@@ -19,6 +19,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kIsSanitized = true;
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
 std::size_t countOf(const std::string& words, const std::string& text) {
   std::size_t count = 0;
   for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) ++count;
@@ -141,9 +147,7 @@ class SetClock : public FaultyMachine {
   static constexpr const char* kLibrary = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1";
 
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "a sanitizer must be the first library of a program, and so must libfaketime";
-#endif
+    if (kIsSanitized) GTEST_SKIP() << "a sanitizer must be the first library of a program, and so must libfaketime";
     if (!std::filesystem::exists(kLibrary)) GTEST_SKIP() << kLibrary << " is missing (Debian: libfaketime)";
     setOffset("+0");
   }
