@@ -130,6 +130,7 @@ void SimulationThread::run() {
   {
     const std::lock_guard lock(mutex_);
     running_ = true;
+    last_round_ = std::chrono::steady_clock::now();  // the server is ready, even if the thread has not woken up yet
   }
   wake_.notify_one();
 }
