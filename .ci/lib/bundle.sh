@@ -74,21 +74,11 @@ bundle_mesa() {
     >"$folder/share/glvnd/egl_vendor.d/60_spindrift_mesa.json"
 }
 
-# bundle_licences FOLDER: collects the copyright file of every Debian package with a bundled file, and of the page's
-# libraries.
+# bundle_licences FOLDER PRESET VERSION: writes what the bundle consists of (share/sbom.cdx.json), and the licence of each part.
 bundle_licences() {
-  local folder="$1/share/licenses" path package
-  mkdir -p "$folder"
-  for path in "${bundled_files[@]}"; do
-    path="$(readlink -f -- "$path")"
-    # Packages may have registered the file below /lib, which is a link to /usr/lib today.
-    package="$( (dpkg-query --search "$path" || dpkg-query --search "${path#/usr}") 2>/dev/null | head -n 1 | cut -d : -f 1)" || true
-    [[ -n "$package" ]] || fail 1 "no Debian package owns $path, so its licence is unknown"
-    cp "/usr/share/doc/$package/copyright" "$folder/$package.txt"
-  done
-  cp web-client/node_modules/three/LICENSE "$folder/three.txt"
-  # @bufbuild/protobuf only names its licence in package.json; the text is the Apache licence.
-  cp /usr/share/common-licenses/Apache-2.0 "$folder/bufbuild-protobuf.txt"
+  mkdir -p "$1/share/licenses"
+  python3 .ci/lib/sbom.py bundle --version "$3" --build-dir "build/$2" --web-client web-client --licences "$1/share/licenses" \
+    "${bundled_files[@]}" >"$1/share/sbom.cdx.json" || fail 1 "the list of the bundle's parts could not be written"
 }
 
 bundle_readme() {
@@ -151,7 +141,7 @@ TEXT
   cp -r "$web_dist" "$folder/share/spindrift/web"
   install --mode=755 .ci/bundle/spindrift "$folder/spindrift"
   install --mode=644 LICENSE "$folder/LICENSE"
-  bundle_licences "$folder"
+  bundle_licences "$folder" "$preset" "$version"
   bundle_readme "$folder" "$version" "$mesa"
   if "$archive"; then
     tar --directory "$output" --sort=name --owner=0 --group=0 --numeric-owner -czf "$folder.tar.gz" "$name"

@@ -3,7 +3,7 @@
 # by ./dev.
 
 # Limits against hanging parts: far above their times on two cores without a GPU.
-readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=1200 tools_limit_s=1800 tidy_limit_s=7200
+readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=1200 tools_limit_s=1800 containers_limit_s=5400 tidy_limit_s=7200
 
 # run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, and records its exit code. The command
 # writes build/reports/NAME.xml.
@@ -104,6 +104,17 @@ node_tests() {
     --test-reporter=junit "--test-reporter-destination=$root/build/reports/$name.xml" "$@"
 }
 
+# Builds the image and runs it: about ten minutes, so only when the part is named. image.test.mjs skips itself with the reason
+# where it cannot run.
+test_containers() {
+  if ! "$containers_when_named"; then
+    write_skipped "$root/build/reports/containers.xml" "the image builds and runs" "the image takes about ten minutes: ./dev test containers"
+    reports+=("containers:0:$root/build/reports/containers.xml")
+    return
+  fi
+  node_tests containers "$containers_limit_s" tests/containers/image.test.mjs
+}
+
 command_test() {
   if wants_help "$@"; then
     cat <<'TEXT'
@@ -112,10 +123,11 @@ usage: ./dev test [--preset release|debug|asan|tsan] [PART…] [-R REGEX]
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
-(./dev itself, formatting and types, the bundle, the documents), fuzz (parsers and decoders under hostile input, some
+(./dev itself, formatting and types, the bundle, the documents, Compose and Kubernetes files), fuzz (parsers and decoders under hostile input, some
 seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those of core, state, codec, scene,
 wire and sim_setup, or all of them when the part is named), threads (network, encoder and files of the state under the
 thread sanitizer). The last three have presets of their own.
+Only when named, otherwise skipped: containers (builds the image with buildah, as root, and runs it; about ten minutes).
 Only when named: tidy (clang-tidy over every C++ file, a test per file).
 -R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only their programs.
 The last line is `N passed, N failed, N skipped`; exit code 1 when anything failed. Reports: build/reports/*.xml, logs:
@@ -135,14 +147,15 @@ TEXT
     esac
   done
   [[ -z "$test_regex" ]] || ((${#parts[@]} > 0)) || parts=(native)
-  local memory_label=unit
+  local memory_label=unit containers_when_named=true
   if ((${#parts[@]} == 0)); then
-    parts=(native zink web wire browser tools fuzz memory threads)
+    parts=(native zink web wire browser tools fuzz memory threads containers)
     memory_label=memory
+    containers_when_named=false
   fi
   for part in "${parts[@]}"; do
     case "$part" in
-      native | unit | integration | accuracy | stability | gpu | zink | web | wire | browser | tools | fuzz | memory | threads | tidy) ;;
+      native | unit | integration | accuracy | stability | gpu | zink | web | wire | browser | tools | fuzz | memory | threads | containers | tidy) ;;
       *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
     esac
   done
@@ -161,7 +174,8 @@ TEXT
       web) test_web ;;
       wire) test_wire ;;
       browser) node_tests browser "$browser_limit_s" tests/browser/*.test.mjs ;;
-      tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs ;;
+      tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs tests/containers/deployment.test.mjs ;;
+      containers) test_containers ;;
       *) test_native "$part" "$preset" "$part" ;;
     esac
   done
@@ -179,9 +193,12 @@ build_memory_tests() {
 # Installs and builds everything that the parts need.
 prepare_tests() {
   local groups=(server driver) wanted=" $* " with_native=false with_node=false
+  [[ ! "$wanted" =~ \ (native|integration)\  ]] || groups+=(faults)
   [[ "$wanted" != *" zink "* ]] || groups+=(zink)
   [[ "$wanted" != *" browser "* ]] || groups+=(browser)
   [[ "$wanted" != *" tools "* ]] || groups+=(bundle format lint)
+  # Without root the image cannot be built, and its tests say so.
+  [[ "$wanted" != *" containers "* ]] || ! "$containers_when_named" || ((EUID != 0)) || groups+=(containers)
   [[ ! "$wanted" =~ \ (native|unit|integration|accuracy|stability|gpu|zink)\  ]] || with_native=true
   [[ ! "$wanted" =~ \ (web|wire|browser|tools)\  ]] || with_node=true
 
@@ -189,6 +206,7 @@ prepare_tests() {
   lock_build
   mkdir -p build/reports build/logs
   ! "$with_node" || need_web
+  [[ "$wanted" != *" containers "* ]] || need_node
   if "$with_native" && [[ -n "$test_regex" ]]; then
     local targets
     targets="$(python3 tests/tools/test_targets.py "$test_regex")" || fail 2 "no C++ test is named like -R '$test_regex'"
@@ -207,5 +225,6 @@ prepare_tests() {
   [[ ! "$wanted" =~ \ (wire|browser|tools)\  ]] || build_web
   [[ "$wanted" != *" browser "* ]] || npm_install tests/browser browser
   [[ "$wanted" != *" wire "* ]] || npm_install tests/wire wire
+  [[ ! "$wanted" =~ \ (tools|containers)\  ]] || npm_install tests/containers containers
   unlock_build
 }

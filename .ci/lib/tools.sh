@@ -114,7 +114,7 @@ lint_format() {
 lint_shell() {
   need_packages lint
   say "shell scripts"
-  shellcheck --external-sources --check-sourced dev .ci/run .ci/bundle/spindrift docker/healthcheck
+  shellcheck --external-sources --check-sourced dev .ci/run .ci/bundle/spindrift docker/healthcheck docker/build-with-buildah
 }
 
 lint_web() {

@@ -62,11 +62,15 @@ core::Result<Buffer> Buffer::create(Context& ctx, std::string_view name, std::si
   clearOldErrors();  // the debug callback has counted them; the next error concerns this buffer
   Buffer buffer;
   glCreateBuffers(1, &buffer.id_);
-  glNamedBufferStorage(buffer.id_, static_cast<GLsizeiptr>(size_bytes), nullptr,
-                       use == BufferUse::kUpdatable ? GL_DYNAMIC_STORAGE_BIT : 0);
-  if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+  if (!isMemoryUsedUp(ctx, size_bytes)) {
+    glNamedBufferStorage(buffer.id_, static_cast<GLsizeiptr>(size_bytes), nullptr,
+                         use == BufferUse::kUpdatable ? GL_DYNAMIC_STORAGE_BIT : 0);
+  }
+  const GLenum error = isMemoryUsedUp(ctx, size_bytes) ? GL_OUT_OF_MEMORY : glGetError();
+  if (error != GL_NO_ERROR) {
     glDeleteBuffers(1, &buffer.id_);
     buffer.id_ = 0;
+    if (error == GL_OUT_OF_MEMORY) return outOfMemory(ctx, "buffer \"" + std::string(name) + "\"", size_bytes);
     return refused(name, "the device cannot hold " + std::to_string(size_bytes) + " bytes (OpenGL error " +
                              std::to_string(error) + "); make the scene smaller");
   }

@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::uint32_t kMaxSeed = 1'000'000;
 constexpr std::uint32_t kMaxLag = 10'000;
+constexpr std::uint32_t kMaxMemory_MiB = 1'000'000;
 
 /// Reads "NAME=NUMBER" into `value`; false when `word` does not begin with `name` or the number is out of range.
 bool readNumber(std::string_view word, std::string_view name, std::uint32_t least, std::uint32_t most,
@@ -33,10 +34,12 @@ core::Result<Checks> parseChecks(std::string_view text) {
     } else if (word == "poison") {
       checks.poison = true;
     } else if (!readNumber(word, "shuffle", 1, kMaxSeed, checks.shuffle_seed) &&
-               !readNumber(word, "lag", 0, kMaxLag, checks.lag_fences_count)) {
+               !readNumber(word, "lag", 0, kMaxLag, checks.lag_fences_count) &&
+               !readNumber(word, "memory", 1, kMaxMemory_MiB, checks.memory_mib)) {
       return core::Error{core::ErrorCode::kInvalidInput,
                          "SPINDRIFT_GPU_CHECKS: \"" + std::string(word) + "\" is not barriers, poison, shuffle=1…" +
-                             std::to_string(kMaxSeed) + " or lag=0…" + std::to_string(kMaxLag)};
+                             std::to_string(kMaxSeed) + ", lag=0…" + std::to_string(kMaxLag) + " or memory=1…" +
+                             std::to_string(kMaxMemory_MiB)};
     }
   }
   return checks;

@@ -104,6 +104,16 @@ void checkNeeds(Context& ctx, const CompiledProgram& program) {
   over("invocations of a work group", std::int64_t{g[0]} * g[1] * g[2], needs.max_work_group_invocations);
 }
 
+/// `log`: the driver's, with files and lines. With a folder of shaders its text is at fault, not the driver.
+core::Error refused(const Context& ctx, std::string_view shader_path, const char* verb, const std::string& log) {
+  const DeviceInfo& device = ctx.device();
+  return {core::ErrorCode::kInternal,
+          std::string(shader_path) + " does not " + verb + " on " + device.name + " (" + device.gl_version +
+              "): " + log +
+              (ctx.shaderFolder() ? "; correct the file"
+                                  : "; update the driver or use --device software, and report this line")};
+}
+
 }  // namespace
 
 core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context& ctx, std::string_view shader_path,
@@ -141,7 +151,7 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   const std::string log = translateLog(source, shaderLog(shader));
   if (!is_fine) {
     glDeleteShader(shader);
-    return core::Error{core::ErrorCode::kInternal, std::string(shader_path) + " does not compile: " + log};
+    return refused(ctx, shader_path, "compile", log);
   }
   if (!log.empty()) spdlog::debug("{}: {}", shader_path, log);
 
@@ -154,8 +164,7 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   glDeleteShader(shader);
   glGetProgramiv(program->id, GL_LINK_STATUS, &is_fine);
   if (!is_fine) {
-    return core::Error{core::ErrorCode::kInternal,
-                       std::string(shader_path) + " does not link: " + translateLog(source, programLog(program->id))};
+    return refused(ctx, shader_path, "link", translateLog(source, programLog(program->id)));
   }
   GLint size[3] = {0, 0, 0};
   glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);

@@ -102,10 +102,12 @@ core::Result<std::unique_ptr<ReadbackRing>> ReadbackRing::create(Context& ctx, s
   glNamedBufferStorage(id, static_cast<GLsizeiptr>(size_bytes), nullptr, kMapping | GL_CLIENT_STORAGE_BIT);
   state->mapped =
       static_cast<const std::byte*>(glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(size_bytes), kMapping));
-  if (!state->mapped) {
+  const GLenum error = isMemoryUsedUp(ctx, size_bytes) ? GL_OUT_OF_MEMORY : glGetError();
+  if (!state->mapped || error == GL_OUT_OF_MEMORY) {
     glDeleteBuffers(1, &id);
+    if (error == GL_OUT_OF_MEMORY) return outOfMemory(ctx, title.substr(0, title.size() - 2), size_bytes);
     return core::Error{core::ErrorCode::kInternal, title + "the device cannot map " + std::to_string(size_bytes) +
-                                                       " bytes (OpenGL error " + std::to_string(glGetError()) +
+                                                       " bytes (OpenGL error " + std::to_string(error) +
                                                        "); make the scene smaller"};
   }
   glObjectLabel(GL_BUFFER, id, static_cast<GLsizei>(std::min<std::size_t>(name.size(), 200)), name.data());

@@ -22,6 +22,11 @@ void ConnectionSet::remove(std::uint64_t id) {
   if (connections_.empty()) emptied_.notify_all();
 }
 
+std::size_t ConnectionSet::count() const {
+  const std::lock_guard lock(mutex_);
+  return connections_.size();
+}
+
 void ConnectionSet::close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;

@@ -29,6 +29,8 @@ class ConnectionSet {
   /// Adds the connection; returns false when the set is full or closed.
   bool add(std::uint64_t id, std::shared_ptr<Stoppable> connection);
   void remove(std::uint64_t id);
+  std::size_t count() const;
+  std::size_t maxCount() const { return max_count_; }
 
   /// Refuses new connections from now on.
   void close();

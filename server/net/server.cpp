@@ -19,6 +19,7 @@
 #include <spindrift/net/server.h>
 
 #include "connection.h"
+#include "descriptors.h"
 #include "server_context.h"
 
 namespace spindrift::net {
@@ -157,11 +158,17 @@ void ServerImpl::run() {
 }
 
 asio::awaitable<void> ServerImpl::acceptLoop() {
+  RareLine failed;
+  RareLine refused;
   while (acceptor_.is_open()) {
     auto [error, socket] = co_await acceptor_.async_accept(asio::any_io_executor(asio::make_strand(io_)), kToken);
     if (error == asio::error::operation_aborted) break;
     if (error) {
-      spdlog::warn("a connection could not be accepted: {}", error.message());
+      ++context_.counters.failed_accept_count;
+      if (const auto count = failed.count(Clock::now())) {
+        spdlog::warn("{} new connections could not be accepted ({}); {} are open and go on", *count, error.message(),
+                     context_.connections.count());
+      }
       asio::steady_timer pause(accept_strand_, kAcceptPause);
       (void)co_await pause.async_wait(kToken);
       continue;
@@ -172,7 +179,10 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
       connection->start();
     } else {
       context_.counters.refused(Refused::kConnection);
-      spdlog::debug("a connection was closed without a reply: too many are open");
+      if (const auto count = refused.count(Clock::now())) {
+        spdlog::warn("{} new connections were closed without a reply: {} are open, as many as may be", *count,
+                     context_.connections.maxCount());
+      }
     }
   }
 }
@@ -195,6 +205,10 @@ ServerStats ServerImpl::stats() const {
   const Counters& counters = context_.counters;
   ServerStats out{.open_session_count = counters.open_session_count,
                   .accepted_session_count = counters.accepted_session_count,
+                  .open_connection_count = context_.connections.count(),
+                  .connection_max_count = context_.connections.maxCount(),
+                  .failed_accept_count = counters.failed_accept_count,
+                  .silent_session_count = counters.silent_session_count,
                   .sent_bytes_count = counters.sent_bytes_count,
                   .sent_frame_count = counters.sent_frame_count,
                   .dropped_frame_count = counters.dropped_frame_count,

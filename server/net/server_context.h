@@ -11,6 +11,7 @@
 
 #include "address_limits.h"
 #include "connection_set.h"
+#include "descriptors.h"
 #include "room_hub.h"
 #include "static_files.h"
 #include "tls_credentials.h"
@@ -21,6 +22,8 @@ namespace spindrift::net {
 struct Counters {
   std::atomic<std::uint64_t> open_session_count{0};
   std::atomic<std::uint64_t> accepted_session_count{0};
+  std::atomic<std::uint64_t> failed_accept_count{0};
+  std::atomic<std::uint64_t> silent_session_count{0};
   std::atomic<std::uint64_t> sent_bytes_count{0};
   std::atomic<std::uint64_t> sent_frame_count{0};
   std::atomic<std::uint64_t> dropped_frame_count{0};
@@ -73,7 +76,8 @@ struct ServerContext {
         credentials(std::move(tls_credentials)),
         application(served),
         files(chosen.web_root),
-        connections(chosen.max_session_count + kSpareConnectionCount),
+        connections(
+            limitConnections(chosen.max_session_count + kSpareConnectionCount, chosen.reserved_descriptor_count)),
         addresses(chosen),
         listens_on_loopback(isLoopback(chosen.address)) {}
 

@@ -140,6 +140,9 @@ asio::awaitable<void> Session::readLoop() {
         noteEnd(ws_.reason().code, ws_.reason().reason.c_str());
       } else if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow) {
         noteEnd(static_cast<std::uint16_t>(CloseCode::kTooBig), "a message over the limit");  // Beast has sent 1009
+      } else if (error == beast::error::timeout) {
+        ++context_.counters.silent_session_count;
+        noteEnd(0, "nothing came for " + std::to_string(context_.options.idle_timeout.count()) + " ms, pongs included");
       } else {
         noteEnd(0, error.message());
       }

@@ -57,6 +57,8 @@ void Room::adoptWater(TimePoint now) {
   const Command first = build.commands.front();
   const std::string name = first.message.change_scene().name();
   if (!water) {
+    spdlog::warn("room {}: stays with scene {}, because scene {} cannot be built: {}", name_, water_->scene().name(),
+                 name, firstLine(water.error().message));
     return answer(std::move(build.commands), rejection(v1::REJECT_REASON_OUT_OF_RANGE, kField,
                                                        "scene '" + name + "': " + firstLine(water.error().message)));
   }

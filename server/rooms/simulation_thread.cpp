@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -130,6 +131,7 @@ void SimulationThread::run() {
   {
     const std::lock_guard lock(mutex_);
     running_ = true;
+    last_round_ = std::chrono::steady_clock::now();  // the server is ready, even if the thread has not woken up yet
   }
   wake_.notify_one();
 }
@@ -229,8 +231,9 @@ void SimulationThread::finishOpenings() {
       ++opening;
       continue;
     }
-    opening->done(
-        add(std::move(opening->name), opening->water.get(), std::move(opening->place), std::move(opening->access)));
+    auto opened = add(opening->name, opening->water.get(), std::move(opening->place), std::move(opening->access));
+    if (!opened) spdlog::warn("a room was not opened: {}", opened.error().message);
+    opening->done(std::move(opened));
     opening = openings_.erase(opening);
   }
 }
@@ -285,6 +288,14 @@ void SimulationThread::loop() {
   BusyShare busy(Clock::now());
   while (!stopping_) {
     last_round_ = Clock::now();
+    if (const auto step = clock_watch_.step(std::chrono::system_clock::now(), last_round_)) {
+      ++clock_step_count_;
+      spdlog::warn(
+          "the system's clock was set {} by {:.0f} s{}: water, grace times and limits do not follow it; tokens end by "
+          "it",
+          step->count() > 0 ? "forward" : "back", std::abs(step->count()),
+          step->count() > 0 ? ", or the machine slept" : "");
+    }
     const auto changes = std::exchange(changes_, {});
     lock.unlock();
     for (const Change& change : changes) change(true);

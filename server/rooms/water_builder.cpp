@@ -23,7 +23,10 @@ std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {
   builds_.push([this, promise, scene = std::move(scene)](bool runs) mutable {
     if (!runs) return promise->set_value(shutDown());
     Built built = Water::create(device_, std::move(scene));
-    if (built) (*built)->release();
+    if (built)
+      (*built)->release();
+    else
+      ++failure_counts_[static_cast<std::size_t>(built.error().code)];
     promise->set_value(std::move(built));
   });
   return future;

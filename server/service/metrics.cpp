@@ -136,6 +136,12 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
   };
   one("sessions", "gauge", "WebSocket sessions open now.", stats.open_session_count);
   one("sessions_accepted_total", "counter", "WebSocket sessions since the start.", stats.accepted_session_count);
+  one("connections", "gauge", "TCP connections open now, those of sessions included.", stats.open_connection_count);
+  one("connections_max", "gauge", "TCP connections that may be open at a time.", stats.connection_max_count);
+  one("failed_accepts_total", "counter", "Times that the system had no descriptor or memory for a new connection.",
+      stats.failed_accept_count);
+  one("silent_sessions_total", "counter", "Sessions cut off because nothing came from them, not even pongs.",
+      stats.silent_session_count);
   one("sent_bytes_total", "counter", "Bytes of messages sent, without WebSocket headers.", stats.sent_bytes_count);
   one("sent_frames_total", "counter", "Layer frames sent.", stats.sent_frame_count);
   one("dropped_frames_total", "counter", "Layer frames that a newer one replaced before they were sent.",
@@ -168,6 +174,18 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
   }
   page.head("sessions_closed_total", "counter", "Sessions ended, by close code; 0: the connection broke.");
   for (const auto& [code, count] : stats.closed_by_code) page.sample(fmt::format("code=\"{}\"", code), count);
+}
+
+void writeFaults(Page& page, const rooms::SimulationThread& rooms) {
+  using core::ErrorCode;
+  page.head("water_failures_total", "counter", "Waters of rooms that could not be built, by cause.");
+  for (const auto& [cause, code] :
+       {std::pair("memory", ErrorCode::kUnavailable), std::pair("driver", ErrorCode::kInternal),
+        std::pair("device", ErrorCode::kNoDevice), std::pair("scene", ErrorCode::kInvalidInput)}) {
+    page.sample(fmt::format("cause=\"{}\"", cause), rooms.waterFailureCount(code));
+  }
+  page.head("clock_steps_total", "counter", "Times that the system's clock was set.");
+  page.sample("", rooms.clockStepCount());
 }
 
 void writeEncoder(Page& page, const rooms::EncoderThread& encoder) {
@@ -243,6 +261,7 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   Page page;
   writeRooms(page, samples);
   writeKept(page, rooms.rooms());
+  writeFaults(page, rooms);
   if (const net::Server* network = sources.network) writeNetwork(page, network->stats());
   if (const rooms::EncoderThread* encoder = sources.encoder) writeEncoder(page, *encoder);
   writeCommands(page, commands);

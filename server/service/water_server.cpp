@@ -2,6 +2,12 @@
 #include <spindrift/service/water_server.h>
 
 namespace spindrift::service {
+namespace {
+
+/// A room has a log and for moments a snapshot open, and on some drivers a device file.
+constexpr std::size_t kDescriptorsPerRoom = 4;
+
+}  // namespace
 
 core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions options) {
   auto self = std::unique_ptr<WaterServer>(new WaterServer);
@@ -19,6 +25,7 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
   if (!simulation) return simulation.error();
   self->simulation_ = *std::move(simulation);
   self->gateway_->serve(*self->simulation_, *self->encoder_);
+  options.network.reserved_descriptor_count += kDescriptorsPerRoom * options.max_room_count;
   auto network = net::Server::start(options.network, *self->gateway_);
   if (!network) return network.error();
   self->network_ = *std::move(network);

@@ -27,6 +27,7 @@ class ChildProcess {
   /// kPatience or at the end of the output.
   std::optional<std::string> waitForLine(const std::string& prefix);
   void signal(int number) const;
+  pid_t processId() const { return pid_; }
   /// Reads both outputs to the end. Returns the exit code, 128 + the signal that ended the process, or nullopt after
   /// `timeout`.
   std::optional<int> wait(std::chrono::milliseconds timeout = kPatience);

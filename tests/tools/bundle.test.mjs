@@ -2,7 +2,8 @@
 // Spindrift. So it also runs on a bare machine.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, realpathSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, realpathSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
 import { createInterface } from "node:readline";
@@ -10,6 +11,7 @@ import { after, before, describe, it } from "node:test";
 
 import { repository } from "./workshop.mjs";
 
+const { Spec, Validation } = createRequire(join(repository, "tests/containers/package.json"))("@cyclonedx/cyclonedx-library");
 const TOOLS = ["/bin/sh", "/usr/bin/readlink", "/usr/bin/dirname", "/usr/bin/basename", "/usr/bin/sed", "/usr/bin/head"];
 /** The whole environment. */
 const TOOL_PATH = { PATH: "/usr/sbin:/usr/bin:/sbin:/bin" };
@@ -78,7 +80,27 @@ describe("the bundle", () => {
   it("has a licence for itself and for every bundled part", () => {
     assert.ok(existsSync(join(bundle, "LICENSE")));
     const licences = readdirSync(join(bundle, "share/licenses")).join(" ");
-    for (const part of ["libprotobuf", "libegl-mesa0", "libgl1-mesa-dri", "libllvm", "three"]) assert.ok(licences.includes(part), part);
+    for (const part of ["libprotobuf", "libegl-mesa0", "libgl1-mesa-dri", "libllvm", "three", "libboost", "libcli11"]) assert.ok(licences.includes(part), part);
+  });
+
+  it("lists its parts with versions and licences: libraries, compiled headers, the page's packages", async () => {
+    const text = readFileSync(join(bundle, "share/sbom.cdx.json"), "utf8");
+    assert.equal(await new Validation.JsonStrictValidator(Spec.Version.v1dot5).validate(text), null, "no valid CycloneDX");
+    const { metadata, components } = JSON.parse(text);
+    assert.deepEqual(metadata.component.licenses, [{ license: { id: "MIT" } }]);
+    const licencesOf = (name) => components.find((component) => component["bom-ref"] === name)?.licenses;
+    assert.deepEqual(licencesOf("npm:three"), [{ expression: "MIT" }]);
+    assert.deepEqual(licencesOf("deb:libcli11-dev"), [{ license: { id: "BSD-3-Clause" } }]);
+    assert.deepEqual(licencesOf("deb:libstdc++6"), [{ license: { name: "GPL-3.0-or-later WITH GCC-exception-3.1" } }]);
+    assert.ok(licencesOf("deb:libgl1-mesa-dri"), "Mesa is missing");
+    for (const component of components) {
+      assert.ok(component.version && component.licenses.length > 0, component["bom-ref"]);
+      const file = component.name.replace("@", "").replace("/", "-");
+      assert.ok(existsSync(join(bundle, "share/licenses", `${file}.txt`)), `${file} has no licence text`);
+    }
+    // Each bundled library belongs to a package that is listed.
+    const packages = spawnSync("dpkg-query", ["--search", "*/libprotobuf.so.32", "*/libspdlog.so.1.10"], { encoding: "utf8" }).stdout;
+    for (const line of lines(packages)) assert.ok(licencesOf(`deb:${line.split(":")[0]}`), line);
   });
 
   it("runs with only PATH in the environment", () => {

@@ -148,7 +148,7 @@ describe("./dev", () => {
       t.skip("shellcheck is missing");
       return;
     }
-    const files = ["dev", ".ci/run", ".ci/bundle/spindrift", "docker/healthcheck", "docker/install-runtime"];
+    const files = ["dev", ".ci/run", ".ci/bundle/spindrift", "docker/healthcheck", "docker/install-runtime", "docker/build-with-buildah"];
     const checked = spawnSync("shellcheck", ["--external-sources", "--check-sourced", ...files], { cwd: repository, encoding: "utf8" });
     assert.equal(checked.status, 0, checked.stdout);
   });

@@ -236,14 +236,15 @@ TEST(BarrierDeathTest, UntakenFaultsEndTheProcess) {
 TEST(Checks, ReadsTheModesOfTheEnvironment) {
   const auto none = parseChecks("");
   ASSERT_TRUE(none);
-  EXPECT_FALSE(none->barriers || none->poison || none->shuffle_seed || none->lag_fences_count);
-  const auto all = parseChecks("barriers,poison,shuffle=7,lag=3");
+  EXPECT_FALSE(none->barriers || none->poison || none->shuffle_seed || none->lag_fences_count || none->memory_mib);
+  const auto all = parseChecks("barriers,poison,shuffle=7,lag=3,memory=64");
   ASSERT_TRUE(all);
   EXPECT_TRUE(all->barriers && all->poison);
   EXPECT_EQ(all->shuffle_seed, 7u);
   EXPECT_EQ(all->lag_fences_count, 3u);
+  EXPECT_EQ(all->memory_mib, 64u);
   for (const char* text : {"barrier", "shuffle", "shuffle=", "shuffle=0", "shuffle=1000001", "shuffle=x", "poison=1",
-                           "lag=-1", "lag=10001", " barriers"}) {
+                           "lag=-1", "lag=10001", "memory=0", "memory", " barriers"}) {
     const auto wrong = parseChecks(text);
     ASSERT_FALSE(wrong) << text;
     EXPECT_THAT(wrong.error().message, HasSubstr(std::string("\"") + text + "\""));

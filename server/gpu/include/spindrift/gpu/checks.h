@@ -20,10 +20,14 @@ struct Checks {
   std::uint32_t shuffle_seed = 0;
   /// The device appears to be this many fences behind; see FenceDelay.
   std::uint32_t lag_fences_count = 0;
+  /// Not 0: the device appears to have memory for this many MiB of buffers per context; making more fails as on a full
+  /// device.
+  std::uint32_t memory_mib = 0;
 };
 
-/// Parses "barriers", "poison", "shuffle=SEED" (1 to 1,000,000) and "lag=FENCES" (0 to 10,000), separated by commas; an
-/// empty text turns all modes off. Error kInvalidInput names the word that is not understood.
+/// Parses "barriers", "poison", "shuffle=SEED" (1 to 1,000,000), "lag=FENCES" (0 to 10,000) and "memory=MIB" (1 to
+/// 1,000,000), separated by commas; an empty text turns all modes off. Error kInvalidInput names the word that is not
+/// understood.
 core::Result<Checks> parseChecks(std::string_view text);
 
 /// Parses the environment variable SPINDRIFT_GPU_CHECKS; all modes are off when it is not set.

@@ -192,6 +192,8 @@ struct ServerOptions {
   /// Share of max_session_count that one address may use (IPv6: one /64), at least one session. Use 1 behind a proxy
   /// that is not in trusted_proxies: all its clients have its address.
   double address_session_share = 0.5;
+  /// File descriptors that connections leave to the rest of the program, for its state on disk, devices and logs.
+  std::size_t reserved_descriptor_count = 64;
   std::size_t read_message_max_bytes = 16 * 1024;  ///< client messages are small
   std::size_t request_body_max_bytes = 64 * 1024;
   std::size_t answer_pause_count = 128;  ///< number of waiting answers from which the session is not read
@@ -238,6 +240,10 @@ inline constexpr std::array<std::string_view, kRefusedCount> kRefusedNames{
 struct ServerStats {
   std::uint64_t open_session_count = 0;
   std::uint64_t accepted_session_count = 0;
+  std::uint64_t open_connection_count = 0;  ///< TCP connections open now, those of sessions included
+  std::uint64_t connection_max_count = 0;   ///< as many may be open: fewer than usual where RLIMIT_NOFILE is low
+  std::uint64_t failed_accept_count = 0;    ///< times that the system had no descriptor or memory for a connection
+  std::uint64_t silent_session_count = 0;   ///< sessions cut off because nothing came for idle_timeout
   std::uint64_t sent_bytes_count = 0;       ///< message bytes of both planes, without WebSocket headers
   std::uint64_t sent_frame_count = 0;       ///< data plane only
   std::uint64_t dropped_frame_count = 0;    ///< replaced in their slot by a newer frame before they were sent

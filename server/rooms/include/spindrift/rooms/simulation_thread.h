@@ -16,6 +16,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/device.h>
+#include <spindrift/rooms/clock_watch.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/rooms/water_builder.h>
 
@@ -59,6 +60,10 @@ class SimulationThread {
   [[nodiscard]] std::string deviceLine() const;
   /// Share of its time that the thread worked lately, 0 to 1.
   [[nodiscard]] double busyShare() const { return busy_share_; }
+  /// Returns how many waters could not be built since the start, for one cause.
+  [[nodiscard]] std::uint64_t waterFailureCount(core::ErrorCode cause) const { return builder_->failureCount(cause); }
+  /// Returns how often the system's clock was set while the rooms ran.
+  [[nodiscard]] std::uint64_t clockStepCount() const { return clock_step_count_; }
   /// One line per room; filled by stop().
   [[nodiscard]] const std::vector<std::string>& summary() const { return summary_; }
 
@@ -106,6 +111,8 @@ class SimulationThread {
   std::vector<std::string> summary_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};
+  ClockWatch clock_watch_;  ///< used by the thread only
+  std::atomic<std::uint64_t> clock_step_count_{0};
   bool running_ = false;
   bool stopping_ = false;
   std::thread thread_;

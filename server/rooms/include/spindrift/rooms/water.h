@@ -18,7 +18,8 @@ namespace spindrift::rooms {
 class Water {
  public:
   /// Builds the scene and runs some ticks, so that every shader is compiled, then resets it to its start; the tick
-  /// count does not start at 0. The calling thread owns it. Errors: those of the device and of WaterSim::create().
+  /// count does not start at 0. The calling thread owns it. Errors: those of the device and of WaterSim::create();
+  /// kUnavailable when the device has no memory for the scene.
   static core::Result<std::unique_ptr<Water>> create(const gpu::DeviceChoice& device, v1::Scene scene);
   ~Water();
   Water(const Water&) = delete;

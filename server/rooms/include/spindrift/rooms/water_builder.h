@@ -1,6 +1,9 @@
 // Builds water and prepares changes of it on threads beside the running rooms; destroys water no longer used.
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <memory>
@@ -36,11 +39,16 @@ class WaterBuilder {
   std::future<Prepared> prepare(core::Scene scene, sim::SceneBasis basis);
   /// Any thread. Returns whether no water is being built or destroyed.
   [[nodiscard]] bool isIdle() const { return builds_.isIdle(); }
+  /// Any thread. Returns how many waters could not be built since the start, for one cause.
+  [[nodiscard]] std::uint64_t failureCount(core::ErrorCode cause) const {
+    return failure_counts_[static_cast<std::size_t>(cause)];
+  }
   /// Destroys the water, which must be bound to the calling thread.
   void dispose(std::unique_ptr<Water> water);
 
  private:
   const gpu::DeviceChoice device_;
+  std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(core::ErrorCode::kInternal) + 1> failure_counts_{};
   Worker builds_;
   Worker changes_;
 };
