@@ -211,7 +211,7 @@ TEST_F(Rest, ImpossibleRoomsAreRefusedWithTheReason) {
 
 TEST_F(Rest, AServerInsideAnotherProgramIsNotEndedByARequest) {
   EXPECT_EQ(ask("GET", "/api/v1/drain").status, 405U);
-  const Answer answer = ask("POST", "/api/v1/drain");
+  const Answer answer = ask("POST", "/api/v1/drain", "{}");
   EXPECT_EQ(answer.status, 409U);
   EXPECT_THAT(answer.text("message"), HasSubstr("part of another program"));
   EXPECT_EQ(httpRequest(server().port(), "GET", "/readyz").status, 200U);
@@ -241,7 +241,7 @@ TEST_F(RestByRole, RequestsThatChangeSomethingNeedAToken) {
   EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kOperator).status, 200U);
   EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kPlayer).status, 403U);
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/main", "", kPlayer).status, 403U);
-  EXPECT_EQ(ask("POST", "/api/v1/drain", "", kPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/drain", "{}", kPlayer).status, 403U);
   EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kOperator).status, 201U);
   const Answer wrong = ask("GET", "/api/v1/rooms", "", "wrong-wrong-wrong-1");
   EXPECT_EQ(wrong.status, 401U);

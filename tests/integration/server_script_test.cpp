@@ -170,8 +170,8 @@ TEST_F(Script, AddressesAreRead) {
   EXPECT_FALSE(parse("ws://localhost")->is_tls);
   EXPECT_TRUE(parse("wss://localhost:8080/ws")->is_tls);
   EXPECT_EQ(parse("wss://localhost")->port, "443");
-  for (const char* bad : {"", "localhost:8080", "http://localhost", "https://localhost", "ws://", "wss://",
-                          "ws://h:99999", "ws://h:x"}) {
+  for (const char* bad :
+       {"", "localhost:8080", "http://localhost", "https://localhost", "ws://", "wss://", "ws://h:99999", "ws://h:x"}) {
     EXPECT_FALSE(parse(bad)) << bad;
   }
 }

@@ -1,5 +1,7 @@
 #include "tls_client.h"
 
+#include <csignal>
+
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <openssl/err.h>
@@ -29,6 +31,7 @@ TlsTcp& TlsTcp::operator=(TlsTcp&& other) noexcept = default;
 TlsTcp::~TlsTcp() = default;
 
 bool TlsTcp::connect(std::uint16_t port, const TlsWish& wish) {
+  std::signal(SIGPIPE, SIG_IGN);  // OpenSSL writes to its socket without MSG_NOSIGNAL
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);

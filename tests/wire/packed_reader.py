@@ -83,7 +83,7 @@ FRAME = {1: ("layer", UINT), 2: ("tick", UINT), 3: ("time_s", DOUBLE), 4: ("keyf
          6: ("crc32c", FIXED32), 7: ("level", UINT), 15: ("payload", BYTES), 16: ("server_time_s", DOUBLE),
          17: ("state_id", UINT)}
 LAYERS = {"surface": 1, "particles": 2, "bodies": 3, "foam": 4}
-KINDS = range(1, 15)  # of ServerMessage
+KINDS = range(1, 16)  # of ServerMessage
 FRAME_KIND = 2
 
 

@@ -98,6 +98,19 @@ describe("a server that ends", () => {
     expect(page.newest("state").state.why).toBe("the server restarts");
   });
 
+  it("does not wait any longer after a second signal", async () => {
+    const { port, stop } = await start(0, ["--drain-s", "4"]);
+    const page = new Page(port, "Ada");
+    pages.push(page);
+    await until("the welcome", () => page.newest("welcome"));
+    const begin = Date.now();
+    const ended = stop("SIGTERM");
+    await until("the message", () => page.newest("draining"));
+    expect(await stop("SIGINT")).toMatchObject({ code: 0 });
+    expect(await ended).toMatchObject({ code: 0 });
+    expect(Date.now() - begin).toBeLessThan(4000);
+  });
+
   it("ends when an operator asks for it", async () => {
     const { port, ended } = await start(0);
     expect(await statusOf(port, "/api/v1/drain")).toMatchObject({ status: 405 });

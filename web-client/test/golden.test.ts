@@ -41,7 +41,7 @@ function unpacked(golden: GoldenCase, unpacker = new FrameUnpacker()): Exclude<P
 }
 
 /** Kinds and layers that the tests below read; the first test fails if golden.json has another one. */
-const kKinds = ["frame", "diagnostics", "greeting", "ack", "reject", "boat_list", "room_event"];
+const kKinds = ["frame", "diagnostics", "greeting", "ack", "reject", "boat_list", "room_event", "draining"];
 const kLayers = ["LAYER_SURFACE", "LAYER_PARTICLES", "LAYER_FOAM", "LAYER_BODIES"];
 
 /** A plane's samples and sides; a square names those along x only. */
@@ -146,6 +146,13 @@ describe("golden bytes", () => {
     const boats = golden["boats"] as Record<string, number>[];
     expect(parse(read(golden.file))).toEqual({
       kind: "boatList", boats: boats.map((boat) => Object.fromEntries(Object.entries(boat).map(([name, value]) => [camel(name), value]))),
+    });
+  });
+
+  it.each(cases.filter((c) => c.kind === "draining"))("reads the times and the address of $file", (golden) => {
+    expect(parse(read(golden.file))).toEqual({
+      kind: "draining",
+      draining: { closesInS: golden["closes_in_s"], goTo: golden["go_to"], reconnectAfterMinS: golden["reconnect_after_min_s"], reconnectAfterMaxS: golden["reconnect_after_max_s"] },
     });
   });
 

@@ -103,7 +103,7 @@ TEST_F(Tls, ARefusedRequestGetsItsReply) {
   TlsTcp client;
   ASSERT_TRUE(client.connect(port()));
   ASSERT_TRUE(client.send("POST /api/echo HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100000\r\n\r\n"));
-  ASSERT_TRUE(client.send(std::string(60'000, 'x')));
+  (void)client.send(std::string(60'000, 'x'));  // the server may have refused already
   EXPECT_THAT(client.receiveAll(), StartsWith("HTTP/1.1 413"));
 }
 

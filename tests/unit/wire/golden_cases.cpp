@@ -286,6 +286,15 @@ std::string greetingJson() {
          std::string(kGoldenBoatsJson) + "}, \"scenes\": [\"harbour\", \"pool\"]";
 }
 
+v1::Draining goldenDraining() {
+  v1::Draining out;
+  out.set_closes_in_s(1.0);
+  out.set_go_to("wss://other.example:8443");
+  out.set_reconnect_after_min_s(0.25);
+  out.set_reconnect_after_max_s(4.0);
+  return out;
+}
+
 std::string because(const std::string& why) {
   return "\"why\": \"" + why + "\"";
 }
@@ -334,6 +343,10 @@ std::vector<GoldenCase> goldenCases() {
        "\"kind\": \"room_event\", \"event\": \"ROOM_EVENT_KIND_RECOVERED\", \"tick\": " + wide(kTick) +
            ", \"message\": \"put back\"",
        *roomEvent(v1::ROOM_EVENT_KIND_RECOVERED, kTick, "put back")},
+      {"draining.bin", kOk,
+       "\"kind\": \"draining\", \"closes_in_s\": 1, \"go_to\": \"wss://other.example:8443\", "
+       "\"reconnect_after_min_s\": 0.25, \"reconnect_after_max_s\": 4",
+       *draining(goldenDraining())},
       bad("surface_truncated", surface, "payload two bytes short, checksum of what is there",
           [&](v1::LayerFrame& f) {
             f.mutable_payload()->resize(f.payload().size() - 2);
@@ -387,7 +400,10 @@ std::vector<GoldenCase> goldenCases() {
           [](v1::LayerFrame& f) { f.mutable_foam_fixed8()->set_resolution_count(1); }),
       {"bad_cut.bin", kBadMessage, because("the first half of surface_16.bin"), cutInHalf(surface)},
       {"bad_empty.bin", kBadMessage, because("no bytes: no kind of message"), {}},
-      {"bad_kind.bin", kBadMessage, because("a kind of message of the future: field 15"), {0x7A, 0x02, 0x08, 0x01}},
+      {"bad_kind.bin",
+       kBadMessage,
+       because("a kind of message of the future: field 100"),
+       {0xA2, 0x06, 0x02, 0x08, 0x01}},
   };
   for (GoldenCase& packed : goldenPackedSurfaces()) cases.push_back(std::move(packed));
   for (GoldenCase& packed : goldenPackedFoam()) cases.push_back(std::move(packed));
