@@ -136,9 +136,9 @@ class HalfOpen : public FaultTest, public testing::WithParamInterface<bool> {
   void adjust(service::WaterServerOptions& options) const override {
     options.network.idle_timeout = std::chrono::seconds(3);
     options.rules.grace = kGrace;
-    auto access = service::Access::parse("operator operator-of-the-test\n", "tokens", core::Role::kPlayer);
-    ASSERT_TRUE(access) << access.error().message;
-    options.access = *std::move(access);  // guests are players, who may take a boat only when it has no owner
+    auto tokens = access::Access::parse("operator operator-of-the-test\n", "tokens", core::Role::kPlayer);
+    ASSERT_TRUE(tokens) << tokens.error().message;
+    options.access.access = *std::move(tokens);  // guests are players, who may take a boat only when it has no owner
   }
 
   static constexpr std::chrono::seconds kGrace{2};

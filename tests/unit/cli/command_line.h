@@ -37,7 +37,7 @@ struct CommandLine {
     std::ranges::reverse(arguments);  // CLI11 takes them from the back
     arguments.push_back("serve");
     program.parse(arguments);
-    auto completed = cli::completeServeOptions(program, *serve, options);
+    auto completed = cli::completeFrontOptions(program, *serve, options);
     if (completed) {
       sources = *std::move(completed);
     } else {
