@@ -69,12 +69,15 @@ class NatsBus final : public Bus {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
     }
-    wake_.notify_one();
+    wake_.notify_all();
     if (sender_.joinable()) sender_.join();
-    if (connection_) {
-      natsConnection_Close(connection_);
-      natsConnection_Destroy(connection_);
-    }
+    if (!connection_) return;
+    natsConnection_Close(connection_);
+    // NATS makes its last calls from a thread of its own; closed() is the very last.
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, [this] { return closed_; });
+    lock.unlock();
+    natsConnection_Destroy(connection_);
   }
 
   core::Result<void> connect(const BusOptions& options);
@@ -107,7 +110,17 @@ class NatsBus final : public Bus {
   std::atomic<std::uint64_t> reconnect_count{0};
 
  private:
+  static void closed(natsConnection*, void* self) {
+    auto* const bus = static_cast<NatsBus*>(self);
+    const std::lock_guard lock(bus->mutex_);
+    bus->closed_ = true;
+    bus->wake_.notify_all();  // under the lock: the bus is destroyed as soon as it is free
+  }
   static void disconnected(natsConnection*, void* self) {
+    {
+      const std::lock_guard lock(static_cast<NatsBus*>(self)->mutex_);
+      if (static_cast<NatsBus*>(self)->stopping_) return;
+    }
     spdlog::warn("the connection to NATS ({}) broke; rooms go on, watchers behind edges see no frames until it is back",
                  static_cast<NatsBus*>(self)->url_);
   }
@@ -137,6 +150,7 @@ class NatsBus final : public Bus {
   std::deque<Waiting> waiting_;
   std::size_t waiting_bytes_ = 0;
   bool stopping_ = false;
+  bool closed_ = false;
   std::thread sender_;
   std::atomic<std::uint64_t> last_message_{std::uint64_t{std::random_device()()} << 32u};
 };
@@ -172,6 +186,7 @@ core::Result<void> NatsBus::connect(const BusOptions& options) {
   set(natsOptions_SetNoEcho(raw, true));
   set(natsOptions_SetDisconnectedCB(raw, &NatsBus::disconnected, this));
   set(natsOptions_SetReconnectedCB(raw, &NatsBus::reconnected, this));
+  set(natsOptions_SetClosedCB(raw, &NatsBus::closed, this));
   set(natsOptions_SetErrorHandler(raw, &NatsBus::failed, this));
   if (!options.ca_file.empty()) set(natsOptions_LoadCATrustedCertificates(raw, options.ca_file.c_str()));
   if (status == NATS_OK) status = natsConnection_Connect(&connection_, raw);
