@@ -26,8 +26,12 @@ core::Bytes serialize(const v1::RoomRecord& record) {
 
 }  // namespace
 
-Directory::Directory(std::unique_ptr<bus::KeyValues> values, std::string self, LookAt servers)
-    : values_(std::move(values)), self_(std::move(self)), servers_(std::move(servers)), worker_(0) {}
+Directory::Directory(std::unique_ptr<bus::KeyValues> values, std::string self, LookAt servers, Opened opened)
+    : values_(std::move(values)),
+      self_(std::move(self)),
+      servers_(std::move(servers)),
+      opened_(std::move(opened)),
+      worker_(0) {}
 
 Directory::~Directory() = default;
 
@@ -110,7 +114,10 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
                                 "there is a room '" + name + "' in the cluster already: choose another name"});
     }
     simulation_->openRoom(std::move(*shared), [this, name, finish](const core::Result<void>& opened) {
-      if (!opened) remove(name);
+      if (opened)
+        opened_();
+      else
+        remove(name);
       finish(opened);
     });
   });
@@ -221,6 +228,7 @@ void Directory::take(const std::string& room, const Entry& entry) {
     }
     if (opened) {
       ++taken_count_;
+      opened_();
       spdlog::info("room {} runs here now", room);
     } else {
       ++failure_count_;

@@ -24,9 +24,10 @@ namespace spindrift::cluster {
 class Directory {
  public:
   using LookAt = std::function<Servers()>;  ///< returns what is known of the servers now
+  using Opened = std::function<void()>;     ///< a room was opened here; called before anybody is told
 
-  /// `values` and what `servers` needs outlive it. `self`: the name of this server.
-  Directory(std::unique_ptr<bus::KeyValues> values, std::string self, LookAt servers);
+  /// `values` and what the functions need outlive it. `self`: the name of this server.
+  Directory(std::unique_ptr<bus::KeyValues> values, std::string self, LookAt servers, Opened opened);
   ~Directory();
   Directory(const Directory&) = delete;
   Directory& operator=(const Directory&) = delete;
@@ -65,6 +66,7 @@ class Directory {
   const std::unique_ptr<bus::KeyValues> values_;
   const std::string self_;
   const LookAt servers_;
+  const Opened opened_;
   rooms::SimulationThread* simulation_ = nullptr;
   std::atomic<bool> leaving_{false};
   std::atomic<bool> reviewing_{false};

@@ -130,11 +130,16 @@ core::Result<void> NodeImpl::start() {
   if (options_.runs_rooms) {
     auto values = bus::KeyValues::open(*bus_, subjects_.directory());
     if (!values) return values.error();
-    directory_ = std::make_unique<Directory>(*std::move(values), options_.name, [this] { return servers(); });
+    directory_ = std::make_unique<Directory>(
+        *std::move(values), options_.name, [this] { return servers(); }, [this] { sendPulse(Clock::now()); });
     feed_ = std::make_unique<Feed>(
         *bus_, subjects_,
         Feed::Events{.displaced = [this](core::SessionId session) { sessions_->displace(session); },
-                     .closed = [this](const std::string& room) { directory_->remove(room); },
+                     .closed =
+                         [this](const std::string& room) {
+                           directory_->remove(room);
+                           sendPulse(Clock::now());
+                         },
                      .rejected =
                          [this](const rooms::Command& command, const wire::CommandRejection& rejection) {
                            outlets_->commandRejected(command, rejection);
