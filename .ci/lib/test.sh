@@ -62,7 +62,7 @@ test_zink() {
 # sanitizers, in the tree of the fuzz targets, whose libraries are built with them already. Tests on a device stay out: the
 # shaders that the rasteriser compiles are not instrumented, and it is slow under the sanitizers. Without a named part only
 # the first ones run (label memory): clang takes minutes for the files of net and gpu.
-readonly memory_programs=(core_test state_test codec_test scene_test wire_test sim_setup_test)
+readonly memory_programs=(core_test state_test codec_test scene_test wire_test sim_setup_test bus_test cluster_test)
 readonly memory_programs_when_named=(net_test rooms_test service_test gpu_text_test)
 
 # write_skipped FILE NAME REASON: writes a report of one skipped test and prints the reason.

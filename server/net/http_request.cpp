@@ -62,6 +62,12 @@ std::optional<Reply> refuseHead(const RequestParser& parser) {
     return textReply(400, "The Host header is no host with an optional port.");
   }
   if (parser.chunked()) return textReply(411, "A body needs a Content-Length here; it may not come in chunks.");
+  // RFC 9112 section 6.3: with another coding two readers could disagree where the body ends. Boost's parser ignores
+  // it.
+  if (const auto coding = request.find(http::field::transfer_encoding); coding != request.end()) {
+    return textReply(400, "The Transfer-Encoding " + printable(viewOf(coding->value())) +
+                              " is not known here: send a Content-Length instead.");
+  }
   const bool has_body = request.method() == http::verb::post || request.method() == http::verb::put ||
                         request.method() == http::verb::patch;
   if (has_body && isApiTarget(viewOf(request.target())) && request.count(http::field::content_length) == 0) {

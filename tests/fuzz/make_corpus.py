@@ -167,6 +167,38 @@ def state_files():
     }
 
 
+def cluster():
+    """Returns frames and parts as they come over the bus, each after the byte that says what the target tries with it."""
+    frame, parts = b"\0", b"\1"
+
+    def framed(keyframe, delta, run=7, sequence=9, mark=0x53504631):
+        return struct.pack("<IQQIII", mark, run, sequence, 2, len(keyframe), len(delta)) + keyframe + delta
+
+    def rows(*pieces):
+        out = b""
+        for message, part, part_count, content in pieces:
+            piece = struct.pack("<QII", message, part, part_count) + content
+            out += struct.pack("<H", len(piece)) + piece
+        return out
+
+    return {
+        "frame_both": frame + framed(b"keyframe", b"delta"),
+        "frame_delta": frame + framed(b"", b"delta"),
+        "frame_empty": frame + framed(b"", b""),
+        "frame_cut": frame + framed(b"keyframe", b"")[:-1],
+        "frame_other_mark": frame + framed(b"keyframe", b"", mark=0x53504632),
+        "frame_sizes_wrap": frame + struct.pack("<IQQIII", 0x53504631, 1, 1, 0, 2**32 - 1, 4) + b"key",
+        "parts_one": parts + rows((1, 0, 1, b"wave")),
+        "parts_in_order": parts + rows((1, 0, 3, b"a"), (1, 1, 3, b"bc"), (1, 2, 3, b"d")),
+        "parts_lost": parts + rows((1, 0, 3, b"a"), (1, 2, 3, b"d"), (2, 0, 2, b"e"), (2, 1, 2, b"f")),
+        "parts_interleaved": parts + rows((1, 0, 2, b"a"), (2, 0, 2, b"b"), (1, 1, 2, b"c"), (2, 1, 2, b"d")),
+        "parts_too_many_open": parts + rows(*((message, 0, 2, b"") for message in range(40))),
+        "parts_other_count": parts + rows((1, 0, 2, b"a"), (1, 1, 3, b"b"), (1, 0, 65, b""), (1, 0, 0, b"")),
+        "parts_most": parts + rows(*((1, part, 50, b"") for part in range(50))),
+        "parts_short": parts + struct.pack("<H", 15) + bytes(15),
+    }
+
+
 def base64url(data):
     return base64.urlsafe_b64encode(data).rstrip(b"=")
 
@@ -228,6 +260,7 @@ def main():
     pieces = (b"\xff", b"\x00", b"\x03")
     write("http", {name: pieces[i % 3] + text.encode("latin-1") for i, (name, text) in enumerate(REQUESTS.items())})
     write("access", access())
+    write("cluster", cluster())
     write("forwarded", {name: text.encode() for name, text in FORWARDED.items()})
     write("state_files", state_files())
     write("scene", {name: text.encode() for name, text in SCENES.items()})

@@ -133,6 +133,25 @@ TEST_F(ConnectionTest, RefusesEveryFormOfChunkedBody) {
   EXPECT_TRUE(served.serves());
 }
 
+TEST_F(ConnectionTest, RefusesEveryOtherTransferEncoding) {
+  const TestServer served(options());
+  for (const char* coding : {"identity", "gzip", "xchunked", "\"chunked\"", "chunked, identity", ""}) {
+    // A reader that takes the coding for "chunked" finds a second request behind the last chunk.
+    const std::string body = "0\r\n\r\nGET /healthz HTTP/1.1\r\nHost: a\r\n\r\n";
+    const std::string headers = std::string("Host: a\r\nTransfer-Encoding: ") + coding +
+                                "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n";
+    for (const char* line : {"POST /api/echo HTTP/1.1\r\n", "GET /healthz HTTP/1.1\r\n"}) {
+      RawTcp tcp;
+      ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+      ASSERT_TRUE(tcp.send(line + headers + body));
+      const std::string answer = tcp.receiveAll();
+      EXPECT_EQ(test::parseAnswer(answer).status, 400U) << coding;
+      EXPECT_EQ(answer.find("HTTP/1.1 200"), std::string::npos) << coding;
+    }
+  }
+  EXPECT_TRUE(served.serves());
+}
+
 TEST_F(ConnectionTest, RequiresExactlyOneHostPerHttp11Request) {
   const TestServer served(options());
   const auto ask = [&](const std::string& version, const std::string& headers) {
