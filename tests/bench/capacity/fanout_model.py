@@ -29,6 +29,7 @@ class FanoutScenario:
     warm_up_s: float = 3.0
     seed: int = 1
     slowdown: float = 1.0  # of all CPU work, where other processes share the cores
+    receiver_s: float = 0.0  # CPU per frame of one process that plays all clients; 0: each has a machine of its own
 
 
 class Edge:
@@ -61,7 +62,7 @@ class FanoutModel:
         if abs(sum(scenario.level_shares.values()) - 1.0) > 1e-6:
             raise ValueError(f"the shares of the levels add up to {sum(scenario.level_shares.values())}, not 1")
         self.edges = [Edge() for _ in range(scenario.edges)]
-        self.encoder, self.router, self.nats_link = Worker(), Worker(), Worker()
+        self.encoder, self.router, self.nats_link, self.receiver = Worker(), Worker(), Worker(), Worker()
         self.is_measuring = False
         self.wanted_keyframes = {}  # by stream: nodes that asked
         self.joined = 0
@@ -260,6 +261,9 @@ class FanoutModel:
         end_s = edge.link.do(begin_s, count * wire_each_s)
         end_s = edge.link.free_at_s = max(end_s, edge.io.free_at_s)
         self.count_sent(edge, count * bytes_count)
+        receiver_s = self.s.receiver_s * self.s.slowdown
+        receiver_begin_s = max(self.receiver.free_at_s, begin_s)
+        self.receiver.do(begin_s, count * receiver_s)
         if not self.is_measuring or not name.startswith("surface"):
             return
         self.surface_frames += count
@@ -267,6 +271,7 @@ class FanoutModel:
         for k in range(BATCH_SAMPLES):
             place = (k + 0.5) / BATCH_SAMPLES * count
             at_s = min(end_s, max(begin_s + place * slowed_s, link_begin_s + place * wire_each_s))
+            at_s = max(at_s, receiver_begin_s + place * receiver_s)
             self.delays.add(at_s - made_s, count / BATCH_SAMPLES)
 
     # ---- the run ----------------------------------------------------------------------------------------------------
