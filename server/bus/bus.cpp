@@ -188,6 +188,9 @@ core::Result<void> NatsBus::connect(const BusOptions& options) {
   set(natsOptions_SetReconnectedCB(raw, &NatsBus::reconnected, this));
   set(natsOptions_SetClosedCB(raw, &NatsBus::closed, this));
   set(natsOptions_SetErrorHandler(raw, &NatsBus::failed, this));
+  // Without this the client would speak plain text to a server that offers no TLS, or to whoever stands in its place.
+  const bool is_secure = std::ranges::any_of(urls, [](const std::string& url) { return url.starts_with("tls://"); });
+  if (is_secure || !options.ca_file.empty()) set(natsOptions_SetSecure(raw, true));
   if (!options.ca_file.empty()) set(natsOptions_LoadCATrustedCertificates(raw, options.ca_file.c_str()));
   if (status == NATS_OK) status = natsConnection_Connect(&connection_, raw);
   if (status == NATS_OK) {

@@ -12,16 +12,17 @@ const START_LIMIT_MS = 120_000;
 const STOP_LIMIT_MS = 30_000;
 
 /**
- * Starts `spindrift serve` with the built page.
+ * Starts `spindrift serve`, or another command that serves, with the built page.
  * @param {number} port 0 = any free port
  * @param {string[]} scenes options that choose scenes; by default those of this folder
+ * @param {string} command "serve" or "edge"
  * @returns {Promise<{url: string, port: number, ended: Promise<{code: number | null, signal: string | null}>, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
  *   rejects with the server's output if it ends before it is ready, or after 120 s
  */
-export function startServer(port = 0, scenes = kTestScenes) {
+export function startServer(port = 0, scenes = kTestScenes, command = "serve") {
   const child = spawn(
     binary,
-    ["serve", "--port", String(port), "--web-root", `${repository}/web-client/dist`, ...scenes],
+    [command, "--port", String(port), "--web-root", `${repository}/web-client/dist`, ...scenes],
     { stdio: ["ignore", "pipe", "pipe"] },
   );
   let words = "";

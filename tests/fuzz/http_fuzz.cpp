@@ -106,6 +106,7 @@ bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Applicat
   }
   must(parser.is_done(), "a request without an error is whole");
   const net::Request& request = parser.get();
+  must(request.count(boost::beast::http::field::transfer_encoding) == 0, "only its length divides a request");
   if (boost::beast::websocket::is_upgrade(request)) {
     const net::UpgradeDecision decision = net::decideUpgrade(request, buffer.size(), application);
     if (decision.refusal) {

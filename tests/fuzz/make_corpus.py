@@ -97,6 +97,7 @@ REQUESTS = {
     "chunked_empty": "POST /api/x HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
     "not_http": "hello water\r\n\r\n",
     "endless": "GET / HTTP/1.1\r\nHost: " + "a" * 300,
+    "other_coding": "POST /api/x HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: xchunked\r\nContent-Length: 5\r\n\r\n0\r\n\r\n",
 }
 
 FORWARDED = {

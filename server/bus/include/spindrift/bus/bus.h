@@ -14,7 +14,9 @@
 namespace spindrift::bus {
 
 struct BusOptions {
-  std::string url;      ///< "nats://HOST:4222", "nats://USER:PASSWORD@HOST", several separated by commas; "tls://…"
+  /// "nats://HOST:4222", "nats://USER:PASSWORD@HOST", several separated by commas. With "tls://…" or a ca_file, servers
+  /// without TLS are refused.
+  std::string url;
   std::string name;     ///< of this process, shown by the NATS server
   std::string ca_file;  ///< certificates that sign the server's; empty: the system's
 };
