@@ -256,15 +256,17 @@ class FanoutModel:
             return
         each_s = self.p["edge_cpu_per_frame_sent_s"] + bytes_count * self.p["edge_cpu_per_byte_sent_s"]
         wire_each_s = bytes_count * self.wire / self.p["edge_link_bit_per_s"]
-        begin_s = max(edge.io.free_at_s, self.queue.now_s)
+        now_s = self.queue.now_s
+        begin_s = max(edge.io.free_at_s, now_s)
         self.work(edge, edge.io, count * each_s)
         link_begin_s = max(edge.link.free_at_s, begin_s)
         end_s = edge.link.do(begin_s, count * wire_each_s)
         end_s = edge.link.free_at_s = max(end_s, edge.io.free_at_s)
         self.count_sent(edge, count * bytes_count)
         receiver_s = self.s.receiver_s * self.s.slowdown
-        receiver_begin_s = max(self.receiver.free_at_s, begin_s)
-        self.receiver.do(begin_s, count * receiver_s)
+        receiver_begin_s = max(self.receiver.free_at_s, now_s) if receiver_s > 0.0 else 0.0
+        if receiver_s > 0.0:
+            self.receiver.do(now_s, count * receiver_s)
         if not self.is_measuring or not name.startswith("surface"):
             return
         self.surface_frames += count
@@ -339,7 +341,7 @@ class FanoutModel:
             "client_mbit_per_s": mbit * sum(edge.sent_bytes for edge in self.edges),
             "edge_cpu_cores": busiest.cpu_s / time_s + p["edge_idle_cpu"],
             "edges_cpu_cores": sum(e.cpu_s for e in self.edges) / time_s + p["edge_idle_cpu"] * len(alive),
-            "edge_backlog_s": max(0.0, max(edge.io.free_at_s for edge in alive) - self.queue.now_s),
+            "edge_backlog_s": max(0.0, max(edge.link.free_at_s for edge in alive) - self.queue.now_s),
             "receiver_backlog_s": max(0.0, self.receiver.free_at_s - self.queue.now_s),
             "edge_mbit_per_s": mbit * max(edge.sent_bytes for edge in alive),
             "edge_memory_mb": 1e-6
