@@ -42,6 +42,8 @@ def read_arguments():
     failover.add_argument("--servers", type=int, default=FailoverScenario.servers)
     failover.add_argument("--room-max-count", type=int, default=FailoverScenario.room_max_count)
     failover.add_argument("--room-share", type=float, default=None, help="default: room_thread_share of the parameters")
+    failover.add_argument("--counts-claimed", action="store_true", help="try a rule of placement that counts claimed rooms")
+    failover.add_argument("--build-s", type=float, default=None, help="try another time of building a room")
     failover.add_argument("--runs", type=int, default=FailoverScenario.runs)
     return parser.parse_args()
 
@@ -54,9 +56,13 @@ def predict(arguments) -> dict:
             "run capacity_measure.py --program PATH --write FILE"
         )
     if arguments.case == "failover":
+        if arguments.build_s is not None:
+            for name in ("room_build_p50_s", "room_build_p99_s"):
+                values.set(name, arguments.build_s, "--build-s")
         return simulate(values, FailoverScenario(
             rooms=arguments.rooms, servers=arguments.servers, room_max_count=arguments.room_max_count,
-            room_thread_share=arguments.room_share, runs=arguments.runs, seed=arguments.seed))  # fmt: skip
+            room_thread_share=arguments.room_share, counts_claimed=arguments.counts_claimed, runs=arguments.runs,
+            seed=arguments.seed))  # fmt: skip
     scenario = FanoutScenario(
         clients=arguments.clients, edges=arguments.edges, arrivals_per_s=arguments.arrivals_per_s,
         churn_per_s=arguments.churn_per_s, edge_death=arguments.edge_death, measured_s=arguments.seconds,
@@ -77,7 +83,8 @@ def main() -> int:
         print(json.dumps(result))
         return 0
     for name, value in result.items():
-        print(f"{name:<34} {value:.4g}" if isinstance(value, float) else f"{name:<34} {value}")
+        text = f"{value:.4g}" if isinstance(value, float) else "-" if value is None else value
+        print(f"{name:<34} {text}")
     if arguments.json:
         pathlib.Path(arguments.json).write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
     return 0

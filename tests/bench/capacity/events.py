@@ -54,17 +54,17 @@ class Samples:
         self._values.append((value, weight))
         self.weight += weight
 
-    def quantile(self, share: float) -> float:
-        """NaN if there are no values."""
+    def quantile(self, share: float, factor: float = 1.0) -> float | None:
+        """Returns the quantile times `factor`; None if there are no values."""
         if not self._values:
-            return math.nan
+            return None
         left = share * self.weight
         self._values.sort()
         for value, weight in self._values:
             left -= weight
             if left <= 0.0:
-                return value
-        return self._values[-1][0]
+                return value * factor
+        return self._values[-1][0] * factor
 
 
 def log_normal(random, median: float, p99: float) -> float:

@@ -18,6 +18,8 @@ class FailoverScenario:
     room_max_count: int = 16  # --max-rooms of each server
     edges_per_room: int = 3  # nodes whose clients watch it
     room_thread_share: float | None = None  # None: that of the parameters
+    # Placement counts rooms that a server has claimed and that its pulses do not show yet.
+    counts_claimed: bool = False
     runs: int = 20
     seed: int = 1
     end_s: float = 120.0
@@ -28,7 +30,7 @@ class Server:
         self.name = name
         self.alive = True
         self.rooms = set()  # that run
-        self.known_rooms = 0  # as its last pulse said
+        self.known_rooms = frozenset()  # as its last pulse said
         self.known_load = 0.0
         self.heard_s = 0.0
         self.builder = Worker()
@@ -82,7 +84,7 @@ class FailoverModel:
         best, least = None, float("inf")
         for server in self.servers:
             late = placed.get(server.name, 0)
-            if not self.is_alive(server) or server.known_rooms + late >= self.s.room_max_count:
+            if not self.is_alive(server) or len(server.known_rooms) + late >= self.s.room_max_count:
                 continue
             load = server.known_load + self.p["placed_room_load"] * late
             if load < least:
@@ -95,7 +97,7 @@ class FailoverModel:
         if not server.alive:
             return
         server.heard_s = self.queue.now_s
-        server.known_rooms = len(server.rooms)
+        server.known_rooms = frozenset(server.rooms)
         server.known_load = self.load(server)
         self.pulses_in += 1
         self.pulses_out += len(self.servers) - 1
@@ -117,8 +119,9 @@ class FailoverModel:
             return
         now_s = self.queue.now_s
         placed, orphans, taken = {}, {}, []
-        for room in self.owner:
-            owner = self.owner[room]
+        for room, owner in self.owner.items():
+            if self.s.counts_claimed and self.is_alive(owner) and room not in owner.known_rooms:
+                placed[owner.name] = placed.get(owner.name, 0) + 1
             if room in server.rooms or room in server.opening:
                 continue
             if owner is not server and self.is_alive(owner):

@@ -28,6 +28,7 @@ class FanoutScenario:
     measured_s: float = 10.0
     warm_up_s: float = 3.0
     seed: int = 1
+    rate_factor: float = 1.0  # the room's real-time factor: its frames come so much slower
     slowdown: float = 1.0  # of all CPU work, where other processes share the cores
     receiver_s: float = 0.0  # CPU per frame of one process that plays all clients; 0: each has a machine of its own
 
@@ -255,15 +256,17 @@ class FanoutModel:
             return
         each_s = self.p["edge_cpu_per_frame_sent_s"] + bytes_count * self.p["edge_cpu_per_byte_sent_s"]
         wire_each_s = bytes_count * self.wire / self.p["edge_link_bit_per_s"]
-        begin_s = max(edge.io.free_at_s, self.queue.now_s)
+        now_s = self.queue.now_s
+        begin_s = max(edge.io.free_at_s, now_s)
         self.work(edge, edge.io, count * each_s)
         link_begin_s = max(edge.link.free_at_s, begin_s)
         end_s = edge.link.do(begin_s, count * wire_each_s)
         end_s = edge.link.free_at_s = max(end_s, edge.io.free_at_s)
         self.count_sent(edge, count * bytes_count)
         receiver_s = self.s.receiver_s * self.s.slowdown
-        receiver_begin_s = max(self.receiver.free_at_s, begin_s)
-        self.receiver.do(begin_s, count * receiver_s)
+        receiver_begin_s = max(self.receiver.free_at_s, now_s) if receiver_s > 0.0 else 0.0
+        if receiver_s > 0.0:
+            self.receiver.do(now_s, count * receiver_s)
         if not self.is_measuring or not name.startswith("surface"):
             return
         self.surface_frames += count
@@ -287,7 +290,7 @@ class FanoutModel:
             for k in range(s.clients):
                 self.queue.at(k / s.arrivals_per_s, lambda: self.join(self.draw_level()))
         for name, stream in self.streams.items():
-            self.queue.every(1.0 / stream["rate_hz"], 0.0, lambda name=name: self.make_frame(name))
+            self.queue.every(1.0 / (stream["rate_hz"] * s.rate_factor), 0.0, lambda name=name: self.make_frame(name))
         for edge in self.edges:
             phase_s = self.random.random()
             self.queue.every(p["link_pulse_interval_s"], phase_s * p["link_pulse_interval_s"], self.link_pulse(edge))
@@ -330,19 +333,22 @@ class FanoutModel:
         return {
             "clients": self.s.clients,
             "edges": self.s.edges,
-            "delay_p50_ms": 1e3 * self.delays.quantile(0.5),
-            "delay_p99_ms": 1e3 * self.delays.quantile(0.99),
-            "first_frame_p50_ms": 1e3 * self.first_frames.quantile(0.5),
-            "first_frame_p99_ms": 1e3 * self.first_frames.quantile(0.99),
+            "delay_p50_ms": self.delays.quantile(0.5, 1e3),
+            "delay_p99_ms": self.delays.quantile(0.99, 1e3),
+            "first_frame_p50_ms": self.first_frames.quantile(0.5, 1e3),
+            "first_frame_p99_ms": self.first_frames.quantile(0.99, 1e3),
             "surface_frames_per_client_per_s": self.surface_frames / time_s / max(1, self.s.clients),
             "client_mbit_per_s": mbit * sum(edge.sent_bytes for edge in self.edges),
             "edge_cpu_cores": busiest.cpu_s / time_s + p["edge_idle_cpu"],
             "edges_cpu_cores": sum(e.cpu_s for e in self.edges) / time_s + p["edge_idle_cpu"] * len(alive),
-            "edge_backlog_s": max(0.0, max(edge.io.free_at_s for edge in alive) - self.queue.now_s),
+            "edge_backlog_s": max(0.0, max(edge.link.free_at_s for edge in alive) - self.queue.now_s),
+            "receiver_backlog_s": max(0.0, self.receiver.free_at_s - self.queue.now_s),
             "edge_mbit_per_s": mbit * max(edge.sent_bytes for edge in alive),
             "edge_memory_mb": 1e-6
             * (p["edge_memory_bytes"] + p["edge_memory_per_client_bytes"] * max(edge.client_count() for edge in alive)),
-            "origin_cpu_cores": p["origin_idle_cpu"] + self.origin_cpu_s / time_s + p["origin_cpu_per_link_s"] * len(alive),
+            "origin_cpu_cores": p["origin_idle_cpu"] * self.s.rate_factor
+            + self.origin_cpu_s / time_s
+            + p["origin_cpu_per_link_s"] * len(alive),
             "nats_cpu_cores": p["nats_idle_cpu"] + self.nats_cpu_s / time_s,
             "nats_in_mbit_per_s": mbit * bytes_in,
             "nats_out_mbit_per_s": mbit * bytes_out,

@@ -1,9 +1,10 @@
 """Costs of frames: runs the load bench in several sizes and fits CPU and memory per edge, client, frame and byte."""
+import os
 import statistics
 import time
 
 from bus_probe import BusProbe, greeting_bytes
-from cluster_processes import Cluster
+from cluster_processes import Cluster, machine_cpu_s
 from least_squares import fit
 from nats_client import NatsClient
 
@@ -16,6 +17,9 @@ SIMULATING_THREADS = 3
 KINDS = ("deltas", "keyframes")
 # v1::Layer; the number of a stream is that of its layer, plus this count if it is packed (server/codec/stream.h).
 LAYERS = ("unspecified", "surface", "particles", "bodies", "foam", "diagnostics")
+# The fitted parameters, in the order of the columns.
+EDGE_COSTS = ("edge_idle_cpu", "edge_cpu_per_frame_received_s", "edge_cpu_per_frame_sent_s", "edge_cpu_per_byte_sent_s")
+NATS_COSTS = ("nats_idle_cpu", "nats_cpu_per_message_in_s", "nats_cpu_per_message_out_s", "nats_cpu_per_byte_out_s")
 
 
 class Snapshot:
@@ -32,6 +36,9 @@ class Snapshot:
         self.nats_cpu = cluster.nats.cpu_s()
         self.nats = cluster.nats_totals()
         self.load_cpu = load.cpu_s() if load else 0.0
+        self.machine_cpu = machine_cpu_s()
+        self.own_cpu = os.times().user + os.times().system + self.nats_cpu + self.load_cpu
+        self.own_cpu += sum(one.cpu_s() for one in [*cluster.servers.values(), *cluster.edges.values()] if one.child.poll() is None)
 
 
 class Rates:
@@ -44,6 +51,7 @@ class Rates:
         self.watching_cpu = sum(threads[:-SIMULATING_THREADS]) / self.time_s
         self.nats_cpu = (b.nats_cpu - a.nats_cpu) / self.time_s
         self.load_cpu = (b.load_cpu - a.load_cpu) / self.time_s
+        self.other_cpu = max(0.0, b.machine_cpu - a.machine_cpu - (b.own_cpu - a.own_cpu)) / self.time_s
         self.nats = {name: (b.nats[name] - a.nats[name]) / self.time_s for name in b.nats}
 
     def server(self, name: str) -> float:
@@ -105,9 +113,11 @@ def measure_streams(cluster: Cluster, edges: list, seconds: float) -> dict:
             if name.split(".")[0] == "diagnostics":
                 continue
             layer, of = name.split(".")
-            label = [f'{{layer="{layer}",packing="{packing}",level="{of}"}}' for packing in ("packed", "plain")]
-            encode_s = sum(after.get("spindrift_encode_seconds_total" + one, 0) - metrics.get("spindrift_encode_seconds_total" + one, 0) for one in label)
-            encoded = sum(after.get("spindrift_encoded_frames_total" + one, 0) - metrics.get("spindrift_encoded_frames_total" + one, 0) for one in label)
+            encoded, encode_s = (
+                sum(after.get(key, 0.0) - metrics.get(key, 0.0) for key in
+                    (f'spindrift_{total}{{layer="{layer}",packing="{packing}",level="{of}"}}' for packing in ("packed", "plain")))
+                for total in ("encoded_frames_total", "encode_seconds_total")
+            )  # fmt: skip
             rate_hz = (count - before.get(name, 0)) / time_s
             if rate_hz == 0 or encoded == 0:
                 continue
@@ -160,7 +170,7 @@ def measure(cluster: Cluster, cases: list, seconds: float) -> dict:
     nats_names = ("in_msgs", "out_msgs", "out_bytes")
     nats_rows, nats_values = [[1.0, *(idle.nats[n] for n in nats_names)]], [idle.nats_cpu]
     origin_rows, origin_values, joins, memories, bench = [], [], [], [], []
-    print(f"{'edges':>5} {'clients':>7} level   frames  p50 ms  p99 ms  CPU: server  watching   edges    nats   bench  NATS in, out Mbit/s")
+    print("edges clients level   frames  p50 ms  p99 ms  CPU: server  watching   edges    nats   bench  NATS in, out Mbit/s  others")
     for case_edges, each, level in cases:
         clients = case_edges * each
         used = edges[:case_edges]
@@ -179,11 +189,11 @@ def measure(cluster: Cluster, cases: list, seconds: float) -> dict:
         print(f"{case_edges:5} {clients:7} {level:7} {result['surface_frames_median']:6.0f} {result['delay_p50_ms']:7.2f}"
               f" {result['delay_p99_ms']:7.2f} {rates.server_cpu:12.3f} {rates.watching_cpu:9.3f}"
               f" {sum(rates.edge_cpu(k) for k in range(case_edges)):7.3f} {rates.nats_cpu:7.3f} {rates.load_cpu:7.3f}"
-              f" {8e-6 * rates.nats['in_bytes']:8.2f} {8e-6 * rates.nats['out_bytes']:8.2f}", flush=True)  # fmt: skip
+              f" {8e-6 * rates.nats['in_bytes']:8.2f} {8e-6 * rates.nats['out_bytes']:8.2f} {rates.other_cpu:9.2f}", flush=True)  # fmt: skip
     edge = fit(edge_rows, edge_values)
-    found |= dict(zip(("edge_idle_cpu", "edge_cpu_per_frame_received_s", "edge_cpu_per_frame_sent_s", "edge_cpu_per_byte_sent_s"), edge))
+    found |= dict(zip(EDGE_COSTS, edge))
     nats = fit(nats_rows, nats_values)
-    found |= dict(zip(("nats_idle_cpu", "nats_cpu_per_message_in_s", "nats_cpu_per_message_out_s", "nats_cpu_per_byte_out_s"), nats))
+    found |= dict(zip(NATS_COSTS, nats))
     origin = fit(origin_rows, origin_values)
     found["origin_cpu_per_published_frame_s"], found["origin_cpu_per_link_s"] = origin[0], origin[1]
     found["origin_idle_cpu"] = found["room_cpu"]
@@ -195,7 +205,8 @@ def measure(cluster: Cluster, cases: list, seconds: float) -> dict:
     found["bench_cpu_per_frame_s"] = statistics.median(bench)
     found["room_memory_bytes"] = server.memory_bytes()
     found["nats_memory_bytes"] = cluster.nats.memory_bytes()
-    print(f"  edge_cpu: largest error of the fit {max(abs(sum(a * b for a, b in zip(edge, r)) - v) for r, v in zip(edge_rows, edge_values)):.4f} cores")
+    errors = [abs(sum(a * b for a, b in zip(edge, row)) - value) for row, value in zip(edge_rows, edge_values)]
+    print(f"  CPU of an edge: largest error of the fit {max(errors):.4f} cores")
     return {name: round_value(value) for name, value in found.items()}
 
 
