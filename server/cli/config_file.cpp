@@ -163,6 +163,8 @@ core::Result<void> takeConfigText(std::string_view text, const std::string& labe
   for (const FieldDescriptor* const field : fields) {
     const TextFormat::ParseLocation place = places.GetLocation(field, field->is_repeated() ? 0 : -1);
     const std::string where = fmt::format("{}:{}:{}: {}", label, place.line + 1, place.column + 1, field->name());
+    if (!options.has(field->name()))
+      return Error{ErrorCode::kInvalidInput, where + ": this command has no such option; leave it out"};
     const std::vector<std::string> values = valuesOf(config, *field);
     for (const std::string& value : values) {
       // Neither flags nor variables can hold one, and a path would end there.
@@ -176,11 +178,11 @@ core::Result<void> takeConfigText(std::string_view text, const std::string& labe
 
 std::string configText(const OptionSources& options) {
   v1::ServeConfig config;
-  std::string text =
-      "# The options of spindrift serve, and where each value comes from. Read again by --config FILE.\n";
+  std::string text = "# The options of spindrift, and where each value comes from. Read again by --config FILE.\n";
   const auto& type = *v1::ServeConfig::descriptor();
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
+    if (!options.has(field.name())) continue;
     const OptionSources::Entry& entry = options.at(field.name());
     setField(config, field, *entry.option);
     const auto& reflection = *config.GetReflection();

@@ -98,6 +98,10 @@ void OptionSources::replaceByVariable(const std::string& field, const std::strin
   entry.place = "environment: " + variable + " instead";
 }
 
+bool OptionSources::has(const std::string& field) const {
+  return std::ranges::any_of(entries_, [&](const Entry& entry) { return fieldName(*entry.option) == field; });
+}
+
 const OptionSources::Entry& OptionSources::at(const std::string& field) const {
   const auto found = std::ranges::find(entries_, field, [](const Entry& entry) { return fieldName(*entry.option); });
   if (found == entries_.end()) throw std::logic_error("no option for the field " + field);

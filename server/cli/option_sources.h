@@ -48,6 +48,8 @@ class OptionSources {
   /// The environment decides about this option by another variable than its own: a file cannot set it any more.
   void replaceByVariable(const std::string& field, const std::string& variable);
 
+  /// Whether an option has this field: the file knows those of all commands.
+  bool has(const std::string& field) const;
   /// The field must be one of an option here.
   const Entry& at(const std::string& field) const;
   const std::vector<Entry>& entries() const { return entries_; }

@@ -164,7 +164,10 @@ void Directory::reviewNow() {
       if (opening_.contains(room)) continue;
     }
     const std::string& owner = entry.record.server();
-    if (owner != self_ && servers.isAlive(owner, now)) continue;
+    if (owner != self_ && servers.isAlive(owner, now)) {
+      if (servers.serverOf(room) != owner) ++placed[owner];  // it has claimed the room and is opening it
+      continue;
+    }
     const auto since = orphans_.contains(room) ? orphans_.at(room) : now;
     orphans[room] = since;
     if (entry.revision == 0 && now - since < kStrayPatience) continue;

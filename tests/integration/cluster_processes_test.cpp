@@ -247,6 +247,21 @@ TEST_F(ClusterTest, AServerThatStartsAgainTakesItsRoomsBack) {
   EXPECT_EQ(greeting->greeting().boat_list().boats_size(), 1);
 }
 
+TEST_F(ClusterTest, AnEdgePrintsAndReadsItsConfiguration) {
+  ChildProcess printing(SPINDRIFT_PROGRAM, {"edge", "--nats", natsUrl(), "--node", "e9", "--print-config"});
+  ASSERT_EQ(printing.wait(), 0) << printing.err();
+  EXPECT_THAT(printing.out(), testing::AllOf(HasSubstr("node: \"e9\""), Not(HasSubstr("scene"))));
+  folder_.write("edge.textproto", printing.out());
+  const std::string file = (folder_.path() / "edge.textproto").string();
+  ChildProcess again(SPINDRIFT_PROGRAM, {"edge", "--config", file, "--print-config"});
+  ASSERT_EQ(again.wait(), 0) << again.err();
+  EXPECT_THAT(again.out(), HasSubstr("node: \"e9\"  # file, line"));
+  folder_.write("edge.textproto", "max_rooms: 3\n");
+  ChildProcess wrong(SPINDRIFT_PROGRAM, {"edge", "--config", file});
+  EXPECT_EQ(wrong.wait(), 2);
+  EXPECT_THAT(wrong.err(), HasSubstr("max_rooms: this command has no such option"));
+}
+
 TEST_F(ClusterTest, MistakesAreNamed) {
   const auto says = [&](const std::string& arguments) {
     LoggedProcess process(std::string(SPINDRIFT_PROGRAM) + " " + arguments, folder_.path() / "mistake.log");
