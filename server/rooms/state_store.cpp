@@ -86,8 +86,8 @@ core::Result<RoomPlace> StateStore::place(const std::string& room) {
       return place(room);
     }
   }
-  out.keeper = std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_,
-                                             std::move(room_lock));
+  out.keeper =
+      std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_, std::move(room_lock));
   return out;
 }
 

@@ -1,6 +1,8 @@
 // Broken and hostile clients: they get the reason of the refusal, and other clients are not affected.
 #include <random>
 
+#include <spindrift/wire/client_message.h>
+
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -54,7 +56,7 @@ class Hostile : public WaveServerTest {
 TEST_F(Hostile, WrongMajorVersionIsRefusedWithBothVersions) {
   ScriptedClient one(server().port());
   one.hello({.major = 2});
-  expectRefusal(one, "client speaks wire version 2.1, this server 1.1");
+  expectRefusal(one, "client speaks wire version 2.1, this server 1." + std::to_string(wire::kWireMinor));
 }
 
 TEST_F(Hostile, SubscribeBeforeHelloIsRefused) {
