@@ -28,8 +28,7 @@ void Worker::push(Work work) {
 }
 
 void Worker::loop() {
-  // On Linux this sets the priority of this thread alone. A failure is ignored.
-  if (niceness_ != 0) (void)setpriority(PRIO_PROCESS, 0, niceness_);
+  bool is_calm = niceness_ == 0;
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [this] { return stopping_ || !work_.empty(); });
@@ -42,6 +41,8 @@ void Worker::loop() {
     work = nullptr;
     --unfinished_count_;
     if (done_) done_();
+    // On Linux this sets the priority of this thread alone. A failure is ignored.
+    if (!std::exchange(is_calm, true)) (void)setpriority(PRIO_PROCESS, 0, niceness_);
     lock.lock();
   }
 }

@@ -2,7 +2,12 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -166,6 +171,29 @@ TEST_F(RunningServe, ServesTheWebClientOnceItIsThere) {
   const HttpAnswer answer = httpRequest(port_, "GET", "/");
   EXPECT_EQ(answer.status, 200u);
   EXPECT_EQ(answer.body, "<!doctype html>water\n");
+}
+
+/// The niceness of each thread of a process.
+std::vector<int> nicenesses(pid_t process) {
+  std::vector<int> out;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task")) {
+    std::ifstream file(task.path() / "stat");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::istringstream fields(text.substr(text.rfind(')') + 1));
+    constexpr int kNicenessField = 17;  // of those after the name, see proc(5)
+    std::string field;
+    for (int k = 0; k < kNicenessField; ++k) fields >> field;
+    if (!field.empty()) out.push_back(std::stoi(field));
+  }
+  return out;
+}
+
+TEST_F(RunningServe, OnlyTheBuilderHasItsLowPriority) {
+  // A software rasteriser's threads inherit it from the thread that builds the first water. They compute every tick.
+  constexpr int kBuilderNiceness = 10;
+  const std::vector<int> all = nicenesses(child_->processId());
+  EXPECT_GT(all.size(), 4u);
+  EXPECT_EQ(std::ranges::count(all, kBuilderNiceness), 1);
 }
 
 TEST_F(RunningServe, HasEveryRoomOfItsCommandLine) {

@@ -14,7 +14,9 @@ namespace spindrift::rooms {
 /// Runs work in order of arrival. The callers bound the queue.
 class Worker {
  public:
-  /// `niceness`: 0 for normal priority, up to 19 for the lowest. `done` is called on the worker's thread after each
+  /// `niceness`: 0 for normal priority, up to 19 for the lowest. It holds after the first piece of work: threads
+  /// inherit the priority of the one that starts them, and the first water starts those of a software rasteriser, which
+  /// compute every tick of all rooms. `done` is called on the worker's thread after each
   /// piece of work.
   explicit Worker(int niceness, std::function<void()> done = {});
   /// Ends the thread after the current work; waiting pieces are called with runs = false.
