@@ -42,7 +42,7 @@ def read_arguments():
     failover.add_argument("--servers", type=int, default=FailoverScenario.servers)
     failover.add_argument("--room-max-count", type=int, default=FailoverScenario.room_max_count)
     failover.add_argument("--room-share", type=float, default=None, help="default: room_thread_share of the parameters")
-    failover.add_argument("--counts-claimed", action="store_true", help="try a rule of placement that counts claimed rooms")
+    failover.add_argument("--ignores-claimed", action="store_true", help="a rule of placement that does not count rooms that are being opened")
     failover.add_argument("--build-s", type=float, default=None, help="try another time of building a room")
     failover.add_argument("--runs", type=int, default=FailoverScenario.runs)
     return parser.parse_args()
@@ -61,7 +61,7 @@ def predict(arguments) -> dict:
                 values.set(name, arguments.build_s, "--build-s")
         return simulate(values, FailoverScenario(
             rooms=arguments.rooms, servers=arguments.servers, room_max_count=arguments.room_max_count,
-            room_thread_share=arguments.room_share, counts_claimed=arguments.counts_claimed, runs=arguments.runs,
+            room_thread_share=arguments.room_share, ignores_claimed=arguments.ignores_claimed, runs=arguments.runs,
             seed=arguments.seed))  # fmt: skip
     scenario = FanoutScenario(
         clients=arguments.clients, edges=arguments.edges, arrivals_per_s=arguments.arrivals_per_s,

@@ -19,7 +19,7 @@ class FailoverScenario:
     edges_per_room: int = 3  # nodes whose clients watch it
     room_thread_share: float | None = None  # None: that of the parameters
     # Placement counts rooms that a server has claimed and that its pulses do not show yet.
-    counts_claimed: bool = False
+    ignores_claimed: bool = False
     runs: int = 20
     seed: int = 1
     end_s: float = 120.0
@@ -120,7 +120,7 @@ class FailoverModel:
         now_s = self.queue.now_s
         placed, orphans, taken = {}, {}, []
         for room, owner in self.owner.items():
-            if self.s.counts_claimed and self.is_alive(owner) and room not in owner.known_rooms:
+            if not self.s.ignores_claimed and self.is_alive(owner) and room not in owner.known_rooms:
                 placed[owner.name] = placed.get(owner.name, 0) + 1
             if room in server.rooms or room in server.opening:
                 continue
