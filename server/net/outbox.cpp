@@ -148,33 +148,53 @@ Outbox::Next Outbox::next() {
   writer_sleeps_ = false;
   ++turn_count_;
   if (shut_) return {Kind::kShut, nullptr};
-  // A frame may belong to the scene of a waiting greeting, so it must not overtake the greeting.
-  if (control_run_count_ >= kControlRunMaxCount && !whole_state_waits_ && !close_) {
-    if (auto frame = takeFrame()) return {Kind::kFrame, std::move(frame)};
-  }
-  if (!control_.empty()) {
-    const Control taken = std::move(control_.front());
-    control_.pop_front();
-    ++control_run_count_;
-    if (!taken.topic) --answer_count_;
-    if (taken.topic && taken.topic->scope == StateTopic::Scope::kWhole) whole_state_waits_ = false;
-    return {Kind::kControl, taken.message};
-  }
+  const auto stream = nextStream();
+  if (stream && isFrameBeforeControl()) return takeFrame(*stream);
+  if (!control_.empty()) return takeControl();
   if (close_) return {Kind::kClose, nullptr};
-  if (auto frame = takeFrame()) return {Kind::kFrame, std::move(frame)};
+  if (stream) return takeFrame(*stream);
   writer_sleeps_ = true;
   return {};
 }
 
-core::SharedBytes Outbox::takeFrame() {
+std::optional<Outbox::Next> Outbox::nextAlong(std::size_t max_bytes) {
+  const std::lock_guard lock(mutex_);
+  if (shut_) return std::nullopt;
+  const auto stream = nextStream();
+  if (control_.empty() || (stream && isFrameBeforeControl())) {
+    if (!stream || slots_[*stream].frame->size() > max_bytes) return std::nullopt;
+    return takeFrame(*stream);
+  }
+  if (control_.front().message->size() > max_bytes) return std::nullopt;
+  return takeControl();
+}
+
+bool Outbox::isFrameBeforeControl() const {
+  // A frame may belong to the scene of a waiting greeting, so it must not overtake the greeting.
+  return control_run_count_ >= kControlRunMaxCount && !whole_state_waits_ && !close_;
+}
+
+Outbox::Next Outbox::takeControl() {
+  const Control taken = std::move(control_.front());
+  control_.pop_front();
+  ++control_run_count_;
+  if (!taken.topic) --answer_count_;
+  if (taken.topic && taken.topic->scope == StateTopic::Scope::kWhole) whole_state_waits_ = false;
+  return {Kind::kControl, taken.message};
+}
+
+std::optional<std::size_t> Outbox::nextStream() const {
   for (std::size_t k = 0; k < slots_.size(); ++k) {
     const std::size_t stream = (turn_ + k) % slots_.size();
-    if (!slots_[stream].frame) continue;
-    turn_ = (stream + 1) % slots_.size();
-    control_run_count_ = 0;
-    return std::exchange(slots_[stream].frame, nullptr);
+    if (slots_[stream].frame) return stream;
   }
-  return nullptr;
+  return std::nullopt;
+}
+
+Outbox::Next Outbox::takeFrame(std::size_t stream) {
+  turn_ = (stream + 1) % slots_.size();
+  control_run_count_ = 0;
+  return {Kind::kFrame, std::exchange(slots_[stream].frame, nullptr)};
 }
 
 Outbox::Waiting Outbox::waiting() const {

@@ -87,6 +87,10 @@ class Outbox {
   /// Returns the next thing to do. After kIdle the writer sleeps, and the next producer gets `wake`.
   Next next();
 
+  /// For a message that is written together with the one that next() returned. Returns what next() would return if
+  /// that is a message of at most `max_bytes`; nullopt otherwise, and then nothing has changed.
+  std::optional<Next> nextAlong(std::size_t max_bytes);
+
   struct Waiting {
     std::size_t answer_count = 0;
     std::size_t state_count = 0;
@@ -125,8 +129,12 @@ class Outbox {
     core::SharedBytes message;
     std::optional<StateTopic> topic;  ///< nullopt: an answer
   };
-  /// Returns the frame of the next stream in turn; null if none waits.
-  core::SharedBytes takeFrame();
+  /// Call these with the mutex held.
+  [[nodiscard]] bool isFrameBeforeControl() const;
+  /// The stream whose frame is next; nullopt if none waits.
+  [[nodiscard]] std::optional<std::size_t> nextStream() const;
+  Next takeFrame(std::size_t stream);
+  Next takeControl();
 
   const std::size_t answer_max_count_;
   mutable std::mutex mutex_;
@@ -137,7 +145,7 @@ class Outbox {
   std::array<Slot, kMaxStreamCount> slots_;
   LevelLadder ladder_;
   std::size_t turn_ = 0;          ///< the stream that is checked first
-  std::uint64_t turn_count_ = 0;  ///< number of messages that the writer took
+  std::uint64_t turn_count_ = 0;  ///< number of times that the writer had finished what it took before
   bool writer_sleeps_ = false;
   bool shut_ = false;
   std::optional<SessionEnd> close_;

@@ -211,6 +211,7 @@ ServerStats ServerImpl::stats() const {
                   .silent_session_count = counters.silent_session_count,
                   .sent_bytes_count = counters.sent_bytes_count,
                   .sent_frame_count = counters.sent_frame_count,
+                  .write_count = counters.write_count,
                   .dropped_frame_count = counters.dropped_frame_count,
                   .lowered_level_count = counters.lowered_level_count,
                   .raised_level_count = counters.raised_level_count,

@@ -26,6 +26,7 @@ struct Counters {
   std::atomic<std::uint64_t> silent_session_count{0};
   std::atomic<std::uint64_t> sent_bytes_count{0};
   std::atomic<std::uint64_t> sent_frame_count{0};
+  std::atomic<std::uint64_t> write_count{0};
   std::atomic<std::uint64_t> dropped_frame_count{0};
   std::atomic<std::uint64_t> lowered_level_count{0};
   std::atomic<std::uint64_t> raised_level_count{0};

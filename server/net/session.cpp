@@ -28,6 +28,9 @@ constexpr std::uint64_t kFragmentsPerMessage = 64;
 constexpr std::uint16_t kCloseCodeMax = 4999;
 constexpr std::uint16_t kProtocolError = 1002;
 
+/// Messages are written together up to this size, so that a new answer or frame does not wait for long behind them.
+constexpr std::size_t kGatheredMaxBytes = 32 * 1024;
+
 /// 1011: a failure of the server, not of the peer.
 constexpr const char* kInternalReason = "the server failed on this session; its log says why";
 
@@ -198,32 +201,52 @@ asio::awaitable<void> Session::writeLoop() {
         (void)co_await wake_timer_.async_wait(kToken);
         break;
       case Outbox::Kind::kControl:
-      case Outbox::Kind::kFrame: {
-        const bool sent = co_await write(*next.message);
-        if (!sent) {
+      case Outbox::Kind::kFrame:
+        gather(std::move(next));
+        if (!co_await writeGathered()) {
           cut();
           outbox_.shut();
           answers_timer_.cancel();
           co_return;
         }
         answers_timer_.cancel();
-        context_.counters.sent_bytes_count += next.message->size();
-        if (next.kind == Outbox::Kind::kFrame) ++context_.counters.sent_frame_count;
         reviewLevel();
         break;
-      }
     }
   }
 }
 
-asio::awaitable<bool> Session::write(const core::Bytes& message) {
+void Session::gather(Outbox::Next first) {
+  gathered_ = {};
+  const auto take = [this](Outbox::Next&& next) {
+    gathered_.bytes_count += next.message->size();
+    gathered_.frame_count += next.kind == Outbox::Kind::kFrame ? 1 : 0;
+    gathered_.messages.push_back(std::move(next.message));
+  };
+  take(std::move(first));
+  while (gathered_.messages.size() <= MessageStream::kAlongMaxCount && gathered_.bytes_count < kGatheredMaxBytes) {
+    auto next = outbox_.nextAlong(kGatheredMaxBytes - gathered_.bytes_count);
+    if (!next) return;
+    take(*std::move(next));
+  }
+}
+
+asio::awaitable<bool> Session::writeGathered() {
   write_deadline_ = Clock::now() + context_.options.write_stall_timeout;
   if (!watches_writes_) watchWrites();
-  ws_.next_layer().setMessage(message);
-  const auto [error, bytes_count] = co_await ws_.async_write(asio::buffer(message), kToken);
-  ws_.next_layer().setMessage({});
+  const core::Bytes& first = *gathered_.messages.front();
+  ws_.next_layer().setMessage(first, std::span(gathered_.messages).subspan(1));
+  const auto [error, bytes_count] = co_await ws_.async_write(asio::buffer(first), kToken);
+  ws_.next_layer().clearMessage();
   write_deadline_.reset();
-  if (error) noteEnd(0, error.message());
+  if (error) {
+    noteEnd(0, error.message());
+  } else {
+    context_.counters.sent_bytes_count += gathered_.bytes_count;
+    context_.counters.sent_frame_count += gathered_.frame_count;
+    ++context_.counters.write_count;
+  }
+  gathered_ = {};  // drops the references to the frames while the session waits
   co_return !error;
 }
 

@@ -11,6 +11,7 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/websocket/stream.hpp>
+#include <boost/container/small_vector.hpp>
 
 #include "message_stream.h"
 #include "outbox.h"
@@ -46,15 +47,24 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   void cut();
 
  private:
+  /// Messages that are written together.
+  struct Gathered {
+    boost::container::small_vector<core::SharedBytes, 8> messages;
+    std::size_t bytes_count = 0;
+    std::size_t frame_count = 0;
+  };
+
   void configure(bool echo_subprotocol);
   boost::asio::awaitable<void> readLoop();
   boost::asio::awaitable<void> writeLoop();
   /// Returns once fewer than answer_pause_count answers wait, or the connection is gone. Meanwhile the session reads
   /// nothing: a client that does not read its answers is slowed down by TCP.
   boost::asio::awaitable<void> waitUntilAnswersAreTaken();
-  /// Writes one message; returns false if the connection is gone.
-  boost::asio::awaitable<bool> write(const core::Bytes& message);
-  /// Called after each sent message: evaluates whether the link can carry its level.
+  /// Takes the first message and those from the outbox that can be written with it.
+  void gather(Outbox::Next first);
+  /// Writes the gathered messages; returns false if the connection is gone.
+  boost::asio::awaitable<bool> writeGathered();
+  /// Called after each write: evaluates whether the link can carry its level.
   void reviewLevel();
   /// Closes the socket when a write passes its deadline. One timer runs across writes and is not set again for each.
   void watchWrites();
@@ -74,6 +84,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   boost::beast::websocket::stream<MessageStream> ws_;
   const boost::asio::any_io_executor strand_;
   Outbox outbox_;
+  Gathered gathered_;
   TokenBucket message_tokens_;
   std::uint64_t untaken_fragment_count_ = 0;  ///< fragments for which no token was taken yet
   boost::beast::flat_buffer read_buffer_;

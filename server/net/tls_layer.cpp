@@ -21,8 +21,9 @@ using boost::system::error_code;
 
 /// Largest content of a TLS record (RFC 8446 section 5.1).
 constexpr std::size_t kRecordBytes = 16 * 1024;
-/// A frame's header and the beginning of its payload share a record if the header is shorter.
-constexpr std::size_t kShortBytes = 1024;
+/// A part from this size on is encrypted where it lies; shorter ones, such as frame headers, share a record with what
+/// follows.
+constexpr std::size_t kLongBytes = 8 * 1024;
 
 class OpensslLayer final : public TlsLayer {
  public:
@@ -37,13 +38,15 @@ class OpensslLayer final : public TlsLayer {
 
   void read(asio::mutable_buffer buffer, Handler handler) override { ssl_.async_read_some(buffer, std::move(handler)); }
 
-  void write(asio::const_buffer first, asio::const_buffer second, Handler handler) override {
-    if (first.size() >= kShortBytes || second.size() == 0) return ssl_.async_write_some(first, std::move(handler));
-    const std::size_t first_bytes = first.size();
-    const std::size_t second_bytes = std::min(second.size(), record_.size() - first_bytes);
-    std::memcpy(record_.data(), first.data(), first_bytes);
-    std::memcpy(record_.data() + first_bytes, second.data(), second_bytes);
-    ssl_.async_write_some(asio::const_buffer(record_.data(), first_bytes + second_bytes), std::move(handler));
+  void write(std::span<const asio::const_buffer> parts, Handler handler) override {
+    if (parts.size() == 1 || parts[0].size() >= kLongBytes) return ssl_.async_write_some(parts[0], std::move(handler));
+    std::size_t bytes_count = 0;
+    for (const asio::const_buffer& part : parts) {
+      const std::size_t taken = std::min(part.size(), record_.size() - bytes_count);
+      std::memcpy(record_.data() + bytes_count, part.data(), taken);
+      bytes_count += taken;
+    }
+    ssl_.async_write_some(asio::const_buffer(record_.data(), bytes_count), std::move(handler));
   }
 
   void shutdown(Handler handler) override {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <boost/asio/buffer.hpp>
@@ -22,8 +23,9 @@ class TlsLayer {
   /// `received`: bytes that were read from the stream before; they stay valid until the handler is called.
   virtual void handshake(boost::asio::const_buffer received, Handler handler) = 0;
   virtual void read(boost::asio::mutable_buffer buffer, Handler handler) = 0;
-  /// Writes a part of `first`, or all of it and a part of `second`; reports how much. Both stay valid until then.
-  virtual void write(boost::asio::const_buffer first, boost::asio::const_buffer second, Handler handler) = 0;
+  /// Writes the beginning of `parts`, which has at least one and none that is empty; reports how much. The bytes stay
+  /// valid until then, the array of parts only during the call.
+  virtual void write(std::span<const boost::asio::const_buffer> parts, Handler handler) = 0;
   /// Sends close_notify and waits for the peer's, or for the end of the connection.
   virtual void shutdown(Handler handler) = 0;
   /// Says for people why a handshake failed with this error.

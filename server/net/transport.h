@@ -11,6 +11,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
+#include <boost/container/static_vector.hpp>
 
 #include "tls_layer.h"
 
@@ -62,7 +63,7 @@ class Transport {
     return boost::asio::async_initiate<Token, Signature>(
         [](auto handler, const std::shared_ptr<State>& state, const Buffers& into) {
           if (!state->tls) return state->tcp.async_read_some(into, std::move(handler));
-          state->tls->read(firstOf<boost::asio::mutable_buffer>(into)[0], shared(state, std::move(handler)));
+          state->tls->read(firstOf<boost::asio::mutable_buffer, 1>(into)[0], shared(state, std::move(handler)));
         },
         token, state_, buffers);
   }
@@ -72,8 +73,8 @@ class Transport {
     return boost::asio::async_initiate<Token, Signature>(
         [](auto handler, const std::shared_ptr<State>& state, const Buffers& from) {
           if (!state->tls) return state->tcp.async_write_some(from, std::move(handler));
-          const auto parts = firstOf<boost::asio::const_buffer>(from);
-          state->tls->write(parts[0], parts[1], shared(state, std::move(handler)));
+          const auto parts = firstOf<boost::asio::const_buffer, kTlsPartMaxCount>(from);
+          state->tls->write({parts.data(), parts.size()}, shared(state, std::move(handler)));
         },
         token, state_, buffers);
   }
@@ -96,16 +97,18 @@ class Transport {
                const boost::system::error_code& error, std::size_t bytes_count) { (*kept)(error, bytes_count); };
   }
 
-  /// The first two buffers that are not empty.
-  template <typename Buffer, typename Buffers>
-  static std::array<Buffer, 2> firstOf(const Buffers& buffers) {
-    std::array<Buffer, 2> out;
-    std::size_t count = 0;
+  static constexpr std::size_t kTlsPartMaxCount = 16;
+
+  /// The first buffers that are not empty, at most `kMaxCount`; one empty buffer if there are none.
+  template <typename Buffer, std::size_t kMaxCount, typename Buffers>
+  static boost::container::static_vector<Buffer, kMaxCount> firstOf(const Buffers& buffers) {
+    boost::container::static_vector<Buffer, kMaxCount> out;
     for (auto at = boost::asio::buffer_sequence_begin(buffers);
-         at != boost::asio::buffer_sequence_end(buffers) && count < out.size(); ++at) {
+         at != boost::asio::buffer_sequence_end(buffers) && out.size() < kMaxCount; ++at) {
       const Buffer part = *at;
-      if (part.size() > 0) out[count++] = part;
+      if (part.size() > 0) out.push_back(part);
     }
+    if (out.empty()) out.emplace_back();
     return out;
   }
 

@@ -144,6 +144,7 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
       stats.silent_session_count);
   one("sent_bytes_total", "counter", "Bytes of messages sent, without WebSocket headers.", stats.sent_bytes_count);
   one("sent_frames_total", "counter", "Layer frames sent.", stats.sent_frame_count);
+  one("session_writes_total", "counter", "Writes to sessions, of one or more messages each.", stats.write_count);
   one("dropped_frames_total", "counter", "Layer frames that a newer one replaced before they were sent.",
       stats.dropped_frame_count);
   one("evicted_sessions_total", "counter", "Sessions that did not read: a stalled write or a full control queue.",

@@ -331,6 +331,50 @@ TEST(Outbox, KeepsToTheRateOfEachWatch) {
   EXPECT_EQ(sent[2], 60);
 }
 
+TEST(Outbox, TakesAlongWhatWouldBeNext) {
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  outbox.setWatch(2, Watch{.max_rate_hz = kAnyRate_hz});
+  outbox.pushAnswer(shared("answer 1"));
+  outbox.pushAnswer(shared("answer 2"));
+  outbox.offerFrame(1, {shared("frame 1"), {}}, later());
+  outbox.offerFrame(2, {shared("frame 2"), {}}, later());
+  EXPECT_EQ(sentText(outbox), "answer 1");
+  std::string sent;
+  while (const auto next = outbox.nextAlong(100)) {
+    sent.append(next->message->begin(), next->message->end()).append(", ");
+  }
+  EXPECT_EQ(sent, "answer 2, frame 1, frame 2, ");
+  EXPECT_FALSE(outbox.pushAnswer(shared("later")).wake) << "the writer is busy, it does not sleep";
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+}
+
+TEST(Outbox, TakesNothingAlongThatIsTooLarge) {
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  outbox.pushAnswer(shared("12345"));
+  outbox.offerFrame(1, {shared("1234567"), {}}, later());
+  EXPECT_FALSE(outbox.nextAlong(4));
+  EXPECT_TRUE(outbox.nextAlong(5));
+  EXPECT_FALSE(outbox.nextAlong(6));
+  EXPECT_EQ(outbox.waiting().frame_count, 1U);
+  EXPECT_TRUE(outbox.nextAlong(7));
+  EXPECT_FALSE(outbox.nextAlong(7));
+}
+
+TEST(Outbox, ClosesAfterWhatItTookAlong) {
+  Outbox outbox(8);
+  outbox.pushAnswer(shared("1"));
+  outbox.pushAnswer(shared("2"));
+  EXPECT_TRUE(outbox.requestClose(CloseCode::kNormal, "enough"));
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+  EXPECT_TRUE(outbox.nextAlong(100));
+  EXPECT_FALSE(outbox.nextAlong(100)) << "a close is not a message";
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
+  outbox.shut();
+  EXPECT_FALSE(outbox.nextAlong(100));
+}
+
 TEST(Outbox, ForgetsTheFrameOfALayerThatStops) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});

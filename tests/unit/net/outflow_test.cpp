@@ -1,5 +1,6 @@
 // The data plane over loopback: shared buffers, dropping, rates, and clients that do not read.
 #include <algorithm>
+#include <array>
 
 #include <gtest/gtest.h>
 
@@ -86,6 +87,35 @@ TEST(Outflow, SendsNothingInsideAPartlyWrittenFrame) {
   }
   EXPECT_TRUE(slow.receive() == frame);
   for (int k = 0; k < 5; ++k) EXPECT_EQ(text(slow.receive()), "echo " + std::to_string(k));
+}
+
+TEST(Outflow, WritesTogetherWhatWaits) {
+  TestServer served;
+  WsClient slow = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  constexpr StreamIndex kStreamCount = 7;
+  for (StreamIndex stream = 2; stream <= kStreamCount; ++stream) {
+    ASSERT_TRUE(slow.sendBinary(bytes("watch " + std::to_string(stream) + " 1000000")));
+    ASSERT_EQ(text(slow.receive()), "watching");
+  }
+  // While this is written, one message of every length of header and more than fit together wait behind it.
+  served.server->hub().publish("pool", 1, {core::share(core::Bytes(kHugeFrameBytes)), {}});
+  ASSERT_TRUE(eventually([&] { return served.server->stats().waiting_frame_count == 0; }));
+  const std::uint64_t write_count = served.server->stats().write_count;
+  const std::array<std::size_t, kStreamCount - 1> sizes{1, 125, 126, 30'000, 20'000, 70'000};
+  std::vector<core::Bytes> frames;
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    frames.emplace_back(sizes[k]);
+    for (std::size_t at = 0; at < sizes[k]; ++at) frames[k][at] = static_cast<std::uint8_t>(at * (k + 3) + at / 251);
+    served.server->hub().publish("pool", static_cast<StreamIndex>(k + 2), {core::share(frames[k]), {}});
+  }
+  ASSERT_TRUE(slow.sendBinary(bytes("echo")));
+  ASSERT_TRUE(slow.sendPing());
+  EXPECT_EQ(slow.receive().value_or(core::Bytes{}).size(), kHugeFrameBytes);
+  EXPECT_EQ(text(slow.receive()), "echo") << "control goes first, also within a write";
+  for (const core::Bytes& frame : frames) EXPECT_TRUE(slow.receive() == frame) << frame.size() << " bytes";
+  ASSERT_TRUE(eventually([&] { return served.server->stats().sent_frame_count == 1 + frames.size(); }));
+  // The large one, then the echo with 1 to 30,000 bytes, then 20,000, then 70,000.
+  EXPECT_EQ(served.server->stats().write_count, write_count + 4);
 }
 
 TEST(Outflow, EvictsAClientWhoseWriteStalls) {

@@ -246,6 +246,7 @@ struct ServerStats {
   std::uint64_t silent_session_count = 0;   ///< sessions cut off because nothing came for idle_timeout
   std::uint64_t sent_bytes_count = 0;       ///< message bytes of both planes, without WebSocket headers
   std::uint64_t sent_frame_count = 0;       ///< data plane only
+  std::uint64_t write_count = 0;            ///< to sessions, of one or more messages each
   std::uint64_t dropped_frame_count = 0;    ///< replaced in their slot by a newer frame before they were sent
   std::uint64_t lowered_level_count = 0;    ///< times that a session's level was lowered
   std::uint64_t raised_level_count = 0;     ///< times that a session's level was raised again
