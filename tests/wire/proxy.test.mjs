@@ -1,4 +1,4 @@
-// The server behind nginx with TLS, configured as docs/operations.md says. Skipped where nginx or openssl is missing.
+// The server behind nginx and behind Caddy with TLS, configured as docs/operations.md says. Skipped where the proxy or openssl is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
@@ -20,92 +20,111 @@ async function freePort() {
   return port;
 }
 
-/** Returns the block of documentation with the paths and ports of this test. */
-function documented(port, server_port, folder) {
+/** Returns the block of documentation in this language with its texts replaced, each of which must be there. */
+function documented(language, replaced) {
   const page = readFileSync(`${repository}/docs/operations.md`, "utf8");
-  const block = /```nginx\n([^]*?)```/.exec(page)?.[1];
-  const replaced = [
-    ["listen 443 ssl", `listen 127.0.0.1:${port} ssl`],
-    ["/etc/letsencrypt/live/water.example.org/fullchain.pem", `${folder}/chain.pem`],
-    ["/etc/letsencrypt/live/water.example.org/privkey.pem", `${folder}/key.pem`],
-    ["127.0.0.1:8080", `127.0.0.1:${server_port}`],
-  ];
+  const block = new RegExp(`\`\`\`${language}\\n([^]*?)\`\`\``).exec(page)?.[1];
   return replaced.reduce((text, [from, to]) => {
     expect(text).toContain(from);
     return text.replace(from, to);
   }, block);
 }
 
-describe.skipIf(!has("nginx") || !has("openssl"))("behind nginx with TLS", () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-nginx-"));
-  let server;
-  let nginx;
-  let port;
-  let ca;
+const environment = (folder) => ({ PATH: "/usr/sbin:/usr/bin:/bin", HOME: folder, XDG_DATA_HOME: folder, XDG_CONFIG_HOME: folder });
 
-  beforeAll(async () => {
-    const names = ["-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1"];
-    execFileSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", ...names, "-keyout", `${folder}/key.pem`, "-out", `${folder}/chain.pem`], { stdio: "ignore" });
-    ca = readFileSync(`${folder}/chain.pem`);
-    // One session per address.
-    server = await startServer(0, ["--scene", `${repository}/tests/browser/tank.textproto`, "--trust-proxy", "127.0.0.1", "--address-share", "0"]);
-    port = await freePort();
+/** Each starts a proxy on this port in front of the server, with chain.pem and key.pem of the folder. */
+const starters = {
+  nginx(port, server_port, folder) {
+    const block = documented("nginx", [
+      ["listen 443 ssl", `listen 127.0.0.1:${port} ssl`],
+      ["/etc/letsencrypt/live/water.example.org/fullchain.pem", `${folder}/chain.pem`],
+      ["/etc/letsencrypt/live/water.example.org/privkey.pem", `${folder}/key.pem`],
+      ["127.0.0.1:8080", `127.0.0.1:${server_port}`],
+    ]);
     const temporary = ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"].map((name) => `${name}_temp_path ${folder}/${name};`);
-    writeFileSync(`${folder}/nginx.conf`, `pid ${folder}/pid; error_log stderr; events {} http { access_log off; ${temporary.join(" ")}\n${documented(port, server.port, folder)} }`);
-    nginx = spawn("nginx", ["-p", folder, "-c", `${folder}/nginx.conf`, "-g", "daemon off;"], { env: { PATH: "/usr/sbin:/usr/bin:/bin" }, stdio: ["ignore", "ignore", "pipe"] });
-    let words = "";
-    nginx.stderr.setEncoding("utf8").on("data", (text) => (words += text));
-    const begin = Date.now();
-    while ((await status("/healthz").catch(() => 0)) !== 200) {
-      if (nginx.exitCode !== null || Date.now() - begin > kStartLimitMs) throw new Error(`nginx does not serve: ${words}`);
-      await new Promise((resolve) => setTimeout(resolve, 50));
-    }
-  });
-  afterAll(async () => {
-    if (nginx && nginx.exitCode === null) {
-      nginx.kill("SIGQUIT");
-      await new Promise((resolve) => nginx.on("exit", resolve));
-    }
-    await server?.stop("SIGTERM");
-    rmSync(folder, { recursive: true });
-  });
+    writeFileSync(`${folder}/nginx.conf`, `pid ${folder}/pid; error_log stderr; events {} http { access_log off; ${temporary.join(" ")}\n${block} }`);
+    return ["-p", folder, "-c", `${folder}/nginx.conf`, "-g", "daemon off;"];
+  },
+  caddy(port, server_port, folder) {
+    const block = documented("caddy", [
+      ["water.example.org {", `https://127.0.0.1:${port} {\n    bind 127.0.0.1\n    tls ${folder}/chain.pem ${folder}/key.pem`],
+      ["127.0.0.1:8080", `127.0.0.1:${server_port}`],
+    ]);
+    writeFileSync(`${folder}/Caddyfile`, `{\n    admin off\n    auto_https disable_redirects\n}\n${block}`);
+    return ["run", "--adapter", "caddyfile", "--config", `${folder}/Caddyfile`];
+  },
+};
 
-  const options = (from, more = {}) => ({ ca, localAddress: from, headers: more });
+describe.each(Object.keys(starters))("behind %s with TLS", (name) => {
+  describe.skipIf(!has(name) || !has("openssl"))("where it is installed", () => {
+    const folder = mkdtempSync(join(tmpdir(), `spindrift-${name}-`));
+    let server;
+    let proxy;
+    let port;
+    let ca;
 
-  function status(path, headers = {}) {
-    return new Promise((resolve, reject) => {
-      get({ host: "127.0.0.1", port, path, ...options("127.0.0.2", headers) }, (answer) => {
-        answer.resume();
-        resolve(answer.statusCode);
-      }).on("error", reject);
+    beforeAll(async () => {
+      const names = ["-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1"];
+      execFileSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", ...names, "-keyout", `${folder}/key.pem`, "-out", `${folder}/chain.pem`], { stdio: "ignore" });
+      ca = readFileSync(`${folder}/chain.pem`);
+      // One session per address.
+      server = await startServer(0, ["--scene", `${repository}/tests/browser/tank.textproto`, "--trust-proxy", "127.0.0.1", "--address-share", "0"]);
+      port = await freePort();
+      proxy = spawn(name, starters[name](port, server.port, folder), { env: environment(folder), stdio: ["ignore", "ignore", "pipe"] });
+      let words = "";
+      proxy.stderr.setEncoding("utf8").on("data", (text) => (words += text));
+      const begin = Date.now();
+      while ((await status("/healthz").catch(() => 0)) !== 200) {
+        if (proxy.exitCode !== null || Date.now() - begin > kStartLimitMs) throw new Error(`${name} does not serve: ${words}`);
+        await new Promise((resolve) => setTimeout(resolve, 50));
+      }
     });
-  }
-
-  /** Opens a session from this address; resolves to the socket, or to the status of the refusal. */
-  function open(from, headers = {}) {
-    const socket = new WebSocket(`wss://127.0.0.1:${port}/ws`, "spindrift.v1", options(from, headers));
-    return new Promise((resolve, reject) => {
-      socket.on("message", () => resolve(socket));
-      socket.on("unexpected-response", (_, answer) => resolve(answer.statusCode));
-      socket.on("error", reject);
+    afterAll(async () => {
+      if (proxy && proxy.exitCode === null) {
+        proxy.kill("SIGQUIT");
+        await new Promise((resolve) => proxy.on("exit", resolve));
+      }
+      await server?.stop("SIGTERM");
+      rmSync(folder, { recursive: true });
     });
-  }
 
-  it("serves the page and opens sessions for it", async () => {
-    expect(await status("/")).toBe(200);
-    const socket = await open("127.0.0.3", { Origin: `https://127.0.0.1:${port}` });
-    expect(socket.protocol).toBe("spindrift.v1");
-    socket.terminate();
-    expect(await open("127.0.0.4", { Origin: "https://elsewhere.example" })).toBe(403);
-  });
+    const options = (from, more = {}) => ({ ca, localAddress: from, headers: more });
 
-  it("gives every client limits of its own, whatever the client claims", async () => {
-    const first = await open("127.0.0.5");
-    const second = await open("127.0.0.6");
-    expect(first.readyState).toBe(WebSocket.OPEN);
-    expect(second.readyState).toBe(WebSocket.OPEN);
-    expect(await open("127.0.0.5", { "X-Forwarded-For": "203.0.113.1" })).toBe(503);
-    first.terminate();
-    second.terminate();
+    function status(path, headers = {}) {
+      return new Promise((resolve, reject) => {
+        get({ host: "127.0.0.1", port, path, ...options("127.0.0.2", headers) }, (answer) => {
+          answer.resume();
+          resolve(answer.statusCode);
+        }).on("error", reject);
+      });
+    }
+
+    /** Opens a session from this address; resolves to the socket, or to the status of the refusal. */
+    function open(from, headers = {}) {
+      const socket = new WebSocket(`wss://127.0.0.1:${port}/ws`, "spindrift.v1", options(from, headers));
+      return new Promise((resolve, reject) => {
+        socket.on("message", () => resolve(socket));
+        socket.on("unexpected-response", (_, answer) => resolve(answer.statusCode));
+        socket.on("error", reject);
+      });
+    }
+
+    it("serves the page and opens sessions for it", async () => {
+      expect(await status("/")).toBe(200);
+      const socket = await open("127.0.0.3", { Origin: `https://127.0.0.1:${port}` });
+      expect(socket.protocol).toBe("spindrift.v1");
+      socket.terminate();
+      expect(await open("127.0.0.4", { Origin: "https://elsewhere.example" })).toBe(403);
+    });
+
+    it("gives every client limits of its own, whatever the client claims", async () => {
+      const first = await open("127.0.0.5");
+      const second = await open("127.0.0.6");
+      expect(first.readyState).toBe(WebSocket.OPEN);
+      expect(second.readyState).toBe(WebSocket.OPEN);
+      expect(await open("127.0.0.5", { "X-Forwarded-For": "203.0.113.1" })).toBe(503);
+      first.terminate();
+      second.terminate();
+    });
   });
 });
