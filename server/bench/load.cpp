@@ -16,7 +16,8 @@
 #include <spindrift/core/monotonic.h>
 #include <spindrift/net/client.h>
 #include <spindrift/v1/wire.pb.h>
-#include <spindrift/wire/client_message.h>
+
+#include "messages.h"
 
 namespace spindrift::bench {
 namespace {
@@ -29,12 +30,6 @@ constexpr double kRate_hz = 60.0;
 constexpr std::size_t kArrivals_per_s = 200;
 /// A client whose connection ended tries again after this.
 constexpr std::chrono::milliseconds kReconnectPause{250};
-
-core::SharedBytes bytesOf(const v1::ClientMessage& message) {
-  core::Bytes out(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(out.data());
-  return core::share(std::move(out));
-}
 
 struct Frame {
   v1::Layer layer = v1::LAYER_UNSPECIFIED;
@@ -170,13 +165,7 @@ class Load {
 
   void greet(LoadClient& one) {
     one.is_open = true;
-    v1::ClientMessage hello;
-    hello.mutable_hello()->mutable_version()->set_major(wire::kWireMajor);
-    hello.mutable_hello()->mutable_version()->set_minor(wire::kWireMinor);
-    hello.mutable_hello()->set_client("spindrift bench");
-    hello.mutable_hello()->set_token(options_.token);
-    hello.mutable_hello()->set_resume_key(one.resume_key);
-    (void)one.client->send(bytesOf(hello));
+    (void)one.client->send(bytesOf(helloOf(options_.token, one.resume_key)));
     for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES}) {
       v1::ClientMessage message;
       v1::Subscribe& subscribe = *message.mutable_subscribe();

@@ -12,6 +12,7 @@
 #include <spindrift/bench/codecs.h>
 #include <spindrift/bench/fanout.h>
 #include <spindrift/bench/load.h>
+#include <spindrift/bench/soak.h>
 #include <spindrift/bench/steps.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/paths.h>
@@ -26,14 +27,15 @@ namespace spindrift::cli {
 namespace {
 
 struct BenchOptions {
-  std::string suite = "all";  ///< step, codec, fanout, load; all: step and codec
+  std::string suite = "all";  ///< step, codec, fanout, load, soak; all: step and codec
   std::string scene = "harbor";
   std::string fidelity;  ///< as in ServeOptions
   std::string device = "auto";
   std::string json_file;
-  net::TlsFiles tls;     ///< for fanout; empty: plain
-  double seconds = 2.0;  ///< measured time per case
-  bench::LoadOptions load;
+  net::TlsFiles tls;        ///< for fanout; empty: plain
+  double seconds = 2.0;     ///< measured time per case
+  bench::LoadOptions load;  ///< its URLs and number of clients are those of `soak`, too
+  bench::SoakOptions soak;
   std::string level = "coarse";
 };
 
@@ -60,8 +62,20 @@ int benchLoad(const BenchOptions& options) {
   return 0;
 }
 
+int benchSoak(const BenchOptions& options) {
+  bench::SoakOptions soak = options.soak;
+  soak.urls = options.load.urls;
+  soak.client_count = options.load.client_count;
+  soak.seconds = options.seconds;
+  auto result = bench::measureSoak(soak, options.json_file == "-" ? stderr : stdout);
+  if (!result) return fail(result.error());
+  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
+  return 0;
+}
+
 int bench(const BenchOptions& options) {
   if (options.suite == "load") return benchLoad(options);
+  if (options.suite == "soak") return benchSoak(options);
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
   auto file = core::findScene(options.scene);
@@ -103,17 +117,17 @@ ProgramCommand addBench(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "bench", "Time the passes of a step, the stream's codecs on real frames, and a crowd of clients");
   command->add_option("--suite", options->suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load"}))
+      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "soak"}))
       ->capture_default_str();
   command->add_option("--scene", options->scene, "Scene file or name of a shipped scene")->capture_default_str();
   addFidelity(*command, options->fidelity);
   addDevice(*command, options->device);
   command->add_option("--seconds", options->seconds, "Measured time per case")
-      ->check(CLI::Range(0.1, 600.0))
+      ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
   command->add_option("--url", options->load.urls,
-                      "For --suite load: a server that runs, ws://HOST:PORT/ws/ROOM; may be repeated");
-  command->add_option("--clients", options->load.client_count, "For --suite load: number of clients")
+                      "For --suite load and soak: a server that runs, ws://HOST:PORT/ws/ROOM; may be repeated");
+  command->add_option("--clients", options->load.client_count, "For --suite load and soak: number of clients")
       ->check(CLI::Range(1, 20000))
       ->capture_default_str();
   command->add_option("--level", options->level, "For --suite load: level of detail that they watch")
@@ -122,6 +136,22 @@ ProgramCommand addBench(CLI::App& program) {
   command->add_option("--commands-per-s", options->load.commands_per_s, "For --suite load: splashes of each client")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
+  command->add_option("--warm-up-s", options->soak.warm_up_s, "For --suite soak: time at the start that does not count")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  command->add_option("--interval-s", options->soak.interval_s, "For --suite soak: time between two rows")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->capture_default_str();
+  const auto addRate = [&](const char* name, double& rate, const char* help) {
+    command->add_option(name, rate, help)->check(CLI::Range(0.0, 100.0))->capture_default_str();
+  };
+  addRate("--churn-per-s", options->soak.churn_per_s, "For --suite soak: connections that clients end, all together");
+  addRate("--strokes-per-s", options->soak.strokes_per_s,
+          "For --suite soak: rows of splashes, or waves, of each client");
+  addRate("--boats-per-s", options->soak.boats_per_s, "For --suite soak: boats that each client launches or removes");
+  addRate("--level-changes-per-s", options->soak.level_changes_per_s,
+          "For --suite soak: changes of a layer's level, rate and packing by each client");
+  command->add_option("--seed", options->soak.seed, "For --suite soak: of what the clients do")->capture_default_str();
   CLI::Option* const cert = command->add_option("--tls-cert", options->tls.certificate_file,
                                                 "For fanout over TLS: a PEM certificate for 127.0.0.1");
   CLI::Option* const key = command->add_option("--tls-key", options->tls.key_file, "Its private key");

@@ -132,6 +132,7 @@ void Room::publishVitals(TimePoint now) {
   fresh->lost = is_lost_;
   fresh->waiting_command_count = static_cast<std::uint32_t>(commands_.size());
   fresh->dropped_frame_count = dropped_frames_;
+  fresh->tick_times = tick_times_;
   fresh->diagnostics = diagnostics();
   const std::lock_guard lock(snapshot_mutex_);
   vitals_ = std::move(fresh);
@@ -234,6 +235,7 @@ Room::TimePoint Room::timedStep() {
   const auto end = std::chrono::steady_clock::now();
   const double step_ms = duration<double, std::milli>(end - begin).count();
   tick_cost_.note(step_ms);
+  tick_times_.note(1e-3 * step_ms);
   step_ms_sum_ += step_ms;
   ++step_count_;
   if (log_ && !log_->ended()) {

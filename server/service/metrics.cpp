@@ -22,6 +22,11 @@ class Page {
     text_ += labels.empty() ? fmt::format("spindrift_{} {}\n", name_, value)
                             : fmt::format("spindrift_{}{{{}}} {}\n", name_, labels, value);
   }
+  /// A sample whose name is that of head() and an ending, as those of a histogram.
+  template <typename Number>
+  void part(const char* ending, const std::string& labels, Number value) {
+    text_ += fmt::format("spindrift_{}_{}{{{}}} {}\n", name_, ending, labels, value);
+  }
   std::string take() { return std::move(text_); }
 
  private:
@@ -43,6 +48,22 @@ struct RoomSample {
   std::shared_ptr<const rooms::RoomSnapshot> snapshot;
   std::shared_ptr<const rooms::RoomVitals> vitals;
 };
+
+void writeTickTimes(Page& page, const std::vector<RoomSample>& rooms) {
+  page.head("room_tick_seconds", "histogram", "Times of the ticks on the simulation thread.");
+  for (const RoomSample& room : rooms) {
+    const rooms::TickTimes& times = room.vitals->tick_times;
+    std::uint64_t count = 0;
+    for (std::size_t k = 0; k < times.counts().size(); ++k) {
+      count += times.counts()[k];
+      const bool is_last = k == times.kBounds_s.size();
+      const std::string bound = is_last ? "+Inf" : fmt::format("{}", times.kBounds_s[k]);
+      page.part("bucket", fmt::format("{},le=\"{}\"", room.label, bound), count);
+    }
+    page.part("sum", room.label, times.sum_s());
+    page.part("count", room.label, count);
+  }
+}
 
 /// Of the rooms that are kept on disk.
 void writeKept(Page& page, const std::vector<std::shared_ptr<rooms::Room>>& rooms) {
@@ -261,6 +282,7 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   }
   Page page;
   writeRooms(page, samples);
+  writeTickTimes(page, samples);
   writeKept(page, rooms.rooms());
   writeFaults(page, rooms);
   if (const net::Server* network = sources.network) writeNetwork(page, network->stats());

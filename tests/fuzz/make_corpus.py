@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the seeds of the fuzz targets below corpus/ from messages and requests that are given as text.
 
-usage: make_corpus.py            (needs protoc)
+usage: make_corpus.py [FOLDER]            (needs protoc; corpus/ beside this file if left out)
 
 Frames: sequences of golden messages that build on each other. Scenes and single golden messages are used as seeds without a
 copy, see CMakeLists.txt.
@@ -13,11 +13,13 @@ import hmac
 import json
 import struct
 import subprocess
+import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 PROTO = ROOT / "proto"
+FOLDER = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "corpus"
 
 CLIENT_MESSAGES = {
     "hello": 'hello { version { major: 1 } client: "seed \\303\\251" }',
@@ -51,6 +53,13 @@ CLIENT_MESSAGES = {
     "change_scene": 'command { command_id: 20 change_scene { name: "harbor" } }',
     "change_scene_path": 'command { command_id: 21 change_scene { name: "../harbor" } }',
     "no_action": "command { command_id: 22 }",
+}
+
+# Commands and requests of the REST interface.
+JSON_MESSAGES = {
+    "json_boat": '{"command_id":"7","spawn_boat":{"boat":{"x_m":1,"heading_deg":90}}}',
+    "json_room": '{"name":"a","scene":"pond","fidelity":"FIDELITY_DRAFT"}',
+    "json_splash": '{"splash":{"x_m":1,"depth_m":0.4}}',
 }
 
 FRAME_ROWS = {
@@ -239,13 +248,143 @@ def access():
     }
 
 
+def der(tag, *parts):
+    """An element of DER (X.690) whose content is the parts."""
+    content = b"".join(parts)
+    length = bytes([len(content)]) if len(content) < 128 else b"\x82" + struct.pack(">H", len(content))
+    return bytes([tag]) + length + content
+
+
+# The base point of P-256, which is the public key of the private key 1, so that neither is anybody's.
+P256_BASE = bytes.fromhex(
+    "046b17d1f2e12c4247f8bce6e563a440f277037d812deb33a0f4a13945d898c2964fe342e2fe1a7f9b8ee7eb4a7c0f9e162bce33576b315ececbb6406837bf51f5"
+)
+
+
+def certificate(ends=b"300101000000Z", name=b"localhost", names=b"\x82\x09localhost"):
+    """A certificate for the private key 1, valid from 2020 to 2030, with a signature that is none: nobody checks it."""
+    ecdsa_sha256 = der(0x30, bytes.fromhex("06082a8648ce3d040302"))
+    subject = der(0x30, der(0x31, der(0x30, bytes.fromhex("0603550403"), der(0x0C, name))))
+    times = der(0x30, der(0x17, b"200101000000Z"), der(0x17, ends))
+    curve = der(0x30, bytes.fromhex("06072a8648ce3d020106082a8648ce3d030107"))
+    public_key = der(0x30, curve, der(0x03, b"\0", P256_BASE))
+    extensions = der(0xA3, der(0x30, der(0x30, bytes.fromhex("0603551d11"), der(0x04, der(0x30, names)))))
+    content = der(0x30, der(0xA0, der(0x02, b"\2")), der(0x02, b"\1"), ecdsa_sha256, subject, times, subject, public_key, extensions)
+    return der(0x30, content, ecdsa_sha256, der(0x03, b"\0", der(0x30, der(0x02, b"\1"), der(0x02, b"\1"))))
+
+
+def private_key(number=1, public=P256_BASE):
+    """PKCS #8 (RFC 5208) of a key of P-256."""
+    algorithm = der(0x30, bytes.fromhex("06072a8648ce3d020106082a8648ce3d030107"))
+    key = der(0x30, der(0x02, b"\1"), der(0x04, number.to_bytes(32, "big")), der(0xA1, der(0x03, b"\0", public)))
+    return der(0x30, der(0x02, b"\0"), algorithm, der(0x04, key))
+
+
+def pem(name, content):
+    text = base64.b64encode(content).decode()
+    lines = [text[at : at + 64] for at in range(0, len(text), 64)]
+    return "\n".join([f"-----BEGIN {name}-----", *lines, f"-----END {name}-----", ""]).encode()
+
+
+def client_hello(versions=(0x0304, 0x0303), share=b"\x09" + bytes(31), protocol=b"http/1.1", ciphers=(0x1301, 0xC02B, 0xC02F)):
+    """The first record of a client: RFC 8446 section 4.1.2. `share`: its key of X25519; empty: none."""
+
+    def sized(length_bytes, content):
+        return len(content).to_bytes(length_bytes, "big") + content
+
+    def extension(number, content):
+        return struct.pack(">H", number) + sized(2, content)
+
+    words = lambda *values: b"".join(struct.pack(">H", value) for value in values)  # noqa: E731
+    extensions = extension(0, sized(2, b"\0" + sized(2, b"localhost")))
+    extensions += extension(10, sized(2, words(0x001D, 0x0017)))
+    extensions += extension(11, sized(1, b"\0"))
+    extensions += extension(13, sized(2, words(0x0403, 0x0804, 0x0401)))
+    extensions += extension(16, sized(2, sized(1, protocol)))
+    extensions += extension(23, b"") + extension(35, b"")
+    if 0x0304 in versions:
+        extensions += extension(43, sized(1, words(*versions)))
+        extensions += extension(45, sized(1, b"\1"))
+        extensions += extension(51, sized(2, words(0x001D) + sized(2, share) if share else b""))
+    body = words(0x0303) + bytes(range(32)) + sized(1, bytes(range(32))) + sized(2, words(*ciphers)) + sized(1, b"\0") + sized(2, extensions)
+    return record(22, b"\1" + sized(3, body))
+
+
+def record(kind, content, version=0x0301):
+    return struct.pack(">BHH", kind, version, len(content)) + content
+
+
+def tls():
+    """Returns bytes of clients, and files of certificates and keys, each after the byte that says what the target tries."""
+    plain, tampered, files, as_der = b"\0", b"\1", b"\2", b"\3"
+    all_later, all_early, cut = b"\0", b"\xff", b"\x07"
+    change_cipher = record(20, b"\1", 0x0303)
+    key_exchange = record(22, b"\x10\0\0\x42\x41" + P256_BASE, 0x0303)
+    finished = record(22, bytes(range(40)), 0x0303)
+    old_hello = client_hello(versions=(0x0303,))
+
+    def changed(place, change, kind, *pieces, buffer=4):
+        rows = b"".join(bytes([len(piece)]) + piece for piece in pieces)
+        return tampered + struct.pack("<HBBB", place, change, kind, buffer) + rows
+
+    tls_1_2, other_protocol, vanishes, http = 1, 2, 4, 8
+    good, key = certificate(), private_key()
+    text, key_text = pem("CERTIFICATE", good), pem("PRIVATE KEY", key)
+    parameters = pem("EC PARAMETERS", bytes.fromhex("06082a8648ce3d030107"))
+    locked = b"-----BEGIN EC PRIVATE KEY-----\nProc-Type: 4,ENCRYPTED\nDEK-Info: AES-128-CBC,00112233445566778899AABBCCDDEEFF\n\n"
+    locked += base64.b64encode(bytes(64)) + b"\n-----END EC PRIVATE KEY-----\n"
+
+    def pair(one, other):
+        return as_der + struct.pack("<H", len(one)) + one + other
+
+    return {
+        "hello": plain + all_later + client_hello(),
+        "hello_early": plain + all_early + client_hello(),
+        "hello_cut": plain + cut + client_hello()[:-9],
+        "hello_no_share": plain + all_later + client_hello(share=b"") + change_cipher + client_hello(),
+        "hello_other_protocol": plain + all_later + client_hello(protocol=b"h2"),
+        "hello_no_cipher": plain + all_later + client_hello(ciphers=(0x0005,)),
+        "hello_1_2": plain + cut + old_hello + key_exchange + change_cipher + finished,
+        "hello_1_2_twice": plain + all_later + old_hello + old_hello,
+        "hello_1_3_finished": plain + all_later + client_hello() + change_cipher + record(23, bytes(53), 0x0303),
+        "hello_in_pieces": plain + all_later + b"".join(record(22, bytes([byte])) for byte in client_hello()[5:60]),
+        "alert": plain + all_later + record(21, b"\2\x28"),
+        "record_too_long": plain + all_later + b"\x16\3\1\xff\xff" + bytes(64),
+        "record_empty": plain + all_later + record(22, b"") * 40,
+        "http": plain + all_later + b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+        "version_2": plain + all_later + b"\x80\x2e\1\0\2\0\x15\0\0\0\x10" + bytes(40),
+        "whole": changed(0xFFFF, 0, http, b"GET / HTTP/1.1\r\n\r\n", b"x" * 200),
+        "whole_1_2": changed(0xFFFF, 0, http | tls_1_2, b"GET / HTTP/1.1\r\n\r\n", b"x" * 200, buffer=0),
+        "whole_vanishes": changed(0xFFFF, 0, vanishes, b"x"),
+        "whole_other_protocol": changed(0xFFFF, 0, other_protocol, b"x"),
+        "whole_new_keys": changed(0xFFFF, 0, 0, b"a", b"", b"b", b"", b"", b"c"),
+        "whole_new_handshake": changed(0xFFFF, 0, tls_1_2, b"a", b"", b"b"),
+        "changed_hello": changed(9, 1, 0, b"x"),
+        "changed_finished": changed(560, 128, 0, b"x"),
+        "changed_content": changed(700, 4, http, b"x" * 250, b"y" * 250),
+        "changed_1_2": changed(300, 32, tls_1_2, b"x" * 250),
+        "files": files + text + b"\0" + key_text,
+        "files_chain": files + text + pem("CERTIFICATE", certificate(ends=b"210101000000Z", name=b"ca")) + b"\0" + parameters + key_text,
+        "files_swapped": files + key_text + b"\0" + text,
+        "files_passphrase": files + text + b"\0" + locked,
+        "files_no_pem": files + b"hello\0hello",
+        "files_empty": files,
+        "files_cut": files + text[:-60] + b"\0" + key_text,
+        "der": pair(good, key),
+        "der_other_key": pair(good, private_key(number=2, public=b"\x04" + bytes(64))),
+        "der_zero_key": pair(good, private_key(number=0)),
+        "der_date": pair(certificate(ends=b"999999999999Z"), key),
+        "der_names": pair(certificate(names=b"\x82\x82\xff\xff"), key),
+    }
+
+
 def encoded(text):
     command = ["protoc", f"--proto_path={PROTO}", "--encode=spindrift.v1.ClientMessage", "spindrift/v1/wire.proto"]
     return subprocess.run(command, input=text.encode(), stdout=subprocess.PIPE, check=True).stdout
 
 
 def write(target, seeds):
-    folder = HERE / "corpus" / target
+    folder = FOLDER / target
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.iterdir():
         old.unlink()
@@ -255,7 +394,8 @@ def write(target, seeds):
 
 def main():
     golden = ROOT / "tests" / "golden"
-    write("client_message", {name: encoded(text) for name, text in CLIENT_MESSAGES.items()})
+    messages = {name: encoded(text) for name, text in CLIENT_MESSAGES.items()}
+    write("client_message", messages | {name: text.encode() for name, text in JSON_MESSAGES.items()})
     write("frame", {name: MARK.join((golden / file).read_bytes() for file in row) for name, row in FRAME_ROWS.items()})
     # The first byte is the size of the pieces in which a request arrives.
     pieces = (b"\xff", b"\x00", b"\x03")
@@ -264,6 +404,7 @@ def main():
     write("cluster", cluster())
     write("forwarded", {name: text.encode() for name, text in FORWARDED.items()})
     write("state_files", state_files())
+    write("tls", tls())
     write("scene", {name: text.encode() for name, text in SCENES.items()})
 
 

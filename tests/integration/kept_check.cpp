@@ -223,4 +223,27 @@ Found find(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vect
   return Found::kNowhere;
 }
 
+KeptCommands findAll(std::vector<SentCommand> all, const std::string& room, std::uint64_t opening,
+                     const rooms::KeptRoom& kept) {
+  std::erase_if(all, [&](const SentCommand& one) { return one.room != room || one.opening != opening; });
+  KeptCommands out;
+  for (const SentCommand& sent : all) {
+    if (sent.state != SentCommand::State::kAcknowledged) continue;
+    switch (find(sent, kept, all)) {
+      case Found::kInLog:
+        ++out.in_log_count;
+        break;
+      case Found::kBeforeSnapshot:
+        ++out.before_snapshot_count;
+        break;
+      case Found::kNowhere:
+        out.lost.push_back(fmt::format(
+            "acknowledged at tick {} and lost: {} of person {}; the kept state begins at tick {} and has "
+            "{} records",
+            sent.tick, sent.command.ShortDebugString(), sent.person_id, kept.state->tick(), kept.records.size()));
+    }
+  }
+  return out;
+}
+
 }  // namespace spindrift::test

@@ -39,4 +39,15 @@ enum class Found { kInLog, kBeforeSnapshot, kNowhere };
 /// `all`: every command sent to the room in this round.
 Found find(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vector<SentCommand>& all);
 
+/// The acknowledged commands of one room.
+struct KeptCommands {
+  std::size_t in_log_count = 0;
+  std::size_t before_snapshot_count = 0;
+  std::vector<std::string> lost;  ///< a line for each that is nowhere
+  [[nodiscard]] std::size_t checkedCount() const { return in_log_count + before_snapshot_count + lost.size(); }
+};
+/// Looks for each command that was acknowledged in this opening of the room. `all`: every command sent in this round.
+KeptCommands findAll(std::vector<SentCommand> all, const std::string& room, std::uint64_t opening,
+                     const rooms::KeptRoom& kept);
+
 }  // namespace spindrift::test

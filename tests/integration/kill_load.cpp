@@ -62,6 +62,8 @@ std::size_t Ledger::send(SentCommand command) {
 void Ledger::answer(std::size_t number, const v1::ServerMessage& answer) {
   const std::lock_guard lock(mutex_);
   SentCommand& sent = commands_.at(number);
+  // From an edge whose link to the room broke.
+  if (answer.reject().message().find("whether the command was carried out is not known") != std::string::npos) return;
   sent.state = answer.has_ack() ? SentCommand::State::kAcknowledged : SentCommand::State::kRejected;
   sent.tick = answer.ack().applied_tick();
   sent.boat_id = answer.ack().boat_id();

@@ -17,6 +17,7 @@
 
 #include "kept_check.h"
 #include "kill_load.h"
+#include "kill_scenes.h"
 #include "program_fixture.h"
 
 namespace spindrift::test {
@@ -30,39 +31,6 @@ using testing::HasSubstr;
 constexpr std::size_t kKillCount = 6;
 const std::vector<std::string> kFixedRooms{"main", "tank", "sea"};
 const std::vector<std::string> kOtherRooms{"extra0", "extra1"};
-
-/// Spray that comes and goes, rain, foam, boats.
-constexpr const char* kPool = R"(
-  wave { resolution_count: 32 side_m: 8 depth_m: 1 }
-  particles { count: 512 headroom_m: 2 }
-  coupling { mode: COUPLING_MODE_TWO_WAY droplet_spacing_m: 0.2 }
-  foam { surface: true }
-  boats { capacity_count: 8 boats { x_m: 1 z_m: 1 length_m: 1.2 beam_m: 0.5 } }
-  storm { level_ratio: 0.3 }
-  events { at_s: 0.5 every_s: 1.5 effect { splash { x_m: -1 radius_m: 1 depth_m: 0.7 } } }
-)";
-/// A lattice of particles, whose number can change.
-constexpr const char* kTank = R"(
-  wave { resolution_count: 32 side_m: 8 depth_m: 1 }
-  particles { count: 256 layers_count: 2 headroom_m: 2 }
-  coupling {}
-  foam {}
-  boats { capacity_count: 4 }
-)";
-/// Waves that come in from the sea, short ones slower than long ones.
-constexpr const char* kSea = R"(
-  wave {
-    resolution_count: 32 side_m: 8 depth_m: 1 dispersion: DISPERSION_AIRY sponge_width_m: 1
-    boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_ABSORB
-  }
-  boats { capacity_count: 4 }
-  storm { level_ratio: 0.5 wind_direction_deg: 0 }
-)";
-
-std::uint64_t variableOr(const char* name, std::uint64_t otherwise) {
-  const char* const text = std::getenv(name);
-  return text != nullptr && *text != '\0' ? std::stoull(text) : otherwise;
-}
 
 double seconds(Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -222,28 +190,15 @@ class StateKill : public ProgramTest {
     const RoomFact fact = ledger_.rooms()[room];
     auto place = store.place(room);
     ASSERT_TRUE(place) << place.error().message;
-    std::vector<SentCommand> all = ledger_.commands();
-    std::erase_if(all, [&](const SentCommand& one) { return one.room != room || one.opening != fact.opening; });
-    for (const SentCommand& sent : all) {
-      if (sent.state != SentCommand::State::kAcknowledged) continue;
-      if (fact.state == RoomFact::State::kUnknown && !place->kept) continue;
-      ASSERT_TRUE(place->kept);
-      switch (find(sent, *place->kept, all)) {
-        case Found::kInLog:
-          ++totals_.in_log_count;
-          break;
-        case Found::kBeforeSnapshot:
-          ++totals_.before_snapshot_count;
-          break;
-        case Found::kNowhere:
-          ADD_FAILURE() << fmt::format(
-              "acknowledged at tick {} and lost: {} of person {}; the kept state begins at tick {} and has {} records",
-              sent.tick, sent.command.ShortDebugString(), sent.person_id, place->kept->state->tick(),
-              place->kept->records.size());
-      }
-      ++checked_count_;
-    }
-    if (place->kept) totals_.record_count += place->kept->records.size();
+    // Of a room whose closing was not answered nothing may be there.
+    if (fact.state == RoomFact::State::kUnknown && !place->kept) return;
+    ASSERT_TRUE(place->kept);
+    const KeptCommands found = findAll(ledger_.commands(), room, fact.opening, *place->kept);
+    EXPECT_THAT(found.lost, testing::IsEmpty());
+    totals_.in_log_count += found.in_log_count;
+    totals_.before_snapshot_count += found.before_snapshot_count;
+    checked_count_ += found.checkedCount();
+    totals_.record_count += place->kept->records.size();
   }
 
   void countCommands() {

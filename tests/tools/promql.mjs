@@ -6,6 +6,14 @@ const COUNTER_FUNCTIONS = new Set(["rate", "irate", "increase", "resets"]);
 /** Labels that Prometheus adds to every sample. */
 const TARGET_LABELS = ["instance", "job"];
 
+/** The metric with this name. A histogram has three, which are counters: its name with an ending. */
+export function metricNamed(metrics, name) {
+  const whole = metrics.get(name.replace(/_(bucket|sum|count)$/, ""));
+  if (whole?.type !== "histogram") return metrics.get(name);
+  if (whole === metrics.get(name)) return undefined;
+  return { type: "counter", labels: name.endsWith("_bucket") ? whole.labels : whole.labels.filter((label) => label !== "le") };
+}
+
 /** Index behind the bracket that closes the one at `start`. */
 function endOf(text, start) {
   let depth = 0;
@@ -42,7 +50,7 @@ function labelsAfter(expr, metrics) {
   const groupings = groupingsOf(expr);
   if (groupings.length > 0) return groupings[0].labels;
   if (/\b(sum|count|absent|max|min)\s*\(/.test(expr) && !/\bor\b/.test(expr)) return [];
-  return [...TARGET_LABELS, ...selectorsOf(expr).flatMap(({ name }) => metrics.get(name)?.labels ?? [])];
+  return [...TARGET_LABELS, ...selectorsOf(expr).flatMap(({ name }) => metricNamed(metrics, name)?.labels ?? [])];
 }
 
 /**
@@ -53,7 +61,7 @@ export function faultsOf(expr, metrics, texts = []) {
   const faults = [];
   const selectors = selectorsOf(expr);
   for (const { name, matchers, hasRange, inFunction } of selectors) {
-    const metric = metrics.get(name);
+    const metric = metricNamed(metrics, name);
     if (!metric) {
       faults.push(`the server has no metric spindrift_${name}`);
       continue;
@@ -66,7 +74,7 @@ export function faultsOf(expr, metrics, texts = []) {
   }
   for (const { labels, begin, end } of groupingsOf(expr)) {
     for (const { name, at } of selectors.filter((selector) => selector.at >= begin && selector.at < end)) {
-      const known = [...TARGET_LABELS, ...(metrics.get(name)?.labels ?? labels)];
+      const known = [...TARGET_LABELS, ...(metricNamed(metrics, name)?.labels ?? labels)];
       for (const label of labels.filter((wanted) => !known.includes(wanted))) faults.push(`${name} has no label ${label}`);
     }
   }

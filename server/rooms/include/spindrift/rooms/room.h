@@ -27,6 +27,7 @@
 #include <spindrift/rooms/scene_catalog.h>
 #include <spindrift/rooms/state_store.h>
 #include <spindrift/rooms/tick_cost.h>
+#include <spindrift/rooms/tick_times.h>
 #include <spindrift/rooms/water_builder.h>
 #include <spindrift/rooms/work_budget.h>
 #include <spindrift/v1/scene.pb.h>
@@ -75,6 +76,7 @@ struct RoomVitals {
   bool lost = false;  ///< the device failed; new water is being built
   std::uint32_t waiting_command_count = 0;
   std::uint64_t dropped_frame_count = 0;
+  TickTimes tick_times;  ///< since the room opened
   core::DiagnosticsView diagnostics;
 };
 
@@ -361,6 +363,7 @@ class Room {
   bool wants_diagnostics_ = false;
   std::uint64_t dropped_frames_ = 0;
 
+  TickTimes tick_times_;
   double step_ms_sum_ = 0.0;  ///< since the last diagnostics
   std::uint32_t step_count_ = 0;
   double last_step_ms_ = 0.0;

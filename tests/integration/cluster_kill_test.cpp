@@ -1,0 +1,284 @@
+// kill -9 of the server that runs the rooms of a cluster, at random moments under load: another server goes on with
+// them, nothing that clients behind an edge had acknowledged is lost, and the rooms are what snapshot and log give,
+// bit for bit. SPINDRIFT_CLUSTER_KILLS is the number of kills, SPINDRIFT_KILL_SEED their random seed,
+// SPINDRIFT_KILL_KEEP a new folder for the files of a failed test.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <spdlog/spdlog.h>
+
+#include "cluster_fixture.h"
+#include "kept_check.h"
+#include "kill_load.h"
+#include "kill_scenes.h"
+
+namespace spindrift::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kKillCount = 4;
+/// The last one is opened over REST.
+const std::vector<std::string> kRooms{"main", "tank", "sea", "extra"};
+const std::vector<std::string> kScenesOfRooms{"kill_pool", "kill_tank", "kill_sea", "kill_pool"};
+
+class ClusterKill : public ClusterTest {
+ protected:
+  struct Totals {
+    std::size_t kill_count = 0;
+    std::size_t late_count = 0;  ///< kills that were not compared: the files were copied too late
+    std::size_t acknowledged_count = 0;
+    std::size_t unknown_count = 0;  ///< neither acknowledged nor rejected
+    std::size_t in_log_count = 0;
+    std::size_t before_snapshot_count = 0;
+    std::size_t record_count = 0;  ///< carried out again for the comparisons
+    std::size_t room_count = 0;    ///< that went on at another server as the test restored them, twice
+    std::size_t person_count = 0;
+    std::size_t boat_count = 0;
+    double longest_takeover_s = 0.0;  ///< from the kill to the last room's first snapshot elsewhere
+  };
+
+  void SetUp() override {
+    ClusterTest::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    spdlog::set_level(spdlog::level::warn);
+    folder_.write("kill_pool.textproto", kPool);
+    folder_.write("kill_tank.textproto", kTank);
+    folder_.write("kill_sea.textproto", kSea);
+    device_.kind = gpu::DeviceChoice::Kind::kSoftware;
+    random_.seed(static_cast<std::mt19937::result_type>(variableOr("SPINDRIFT_KILL_SEED", 1)));
+    for (std::uint32_t k = 0; k < 5; ++k) players_.emplace_back(k + 1, kRooms[k % kRooms.size()]);
+  }
+
+  void TearDown() override {
+    if (totals_.kill_count > 0) printSummary();
+    const char* const keep = std::getenv("SPINDRIFT_KILL_KEEP");
+    if (keep != nullptr && HasFailure()) fs::copy(folder_.path(), keep, fs::copy_options::recursive);
+  }
+
+  [[nodiscard]] fs::path stateFolder() const { return folder_.path() / "state"; }
+  std::size_t below(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_); }
+
+  Member startServer(const std::string& name) {
+    static const char* const kSync[] = {"never", "snapshots", "always"};
+    static const char* const kInterval[] = {"0.7", "10"};
+    // A member that is started again waits for its own line in the log.
+    fs::remove(folder_.path() / (name + ".log"));
+    return start(fmt::format("serve --device software --scene '{}' --room 'tank={}' --room 'sea={}' --state-dir '{}' "
+                             "--grace-s 600 --sync {} --snapshot-every-s {} --address-share 1",
+                             scene("kill_pool"), scene("kill_tank"), scene("kill_sea"), stateFolder().string(),
+                             kSync[below(3)], kInterval[below(2)]),
+                 name);
+  }
+
+  void startCluster() {
+    running_ = startServer("s1");
+    edge_ = edge("e1", "--address-share 1");
+    ASSERT_NE(edge_.port, 0);
+    ASSERT_EQ(post(edge_.port, "/api/v1/rooms", R"({"name": "extra", "scene": "kill_pool"})").status, 201u);
+    for (std::size_t k = 0; k < kRooms.size(); ++k)
+      ledger_.setRoom(kRooms[k], RoomFact::State::kOpen, kScenesOfRooms[k]);
+    waiting_ = startServer("s2");
+    ASSERT_TRUE(eventually([&] { return metric(edge_.port, "cluster_servers") == 2; }));
+  }
+
+  /// Waits until a command through the edge reaches every room.
+  void waitForRooms() {
+    for (const std::string& room : kRooms) {
+      const bool is_reached = eventually([&] {
+        const auto answer = post(edge_.port, "/api/v1/rooms/" + room + "/commands",
+                                 R"({"command_id": 1, "remove_boat": {"boat_id": 999}})");
+        return answer.body.find("REJECT_REASON_UNKNOWN_BOAT") != std::string::npos;
+      });
+      ASSERT_TRUE(is_reached) << "room " << room << edge_.process->log();
+    }
+  }
+
+  /// Connects the players as the same people; checks that they are known and own what they were promised. Begins a
+  /// new round.
+  void checkPeople() {
+    struct Promise {
+      std::uint32_t person_id;
+      std::set<std::uint32_t> boats;
+    };
+    std::vector<Promise> promises;
+    for (const Player& player : players_)
+      promises.push_back(
+          {player.promisedPersonId(), ledger_.sureBoats(player.room(), player.opening(), player.promisedPersonId())});
+    ledger_.beginRound();
+    for (std::size_t k = 0; k < players_.size(); ++k) {
+      Player& player = players_[k];
+      SCOPED_TRACE(fmt::format("player {} in room {}", k + 1, player.room()));
+      ASSERT_TRUE(player.connect(edge_.port, ledger_)) << edge_.process->log();
+      const v1::Welcome welcome = player.client().welcome();
+      std::set<std::uint32_t> boats;
+      ASSERT_TRUE(player.client().waitFor([&](const v1::ServerMessage& message) {
+        for (const v1::Person& person : message.people().people()) {
+          if (person.person_id() != welcome.person_id()) continue;
+          boats.insert(person.boat_ids().begin(), person.boat_ids().end());
+          return true;
+        }
+        return false;
+      }));
+      for (const std::uint32_t boat_id : boats)
+        ledger_.claim({player.room(), player.opening(), welcome.person_id(), boat_id, 0});
+      if (promises[k].person_id == 0) continue;
+      EXPECT_TRUE(welcome.resumed());
+      EXPECT_EQ(welcome.person_id(), promises[k].person_id);
+      for (const std::uint32_t boat_id : promises[k].boats) EXPECT_TRUE(boats.contains(boat_id)) << "boat " << boat_id;
+      ++totals_.person_count;
+      totals_.boat_count += promises[k].boats.size();
+    }
+  }
+
+  std::size_t takeoverCount() const {
+    const std::string log = waiting_.process->log();
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = log.find("taken over from", at)) != std::string::npos; ++at) ++count;
+    return count;
+  }
+
+  fs::path copyOfState(const std::string& name) {
+    const fs::path copy = folder_.path() / name;
+    fs::remove_all(copy);
+    fs::copy(stateFolder(), copy, fs::copy_options::recursive);
+    return copy;
+  }
+
+  /// Plays, kills the server of the rooms, and keeps what it left behind before the other server has touched it. False
+  /// if that was too late.
+  bool playUntilKilled() {
+    std::atomic<bool> is_over = false;
+    bool is_kept = false;
+    const std::size_t before = takeoverCount();
+    {
+      std::vector<std::jthread> threads;
+      for (Player& player : players_)
+        threads.emplace_back(
+            [&, random = std::mt19937(random_())] { player.play(edge_.port, ledger_, random, is_over); });
+      std::this_thread::sleep_for(std::chrono::milliseconds(100 + below(2400)));
+      running_.process->signal(SIGKILL);
+      killed_ = Clock::now();
+      is_over = true;
+      EXPECT_EQ(running_.process->wait(), 128 + SIGKILL);
+      newest_ = copyOfState("newest");
+      is_kept = takeoverCount() == before;
+    }
+    ++totals_.kill_count;
+    return is_kept;
+  }
+
+  /// Waits for the first snapshot of each room by its new server.
+  std::map<std::string, v1::KeptState> statesElsewhere() {
+    std::map<std::string, v1::KeptState> out;
+    for (const std::string& room : kRooms) {
+      const std::uint64_t number = lastGeneration(newest_, room) + 1;
+      const bool is_there = eventually([&] {
+        auto state = readSnapshot(stateFolder(), room, number);
+        return state && (out[room] = *std::move(state), true);
+      });
+      EXPECT_TRUE(is_there) << "room " << room << ", generation " << number << ": " << waiting_.process->log();
+    }
+    totals_.longest_takeover_s =
+        std::max(totals_.longest_takeover_s, std::chrono::duration<double>(Clock::now() - killed_).count());
+    return out;
+  }
+
+  /// Compares the rooms of the new server with what the files of the killed one give, and these with what was
+  /// acknowledged.
+  void checkRooms(const std::map<std::string, v1::KeptState>& elsewhere) {
+    const fs::path older = folder_.path() / "older";
+    fs::remove_all(older);
+    fs::copy(newest_, older, fs::copy_options::recursive);
+    removeNewestSnapshots(older);
+    auto newest_store = rooms::StateStore::open({.folder = newest_});
+    auto older_store = rooms::StateStore::open({.folder = older});
+    ASSERT_TRUE(newest_store && older_store);
+    const auto facts = ledger_.rooms();
+    for (const std::string& room : kRooms) {
+      SCOPED_TRACE("room " + room);
+      auto place = (*older_store)->place(room);
+      ASSERT_TRUE(place) << place.error().message;
+      ASSERT_TRUE(place->kept);
+      const KeptCommands found = findAll(ledger_.commands(), room, facts.at(room).opening, *place->kept);
+      EXPECT_THAT(found.lost, testing::IsEmpty());
+      totals_.in_log_count += found.in_log_count;
+      totals_.before_snapshot_count += found.before_snapshot_count;
+      totals_.record_count += place->kept->records.size();
+      place = core::Error{core::ErrorCode::kInternal, "closed"};  // releases the room
+      const auto from_newest = restoredRoom(**newest_store, room, device_);
+      ASSERT_TRUE(from_newest && *from_newest) << (from_newest ? "nothing usable" : from_newest.error().message);
+      const auto from_older = restoredRoom(**older_store, room, device_, (*from_newest)->tick());
+      ASSERT_TRUE(from_older && *from_older) << (from_older ? "nothing usable" : from_older.error().message);
+      EXPECT_THAT(differences(**from_newest, **from_older), testing::IsEmpty());
+      ASSERT_TRUE(elsewhere.contains(room));
+      EXPECT_THAT(differences(**from_newest, elsewhere.at(room)), testing::IsEmpty()) << "at the new server";
+      ++totals_.room_count;
+    }
+    for (const SentCommand& sent : ledger_.commands()) {
+      totals_.acknowledged_count += sent.state == SentCommand::State::kAcknowledged ? 1 : 0;
+      totals_.unknown_count += sent.state == SentCommand::State::kUnanswered ? 1 : 0;
+    }
+  }
+
+  void printSummary() const {
+    std::printf(
+        "%zu kills of the server of %zu rooms (%zu not compared, because the other server was faster than the copy): "
+        "of %zu acknowledged commands %zu were found in the logs and %zu are older than the kept snapshots; of %zu it "
+        "is not known; %zu rooms went on elsewhere, equal bit for bit to two restorations with %zu records carried out "
+        "again; %zu people resumed with %zu boats; at most %.2f s from the kill to the last room's first snapshot\n",
+        totals_.kill_count, kRooms.size(), totals_.late_count, totals_.acknowledged_count, totals_.in_log_count,
+        totals_.before_snapshot_count, totals_.unknown_count, totals_.room_count, totals_.record_count,
+        totals_.person_count, totals_.boat_count, totals_.longest_takeover_s);
+  }
+
+  gpu::DeviceChoice device_;
+  std::mt19937 random_;
+  Ledger ledger_;
+  std::vector<Player> players_;
+  Member running_;  ///< runs all rooms
+  Member waiting_;
+  Member edge_;
+  fs::path newest_;  ///< copy of what the killed server left behind
+  Clock::time_point killed_{};
+  Totals totals_;
+};
+
+TEST_F(ClusterKill, NothingAcknowledgedIsLostAndAnotherServerGoesOnBitForBit) {
+  const std::uint64_t kills = variableOr("SPINDRIFT_CLUSTER_KILLS", kKillCount);
+  std::string killed_name = "s1";
+  std::string other_name = "s2";
+  ASSERT_NO_FATAL_FAILURE(startCluster());
+  for (std::uint64_t compared = 0; compared < kills;) {
+    SCOPED_TRACE(fmt::format("kill {}", totals_.kill_count + 1));
+    ASSERT_NO_FATAL_FAILURE(waitForRooms());
+    ASSERT_NO_FATAL_FAILURE(checkPeople());
+    const bool is_in_time = playUntilKilled();
+    const auto elsewhere = statesElsewhere();
+    if (is_in_time) {
+      ++compared;
+      ASSERT_NO_FATAL_FAILURE(checkRooms(elsewhere));
+    } else {
+      ++totals_.late_count;
+      ASSERT_LT(totals_.late_count, kills) << "the files are copied more slowly than a server is missed (1 s)";
+    }
+    if (HasFailure()) return;
+    running_ = std::move(waiting_);
+    waiting_ = startServer(killed_name);
+    ASSERT_NE(waiting_.port, 0);
+    std::swap(killed_name, other_name);
+    ASSERT_TRUE(eventually([&] { return metric(edge_.port, "cluster_servers") == 2; }));
+  }
+  ASSERT_NO_FATAL_FAILURE(waitForRooms());
+  ASSERT_NO_FATAL_FAILURE(checkPeople());
+  EXPECT_GT(totals_.in_log_count, 0u);
+}
+
+}  // namespace
+}  // namespace spindrift::test
