@@ -20,6 +20,7 @@
 #include <spindrift/v1/cluster.pb.h>
 
 #include "frame_head.h"
+#include "kept_frame.h"
 #include "subjects.h"
 
 namespace spindrift::cluster {
@@ -27,6 +28,10 @@ namespace spindrift::cluster {
 /// People that a room lists. Beyond it, those who only watch are counted by their node, and the room need not know
 /// them.
 inline constexpr int kListedPeopleMaxCount = 64;
+
+/// Streams whose frames come less often are kept whole for late sessions, at the cost of decoding each frame: in paused
+/// rooms and on machines that cannot keep up. Where frames come more often, the next one is near.
+inline constexpr std::chrono::milliseconds kRareFrameInterval{100};
 
 struct LinkStats {
   std::uint64_t frame_count = 0;
@@ -79,10 +84,16 @@ class RemoteRoom final : public service::Venue {
     Clock::time_point keyframe_wanted{};
     std::uint64_t run = 0;
     std::uint64_t sequence = 0;
-    bool is_whole = false;  ///< the frame before came: deltas can be used
-    bool asked = false;     ///< a keyframe
+    std::uint32_t reduced_count = 0;  ///< of the newest frame
+    bool is_whole = false;            ///< the frame before came: deltas can be used
+    bool asked = false;               ///< a keyframe
     Clock::time_point came{};
     Clock::duration interval{};  ///< smoothed
+    KeptFrame kept{};            ///< the newest frame, or nothing
+
+    [[nodiscard]] bool isRare() const { return interval > kRareFrameInterval; }
+    /// A late session would have to wait: a keyframe is wanted, from which on the frames can be kept.
+    [[nodiscard]] bool lacksKept() const { return isRare() && !kept.isWhole(); }
   };
   using Dropped = std::vector<std::unique_ptr<bus::Subscription>>;
   struct Refused {
@@ -102,6 +113,8 @@ class RemoteRoom final : public service::Venue {
   void takeOutcome(const v1::Outcome& message);
   void takeClosed();
   void takeFrame(std::size_t stream, core::Level level, core::ByteView message);
+  /// Gives the newest frames to sessions that have had none.
+  void offerKept();
   /// Compares what the sessions watch with what comes, and tells the room if `must_tell` or something changed. What is
   /// no longer needed goes to `dropped`, to be destroyed without the lock.
   void reviewStreams(Clock::time_point now, bool must_tell, Dropped& dropped);
@@ -114,6 +127,9 @@ class RemoteRoom final : public service::Venue {
   bus::Bus& bus_;
   const Subjects& subjects_;
   service::Sessions& sessions_;
+  /// Held from the choice of a frame until it is in the outboxes, so that sessions get frames in their order. Lock it
+  /// before mutex_.
+  std::mutex frames_mutex_;
   mutable std::mutex mutex_;
   std::uint64_t link_ = 0;      ///< number of the present or attempted link
   std::uint64_t sequence_ = 0;  ///< of the last message on it

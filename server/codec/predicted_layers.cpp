@@ -1,10 +1,14 @@
 // Encoder and decoder of packed planes: SurfacePredicted and FoamPredicted in wire.proto.
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/crc32c.h>
 
 #include "encode/plane_chain.h"
 #include "frame_checks.h"
@@ -96,6 +100,8 @@ class FoamPredictedCodec final : public LayerCodec {
   PlaneExtents extents_;
 };
 
+constexpr double kFoamQuantum = 1.0;
+
 /// False: the number of weights is wrong.
 template <typename Field>
 bool takeWeights(const Field& field, SurfaceWeights& weights) {
@@ -184,11 +190,68 @@ core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& 
   return out;
 }
 
+bool PlaneKeeper::take(core::ByteView message) {
+  has_frame_ = false;
+  auto parsed = parseServerMessage(message);
+  if (!parsed || !parsed->has_frame()) return false;
+  v1::LayerFrame& frame = *parsed->mutable_frame();
+  std::optional<core::Error> error;
+  if (frame.has_surface_predicted()) {
+    const v1::SurfacePredicted& header = frame.surface_predicted();
+    error = history_->read(frame, v1::LAYER_SURFACE, header, header.quantum_m());
+  } else if (frame.has_foam_predicted()) {
+    error = history_->read(frame, v1::LAYER_FOAM, frame.foam_predicted(), kFoamQuantum);
+  } else {
+    return false;
+  }
+  if (error) return false;
+  frame.clear_payload();
+  head_ = std::move(frame);
+  has_frame_ = true;
+  return true;
+}
+
+core::SharedBytes PlaneKeeper::keyframe() {
+  if (!has_frame_) return nullptr;
+  const PlaneRow& planes = history_->memory.row();
+  const auto planeOf = [&](const std::int16_t* (PlaneRow::*row)(std::size_t) const) {
+    std::vector<std::int16_t> samples;
+    samples.reserve(planes.countX() * planes.countZ());
+    for (std::size_t z = 0; z < planes.countZ(); ++z) {
+      const std::int16_t* const first = (planes.*row)(z);
+      samples.insert(samples.end(), first, first + planes.countX());
+    }
+    SurfacePlane out;
+    out.resize(history_->extents.count);
+    out.assign(std::span<const std::int16_t>(samples));
+    return out;
+  };
+  ResidualEncoder residuals;
+  const PlaneChainEncoder::Form form =
+      PlaneChainEncoder::keyframeOf(planeOf(&PlaneRow::row), planeOf(&PlaneRow::earlierRow), residuals);
+  v1::ServerMessage message;
+  v1::LayerFrame& frame = *message.mutable_frame() = head_;
+  const auto setWeights = [&](auto& header) {
+    header.mutable_weights()->Assign(form.weights.of.begin(), form.weights.of.end());
+    header.mutable_earlier_weights()->Assign(form.earlier_weights.of.begin(), form.earlier_weights.of.end());
+  };
+  if (frame.has_surface_predicted())
+    setWeights(*frame.mutable_surface_predicted());
+  else
+    setWeights(*frame.mutable_foam_predicted());
+  frame.set_keyframe(true);
+  frame.clear_base_tick();
+  frame.set_crc32c(core::crc32c(form.payload));
+  frame.set_payload(form.payload.data(), form.payload.size());
+  core::Bytes bytes(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(bytes.data());
+  return core::share(std::move(bytes));
+}
+
 core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame) {
   if (!frame.has_foam_predicted()) return invalid("codec: not foam_predicted");
   const v1::FoamPredicted& header = frame.foam_predicted();
-  constexpr double kQuantum = 1.0;
-  if (auto error = history_->read(frame, v1::LAYER_FOAM, header, kQuantum)) return *error;
+  if (auto error = history_->read(frame, v1::LAYER_FOAM, header, kFoamQuantum)) return *error;
   const PlaneExtents& extents = history_->extents;
   FoamSamples out{extents.count, extents.length_m, extents.width_m, {}};
   const PlaneRow& plane = history_->memory.row();

@@ -67,8 +67,23 @@ Outbox::Outcome Outbox::offerFrame(StreamIndex stream, const FrameBytes& frame, 
   slot.frame = message;
   slot.level = frame.level;
   slot.follows = true;
+  slot.is_newcomer = false;
   slot.lost_turn.reset();
   return {.wake = takeWake(), .dropped = is_pending};
+}
+
+Outbox::Outcome Outbox::offerNewest(StreamIndex stream, const FrameBytes& frame) {
+  const std::lock_guard lock(mutex_);
+  if (close_ || shut_ || stream >= kMaxStreamCount) return {};
+  Slot& slot = slots_[stream];
+  if (!slot.watch || !slot.is_newcomer || !frame.keyframe) return {};
+  if (core::effectiveLevel(levelOf(slot), frame.reduced_count) != frame.level) return {};
+  slot.reduced_count = frame.reduced_count;
+  slot.frame = frame.keyframe;
+  slot.level = frame.level;
+  slot.follows = true;
+  slot.is_newcomer = false;
+  return {.wake = takeWake()};
 }
 
 Outbox::Demand Outbox::demand(StreamIndex stream, std::uint32_t reduced_count, Clock::time_point now) const {
@@ -79,9 +94,10 @@ Outbox::Demand Outbox::demand(StreamIndex stream, std::uint32_t reduced_count, C
   const core::Level level = core::effectiveLevel(wanted, reduced_count);
   if (close_ || shut_) return {.level = level};
   const bool has_ground = slot.follows && slot.level == level;
-  return {.level = level,
-          .wants_keyframe =
-              !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now)};
+  return {
+      .level = level,
+      .wants_keyframe = !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now),
+      .is_newcomer = slot.is_newcomer};
 }
 
 core::Level Outbox::levelOf(const Slot& slot) const {
@@ -99,6 +115,7 @@ void Outbox::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
   slot = {};  // a new watch, also one to recover from a loss, starts with a keyframe
   if (!watch) return;
   slot.watch = watch;
+  slot.is_newcomer = watch->is_first;
   slot.gate = RateGate(watch->max_rate_hz);
   for (const core::Level level : core::kLevels)
     slot.level_gates[indexOf(level)] = RateGate(core::budgetOf(level).rate_hz);
@@ -122,7 +139,7 @@ void Outbox::clearFrames() {
   const std::lock_guard lock(mutex_);
   for (Slot& slot : slots_) {
     slot.frame.reset();
-    slot.follows = false;
+    slot.follows = slot.is_newcomer = false;
   }
 }
 

@@ -50,12 +50,18 @@ class Outbox {
   /// frame is dropped, and the session waits. Ignored after a close was requested.
   Outcome offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now);
 
+  /// Puts the newest frame of a stream, a keyframe that other sessions have had already, into the slot of a session
+  /// that has just begun to watch it: Watch::is_first, and no frame has come since. The next frame may follow at once,
+  /// whatever the rate. Ignored after a close was requested.
+  Outcome offerNewest(StreamIndex stream, const FrameBytes& frame);
+
   /// The frame that the session would take next of a stream that it watches.
   struct Demand {
     core::Level level = core::Level::kFull;
     /// Only a keyframe can be taken. False for a session that has read nothing since it lost a frame: no keyframe is
     /// made for a client that cannot take it.
     bool wants_keyframe = false;
+    bool is_newcomer = false;  ///< offerNewest() would be taken
   };
   Demand demand(StreamIndex stream, std::uint32_t reduced_count, Clock::time_point now) const;
 
@@ -121,6 +127,7 @@ class Outbox {
     core::SharedBytes frame;
     core::Level level = core::Level::kFull;  ///< of the newest frame taken
     std::uint32_t reduced_count = 0;         ///< of the newest frame
+    bool is_newcomer = false;                ///< Watch::is_first, and no frame has been taken yet
     bool follows = false;                    ///< the client has the last frame, or gets it with `frame`
     std::optional<std::uint64_t> lost_turn;  ///< turn_count_ when a frame was lost because there was no keyframe
   };

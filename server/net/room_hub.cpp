@@ -47,6 +47,14 @@ void RoomHub::publish(const std::string& room, StreamIndex stream, const FrameBy
   for (const Watcher& watcher : found->second.watchers[stream]) watcher.link->offerFrame(stream, frame);
 }
 
+void RoomHub::offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
+  assert(stream < kMaxStreamCount && frame.keyframe);
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room);
+  if (found == rooms_.end() || stream >= kMaxStreamCount) return;
+  for (const Watcher& watcher : found->second.watchers[stream]) watcher.link->offerNewest(stream, frame);
+}
+
 core::StreamDemand RoomHub::demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
                                    std::chrono::steady_clock::duration ahead) const {
   const std::lock_guard lock(mutex_);
@@ -58,6 +66,7 @@ core::StreamDemand RoomHub::demand(const std::string& room, StreamIndex stream, 
     core::LevelDemand& of_level = out[indexOf(one.level)];
     ++of_level.watcher_count;
     of_level.wants_keyframe = of_level.wants_keyframe || one.wants_keyframe;
+    of_level.has_newcomer = of_level.has_newcomer || one.is_newcomer;
   }
   return out;
 }

@@ -23,6 +23,7 @@ class SessionLink {
   virtual void sendAnswer(core::SharedBytes message) = 0;
   virtual void sendState(const StateTopic& topic, core::SharedBytes message) = 0;
   virtual void offerFrame(StreamIndex stream, const FrameBytes& frame) = 0;
+  virtual void offerNewest(StreamIndex stream, const FrameBytes& frame) = 0;
   virtual Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count,
                                 std::chrono::steady_clock::duration ahead) const = 0;
   /// Sets the watch of a stream; nullopt stops it.
@@ -45,6 +46,7 @@ class RoomHub final : public Hub {
   void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) override;
   void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) override;
   void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) override;
+  void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) override;
   core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
                             std::chrono::steady_clock::duration ahead = {}) const override;
   void join(SessionId session, const std::string& room) override;

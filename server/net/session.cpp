@@ -299,6 +299,10 @@ void Session::offerFrame(StreamIndex stream, const FrameBytes& frame) {
   if (outcome.wake) wakeWriter();
 }
 
+void Session::offerNewest(StreamIndex stream, const FrameBytes& frame) {
+  if (outbox_.offerNewest(stream, frame).wake) wakeWriter();
+}
+
 Outbox::Demand Session::demand(StreamIndex stream, std::uint32_t reduced_count, Clock::duration ahead) const {
   return outbox_.demand(stream, reduced_count, Clock::now() + ahead);
 }

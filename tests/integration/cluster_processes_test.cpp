@@ -1,5 +1,11 @@
 // Servers and edges over NATS, as processes: what clients see, and what happens when a part dies.
+#include <chrono>
+#include <tuple>
+#include <utility>
+
 #include <gmock/gmock.h>
+
+#include <spindrift/codec/frame_decoder.h>
 
 #include "cluster_fixture.h"
 #include "commands.h"
@@ -65,6 +71,60 @@ TEST_F(ClusterTest, AnEdgeServesARoomLikeItsServer) {
   late.hello();
   late.subscribe(packed(v1::LAYER_SURFACE));
   EXPECT_TRUE(late.nextFrame(v1::LAYER_SURFACE));
+}
+
+TEST_F(ClusterTest, ALatecomerSeesPausedWaterAtOnceAndGoesOnFromIt) {
+  const Member s1 = server("s1");
+  const Member e1 = edge("e1");
+  ScriptedClient ada(e1.port);
+  ada.hello();
+  ada.subscribe(packed(v1::LAYER_SURFACE));
+  ASSERT_TRUE(ada.apply(splash(0.05, 0.5)));
+  ASSERT_TRUE(ada.apply(setPaused(true)));
+  // A paused room has four frames per second: from the sixth or so on the edge knows that they are rare.
+  for (int k = 0; k < 12; ++k) ASSERT_TRUE(ada.nextFrame(v1::LAYER_SURFACE));
+  int shown_count = 0;
+  constexpr int kLateCount = 8;
+  for (int k = 0; k < kLateCount; ++k) {
+    ScriptedClient late(e1.port);
+    late.hello();
+    late.subscribe(packed(v1::LAYER_SURFACE));
+    const auto first = late.nextFrame(v1::LAYER_SURFACE);
+    ASSERT_TRUE(first);
+    EXPECT_TRUE(first->keyframe());
+    // A frame from before the client came; seldom one comes just then.
+    if (first->server_time_s() < late.greeting().server_time_s()) ++shown_count;
+  }
+  EXPECT_GT(shown_count, kLateCount / 2);
+
+  // It reads all that follows, and sees the same water as a client of the server itself.
+  ScriptedClient late(e1.port);
+  late.hello();
+  late.subscribe(packed(v1::LAYER_SURFACE));
+  codec::PackedSurfaceDecoder decoder;
+  const auto readNext = [&] {
+    const auto frame = late.nextFrame(v1::LAYER_SURFACE);
+    EXPECT_TRUE(frame);
+    auto samples = decoder.decode(frame.value_or(v1::LayerFrame()));
+    EXPECT_TRUE(samples) << samples.error().message;
+    return std::pair(frame.value_or(v1::LayerFrame()), samples ? *std::move(samples) : codec::SurfaceSamples());
+  };
+  EXPECT_TRUE(readNext().first.keyframe());
+  EXPECT_FALSE(readNext().first.keyframe());
+  ASSERT_TRUE(ada.apply(setPaused(false)));
+  for (int k = 0; k < 20; ++k) readNext();
+  ASSERT_TRUE(ada.apply(setPaused(true)));
+  ScriptedClient direct(s1.port);
+  direct.hello();
+  direct.subscribe(v1::LAYER_SURFACE);
+  const auto reference = direct.nextFrame(v1::LAYER_SURFACE);
+  ASSERT_TRUE(reference);
+  for (auto [frame, samples] = readNext();; std::tie(frame, samples) = readNext()) {
+    ASSERT_LE(frame.state_id(), reference->state_id());
+    if (frame.state_id() < reference->state_id()) continue;
+    EXPECT_EQ(samples.elevation_m, codec::decodeSurface(*reference)->elevation_m);
+    break;
+  }
 }
 
 TEST_F(ClusterTest, AClientBelowTheFrameRateGetsItsRateThroughAnEdge) {

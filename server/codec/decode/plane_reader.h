@@ -60,6 +60,10 @@ class PlaneRow {
   [[nodiscard]] const std::int16_t* row(std::size_t z) const {
     return before_ + layout_.placeOf(static_cast<std::ptrdiff_t>(z));
   }
+  /// Likewise, of the plane before the newest one.
+  [[nodiscard]] const std::int16_t* earlierRow(std::size_t z) const {
+    return earlier_ + layout_.placeOf(static_cast<std::ptrdiff_t>(z));
+  }
 
  private:
   struct History {

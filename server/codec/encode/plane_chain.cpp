@@ -14,7 +14,7 @@ PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
   }
   Forms out;
   if (!is_first) out.delta = delta();
-  if (is_first || wants_keyframe) out.keyframe = keyframe();
+  if (is_first || wants_keyframe) out.keyframe = keyframeOf(next_, before_, residuals_);
   std::swap(earlier_, before_);
   std::swap(before_, next_);
   return out;
@@ -30,14 +30,15 @@ PlaneChainEncoder::Form PlaneChainEncoder::delta() {
   return out;
 }
 
-PlaneChainEncoder::Form PlaneChainEncoder::keyframe() {
+PlaneChainEncoder::Form PlaneChainEncoder::keyframeOf(const SurfacePlane& newest, const SurfacePlane& before,
+                                                      ResidualEncoder& residuals) {
   Form out;
-  out.weights = fitWeights(next_, {}, nullptr);
-  encodePlane(next_, {}, out.weights, residuals_);
-  const SurfaceHistory history{&next_, nullptr};
-  out.earlier_weights = fitWeights(before_, history, nullptr);
-  encodePlane(before_, history, out.earlier_weights, residuals_);
-  residuals_.finish(out.payload);
+  out.weights = fitWeights(newest, {}, nullptr);
+  encodePlane(newest, {}, out.weights, residuals);
+  const SurfaceHistory history{&newest, nullptr};
+  out.earlier_weights = fitWeights(before, history, nullptr);
+  encodePlane(before, history, out.earlier_weights, residuals);
+  residuals.finish(out.payload);
   return out;
 }
 

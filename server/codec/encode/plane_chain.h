@@ -21,6 +21,9 @@ class PlaneChainEncoder {
     std::optional<Form> delta;     ///< absent for the first plane of a sequence
     std::optional<Form> keyframe;  ///< for the first plane of a sequence, or when wanted
   };
+  /// A keyframe of the plane `newest`, with `before` as the plane before it, independent of any chain.
+  static Form keyframeOf(const SurfacePlane& newest, const SurfacePlane& before, ResidualEncoder& residuals);
+
   /// The plane that the caller fills with the next samples.
   SurfacePlane& next() { return next_; }
   /// Encodes the plane in next(). Another size begins a new sequence.
@@ -30,7 +33,6 @@ class PlaneChainEncoder {
 
  private:
   Form delta();
-  Form keyframe();
 
   SurfacePlane next_, before_, earlier_;
   ResidualEncoder residuals_;

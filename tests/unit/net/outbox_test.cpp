@@ -405,6 +405,52 @@ TEST(Outbox, ClosesWhenTooManyAnswersWait) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
 }
 
+TEST(Outbox, ANewcomerGetsTheNewestFrameOnceAndGoesOnWithTheNextDelta) {
+  Outbox outbox(8);
+  const FrameBytes newest{.keyframe = shared("newest"), .delta = nullptr};
+  const FrameBytes next{.keyframe = nullptr, .delta = shared("delta")};
+  const auto now = later();
+  outbox.offerNewest(1, newest);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it does not watch the stream";
+  outbox.setWatch(1, Watch{.max_rate_hz = 10.0, .is_first = true});
+  EXPECT_TRUE(outbox.demand(1, 0, now).is_newcomer);
+  EXPECT_TRUE(outbox.demand(1, 0, now).wants_keyframe);
+  EXPECT_TRUE(outbox.offerNewest(1, newest).wake);
+  EXPECT_FALSE(outbox.demand(1, 0, now).is_newcomer);
+  EXPECT_FALSE(outbox.demand(1, 0, now).wants_keyframe);
+  outbox.offerNewest(1, {.keyframe = shared("again"), .delta = nullptr});
+  EXPECT_EQ(sentText(outbox), "newest");
+  outbox.offerFrame(1, next, now);
+  EXPECT_EQ(sentText(outbox), "delta") << "whatever the rate: the frame before did not count";
+  outbox.offerFrame(1, next, now);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "from here on the rate holds";
+  outbox.offerNewest(1, newest);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it has had newer frames";
+}
+
+TEST(Outbox, OnlyTheFirstWatchOfALayerMakesANewcomer) {
+  Outbox outbox(8);
+  const FrameBytes newest{.keyframe = shared("newest"), .delta = nullptr};
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  EXPECT_FALSE(outbox.demand(1, 0, later()).is_newcomer);
+  outbox.offerNewest(1, newest);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kCoarse, .is_first = true});
+  outbox.offerNewest(1, {.keyframe = shared("full"), .delta = nullptr, .reduced_count = 1});
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "a frame of another level";
+  outbox.offerNewest(
+      1, {.keyframe = shared("coarse"), .delta = nullptr, .level = core::Level::kCoarse, .reduced_count = 1});
+  EXPECT_EQ(sentText(outbox), "coarse");
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .is_first = true});
+  outbox.clearFrames();
+  outbox.offerNewest(1, newest);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it is in another room now";
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .is_first = true});
+  outbox.requestClose(CloseCode::kNormal, "end");
+  outbox.offerNewest(1, newest);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
+}
+
 TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});

@@ -13,8 +13,10 @@ using test::shared;
 struct RecordingLink final : SessionLink {
   int control_count = 0;
   int frame_count = 0;
+  int newest_count = 0;
   int clear_count = 0;
   bool wants_keyframe = false;
+  bool is_newcomer = false;
   std::optional<double> rate_hz;
   core::Level level = core::Level::kFull;
   std::optional<CloseCode> closed;
@@ -23,8 +25,11 @@ struct RecordingLink final : SessionLink {
   void sendAnswer(core::SharedBytes) override { ++control_count; }
   void sendState(const StateTopic&, core::SharedBytes) override { ++control_count; }
   void offerFrame(StreamIndex, const FrameBytes&) override { ++frame_count; }
+  void offerNewest(StreamIndex, const FrameBytes&) override { ++newest_count; }
   Outbox::Demand demand(StreamIndex, std::uint32_t reduced_count, Clock::duration) const override {
-    return {.level = core::effectiveLevel(level, reduced_count), .wants_keyframe = wants_keyframe};
+    return {.level = core::effectiveLevel(level, reduced_count),
+            .wants_keyframe = wants_keyframe,
+            .is_newcomer = is_newcomer};
   }
   void setWatch(StreamIndex, const std::optional<Watch>& watch) override {
     rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
@@ -46,6 +51,22 @@ struct RoomHubTest : testing::Test {
     hub.add(2, bob);
   }
 };
+
+TEST_F(RoomHubTest, OffersTheNewestFrameToTheWatchersOfItsStreamAndReportsNewcomers) {
+  hub.join(1, "pool");
+  hub.join(2, "pool");
+  hub.watch(1, 3, {.max_rate_hz = 30.0});
+  hub.watch(2, 4, {.max_rate_hz = 30.0});
+  hub.offerNewest("pool", 3, {.keyframe = shared("newest"), .delta = nullptr});
+  hub.offerNewest("pond", 3, {.keyframe = shared("newest"), .delta = nullptr});
+  EXPECT_EQ(ada->newest_count, 1);
+  EXPECT_EQ(bob->newest_count, 0);
+  EXPECT_EQ(ada->frame_count, 0);
+  const auto hasNewcomer = [&] { return hub.demand("pool", 3, 0)[core::indexOf(core::Level::kFull)].has_newcomer; };
+  EXPECT_FALSE(hasNewcomer());
+  ada->is_newcomer = true;
+  EXPECT_TRUE(hasNewcomer());
+}
 
 TEST_F(RoomHubTest, ReportsTheDemandPerLevel) {
   using core::Level;

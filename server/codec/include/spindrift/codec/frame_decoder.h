@@ -94,6 +94,22 @@ class PackedFoamDecoder : public PackedPlaneDecoder {
   core::Result<FoamSamples> decode(const v1::LayerFrame& frame);
 };
 
+/// Follows a stream of packed planes and makes a keyframe of its newest frame, for clients that come between two
+/// frames: with the same samples, tick and times, and with the plane before, so that such a client can use the next
+/// delta of the stream. It keeps two planes.
+class PlaneKeeper : public PackedPlaneDecoder {
+ public:
+  /// Takes the next message of the stream, a packed surface or packed foam. False: it is neither, is damaged, or builds
+  /// on a frame that is not here; only a keyframe can be taken then.
+  bool take(core::ByteView message);
+  /// Null if the last take() failed, or there was none.
+  [[nodiscard]] core::SharedBytes keyframe();
+
+ private:
+  v1::LayerFrame head_;  ///< of the newest frame, without its payload
+  bool has_frame_ = false;
+};
+
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is valid).
 core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame);
 

@@ -53,6 +53,9 @@ struct Watch {
   double max_rate_hz = 0.0;  ///< 0 stops the stream
   core::Level level = core::Level::kFull;
   bool adapts = false;  ///< the server may lower the level while the link cannot carry this one
+  /// The session has watched nothing of the layer before, so a frame that others have already cannot be older than one
+  /// it has: Hub::offerNewest().
+  bool is_first = false;
 };
 
 /// WebSocket close codes that this server sends (RFC 6455 section 7.4).
@@ -122,6 +125,11 @@ class Hub {
   /// keyframe is missing, it gets nothing, and demand() reports the need. Each level is published by itself; a session
   /// gets its own level.
   virtual void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
+
+  /// Gives the newest frame of the stream at this level, as a keyframe, to the sessions that have just begun to watch
+  /// it (Watch::is_first) and have had no frame yet. They go on with the delta of the next frame, so no other frame may
+  /// be published between that one and this call. It does not count for the rate.
+  virtual void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
   /// Returns which levels of the stream are watched now, and in which form, so that unwatched levels are not encoded.
   /// `reduced_count`: number of levels that downsample its layer; requests for higher levels count as kFull.

@@ -74,6 +74,7 @@ class Sessions {
     Stage stage = Stage::kNew;
     std::deque<core::Bytes> waiting{};  ///< while kArriving; bounded
     std::uint32_t wire_minor = 0;       ///< of the client, once it has said hello
+    std::uint32_t watched_layers = 0;   ///< a bit for each v1::Layer that it has ever subscribed to
     core::Role role = core::Role::kViewer;
     std::uint32_t person_id = 0;
     std::string resume_key{};
@@ -94,6 +95,8 @@ class Sessions {
   void welcome(net::SessionId session, const rooms::Admission& admission, core::Role role, const Venue& venue);
   void subscribe(net::SessionId session, const State& state, const wire::Subscribe& subscribe);
   void command(net::SessionId session, const State& state, v1::Command message);
+  /// Notes that the session watches the layer; true: for the first time.
+  bool noteWatched(net::SessionId session, v1::Layer layer);
   /// Takes a token of the session's command rate; returns false if there is none.
   bool takeCommand(net::SessionId session);
 

@@ -1,0 +1,31 @@
+// The newest frame of one stream at one level, in a form that a session which comes between two frames can begin with.
+#pragma once
+
+#include <memory>
+
+#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/core/bytes.h>
+
+namespace spindrift::cluster {
+
+/// Memory: one keyframe and two planes. Not thread-safe.
+class KeptFrame {
+ public:
+  void takeKeyframe(core::SharedBytes keyframe);
+  /// `follows_planes`: decode the delta, so that the frame can be kept.
+  /// Otherwise nothing is kept until the next keyframe.
+  void takeDelta(const core::SharedBytes& delta, bool follows_planes);
+  void forget();
+
+  /// Whether keyframe() is there.
+  [[nodiscard]] bool isWhole() const { return keyframe_ || planes_; }
+  /// Of the newest frame taken: a session that has it can use the next delta. Null: it is not known. Made at the first
+  /// call where the frame came as a delta.
+  [[nodiscard]] core::SharedBytes keyframe();
+
+ private:
+  core::SharedBytes keyframe_;
+  std::unique_ptr<codec::PlaneKeeper> planes_;  ///< since the first delta after a keyframe
+};
+
+}  // namespace spindrift::cluster
