@@ -35,11 +35,9 @@ Directory::Directory(std::unique_ptr<bus::KeyValues> values, std::string self, L
 
 Directory::~Directory() = default;
 
-core::Result<std::map<std::string, Directory::Entry>> Directory::read() {
-  const auto values = values_->all();
-  if (!values) return values.error();
-  std::map<std::string, Entry> out;
-  for (const auto& [room, value] : *values) {
+Directory::Entries Directory::parse(const bus::KeyValueMap& values) {
+  Entries out;
+  for (const auto& [room, value] : values) {
     Entry entry{.record = {}, .revision = value.revision};
     if (entry.record.ParseFromArray(value.value.data(), static_cast<int>(value.value.size())) &&
         rooms::isRoomName(room)) {
@@ -61,13 +59,14 @@ void Directory::fail(const std::string& what, const core::Error& error) {
 }
 
 core::Result<std::vector<rooms::RoomSetup>> Directory::claim(std::vector<rooms::RoomSetup> rooms) {
-  auto entries = read();
-  if (!entries) return entries.error();
+  const auto values = values_->all();
+  if (!values) return values.error();
+  Entries entries = parse(*values);
   const Servers servers = servers_();
   const auto now = Clock::now();
   std::vector<rooms::RoomSetup> out;
   for (rooms::RoomSetup& room : rooms) {
-    const Entry entry = (*entries)[room.name];
+    const Entry entry = entries[room.name];
     const std::string& owner = entry.record.server();
     if (!owner.empty() && owner != self_ && servers.isAlive(owner, now)) {
       spdlog::info("room {} runs on server {}; it is not opened here", room.name, owner);
@@ -103,6 +102,7 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
       done(outcome);
     };
     if (!runs) return finish(core::Error{core::ErrorCode::kUnavailable, "the server shuts down"});
+    removed_.erase(name);
     v1::RoomRecord record;
     record.set_server(self_);
     record.set_scene(shared->scene.name());
@@ -126,8 +126,10 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
 void Directory::remove(const std::string& room) {
   worker_.push([this, room](bool runs) {
     if (!runs) return;
-    if (const auto removed = values_->remove(room); !removed)
-      fail("room " + room + " stays in the directory of rooms", removed.error());
+    const auto removed = values_->remove(room);
+    if (removed) return;
+    removed_.insert(room);
+    fail("room " + room + " is still in the directory of rooms, its removal is tried again", removed.error());
   });
 }
 
@@ -140,23 +142,52 @@ void Directory::review() {
 }
 
 void Directory::reviewNow() {
-  auto entries = read();
-  if (!entries) return fail("the directory of rooms cannot be read", entries.error());
+  const auto copy = values_->copy();
+  if (!copy) return fail("the directory of rooms cannot be read", copy.error());
+  while (!removed_.empty()) {
+    if (const auto removed = values_->remove(*removed_.begin()); !removed)
+      return fail("a room that was closed is still in the directory of rooms", removed.error());
+    removed_.erase(removed_.begin());
+  }
+  Entries entries = parse(*copy);
+  Decision decision = decide(entries);
+  if (decision.settle.empty() && decision.take.empty()) {
+    said_.clear();
+    return;
+  }
+  // A server that is cut off hears nobody and sees an old copy, so all others are dead to it: NATS has to answer before
+  // anything is decided.
+  const auto values = values_->all();
+  if (!values) return fail("the directory of rooms cannot be read", values.error());
   said_.clear();
+  entries = parse(*values);
+  decision = decide(entries);
+  for (const std::string& room : decision.settle) {
+    if (!settle(room, entries.at(room))) return;
+  }
+  for (const std::string& room : decision.take) {
+    if (!take(room, entries.at(room))) return;
+  }
+}
+
+Directory::Decision Directory::decide(Entries& entries) {
+  // Also those that run here without an entry, because NATS lost its data.
+  for (const auto& room : simulation_->rooms()) entries.try_emplace(room->name());
   if (const auto& states = simulation_->rules().states) {
     if (const auto kept = states->rooms()) {
       for (const std::string& room : *kept) {
-        if (rooms::isRoomName(room)) entries->try_emplace(room);
+        if (rooms::isRoomName(room)) entries.try_emplace(room);
       }
     }
   }
   const Servers servers = servers_();
   const auto now = Clock::now();
+  Decision out;
   std::map<std::string, int> placed;
   std::map<std::string, Clock::time_point> orphans;
-  for (const auto& [room, entry] : *entries) {
+  for (const auto& [room, entry] : entries) {
     if (simulation_->find(room)) {
-      if (entry.record.server() != self_) settle(room, entry, servers, now);
+      if (entry.record.server() != self_) out.settle.push_back(room);
       continue;
     }
     {
@@ -168,6 +199,7 @@ void Directory::reviewNow() {
       if (servers.serverOf(room) != owner) ++placed[owner];  // it has claimed the room and is opening it
       continue;
     }
+    if (entry.revision == 0 && servers.isAlive(servers.serverOf(room), now)) continue;  // which will enter it
     const auto since = orphans_.contains(room) ? orphans_.at(room) : now;
     orphans[room] = since;
     if (entry.revision == 0 && now - since < kStrayPatience) continue;
@@ -179,36 +211,46 @@ void Directory::reviewNow() {
       const auto retry = retry_after_.find(room);
       if (retry != retry_after_.end() && now < retry->second) continue;
     }
-    take(room, entry);
+    out.take.push_back(room);
   }
   orphans_ = std::move(orphans);
+  return out;
 }
 
-void Directory::settle(const std::string& room, const Entry& entry, const Servers& servers, Clock::time_point now) {
+bool Directory::settle(const std::string& room, const Entry& entry) {
+  const auto running = simulation_->find(room);
+  if (!running) return true;  // closed meanwhile
+  const Servers servers = servers_();
   const std::string& other = entry.record.server();
-  const bool runs_elsewhere = servers.isAlive(other, now) && servers.serverOf(room) == other;
+  const bool runs_elsewhere = servers.isAlive(other, Clock::now()) && servers.serverOf(room) == other;
   if (runs_elsewhere && !simulation_->rules().states) {
     // Without a shared state there is no lock: this server was cut off, and the other one took the room.
     spdlog::error("room {} runs on server {} as well, which took it while this one was cut off: closing it here", room,
                   other);
     simulation_->closeRoom(
         room, [](const rooms::Room&) {}, [](const core::Result<void>&) {});
-    return;
+    return true;
   }
   v1::RoomRecord record = entry.record;
   record.set_server(self_);
-  if (record.scene().empty()) record.set_scene(simulation_->find(room)->snapshot()->scene.name());
-  if (const auto mine = write(room, record, entry.revision); !mine)
+  if (record.scene().empty()) record.set_scene(running->snapshot()->scene.name());
+  if (const auto mine = write(room, record, entry.revision); !mine) {
     fail("room " + room + " could not be entered in the directory of rooms", mine.error());
+    return false;
+  }
+  return true;
 }
 
-void Directory::take(const std::string& room, const Entry& entry) {
+bool Directory::take(const std::string& room, const Entry& entry) {
   v1::RoomRecord record = entry.record;
   const std::string before = record.server();
   record.set_server(self_);
   const auto mine = write(room, record, entry.revision);
-  if (!mine) return fail("room " + room + " could not be taken", mine.error());
-  if (!*mine) return;  // another server was faster
+  if (!mine) {
+    fail("room " + room + " could not be taken", mine.error());
+    return false;
+  }
+  if (!*mine) return true;  // another server was faster
   spdlog::warn("room {}: taken over from {}", room,
                before.empty()    ? "nobody"
                : before == self_ ? "this server's earlier run"
@@ -238,6 +280,7 @@ void Directory::take(const std::string& room, const Entry& entry) {
       spdlog::error("room {} could not be taken over, it is tried again: {}", room, opened.error().message);
     }
   });
+  return true;
 }
 
 void Directory::release() {
@@ -245,8 +288,8 @@ void Directory::release() {
   std::promise<void> done;
   auto finished = done.get_future();
   worker_.push([this, &done](bool) {
-    if (const auto entries = read()) {
-      for (const auto& [room, entry] : *entries) {
+    if (const auto values = values_->all()) {
+      for (const auto& [room, entry] : parse(*values)) {
         if (entry.record.server() != self_) continue;
         v1::RoomRecord record = entry.record;
         record.clear_server();

@@ -1,4 +1,5 @@
-// The directory of rooms, which all servers share: who runs which room, and who takes one that nobody runs.
+// The directory of rooms, which all servers share: who runs which room, and who takes one that nobody runs. Each server
+// reads a copy of it that NATS keeps up to date (bus::KeyValues), and asks NATS only before it changes something.
 #pragma once
 
 #include <chrono>
@@ -55,12 +56,20 @@ class Directory {
     v1::RoomRecord record;
     std::uint64_t revision = 0;  ///< 0: only the room's state is there, in the shared folder
   };
-  core::Result<std::map<std::string, Entry>> read();
+  using Entries = std::map<std::string, Entry>;
+  static Entries parse(const bus::KeyValueMap& values);
   core::Result<bool> write(const std::string& room, const v1::RoomRecord& record, std::uint64_t revision);
   void reviewNow();
-  /// The room runs here, and the directory says otherwise.
-  void settle(const std::string& room, const Entry& entry, const Servers& servers, Clock::time_point now);
-  void take(const std::string& room, const Entry& entry);
+  /// What a review has to do, by the rooms' names.
+  struct Decision {
+    std::vector<std::string> settle;  ///< they run here, and the directory says otherwise
+    std::vector<std::string> take;
+  };
+  /// Adds the rooms that run here and those in the shared folder to the entries, then decides.
+  Decision decide(Entries& entries);
+  /// False: the directory could not be written.
+  bool settle(const std::string& room, const Entry& entry);
+  bool take(const std::string& room, const Entry& entry);
   void fail(const std::string& what, const core::Error& error);
 
   const std::unique_ptr<bus::KeyValues> values_;
@@ -74,9 +83,10 @@ class Directory {
   std::atomic<std::uint64_t> failure_count_{0};
   std::mutex mutex_;
   std::set<std::string> opening_;                         ///< guarded by mutex_
-  std::map<std::string, Clock::time_point> orphans_;      ///< since when; on the worker, like the next ones
+  std::map<std::string, Clock::time_point> orphans_;      ///< since when; on the worker
+  std::set<std::string> removed_;                         ///< closed for good, but still entered; on the worker
   std::map<std::string, Clock::time_point> retry_after_;  ///< rooms that could not be opened here; under mutex_
-  std::string said_;                                      ///< the last failure, not to repeat it
+  std::string said_;                                      ///< the last failure, not to repeat it; on the worker
   rooms::Worker worker_;                                  ///< last: ends first
 };
 
