@@ -8,6 +8,10 @@
 namespace spindrift::test {
 namespace {
 
+struct Closer {
+  void operator()(std::FILE* file) const { (void)std::fclose(file); }
+};
+
 class Soak : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override {
@@ -37,10 +41,9 @@ TEST_F(Soak, ClientsThatComeAndGoAreAnsweredAndSeeFiniteNumbers) {
   options.strokes_per_s = 0.5;
   options.boats_per_s = 0.5;
   options.level_changes_per_s = 2.0;
-  std::FILE* const nowhere = std::fopen("/dev/null", "w");
-  ASSERT_NE(nowhere, nullptr);
-  const auto report = bench::measureSoak(options, nowhere);
-  std::fclose(nowhere);
+  const std::unique_ptr<std::FILE, Closer> nowhere(std::fopen("/dev/null", "w"));
+  ASSERT_TRUE(nowhere);
+  const auto report = bench::measureSoak(options, nowhere.get());
   ASSERT_TRUE(report) << report.error().message;
   SCOPED_TRACE(boost::json::serialize(*report));
   for (const char* some : {"sent", "answers", "heavy_answers", "reconnects", "resumed", "refused", "frames", "decoded"})

@@ -138,7 +138,7 @@ class StateKill : public ProgramTest {
   }
 
   fs::path copyOfState(const std::string& name) {
-    const fs::path copy = folder().path() / name;
+    fs::path copy = folder().path() / name;
     fs::remove_all(copy);
     fs::copy(stateFolder(), copy, fs::copy_options::recursive);
     return copy;
