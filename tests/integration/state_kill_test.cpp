@@ -26,7 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-using testing::HasSubstr;
 
 constexpr std::size_t kKillCount = 6;
 const std::vector<std::string> kFixedRooms{"main", "tank", "sea"};
