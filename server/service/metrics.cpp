@@ -56,8 +56,8 @@ void writeTickTimes(Page& page, const std::vector<RoomSample>& rooms) {
     std::uint64_t count = 0;
     for (std::size_t k = 0; k < times.counts().size(); ++k) {
       count += times.counts()[k];
-      const bool is_last = k == times.kBounds_s.size();
-      const std::string bound = is_last ? "+Inf" : fmt::format("{}", times.kBounds_s[k]);
+      const bool is_last = k == rooms::TickTimes::kBounds_s.size();
+      const std::string bound = is_last ? "+Inf" : fmt::format("{}", rooms::TickTimes::kBounds_s[k]);
       page.part("bucket", fmt::format("{},le=\"{}\"", room.label, bound), count);
     }
     page.part("sum", room.label, times.sum_s());

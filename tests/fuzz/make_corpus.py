@@ -355,6 +355,7 @@ def tls():
         "version_2": plain + all_later + b"\x80\x2e\1\0\2\0\x15\0\0\0\x10" + bytes(40),
         "whole": changed(0xFFFF, 0, http, b"GET / HTTP/1.1\r\n\r\n", b"x" * 200),
         "whole_1_2": changed(0xFFFF, 0, http | tls_1_2, b"GET / HTTP/1.1\r\n\r\n", b"x" * 200, buffer=0),
+        "whole_long": changed(0xFFFF, 0, http, bytes(range(250)), b"", bytes(range(5, 255)), buffer=255),
         "whole_vanishes": changed(0xFFFF, 0, vanishes, b"x"),
         "whole_other_protocol": changed(0xFFFF, 0, other_protocol, b"x"),
         "whole_new_keys": changed(0xFFFF, 0, 0, b"a", b"", b"b", b"", b"", b"c"),

@@ -145,7 +145,7 @@ class ClusterKill : public ClusterTest {
   }
 
   fs::path copyOfState(const std::string& name) {
-    const fs::path copy = folder_.path() / name;
+    fs::path copy = folder_.path() / name;
     fs::remove_all(copy);
     fs::copy(stateFolder(), copy, fs::copy_options::recursive);
     return copy;

@@ -26,7 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-using testing::HasSubstr;
 
 constexpr std::size_t kKillCount = 6;
 const std::vector<std::string> kFixedRooms{"main", "tank", "sea"};
@@ -138,7 +137,7 @@ class StateKill : public ProgramTest {
   }
 
   fs::path copyOfState(const std::string& name) {
-    const fs::path copy = folder().path() / name;
+    fs::path copy = folder().path() / name;
     fs::remove_all(copy);
     fs::copy(stateFolder(), copy, fs::copy_options::recursive);
     return copy;

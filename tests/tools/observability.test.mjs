@@ -123,6 +123,7 @@ describe("the metrics of a running server", () => {
   let folder;
   let server;
   let reason;
+  let page = "";
   const served = new Map(); // name -> { type, labels: Set, values: label -> Set }
   before(async () => {
     folder = mkdtempSync(join(tmpdir(), "spindrift metrics "));
@@ -138,7 +139,6 @@ describe("the metrics of a running server", () => {
     if (code === 3) return (reason = errors);
     assert.ok(line, errors);
     const url = line.match(/http:\S+/)[0];
-    let page = "";
     // Passes and gauges come with the first ticks.
     for (let k = 0; k < 100 && !(page.includes("pass=") && page.includes("gauge=")); ++k) {
       await new Promise((resolve) => setTimeout(resolve, 100));
@@ -165,6 +165,19 @@ describe("the metrics of a running server", () => {
       assert.equal(served.get(name).type, type, name);
       // Nobody has been closed so far, so this one has no sample.
       if (name !== "sessions_closed_total") assert.deepEqual(Object.keys(served.get(name).labels).sort(), [...labels].sort(), name);
+    }
+  });
+
+  it("count in each bucket of a histogram what is in those below, too, and in the last one all", (context) => {
+    if (reason) return context.skip(reason);
+    for (const [name] of [...metrics].filter(([, { type }]) => type === "histogram")) {
+      const rows = [...page.matchAll(new RegExp(`^spindrift_${name}_bucket\\{.*le="([^"]+)"\\} (\\d+)$`, "gm"))];
+      const counts = rows.map((row) => Number(row[2]));
+      assert.ok(counts.length > 2, name);
+      assert.equal(rows.at(-1)[1], "+Inf", name);
+      assert.deepEqual(counts, counts.toSorted((a, b) => a - b), name);
+      assert.equal(counts.at(-1), Number(page.match(new RegExp(`^spindrift_${name}_count\\{.*\\} (\\d+)$`, "m"))[1]), name);
+      assert.ok(counts.at(-1) > 0, name);
     }
   });
 

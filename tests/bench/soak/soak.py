@@ -126,7 +126,7 @@ def soak(cluster: Cluster, arguments) -> int:
     edge.wait_for("/readyz")
     ports = [server.port, edge.port]
     intervals_s = {"parameter": arguments.parameter_every_s, "room": arguments.room_every_s, "change_scene": arguments.scene_every_s}
-    disturber = disturbances.Disturber(ports, scene.stem, intervals_s, arguments.seed)
+    disturber = disturbances.Disturber(ports, scene.stem, intervals_s, 60.0 * arguments.warm_up_minutes, arguments.seed)
     load = start_load(cluster, ports, arguments)
     samples = Samples({"server": server, "edge": edge, "nats": cluster.nats}, load, disturber)
     disturber.start()
@@ -143,6 +143,7 @@ def soak(cluster: Cluster, arguments) -> int:
                 if arguments.csv:
                     samples.write(arguments.csv)
     finally:
+        load.end()
         disturber.stop()
     if load.child.returncode != 0:
         raise RuntimeError("the load failed:\n" + load.log.read_text()[-2000:])
