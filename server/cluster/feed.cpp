@@ -18,6 +18,8 @@ constexpr unsigned kPrefixShift = 40;
 constexpr std::size_t kRequestsWaitingMaxBytes = 8u << 20;
 /// Of one node in one room.
 constexpr std::size_t kArrivedMaxCount = 4096;
+/// The count of people who only watch changes in the list of people at most this often.
+constexpr std::chrono::seconds kUnlistedInterval{1};
 
 core::Role roleOf(v1::Role role) {
   if (role == v1::ROLE_OPERATOR) return core::Role::kOperator;
@@ -71,6 +73,13 @@ void Feed::review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const 
       }
       ++link;
     }
+    if (now < room.next_unlisted) continue;
+    std::uint32_t unlisted_count = 0;
+    for (const auto& [node, link] : room.links) unlisted_count += link.unlisted_count;
+    if (unlisted_count == room.told_unlisted_count) continue;
+    room.told_unlisted_count = unlisted_count;
+    room.next_unlisted = now + kUnlistedInterval;
+    room.room->roster().setUnlistedCount(unlisted_count);
   }
 }
 
@@ -152,6 +161,7 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
   switch (message.message_case()) {
     case v1::ToRoom::kWatching: {
       link.session_count = message.watching().session_count();
+      link.unlisted_count = message.watching().unlisted_count();
       StreamTable watched{};
       for (const v1::Watching::Stream& stream : message.watching().streams()) {
         const auto level = codec::fromWire(stream.level());

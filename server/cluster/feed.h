@@ -55,7 +55,8 @@ class Feed final : public service::RemoteAudience {
   Feed(bus::Bus& bus, Subjects subjects, Events events)
       : bus_(bus), subjects_(std::move(subjects)), events_(std::move(events)) {}
 
-  /// Opens the rooms that are new to the nodes, drops silent links, sends pulses. Call it some twenty times per second.
+  /// Opens the rooms that are new to the nodes, drops silent links, sends pulses, counts who only watches. Call it some
+  /// twenty times per second.
   void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
               Clock::time_point now);
   [[nodiscard]] FeedStats stats() const;
@@ -86,7 +87,8 @@ class Feed final : public service::RemoteAudience {
     Clock::time_point heard{};
     StreamTable watched{};
     std::uint32_t session_count = 0;
-    std::set<std::uint64_t> arrived;  ///< sessions of the node whose people are in the roster
+    std::uint32_t unlisted_count = 0;  ///< of these, people who only watch and are not in the roster
+    std::set<std::uint64_t> arrived;   ///< sessions of the node whose people are in the roster
   };
   struct FedRoom {
     std::shared_ptr<rooms::Room> room;
@@ -95,6 +97,8 @@ class Feed final : public service::RemoteAudience {
     std::array<std::array<std::uint64_t, core::kLevelCount>, codec::kStreamCount> sequences{};
     std::array<std::uint32_t, codec::kStreamCount> reduced_counts{};
     bool knows_reduced_counts = false;
+    std::uint32_t told_unlisted_count = 0;  ///< of all links, as the roster has it
+    Clock::time_point next_unlisted{};
     std::string device;
     std::vector<std::string> scenes;
     std::unique_ptr<bus::Subscription> requests;

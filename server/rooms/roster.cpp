@@ -131,7 +131,15 @@ v1::People Roster::people() const {
     for (const std::uint32_t boat : person.boats) wire.add_boat_ids(boat);
     wire.set_away(person.session == 0);
   }
+  out.set_unlisted_count(unlisted_count_);
   return out;
+}
+
+void Roster::setUnlistedCount(std::uint32_t count) {
+  const std::lock_guard lock(mutex_);
+  // News, but nothing that is kept on disk.
+  is_news_ = is_news_ || count != unlisted_count_;
+  unlisted_count_ = count;
 }
 
 std::uint64_t Roster::version() const {

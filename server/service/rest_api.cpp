@@ -371,7 +371,8 @@ void RestApi::fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const {
   out.set_tick(vitals->tick);
   out.set_time_s(vitals->time_s);
   out.set_real_time_factor(vitals->diagnostics.real_time_factor);
-  out.set_session_count(static_cast<std::uint32_t>(hub_->sessionCount(room.name())));
+  const std::size_t remote_count = cluster_.audience ? cluster_.audience->sessionCount(room.name()) : 0;
+  out.set_session_count(static_cast<std::uint32_t>(hub_->sessionCount(room.name()) + remote_count));
   out.set_boat_count(static_cast<std::uint32_t>(snapshot->boats.boats_size()));
   out.set_fidelity(snapshot->scene.fidelity());
 }

@@ -1,7 +1,8 @@
 // Servers and edges over NATS, as processes: what clients see, and what happens when a part dies.
-#include <chrono>
+#include <memory>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -169,6 +170,51 @@ TEST_F(ClusterTest, RolesAreCheckedWhereTheClientConnects) {
   EXPECT_TRUE(stranger.ws().waitClosed());
   EXPECT_EQ(stranger.ws().closeCode(), 4401);
   EXPECT_EQ(post(e1.port, "/api/v1/rooms", R"({"name": "r", "scene": "pool"})").status, 403u);
+}
+
+TEST_F(ClusterTest, ThoseWhoWatchBeyondTheListOfPeopleAreCountedForEverybody) {
+  folder_.write("tokens", "operator operator-of-the-cluster\n");
+  const std::string tokens = "--tokens-file '" + (folder_.path() / "tokens").string() + "'";
+  const Member s1 = server("s1", tokens);
+  const Member e1 = edge("e1", tokens);
+  const Member e2 = edge("e2", tokens);
+  ScriptedClient direct(s1.port);
+  direct.hello({.token = "operator-of-the-cluster"});
+  constexpr int kListedCount = 64;
+  std::vector<std::unique_ptr<ScriptedClient>> crowd;
+  const auto join = [&](std::uint16_t port) {
+    crowd.push_back(std::make_unique<ScriptedClient>(port));
+    crowd.back()->hello();
+    EXPECT_NE(crowd.back()->welcome().person_id(), 0u);
+  };
+  const auto seesCounts = [](ScriptedClient& client, int listed_count, std::uint32_t unlisted_count) {
+    return client
+        .waitFor([&](const v1::ServerMessage& message) {
+          return message.people().people_size() == listed_count && message.people().unlisted_count() == unlisted_count;
+        })
+        .has_value();
+  };
+  while (crowd.size() < kListedCount - 1) join(crowd.size() % 2 == 0 ? e1.port : e2.port);
+  ASSERT_TRUE(seesCounts(direct, kListedCount, 0));
+  ASSERT_TRUE(seesCounts(*crowd[0], kListedCount, 0));
+  ASSERT_TRUE(seesCounts(*crowd[1], kListedCount, 0));
+  for (int k = 0; k < 3; ++k) join(e1.port);
+  for (int k = 0; k < 2; ++k) join(e2.port);
+  EXPECT_TRUE(seesCounts(direct, kListedCount, 5)) << "the sum over both edges";
+  EXPECT_TRUE(seesCounts(*crowd[0], kListedCount, 5));
+  EXPECT_TRUE(seesCounts(*crowd.back(), kListedCount, 5)) << "those who are not listed see it, too";
+  // Who comes now is told at once.
+  ScriptedClient late(e2.port);
+  late.hello({.token = "operator-of-the-cluster"});
+  EXPECT_TRUE(late.waitFor([](const v1::ServerMessage& message) { return message.people().unlisted_count() == 5; }));
+  for (const std::uint16_t port : {s1.port, e1.port, e2.port}) {
+    EXPECT_THAT(httpRequest(port, "GET", "/api/v1/rooms/main/people").body, HasSubstr("\"unlisted_count\":5"));
+    EXPECT_TRUE(eventually([&] { return rooms(port).find("\"session_count\":70") != std::string::npos; }))
+        << rooms(port);
+  }
+  crowd.resize(crowd.size() - 3);
+  EXPECT_TRUE(seesCounts(direct, kListedCount + 1, 2));
+  EXPECT_TRUE(seesCounts(late, kListedCount + 1, 2));
 }
 
 TEST_F(ClusterTest, RoomsOpenAnywhereAndAreReachedFromEverywhere) {

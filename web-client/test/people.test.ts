@@ -16,10 +16,15 @@ function storage(): StorageLike & { map: Map<string, string> } {
 describe("people in messages", () => {
   it("are read with CSS colours", () => {
     const person = { personId: 3, name: "Ada", colorRgb: 0x0a0b0c, role: Role.OPERATOR, boatIds: [2, 5], away: true };
-    expect(parse(encode({ case: "people", value: { people: [person] } }))).toEqual({
+    expect(parse(encode({ case: "people", value: { people: [person], unlistedCount: 930 } }))).toEqual({
       kind: "people",
+      unlistedCount: 930,
       people: [{ personId: 3, name: "Ada", color: "#0a0b0c", role: "operator", boatIds: [2, 5], away: true }],
     });
+  });
+
+  it("have no others where the server does not say so", () => {
+    expect(parse(encode({ case: "people", value: {} }))).toEqual({ kind: "people", people: [], unlistedCount: 0 });
   });
 
   it("with a role that this page does not know are viewers", () => {

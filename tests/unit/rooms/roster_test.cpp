@@ -31,6 +31,22 @@ TEST_F(RosterTest, PeopleHaveNumbersNamesAndColors) {
   EXPECT_FALSE(roster.settle(now).is_news) << "reported once";
 }
 
+TEST_F(RosterTest, TheCountOfUnlistedPeopleIsNewsButNotKept) {
+  arrive(7, "Ada");
+  EXPECT_EQ(roster.people().unlisted_count(), 0U);
+  roster.settle(now);
+  const std::uint64_t kept = roster.version();
+  roster.setUnlistedCount(0);
+  EXPECT_FALSE(roster.settle(now).is_news);
+  roster.setUnlistedCount(930);
+  EXPECT_EQ(roster.people().unlisted_count(), 930U);
+  EXPECT_EQ(roster.people().people_size(), 1);
+  EXPECT_TRUE(roster.settle(now).is_news);
+  roster.setUnlistedCount(930);
+  EXPECT_FALSE(roster.settle(now).is_news) << "reported once";
+  EXPECT_EQ(roster.version(), kept);
+}
+
 TEST_F(RosterTest, APersonWithoutABoatIsForgottenAtOnce) {
   const Admission ada = arrive(7);
   roster.leave(7, now);

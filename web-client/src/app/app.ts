@@ -164,8 +164,8 @@ export class App {
         if (path === "wave.depth_m" && this.entered?.hasBed) this.ground.ask(this.entered.room);
       },
       roomState: ({ paused, speed }) => this.room.roomState(paused, speed),
-      people: ({ people }) => {
-        this.people.setPeople(people);
+      people: ({ people, unlistedCount }) => {
+        this.people.setPeople(people, unlistedCount);
         this.boats.setPeople(people);
         this.tags.setPeople(people);
         this.display.scene.setPeople(people);

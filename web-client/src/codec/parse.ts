@@ -40,7 +40,7 @@ const kReaders = {
   },
   roomEvent: ({ kind, tick, message }) => ({ event: roomEventName(kind), tick, message }),
   welcome: (welcome) => ({ welcome: readWelcome(welcome) }),
-  people: (people) => ({ people: readPeople(people) }),
+  people: (people) => ({ people: readPeople(people), unlistedCount: people.unlistedCount }),
   levelChanged: ({ level }) => ({ level: levelName(level) }),
   draining: ({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS }) => {
     const draining = readDraining({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS });

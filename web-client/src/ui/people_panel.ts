@@ -9,6 +9,7 @@ const kNameMaxLength = 32;
 export class PeoplePanel {
   private me: WelcomeInfo | undefined;
   private people: readonly PersonInfo[] = [];
+  private unlistedCount = 0;
   private readonly list = byId("people");
   private readonly summary = byId("people-summary");
   private readonly name = make("input", { id: "my-name", "data-testid": "my-name", maxlength: String(kNameMaxLength), autocomplete: "nickname" });
@@ -36,15 +37,18 @@ export class PeoplePanel {
     this.show();
   }
 
-  setPeople(people: readonly PersonInfo[]): void {
+  /** `unlistedCount`: people who only watch and are not in the list. */
+  setPeople(people: readonly PersonInfo[], unlistedCount: number): void {
     this.people = people;
+    this.unlistedCount = unlistedCount;
     const mine = people.find(({ personId }) => personId === this.me?.personId);
     this.name.placeholder = mine?.name ?? "";
     this.show();
   }
 
   private show(): void {
-    this.summary.textContent = this.people.length > 1 ? `People (${this.people.length})` : "People";
+    const count = this.people.length + this.unlistedCount;
+    this.summary.textContent = count > 1 ? `People (${count})` : "People";
     this.list.replaceChildren(
       ...this.people.map((person) => {
         const swatch = make("span", { class: "swatch", "aria-hidden": "true" });
@@ -53,6 +57,7 @@ export class PeoplePanel {
         const facts = [isMe ? "you" : "", person.role, person.boatIds.length ? `boat ${person.boatIds.join(", ")}` : "", person.away ? "away" : ""];
         return make("li", person.away ? { class: "away" } : {}, [swatch, make("b", {}, [person.name]), ` ${facts.filter(Boolean).join(", ")}`]);
       }),
+      ...(this.unlistedCount > 0 ? [make("li", { class: "unlisted" }, [`and ${this.unlistedCount} more watching`])] : []),
     );
   }
 }

@@ -61,6 +61,8 @@ class Roster {
   Turn settle(Clock::time_point now);
 
   [[nodiscard]] v1::People people() const;
+  /// People who only watch, through other processes, and are not in the list.
+  void setUnlistedCount(std::uint32_t count);
 
   /// Everybody with their keys, to be kept on disk.
   [[nodiscard]] v1::RoomPeople kept() const;
@@ -88,6 +90,7 @@ class Roster {
   mutable std::mutex mutex_;
   std::map<std::uint32_t, Person> people_;
   std::uint32_t last_person_id_ = 0;
+  std::uint32_t unlisted_count_ = 0;
   bool is_news_ = false;
   std::uint64_t version_ = 1;
 
