@@ -17,6 +17,8 @@ constexpr auto kChosenPatience = 3s;
 /// A state without an entry may be that of a room that is being closed.
 constexpr auto kStrayPatience = 2s;
 constexpr auto kRetryPause = 1s;
+/// NATS that takes longer to answer has perhaps not delivered the pulses of the others either.
+constexpr auto kPromptAnswer = 200ms;
 
 core::Bytes serialize(const v1::RoomRecord& record) {
   core::Bytes bytes(record.ByteSizeLong());
@@ -26,12 +28,8 @@ core::Bytes serialize(const v1::RoomRecord& record) {
 
 }  // namespace
 
-Directory::Directory(std::unique_ptr<bus::KeyValues> values, std::string self, LookAt servers, Opened opened)
-    : values_(std::move(values)),
-      self_(std::move(self)),
-      servers_(std::move(servers)),
-      opened_(std::move(opened)),
-      worker_(0) {}
+Directory::Directory(std::unique_ptr<bus::KeyValues> values, std::string self, Hooks hooks)
+    : values_(std::move(values)), self_(std::move(self)), hooks_(std::move(hooks)), worker_(0) {}
 
 Directory::~Directory() = default;
 
@@ -62,7 +60,7 @@ core::Result<std::vector<rooms::RoomSetup>> Directory::claim(std::vector<rooms::
   const auto values = values_->all();
   if (!values) return values.error();
   Entries entries = parse(*values);
-  const Servers servers = servers_();
+  const Servers servers = hooks_.servers();
   const auto now = Clock::now();
   std::vector<rooms::RoomSetup> out;
   for (rooms::RoomSetup& room : rooms) {
@@ -102,7 +100,7 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
       done(outcome);
     };
     if (!runs) return finish(core::Error{core::ErrorCode::kUnavailable, "the server shuts down"});
-    removed_.erase(name);
+    closed_.erase(name);
     v1::RoomRecord record;
     record.set_server(self_);
     record.set_scene(shared->scene.name());
@@ -115,7 +113,7 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
     }
     simulation_->openRoom(std::move(*shared), [this, name, finish](const core::Result<void>& opened) {
       if (opened)
-        opened_();
+        hooks_.opened();
       else
         remove(name);
       finish(opened);
@@ -126,11 +124,26 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
 void Directory::remove(const std::string& room) {
   worker_.push([this, room](bool runs) {
     if (!runs) return;
-    const auto removed = values_->remove(room);
-    if (removed) return;
-    removed_.insert(room);
-    fail("room " + room + " is still in the directory of rooms, its removal is tried again", removed.error());
+    closed_.insert(room);
+    if (const auto removed = removeClosed(); !removed)
+      fail("room " + room + " was closed and is still in the directory of rooms, its removal is tried again",
+           removed.error());
   });
+}
+
+core::Result<void> Directory::removeClosed() {
+  if (closed_.empty()) return {};
+  const auto values = values_->all();
+  if (!values) return values.error();
+  const Entries entries = parse(*values);
+  while (!closed_.empty()) {
+    const auto entry = entries.find(*closed_.begin());
+    if (entry != entries.end() && entry->second.record.server() == self_) {
+      if (auto removed = values_->remove(entry->first); !removed) return removed;
+    }
+    closed_.erase(closed_.begin());
+  }
+  return {};
 }
 
 void Directory::review() {
@@ -143,12 +156,14 @@ void Directory::review() {
 
 void Directory::reviewNow() {
   const auto copy = values_->copy();
-  if (!copy) return fail("the directory of rooms cannot be read", copy.error());
-  while (!removed_.empty()) {
-    if (const auto removed = values_->remove(*removed_.begin()); !removed)
-      return fail("a room that was closed is still in the directory of rooms", removed.error());
-    removed_.erase(removed_.begin());
+  if (!copy) {
+    was_cut_off_ = true;
+    return fail("the directory of rooms cannot be read", copy.error());
   }
+  if (std::exchange(was_cut_off_, false)) decides_from_ = Clock::now() + kListenTime;
+  if (Clock::now() < decides_from_) return;
+  if (const auto removed = removeClosed(); !removed)
+    return fail("a room that was closed is still in the directory of rooms", removed.error());
   Entries entries = parse(*copy);
   Decision decision = decide(entries);
   if (decision.settle.empty() && decision.take.empty()) {
@@ -156,10 +171,13 @@ void Directory::reviewNow() {
     return;
   }
   // A server that is cut off hears nobody and sees an old copy, so all others are dead to it: NATS has to answer before
-  // anything is decided.
+  // anything is decided, and at once.
+  const auto asked = Clock::now();
   const auto values = values_->all();
+  was_cut_off_ = !values || Clock::now() - asked > kPromptAnswer;
   if (!values) return fail("the directory of rooms cannot be read", values.error());
   said_.clear();
+  if (was_cut_off_) return;
   entries = parse(*values);
   decision = decide(entries);
   for (const std::string& room : decision.settle) {
@@ -180,7 +198,7 @@ Directory::Decision Directory::decide(Entries& entries) {
       }
     }
   }
-  const Servers servers = servers_();
+  const Servers servers = hooks_.servers();
   const auto now = Clock::now();
   Decision out;
   std::map<std::string, int> placed;
@@ -199,7 +217,9 @@ Directory::Decision Directory::decide(Entries& entries) {
       if (servers.serverOf(room) != owner) ++placed[owner];  // it has claimed the room and is opening it
       continue;
     }
-    if (entry.revision == 0 && servers.isAlive(servers.serverOf(room), now)) continue;  // which will enter it
+    // A living server that says that it runs the room will enter it. One that released it is about to end.
+    const bool is_released = owner.empty() && entry.revision != 0;
+    if (!is_released && servers.isAlive(servers.serverOf(room), now)) continue;
     const auto since = orphans_.contains(room) ? orphans_.at(room) : now;
     orphans[room] = since;
     if (entry.revision == 0 && now - since < kStrayPatience) continue;
@@ -220,15 +240,16 @@ Directory::Decision Directory::decide(Entries& entries) {
 bool Directory::settle(const std::string& room, const Entry& entry) {
   const auto running = simulation_->find(room);
   if (!running) return true;  // closed meanwhile
-  const Servers servers = servers_();
+  const Servers servers = hooks_.servers();
   const std::string& other = entry.record.server();
   const bool runs_elsewhere = servers.isAlive(other, Clock::now()) && servers.serverOf(room) == other;
   if (runs_elsewhere && !simulation_->rules().states) {
     // Without a shared state there is no lock: this server was cut off, and the other one took the room.
     spdlog::error("room {} runs on server {} as well, which took it while this one was cut off: closing it here", room,
                   other);
-    simulation_->closeRoom(
-        room, [](const rooms::Room&) {}, [](const core::Result<void>&) {});
+    simulation_->giveUpRoom(
+        room, [this, other](const rooms::Room& given) { hooks_.lost(given.name(), other); },
+        [](const core::Result<void>&) {});
     return true;
   }
   v1::RoomRecord record = entry.record;
@@ -273,7 +294,7 @@ bool Directory::take(const std::string& room, const Entry& entry) {
     }
     if (opened) {
       ++taken_count_;
-      opened_();
+      hooks_.opened();
       spdlog::info("room {} runs here now", room);
     } else {
       ++failure_count_;

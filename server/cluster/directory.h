@@ -24,11 +24,15 @@ namespace spindrift::cluster {
 /// Public calls are for any thread; the work is done on a thread of its own, because the directory may take its time.
 class Directory {
  public:
-  using LookAt = std::function<Servers()>;  ///< returns what is known of the servers now
-  using Opened = std::function<void()>;     ///< a room was opened here; called before anybody is told
+  struct Hooks {
+    std::function<Servers()> servers;  ///< returns what is known of the servers now
+    std::function<void()> opened;      ///< a room was opened here; called before anybody is told
+    /// A room ends here because another server runs it: its sessions have to connect again.
+    std::function<void(const std::string& room, const std::string& server)> lost;
+  };
 
-  /// `values` and what the functions need outlive it. `self`: the name of this server.
-  Directory(std::unique_ptr<bus::KeyValues> values, std::string self, LookAt servers, Opened opened);
+  /// What the hooks need outlives it. `self`: the name of this server.
+  Directory(std::unique_ptr<bus::KeyValues> values, std::string self, Hooks hooks);
   ~Directory();
   Directory(const Directory&) = delete;
   Directory& operator=(const Directory&) = delete;
@@ -38,7 +42,7 @@ class Directory {
   void serve(rooms::SimulationThread& simulation) { simulation_ = &simulation; }
   /// Enters the room and opens it here; removes the entry if that fails.
   void open(rooms::RoomSetup setup, rooms::SimulationThread::Done done);
-  /// The room was closed for good.
+  /// The room was closed for good here. Its entry stays if it is another server's.
   void remove(const std::string& room);
   /// Looks for rooms that nobody runs and takes those that fall to this server. One review at a time; further calls
   /// meanwhile do nothing.
@@ -60,6 +64,8 @@ class Directory {
   static Entries parse(const bus::KeyValueMap& values);
   core::Result<bool> write(const std::string& room, const v1::RoomRecord& record, std::uint64_t revision);
   void reviewNow();
+  /// Removes the entries of closed rooms.
+  core::Result<void> removeClosed();
   /// What a review has to do, by the rooms' names.
   struct Decision {
     std::vector<std::string> settle;  ///< they run here, and the directory says otherwise
@@ -74,8 +80,7 @@ class Directory {
 
   const std::unique_ptr<bus::KeyValues> values_;
   const std::string self_;
-  const LookAt servers_;
-  const Opened opened_;
+  const Hooks hooks_;
   rooms::SimulationThread* simulation_ = nullptr;
   std::atomic<bool> leaving_{false};
   std::atomic<bool> reviewing_{false};
@@ -84,8 +89,10 @@ class Directory {
   std::mutex mutex_;
   std::set<std::string> opening_;                         ///< guarded by mutex_
   std::map<std::string, Clock::time_point> orphans_;      ///< since when; on the worker
-  std::set<std::string> removed_;                         ///< closed for good, but still entered; on the worker
+  std::set<std::string> closed_;                          ///< for good, but perhaps still entered; on the worker
   std::map<std::string, Clock::time_point> retry_after_;  ///< rooms that could not be opened here; under mutex_
+  bool was_cut_off_ = false;                              ///< on the worker, like the next one
+  Clock::time_point decides_from_{};                      ///< not before it has heard the others
   std::string said_;                                      ///< the last failure, not to repeat it; on the worker
   rooms::Worker worker_;                                  ///< last: ends first
 };

@@ -269,6 +269,16 @@ void Feed::closed(const rooms::Room& room) {
   rooms_.erase(found);
 }
 
+void Feed::giveUp(const std::string& name) {
+  FedRoom ended;  // destroyed without the lock, which the handler of its subscription takes
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(name);
+  if (found == rooms_.end()) return;
+  for (const auto& [node, link] : found->second.links) by_prefix_.erase(link.prefix);
+  ended = std::move(found->second);
+  rooms_.erase(found);
+}
+
 bool Feed::sendOutcome(core::SessionId session, v1::FromRoom message) {
   const auto prefix = static_cast<std::uint32_t>(session >> kPrefixShift);
   if (prefix == 0) return false;

@@ -59,6 +59,8 @@ class Feed final : public service::RemoteAudience {
   /// twenty times per second.
   void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
               Clock::time_point now);
+  /// The room goes on at another server, to which the nodes attach: they are not told that it was closed.
+  void giveUp(const std::string& room);
   [[nodiscard]] FeedStats stats() const;
 
   // RemoteAudience

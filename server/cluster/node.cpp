@@ -30,8 +30,6 @@ using core::ErrorCode;
 constexpr const char* kDefaultRoom = "main";
 constexpr auto kRound = 50ms;
 constexpr auto kDirectoryInterval = 250ms;
-/// claim() hears the pulses of the others meanwhile.
-constexpr auto kListenTime = 700ms;
 constexpr std::size_t kInboxWaitingMaxBytes = 64u << 20;
 constexpr std::size_t kPulsesWaitingMaxBytes = 4u << 20;
 constexpr std::string_view kApi = "/api/v1/";
@@ -131,7 +129,15 @@ core::Result<void> NodeImpl::start() {
     auto values = bus::KeyValues::open(*bus_, subjects_.directory());
     if (!values) return values.error();
     directory_ = std::make_unique<Directory>(
-        *std::move(values), options_.name, [this] { return servers(); }, [this] { sendPulse(Clock::now()); });
+        *std::move(values), options_.name,
+        Directory::Hooks{.servers = [this] { return servers(); },
+                         .opened = [this] { sendPulse(Clock::now()); },
+                         .lost =
+                             [this](const std::string& room, const std::string& server) {
+                               feed_->giveUp(room);
+                               sessions_->dismiss(room, net::CloseCode::kGoingAway,
+                                                  "the room goes on at server " + server + ": connect again");
+                             }});
     feed_ = std::make_unique<Feed>(
         *bus_, subjects_,
         Feed::Events{.displaced = [this](core::SessionId session) { sessions_->displace(session); },

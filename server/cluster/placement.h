@@ -16,6 +16,8 @@ using Clock = std::chrono::steady_clock;
 
 /// A server whose last pulse is older is dead.
 inline constexpr std::chrono::milliseconds kServerPatience{1'000};
+/// Whoever is alive is heard within this time.
+inline constexpr std::chrono::milliseconds kListenTime{700};
 
 /// The servers of the cluster, from their pulses.
 class Servers {

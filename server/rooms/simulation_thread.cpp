@@ -187,6 +187,16 @@ void SimulationThread::closeRoom(std::string name, std::function<void(const Room
       done);
 }
 
+void SimulationThread::giveUpRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
+  carryOut(
+      [this, name = std::move(name), before = std::move(before), done](bool runs) {
+        if (!runs) return done(Error{ErrorCode::kUnavailable, "the server shuts down"});
+        if (const auto room = find(name)) end(room, before);
+        done({});
+      },
+      done);
+}
+
 void SimulationThread::carryOut(Change change, const Done& done) {
   {
     const std::lock_guard lock(mutex_);
@@ -261,6 +271,11 @@ core::Result<void> SimulationThread::close(const std::string& name, const std::f
   if (room == find("")) {
     return Error{ErrorCode::kInvalidInput, "room '" + name + "' is the default room: it stays as long as the server"};
   }
+  end(room, before);
+  return rules_.states ? rules_.states->remove(name) : core::Result<void>{};
+}
+
+void SimulationThread::end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before) {
   {
     const std::lock_guard lock(rooms_mutex_);
     std::erase(rooms_, room);
@@ -270,7 +285,6 @@ core::Result<void> SimulationThread::close(const std::string& name, const std::f
   summarise(*room);
   outlets_.closed(*room);
   room->releaseDevice();
-  return rules_.states ? rules_.states->remove(name) : core::Result<void>{};
 }
 
 void SimulationThread::summarise(const Room& room) {

@@ -96,7 +96,7 @@ void Sessions::roomChanged(const Venue& venue) {
   for (const auto& [session, why] : outdated) refuse(session, net::CloseCode::kPolicy, why);
 }
 
-void Sessions::dismiss(const std::string& room) {
+void Sessions::dismiss(const std::string& room, net::CloseCode code, const std::string& why) {
   std::vector<net::SessionId> members;
   {
     const std::lock_guard lock(mutex_);
@@ -104,7 +104,7 @@ void Sessions::dismiss(const std::string& room) {
       if (state.venue->name() == room) members.push_back(session);
     }
   }
-  for (const net::SessionId session : members) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
+  for (const net::SessionId session : members) refuse(session, code, why);
 }
 
 void Sessions::drain(const v1::Draining& draining) {

@@ -324,14 +324,13 @@ TEST_F(ClusterTest, WithoutNatsRoomsGoOnAndWatchersWait) {
   ScriptedClient direct(s1.port);
   direct.hello();
   direct.subscribe(v1::LAYER_SURFACE);
-  nats_->signal(SIGKILL);
-  nats_->wait();
+  nats_->kill();
   ASSERT_TRUE(eventually([&] { return metric(e1.port, "nats_connected") == 0; }));
   EXPECT_EQ(httpRequest(e1.port, "GET", "/readyz").status, 503u);
   EXPECT_THAT(e1.process->waitForLog("the connection to NATS"), HasSubstr("broke"));
   EXPECT_TRUE(direct.runFor(60)) << "clients of the server itself notice nothing";
   ASSERT_TRUE(eventually([&] { return behind.ask(splash(0.05, 0.5)).reject().reason() == v1::REJECT_REASON_BUSY; }));
-  startNats();
+  nats_->start();
   EXPECT_TRUE(behind.waitFor(v1::ServerMessage::kGreeting)) << "the room was reached again: " << e1.process->log();
   EXPECT_TRUE(behind.nextFrame(v1::LAYER_SURFACE));
   EXPECT_TRUE(behind.apply(splash(0.05, 0.5)));
@@ -354,7 +353,7 @@ TEST_F(ClusterTest, AServerThatStartsAgainTakesItsRoomsBack) {
 }
 
 TEST_F(ClusterTest, AnEdgePrintsAndReadsItsConfiguration) {
-  ChildProcess printing(SPINDRIFT_PROGRAM, {"edge", "--nats", natsUrl(), "--node", "e9", "--print-config"});
+  ChildProcess printing(SPINDRIFT_PROGRAM, {"edge", "--nats", nats_->url(), "--node", "e9", "--print-config"});
   ASSERT_EQ(printing.wait(), 0) << printing.err();
   EXPECT_THAT(printing.out(), testing::AllOf(HasSubstr("node: \"e9\""), Not(HasSubstr("scene"))));
   folder_.write("edge.textproto", printing.out());
@@ -377,7 +376,7 @@ TEST_F(ClusterTest, MistakesAreNamed) {
     return log;
   };
   EXPECT_THAT(says("edge"), HasSubstr("--nats nats://HOST:4222"));
-  EXPECT_THAT(says("edge --node 'a b' --nats " + natsUrl()), HasSubstr("--node 'a b'"));
+  EXPECT_THAT(says("edge --node 'a b' --nats " + nats_->url()), HasSubstr("--node 'a b'"));
   const std::string refused = says("edge --nats nats://user:secret@127.0.0.1:1");
   EXPECT_THAT(refused, HasSubstr("no connection to NATS at nats://127.0.0.1:1"));
   EXPECT_THAT(refused, Not(HasSubstr("secret")));

@@ -21,18 +21,12 @@ class BusProbe:
         self.control = {}  # sizes by kind
         self.loads = {}  # by server: shares of the busy simulation thread
         self.seconds = 0.0
-        self.directory_requests = []  # (time, subject)
         self.subscriptions = [client.subscribe(f"{cluster}.>")]
-
-    def listen_to_directory(self):
-        self.subscriptions.append(self.client.subscribe("$JS.API.>"))
 
     def listen(self, seconds: float):
         begin = time.monotonic()
-        for at, subject, payload in self.client.listen(seconds):
-            if subject.startswith("$JS.API"):
-                self.directory_requests.append((at, subject))
-            elif len(payload) >= PART_HEAD.size:
+        for _, subject, payload in self.client.listen(seconds):
+            if len(payload) >= PART_HEAD.size:
                 self.take(subject.split(".")[1:], payload)
         self.seconds += time.monotonic() - begin
 

@@ -24,6 +24,7 @@ def read_arguments():
     parser.add_argument("--scene", default="harbor")
     parser.add_argument("--parameters", type=pathlib.Path, default=parameter_file.DEFAULT_FILE)
     parser.add_argument("--write", type=pathlib.Path, help="measure, and write the parameters to this file")
+    parser.add_argument("--parts", default="costs,directory,builds", help="of what --write measures; the other values stay")
     parser.add_argument("--check", action="store_true", help="compare predictions with measurements")
     parser.add_argument("--seconds", type=float, default=4.0, help="measured time of each case")
     parser.add_argument("--cases", default="1x50:coarse,1x100:coarse,1x200:coarse,2x50:coarse,4x50:coarse,1x30:medium,1x20:full",
@@ -40,12 +41,18 @@ def measure(arguments, values: parameter_file.Parameters):
         edges, _, clients = sizes.partition("x")
         cases.append((int(edges), int(clients), level))
     program = str(arguments.program.resolve())
-    with Cluster(program, arguments.scene) as cluster:
-        found = measured_costs.measure(cluster, cases, arguments.seconds)
-    with Cluster(program, arguments.scene) as cluster:
-        found |= measure_directory(cluster, arguments.seconds)
-    with Cluster(program, arguments.scene) as cluster:
-        found |= measure_builds(cluster, arguments.builds)
+    parts = {
+        "costs": lambda cluster: measured_costs.measure(cluster, cases, arguments.seconds),
+        "directory": measure_directory,
+        "builds": lambda cluster: measure_builds(cluster, arguments.builds),
+    }
+    wanted = arguments.parts.split(",")
+    if unknown := set(wanted) - parts.keys():
+        raise RuntimeError(f"--parts {','.join(sorted(unknown))}: there are {', '.join(parts)}")
+    found = {}
+    for part in wanted:
+        with Cluster(program, arguments.scene) as cluster:
+            found |= parts[part](cluster)
     source = f"capacity_measure.py --scene {arguments.scene} --seconds {arguments.seconds:g}, {os.cpu_count()} CPUs, {cpu_name()}"
     for name, value in found.items():
         values.set(name, value, source)

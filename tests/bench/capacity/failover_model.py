@@ -1,9 +1,10 @@
 """Discrete-event simulation of a cluster of servers that run rooms, one of which dies.
 
-Each server tells its load in pulses, reads the directory of rooms at an interval, takes the rooms that the common rule
-of placement gives to it, and builds them one after the other. Nodes with watchers attach again. As in
-server/cluster/directory.cpp and placement.cpp, a server decides by the pulses and the entries that it knows, so two
-servers can disagree for a moment; the write of an entry settles it.
+Each server tells its load in pulses, looks at its copy of the directory of rooms at an interval, and asks NATS once
+before it takes the rooms that the common rule of placement gives to it; it builds them one after the other. Nodes with
+watchers attach again. As in server/cluster/directory.cpp and placement.cpp, a server decides by the pulses and the
+entries that it knows, so two servers can disagree for a moment; the write of an entry settles it. Copies of the
+directory follow at once.
 """
 import dataclasses
 import random
@@ -49,9 +50,9 @@ class FailoverModel:
         self.queue = EventQueue()
         self.servers = [Server(f"s{k:03}") for k in range(scenario.servers)]
         self.owner = {}
-        self.nats = Worker()  # answers the reads of the directory
+        self.nats = Worker()  # answers the checks of the directory
         self.claimed_s, self.opened_s, self.seen_s = {}, {}, {}
-        self.key_reads = self.pulses_in = self.pulses_out = self.attach_messages = self.lost_writes = 0
+        self.checks = self.writes = self.pulses_in = self.pulses_out = self.attach_messages = self.lost_writes = 0
         self.died_s = None
         self.place()
 
@@ -103,20 +104,31 @@ class FailoverModel:
         self.pulses_out += len(self.servers) - 1
 
     def review(self, server: Server):
-        """Directory::reviewNow(): reads all entries, then decides."""
+        """Directory::reviewNow(): decides by its copy; if there is something to do, asks NATS and decides anew."""
         now_s = self.queue.now_s
-        if not server.alive or now_s < server.review_until_s:
+        if not server.alive or now_s < server.review_until_s or not self.decide(server):
             return
-        count = len(self.owner)
-        self.key_reads += count
-        queued_s = self.nats.do(now_s, count * self.p["nats_cpu_per_directory_key_s"]) - now_s
-        read_s = max(queued_s, self.p["directory_read_s"] + count * self.p["directory_read_per_key_s"])
-        server.review_until_s = now_s + read_s
-        self.queue.at(now_s + read_s, lambda: self.decide(server))
+        self.checks += 1
+        queued_s = self.nats.do(now_s, self.p["nats_cpu_per_directory_check_s"]) - now_s
+        server.review_until_s = now_s + max(queued_s, self.p["directory_check_s"])
+        self.queue.at(server.review_until_s, lambda: self.act(server))
 
-    def decide(self, server: Server):
+    def act(self, server: Server):
         if not server.alive:
             return
+        now_s = self.queue.now_s
+        taken = self.decide(server)
+        for k, one in enumerate(taken):
+            self.queue.at(now_s + (k + 1) * self.p["directory_write_s"], lambda one=one: self.take(server, *one))
+        server.review_until_s = now_s + len(taken) * self.p["directory_write_s"]
+
+    def check(self, server: Server):
+        """KeyValues::copy() compares its newest revision with that of the bucket."""
+        if server.alive:
+            self.checks += 1
+
+    def decide(self, server: Server) -> list:
+        """Directory::decide(): the rooms to take, each with the owner that its entry names."""
         now_s = self.queue.now_s
         placed, orphans, taken = {}, {}, []
         for room, owner in self.owner.items():
@@ -134,15 +146,14 @@ class FailoverModel:
             if chosen is server or now_s - since_s >= self.p["chosen_patience_s"]:
                 taken.append((room, owner))
         server.orphans = orphans
-        for k, (room, owner) in enumerate(taken):
-            self.queue.at(now_s + (k + 1) * self.p["directory_write_s"], lambda one=(room, owner): self.take(server, *one))
-        server.review_until_s = now_s + len(taken) * self.p["directory_write_s"]
+        return taken
 
     def take(self, server: Server, room: str, read_owner: Server):
         if self.owner[room] is not read_owner:
             self.lost_writes += 1  # another server was faster
             return
         now_s = self.queue.now_s
+        self.writes += 1
         self.owner[room] = server
         server.opening.add(room)
         server.taken_count += 1
@@ -188,9 +199,11 @@ class FailoverModel:
             self.queue.every(p["server_pulse_interval_s"], phase_s, lambda server=server: self.pulse(server))
             phase_s = self.random.random() * p["directory_interval_s"]
             self.queue.every(p["directory_interval_s"], phase_s, lambda server=server: self.review(server))
-        self.died_s = 2.0 + self.random.random()
+            phase_s = self.random.random() * p["directory_check_interval_s"]
+            self.queue.every(p["directory_check_interval_s"], phase_s, lambda server=server: self.check(server))
+        self.died_s = p["directory_check_interval_s"] + self.random.random()
         self.queue.run_until(self.died_s)
-        steady = {"keys": self.key_reads, "pulses_in": self.pulses_in, "pulses_out": self.pulses_out}
+        steady = {"pulses_in": self.pulses_in, "pulses_out": self.pulses_out}
         dead = self.random.choice([one for one in self.servers if one.rooms])
         lost = sorted(dead.rooms)
         dead.alive = False
@@ -208,7 +221,7 @@ class FailoverModel:
             "most_rooms": max(len(one.rooms) for one in alive),
             "lost_writes": self.lost_writes,
             "attach_messages": self.attach_messages,
-            "key_reads_per_s": steady["keys"] / self.died_s,
+            "directory_writes": self.writes,
             "pulses_in_per_s": steady["pulses_in"] / self.died_s,
             "pulses_out_per_s": steady["pulses_out"] / self.died_s,
         }
@@ -227,7 +240,8 @@ def simulate(parameters, scenario: FailoverScenario) -> dict:
     share = p["room_thread_share"] if scenario.room_thread_share is None else scenario.room_thread_share
     mean_rooms = scenario.rooms / scenario.servers
     most_rooms = max(run["most_rooms"] for run in runs)
-    keys_per_s = runs[0]["key_reads_per_s"]
+    checks_per_s = scenario.servers / p["directory_check_interval_s"]
+    writes = sum(run["directory_writes"] for run in runs) / scenario.runs
     pulse_bytes = p["server_pulse_bytes"] + mean_rooms * 8
     return {
         "rooms": scenario.rooms,
@@ -248,9 +262,12 @@ def simulate(parameters, scenario: FailoverScenario) -> dict:
         "failover_max_s": failovers.quantile(1.0),
         "lost_writes": sum(run["lost_writes"] for run in runs) / scenario.runs,
         "attach_messages": sum(run["attach_messages"] for run in runs) / scenario.runs,
-        "directory_reads_per_s": keys_per_s / scenario.rooms,
-        "directory_key_reads_per_s": keys_per_s,
-        "directory_nats_cpu_cores": keys_per_s * p["nats_cpu_per_directory_key_s"],
+        "directory_checks_per_s": checks_per_s,
+        "directory_nats_cpu_cores": checks_per_s * p["nats_cpu_per_directory_check_s"],
+        "directory_changes_after_death": writes,
+        "directory_changes_told_after_death": writes * scenario.servers,
+        "directory_nats_cpu_after_death_s": writes
+        * (p["nats_cpu_per_directory_write_s"] + scenario.servers * p["nats_cpu_per_directory_change_told_s"]),
         "pulse_out_mbit_per_s": 8e-6 * runs[0]["pulses_out_per_s"] * pulse_bytes,
         "link_pulse_messages_per_s": 2 * scenario.rooms * scenario.edges_per_room / p["link_pulse_interval_s"],
     }

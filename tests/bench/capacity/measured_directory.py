@@ -1,97 +1,86 @@
-"""Cost of the directory of rooms for many rooms, and the time of building a room that was taken over."""
+"""Cost of the directory of rooms, and the time of building a room that was taken over."""
+import json
 import signal
 import statistics
 import time
 
-from bus_probe import BusProbe
 from cluster_processes import Cluster
-from nats_client import PART_HEAD, NatsClient, string_field
+from nats_client import NatsClient, string_field
 
 BUCKET = "spindrift_rooms"
-ROOMS = 200
-# Requests of one review follow each other within this time.
-PAUSE_S = 0.06
+CHECKS = 2000
+CHANGES = 1000
+# Watches beside that of the server, for the CPU per change told.
+WATCHES = 20
+# The accounting of CPU time lags behind.
+REST_S = 0.5
 
 
-def reviews(requests: list) -> list:
-    """Groups requests to the directory into reviews; returns (begin, duration, number of requests) of each whole one."""
-    groups = []
-    for at, _ in requests:
-        if not groups or at - groups[-1][-1] > PAUSE_S:
-            groups.append([])
-        groups[-1].append(at)
-    return [(group[0], group[-1] - group[0], len(group)) for group in groups[1:-1]]
+class Directory:
+    """Asks and writes as a server does, one request after the other."""
 
+    def __init__(self, cluster: Cluster):
+        self.nats, self.client = cluster.nats, NatsClient(cluster.url)
+        self.inbox = "_INBOX.capacity"
+        self.client.subscribe(self.inbox)
 
-class SilentServer:
-    """The pulses and the directory entries of a server that owns many rooms, so that others read a full directory."""
+    def ask(self, subject: str, payload: bytes = b"") -> tuple[float, bytes]:
+        """Returns the time that the answer took, and the answer."""
+        begin = time.monotonic()
+        self.client.publish(subject, payload, self.inbox)
+        for at, received, answer in self.client.listen(5):
+            if received == self.inbox:
+                return at - begin, answer
+        raise RuntimeError(f"the NATS server did not answer {subject} within 5 s")
 
-    def __init__(self, client: NatsClient):
-        self.client = client
+    def measure(self, count: int, request) -> tuple[float, float]:
+        """Returns CPU of the NATS server per request, and the median time of one."""
+        time.sleep(REST_S)
+        idle_cpu, begin = self.nats.cpu_s(), time.monotonic()
+        time.sleep(4 * REST_S)
+        idle = (self.nats.cpu_s() - idle_cpu) / (time.monotonic() - begin)
+        before, begin = self.nats.cpu_s(), time.monotonic()
+        times = [self.ask(*request(k))[0] for k in range(count)]
+        time.sleep(REST_S)
+        cpu = self.nats.cpu_s() - before - idle * (time.monotonic() - begin)
+        return max(0.0, cpu) / count, statistics.median(times)
 
-    def enter_rooms(self, count: int) -> list:
-        """Writes the entries one after the other; returns the time that each took."""
-        inbox = "_INBOX.capacity"
-        subscription = self.client.subscribe(inbox)
-        times = []
+    def watch(self, count: int):
+        """Watches that nobody reads: what they cost the reader is not measured here."""
         for k in range(count):
-            begin = time.monotonic()
-            self.client.publish(f"$KV.{BUCKET}.r{k:04}", string_field(1, "silent"), inbox)
-            for at, _, _ in self.client.listen(5):
-                times.append(at - begin)
-                break
-        self.client.unsubscribe(subscription)
-        if len(times) != count:
-            raise RuntimeError(f"the NATS server acknowledged only {len(times)} of {count} entries of the directory")
-        return times
-
-    def stay_alive(self, seconds: float, probe: BusProbe | None = None):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            pulse = PART_HEAD.pack(time.monotonic_ns(), 0, 1) + string_field(1, "silent")
-            self.client.publish("spindrift.servers", pulse)
-            if probe:
-                probe.listen(0.2)
-            else:
-                time.sleep(0.2)
+            config = {"deliver_subject": f"_INBOX.watch{k}", "deliver_policy": "last_per_subject", "ack_policy": "none",
+                      "max_deliver": 1, "filter_subject": f"$KV.{BUCKET}.>", "mem_storage": True, "num_replicas": 1}  # fmt: skip
+            self.client.subscribe(config["deliver_subject"])
+            payload = json.dumps({"stream_name": f"KV_{BUCKET}", "config": config}).encode()
+            answer = self.ask(f"$JS.API.CONSUMER.CREATE.KV_{BUCKET}", payload)[1]
+            if b'"error"' in answer:
+                raise RuntimeError(f"the NATS server made no watch: {answer.decode()}")
 
 
-def measure_directory(cluster: Cluster, seconds: float) -> dict:
+def measure_directory(cluster: Cluster) -> dict:
+    """One server that watches is there; keys are written that are no names of rooms, so it leaves them alone."""
     cluster.add_server("s1")
-    client = NatsClient(cluster.url)
-    listener = NatsClient(cluster.url)
-    silent = SilentServer(client)
-    silent.stay_alive(2)
+    directory = Directory(cluster)
 
-    def watch(rooms: int):
-        before, begin = cluster.nats.cpu_s(), time.monotonic()
-        silent.stay_alive(seconds)
-        cpu = (cluster.nats.cpu_s() - before) / (time.monotonic() - begin)
-        probe = BusProbe(listener, "spindrift", lambda stream, level: "")
-        probe.listen_to_directory()
-        silent.stay_alive(seconds, probe)
-        probe.end()
-        found = reviews(probe.directory_requests)
-        if len(found) < 2:
-            raise RuntimeError(f"{len(found)} reviews of the directory were seen on $JS.API.> in {seconds} s: give more --seconds")
-        duration = statistics.median(one for _, one, _ in found)
-        per_s = (len(found) - 1) / (found[-1][0] - found[0][0])
-        print(f"  directory of {rooms} rooms: {per_s:.2f} reviews/s of {1e3 * duration:.2f} ms with "
-              f"{statistics.median(count for _, _, count in found):.0f} requests, NATS {cpu:.4f} cores", flush=True)  # fmt: skip
-        return cpu, duration, per_s
+    def change(k: int) -> tuple[str, bytes]:
+        return f"$KV.{BUCKET}.not.a.room.{k % 200}", string_field(1, "nobody")
 
-    cpu_one, duration_one, _ = watch(1)
-    writes = silent.enter_rooms(ROOMS)
-    cpu_all, duration_all, reviews_per_s = watch(ROOMS + 1)
-    client.close()
-    listener.close()
-    per_key_s = max(0.0, duration_all - duration_one) / ROOMS
-    return {
-        "nats_cpu_per_directory_key_s": float(f"{max(0.0, cpu_all - cpu_one) / (reviews_per_s * ROOMS):.4g}"),
-        "directory_read_per_key_s": float(f"{per_key_s:.4g}"),
-        "directory_read_s": float(f"{max(0.0, duration_one - per_key_s):.4g}"),
-        "directory_write_s": float(f"{statistics.median(writes):.4g}"),
+    check_cpu_s, check_s = directory.measure(CHECKS, lambda k: (f"$JS.API.STREAM.INFO.KV_{BUCKET}",))
+    few_cpu_s, write_s = directory.measure(CHANGES, change)
+    directory.watch(WATCHES)
+    many_cpu_s, _ = directory.measure(CHANGES, change)
+    directory.client.close()
+    told_cpu_s = max(0.0, many_cpu_s - few_cpu_s) / WATCHES
+    print(f"  directory: check {1e6 * check_cpu_s:.0f} us of NATS and {1e3 * check_s:.3f} ms, write {1e6 * few_cpu_s:.0f} us with 1 watch, "
+          f"{1e6 * many_cpu_s:.0f} us with {WATCHES + 1}", flush=True)  # fmt: skip
+    found = {
+        "nats_cpu_per_directory_check_s": check_cpu_s,
+        "nats_cpu_per_directory_write_s": max(0.0, few_cpu_s - told_cpu_s),
+        "nats_cpu_per_directory_change_told_s": told_cpu_s,
+        "directory_check_s": check_s,
+        "directory_write_s": write_s,
     }
+    return {name: float(f"{value:.4g}") for name, value in found.items()}
 
 
 def measure_builds(cluster: Cluster, deaths: int) -> dict:

@@ -51,6 +51,8 @@ class SimulationThread {
   /// Closes a room; `before` is called first, on this thread, while the room still exists. Error: kInvalidInput for an
   /// unknown name or the default room.
   void closeRoom(std::string name, std::function<void(const Room&)> before, const Done& done);
+  /// Closes a room that another process runs, also the default room. Its files, if there are any, stay.
+  void giveUpRoom(std::string name, std::function<void(const Room&)> before, const Done& done);
 
   /// Settings shared by all rooms.
   [[nodiscard]] const RoomRules& rules() const { return rules_; }
@@ -93,6 +95,7 @@ class SimulationThread {
   core::Result<void> buildRoom(const std::string& name, std::optional<RoomSetup> setup);
   core::Result<RoomPlace> placeOf(const std::string& name) const;
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
+  void end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before);
   void summarise(const Room& room);
 
   RoomOutlets& outlets_;
