@@ -20,8 +20,8 @@
 
 #include <spindrift/net/client.h>
 
+#include "read_ahead.h"
 #include "tls_context.h"
-#include "transport.h"
 
 namespace spindrift::net {
 namespace {
@@ -186,7 +186,7 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
   }
 
   const asio::any_io_executor strand_;
-  websocket::stream<Transport> ws_;
+  websocket::stream<ReadAhead> ws_;
   const TlsResult tls_;
   asio::steady_timer wake_;
   const ClientUrl url_;

@@ -69,7 +69,12 @@ Outbox::Outcome Outbox::offerFrame(StreamIndex stream, const FrameBytes& frame, 
   slot.follows = true;
   slot.is_newcomer = false;
   slot.lost_turn.reset();
-  return {.wake = takeWake(), .dropped = is_pending};
+  return {.dropped = is_pending};
+}
+
+bool Outbox::wakeForFrames() {
+  const std::lock_guard lock(mutex_);
+  return nextStream() && takeWake();
 }
 
 Outbox::Outcome Outbox::offerNewest(StreamIndex stream, const FrameBytes& frame) {

@@ -47,13 +47,17 @@ class Outbox {
 
   /// Puts the frame into its stream's slot if the session watches the stream at this level and its rate allows: the
   /// delta if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe an unsent older
-  /// frame is dropped, and the session waits. Ignored after a close was requested.
+  /// frame is dropped, and the session waits. Ignored after a close was requested. Wakes nobody: call wakeForFrames()
+  /// after the last frame of a moment.
   Outcome offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now);
 
   /// Puts the newest frame of a stream, a keyframe that other sessions have had already, into the slot of a session
   /// that has just begun to watch it: Watch::is_first, and no frame has come since. The next frame may follow at once,
   /// whatever the rate. Ignored after a close was requested.
   Outcome offerNewest(StreamIndex stream, const FrameBytes& frame);
+
+  /// Returns whether frames wait and the writer sleeps: wake it.
+  bool wakeForFrames();
 
   /// The frame that the session would take next of a stream that it watches.
   struct Demand {

@@ -34,9 +34,9 @@ void RoomHub::sendState(SessionId session, const StateTopic& topic, core::Shared
 
 void RoomHub::broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
-  for (const auto& [session, member] : members_) {
-    if (member.room == room) member.link->sendState(topic, message);
-  }
+  const auto found = rooms_.find(room);
+  if (found == rooms_.end()) return;
+  for (const Watcher& session : found->second.sessions) session.link->sendState(topic, message);
 }
 
 void RoomHub::publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
@@ -44,7 +44,19 @@ void RoomHub::publish(const std::string& room, StreamIndex stream, const FrameBy
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
   if (found == rooms_.end() || stream >= kMaxStreamCount) return;
-  for (const Watcher& watcher : found->second.watchers[stream]) watcher.link->offerFrame(stream, frame);
+  Group& group = found->second;
+  const bool gathers = later_ && group.sessions.size() >= kGatherSessionCount;
+  const auto wake = gathers ? SessionLink::Wake::kLater : SessionLink::Wake::kNow;
+  for (const Watcher& watcher : group.watchers[stream]) watcher.link->offerFrame(stream, frame, wake);
+  if (gathers && !std::exchange(group.will_wake, true)) later_([this, room] { wakeRoom(room); });
+}
+
+void RoomHub::wakeRoom(const std::string& room) {
+  const std::lock_guard lock(mutex_);
+  const auto found = rooms_.find(room);
+  if (found == rooms_.end()) return;
+  found->second.will_wake = false;
+  for (const Watcher& session : found->second.sessions) session.link->wakeForFrames();
 }
 
 void RoomHub::offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
@@ -112,13 +124,13 @@ void RoomHub::closeAt(SessionId session, std::chrono::steady_clock::time_point w
 std::size_t RoomHub::sessionCount(const std::string& room) const {
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
-  return found == rooms_.end() ? 0 : found->second.session_count;
+  return found == rooms_.end() ? 0 : found->second.sessions.size();
 }
 
 std::size_t RoomHub::sessionCount() const {
   const std::lock_guard lock(mutex_);
   std::size_t count = 0;
-  for (const auto& [name, room] : rooms_) count += room.session_count;
+  for (const auto& [name, room] : rooms_) count += room.sessions.size();
   return count;
 }
 
@@ -141,7 +153,7 @@ std::size_t RoomHub::roomCount() const {
 
 void RoomHub::enterRoom(SessionId session, Member& member, const std::string& room) {
   Group& entered = rooms_[room];
-  ++entered.session_count;
+  entered.sessions.push_back({session, member.link.get()});
   member.room = room;
   for (std::size_t stream = 0; stream < kMaxStreamCount; ++stream) {
     if (member.watches[stream]) entered.watchers[stream].push_back({session, member.link.get()});
@@ -151,11 +163,11 @@ void RoomHub::enterRoom(SessionId session, Member& member, const std::string& ro
 void RoomHub::leaveRoom(SessionId session, Member& member) {
   if (!member.room) return;
   const auto left = rooms_.find(*member.room);
-  for (std::vector<Watcher>& watchers : left->second.watchers) {
-    std::erase_if(watchers, [session](const Watcher& watcher) { return watcher.session == session; });
-  }
+  const auto isIt = [session](const Watcher& watcher) { return watcher.session == session; };
+  for (std::vector<Watcher>& watchers : left->second.watchers) std::erase_if(watchers, isIt);
+  std::erase_if(left->second.sessions, isIt);
   // Remove empty rooms, so that their number stays bounded by the sessions.
-  if (--left->second.session_count == 0) rooms_.erase(left);
+  if (left->second.sessions.empty()) rooms_.erase(left);
   member.room.reset();
   member.link->clearFrames();
 }

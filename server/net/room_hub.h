@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -22,7 +23,11 @@ class SessionLink {
   virtual ~SessionLink() = default;
   virtual void sendAnswer(core::SharedBytes message) = 0;
   virtual void sendState(const StateTopic& topic, core::SharedBytes message) = 0;
-  virtual void offerFrame(StreamIndex stream, const FrameBytes& frame) = 0;
+  /// kLater: the frame may wait for wakeForFrames().
+  enum class Wake { kNow, kLater };
+  virtual void offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) = 0;
+  /// Frames that wait are sent from now on.
+  virtual void wakeForFrames() = 0;
   virtual void offerNewest(StreamIndex stream, const FrameBytes& frame) = 0;
   virtual Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count,
                                 std::chrono::steady_clock::duration ahead) const = 0;
@@ -38,6 +43,14 @@ class SessionLink {
 /// its watches when it changes the room.
 class RoomHub final : public Hub {
  public:
+  /// In a room with this many sessions or more, sessions are woken once for all frames of the next moment, because most
+  /// of the cost of a frame is the write, and a write takes all frames along that wait.
+  static constexpr std::size_t kGatherSessionCount = 64;
+  /// Calls its argument once, about a millisecond later, on any thread and without the hub's lock.
+  using Later = std::function<void(std::function<void()>)>;
+  /// Without this call every frame wakes its sessions at once. Call it before the first session.
+  void gatherFrames(Later later) { later_ = std::move(later); }
+
   void add(SessionId session, std::shared_ptr<SessionLink> link);
   /// Removes the session; no call reaches its link afterwards.
   void remove(SessionId session);
@@ -73,13 +86,16 @@ class RoomHub final : public Hub {
     SessionLink* link = nullptr;  ///< owned by the session, which leaves the room before it is destroyed
   };
   struct Group {
-    std::size_t session_count = 0;
+    std::vector<Watcher> sessions;
+    bool will_wake = false;  ///< wakeRoom() comes
     std::array<std::vector<Watcher>, kMaxStreamCount> watchers;
   };
 
   void enterRoom(SessionId session, Member& member, const std::string& room);
   void leaveRoom(SessionId session, Member& member);
+  void wakeRoom(const std::string& room);
 
+  Later later_;
   mutable std::mutex mutex_;
   std::unordered_map<SessionId, Member> members_;
   std::map<std::string, Group> rooms_;

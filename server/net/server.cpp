@@ -31,6 +31,9 @@ using asio::ip::tcp;
 constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 /// Out of file descriptors or memory: retrying at once would only spin.
 constexpr std::chrono::milliseconds kAcceptPause{100};
+/// Frames of one moment of the water that come within this time are written together in rooms with many sessions; see
+/// RoomHub::kGatherSessionCount. The layers are encoded within this time.
+constexpr std::chrono::milliseconds kGatherTime{1};
 /// stop() waits this much longer than close_timeout.
 constexpr std::chrono::seconds kStopGrace{1};
 
@@ -40,7 +43,14 @@ class ServerImpl final : public Server {
              Application& application)
       : context_(options, std::move(proxies), std::move(credentials), application),
         accept_strand_(asio::make_strand(io_)),
-        acceptor_(accept_strand_) {}
+        acceptor_(accept_strand_) {
+    context_.hub.gatherFrames([this](std::function<void()> wake) {
+      const auto timer = std::make_shared<asio::steady_timer>(io_, kGatherTime);
+      timer->async_wait([timer, wake = std::move(wake)](const boost::system::error_code& error) {
+        if (!error) wake();
+      });
+    });
+  }
   ServerImpl(const ServerImpl&) = delete;
   ServerImpl& operator=(const ServerImpl&) = delete;
   // stop() throws only without memory, or for a thread that does not exist.

@@ -293,10 +293,14 @@ void Session::sendState(const StateTopic& topic, core::SharedBytes message) {
   if (outbox_.pushState(topic, std::move(message)).wake) wakeWriter();
 }
 
-void Session::offerFrame(StreamIndex stream, const FrameBytes& frame) {
+void Session::offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) {
   const Outbox::Outcome outcome = outbox_.offerFrame(stream, frame, Clock::now());
   if (outcome.dropped) ++context_.counters.dropped_frame_count;
-  if (outcome.wake) wakeWriter();
+  if (wake == Wake::kNow) wakeForFrames();
+}
+
+void Session::wakeForFrames() {
+  if (outbox_.wakeForFrames()) wakeWriter();
 }
 
 void Session::offerNewest(StreamIndex stream, const FrameBytes& frame) {

@@ -35,7 +35,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   void sendAnswer(core::SharedBytes message) override;
   void sendState(const StateTopic& topic, core::SharedBytes message) override;
-  void offerFrame(StreamIndex stream, const FrameBytes& frame) override;
+  void offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) override;
+  void wakeForFrames() override;
   void offerNewest(StreamIndex stream, const FrameBytes& frame) override;
   Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count, Clock::duration ahead) const override;
   void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override;

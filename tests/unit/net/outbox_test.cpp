@@ -392,6 +392,21 @@ TEST(Outbox, WakesASleepingWriterOnce) {
   EXPECT_FALSE(outbox.pushAnswer(shared("2")).wake);
 }
 
+TEST(Outbox, FramesWakeTheWriterWhenTheirMomentIsComplete) {
+  Outbox outbox(8);
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+  EXPECT_FALSE(outbox.wakeForFrames()) << "none waits";
+  EXPECT_FALSE(outbox.offerFrame(1, {shared("frame"), {}}, later()).wake);
+  EXPECT_TRUE(outbox.wakeForFrames());
+  EXPECT_FALSE(outbox.wakeForFrames()) << "it is awake";
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
+  outbox.offerFrame(1, {shared("frame"), {}}, later());
+  EXPECT_TRUE(outbox.pushAnswer(shared("answer")).wake) << "an answer does not wait for the frames";
+  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
+}
+
 TEST(Outbox, ClosesWhenTooManyAnswersWait) {
   Outbox outbox(2);
   EXPECT_FALSE(outbox.pushAnswer(shared("1")).overflow);

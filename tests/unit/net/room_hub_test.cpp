@@ -1,5 +1,8 @@
 #include "room_hub.h"
 
+#include <algorithm>
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "test_application.h"
@@ -13,6 +16,7 @@ using test::shared;
 struct RecordingLink final : SessionLink {
   int control_count = 0;
   int frame_count = 0;
+  int wake_count = 0;
   int newest_count = 0;
   int clear_count = 0;
   bool wants_keyframe = false;
@@ -24,7 +28,11 @@ struct RecordingLink final : SessionLink {
 
   void sendAnswer(core::SharedBytes) override { ++control_count; }
   void sendState(const StateTopic&, core::SharedBytes) override { ++control_count; }
-  void offerFrame(StreamIndex, const FrameBytes&) override { ++frame_count; }
+  void offerFrame(StreamIndex, const FrameBytes&, Wake wake) override {
+    ++frame_count;
+    if (wake == Wake::kNow) ++wake_count;
+  }
+  void wakeForFrames() override { ++wake_count; }
   void offerNewest(StreamIndex, const FrameBytes&) override { ++newest_count; }
   Outbox::Demand demand(StreamIndex, std::uint32_t reduced_count, Clock::duration) const override {
     return {.level = core::effectiveLevel(level, reduced_count),
@@ -101,6 +109,64 @@ TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
   hub.publish("pond", 3, {shared("frame"), {}});
   EXPECT_EQ(ada->frame_count, 1);
   EXPECT_EQ(bob->frame_count, 0);
+}
+
+/// A hub whose delayed calls are made by the test.
+struct GatheringHub {
+  RoomHub hub;
+  std::vector<std::function<void()>> later;
+  std::vector<std::shared_ptr<RecordingLink>> links;
+
+  GatheringHub() {
+    hub.gatherFrames([this](std::function<void()> wake) { later.push_back(std::move(wake)); });
+  }
+  void addToPool(std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      links.push_back(std::make_shared<RecordingLink>());
+      hub.add(links.size(), links.back());
+      hub.join(links.size(), "pool");
+      hub.watch(links.size(), 3, {.max_rate_hz = 30.0});
+      hub.watch(links.size(), 4, {.max_rate_hz = 30.0});
+    }
+  }
+  [[nodiscard]] bool allWere(int offered, int woken) const {
+    return std::ranges::all_of(
+        links, [&](const auto& link) { return link->frame_count == offered && link->wake_count == woken; });
+  }
+};
+
+TEST(RoomHubGathers, AFewSessionsAreWokenByEveryFrame) {
+  GatheringHub test;
+  test.addToPool(RoomHub::kGatherSessionCount - 1);
+  test.hub.publish("pool", 3, {shared("surface"), {}});
+  test.hub.publish("pool", 4, {shared("foam"), {}});
+  EXPECT_TRUE(test.allWere(2, 2));
+  EXPECT_TRUE(test.later.empty());
+}
+
+TEST(RoomHubGathers, ManySessionsAreWokenOnceForTheFramesOfAMoment) {
+  GatheringHub test;
+  test.addToPool(RoomHub::kGatherSessionCount);
+  test.hub.publish("pool", 3, {shared("surface"), {}});
+  test.hub.publish("pool", 4, {shared("foam"), {}});
+  EXPECT_TRUE(test.allWere(2, 0));
+  ASSERT_EQ(test.later.size(), 1U);
+  test.later[0]();
+  EXPECT_TRUE(test.allWere(2, 1));
+  test.hub.publish("pool", 3, {shared("next surface"), {}});
+  ASSERT_EQ(test.later.size(), 2U) << "the next moment is waited for anew";
+  test.later[1]();
+  EXPECT_TRUE(test.allWere(3, 2));
+}
+
+TEST(RoomHubGathers, ALateWakeUpFindsTheRoomGone) {
+  GatheringHub test;
+  test.addToPool(RoomHub::kGatherSessionCount);
+  test.hub.publish("pool", 3, {shared("surface"), {}});
+  for (SessionId session = 1; session <= RoomHub::kGatherSessionCount; ++session) test.hub.remove(session);
+  ASSERT_EQ(test.later.size(), 1U);
+  test.later[0]();
+  EXPECT_TRUE(test.allWere(1, 0));
 }
 
 TEST_F(RoomHubTest, CountsWatchers) {
