@@ -65,6 +65,29 @@ describe("the service", () => {
   });
 });
 
+describe("the edge", () => {
+  const edge = (key) => valuesOf("spindrift-edge.service", "Service", key);
+
+  it("has no rights that the server does not have, and no devices", () => {
+    for (const key of ["DynamicUser", "NoNewPrivileges", "CapabilityBoundingSet", "ProtectSystem", "ProtectHome", "RestrictAddressFamilies", "SystemCallFilter"]) {
+      assert.deepEqual(edge(key), service(key), key);
+    }
+    assert.deepEqual(edge("PrivateDevices"), ["yes"]);
+    assert.deepEqual(edge("MemoryDenyWriteExecute"), ["yes"]);
+  });
+
+  it("leaves the processors to simulations of the same machine", () => {
+    assert.ok(Number(edge("Nice")) > Number(service("Nice")[0] ?? 0));
+  });
+
+  it("starts the program with a configuration that it accepts", () => {
+    assert.deepEqual(edge("ExecStart"), ["/opt/spindrift/spindrift edge --config /etc/spindrift/edge.textproto --node edge-%l"]);
+    const result = spawnSync(process.env.SPINDRIFT_BINARY, ["edge", "--config", join(units, "edge.textproto"), "--node", "edge-a", "--print-config"], { encoding: "utf8" });
+    assert.equal(result.status, 0, result.stderr);
+    assert.ok(result.stdout.includes("max_sessions: 1000  # file"), result.stdout);
+  });
+});
+
 describe("the socket", () => {
   it("is one TCP port, which the server takes", () => {
     const sockets = directivesOf("spindrift.socket").filter(([section, key]) => section === "Socket" && key.startsWith("Listen"));
@@ -74,12 +97,14 @@ describe("the socket", () => {
   });
 });
 
-describe("both units", () => {
+describe("the units", () => {
+  const services = ["spindrift.service", "spindrift-edge.service"];
   const folder = () => {
     const path = mkdtempSync(join(tmpdir(), "spindrift-units-"));
     // The program is not installed on the machine that runs this test.
-    const text = readFileSync(join(units, "spindrift.service"), "utf8").replace("/opt/spindrift/spindrift", "/bin/true");
-    writeFileSync(join(path, "spindrift.service"), text);
+    for (const unit of services) {
+      writeFileSync(join(path, unit), readFileSync(join(units, unit), "utf8").replace("/opt/spindrift/spindrift", "/bin/true"));
+    }
     cpSync(join(units, "spindrift.socket"), join(path, "spindrift.socket"));
     return path;
   };
@@ -87,7 +112,7 @@ describe("both units", () => {
   it("are understood by systemd without a complaint", (context) => {
     if (spawnSync("systemd-analyze", ["--version"]).error) return context.skip("systemd-analyze is not installed");
     const path = folder();
-    const args = ["verify", join(path, "spindrift.service"), join(path, "spindrift.socket")];
+    const args = ["verify", ...services.map((unit) => join(path, unit)), join(path, "spindrift.socket")];
     const result = spawnSync("systemd-analyze", args, { encoding: "utf8", env: { ...process.env, SYSTEMD_LOG_COLOR: "0" } });
     rmSync(path, { recursive: true });
     // systemd names unknown directives in a line with the file and ends with 0 all the same.
@@ -96,8 +121,10 @@ describe("both units", () => {
   });
 
   it("expose little by systemd's own measure", (context) => {
-    const result = spawnSync("systemd-analyze", ["security", "--offline=yes", "--threshold=20", join(units, "spindrift.service")], { encoding: "utf8" });
-    if (result.error) return context.skip("systemd-analyze is not installed");
-    assert.equal(result.status, 0, `${result.stdout}${result.stderr}`);
+    for (const unit of services) {
+      const result = spawnSync("systemd-analyze", ["security", "--offline=yes", "--threshold=20", join(units, unit)], { encoding: "utf8" });
+      if (result.error) return context.skip("systemd-analyze is not installed");
+      assert.equal(result.status, 0, `${result.stdout}${result.stderr}`);
+    }
   });
 });
