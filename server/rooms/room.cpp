@@ -56,6 +56,15 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, Room
 core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
                                                  WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place,
                                                  v1::RoomAccess access) {
+  auto room = begin(std::move(name), std::move(water), rules, builder, outlets, std::move(place), std::move(access));
+  if (!room) return room;
+  if (const auto restored = (*room)->restoreUntil(TimePoint::max()); !restored) return restored.error();
+  return room;
+}
+
+core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
+                                                WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place,
+                                                v1::RoomAccess access) {
   auto room_water = std::make_unique<RoomWater>(std::move(water));
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty() && place.kept) {
@@ -78,14 +87,12 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
       std::shared_ptr<Room>(new Room(std::move(name), rules, builder, outlets, std::move(room_water), std::move(log)));
   room->access_ = std::move(access);
   if (!place.keeper) return room;
+  room->restoration_ = std::make_unique<Restoration>();
+  room->restoration_->keeper = std::move(place.keeper);
   if (place.kept) {
-    if (auto restored = room->restore(*place.kept); !restored) return restored.error();
-  }
-  room->keeper_ = std::move(place.keeper);
-  if (auto saved = room->saveAndWait(); !saved) {
-    // Not a fault of what was kept, whatever the reason.
-    return core::Error{core::ErrorCode::kUnavailable,
-                       "room " + room->name() + ": its state cannot be written: " + saved.error().message};
+    auto repetition = room->repetitionOf(*std::move(place.kept));
+    if (!repetition) return repetition.error();
+    room->restoration_->repetition = *std::move(repetition);
   }
   return room;
 }

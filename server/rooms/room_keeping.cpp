@@ -120,13 +120,30 @@ std::optional<v1::KeptState> Room::stateNow() {
 
 // After a restart
 
-core::Result<void> Room::restore(const KeptRoom& kept) {
+core::Result<bool> Room::restoreUntil(TimePoint deadline) {
+  if (!restoration_) return true;
+  water_->bind();
+  if (auto& repetition = restoration_->repetition) {
+    const auto done = repeatUntil(*repetition, deadline);
+    if (!done || !*done) return done;
+    restorePeople(repetition->kept);
+  }
+  keeper_ = std::move(restoration_->keeper);
+  restoration_.reset();
+  if (auto saved = saveAndWait(); !saved) {
+    // Not a fault of what was kept, whatever the reason.
+    return core::Error{core::ErrorCode::kUnavailable,
+                       "room " + name_ + ": its state cannot be written: " + saved.error().message};
+  }
+  return true;
+}
+
+void Room::restorePeople(const KeptRoom& kept) {
   const v1::KeptState& state = *kept.state;
   v1::RoomPeople people = state.people();
   for (const v1::StateRecord& record : kept.records) {
     if (record.has_people()) people = record.people();
   }
-  if (auto done = restoreWater(kept); !done) return done;
   roster_.restore(people, std::chrono::steady_clock::now());
   access_ = state.access();
   boatsChanged();
@@ -137,33 +154,40 @@ core::Result<void> Room::restore(const KeptRoom& kept) {
   spdlog::info("room {}: goes on at tick {} of scene {}, {} ticks and {} records after its snapshot of {:%F %T} UTC",
                name_, tick(), water_->scene().name(), tick() - state.tick(), kept.records.size(),
                fmt::gmtime(std::chrono::system_clock::to_time_t(when)));
-  return {};
 }
 
-core::Result<void> Room::restoreWater(const KeptRoom& kept) {
+core::Result<Room::Repetition> Room::repetitionOf(KeptRoom kept) {
   const v1::KeptState& state = *kept.state;
-  if (auto done = water_->restore(state); !done) return done;
+  if (auto done = water_->restore(state); !done) return done.error();
   clock_ = RealTimeClock(water_->sim().derived().tick_s);
   if (state.speed() > 0) clock_.setSpeed(state.speed());
   paused_ = state.paused();
   chosen_fidelity_ = state.chosen_fidelity();
-  std::uint64_t steps_until = tick() + state.pending_tick_count();
-  for (const v1::StateRecord& record : kept.records) {
-    if (auto done = repeat(record, steps_until); !done) return done;
+  const std::uint64_t steps_until = tick() + state.pending_tick_count();
+  return Repetition{.kept = std::move(kept), .next = 0, .steps_until = steps_until};
+}
+
+core::Result<bool> Room::repeatUntil(Repetition& all, TimePoint deadline) {
+  while (all.next < all.kept.records.size()) {
+    const auto done = repeatSome(all, deadline == TimePoint::max());
+    if (!done || !*done) return done;
+    if (std::chrono::steady_clock::now() >= deadline && all.next < all.kept.records.size()) return false;
   }
-  pending_tick_count_ = paused_ && steps_until > tick() ? static_cast<std::uint32_t>(steps_until - tick()) : 0;
+  pending_tick_count_ = paused_ && all.steps_until > tick() ? static_cast<std::uint32_t>(all.steps_until - tick()) : 0;
   tick_cost_.restart(water_->warmTick_ms(), water_->work());
   recovery_news_.restart(water_->sim().recoveredCount());
   kept_recovery_count_ = water_->sim().recoveredCount();
-  return {};
+  return true;
 }
 
 bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
-  const auto kept = keeper_ ? keeper_->newest() : std::nullopt;
+  auto kept = keeper_ ? keeper_->newest() : std::nullopt;
   if (!kept) return false;
   const std::uint64_t lost_tick = tick();
   builder_.dispose(water_->replaceWater(std::move(water)));
-  if (auto done = restoreWater(*kept); !done) {
+  auto repetition = repetitionOf(*std::move(kept));
+  const auto done = repetition ? repeatUntil(*repetition, TimePoint::max()) : core::Result<bool>(repetition.error());
+  if (!done) {
     spdlog::error("room {}: its state cannot be restored: {}", name_, done.error().message);
     water_->sim().reset();
     is_lost_ = false;
@@ -183,57 +207,68 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   return true;
 }
 
-core::Result<void> Room::repeat(const v1::StateRecord& record, std::uint64_t& steps_until) {
+core::Result<bool> Room::repeatSome(Repetition& all, bool waits) {
+  const v1::StateRecord& record = all.kept.records[all.next];
   const bool changes_water =
       record.has_scene() || record.has_continued_scene();  // written after it, which takes a tick
-  while (tick() + (changes_water ? 1 : 0) < record.tick()) {
+  if (tick() + (changes_water ? 1 : 0) < record.tick()) {
     water_->step();
     if (const auto& error = water_->sim().deviceError()) return *error;
+    return true;
   }
   if (changes_water) {
-    v1::Scene scene = record.has_scene() ? record.scene() : record.continued_scene();
-    scene::fillDefaults(scene);
-    chosen_fidelity_ = scene.fidelity();
-    auto next = builder_.build(std::move(scene)).get();
+    if (!all.water.valid()) {
+      v1::Scene scene = record.has_scene() ? record.scene() : record.continued_scene();
+      scene::fillDefaults(scene);
+      chosen_fidelity_ = scene.fidelity();
+      all.water = builder_.build(std::move(scene));
+    }
+    if (!waits && all.water.wait_for(0s) != std::future_status::ready) return false;
+    auto next = all.water.get();
     if (!next) return next.error();
     if (record.has_scene()) {
       builder_.dispose(water_->replaceWater(*std::move(next)));
-      steps_until = 0;
+      all.steps_until = 0;
     } else {
-      if (auto done = water_->continueIn(*next); !done) return done;
+      if (auto done = water_->continueIn(*next); !done) return done.error();
       builder_.dispose(*std::move(next));
-      if (steps_until >= tick()) ++steps_until;  // the change took a tick, which is none of Step's
+      if (all.steps_until >= tick()) ++all.steps_until;  // the change took a tick, which is none of Step's
     }
     water_->bind();
-    return {};
+  } else if (record.has_command()) {
+    repeat(record.command(), all.steps_until);
   }
-  if (!record.has_command()) return {};
-  const auto checked = wire::checkCommand(record.command());
+  ++all.next;
+  return true;
+}
+
+void Room::repeat(const v1::Command& message, std::uint64_t& steps_until) {
+  const auto checked = wire::checkCommand(message);
   const auto* command = std::get_if<v1::Command>(&checked);
-  if (!command) return {};
+  if (!command) return;
   switch (command->action_case()) {
     case v1::Command::kSetPaused:
       paused_ = command->set_paused().paused();
       steps_until = 0;
-      return {};
+      return;
     case v1::Command::kSetSpeed:
       clock_.setSpeed(command->set_speed().speed());
-      return {};
+      return;
     case v1::Command::kStep:
       steps_until = std::max(steps_until, tick()) + command->step().tick_count();
-      return {};
+      return;
     case v1::Command::kReset:
       steps_until = 0;
       break;
     case v1::Command::kChangeScene:  // to the level that the room had: only the choice counts
       chosen_fidelity_ = command->change_scene().fidelity();
-      return {};
+      return;
     default:
       break;
   }
   // What the water refused then, it refuses again.
   if (RoomWater::takes(*command)) (void)water_->apply(*command);
-  return {};
+  return;
 }
 
 }  // namespace spindrift::rooms

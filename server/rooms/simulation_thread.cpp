@@ -16,6 +16,8 @@ using core::ErrorCode;
 
 /// Limit of waiting openings and closings.
 constexpr std::size_t kChangeMaxCount = 16;
+/// A room that opens repeats what happened after its snapshot for at most so long at a time.
+constexpr std::chrono::milliseconds kRestoringSlice{20};
 
 /// Share of its time that a thread works, over the last window that is complete.
 class BusyShare {
@@ -107,7 +109,7 @@ core::Result<void> SimulationThread::buildRoom(const std::string& name, std::opt
     v1::Scene scene = place->kept->state->scene();
     v1::RoomAccess access = place->kept->state->access();
     scene::fillDefaults(scene);
-    auto added = add(name, builder_->build(std::move(start)).get(), *std::move(place), {});
+    auto added = buildRoom(name, std::move(start), *std::move(place), {});
     // A full disk or a device that fails is no reason to give up what is there.
     if (added || added.error().code != ErrorCode::kInvalidInput) return added;
     const auto aside = rules_.states->setAside(name);
@@ -124,7 +126,17 @@ core::Result<void> SimulationThread::buildRoom(const std::string& name, std::opt
                  rules_.states->folder().string());
     return {};
   }
-  return add(name, builder_->build(std::move(setup->scene)).get(), *std::move(place), std::move(setup->access));
+  return buildRoom(name, std::move(setup->scene), *std::move(place), std::move(setup->access));
+}
+
+core::Result<void> SimulationThread::buildRoom(const std::string& name, v1::Scene scene, RoomPlace place,
+                                               v1::RoomAccess access) {
+  auto room = begin(name, builder_->build(std::move(scene)).get(), std::move(place), std::move(access));
+  if (!room) return room.error();
+  if (auto restored = (*room)->restoreUntil(std::chrono::steady_clock::time_point::max()); !restored)
+    return restored.error();
+  add(*std::move(room));
+  return {};
 }
 
 void SimulationThread::run() {
@@ -228,41 +240,63 @@ void SimulationThread::open(RoomSetup setup, Done done) {
   } else if (setup.scene.name().empty()) {
     return done(Error{ErrorCode::kInvalidInput, "room " + setup.name + ": nothing of it on disk can be used"});
   }
-  openings_.push_back({std::move(setup.name), *std::move(place), std::move(setup.access),
-                       builder_->build(std::move(setup.scene)), std::move(done)});
+  openings_.push_back({.name = std::move(setup.name),
+                       .place = *std::move(place),
+                       .access = std::move(setup.access),
+                       .water = builder_->build(std::move(setup.scene)),
+                       .room = nullptr,
+                       .done = std::move(done)});
 }
 
-void SimulationThread::finishOpenings() {
-  const auto is_ready = [](const Opening& opening) {
-    return opening.water.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  };
+void SimulationThread::advanceOpenings() {
   for (auto opening = openings_.begin(); opening != openings_.end();) {
-    if (!is_ready(*opening)) {
+    const auto is_open = advance(*opening);
+    if (is_open && !*is_open) {
       ++opening;
       continue;
     }
-    auto opened = add(opening->name, opening->water.get(), std::move(opening->place), std::move(opening->access));
-    if (!opened) spdlog::warn("a room was not opened: {}", opened.error().message);
-    opening->done(std::move(opened));
+    if (is_open) {
+      add(std::move(opening->room));
+      opening->done({});
+    } else {
+      spdlog::warn("a room was not opened: {}", is_open.error().message);
+      if (opening->room) opening->room->releaseDevice();
+      opening->done(is_open.error());
+    }
     opening = openings_.erase(opening);
   }
 }
 
-core::Result<void> SimulationThread::add(std::string name, WaterBuilder::Built water, RoomPlace place,
-                                         v1::RoomAccess access) {
+core::Result<bool> SimulationThread::advance(Opening& opening) {
+  if (!opening.room) {
+    if (opening.water.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    auto room = begin(opening.name, opening.water.get(), std::move(opening.place), std::move(opening.access));
+    if (!room) return room.error();
+    opening.room = *std::move(room);
+  }
+  // The rooms that run come first; the one that opens makes a tick between theirs at least.
+  const auto now = std::chrono::steady_clock::now();
+  auto deadline = now + kRestoringSlice;
+  for (const auto& room : rooms_) deadline = std::min(deadline, room->due(now));
+  return opening.room->restoreUntil(deadline);
+}
+
+core::Result<std::shared_ptr<Room>> SimulationThread::begin(std::string name, WaterBuilder::Built water,
+                                                            RoomPlace place, v1::RoomAccess access) {
   if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
   (*water)->bind();
   {
     const std::lock_guard lock(rooms_mutex_);
     if (device_line_.empty()) device_line_ = (*water)->context().device().name;
   }
-  auto room = Room::create(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place),
-                           std::move(access));
-  if (!room) return room.error();
-  (*room)->start(std::chrono::steady_clock::now());
+  return Room::begin(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place),
+                     std::move(access));
+}
+
+void SimulationThread::add(std::shared_ptr<Room> room) {
+  room->start(std::chrono::steady_clock::now());
   const std::lock_guard lock(rooms_mutex_);
-  rooms_.push_back(*std::move(room));
-  return {};
+  rooms_.push_back(std::move(room));
 }
 
 core::Result<void> SimulationThread::close(const std::string& name, const std::function<void(const Room&)>& before) {
@@ -313,8 +347,10 @@ void SimulationThread::loop() {
     const auto changes = std::exchange(changes_, {});
     lock.unlock();
     for (const Change& change : changes) change(true);
-    finishOpenings();
+    advanceOpenings();
     auto due = Clock::now() + std::chrono::milliseconds(100);
+    if (std::ranges::any_of(openings_, [](const Opening& opening) { return opening.room != nullptr; }))
+      due = Clock::now() + std::chrono::milliseconds(1);
     for (const auto& room : rooms_) {
       room->run(Clock::now(), busy.value());
     }
@@ -329,8 +365,10 @@ void SimulationThread::loop() {
   const auto changes = std::exchange(changes_, {});
   lock.unlock();
   for (const Change& change : changes) change(false);
-  for (Opening& opening : std::exchange(openings_, {}))
+  for (Opening& opening : std::exchange(openings_, {})) {
+    if (opening.room) opening.room->releaseDevice();  // what is on disk stays as it is
     opening.done(Error{ErrorCode::kUnavailable, "the server shuts down"});
+  }
   for (const auto& room : rooms_) {
     if (auto kept = room->saveAndWait(); !kept)
       spdlog::error("room {}: its last snapshot could not be written: {}", room->name(), kept.error().message);

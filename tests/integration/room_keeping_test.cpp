@@ -59,6 +59,27 @@ class KeptRoomTest : public RoomTest {
   }
   /// As a server that starts again.
   void comeBack() {
+    comeBackBy([&](std::unique_ptr<rooms::Water> water, rooms::RoomPlace kept) {
+      return rooms::Room::create("main", std::move(water), rules_, *builder_, outlets_, std::move(kept));
+    });
+  }
+  /// As a server that opens the room while others run. Returns the number of pieces.
+  std::size_t comeBackInPieces() {
+    std::size_t piece_count = 0;
+    comeBackBy([&](std::unique_ptr<rooms::Water> water, rooms::RoomPlace kept) {
+      auto room = rooms::Room::begin("main", std::move(water), rules_, *builder_, outlets_, std::move(kept), {});
+      if (!room) return room;
+      while (true) {
+        ++piece_count;
+        const auto is_whole = (*room)->restoreUntil(Clock::now());
+        if (!is_whole) return decltype(room)(is_whole.error());
+        if (*is_whole) return room;
+      }
+    });
+    return piece_count;
+  }
+  template <typename Create>
+  void comeBackBy(Create create) {
     openStore();
     rooms::RoomPlace kept = place();
     ASSERT_TRUE(kept.kept);
@@ -67,7 +88,7 @@ class KeptRoomTest : public RoomTest {
     auto water = rooms::Water::create(device_, std::move(start));
     ASSERT_TRUE(water) << water.error().message;
     context_ = &(*water)->context();
-    auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_, outlets_, std::move(kept));
+    auto room = create(*std::move(water), std::move(kept));
     ASSERT_TRUE(room) << room.error().message;
     room_ = *std::move(room);
     room_->start(Clock::now());
@@ -143,6 +164,22 @@ TEST_F(KeptRoomTest, OfAReplacedSceneGoesOnInThatSceneAtItsLevel) {
   crashAndComeBack();
   EXPECT_EQ(scene().name(), "box");
   EXPECT_EQ(scene().particles().count(), 700u);
+  EXPECT_EQ(hashAt(compared), expected);
+}
+
+TEST_F(KeptRoomTest, GoesOnBitForBitWhenItIsBroughtThereInPieces) {
+  send(1, splash(0.4, 1.5));
+  ASSERT_TRUE(runTicks(20));
+  send(2, spawnBoat(-2, 1));
+  ASSERT_TRUE(runTicks(5));
+  send(3, splash(0.3, 1.0));
+  ASSERT_TRUE(isAnswered(3));
+  const std::uint64_t compared = room_->tick() + 8;
+  const std::uint64_t expected = hashAt(compared);
+  crash();
+  const std::size_t piece_count = comeBackInPieces();
+  EXPECT_GT(room_->tick(), 20u);
+  EXPECT_GE(piece_count, room_->tick()) << "a piece is a tick at most; the snapshot is of the beginning";
   EXPECT_EQ(hashAt(compared), expected);
 }
 

@@ -95,6 +95,14 @@ class Room {
   static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
                                                     const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
                                                     RoomPlace place = {}, v1::RoomAccess access = {});
+  /// The same, but a kept room is only at its snapshot. Before anything else it has to be brought where it was, by
+  /// restoreUntil().
+  static core::Result<std::shared_ptr<Room>> begin(std::string name, std::unique_ptr<Water> water,
+                                                   const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
+                                                   RoomPlace place, v1::RoomAccess access);
+  /// Repeats what happened after the snapshot, at least a tick and then until the deadline; with TimePoint::max() to
+  /// the end. Returns whether the room is where it was. Errors: those of create(); the room is of no use then.
+  core::Result<bool> restoreUntil(TimePoint deadline);
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -239,15 +247,30 @@ class Room {
   void keepState(TimePoint now);
   /// The state between two ticks; nullopt when the device does not answer.
   std::optional<v1::KeptState> stateNow();
-  /// Goes on from there. After an error the water may have any state.
-  core::Result<void> restore(const KeptRoom& kept);
-  /// The same for the water, pause, speed and steps, without the people.
-  core::Result<void> restoreWater(const KeptRoom& kept);
+  /// The way of the water, pause, speed and steps from a snapshot to where the room was.
+  struct Repetition {
+    KeptRoom kept;
+    std::size_t next = 0;                      ///< of kept.records
+    std::uint64_t steps_until = 0;             ///< the tick up to which Step commands lead
+    std::future<WaterBuilder::Built> water{};  ///< of the next record, if that changes the scene
+  };
+  /// What a room that begins still needs.
+  struct Restoration {
+    std::unique_ptr<StateKeeper> keeper;
+    std::optional<Repetition> repetition;
+  };
+  /// Puts the snapshot into the water. After an error the water may have any state.
+  core::Result<Repetition> repetitionOf(KeptRoom kept);
+  /// As restoreUntil().
+  core::Result<bool> repeatUntil(Repetition& all, TimePoint deadline);
+  /// A tick, or what the next record says. Returns false if it has to wait for new water and `waits` is not set.
+  core::Result<bool> repeatSome(Repetition& all, bool waits);
+  /// The people and what the other threads know, after the water.
+  void restorePeople(const KeptRoom& kept);
   /// Goes on in new water after the device failed, from what is kept; returns false, with nothing changed, if nothing
   /// is.
   bool restoreAfterLoss(std::unique_ptr<Water>& water);
-  /// Does again what a record says. `steps_until`: the tick up to which Step commands lead.
-  core::Result<void> repeat(const v1::StateRecord& record, std::uint64_t& steps_until);
+  void repeat(const v1::Command& message, std::uint64_t& steps_until);
 
   // room_change.cpp
   void setParameters(Batch values);
@@ -320,8 +343,9 @@ class Room {
   WaterBuilder& builder_;
   RoomOutlets& outlets_;
   std::unique_ptr<RoomWater> water_;
-  std::unique_ptr<CommandLogWriter> log_;  ///< null: no log
-  std::unique_ptr<StateKeeper> keeper_;    ///< null: the room is not kept on disk
+  std::unique_ptr<CommandLogWriter> log_;     ///< null: no log
+  std::unique_ptr<StateKeeper> keeper_;       ///< null: the room is not kept on disk
+  std::unique_ptr<Restoration> restoration_;  ///< until the room is where it was
   std::uint64_t kept_people_version_ = 0;
   std::uint64_t kept_recovery_count_ = 0;
   std::uint64_t kept_state_id_ = 0;   ///< of the last record that the room runs

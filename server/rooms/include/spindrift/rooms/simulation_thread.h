@@ -73,12 +73,13 @@ class SimulationThread {
   /// Runs on the thread between two rounds; called with false when it will not be carried out.
   using Change = std::function<void(bool runs)>;
 
-  /// A room whose water is being built.
+  /// A room whose water is being built, and which then goes from its snapshot to where it was.
   struct Opening {
     std::string name;
     RoomPlace place;
     v1::RoomAccess access;
     std::future<WaterBuilder::Built> water;
+    std::shared_ptr<Room> room;  ///< null while the water is built
     Done done;
   };
 
@@ -88,11 +89,16 @@ class SimulationThread {
   void carryOut(Change change, const Done& done);
   /// Starts opening a room; `done` may be called at once, with an error.
   void open(RoomSetup setup, Done done);
-  /// Finishes the openings whose water is built.
-  void finishOpenings();
-  core::Result<void> add(std::string name, WaterBuilder::Built water, RoomPlace place, v1::RoomAccess access);
+  /// Goes on with the openings, between the ticks of the rooms that run.
+  void advanceOpenings();
+  /// Returns whether the room can run.
+  core::Result<bool> advance(Opening& opening);
+  core::Result<std::shared_ptr<Room>> begin(std::string name, WaterBuilder::Built water, RoomPlace place,
+                                            v1::RoomAccess access);
+  void add(std::shared_ptr<Room> room);
   /// Builds a room where it was kept on disk, or else as `setup` says; without a setup only where it was kept.
   core::Result<void> buildRoom(const std::string& name, std::optional<RoomSetup> setup);
+  core::Result<void> buildRoom(const std::string& name, v1::Scene scene, RoomPlace place, v1::RoomAccess access);
   core::Result<RoomPlace> placeOf(const std::string& name) const;
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before);
