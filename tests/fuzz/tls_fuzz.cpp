@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdlib>
 #include <fstream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -106,14 +107,21 @@ class Server {
   void echo(std::size_t done, std::size_t count) {
     if (done == count) return read();
     ++pending_count_;
-    const std::size_t half = done + (count - done) / 2;
-    layer_->write(asio::buffer(&buffer_[done], half - done), asio::buffer(&buffer_[half], count - half),
-                  [this, done, count](error_code error, std::size_t written) {
-                    answered();
-                    must(written <= count - done, "no more is written than there is");
-                    if (error || written == 0) return end();
-                    echo(done + written, count);
-                  });
+    // Up to four parts, which become one record.
+    std::array<asio::const_buffer, 4> parts;
+    const std::size_t part_count = std::min(parts.size(), count - done);
+    const std::size_t part_size = (count - done) / part_count;
+    for (std::size_t k = 0; k < part_count; ++k) {
+      const std::size_t begin = done + k * part_size;
+      const std::size_t end = k + 1 == part_count ? count : begin + part_size;
+      parts[k] = asio::buffer(&buffer_[begin], end - begin);
+    }
+    layer_->write(std::span(parts).first(part_count), [this, done, count](error_code error, std::size_t written) {
+      answered();
+      must(written <= count - done, "no more is written than there is");
+      if (error || written == 0) return end();
+      echo(done + written, count);
+    });
   }
 
   void end() {
