@@ -104,7 +104,7 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
     tcp::resolver resolver(strand_);
     const auto [resolve_error, places] = co_await resolver.async_resolve(url_.host, url_.port, kToken);
     if (resolve_error) co_return url_.host + " is not known: " + resolve_error.message();
-    Transport& stream = ws_.next_layer();
+    ReadAhead& stream = ws_.next_layer();
     stream.expires_after(options_.connect_timeout);
     const auto [connect_error, place] = co_await stream.tcp().async_connect(places, kToken);
     if (connect_error) co_return "no connection to " + url_.host + ":" + url_.port + ": " + connect_error.message();
@@ -135,6 +135,7 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
           std::string(response.body());
     }
     if (error) co_return "the handshake failed: " + error.message();
+    stream.beginMessages();
     co_return std::string();
   }
 
@@ -149,6 +150,11 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
       }
       events_.message({static_cast<const std::uint8_t*>(buffer.data().data()), bytes_count});
       buffer.consume(buffer.size());
+      while (!is_cut_) {
+        const auto message = ws_.next_layer().takeMessage(options_.message_max_bytes);
+        if (!message) break;
+        events_.message(*message);
+      }
     }
   }
 

@@ -1,16 +1,18 @@
 // A stream that reads as much as there is in one kernel call and keeps what was not asked for. Beast reads a message
-// with one call for its header and one or more for the rest; a client of many small messages pays for each.
+// with one call for its header and one or more for the rest; a client of many small messages pays for each, and for the
+// ways of each through the strand. Messages that have come whole can be taken past Beast.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
+#include <optional>
 #include <utility>
-#include <vector>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/compose.hpp>
 #include <boost/asio/post.hpp>
 
+#include <spindrift/core/bytes.h>
+
+#include "frame_cutter.h"
 #include "transport.h"
 
 namespace spindrift::net {
@@ -23,37 +25,41 @@ class ReadAhead : public Transport {
   template <typename Buffers, typename Handler>
   auto async_read_some(const Buffers& buffers, Handler&& handler) {
     namespace asio = boost::asio;
-    enum class At { kBegin, kHasRead, kEnd };
+    enum class At { kBegin, kHasRead, kHasMore };
     return asio::async_compose<Handler, void(boost::system::error_code, std::size_t)>(
         [this, buffers, at = At::kBegin](auto& self, boost::system::error_code error = {},
                                          std::size_t bytes_count = 0) mutable {
-          switch (std::exchange(at, at == At::kBegin && isEmpty() ? At::kHasRead : At::kEnd)) {
-            case At::kBegin:
-              if (!isEmpty()) return asio::post(get_executor(), std::move(self));  // never completes within the call
-              return Transport::async_read_some(asio::buffer(kept_), std::move(self));
-            case At::kHasRead:
-              if (error) return self.complete(error, 0);
-              begin_ = 0;
-              end_ = bytes_count;
-              break;
-            case At::kEnd:
-              break;
+          if (at == At::kHasRead) {
+            if (error) return self.complete(error, 0);
+            kept_.added(bytes_count);
           }
-          const std::size_t taken = asio::buffer_copy(buffers, asio::buffer(kept_.data() + begin_, end_ - begin_));
-          begin_ += taken;
+          if (at == At::kBegin && !kept_.next().empty()) {
+            at = At::kHasMore;
+            return asio::post(get_executor(), std::move(self));  // never completes within the call
+          }
+          if (kept_.next().empty()) {
+            at = At::kHasRead;
+            const auto room = kept_.room();
+            return Transport::async_read_some(asio::buffer(room.data(), room.size()), std::move(self));
+          }
+          const core::ByteView next = kept_.next();
+          const std::size_t taken = asio::buffer_copy(buffers, asio::buffer(next.data(), next.size()));
+          kept_.taken(taken);
           self.complete({}, taken);
         },
         handler, *this);
   }
 
+  /// The handshake has ended; only messages follow.
+  void beginMessages() { kept_.beginFrames(); }
+  /// Returns a message that has come whole, valid until the next read; nullopt: it, or something else, has to be read.
+  /// Call when a message was read to its end.
+  std::optional<core::ByteView> takeMessage(std::size_t max_bytes) { return kept_.takeMessage(max_bytes); }
+
  private:
   static constexpr std::size_t kKeptMaxBytes = 16 * 1024;
 
-  [[nodiscard]] bool isEmpty() const { return begin_ == end_; }
-
-  std::vector<std::uint8_t> kept_ = std::vector<std::uint8_t>(kKeptMaxBytes);
-  std::size_t begin_ = 0;
-  std::size_t end_ = 0;
+  FrameCutter kept_{kKeptMaxBytes};
 };
 
 /// Beast closes a connection with these functions, found by the type of the stream.
