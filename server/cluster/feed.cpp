@@ -337,17 +337,18 @@ void Feed::addDemand(const std::string& name, codec::Stream stream, std::uint32_
   for (const auto& [node, link] : room.links) {
     for (const core::Level level : core::kLevels) {
       const Watched& watched = link.watched[index][core::indexOf(level)];
-      core::LevelDemand& total = demand[core::indexOf(core::effectiveLevel(level, reduced_count))];
+      core::LevelDemand& total = demand[core::indexOf(level)];
       total.watcher_count += watched.watcher_count;
       total.wants_keyframe = total.wants_keyframe || (watched.watcher_count > 0 && watched.wants_keyframe);
     }
   }
 }
 
-void Feed::publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
-                   std::uint32_t reduced_count) {
+void Feed::publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
+                   const core::FrameLevels& levels) {
   const std::size_t index = codec::indexOf(stream);
-  FrameHead head{.reduced_count = reduced_count};
+  const core::Level level = levels.level;
+  FrameHead head{.reduced_count = static_cast<std::uint16_t>(levels.reduced_count), .due = levels.due};
   bool is_watched = false;
   bool wants_keyframe = false;
   {
@@ -359,7 +360,7 @@ void Feed::publish(const std::string& name, codec::Stream stream, const codec::E
     head.sequence = ++room.sequences[index][core::indexOf(level)];
     for (auto& [node, link] : room.links) {
       for (const core::Level asked : core::kLevels) {
-        if (core::effectiveLevel(asked, reduced_count) != level) continue;
+        if (!levels.isOf(asked)) continue;
         Watched& watched = link.watched[index][core::indexOf(asked)];
         is_watched = is_watched || watched.watcher_count > 0;
         wants_keyframe = wants_keyframe || (watched.watcher_count > 0 && watched.wants_keyframe);

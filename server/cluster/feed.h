@@ -71,8 +71,8 @@ class Feed final : public service::RemoteAudience {
   bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
   void addDemand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count,
                  core::StreamDemand& demand) const override;
-  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
-               std::uint32_t reduced_count) override;
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
+               const core::FrameLevels& levels) override;
   [[nodiscard]] std::size_t sessionCount(const std::string& room) const override;
 
  private:

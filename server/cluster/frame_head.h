@@ -6,15 +6,17 @@
 #include <optional>
 
 #include <spindrift/core/bytes.h>
+#include <spindrift/core/level.h>
 
 namespace spindrift::cluster {
 
 struct FrameHead {
-  std::uint64_t run = 0;       ///< of the room
-  std::uint64_t sequence = 0;  ///< of this stream and level in this run: a delta builds on the frame before
-  std::uint32_t reduced_count = 0;
-  std::uint32_t keyframe_bytes = 0;  ///< 0: there is none
-  std::uint32_t delta_bytes = 0;     ///< likewise
+  std::uint64_t run = 0;            ///< of the room
+  std::uint64_t sequence = 0;       ///< of this stream and level in this run: a delta builds on the frame before
+  std::uint16_t reduced_count = 0;  ///< core::FrameLevels::reduced_count
+  core::LevelSet due = core::LevelSet::all();  ///< core::FrameLevels::due; the bytes name the others
+  std::uint32_t keyframe_bytes = 0;            ///< 0: there is none
+  std::uint32_t delta_bytes = 0;               ///< likewise
 };
 inline constexpr std::size_t kFrameHeadBytes = 32;
 

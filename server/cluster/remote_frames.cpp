@@ -23,8 +23,11 @@ void RemoteRoom::reviewStreams(Clock::time_point now, bool must_tell, Dropped& d
   v1::Watching& watching = *message.mutable_watching();
   for (const codec::Stream stream : codec::allStreams()) {
     const std::size_t index = codec::indexOf(stream);
-    const core::StreamDemand demand =
-        sessions_.hub().demand(name_, static_cast<net::StreamIndex>(index), (*reduced_counts_)[index], aheadOf(index));
+    const std::uint32_t reduced_count = (*reduced_counts_)[index];
+    const core::StreamDemand asked =
+        sessions_.hub().demand(name_, static_cast<net::StreamIndex>(index), reduced_count, aheadOf(index));
+    const core::StreamDemand demand = core::demandOfFrame(asked, reduced_count);
+    core::LevelSet wanting_keyframe;
     for (const core::Level level : core::kLevels) {
       const core::LevelDemand& wanted = demand[core::indexOf(level)];
       Feed& one = feed(index, level);
@@ -54,12 +57,22 @@ void RemoteRoom::reviewStreams(Clock::time_point now, bool must_tell, Dropped& d
       } else if (one.keyframes && now - one.keyframe_wanted > kKeyframePatience) {
         dropped.push_back(std::move(one.keyframes));
       }
+      if (wants_keyframe) wanting_keyframe.insert(level);
+    }
+    // The levels as asked for: the room leaves out the frames that none of them takes.
+    core::LevelSet told;
+    for (const core::Level level : core::kLevels) {
+      const std::size_t watcher_count = asked[core::indexOf(level)].watcher_count;
+      if (watcher_count == 0) continue;
+      told.insert(level);
       v1::Watching::Stream& entry = *watching.add_streams();
       entry.set_stream(static_cast<std::uint32_t>(index));
       entry.set_level(codec::toWire(level));
-      entry.set_watcher_count(static_cast<std::uint32_t>(wanted.watcher_count));
-      entry.set_wants_keyframe(wants_keyframe);
+      entry.set_watcher_count(static_cast<std::uint32_t>(watcher_count));
+      entry.set_wants_keyframe(wanting_keyframe.contains(core::effectiveLevel(level, reduced_count)));
     }
+    must_tell = must_tell || told != told_levels_[index];
+    told_levels_[index] = told;
   }
   if (!must_tell) return;
   told_ = now;
@@ -75,8 +88,9 @@ void RemoteRoom::takeFrame(std::size_t stream, core::Level level, core::ByteView
   Dropped dropped;  // destroyed without the locks
   const std::lock_guard in_order(frames_mutex_);
   const auto now = Clock::now();
-  net::FrameBytes out{
-      .keyframe = nullptr, .delta = nullptr, .level = level, .reduced_count = frame->head.reduced_count};
+  net::FrameBytes out{.keyframe = nullptr,
+                      .delta = nullptr,
+                      .levels = {.level = level, .reduced_count = frame->head.reduced_count, .due = frame->head.due}};
   {
     const std::lock_guard lock(mutex_);
     Feed& one = feed(stream, level);
@@ -129,14 +143,14 @@ void RemoteRoom::offerKept() {
       const std::size_t index = codec::indexOf(stream);
       if (std::ranges::none_of(feeds_[index], [](const Feed& one) { return one.kept.isWhole(); })) continue;
       const core::StreamDemand demand =
-          sessions_.hub().demand(name_, static_cast<net::StreamIndex>(index), (*reduced_counts_)[index]);
+          demandOfFrame(sessions_.hub().demand(name_, static_cast<net::StreamIndex>(index), (*reduced_counts_)[index]),
+                        (*reduced_counts_)[index]);
       for (const core::Level level : core::kLevels) {
         Feed& one = feed(index, level);
         if (!demand[core::indexOf(level)].has_newcomer || !one.kept.isWhole()) continue;
-        offers.emplace_back(
-            index,
-            net::FrameBytes{
-                .keyframe = one.kept.keyframe(), .delta = nullptr, .level = level, .reduced_count = one.reduced_count});
+        offers.emplace_back(index, net::FrameBytes{.keyframe = one.kept.keyframe(),
+                                                   .delta = nullptr,
+                                                   .levels = {.level = level, .reduced_count = one.reduced_count}});
       }
     }
   }

@@ -146,6 +146,7 @@ class RemoteRoom final : public service::Venue {
   std::map<core::SessionId, Guest> guests_;
   std::uint32_t last_unlisted_ = 0;
   std::array<std::array<Feed, core::kLevelCount>, codec::kStreamCount> feeds_;
+  std::array<core::LevelSet, codec::kStreamCount> told_levels_;  ///< that sessions ask for, as the room knows it
   LinkStats stats_;
 };
 

@@ -38,6 +38,10 @@ std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts)
   return hasLevels(layer) ? counts.planes : 0;
 }
 
+core::LevelSet levelsTaking(v1::Layer layer, core::LevelSet due) {
+  return layer == v1::LAYER_DIAGNOSTICS ? core::LevelSet::all() : due;
+}
+
 v1::Level toWire(core::Level level) {
   return kWireLevels[core::indexOf(level)];
 }

@@ -44,12 +44,13 @@ Outbox::Outcome Outbox::offerFrame(StreamIndex stream, const FrameBytes& frame, 
   Slot& slot = slots_[stream];
   if (!slot.watch) return {};
   const core::Level wanted = levelOf(slot);
-  if (core::effectiveLevel(wanted, frame.reduced_count) != frame.level) return {};
-  slot.reduced_count = frame.reduced_count;
+  const core::FrameLevels& levels = frame.levels;
+  if (!levels.isOf(wanted)) return {};
+  slot.reduced_count = levels.reduced_count;
   const bool is_pending = slot.frame != nullptr;
-  const bool is_due = isOpen(slot, wanted, frame.level, now);
+  const bool is_due = levels.due.contains(wanted) && slot.gate.isOpen(now);
   if (slot.watch->adapts && is_due) ladder_.noteFrame(is_pending || slot.lost_turn);
-  const bool can_continue = slot.follows && slot.level == frame.level && !is_pending && frame.delta;
+  const bool can_continue = slot.follows && slot.level == levels.level && !is_pending && frame.delta;
   const core::SharedBytes& message = can_continue ? frame.delta : frame.keyframe;
   if (!message) {
     slot.follows = false;
@@ -63,9 +64,8 @@ Outbox::Outcome Outbox::offerFrame(StreamIndex stream, const FrameBytes& frame, 
     return {};
   }
   slot.gate.pass(now);
-  if (wanted != frame.level) slot.level_gates[indexOf(wanted)].pass(now);
   slot.frame = message;
-  slot.level = frame.level;
+  slot.level = levels.level;
   slot.follows = true;
   slot.is_newcomer = false;
   slot.lost_turn.reset();
@@ -82,10 +82,10 @@ Outbox::Outcome Outbox::offerNewest(StreamIndex stream, const FrameBytes& frame)
   if (close_ || shut_ || stream >= kMaxStreamCount) return {};
   Slot& slot = slots_[stream];
   if (!slot.watch || !slot.is_newcomer || !frame.keyframe) return {};
-  if (core::effectiveLevel(levelOf(slot), frame.reduced_count) != frame.level) return {};
-  slot.reduced_count = frame.reduced_count;
+  if (!frame.levels.isOf(levelOf(slot))) return {};
+  slot.reduced_count = frame.levels.reduced_count;
   slot.frame = frame.keyframe;
-  slot.level = frame.level;
+  slot.level = frame.levels.level;
   slot.follows = true;
   slot.is_newcomer = false;
   return {.wake = takeWake()};
@@ -95,22 +95,16 @@ Outbox::Demand Outbox::demand(StreamIndex stream, std::uint32_t reduced_count, C
   const std::lock_guard lock(mutex_);
   if (stream >= kMaxStreamCount || !slots_[stream].watch) return {};
   const Slot& slot = slots_[stream];
-  const core::Level wanted = levelOf(slot);
-  const core::Level level = core::effectiveLevel(wanted, reduced_count);
+  const core::Level level = levelOf(slot);
   if (close_ || shut_) return {.level = level};
-  const bool has_ground = slot.follows && slot.level == level;
-  return {
-      .level = level,
-      .wants_keyframe = !slot.frame && !has_ground && slot.lost_turn != turn_count_ && isOpen(slot, wanted, level, now),
-      .is_newcomer = slot.is_newcomer};
+  const bool has_ground = slot.follows && slot.level == core::effectiveLevel(level, reduced_count);
+  return {.level = level,
+          .wants_keyframe = !slot.frame && !has_ground && slot.lost_turn != turn_count_ && slot.gate.isOpen(now),
+          .is_newcomer = slot.is_newcomer};
 }
 
 core::Level Outbox::levelOf(const Slot& slot) const {
   return slot.watch->adapts ? std::min(slot.watch->level, ladder_.level()) : slot.watch->level;
-}
-
-bool Outbox::isOpen(const Slot& slot, core::Level wanted, core::Level effective, Clock::time_point now) {
-  return slot.gate.isOpen(now) && (wanted == effective || slot.level_gates[indexOf(wanted)].isOpen(now));
 }
 
 void Outbox::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
@@ -122,8 +116,6 @@ void Outbox::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
   slot.watch = watch;
   slot.is_newcomer = watch->is_first;
   slot.gate = RateGate(watch->max_rate_hz);
-  for (const core::Level level : core::kLevels)
-    slot.level_gates[indexOf(level)] = RateGate(core::budgetOf(level).rate_hz);
 }
 
 std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {

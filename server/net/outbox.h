@@ -45,10 +45,10 @@ class Outbox {
   /// requested.
   Outcome pushState(const StateTopic& topic, core::SharedBytes message);
 
-  /// Puts the frame into its stream's slot if the session watches the stream at this level and its rate allows: the
-  /// delta if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe an unsent older
-  /// frame is dropped, and the session waits. Ignored after a close was requested. Wakes nobody: call wakeForFrames()
-  /// after the last frame of a moment.
+  /// Puts the frame into its stream's slot if the session watches the stream at this level and its rate allows, and the
+  /// level is due: the delta if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe
+  /// an unsent older frame is dropped, and the session waits. Ignored after a close was requested. Wakes nobody: call
+  /// wakeForFrames() after the last frame of a moment.
   Outcome offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now);
 
   /// Puts the newest frame of a stream, a keyframe that other sessions have had already, into the slot of a session
@@ -61,7 +61,7 @@ class Outbox {
 
   /// The frame that the session would take next of a stream that it watches.
   struct Demand {
-    core::Level level = core::Level::kFull;
+    core::Level level = core::Level::kFull;  ///< that the session watches now
     /// Only a keyframe can be taken. False for a session that has read nothing since it lost a frame: no keyframe is
     /// made for a client that cannot take it.
     bool wants_keyframe = false;
@@ -118,16 +118,10 @@ class Outbox {
   bool takeWake();
   /// Returns the level of the slot's watch as of now; the slot must have a watch.
   core::Level levelOf(const Slot& slot) const;
-  /// Returns whether the next frame passes the rate limit of the watch and, where `effective` differs from `wanted`,
-  /// that of `wanted`.
-  static bool isOpen(const Slot& slot, core::Level wanted, core::Level effective, Clock::time_point now);
 
   struct Slot {
     std::optional<Watch> watch;  ///< empty = not watched
     RateGate gate;
-    /// By core::Level: limits the rate of a session that watches a level but gets kFull, because the level does not
-    /// downsample the layer.
-    std::array<RateGate, core::kLevelCount> level_gates;
     core::SharedBytes frame;
     core::Level level = core::Level::kFull;  ///< of the newest frame taken
     std::uint32_t reduced_count = 0;         ///< of the newest frame

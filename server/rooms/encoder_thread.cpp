@@ -1,5 +1,6 @@
 #include <chrono>
 #include <utility>
+#include <vector>
 
 #include <spindrift/rooms/encoder_thread.h>
 
@@ -79,9 +80,18 @@ void EncoderThread::loop() {
 EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
                                            codec::FrameEncoder& encoder) {
   Costs spent{};
+  // Published at the end: what comes at one time goes out to a session in one write.
+  struct Ready {
+    codec::Stream stream;
+    codec::EncodedFrame encoded;
+    core::FrameLevels levels;
+  };
+  std::vector<Ready> ready;
   for (const codec::Stream stream : codec::allStreams()) {
     const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
-    const core::StreamDemand demand = outlet_.demand(room, stream, reduced_count);
+    const core::LevelSet due = codec::levelsTaking(stream.layer, frame.due);
+    const core::StreamDemand demand =
+        core::demandOfFrame(outlet_.demand(room, stream, reduced_count), reduced_count, due);
     for (const core::Level level : core::kLevels) {
       const core::LevelDemand& wanted = demand[core::indexOf(level)];
       if (wanted.watcher_count == 0) continue;
@@ -94,9 +104,10 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
       for (const core::SharedBytes& form : {encoded.keyframe, encoded.delta}) {
         if (form) cost.bytes_count += form->size();
       }
-      outlet_.publish(room, stream, encoded, level, reduced_count);
+      ready.push_back({stream, encoded, {.level = level, .reduced_count = reduced_count, .due = due}});
     }
   }
+  for (const Ready& one : ready) outlet_.publish(room, one.stream, one.encoded, one.levels);
   return spent;
 }
 

@@ -269,8 +269,13 @@ bool Room::isFrameDue(TimePoint now) const {
   return now - last_frame_ >= std::max<duration<double>>(interval, kSlowFrameInterval);
 }
 
-bool Room::isDue(core::Level level) const {
-  return paused_ || frame_count_ % core::frameStride(level, water_->scene().stream().frame_rate_hz()) == 0;
+core::LevelSet Room::levelsDue() const {
+  core::LevelSet out;
+  for (const core::Level level : core::kLevels) {
+    if (paused_ || frame_count_ % core::frameStride(level, water_->scene().stream().frame_rate_hz()) == 0)
+      out.insert(level);
+  }
+  return out;
 }
 
 void Room::requestFrame(TimePoint now) {
@@ -280,13 +285,14 @@ void Room::requestFrame(TimePoint now) {
   next_idle_frame_ = now + kPausedFrameInterval;
   last_frame_ = now;
   const v1::Scene& scene = water_->scene();
-  const WatchedLayers watched = outlets_.watched(*this, water_->sim().reducedCounts());
+  const core::LevelSet due = levelsDue();
+  const WatchedLayers watched = outlets_.watched(*this, water_->sim().reducedCounts(), due);
   wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
-  sim::FrameRequest request{
-      .bodies = scene.has_boats() && watched.bodies, .asked_s = core::monotonic_s(now), .state_id = water_->stateId()};
-  for (const core::Level level : core::kLevels) {
-    if (!isDue(level)) continue;
-    const std::size_t k = core::indexOf(level);
+  sim::FrameRequest request{.bodies = scene.has_boats() && watched.bodies,
+                            .asked_s = core::monotonic_s(now),
+                            .state_id = water_->stateId(),
+                            .due = due};
+  for (std::size_t k = 0; k < core::kLevelCount; ++k) {
     const sim::LayerRequest& layers = watched.levels[k];
     request.levels[k] = {.surface = scene.has_wave() && layers.surface,
                          .particles = scene.has_particles() && layers.particles,

@@ -107,10 +107,13 @@ void Gateway::frameReady(const rooms::Room& room, core::FrameView frame) {
   encoder_->submit(room.name(), std::move(frame));
 }
 
-rooms::WatchedLayers Gateway::watched(const rooms::Room& room, const core::ReducedCounts& counts) const {
+rooms::WatchedLayers Gateway::watched(const rooms::Room& room, const core::ReducedCounts& counts,
+                                      core::LevelSet due) const {
   rooms::WatchedLayers out;
   for (const codec::Stream& stream : codec::allStreams()) {
-    const auto of_levels = demand(room.name(), stream, codec::reducedCountOf(stream.layer, counts));
+    const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, counts);
+    const auto of_levels = core::demandOfFrame(demand(room.name(), stream, reduced_count), reduced_count,
+                                               codec::levelsTaking(stream.layer, due));
     const auto is_watched = [](const core::LevelDemand& level) { return level.watcher_count > 0; };
     const auto note = [&](bool sim::LayerRequest::*layer) {
       for (std::size_t k = 0; k < core::kLevelCount; ++k) out.levels[k].*layer |= is_watched(of_levels[k]);
@@ -153,9 +156,9 @@ core::StreamDemand Gateway::demand(const std::string& room, codec::Stream stream
 }
 
 void Gateway::publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
-                      core::Level level, std::uint32_t reduced_count) {
-  publishTo(hub(), room, stream, frame, level, reduced_count);
-  if (cluster_.audience) cluster_.audience->publish(room, stream, frame, level, reduced_count);
+                      const core::FrameLevels& levels) {
+  publishTo(hub(), room, stream, frame, levels);
+  if (cluster_.audience) cluster_.audience->publish(room, stream, frame, levels);
 }
 
 void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {

@@ -305,15 +305,14 @@ void Sessions::subscribe(net::SessionId session, const State& state, const wire:
   }
   // One packing at a time: a subscription to the other packing stops this one.
   const codec::Stream wanted = codec::streamOf(subscribe.layer, subscribe.packing);
-  const bool has_levels = codec::hasLevels(subscribe.layer);
   const bool is_first = subscribe.max_rate_hz > 0.0 && noteWatched(session, subscribe.layer);
   for (const codec::Stream stream : codec::allStreams()) {
     if (stream.layer != wanted.layer) continue;
     const bool is_wanted = stream.packing == wanted.packing;
     hub().watch(session, streamIndex(stream),
                 {.max_rate_hz = is_wanted ? std::min(subscribe.max_rate_hz, kFrameRateMax_hz) : 0.0,
-                 .level = has_levels ? subscribe.level : core::Level::kFull,
-                 .adapts = has_levels && subscribe.adapts,
+                 .level = subscribe.level,
+                 .adapts = codec::hasLevels(subscribe.layer) && subscribe.adapts,
                  .is_first = is_first});
   }
   state.venue->watchesChanged();

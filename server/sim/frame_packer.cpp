@@ -101,6 +101,7 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, co
   pending.time_s = time_s;
   pending.asked_s = request.asked_s;
   pending.state_id = request.state_id;
+  pending.due = request.due;
   std::size_t at = 0;
   packed_.bindStorage(PACKED_WORDS);
   for (const core::Level level : core::kLevels) {
@@ -173,6 +174,7 @@ std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const D
     frame.time_s = pending.time_s;
     frame.asked_s = pending.asked_s;
     frame.state_id = pending.state_id;
+    frame.due = pending.due;
     frame.reduced_counts = reduced_counts_;
     frame.lease = slot;
     const auto words = slot->words();

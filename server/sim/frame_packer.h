@@ -64,6 +64,7 @@ class FramePacker {
     double time_s = 0.0;
     double asked_s = 0.0;
     std::uint64_t state_id = 0;
+    core::LevelSet due;
     std::array<Places, core::kLevelCount> places{};
     std::optional<std::size_t> bodies;
     std::uint32_t boat_count = 0;

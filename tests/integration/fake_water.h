@@ -114,9 +114,9 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
   core::StreamDemand demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const override {
     return service::demandOf(*hub_, room, stream, reduced_count);
   }
-  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
-               std::uint32_t reduced_count) override {
-    service::publishTo(*hub_, room, stream, frame, level, reduced_count);
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
+               const core::FrameLevels& levels) override {
+    service::publishTo(*hub_, room, stream, frame, levels);
   }
   void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
 

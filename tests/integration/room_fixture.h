@@ -17,6 +17,8 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   int scene_count = 0;
   int recovered_count = 0;
   int frame_count = 0;
+  std::vector<core::LevelSet> ready_levels;          ///< of each frame
+  mutable std::vector<core::LevelSet> asked_levels;  ///< with each call of watched()
   std::vector<std::uint64_t> applied;
   std::vector<std::string> rejected;
   std::vector<std::string> fidelity_news;
@@ -38,8 +40,12 @@ struct RecordingOutlets final : rooms::RoomOutlets {
     rejected.push_back(rejection.message);
     rejected_ids.push_back(rejection.command_id);
   }
-  void frameReady(const rooms::Room&, core::FrameView) override { ++frame_count; }
-  rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&) const override {
+  void frameReady(const rooms::Room&, core::FrameView frame) override {
+    ++frame_count;
+    ready_levels.push_back(frame.due);
+  }
+  rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&, core::LevelSet due) const override {
+    asked_levels.push_back(due);
     rooms::WatchedLayers out{.bodies = true, .diagnostics = true};
     out.levels.back() = {.surface = true, .particles = true, .foam = true};
     return out;

@@ -21,5 +21,26 @@ TEST_F(RoomFrames, ComeAtLeastEveryFewTenthsOfASecondHoweverSlowTheTicksAre) {
   EXPECT_GE(outlets_.frame_count, kRoundCount - 2);
 }
 
+TEST_F(RoomFrames, SayWhichLevelsTakeThem) {
+  constexpr std::size_t kFrameCount = 12;
+  ASSERT_TRUE(runUntil([&] { return outlets_.ready_levels.size() >= kFrameCount; }));
+  const std::vector<core::LevelSet>& asked = outlets_.asked_levels;
+  core::LevelSet all_but_coarse = core::LevelSet::all();
+  all_but_coarse.erase(core::Level::kCoarse);
+  // 30 frames per second: 15 of them for the level coarse, which has at most 20.
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    EXPECT_EQ(asked[k], k % 2 == 0 ? core::LevelSet::all() : all_but_coarse) << k;
+  // A frame without diagnostics of its own has the levels that its layers were asked for with; none is left out here.
+  for (std::size_t k = 0; k < kFrameCount; ++k) EXPECT_EQ(outlets_.ready_levels[k], asked[k]) << k;
+
+  v1::Command pause;
+  pause.mutable_set_paused()->set_paused(true);
+  send(1, pause);
+  ASSERT_TRUE(runUntil([&] { return !outlets_.applied.empty(); }));
+  outlets_.asked_levels.clear();
+  ASSERT_TRUE(runUntil([&] { return outlets_.asked_levels.size() >= 3; }));
+  for (const core::LevelSet& levels : outlets_.asked_levels) EXPECT_EQ(levels, core::LevelSet::all());
+}
+
 }  // namespace
 }  // namespace spindrift::test

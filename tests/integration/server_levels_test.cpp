@@ -1,6 +1,7 @@
 // Levels of detail over a real connection: chosen by the client, and by the server for one that cannot keep up.
 #include <chrono>
 #include <map>
+#include <set>
 #include <thread>
 
 #include <spindrift/bench/levels.h>
@@ -130,6 +131,62 @@ TEST_F(LevelsOfAPool, ALevelIsEncodedOnceForAllWatchersAndNotWithoutOne) {
   EXPECT_GE(2 * coarse_count, 10u);
   // 15 of 30 frames per second, independent of other watchers.
   EXPECT_LE(coarse_count, (both_count - coarse_count) / 2 + 2);
+}
+
+/// A scene in which the level coarse leaves nothing out.
+class LevelsOfAPond : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override {
+    return {{"main", R"(
+      wave { resolution_count: 64 side_m: 8 depth_m: 1 }
+      particles { count: 1000 layers_count: 1 headroom_m: 2 }
+      coupling {}
+      foam { surface: true }
+      boats { capacity_count: 2 }
+    )"}};
+  }
+};
+
+TEST_F(LevelsOfAPond, ClientsOfALevelGetAllLayersOfTheSameMoments) {
+  constexpr std::array kLayers{v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES};
+  const auto watch = [&](ScriptedClient& one, v1::Level level) {
+    for (const v1::Layer layer : kLayers) one.subscribe(subscription(layer, level));
+  };
+  // Each tick of which a client has a frame, with its layers.
+  const auto moments = [](ScriptedClient& one) {
+    std::map<std::uint64_t, std::set<v1::Layer>> out;
+    while (out.size() < 14) {
+      const auto message = one.waitFor(v1::ServerMessage::kFrame);
+      if (!message) break;
+      out[message->frame().tick()].insert(message->frame().layer());
+    }
+    out.erase(out.begin());  // the subscriptions came one after the other
+    if (!out.empty()) out.erase(std::prev(out.end()));
+    return out;
+  };
+  const auto particle_frames = [&] {
+    return encoder().costs()[codec::indexOf({v1::LAYER_PARTICLES})][core::indexOf(core::Level::kFull)].frame_count;
+  };
+
+  ScriptedClient coarse = client();
+  coarse.hello();
+  watch(coarse, v1::LEVEL_COARSE);
+  ASSERT_TRUE(coarse.nextFrame(v1::LAYER_BODIES));
+  const std::uint64_t first_count = particle_frames();
+  const auto first_tick = coarse.apply(splash());
+  const auto of_coarse = moments(coarse);
+  const auto last_tick = coarse.apply(splash());
+  const std::uint64_t last_count = particle_frames();
+  ASSERT_EQ(of_coarse.size(), 12U);
+  for (const auto& [tick, layers] : of_coarse) EXPECT_EQ(layers.size(), kLayers.size()) << "tick " << tick;
+  // A frame is made every second tick, and nobody takes every second frame.
+  ASSERT_TRUE(first_tick && last_tick);
+  EXPECT_LT(static_cast<double>(last_count - first_count), 0.4 * static_cast<double>(*last_tick - *first_tick));
+
+  ScriptedClient full = client();
+  watch(full, v1::LEVEL_FULL);
+  ASSERT_TRUE(full.nextFrame(v1::LAYER_BODIES));
+  for (const auto& [tick, layers] : moments(coarse)) EXPECT_EQ(layers.size(), kLayers.size()) << "tick " << tick;
 }
 
 TEST(LevelBudgets, AreKeptByAPoolOfTheLargestOne) {

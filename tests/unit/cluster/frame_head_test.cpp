@@ -20,28 +20,46 @@ std::string text(core::ByteView bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
+core::LevelSet allBut(core::Level level) {
+  core::LevelSet out = core::LevelSet::all();
+  out.erase(level);
+  return out;
+}
+
 TEST(FrameHead, KeepsItsBytes) {
   const FrameHead head{.run = 0x0102030405060708,
                        .sequence = 0x1112131415161718,
-                       .reduced_count = 0x21222324,
+                       .reduced_count = 0x2324,
+                       .due = allBut(core::Level::kMedium),
                        .keyframe_bytes = 0x31323334,
                        .delta_bytes = 0x41424344};
-  const core::Bytes expected{'1',  'F',  'P',  'S',  8,    7,    6,    5,    4,    3,    2,
-                             1,    0x18, 0x17, 0x16, 0x15, 0x14, 0x13, 0x12, 0x11, 0x24, 0x23,
-                             0x22, 0x21, 0x34, 0x33, 0x32, 0x31, 0x44, 0x43, 0x42, 0x41};
+  const core::Bytes expected{'1',  'F',  'P',  'S',  8,    7,    6, 5, 4,    3,    2,    1,    0x18, 0x17, 0x16, 0x15,
+                             0x14, 0x13, 0x12, 0x11, 0x24, 0x23, 2, 0, 0x34, 0x33, 0x32, 0x31, 0x44, 0x43, 0x42, 0x41};
   EXPECT_EQ(messageOf(head, ""), expected);
 }
 
 TEST(Frame, HasKeyframeThenDelta) {
-  const core::Bytes message =
-      messageOf({.run = 7, .sequence = 9, .reduced_count = 2, .keyframe_bytes = 3, .delta_bytes = 2}, "keyde");
+  const core::Bytes message = messageOf({.run = 7,
+                                         .sequence = 9,
+                                         .reduced_count = 2,
+                                         .due = allBut(core::Level::kCoarse),
+                                         .keyframe_bytes = 3,
+                                         .delta_bytes = 2},
+                                        "keyde");
   const auto frame = readFrame(message);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->head.run, 7U);
   EXPECT_EQ(frame->head.sequence, 9U);
   EXPECT_EQ(frame->head.reduced_count, 2U);
+  EXPECT_EQ(frame->head.due, allBut(core::Level::kCoarse));
   EXPECT_EQ(text(frame->keyframe), "key");
   EXPECT_EQ(text(frame->delta), "de");
+}
+
+TEST(Frame, IgnoresLevelsItDoesNotKnow) {
+  core::Bytes message = messageOf({.keyframe_bytes = 3}, "key");
+  message[22] = message[23] = 0xFF;
+  EXPECT_EQ(readFrame(message)->head.due, core::LevelSet());
 }
 
 TEST(Frame, MayLackOneOfThem) {

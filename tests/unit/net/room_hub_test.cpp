@@ -34,10 +34,8 @@ struct RecordingLink final : SessionLink {
   }
   void wakeForFrames() override { ++wake_count; }
   void offerNewest(StreamIndex, const FrameBytes&) override { ++newest_count; }
-  Outbox::Demand demand(StreamIndex, std::uint32_t reduced_count, Clock::duration) const override {
-    return {.level = core::effectiveLevel(level, reduced_count),
-            .wants_keyframe = wants_keyframe,
-            .is_newcomer = is_newcomer};
+  Outbox::Demand demand(StreamIndex, std::uint32_t, Clock::duration) const override {
+    return {.level = level, .wants_keyframe = wants_keyframe, .is_newcomer = is_newcomer};
   }
   void setWatch(StreamIndex, const std::optional<Watch>& watch) override {
     rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
@@ -92,9 +90,8 @@ TEST_F(RoomHubTest, ReportsTheDemandPerLevel) {
   EXPECT_EQ(at("pool", 3, 2, Level::kMedium).watcher_count, 1U);
   EXPECT_TRUE(at("pool", 3, 2, Level::kMedium).wants_keyframe);
   EXPECT_EQ(at("pool", 3, 2, Level::kCoarse).watcher_count, 0U);
-  // If the medium level leaves nothing out, full is used instead.
-  EXPECT_EQ(at("pool", 3, 1, Level::kFull).watcher_count, 2U);
-  EXPECT_TRUE(at("pool", 3, 1, Level::kFull).wants_keyframe);
+  // If the medium level leaves nothing out, its sessions still ask for it.
+  EXPECT_EQ(at("pool", 3, 1, Level::kMedium).watcher_count, 1U);
   EXPECT_EQ(at("pool", 4, 2, Level::kFull).watcher_count, 0U);
   EXPECT_EQ(at("pond", 3, 2, Level::kFull).watcher_count, 0U);
 }

@@ -110,7 +110,8 @@ struct FrameView {
   std::array<LevelView, kLevelCount> levels;  ///< indexed by Level; see at()
   std::optional<BodiesView> bodies;
   std::optional<DiagnosticsView> diagnostics;
-  ReducedCounts reduced_counts;  ///< of the scene, whatever this frame contains
+  ReducedCounts reduced_counts;    ///< of the scene, whatever this frame contains
+  LevelSet due = LevelSet::all();  ///< levels whose rate includes the frame
   std::shared_ptr<const void> lease;
 
   [[nodiscard]] const LevelView& at(Level level) const { return levels[indexOf(level)]; }

@@ -22,6 +22,27 @@ constexpr std::size_t indexOf(Level level) {
   return static_cast<std::size_t>(level);
 }
 
+/// A set of levels.
+class LevelSet {
+ public:
+  constexpr LevelSet() = default;
+  [[nodiscard]] static constexpr LevelSet all() { return LevelSet((1U << kLevelCount) - 1U); }
+
+  constexpr void insert(Level level) { bits_ |= 1U << indexOf(level); }
+  constexpr void erase(Level level) { bits_ &= ~(1U << indexOf(level)); }
+  [[nodiscard]] constexpr bool contains(Level level) const { return (bits_ >> indexOf(level) & 1U) != 0; }
+  [[nodiscard]] constexpr LevelSet complement() const { return LevelSet(all().bits_ & ~bits_); }
+  /// A bit per level: bit indexOf(level). Bits of unknown levels are ignored.
+  [[nodiscard]] constexpr std::uint32_t bits() const { return bits_; }
+  [[nodiscard]] static constexpr LevelSet fromBits(std::uint32_t bits) { return LevelSet(bits & all().bits_); }
+
+  friend constexpr bool operator==(const LevelSet&, const LevelSet&) = default;
+
+ private:
+  explicit constexpr LevelSet(std::uint32_t bits) : bits_(bits) {}
+  std::uint32_t bits_ = 0;
+};
+
 /// Limits of one level. The defaults are no limit.
 struct LevelBudget {
   /// Samples of the surface: as many as a square of so many along each side. The foam has half as many along each axis.
@@ -90,5 +111,15 @@ constexpr std::uint32_t frameStride(Level level, double frame_rate_hz) {
   while (stride < ratio - 1e-9) ++stride;
   return stride;
 }
+
+/// How a frame of one layer stands to the levels.
+struct FrameLevels {
+  Level level = Level::kFull;       ///< of its data
+  std::uint32_t reduced_count = 0;  ///< number of levels that downsample the layer; others equal kFull
+  LevelSet due = LevelSet::all();   ///< levels whose rate includes the frame: see frameStride()
+
+  /// Returns whether the frame has the data of the level `wanted`.
+  [[nodiscard]] constexpr bool isOf(Level wanted) const { return effectiveLevel(wanted, reduced_count) == level; }
+};
 
 }  // namespace spindrift::core

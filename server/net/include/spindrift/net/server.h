@@ -33,8 +33,7 @@ inline constexpr StreamIndex kMaxStreamCount = 16;
 struct FrameBytes {
   core::SharedBytes keyframe;  ///< can be decoded alone
   core::SharedBytes delta;     ///< needs the previous frame of this level
-  core::Level level = core::Level::kFull;
-  std::uint32_t reduced_count = 0;  ///< number of levels that downsample its layer; others equal kFull
+  core::FrameLevels levels{};
 };
 
 /// Topic of a state message: among waiting messages with the same name only the newest is sent.
@@ -131,8 +130,9 @@ class Hub {
   /// be published between that one and this call. It does not count for the rate.
   virtual void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
-  /// Returns which levels of the stream are watched now, and in which form, so that unwatched levels are not encoded.
-  /// `reduced_count`: number of levels that downsample its layer; requests for higher levels count as kFull.
+  /// Returns which levels of the stream are watched now, and in which form, so that unwatched levels are not encoded:
+  /// by the level that sessions ask for; core::demandOfFrame() says which data that needs. `reduced_count`: number of
+  /// levels that downsample its layer.
   /// `ahead`: how long from now the frame will come.
   virtual core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
                                     std::chrono::steady_clock::duration ahead = {}) const = 0;

@@ -22,7 +22,7 @@ class FrameOutlet {
                                                   std::uint32_t reduced_count) const = 0;
   /// Sends one level of a frame to every session that watches it.
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
-                       core::Level level, std::uint32_t reduced_count) = 0;
+                       const core::FrameLevels& levels) = 0;
 };
 
 }  // namespace spindrift::rooms

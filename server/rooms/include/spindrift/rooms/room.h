@@ -328,8 +328,8 @@ class Room {
   /// While the room runs.
   [[nodiscard]] bool isFrameDue(TimePoint now) const;
   void requestFrame(TimePoint now);
-  /// Returns whether the next frame contains the level: all levels while paused, otherwise every n-th frame.
-  [[nodiscard]] bool isDue(core::Level level) const;
+  /// Returns the levels that take the next frame: all while paused, otherwise each takes every n-th frame.
+  [[nodiscard]] core::LevelSet levelsDue() const;
   void handOverFrames();
   core::DiagnosticsView diagnostics();
   void watchRealTime(TimePoint now);

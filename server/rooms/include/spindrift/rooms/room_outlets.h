@@ -53,7 +53,8 @@ class RoomOutlets {
   /// A frame with the levels that watched() returned. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;
   /// `counts`: those of the room's present scene.
-  [[nodiscard]] virtual WatchedLayers watched(const Room& room, const core::ReducedCounts& counts) const = 0;
+  [[nodiscard]] virtual WatchedLayers watched(const Room& room, const core::ReducedCounts& counts,
+                                              core::LevelSet due) const = 0;
   /// Sessions in the room; in all rooms.
   [[nodiscard]] virtual std::size_t sessionCount(const Room& room) const = 0;
   [[nodiscard]] virtual std::size_t sessionCount() const = 0;

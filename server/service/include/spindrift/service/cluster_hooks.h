@@ -31,7 +31,7 @@ class RemoteAudience {
   virtual void addDemand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count,
                          core::StreamDemand& demand) const = 0;
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
-                       core::Level level, std::uint32_t reduced_count) = 0;
+                       const core::FrameLevels& levels) = 0;
   /// Sessions in other processes; with an empty name in all rooms.
   [[nodiscard]] virtual std::size_t sessionCount(const std::string& room) const = 0;
 };

@@ -58,7 +58,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;
   void closed(const rooms::Room& room) override;
   void frameReady(const rooms::Room& room, core::FrameView frame) override;
-  [[nodiscard]] rooms::WatchedLayers watched(const rooms::Room& room, const core::ReducedCounts& counts) const override;
+  [[nodiscard]] rooms::WatchedLayers watched(const rooms::Room& room, const core::ReducedCounts& counts,
+                                             core::LevelSet due) const override;
   [[nodiscard]] std::size_t sessionCount(const rooms::Room& room) const override;
   [[nodiscard]] std::size_t sessionCount() const override;
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
@@ -67,8 +68,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   // FrameOutlet interface
   [[nodiscard]] core::StreamDemand demand(const std::string& room, codec::Stream stream,
                                           std::uint32_t reduced_count) const override;
-  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame, core::Level level,
-               std::uint32_t reduced_count) override;
+  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
+               const core::FrameLevels& levels) override;
 
  private:
   [[nodiscard]] net::Hub& hub() const { return sessions_.hub(); }

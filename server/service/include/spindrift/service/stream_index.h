@@ -23,9 +23,8 @@ inline core::StreamDemand demandOf(const net::Hub& hub, const std::string& room,
 
 /// FrameOutlet::publish(), forwarded to a hub.
 inline void publishTo(net::Hub& hub, const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
-                      core::Level level, std::uint32_t reduced_count) {
-  hub.publish(room, streamIndex(stream),
-              {.keyframe = frame.keyframe, .delta = frame.delta, .level = level, .reduced_count = reduced_count});
+                      const core::FrameLevels& levels) {
+  hub.publish(room, streamIndex(stream), {.keyframe = frame.keyframe, .delta = frame.delta, .levels = levels});
 }
 
 }  // namespace spindrift::service

@@ -41,8 +41,9 @@ struct LayerRequest {
 struct FrameRequest {
   std::array<LayerRequest, core::kLevelCount> levels{};  ///< indexed by core::Level; see at()
   bool bodies = false;
-  double asked_s = 0.0;        ///< on the caller's clock; returned with the frame
-  std::uint64_t state_id = 0;  ///< the caller's; returned with the frame
+  double asked_s = 0.0;                        ///< on the caller's clock; returned with the frame
+  std::uint64_t state_id = 0;                  ///< the caller's; returned with the frame
+  core::LevelSet due = core::LevelSet::all();  ///< the levels that take the frame; returned with it
 
   /// Requests layers at core::Level::kFull only.
   [[nodiscard]] static FrameRequest full(const LayerRequest& layers) {
