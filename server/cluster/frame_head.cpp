@@ -26,7 +26,7 @@ std::array<std::uint8_t, kFrameHeadBytes> toBytes(const FrameHead& head) {
   at = write(head.run, at);
   at = write(head.sequence, at);
   at = write(head.reduced_count, at);
-  at = write(static_cast<std::uint16_t>(head.due.complement().bits()), at);
+  at = write(static_cast<std::uint16_t>(head.due.bits()), at);
   at = write(head.keyframe_bytes, at);
   write(head.delta_bytes, at);
   return out;
@@ -40,7 +40,9 @@ std::optional<FrameParts> readFrame(core::ByteView message) {
   out.head.run = read<std::uint64_t>(at);
   out.head.sequence = read<std::uint64_t>(at);
   out.head.reduced_count = read<std::uint16_t>(at);
-  out.head.due = core::LevelSet::fromBits(read<std::uint16_t>(at)).complement();
+  const std::uint16_t due_bits = read<std::uint16_t>(at);
+  out.head.due = core::LevelSet::fromBits(due_bits);
+  if (out.head.due.bits() != due_bits) return std::nullopt;
   out.head.keyframe_bytes = read<std::uint32_t>(at);
   out.head.delta_bytes = read<std::uint32_t>(at);
   const core::ByteView content = message.subspan(kFrameHeadBytes);

@@ -14,7 +14,7 @@ struct FrameHead {
   std::uint64_t run = 0;            ///< of the room
   std::uint64_t sequence = 0;       ///< of this stream and level in this run: a delta builds on the frame before
   std::uint16_t reduced_count = 0;  ///< core::FrameLevels::reduced_count
-  core::LevelSet due = core::LevelSet::all();  ///< core::FrameLevels::due; the bytes name the others
+  core::LevelSet due = core::LevelSet::all();  ///< core::FrameLevels::due
   std::uint32_t keyframe_bytes = 0;            ///< 0: there is none
   std::uint32_t delta_bytes = 0;               ///< likewise
 };

@@ -33,8 +33,8 @@ TEST(FrameHead, KeepsItsBytes) {
                        .due = allBut(core::Level::kMedium),
                        .keyframe_bytes = 0x31323334,
                        .delta_bytes = 0x41424344};
-  const core::Bytes expected{'1',  'F',  'P',  'S',  8,    7,    6, 5, 4,    3,    2,    1,    0x18, 0x17, 0x16, 0x15,
-                             0x14, 0x13, 0x12, 0x11, 0x24, 0x23, 2, 0, 0x34, 0x33, 0x32, 0x31, 0x44, 0x43, 0x42, 0x41};
+  const core::Bytes expected{'1',  'F',  'P',  'S',  8,    7,    6,  5, 4,    3,    2,    1,    0x18, 0x17, 0x16, 0x15,
+                             0x14, 0x13, 0x12, 0x11, 0x24, 0x23, 13, 0, 0x34, 0x33, 0x32, 0x31, 0x44, 0x43, 0x42, 0x41};
   EXPECT_EQ(messageOf(head, ""), expected);
 }
 
@@ -56,10 +56,15 @@ TEST(Frame, HasKeyframeThenDelta) {
   EXPECT_EQ(text(frame->delta), "de");
 }
 
-TEST(Frame, IgnoresLevelsItDoesNotKnow) {
+TEST(Frame, WithLevelsThatDoNotExistIsNone) {
   core::Bytes message = messageOf({.keyframe_bytes = 3}, "key");
-  message[22] = message[23] = 0xFF;
-  EXPECT_EQ(readFrame(message)->head.due, core::LevelSet());
+  constexpr std::size_t kDuePlace = 22;
+  message[kDuePlace] = 1U << core::kLevelCount;
+  EXPECT_FALSE(readFrame(message));
+  message[kDuePlace] = 1;
+  EXPECT_TRUE(readFrame(message));
+  message[kDuePlace + 1] = 1;
+  EXPECT_FALSE(readFrame(message));
 }
 
 TEST(Frame, MayLackOneOfThem) {

@@ -18,8 +18,7 @@ TEST(LevelSet, HoldsWhatWasInserted) {
   set.erase(Level::kFull);
   set.erase(Level::kFine);
   EXPECT_EQ(set, LevelSet::fromBits(0b0010));
-  EXPECT_EQ(set.complement(), LevelSet::fromBits(0b1101));
-  EXPECT_EQ(LevelSet::all().complement(), LevelSet());
+  EXPECT_EQ(LevelSet::all(), LevelSet::fromBits(0b1111));
 }
 
 TEST(LevelSet, KeepsItsBitsAndIgnoresThoseOfOtherLevels) {

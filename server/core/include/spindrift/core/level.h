@@ -31,7 +31,6 @@ class LevelSet {
   constexpr void insert(Level level) { bits_ |= 1U << indexOf(level); }
   constexpr void erase(Level level) { bits_ &= ~(1U << indexOf(level)); }
   [[nodiscard]] constexpr bool contains(Level level) const { return (bits_ >> indexOf(level) & 1U) != 0; }
-  [[nodiscard]] constexpr LevelSet complement() const { return LevelSet(all().bits_ & ~bits_); }
   /// A bit per level: bit indexOf(level). Bits of unknown levels are ignored.
   [[nodiscard]] constexpr std::uint32_t bits() const { return bits_; }
   [[nodiscard]] static constexpr LevelSet fromBits(std::uint32_t bits) { return LevelSet(bits & all().bits_); }
