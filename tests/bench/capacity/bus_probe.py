@@ -34,14 +34,14 @@ class BusProbe:
         body = payload[PART_HEAD.size :]
         if subject[0] == "frames":
             name = self.name_of(int(subject[2]), subject[3])
-            head = FRAME_HEAD.unpack_from(body)
-            if head[4]:
-                self.keyframes.setdefault(name, []).append(head[4])
+            keyframe_bytes, delta_bytes = FRAME_HEAD.unpack_from(body)[-2:]
+            if keyframe_bytes:
+                self.keyframes.setdefault(name, []).append(keyframe_bytes)
             if len(subject) > 4:
                 return  # the same frame comes without its keyframe as well
             self.counts[name] = self.counts.get(name, 0) + 1
-            if head[5]:
-                self.deltas.setdefault(name, []).append(head[5])
+            if delta_bytes:
+                self.deltas.setdefault(name, []).append(delta_bytes)
         elif subject[0] == "room":
             self.note(TO_ROOM, fields(body), len(payload))
         elif subject[0] == "node":

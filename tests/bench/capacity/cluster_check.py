@@ -5,7 +5,7 @@ import time
 
 from cluster_processes import Cluster
 from failover_model import FailoverScenario, simulate
-from fanout_model import FanoutModel, FanoutScenario
+from fanout_model import FanoutModel, FanoutScenario, level_rate_hz
 from measured_costs import ARRIVALS_PER_S, SETTLE_S, run_load
 
 SERVERS, EDGES = 3, 4
@@ -22,7 +22,7 @@ def predict(values, clients: int, seconds: float, rate_factor: float) -> dict:
     result = {}
     for _ in range(2):
         result = FanoutModel(values, scenario).run()
-        sent_per_s = clients * sum(values["streams"][name]["rate_hz"] for name in values["level_streams"]["coarse"])
+        sent_per_s = clients * len(values["level_streams"]["coarse"]) * level_rate_hz(values, "coarse")
         bench = sent_per_s * rate_factor * values["bench_cpu_per_frame_s"]
         busy = (result["edges_cpu_cores"] + result["origin_cpu_cores"] + result["nats_cpu_cores"] + bench) / cores
         # The time in a queue with `cores` servers, over the working time.

@@ -49,6 +49,11 @@ class Edge:
         return sum(self.clients.values())
 
 
+def level_rate_hz(parameters, level: str) -> float:
+    """Returns the frames per second of each stream for a client of this level: the rate of its slowest stream."""
+    return min(parameters["streams"][name]["rate_hz"] for name in parameters["level_streams"][level])
+
+
 class FanoutModel:
     def __init__(self, parameters, scenario: FanoutScenario):
         self.p = parameters
@@ -66,6 +71,7 @@ class FanoutModel:
         self.encoder, self.router, self.nats_link, self.receiver = Worker(), Worker(), Worker(), Worker()
         self.is_measuring = False
         self.wanted_keyframes = {}  # by stream: nodes that asked
+        self.numbers = {}  # by stream: of the newest frame
         self.joined = 0
         self.next_edge = 0
         self.delays, self.first_frames = Samples(), Samples()
@@ -180,13 +186,22 @@ class FanoutModel:
 
     # ---- frames -----------------------------------------------------------------------------------------------------
 
-    def watchers(self, edge: Edge, name: str) -> int:
-        return sum(count for level, count in edge.clients.items() if name in self.level_streams[level])
+    def watchers(self, edge: Edge, name: str, number: int | None = None) -> int:
+        """Returns how many clients watch the stream, or take its frame of this number."""
+        return sum(
+            count
+            for level, count in edge.clients.items()
+            if name in self.level_streams[level] and (number is None or number % self.stride(level, name) == 0)
+        )
+
+    def stride(self, level: str, name: str) -> int:
+        """A level takes every n-th frame of a stream that it shares with higher levels."""
+        return round(self.streams[name]["rate_hz"] / level_rate_hz(self.p, level))
 
     def make_frame(self, name: str):
         stream = self.streams[name]
-        watching = [edge for edge in self.edges if edge.alive and self.watchers(edge, name)]
-        if not watching:
+        number = self.numbers[name] = self.numbers.get(name, -1) + 1
+        if not any(edge.alive and self.watchers(edge, name, number) for edge in self.edges):
             return
         made_s = self.queue.now_s
         asked = self.wanted_keyframes.pop(name, None) if stream["delta_bytes"] > 0 else None
@@ -197,9 +212,9 @@ class FanoutModel:
             self.origin_cpu_s += encode_s + publish_s
         base_s = log_normal(self.random, self.base_p50_s, self.base_p99_s)
         done_s = self.encoder.do(made_s, encode_s * self.s.slowdown)
-        self.queue.at(done_s, lambda: self.publish(name, made_s - base_s, bool(asked)))
+        self.queue.at(done_s, lambda: self.publish(name, number, made_s - base_s, bool(asked)))
 
-    def publish(self, name: str, made_s: float, has_keyframe: bool):
+    def publish(self, name: str, number: int, made_s: float, has_keyframe: bool):
         stream, now_s = self.streams[name], self.queue.now_s
         head, latency_s = self.p["frame_head_bytes"], self.p["network_latency_s"]
         watching = [edge for edge in self.edges if edge.alive and self.watchers(edge, name)]
@@ -208,19 +223,19 @@ class FanoutModel:
             size = head + stream["delta_bytes"] + stream["keyframe_bytes"]
             sent_s = self.route("keyframe", size, len(taking))
             for edge in taking:
-                self.queue.at(sent_s + 2 * latency_s, lambda edge=edge: self.receive(edge, name, made_s, True))
+                self.queue.at(sent_s + 2 * latency_s, lambda edge=edge: self.receive(edge, name, number, made_s, True))
         size = head + (stream["delta_bytes"] or stream["keyframe_bytes"])
         begin_s = max(self.nats_link.free_at_s, now_s)
         sent_s = self.route("frame", size, len(watching))
         for place, edge in enumerate(watching):
             at_s = begin_s + (sent_s - begin_s) * (place + 1) / len(watching) + 2 * latency_s
-            self.queue.at(at_s, lambda edge=edge: self.receive(edge, name, made_s, False))
+            self.queue.at(at_s, lambda edge=edge: self.receive(edge, name, number, made_s, False))
 
-    def receive(self, edge: Edge, name: str, made_s: float, has_keyframe: bool):
+    def receive(self, edge: Edge, name: str, number: int, made_s: float, has_keyframe: bool):
         done_s = self.work(edge, edge.delivery, self.p["edge_cpu_per_frame_received_s"])
-        self.queue.at(done_s, lambda: self.send(edge, name, made_s, has_keyframe))
+        self.queue.at(done_s, lambda: self.send(edge, name, number, made_s, has_keyframe))
 
-    def send(self, edge: Edge, name: str, made_s: float, has_keyframe: bool):
+    def send(self, edge: Edge, name: str, number: int, made_s: float, has_keyframe: bool):
         """The frame goes to the clients of the edge: a keyframe to those who need one, the delta to the others."""
         if not edge.alive:
             return
@@ -233,7 +248,7 @@ class FanoutModel:
                     self.first_frames.add(edge.link.free_at_s - since_s)
             edge.needy[name] = []
             return
-        count = self.watchers(edge, name) - len(needy)
+        count = self.watchers(edge, name, number) - len(needy)
         if count <= 0:
             return
         self.transmit(edge, name, stream["delta_bytes"] or stream["keyframe_bytes"], count, made_s)

@@ -6,7 +6,8 @@ import time
 import urllib.parse
 
 PART_HEAD = struct.Struct("<QII")  # number of the message, of the part, of parts
-FRAME_HEAD = struct.Struct("<IQQIII")  # mark, run, sequence, reduced count, bytes of the keyframe, bytes of the delta
+# mark, run, sequence, reduced count, levels that take it, bytes of the keyframe, bytes of the delta
+FRAME_HEAD = struct.Struct("<IQQHHII")
 
 
 class NatsClient:
