@@ -117,8 +117,17 @@ describe("the capacity model", () => {
   it("sends each client the frames of its level, and their bytes", () => {
     const result = steady(40, 2, "--levels", "coarse=1");
     assert.ok(Math.abs(result.surface_frames_per_client_per_s - 20) < 0.2);
-    const expected = 8e-6 * 40 * (20 * 5000 + 60 * 100);
+    // The bodies come at the rate of the level.
+    const expected = 8e-6 * 40 * (20 * 5000 + 20 * 100);
     assert.ok(Math.abs(result.client_mbit_per_s / expected - 1) < 0.02, `${result.client_mbit_per_s}, not ${expected}`);
+  });
+
+  it("makes the frames that a reduced level leaves out only for others who take them", () => {
+    const frames = (levels) => steady(40, 1, "--levels", levels).nats_messages_in_per_s;
+    const [coarse, full, both] = ["coarse=1", "full=1", "coarse=0.5,full=0.5"].map(frames);
+    const near = (value, expected) => assert.ok(Math.abs(value - expected) < 2, `${value}, not ${expected}`);
+    near(full - coarse, 60 + 60 - (20 + 20));
+    near(both - full, 20);
   });
 
   it("says that an edge is overloaded when its clients need more than its thread", () => {
@@ -196,6 +205,14 @@ describe("the capacity model", () => {
     }
   });
 
+  it("waits as long as the load bench does before it measures", () => {
+    const bench = readFileSync(join(repository, "server/bench/load.cpp"), "utf8");
+    const measurement = readFileSync(join(CAPACITY, "measured_costs.py"), "utf8");
+    const number = (text, pattern) => Number(pattern.exec(text)?.[1]);
+    assert.equal(number(measurement, /^SETTLE_S = ([\d.]+)/m), number(bench, /kSettle\{(\d+)\}/));
+    assert.equal(number(measurement, /^ARRIVALS_PER_S = (\d+)/m), number(bench, /kArrivals_per_s = (\d+)/));
+  });
+
   /** Runs Python in the folder of the model; returns what it prints, as JSON. */
   function python(code) {
     const { status, stdout, stderr } = spawnSync("python3", ["-c", code], { encoding: "utf8", cwd: CAPACITY });
@@ -224,8 +241,8 @@ class Silent:
     def subscribe(self, subject): return 1
 probe = BusProbe(Silent(), "spindrift", lambda stream, level: f"{stream}.{level}")
 part = PART_HEAD.pack(1, 0, 1)
-probe.take(["frames", "main", "7", "coarse", "key"], part + FRAME_HEAD.pack(1, 2, 3, 4, 900, 100))
-probe.take(["frames", "main", "7", "coarse"], part + FRAME_HEAD.pack(1, 2, 3, 4, 0, 100))
+probe.take(["frames", "main", "7", "coarse", "key"], part + FRAME_HEAD.pack(1, 2, 3, 4, 15, 900, 100))
+probe.take(["frames", "main", "7", "coarse"], part + FRAME_HEAD.pack(1, 2, 3, 4, 15, 0, 100))
 probe.take(["room", "main"], part + string_field(1, "e1") + string_field(4, ""))
 probe.take(["servers"], part + string_field(1, "s1") + bytes([3 << 3 | 1]) + __import__("struct").pack("<d", 0.5))
 print(json.dumps([probe.counts, probe.deltas, probe.keyframes, probe.control, probe.loads]))`);
