@@ -60,7 +60,7 @@ class Feed final : public service::RemoteAudience {
   void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
               Clock::time_point now);
   /// The room goes on at another server, to which the nodes attach: they are not told that it was closed.
-  void giveUp(const std::string& room);
+  void giveUp(const std::string& name);
   [[nodiscard]] FeedStats stats() const;
 
   // RemoteAudience
@@ -69,11 +69,11 @@ class Feed final : public service::RemoteAudience {
   void closed(const rooms::Room& room) override;
   bool commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
   bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
-  void addDemand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count,
+  void addDemand(const std::string& name, codec::Stream stream, std::uint32_t reduced_count,
                  core::StreamDemand& demand) const override;
-  void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
+  void publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override;
-  [[nodiscard]] std::size_t sessionCount(const std::string& room) const override;
+  [[nodiscard]] std::size_t sessionCount(const std::string& name) const override;
 
  private:
   struct Watched {
@@ -106,7 +106,7 @@ class Feed final : public service::RemoteAudience {
     std::unique_ptr<bus::Subscription> requests;
   };
 
-  void take(const std::string& room, core::ByteView message);
+  void take(const std::string& name, core::ByteView bytes);
   void attach(FedRoom& room, const v1::ToRoom& message);
   /// The people of a link leave the room.
   static void endLink(FedRoom& room, const Link& link);

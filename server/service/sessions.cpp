@@ -32,7 +32,7 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
 
 }  // namespace
 
-void Sessions::opened(net::SessionId session, std::shared_ptr<Venue> venue, const std::string& peer) {
+void Sessions::opened(net::SessionId session, const std::shared_ptr<Venue>& venue, const std::string& peer) {
   const auto now = std::chrono::steady_clock::now();
   {
     const std::lock_guard lock(mutex_);

@@ -26,7 +26,7 @@ void add(FrameCutter& cutter, const std::string& bytes) {
 
 std::string take(FrameCutter& cutter, std::size_t max_bytes = kAnySize) {
   const core::ByteView next = cutter.next();
-  const std::string out = text(next.first(std::min(next.size(), max_bytes)));
+  std::string out = text(next.first(std::min(next.size(), max_bytes)));
   cutter.taken(out.size());
   return out;
 }

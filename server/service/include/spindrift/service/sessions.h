@@ -37,7 +37,7 @@ class Sessions {
   [[nodiscard]] net::Hub& hub() const { return *hub_; }
 
   // From the network.
-  void opened(net::SessionId session, std::shared_ptr<Venue> venue, const std::string& peer);
+  void opened(net::SessionId session, const std::shared_ptr<Venue>& venue, const std::string& peer);
   void message(net::SessionId session, core::ByteView message);
   void levelChanged(net::SessionId session, core::Level level);
   void closed(net::SessionId session, const net::SessionEnd& end);
