@@ -21,8 +21,8 @@ class FrameCutter {
  public:
   explicit FrameCutter(std::size_t kept_max_bytes) : kept_(std::max(kept_max_bytes, kHeaderMaxBytes)) {}
 
-  /// Returns where to read to, never empty while next() is. Call while next() is empty, then added() with the number of
-  /// bytes.
+  /// Returns the free space to read into; never empty while next() is empty. Call it only then, and added() with the
+  /// number of bytes that were read.
   std::span<std::uint8_t> room() {
     std::copy(kept_.begin() + begin_, kept_.begin() + end_, kept_.begin());  // at most the beginning of a header
     end_ -= begin_;

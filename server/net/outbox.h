@@ -45,10 +45,10 @@ class Outbox {
   /// requested.
   Outcome pushState(const StateTopic& topic, core::SharedBytes message);
 
-  /// Puts the frame into its stream's slot if the session watches the stream at this level and its rate allows, and the
-  /// level is due: the delta if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe
-  /// an unsent older frame is dropped, and the session waits. Ignored after a close was requested. Wakes nobody: call
-  /// wakeForFrames() after the last frame of a moment.
+  /// Puts the frame into its stream's slot if the session's level takes it and the rate of the watch allows: the delta
+  /// if the client has the frame that it builds on, otherwise the keyframe. Without a keyframe an unsent older frame is
+  /// dropped, and the session waits. Ignored after a close was requested. Wakes nobody: call wakeForFrames() after the
+  /// last frame of a moment.
   Outcome offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now);
 
   /// Puts the newest frame of a stream, a keyframe that other sessions have had already, into the slot of a session

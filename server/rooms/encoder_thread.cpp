@@ -80,7 +80,7 @@ void EncoderThread::loop() {
 EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
                                            codec::FrameEncoder& encoder) {
   Costs spent{};
-  // Published at the end: what comes at one time goes out to a session in one write.
+  // All layers are published together, so that they can leave in one write per session.
   struct Ready {
     codec::Stream stream;
     codec::EncodedFrame encoded;

@@ -111,7 +111,7 @@ constexpr std::uint32_t frameStride(Level level, double frame_rate_hz) {
   return stride;
 }
 
-/// How a frame of one layer stands to the levels.
+/// Which data a frame of one layer has, and the sessions of which levels take it.
 struct FrameLevels {
   Level level = Level::kFull;       ///< of its data
   std::uint32_t reduced_count = 0;  ///< number of levels that downsample the layer; others equal kFull

@@ -130,10 +130,9 @@ class Hub {
   /// be published between that one and this call. It does not count for the rate.
   virtual void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
-  /// Returns which levels of the stream are watched now, and in which form, so that unwatched levels are not encoded:
-  /// by the level that sessions ask for; core::demandOfFrame() says which data that needs. `reduced_count`: number of
-  /// levels that downsample its layer.
-  /// `ahead`: how long from now the frame will come.
+  /// Returns who watches the stream now and who needs a keyframe, by the level that sessions ask for.
+  /// core::demandOfFrame() gives the same by the data that has to be encoded. `reduced_count`: number of levels that
+  /// downsample the layer. `ahead`: how long from now the frame will come.
   virtual core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
                                     std::chrono::steady_clock::duration ahead = {}) const = 0;
 

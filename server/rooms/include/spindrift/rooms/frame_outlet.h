@@ -16,11 +16,11 @@ class FrameOutlet {
  public:
   virtual ~FrameOutlet() = default;
 
-  /// Returns the demand for the next frame of a stream by the sessions that watch it. `reduced_count`: number of levels
-  /// that downsample the layer; the others equal kFull.
+  /// Returns the demand for the next frame of a stream, by the level that sessions ask for; core::demandOfFrame() gives
+  /// it by the data that they need. `reduced_count`: number of levels that downsample the layer; others equal kFull.
   [[nodiscard]] virtual core::StreamDemand demand(const std::string& room, codec::Stream stream,
                                                   std::uint32_t reduced_count) const = 0;
-  /// Sends one level of a frame to every session that watches it.
+  /// Sends the data of one level of a frame to the sessions that take it. `levels`: which these are.
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                        const core::FrameLevels& levels) = 0;
 };

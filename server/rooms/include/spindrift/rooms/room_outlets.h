@@ -52,7 +52,8 @@ class RoomOutlets {
 
   /// A frame with the levels that watched() returned. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;
-  /// `counts`: those of the room's present scene.
+  /// Returns the layers that the next frame needs. `counts`: those of the room's present scene. `due`: the levels that
+  /// take the frame; what only sessions of other levels watch is left out.
   [[nodiscard]] virtual WatchedLayers watched(const Room& room, const core::ReducedCounts& counts,
                                               core::LevelSet due) const = 0;
   /// Sessions in the room; in all rooms.
