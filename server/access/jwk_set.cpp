@@ -1,5 +1,4 @@
 // Keys from a JWK set: RFC 7517, with the members of RFC 7518 section 6 and RFC 8037 section 2.
-#include <boost/json/parse.hpp>
 #include <openssl/bn.h>
 #include <openssl/core_names.h>
 #include <openssl/err.h>
@@ -9,12 +8,14 @@
 #include <spindrift/access/base64url.h>
 #include <spindrift/access/jwt.h>
 
+#include "json_object.h"
+#include "public_keys.h"
+
 namespace spindrift::access {
 namespace {
 
 namespace json = boost::json;
 
-constexpr std::size_t kMaxDepth = 8;
 constexpr std::size_t kIdMaxBytes = 256;
 constexpr std::size_t kRsaMaxBytes = 2048;  // 16,384 bits; larger keys take long to use
 
@@ -92,6 +93,7 @@ std::variant<JwtKey, std::string> parseKey(const json::object& object, JwtAlgori
     }
     ERR_clear_error();
     if (!out.public_key) return "x is no base64url of the 32 bytes of an Ed25519 key";
+    if (std::string why = weaknessOf(*out.public_key); !why.empty()) return why;
     return out;
   }
   const auto modulus = bytesOf(object, "n");
@@ -101,10 +103,7 @@ std::variant<JwtKey, std::string> parseKey(const json::object& object, JwtAlgori
   out.public_key = rsaKey(*modulus, *exponent);
   ERR_clear_error();
   if (!out.public_key) return "n and e are no RSA key";
-  if (const int bits = EVP_PKEY_get_bits(out.public_key.get()); bits < kJwtRsaMinBits) {
-    return "the RSA key has " + std::to_string(bits) + " bits; at least " + std::to_string(kJwtRsaMinBits) +
-           " are needed";
-  }
+  if (std::string why = weaknessOf(*out.public_key); !why.empty()) return why;
   return out;
 }
 
@@ -114,13 +113,9 @@ core::Result<std::vector<JwtKey>> parseKeySet(std::string_view text, const std::
   const auto refuse = [&](const std::string& why) {
     return core::Error{core::ErrorCode::kInvalidInput, label + ": " + why};
   };
-  boost::system::error_code error;
-  json::parse_options options;
-  options.max_depth = kMaxDepth;
-  const json::value value = json::parse({text.data(), text.size()}, error, {}, options);
-  if (error) return refuse("it is no JSON: " + error.message());
-  const json::object* const set = value.if_object();
-  const json::value* const keys = set ? set->if_contains("keys") : nullptr;
+  const auto set = parseJsonObject(text);
+  if (!set) return refuse("it is no JWK set: " + set.error().message);
+  const json::value* const keys = set->if_contains("keys");
   if (!keys || !keys->is_array()) return refuse("it is no JWK set: an object with an array \"keys\" is expected");
   std::vector<JwtKey> out;
   std::size_t number = 0;

@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include <boost/json/parse.hpp>
 #include <fmt/format.h>
 #include <openssl/err.h>
 #include <openssl/evp.h>
@@ -9,13 +8,14 @@
 #include <spindrift/access/digest.h>
 #include <spindrift/access/jwt.h>
 
+#include "json_object.h"
+
 namespace spindrift::access {
 namespace {
 
 namespace json = boost::json;
 using std::chrono::system_clock;
 
-constexpr std::size_t kMaxDepth = 8;
 constexpr double kLastTime_s = 7258118400.0;  // the year 2200: clocks count nanoseconds in 64 bits
 
 core::Error refusal(std::string why) {
@@ -37,15 +37,12 @@ std::optional<Parts> split(std::string_view token) {
   return out;
 }
 
-std::optional<json::object> parseObject(std::string_view base64) {
+/// The error completes "its header" or "its claims".
+core::Result<json::object> parsePart(std::string_view base64) {
   const auto text = fromBase64Url(base64);
-  if (!text) return std::nullopt;
-  boost::system::error_code error;
-  json::parse_options options;
-  options.max_depth = kMaxDepth;
-  json::value value = json::parse(*text, error, {}, options);
-  if (error || !value.is_object()) return std::nullopt;
-  return std::move(value.get_object());
+  auto object = text ? parseJsonObject(*text) : core::Error{core::ErrorCode::kInvalidInput, "no base64url"};
+  if (!object) return core::Error{object.error().code, "cannot be used: it is " + object.error().message};
+  return object;
 }
 
 bool isSignedWith(const JwtKey& key, std::string_view text, std::string_view signature) {
@@ -67,8 +64,8 @@ bool isSignedWith(const JwtKey& key, std::string_view text, std::string_view sig
 
 /// Returns why no key accepts the signature; nullopt if one does. The header chooses among the keys only.
 std::optional<std::string> checkSignature(const Parts& parts, const std::vector<JwtKey>& keys) {
-  const auto header = parseObject(parts.header);
-  if (!header) return "its header is no base64url of a JSON object";
+  const auto header = parsePart(parts.header);
+  if (!header) return "its header " + header.error().message;
   // Extensions that a recipient has to understand (RFC 7515 section 4.1.11); this one understands none.
   if (header->contains("crit")) return "its header has crit, which is not supported";
   const json::value* const algorithm = header->if_contains("alg");
@@ -200,8 +197,8 @@ core::Result<Grant> verifyJwt(std::string_view token, const std::vector<JwtKey>&
   const auto parts = split(token);
   if (!parts) return refusal("it does not consist of three parts between dots");
   if (auto why = checkSignature(*parts, keys)) return refusal(*std::move(why));
-  const auto object = parseObject(parts->claims);
-  if (!object) return refusal("its claims are no base64url of a JSON object");
+  const auto object = parsePart(parts->claims);
+  if (!object) return refusal("the part with its claims " + object.error().message);
 
   Claims claims(*object);
   Grant grant;

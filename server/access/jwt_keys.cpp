@@ -6,6 +6,8 @@
 
 #include <spindrift/access/jwt.h>
 
+#include "public_keys.h"
+
 namespace spindrift::access {
 namespace {
 
@@ -45,17 +47,15 @@ core::Result<JwtKey> parsePublicKey(std::string_view pem, const std::string& lab
   switch (EVP_PKEY_get_base_id(out.public_key.get())) {
     case EVP_PKEY_RSA:
       out.algorithm = JwtAlgorithm::kRs256;
-      if (const int bits = EVP_PKEY_get_bits(out.public_key.get()); bits < kJwtRsaMinBits) {
-        return refusal(label, "the RSA key has " + std::to_string(bits) + " bits; at least " +
-                                  std::to_string(kJwtRsaMinBits) + " are needed");
-      }
-      return out;
+      break;
     case EVP_PKEY_ED25519:
       out.algorithm = JwtAlgorithm::kEdDsa;
-      return out;
+      break;
     default:
       return refusal(label, "keys of this kind are not supported: use RSA (RS256) or Ed25519 (EdDSA)");
   }
+  if (const std::string why = weaknessOf(*out.public_key); !why.empty()) return refusal(label, why);
+  return out;
 }
 
 core::Result<JwtKey> parseSecret(std::string_view text, const std::string& label) {

@@ -71,7 +71,53 @@ TEST(JwkSet, SaysWhichKeyIsWrongAndWhy) {
   EXPECT_THAT(refusalOf(set("3")), HasSubstr("key 1: it is no object"));
 }
 
+TEST(JwkSet, RefusesEd25519PointsOfSmallOrder) {
+  const auto refusalOfPoint = [](const std::string& bytes) {
+    return refusalOf(set(R"({"kty":"OKP","crv":"Ed25519","x":")" + toBase64Url(bytes) + "\"}"));
+  };
+  const auto little = [](int first, int middle, int last) {
+    std::string bytes(32, static_cast<char>(middle));
+    bytes.front() = static_cast<char>(first);
+    bytes.back() = static_cast<char>(last);
+    return bytes;
+  };
+  // y of the points of order 8: the roots of d y^4 + 2 y^2 - 1.
+  const std::string eighth =
+      "\x26\xe8\x95\x8f\xc2\xb2\x27\xb0\x45\xc3\xf4\x89\xf2\xef\x98\xf0\xd5\xdf\xac\x05\xd3\xc6\x33\x39\xb1\x38\x02\x88"
+      "\x6d\x53\xfc\x05";
+  const std::string other_eighth =
+      "\xc7\x17\x6a\x70\x3d\x4d\xd8\x4f\xba\x3c\x0b\x76\x0d\x10\x67\x0f\x2a\x20\x53\xfa\x2c\x39\xcc\xc6\x4e\xc7\xfd\x77"
+      "\x92\xac\x03\x7a";
+  const std::vector<std::string> points{
+      little(1, 0, 0),           // y = 1, order 1
+      little(0xEC, 0xFF, 0x7F),  // y = p - 1, order 2
+      little(0, 0, 0),           // y = 0, order 4
+      eighth,
+      other_eighth,
+      little(0xED, 0xFF, 0x7F),  // y = p, which is 0
+      little(0xEE, 0xFF, 0x7F),  // y = p + 1, which is 1
+  };
+  for (std::string point : points) {
+    EXPECT_THAT(refusalOfPoint(point), HasSubstr("key 1: the Ed25519 key is a point of small order"));
+    point.back() = static_cast<char>(static_cast<unsigned char>(point.back()) | 0x80U);  // the other x
+    EXPECT_THAT(refusalOfPoint(point), HasSubstr("small order"));
+  }
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(refusalOf(set(edKey(test::makeEd25519Key()))), "(accepted)");
+}
+
+TEST(JwkSet, RefusesRsaKeysWithAnExponentForWhichAnybodyCanSign) {
+  const test::KeyPair key = test::makeRsaKey();
+  const auto withExponent = [&](const std::string& exponent) {
+    const std::string whole = rsaKey(key);
+    return refusalOf(set(whole.substr(0, whole.find(R"("e":)")) + R"("e":")" + exponent + "\"}"));
+  };
+  EXPECT_THAT(withExponent("AQ"), HasSubstr("an exponent that is 1 or even")) << 1;
+  EXPECT_THAT(withExponent("AQAA"), HasSubstr("an exponent that is 1 or even")) << 65536;
+  EXPECT_EQ(withExponent("AQAB"), "(accepted)");
+}
+
 TEST(JwkSet, RefusesWhatIsNone) {
+  EXPECT_THAT(refusalOf(R"({"keys":[],"keys":[]})"), HasSubstr("the same name twice"));
   EXPECT_THAT(refusalOf("{"), HasSubstr("no JSON"));
   EXPECT_THAT(refusalOf("[]"), HasSubstr("no JWK set"));
   EXPECT_THAT(refusalOf("{\"keys\":3}"), HasSubstr("no JWK set"));

@@ -28,6 +28,13 @@ TEST(JwtKeys, OtherKeysAreRefusedWithTheReason) {
   EXPECT_THAT(refusalOf(parsePublicKey("", "key")), HasSubstr("no public key"));
 }
 
+TEST(JwtKeys, AnEd25519PointOfSmallOrderIsRefused) {
+  const std::string identity = "MCowBQYDK2VwAyEAAQAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=";  // y = 1
+  EXPECT_THAT(
+      refusalOf(parsePublicKey("-----BEGIN PUBLIC KEY-----\n" + identity + "\n-----END PUBLIC KEY-----\n", "key.pem")),
+      HasSubstr("key.pem: the Ed25519 key is a point of small order"));
+}
+
 TEST(JwtKeys, ALineBreakAfterASecretDoesNotBelongToIt) {
   const std::string secret(32, 's');
   for (const char* end : {"", "\n", "\r\n"}) EXPECT_EQ(parseSecret(secret + end, "key")->secret, secret);

@@ -215,6 +215,17 @@ TEST(Jwt, WhatIsNoTokenIsRefused) {
   EXPECT_FALSE(verified(test::hs256("{\"role\":\"player\",\"exp\":1800003600,\"name\":\"\xFF\"}")));
 }
 
+TEST(Jwt, TheSameNameTwiceIsRefused) {
+  const std::string twice = "the same name twice";
+  EXPECT_THAT(refusalOf(verified(test::hs256(claims(R"(,"role":"operator")")))), HasSubstr(twice));
+  EXPECT_THAT(refusalOf(verified(test::hs256(claims(R"(,"rol\u0065":"operator")")))), HasSubstr(twice)) << "escaped";
+  EXPECT_THAT(refusalOf(verified(test::hs256(claims(R"(,"more":[{"a":1,"a":1}])")))), HasSubstr(twice)) << "inside";
+  EXPECT_THAT(refusalOf(verified(test::hmacToken(R"({"alg":"HS256","alg":"HS256"})", claims(), test::kJwtSecret))),
+              HasSubstr("its header cannot be used: it is JSON with the same name twice"));
+  EXPECT_TRUE(verified(test::hs256(claims(R"(,"name":"a \" : b","more":{"exp":1,"list":[{"exp":1},{"exp":1}]})"))))
+      << "one of each in an object";
+}
+
 TEST(Jwt, TokensOverTheLimitAreRefused) {
   EXPECT_TRUE(verified(test::hs256(claims(R"(,"more":")" + std::string(2000, 'a') + "\""))));
   EXPECT_THAT(refusalOf(verified(test::hs256(claims(R"(,"more":")" + std::string(8000, 'a') + "\"")))),
