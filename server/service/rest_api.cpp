@@ -42,6 +42,10 @@ HttpReply unauthorized(std::string line) {
   return out;
 }
 
+HttpReply bodyIsNotEmpty() {
+  return problem(400, "this request has an empty body: send Content-Length: 0");
+}
+
 HttpReply text(unsigned status, std::string body) {
   return {.status = status, .content_type = "text/plain; charset=utf-8", .body = std::move(body)};
 }
@@ -247,6 +251,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
 
 void RestApi::snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond) {
   if (!call.isOperator()) return respond(problem(403, "a snapshot takes the role of operator"));
+  if (!call.request.body.empty()) return respond(bodyIsNotEmpty());
   const bool is_kept = room.askForSnapshot();
   access_.audit().request("snapshot_asked", call.details(room.name()), call.grant.role, "",
                           is_kept ? "" : "the server keeps no state on disk");
@@ -287,8 +292,10 @@ void RestApi::drainServer(const Call& call, const net::HttpResponder& respond) {
   if (!call.isOperator() || call.grant.rooms)
     return respond(problem(403, "ending the server takes the role of operator in all rooms"));
   if (!requests_.drain) return respond(problem(409, "this server is part of another program, which has to end it"));
+  if (!call.request.body.empty()) return respond(bodyIsNotEmpty());
   access_.audit().request("drain_asked", call.details(""), call.grant.role, "", "");
-  requests_.drain();
+  // Once: a client may repeat a request whose answer was lost, and a second signal would end the wait for the clients.
+  if (!is_draining_.exchange(true)) requests_.drain();
   respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
 }
 

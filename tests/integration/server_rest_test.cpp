@@ -1,4 +1,6 @@
 // The REST interface: opening and closing rooms, commands, reading state, and permissions.
+#include <atomic>
+#include <memory>
 #include <thread>
 
 #include <boost/json.hpp>
@@ -40,7 +42,9 @@ class Rest : public ServerTest {
 
   Answer ask(const std::string& method, const std::string& path, const std::string& body = "",
              const std::string& token = "") {
-    std::string headers = body.empty() ? "" : "Content-Type: application/json\r\n";
+    std::string headers = !body.empty()      ? "Content-Type: application/json\r\n"
+                          : method == "POST" ? "Content-Length: 0\r\n"
+                                             : "";
     if (!token.empty()) headers += "Authorization: Bearer " + token + "\r\n";
     const HttpAnswer answer = httpRequest(server().port(), method, path, headers, body);
     Answer out{answer.status, nullptr, answer.body};
@@ -76,6 +80,31 @@ class RestByRole : public Rest {
     options.access.access = *std::move(access);
   }
 };
+
+/// Counts how often the server is asked to end; it does not.
+class RestOfAProgram : public Rest {
+ protected:
+  void adjust(service::WaterServerOptions& options) const override {
+    options.on_drain = [count = end_count_] { ++*count; };
+  }
+  const std::shared_ptr<std::atomic<int>> end_count_ = std::make_shared<std::atomic<int>>(0);
+};
+
+TEST_F(RestOfAProgram, ARepeatedDrainEndsTheServerOnceAndItIsNotReadyAtOnce) {
+  EXPECT_EQ(ask("POST", "/api/v1/drain").status, 202U);
+  EXPECT_EQ(httpRequest(server().port(), "GET", "/readyz").status, 503U);
+  EXPECT_EQ(ask("POST", "/api/v1/drain").status, 202U) << "a client may repeat a request whose answer was lost";
+  EXPECT_EQ(*end_count_, 1) << "a second signal would end the wait for the clients";
+}
+
+TEST_F(RestOfAProgram, ABodyIsRefusedWhereItHasToBeEmpty) {
+  for (const char* const path : {"/api/v1/drain", "/api/v1/rooms/main/snapshot"}) {
+    const Answer answer = ask("POST", path, "{}");
+    EXPECT_EQ(answer.status, 400U) << path;
+    EXPECT_THAT(answer.text("message"), HasSubstr("empty body")) << path;
+  }
+  EXPECT_EQ(*end_count_, 0);
+}
 
 TEST_F(Rest, ASplashIsAppliedAndAnsweredWithItsTick) {
   ScriptedClient watcher = client();
@@ -211,7 +240,7 @@ TEST_F(Rest, ImpossibleRoomsAreRefusedWithTheReason) {
 
 TEST_F(Rest, AServerInsideAnotherProgramIsNotEndedByARequest) {
   EXPECT_EQ(ask("GET", "/api/v1/drain").status, 405U);
-  const Answer answer = ask("POST", "/api/v1/drain", "{}");
+  const Answer answer = ask("POST", "/api/v1/drain");
   EXPECT_EQ(answer.status, 409U);
   EXPECT_THAT(answer.text("message"), HasSubstr("part of another program"));
   EXPECT_EQ(httpRequest(server().port(), "GET", "/readyz").status, 200U);
@@ -241,7 +270,7 @@ TEST_F(RestByRole, RequestsThatChangeSomethingNeedAToken) {
   EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kOperator).status, 200U);
   EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kPlayer).status, 403U);
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/main", "", kPlayer).status, 403U);
-  EXPECT_EQ(ask("POST", "/api/v1/drain", "{}", kPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/drain", "", kPlayer).status, 403U);
   EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kOperator).status, 201U);
   const Answer wrong = ask("GET", "/api/v1/rooms", "", "wrong-wrong-wrong-1");
   EXPECT_EQ(wrong.status, 401U);

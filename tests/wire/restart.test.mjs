@@ -119,6 +119,21 @@ describe("a server that ends", () => {
     server = undefined;
   });
 
+  it("waits for its clients also after an operator has asked twice", async () => {
+    const { port, ended } = await start(0, ["--drain-s", "3"]);
+    const page = new Page(port, "Ada");
+    pages.push(page);
+    await until("the welcome", () => page.newest("welcome"));
+    const begin = Date.now();
+    for (let k = 0; k < 2; k++) {
+      expect(await statusOf(port, "/api/v1/drain", { method: "POST" })).toMatchObject({ status: 202 });
+      expect(await statusOf(port, "/readyz")).toMatchObject({ status: 503, text: "draining\n" });
+    }
+    expect(await ended).toMatchObject({ code: 0 });
+    expect(Date.now() - begin).toBeGreaterThan(2500);
+    server = undefined;
+  });
+
   it("lets page and scripted client return to their boats after a restart", async () => {
     const port = await freePort();
     const kept = ["--state-dir", join(folder, "state")];

@@ -29,7 +29,7 @@ class RestApi {
   /// What it asks of the server around it.
   struct Requests {
     std::function<void(const rooms::Room&)> dismiss;  ///< closes a room's sessions before the room closes
-    std::function<void()> drain{};                    ///< ends the server; empty: refused
+    std::function<void()> drain{};                    ///< ends the server, called once; empty: refused
   };
   /// All references must outlive it.
   RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Requests requests);
