@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/bus/bus.h>
+#include <spindrift/core/files.h>
 
 #include "parts.h"
 
@@ -191,7 +192,13 @@ core::Result<void> NatsBus::connect(const BusOptions& options) {
   // Without this the client would speak plain text to a server that offers no TLS, or to whoever stands in its place.
   const bool is_secure = std::ranges::any_of(urls, [](const std::string& url) { return url.starts_with("tls://"); });
   if (is_secure || !options.ca_file.empty()) set(natsOptions_SetSecure(raw, true));
-  if (!options.ca_file.empty()) set(natsOptions_LoadCATrustedCertificates(raw, options.ca_file.c_str()));
+  if (!options.ca_file.empty()) {
+    constexpr std::size_t kPemMaxBytes = 4u << 20;
+    const auto authorities = core::readText(options.ca_file, kPemMaxBytes, "a PEM file", "is it the right file?");
+    if (!authorities)
+      return core::Error{authorities.error().code, "--nats-ca " + options.ca_file + ": " + authorities.error().message};
+    set(natsOptions_SetCATrustedCertificates(raw, authorities->c_str()));
+  }
   if (status == NATS_OK) status = natsConnection_Connect(&connection_, raw);
   if (status == NATS_OK) {
     sender_ = std::thread([this] { send(); });

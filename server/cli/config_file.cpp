@@ -10,6 +10,7 @@
 #include <google/protobuf/text_format.h>
 
 #include <spindrift/core/files.h>
+#include <spindrift/core/text.h>
 #include <spindrift/v1/serve_config.pb.h>
 
 namespace spindrift::cli {
@@ -73,8 +74,11 @@ class FirstError final : public google::protobuf::io::ErrorCollector {
       : text_(text), label_(label), options_(options) {}
 
   void AddError(int line, google::protobuf::io::ColumnNumber column, const std::string& message) override {
-    if (message_.empty())
-      message_ = fmt::format("{}:{}:{}: ", label_, line + 1, column + 1) + say(line, column, message);
+    constexpr std::size_t kMessageMaxBytes = 1000;
+    if (message_.empty()) {
+      message_ = fmt::format("{}:{}:{}: ", label_, line + 1, column + 1) +
+                 core::quoteText(say(line, column, message), kMessageMaxBytes);
+    }
   }
   const std::string& message() const { return message_; }
 

@@ -1,5 +1,6 @@
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 
 #include <spindrift/core/files.h>
@@ -14,9 +15,25 @@ Error unavailable(std::string message) {
   return {ErrorCode::kUnavailable, std::move(message)};
 }
 
+/// Returns the name of an encoding other than UTF-8: told by its byte order mark, or by the zero bytes of two
+/// characters of ASCII, with which all texts here begin. Empty for UTF-8.
+std::string otherEncoding(std::string_view text) {
+  const auto starts = [&](std::string_view mark) { return text.starts_with(mark); };
+  if (starts(std::string_view("\xFF\xFE\0\0", 4)) || starts(std::string_view("\0\0\xFE\xFF", 4))) return "UTF-32";
+  if (starts("\xFF\xFE") || starts("\xFE\xFF")) return "UTF-16";
+  if (text.size() < 4) return "";
+  const auto isZero = [&](std::size_t at) { return text[at] == '\0'; };
+  const bool is_little = !isZero(0) && isZero(1) && !isZero(2) && isZero(3);
+  const bool is_big = isZero(0) && !isZero(1) && isZero(2) && !isZero(3);
+  return is_little || is_big ? "UTF-16" : "";
+}
+
 }  // namespace
 
 Result<FileStream> openFile(const fs::path& file, const std::string& what) {
+  // The system would open the file whose name ends there.
+  if (file.native().find('\0') != std::string::npos)
+    return Error{ErrorCode::kInvalidInput, "has a zero byte in its name; remove it"};
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) return unavailable("there is no such file; check the path");
@@ -38,6 +55,15 @@ Result<std::string> readText(const fs::path& file, std::size_t max_bytes, const 
     return unavailable(std::string("cannot be read: ") + std::strerror(errno) + "; check the file");
   if (text.size() > max_bytes)
     return Error{ErrorCode::kInvalidInput, "is bigger than " + std::to_string(max_bytes) + " bytes; " + advice};
+  if (const std::string encoding = otherEncoding(text); !encoding.empty()) {
+    return Error{ErrorCode::kInvalidInput,
+                 "is " + encoding +
+                     " text; save it as UTF-8: choose this encoding where the editor saves the file, or "
+                     "run iconv -f " +
+                     encoding + " -t UTF-8"};
+  }
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   return text;
 }
 

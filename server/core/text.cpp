@@ -107,4 +107,37 @@ std::string cleanName(std::string_view text, std::size_t max_bytes) {
   return name;
 }
 
+namespace {
+
+std::string escapeOf(char32_t c) {
+  if (c == '\t') return "\\t";
+  if (c == '\r') return "\\r";
+  if (c == '\n') return "\\n";
+  char buffer[16];
+  std::snprintf(buffer, sizeof buffer, "\\u{%02X}", static_cast<unsigned>(c));
+  return buffer;
+}
+
+}  // namespace
+
+std::string quoteText(std::string_view text, std::size_t max_bytes) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8SequenceLength(text, at);
+    std::string shown(text.substr(at, std::max<std::size_t>(length, 1)));
+    if (length == 0) {
+      char buffer[8];
+      std::snprintf(buffer, sizeof buffer, "\\x%02X", static_cast<unsigned>(static_cast<std::uint8_t>(text[at])));
+      shown = buffer;
+    } else if (const char32_t c = codePoint(text, at, length);
+               isIn(kUnwanted, c) || isIn(kAttached, c) || (c != ' ' && isIn(kSpace, c))) {
+      shown = escapeOf(c);
+    }
+    if (out.size() + shown.size() > max_bytes) break;
+    out += shown;
+    at += std::max<std::size_t>(length, 1);
+  }
+  return out;
+}
+
 }  // namespace spindrift::core

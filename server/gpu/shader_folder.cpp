@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
+#include <sstream>
 #include <utility>
+
+#include <spindrift/core/files.h>
 
 namespace spindrift::gpu {
 namespace {
@@ -68,8 +70,10 @@ core::Result<ShaderFolder::Source> ShaderFolder::expand(std::string_view entry) 
 core::Result<void> ShaderFolder::expand(const std::string& name, const std::vector<std::string>& stack,
                                         Source& out) const {
   if (std::ranges::find(stack, name) != stack.end()) return invalid("include cycle: " + stack.back() + " -> " + name);
-  std::ifstream file(root_ / name);
-  if (!file) return invalid("no file \"" + name + "\" below " + root_.string());
+  constexpr std::size_t kShaderMaxBytes = 1u << 20;
+  const auto text = core::readText(root_ / name, kShaderMaxBytes, "a shader", "a shader is a small text");
+  if (!text) return invalid("\"" + name + "\" below " + root_.string() + " " + text.error().message);
+  std::istringstream file(*text);
   out.files.insert(name);
   std::vector<std::string> inside = stack;
   inside.push_back(name);

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -14,6 +12,8 @@
 #include <openssl/x509.h>
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
+
+#include <spindrift/core/files.h>
 
 namespace spindrift::net {
 namespace {
@@ -34,10 +34,16 @@ core::Error invalid(std::string message) {
   return {core::ErrorCode::kInvalidInput, std::move(message)};
 }
 
-core::Result<void> checkReadable(const std::string& option, const std::string& file) {
-  const std::ifstream in(file);
-  if (in) return {};
-  return core::Error{core::ErrorCode::kUnavailable, option + " " + file + ": " + std::strerror(errno)};
+core::Result<std::string> readPem(const std::string& option, const std::string& file) {
+  constexpr std::size_t kPemMaxBytes = 4u << 20;
+  auto text = core::readText(file, kPemMaxBytes, "a PEM file", "is it the right file?");
+  if (text) return text;
+  return core::Error{text.error().code, option + " " + file + ": " + text.error().message};
+}
+
+/// Returns why Asio could not use a PEM text: `error`, or what it left in OpenSSL's queue, which says more.
+std::string reasonOf(const boost::system::error_code& error) {
+  return ERR_peek_error() != 0 ? opensslReason() : error.message();
 }
 
 /// RFC 7301. A client that offers no protocol is served as well; one that offers others only is refused.
@@ -70,7 +76,7 @@ std::chrono::system_clock::time_point endOf(const X509* certificate) {
 std::chrono::system_clock::time_point firstEnd(SSL_CTX* context) {
   auto end = endOf(SSL_CTX_get0_certificate(context));
   STACK_OF(X509)* chain = nullptr;
-  if (SSL_CTX_get0_chain_certs(context, &chain) != 1 || chain == nullptr) return end;
+  if (SSL_CTX_get_extra_chain_certs(context, &chain) != 1 || chain == nullptr) return end;
   for (int k = 0; k < sk_X509_num(chain); ++k) end = std::min(end, endOf(sk_X509_value(chain, k)));
   return end;
 }
@@ -86,8 +92,10 @@ void warnAboutKey(const std::string& file) {
 
 core::Result<std::shared_ptr<TlsContext>> TlsContext::forServer(const std::string& certificate_file,
                                                                 const std::string& key_file) {
-  if (auto readable = checkReadable("--tls-cert", certificate_file); !readable) return readable.error();
-  if (auto readable = checkReadable("--tls-key", key_file); !readable) return readable.error();
+  const auto certificates = readPem("--tls-cert", certificate_file);
+  if (!certificates) return certificates.error();
+  const auto key = readPem("--tls-key", key_file);
+  if (!key) return key.error();
   auto out = std::shared_ptr<TlsContext>(new TlsContext(ssl::context(ssl::context::tls_server)));
   SSL_CTX* const context = out->context_.native_handle();
   setVersions(context);
@@ -98,13 +106,16 @@ core::Result<std::shared_ptr<TlsContext>> TlsContext::forServer(const std::strin
     *is_asked = true;
     return std::string();
   });
-  ERR_clear_error();
-  if (SSL_CTX_use_certificate_chain_file(context, certificate_file.c_str()) != 1) {
-    return invalid("--tls-cert " + certificate_file + ": " + opensslReason() +
+  boost::system::error_code error;
+  out->context_.use_certificate_chain(boost::asio::buffer(*certificates), error);
+  if (error) {
+    return invalid("--tls-cert " + certificate_file + ": " + reasonOf(error) +
                    "; give a chain of certificates in PEM form, the server's own first");
   }
-  if (SSL_CTX_use_PrivateKey_file(context, key_file.c_str(), SSL_FILETYPE_PEM) != 1) {
-    const std::string reason = opensslReason();
+  out->context_.use_private_key(boost::asio::buffer(*key), ssl::context::pem, error);
+  if (error) {
+    const std::string reason = error.message();
+    ERR_clear_error();
     if (*is_asked) return invalid("--tls-key " + key_file + ": the key has a passphrase; give one without");
     return invalid("--tls-key " + key_file + ": " + reason + "; give the private key of " + certificate_file +
                    " in PEM form");
@@ -128,9 +139,12 @@ core::Result<std::shared_ptr<TlsContext>> TlsContext::forClient(const std::strin
       context);  // it has no authorities where the system has none; then only ca_file counts
   ERR_clear_error();
   if (ca_file.empty()) return out;
-  if (auto readable = checkReadable("--tls-ca", ca_file); !readable) return readable.error();
-  if (SSL_CTX_load_verify_locations(context, ca_file.c_str(), nullptr) != 1) {
-    return invalid("--tls-ca " + ca_file + ": " + opensslReason() + "; give certificates of authorities in PEM form");
+  const auto authorities = readPem("--tls-ca", ca_file);
+  if (!authorities) return authorities.error();
+  boost::system::error_code error;
+  out->context_.add_certificate_authority(boost::asio::buffer(*authorities), error);
+  if (error) {
+    return invalid("--tls-ca " + ca_file + ": " + reasonOf(error) + "; give certificates of authorities in PEM form");
   }
   return out;
 }

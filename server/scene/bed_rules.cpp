@@ -55,7 +55,7 @@ void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues) 
   std::set<std::string> names;
   for (int i = 0; i < scene.gauges_size(); ++i) {
     const std::string& name = scene.gauges(i).name();
-    const std::string shown = "\"" + core::cleanText(name, kGaugeNameMaxBytes) + "\"";
+    const std::string shown = "\"" + core::quoteText(name, kGaugeNameMaxBytes) + "\"";
     if (!isGaugeName(name)) {
       addRange(issues, indexed("gauges", i) + ".name", shown + " is no name; use 1 to 32 letters, digits, '_' and '-'");
     } else if (!names.insert(name).second) {

@@ -64,7 +64,7 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
 
 void readImage(v1::DepthGrid& grid, const std::optional<fs::path>& folder, std::vector<FieldIssue>& issues) {
   constexpr const char* kPath = "bed.grid.png";
-  const std::string shown = "\"" + core::cleanText(grid.png(), kPathEchoMaxBytes) + "\" ";
+  const std::string shown = "\"" + core::quoteText(grid.png(), kPathEchoMaxBytes) + "\" ";
   const auto file = fileInFolder(folder, grid.png(), "rows");
   if (!file) return addRange(issues, kPath, shown + file.error().message);
   const auto image = readGrayPng(*file);

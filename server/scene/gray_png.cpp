@@ -1,9 +1,11 @@
 #include "gray_png.h"
 
 #include <algorithm>
+#include <array>
 #include <csetjmp>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -79,12 +81,37 @@ std::string kindOf(const Reader& reader) {
                      is_transparent ? " with transparency" : "");
 }
 
+/// Returns the kind of a file that is often taken for a bed, by its first bytes; empty for a PNG and for anything else.
+std::string otherKind(std::string_view head) {
+  struct Kind {
+    std::string_view mark;
+    const char* name;
+  };
+  using namespace std::string_view_literals;
+  static constexpr std::array kKinds{
+      Kind{"II*\0"sv, "a TIFF"},        Kind{"MM\0*"sv, "a TIFF"},       Kind{"II+\0"sv, "a TIFF"},
+      Kind{"MM\0+"sv, "a TIFF"},        Kind{"CDF"sv, "netCDF"},         Kind{"\x89HDF"sv, "netCDF or HDF5"},
+      Kind{"\xFF\xD8\xFF"sv, "a JPEG"}, Kind{"ncols"sv, "an ESRI grid"}, Kind{"NCOLS"sv, "an ESRI grid"}};
+  const auto found = std::ranges::find_if(kKinds, [&](const Kind& kind) { return head.starts_with(kind.mark); });
+  return found == kKinds.end() ? "" : found->name;
+}
+
+/// Returns the first bytes; the stream is at its start again.
+std::string headOf(std::FILE* stream) {
+  std::string head(8, '\0');
+  head.resize(std::fread(head.data(), 1, head.size(), stream));
+  std::rewind(stream);
+  return head;
+}
+
 }  // namespace
 
 core::Result<GrayImage> readGrayPng(const std::filesystem::path& file) {
   const auto invalid = [](std::string message) { return Error{ErrorCode::kInvalidInput, std::move(message)}; };
   const auto stream = core::openFile(file, "a PNG");
   if (!stream) return stream.error();
+  if (const std::string kind = otherKind(headOf(stream->get())); !kind.empty())
+    return invalid("is " + kind + " and not a PNG; convert it with gdal_translate as docs/measured_beds.md shows");
   std::error_code error;
   if (const auto bytes = std::filesystem::file_size(file, error); error || bytes > kFileMaxBytes)
     return invalid(fmt::format("is bigger than {} bytes; choose an image of at most {} x {} pixels", kFileMaxBytes,

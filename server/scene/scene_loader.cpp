@@ -9,6 +9,7 @@
 #include <google/protobuf/text_format.h>
 
 #include <spindrift/core/files.h>
+#include <spindrift/core/text.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_loader.h>
@@ -31,6 +32,8 @@ constexpr std::size_t kMaxReportedErrorCount = 100;
 constexpr std::size_t kMaxKeptErrorCount = kMaxReportedErrorCount + 1;
 /// Maximum nesting of braces; a scene needs four.
 constexpr int kMaxNestingDepth = 32;
+/// Maximum length of one error in a report: it may quote a word of the file.
+constexpr std::size_t kMaxErrorBytes = 1000;
 
 /// Zero-based, as in Protobuf.
 struct Location {
@@ -196,7 +199,7 @@ std::string report(const std::string& file_label, std::vector<LocatedError> erro
   for (std::size_t i = 0; i < shown; ++i) {
     if (i > 0) text += '\n';
     text += file_label + ':' + std::to_string(errors[i].location.line + 1) + ':' +
-            std::to_string(errors[i].location.column + 1) + ": " + errors[i].message;
+            std::to_string(errors[i].location.column + 1) + ": " + core::quoteText(errors[i].message, kMaxErrorBytes);
   }
   if (errors.size() > shown) text += '\n' + file_label + ": and more; correct these first";
   return text;

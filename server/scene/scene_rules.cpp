@@ -209,7 +209,7 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
   if (!isSceneName(scene.name())) {
     addRange(
         issues, "name",
-        "\"" + core::cleanText(scene.name(), kNameMaxBytes) +
+        "\"" + core::quoteText(scene.name(), kNameMaxBytes) +
             "\" is no name; use 1 to 64 letters, digits, '_' and '-' (the file's name counts where it is left out)");
   }
   checkText(scene.title(), kTitleMaxBytes, "title", issues);

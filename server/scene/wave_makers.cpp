@@ -121,11 +121,17 @@ bool readRow(std::string_view line, double& time_s, double& elevation_m) {
 
 void readFile(v1::ElevationSeries& series, const std::optional<fs::path>& folder, const std::string& path,
               std::vector<FieldIssue>& issues) {
-  const std::string shown = "\"" + core::cleanText(series.file(), kPathEchoMaxBytes) + "\" ";
+  const std::string shown = "\"" + core::quoteText(series.file(), kPathEchoMaxBytes) + "\" ";
   const auto file = fileInFolder(folder, series.file(), "time_s and elevation_m");
   if (!file) return addRange(issues, path, shown + file.error().message);
   const auto text = core::readText(*file, kSeriesFileMaxBytes, "a text file", "give fewer rows");
   if (!text) return addRange(issues, path, shown + text.error().message);
+  // Without rows checkSeries() adds no second error.
+  const auto refuse = [&](const std::string& why) {
+    series.clear_time_s();
+    series.clear_elevation_m();
+    addRange(issues, path, shown + why);
+  };
   std::string_view rest = *text;
   for (int number = 1; !rest.empty(); ++number) {
     const std::string_view whole = rest.substr(0, rest.find('\n'));
@@ -134,19 +140,16 @@ void readFile(v1::ElevationSeries& series, const std::optional<fs::path>& folder
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     double time_s = 0.0, elevation_m = 0.0;
     if (!readRow(line, time_s, elevation_m)) {
-      return addRange(issues, path,
-                      shown + "line " + std::to_string(number) + ": \"" +
-                          core::cleanText(std::string(whole), kLineEchoMaxBytes) +
-                          "\" is no row; give a time in seconds and an elevation in metres");
+      return refuse("line " + std::to_string(number) + ": \"" + core::quoteText(whole, kLineEchoMaxBytes) +
+                    "\" is no row; give a time in seconds and an elevation in metres, both finite numbers");
     }
     if (series.time_s_size() == kSceneSeriesRowMaxCount) {
-      return addRange(issues, path,
-                      shown + "has more than " + std::to_string(kSceneSeriesRowMaxCount) + " rows; give fewer");
+      return refuse("has more than " + std::to_string(kSceneSeriesRowMaxCount) + " rows; give fewer");
     }
     series.add_time_s(time_s);
     series.add_elevation_m(elevation_m);
   }
-  if (series.time_s_size() == 0) addRange(issues, path, shown + "has no rows; give times and elevations");
+  if (series.time_s_size() == 0) refuse("has no rows; give times and elevations");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <google/protobuf/text_format.h>
 
 #include <spindrift/core/files.h>
+#include <spindrift/core/text.h>
 #include <spindrift/script/script_file.h>
 
 namespace spindrift::script {
@@ -18,11 +19,13 @@ class FirstError final : public google::protobuf::io::ErrorCollector {
  public:
   explicit FirstError(const std::string& label) : label_(label) {}
   void AddError(int line, google::protobuf::io::ColumnNumber column, const std::string& message) override {
-    if (text.empty()) text = fmt::format("{}:{}:{}: {}", label_, line + 1, column + 1, message);
+    if (text.empty())
+      text = fmt::format("{}:{}:{}: {}", label_, line + 1, column + 1, core::quoteText(message, kMessageMaxBytes));
   }
   std::string text;
 
  private:
+  static constexpr std::size_t kMessageMaxBytes = 1000;
   const std::string& label_;
 };
 

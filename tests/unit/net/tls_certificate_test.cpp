@@ -49,9 +49,10 @@ TEST_F(Certificate, WhatCannotBeUsedIsRefusedWithFileAndReason) {
   const CertificateFiles other = writeCertificate(folder(), "other");
   const CertificateFiles locked = writeCertificate(folder(), "locked", {.passphrase = "secret words"});
   EXPECT_EQ(reasonAgainst(good.certificate, good.key), "");
-  EXPECT_EQ(reasonAgainst("/nonexistent.pem", good.key), "--tls-cert /nonexistent.pem: No such file or directory");
+  EXPECT_EQ(reasonAgainst("/nonexistent.pem", good.key),
+            "--tls-cert /nonexistent.pem: there is no such file; check the path");
   EXPECT_EQ(reasonAgainst(good.certificate, "/nonexistent.key"),
-            "--tls-key /nonexistent.key: No such file or directory");
+            "--tls-key /nonexistent.key: there is no such file; check the path");
   EXPECT_THAT(reasonAgainst(file("empty.pem", ""), good.key),
               AllOf(StartsWith("--tls-cert "), HasSubstr("empty.pem: "), HasSubstr("PEM form")));
   EXPECT_THAT(
@@ -64,6 +65,18 @@ TEST_F(Certificate, WhatCannotBeUsedIsRefusedWithFileAndReason) {
               AllOf(StartsWith("--tls-key "), HasSubstr("other.key: "), HasSubstr("good.pem")));
   EXPECT_EQ(reasonAgainst(locked.certificate, locked.key),
             "--tls-key " + locked.key + ": the key has a passphrase; give one without");
+}
+
+TEST_F(Certificate, AByteOrderMarkIsReadOver) {
+  const CertificateFiles good = writeCertificate(folder(), "good");
+  const auto withMark = [&](const std::string& name, const std::string& of) {
+    std::ostringstream text;
+    text << "\xEF\xBB\xBF" << std::ifstream(of).rdbuf();
+    return file(name, text.str());
+  };
+  EXPECT_EQ(reasonAgainst(withMark("mark.pem", good.certificate), withMark("mark.key", good.key)), "");
+  EXPECT_TRUE(TlsContext::forClient(withMark("authority.pem", good.certificate)));
+  EXPECT_THAT(reasonAgainst(file("wide.pem", std::string("\xFF\xFE-\0", 4)), good.key), HasSubstr("is UTF-16 text"));
 }
 
 TEST_F(Certificate, AServerDoesNotStartWithOneThatCannotBeUsed) {
@@ -211,7 +224,7 @@ TEST_F(ClientTrust, AFileWithoutAuthoritiesIsNamed) {
   ASSERT_FALSE(context);
   EXPECT_THAT(context.error().message, AllOf(StartsWith("--tls-ca "), HasSubstr("none.pem")));
   EXPECT_THAT(TlsContext::forClient("/nonexistent.pem").error().message,
-              "--tls-ca /nonexistent.pem: No such file or directory");
+              "--tls-ca /nonexistent.pem: there is no such file; check the path");
 }
 
 }  // namespace

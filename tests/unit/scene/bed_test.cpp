@@ -182,6 +182,13 @@ TEST_F(BedImage, OfAnotherKindIsRefusedWithItsKind) {
 TEST_F(BedImage, ThatIsMissingOrDamagedIsNamedWithTheReason) {
   EXPECT_THAT(errorOf(load("none.png")), AllOf(HasSubstr("bed.grid.png: \"none.png\""), HasSubstr("no such file")));
   EXPECT_THAT(errorOf(load(".")), HasSubstr("is a directory; name a PNG in it"));
+  EXPECT_THAT(errorOf(load("none.png\\000")), HasSubstr("has a zero byte in its name"));
+  std::ofstream(folder_ / "scenes" / "bay.tif") << std::string("II*\0\x08\0\0\0", 8);
+  EXPECT_THAT(
+      errorOf(load("bay.tif")),
+      HasSubstr("\"bay.tif\" is a TIFF and not a PNG; convert it with gdal_translate as docs/measured_beds.md"));
+  std::ofstream(folder_ / "scenes" / "bay.asc") << "ncols 4\nnrows 3\n";
+  EXPECT_THAT(errorOf(load("bay.asc")), HasSubstr("is an ESRI grid and not a PNG; convert it with gdal_translate"));
   std::ofstream(folder_ / "scenes" / "text.png") << "this is no image";
   EXPECT_THAT(errorOf(load("text.png")), HasSubstr("cannot be read as PNG: Not a PNG file"));
   writeImage("scenes/bed.png", 64, 64, std::vector<std::uint16_t>(64 * 64, 700));

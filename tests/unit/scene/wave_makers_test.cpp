@@ -1,4 +1,5 @@
 // Wave-makers in scene files: what loads, and what is refused with which words.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -162,6 +163,40 @@ TEST_F(SeriesFile, ThatIsMissingDamagedOrTooLongIsNamedWithTheReason) {
   EXPECT_THAT(errorOf(load("long.txt")), HasSubstr("has more than 16384 rows"));
   write("scenes/huge.txt", std::string(1024 * 1024 + 1, '#'));
   EXPECT_THAT(errorOf(load("huge.txt")), HasSubstr("is bigger than 1048576 bytes"));
+}
+
+TEST_F(SeriesFile, OfAnotherEncodingLoadsOrIsNamed) {
+  write("scenes/mark.txt",
+        "\xEF\xBB\xBF"
+        "0 0\n1 0.1\n");
+  EXPECT_EQ(errorOf(load("mark.txt")), "(the scene loaded)");
+  write("scenes/wide.txt", std::string("\xFF\xFE"
+                                       "0\0 \0"
+                                       "0\0\n\0",
+                                       10));
+  EXPECT_THAT(errorOf(load("wide.txt")), HasSubstr("\"wide.txt\" is UTF-16 text; save it as UTF-8"));
+  write("scenes/twice.txt",
+        "0 0\n\xEF\xBB\xBF"
+        "1 0.1\n");
+  EXPECT_THAT(errorOf(load("twice.txt")), HasSubstr("line 2: \"\\u{FEFF}1 0.1\" is no row"));
+  write("scenes/space.txt",
+        "0 0\n1\xC2\xA0"
+        "0.1\n");
+  EXPECT_THAT(errorOf(load("space.txt")), HasSubstr("line 2: \"1\\u{A0}0.1\" is no row"));
+}
+
+TEST_F(SeriesFile, ThatIsRefusedGivesOneError) {
+  for (const char* const text : {"0 0\n1 inf\n", "0 0\n2 0\n1 0\n3 high\n", "0 0\nhigh\n"}) {
+    write("scenes/wrong.txt", text);
+    const std::string error = errorOf(load("wrong.txt"));
+    EXPECT_EQ(std::ranges::count(error, '\n'), 0) << error;
+    EXPECT_THAT(error, HasSubstr("is no row; give a time in seconds and an elevation in metres, both finite numbers"));
+  }
+}
+
+TEST_F(SeriesFile, WhoseNameHasAZeroByteIsRefusedAndNotCut) {
+  write("scenes/wave.txt", "0 0\n1 0.1\n");
+  EXPECT_THAT(errorOf(load("wave.txt\\000")), HasSubstr("\"wave.txt\\u{00}\" has a zero byte in its name"));
 }
 
 TEST_F(SeriesFile, MayNotLeaveTheFolderOfTheScene) {

@@ -13,11 +13,12 @@ namespace spindrift::core {
 using FileStream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 /// Opens a regular file for reading. `what` it is, with an article, is part of the errors ("a scene file"); they do not
-/// name the file. Error: kUnavailable.
+/// name the file. Errors: kUnavailable; kInvalidInput for a name with a zero byte.
 Result<FileStream> openFile(const std::filesystem::path& file, const std::string& what);
 
-/// Reads a text of at most `max_bytes`. Errors: those of openFile(); kUnavailable if it cannot be read; kInvalidInput
-/// if it is longer, which ends with `advice`.
+/// Reads a UTF-8 text of at most `max_bytes`, without the byte order mark that some editors put first. Every text file
+/// that users name is read here. Errors: those of openFile(); kUnavailable if it cannot be read; kInvalidInput if it is
+/// longer, which ends with `advice`, or UTF-16 or UTF-32.
 Result<std::string> readText(const std::filesystem::path& file, std::size_t max_bytes, const std::string& what,
                              const std::string& advice);
 

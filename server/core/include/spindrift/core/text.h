@@ -25,4 +25,9 @@ std::string cleanText(std::string_view text, std::size_t max_bytes);
 /// visible characters.
 std::string cleanName(std::string_view text, std::size_t max_bytes);
 
+/// Returns `text` for a quotation in a message, with everything invisible as an escape: \t, \r, \n, \xFF for a byte
+/// that is not UTF-8, \u{FEFF} for characters that cleanName() removes and for spaces other than the plain one. Cut
+/// before the first character that would exceed `max_bytes`.
+std::string quoteText(std::string_view text, std::size_t max_bytes);
+
 }  // namespace spindrift::core
