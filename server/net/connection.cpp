@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -10,12 +11,12 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
-#include "http_request.h"
 #include "origin.h"
 
 namespace spindrift::net {
@@ -128,29 +129,8 @@ asio::awaitable<void> Connection::run() {
   }
   while (!stopping_) {
     RequestParser parser;
-    bound(parser, context_.options.request_body_max_bytes);
-    // One deadline for the whole request: single bytes do not extend it.
-    stream_.expires_after(context_.options.handshake_timeout);
-    auto [error, bytes_count] = co_await http::async_read_header(stream_, buffer_, parser, kToken);
-    auto refusal = error ? std::nullopt : refuseHead(parser);
-    if (!error && !refusal) refusal = identify(parser.get());
-    if (!error && !refusal) {
-      std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
-    }
-    if (error) {
-      spdlog::debug("{}: incomplete request: {}", peer_, error.message());
-      refusal = replyToBadRequest(error, context_.options.request_body_max_bytes);
-    }
-    if (refusal) {
-      context_.counters.refused(Refused::kRequest);
-      co_await sendLast(fitted(parser.get(), *std::move(refusal)), false);
-      co_return;
-    }
-    if (error) co_return;
-    if (auto reply = refuseAny(parser.get())) {
-      co_await sendLast(fitted(parser.get(), *std::move(reply)), parser.get().method() == http::verb::head);
-      co_return;
-    }
+    const bool is_accepted = co_await read(parser);
+    if (!is_accepted) co_return;
     if (beast::websocket::is_upgrade(parser.get())) {
       co_await upgrade(parser.get());
       co_return;
@@ -162,16 +142,7 @@ asio::awaitable<void> Connection::run() {
     if (isPreflight(request)) {
       reply = preflightReply();
     } else if (auto* target = std::get_if<RequestTarget>(&routed)) {
-      // HEAD is handled as GET for every path; send() leaves out the body.
-      HttpRequest question;
-      question.method = head.method == "HEAD" ? "GET" : head.method;
-      question.path = std::move(target->path);
-      question.query = std::move(target->query);
-      question.body = bodyOf(request);
-      question.authorization = std::string(request[http::field::authorization]);
-      question.content_type = std::string(request[http::field::content_type]);
-      question.peer = peer_;
-      std::optional<Reply> answer = co_await ask(question);
+      std::optional<Reply> answer = co_await ask(questionOf(request, *std::move(target), peer_));
       if (!answer) break;
       reply = *std::move(answer);
     } else {
@@ -184,6 +155,37 @@ asio::awaitable<void> Connection::run() {
   }
   stream_.expires_after(kLingerTime);
   co_await finish();
+}
+
+asio::awaitable<bool> Connection::read(RequestParser& parser) {
+  bound(parser, context_.options.request_body_max_bytes);
+  // One deadline for the whole request: single bytes do not extend it.
+  stream_.expires_after(context_.options.handshake_timeout);
+  auto [error, bytes_count] = co_await http::async_read_header(stream_, buffer_, parser, kToken);
+  auto refusal = error ? std::nullopt : refuseHead(parser);
+  if (!error && !refusal) refusal = identify(parser.get());
+  if (!error && !refusal) {
+    // Before the body, so that a client that waits for "100 Continue" need not send it.
+    if (auto reply = refuseAny(parser.get())) {
+      co_await sendLast(fitted(parser.get(), *std::move(reply)), parser.get().method() == http::verb::head);
+      co_return false;
+    }
+    if (expectsContinue(parser.get()) && !parser.is_done() && buffer_.size() == 0) {
+      constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+      std::tie(error, bytes_count) = co_await asio::async_write(stream_, asio::buffer(kContinue), kToken);
+    }
+    if (!error) std::tie(error, bytes_count) = co_await http::async_read(stream_, buffer_, parser, kToken);
+  }
+  if (error) {
+    spdlog::debug("{}: incomplete request: {}", peer_, error.message());
+    refusal = replyToBadRequest(error, context_.options.request_body_max_bytes);
+  }
+  if (refusal) {
+    context_.counters.refused(Refused::kRequest);
+    co_await sendLast(fitted(parser.get(), *std::move(refusal)), false);
+    co_return false;
+  }
+  co_return !error;
 }
 
 asio::awaitable<bool> Connection::secure() {
@@ -284,9 +286,8 @@ std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {
     return std::nullopt;
   }
   context_.counters.refused(Refused::kOrigin);
-  return textReply(
-      403,
-      "The page's origin is not allowed here: start the server with --origin and what the page's address begins with.");
+  return textReply(403, "Pages of this origin may not act here: start the server with --origin " +
+                            printable({origin.data(), origin.size()}) + " to allow them.");
 }
 
 asio::awaitable<std::optional<Reply>> Connection::ask(const HttpRequest& request) {

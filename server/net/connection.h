@@ -10,7 +10,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 
-#include "http_routes.h"
+#include "http_request.h"
 #include "pending_answer.h"
 #include "server_context.h"
 #include "session.h"
@@ -31,6 +31,8 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
 
  private:
   boost::asio::awaitable<void> run();
+  /// Reads one request; returns false if the connection is over: it was closed, or the request refused.
+  boost::asio::awaitable<bool> read(RequestParser& parser);
   /// Makes the connection a TLS one; returns false if it is over.
   boost::asio::awaitable<bool> secure();
   /// Ends this side of the stream: with TLS by close_notify, which waits for the peer's until the deadline.

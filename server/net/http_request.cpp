@@ -25,6 +25,8 @@ void bound(RequestParser& parser, std::size_t body_max_bytes) {
 
 namespace {
 
+constexpr unsigned kHttp11 = 11;
+
 /// Headers that may occur once. If one is repeated, a proxy could read the request differently (request smuggling).
 constexpr std::array kSingleFields{http::field::host,
                                    http::field::origin,
@@ -45,11 +47,25 @@ std::string_view viewOf(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
+/// RFC 9112 section 3.2.2: a request for a proxy names the whole URL, and servers have to accept it. Its host counts
+/// then, whatever the Host header says.
+void useOriginForm(Request& request) {
+  const std::string target(request.target());
+  std::size_t host = 0;
+  for (const beast::string_view scheme : {"http://", "https://"}) {
+    if (beast::iequals(beast::string_view(target).substr(0, scheme.size()), scheme)) host = scheme.size();
+  }
+  const std::size_t end = std::min(target.find_first_of("/?", host), target.size());
+  if (host == 0 || end == host) return;
+  const std::string path = target.substr(end);
+  request.set(http::field::host, target.substr(host, end - host));
+  request.target(path.starts_with('/') ? path : "/" + path);
+}
+
 }  // namespace
 
-std::optional<Reply> refuseHead(const RequestParser& parser) {
-  constexpr unsigned kHttp11 = 11;
-  const Request& request = parser.get();
+std::optional<Reply> refuseHead(RequestParser& parser) {
+  Request& request = parser.get();
   for (const http::field field : kSingleFields) {
     if (request.count(field) <= 1) continue;
     return textReply(400, "There are " + std::to_string(request.count(field)) + " " +
@@ -58,6 +74,7 @@ std::optional<Reply> refuseHead(const RequestParser& parser) {
   if (request.version() >= kHttp11 && request.count(http::field::host) == 0) {
     return textReply(400, "An HTTP/1.1 request needs a Host header.");
   }
+  useOriginForm(request);
   if (!isHost(viewOf(request[http::field::host]))) {
     return textReply(400, "The Host header is no host with an optional port.");
   }
@@ -67,6 +84,11 @@ std::optional<Reply> refuseHead(const RequestParser& parser) {
   if (const auto coding = request.find(http::field::transfer_encoding); coding != request.end()) {
     return textReply(400, "The Transfer-Encoding " + printable(viewOf(coding->value())) +
                               " is not known here: send a Content-Length instead.");
+  }
+  // RFC 9110 section 10.1.1.
+  if (const auto expected = request.find(http::field::expect); expected != request.end() && !expectsContinue(request)) {
+    return textReply(417, "The Expect header " + printable(viewOf(expected->value())) +
+                              " is not known here: send 100-continue, or leave it out.");
   }
   const bool has_body = request.method() == http::verb::post || request.method() == http::verb::put ||
                         request.method() == http::verb::patch;
@@ -91,13 +113,25 @@ std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, s
   return std::nullopt;
 }
 
+bool expectsContinue(const Request& request) {
+  return request.version() >= kHttp11 && beast::iequals(request[http::field::expect], "100-continue");
+}
+
 RequestHead headOf(const Request& request) {
   return {std::string(request.method_string()), std::string(request.target()),
           std::string(request[http::field::if_none_match])};
 }
 
-core::ByteView bodyOf(const Request& request) {
-  return {reinterpret_cast<const std::uint8_t*>(request.body().data()), request.body().size()};
+HttpRequest questionOf(const Request& request, RequestTarget target, const std::string& peer) {
+  HttpRequest out;
+  out.method = methodToAnswer(std::string(request.method_string()), target.path);
+  out.path = std::move(target.path);
+  out.query = std::move(target.query);
+  out.body = {reinterpret_cast<const std::uint8_t*>(request.body().data()), request.body().size()};
+  out.authorization = std::string(request[http::field::authorization]);
+  out.content_type = std::string(request[http::field::content_type]);
+  out.peer = peer;
+  return out;
 }
 
 namespace {

@@ -25,12 +25,14 @@ using RequestParser = boost::beast::http::request_parser<boost::beast::http::str
 /// Sets the parser's bounds; call it before the first byte.
 void bound(RequestParser& parser, std::size_t body_max_bytes);
 
-/// Returns the refusal for a request whose head alone is wrong, with the body unread; nullopt if it may continue. 400:
+/// Returns the refusal for a request whose head alone is wrong, with the body unread; nullopt if it may continue. Turns
+/// a target in absolute form ("GET http://host/path") into a path and the Host header (RFC 9112 section 3.2.2). 400:
 /// HTTP/1.1 without Host, an invalid Host, or a repeated header that may occur once (RFC 9112 section 3.2, RFC 9110
 /// section 5.3, RFC 6455 section 11.3). 411: a POST to the REST interface without a length, or a chunked body. Chunked
 /// bodies are refused because no request here needs one, Boost 1.81's parser stores a chunk's line at any length, and
 /// it fails an assertion when the last chunk of an empty body comes byte by byte (boostorg/beast pull request 2861).
-std::optional<Reply> refuseHead(const RequestParser& parser);
+/// 417: an expectation other than 100-continue.
+std::optional<Reply> refuseHead(RequestParser& parser);
 
 /// Returns the reply to a request that the parser refused; nullopt if the connection is gone.
 std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, std::size_t body_max_bytes);
@@ -38,8 +40,11 @@ std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, s
 /// Returns the parts that routeRequest() reads.
 RequestHead headOf(const Request& request);
 
-/// Returns the body as bytes; valid as long as the request.
-core::ByteView bodyOf(const Request& request);
+/// Returns whether the client may wait for "100 Continue" before it sends the body (RFC 9110 section 10.1.1).
+bool expectsContinue(const Request& request);
+
+/// Returns what the application is asked; its body is valid as long as the request.
+HttpRequest questionOf(const Request& request, RequestTarget target, const std::string& peer);
 
 /// The room of an upgrade, or the refusal.
 struct UpgradeDecision {

@@ -12,6 +12,20 @@ bool isApplicationPath(std::string_view path) {
   return path.starts_with(kApiRoot) || path == "/healthz" || path == "/readyz" || path == "/metrics";
 }
 
+/// Load balancers ask these whether they may send clients.
+bool isHealthPath(std::string_view path) {
+  return path == "/healthz" || path == "/readyz";
+}
+
+/// RFC 9110 section 9.3.7.
+Reply optionsReply(std::string_view allowed) {
+  Reply reply;
+  reply.status = 204;
+  reply.body = std::make_shared<const std::string>();
+  reply.headers = {{"Cache-Control", "no-store"}, {"Allow", std::string(allowed)}};
+  return reply;
+}
+
 Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
   Reply reply =
       textReply(405, "The method " + printable(method) + " is not allowed here: use " + std::string(allowed) + ".");
@@ -104,7 +118,14 @@ void allowOrigin(Reply& reply, std::string_view origin) {
   reply.headers.emplace_back("Access-Control-Allow-Origin", origin);
 }
 
+std::string methodToAnswer(const std::string& method, std::string_view path) {
+  const bool asks = method == "HEAD" || (method == "OPTIONS" && isHealthPath(path));
+  return asks ? "GET" : method;
+}
+
 std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticFiles& files) {
+  // RFC 9112 section 3.2.4: the server as a whole.
+  if (head.method == "OPTIONS" && head.target == "*") return optionsReply("GET, HEAD, POST, DELETE, OPTIONS");
   std::optional<RequestTarget> target = parseTarget(head.target);
   if (!target) return textReply(400, "The request's path is not a plain absolute path.");
   if (isApplicationPath(target->path)) {
@@ -116,7 +137,9 @@ std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticF
   if (roomOfPath(target->path)) {
     return webSocketReply("This is a WebSocket address: connect with a WebSocket client, subprotocol spindrift.v1.");
   }
-  if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, "GET, HEAD");
+  constexpr std::string_view kAllowed = "GET, HEAD, OPTIONS";
+  if (head.method == "OPTIONS") return optionsReply(kAllowed);
+  if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, kAllowed);
   return fileReply(head, target->path, files);
 }
 

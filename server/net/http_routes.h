@@ -53,6 +53,10 @@ Reply preflightReply();
 /// Lets a page of `origin` read the reply (Fetch standard, "CORS protocol").
 void allowOrigin(Reply& reply, std::string_view origin);
 
+/// Returns the method with which the application answers: GET for HEAD, and for OPTIONS of a health path, which is the
+/// check that HAProxy makes unless told otherwise. net leaves out the body for HEAD.
+std::string methodToAnswer(const std::string& method, std::string_view path);
+
 /// Routes a complete request. Returns a reply (a file of the web client, or an error with one line), or the target of a
 /// request that the application has to answer.
 std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticFiles& files);

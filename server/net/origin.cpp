@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+
+#include <spindrift/net/network_text.h>
 
 namespace spindrift::net {
 namespace {
@@ -30,7 +33,64 @@ bool isLoopbackName(std::string_view host) {
          std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
 }
 
+core::Error wrongOrigin(const std::string& text, const std::string& why) {
+  return {core::ErrorCode::kInvalidInput, "'" + text + "' is no Origin: " + why};
+}
+
+/// Returns "host:port" without the port that the scheme has by default, which browsers leave out.
+std::string_view withoutDefaultPort(std::string_view scheme, std::string_view authority) {
+  const std::string_view port = equalsIgnoringCase(scheme, "https")  ? ":443"
+                                : equalsIgnoringCase(scheme, "http") ? ":80"
+                                                                     : std::string_view();
+  return authority.substr(0, authority.size() - (authority.ends_with(port) ? port.size() : 0));
+}
+
+/// A host in the characters that browsers send, with an optional port.
+bool isAuthority(std::string_view text) {
+  constexpr int kPortMax = 65535;
+  const std::size_t colon = text.ends_with(']') ? std::string_view::npos : text.rfind(':');
+  const std::string_view host = text.substr(0, colon);
+  if (colon != std::string_view::npos) {
+    const std::string_view digits = text.substr(colon + 1);
+    int port = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+    if (error != std::errc() || end != digits.data() + digits.size() || port < 1 || port > kPortMax) return false;
+  }
+  const bool is_ipv6 = host.starts_with('[') && host.ends_with(']');
+  const std::string_view marks = is_ipv6 ? "[:]." : "-._";
+  return !host.empty() && std::ranges::all_of(host, [&](unsigned char c) {
+    return (c < 0x80 && std::isalnum(c) != 0) || marks.find(static_cast<char>(c)) != std::string_view::npos;
+  });
+}
+
 }  // namespace
+
+core::Result<void> checkOrigin(const std::string& text) {
+  constexpr const char* kForm = "write SCHEME://HOST[:PORT], such as https://water.example";
+  if (text == "*" || text == "null") return {};
+  if (text.empty()) return wrongOrigin(text, kForm);
+  if (text.find_first_of(" \t\r\n") != std::string::npos)
+    return wrongOrigin(text, "it has a blank in it; write ',' between several");
+  if (text.find('*') != std::string::npos)
+    return wrongOrigin(text, "patterns are not supported; name every origin, or write * for any");
+  const std::size_t mark = text.find("://");
+  if (mark == std::string::npos || mark == 0)
+    return wrongOrigin(text, "it has no scheme; write https://" + text + " or http://" + text);
+  const std::string_view scheme = std::string_view(text).substr(0, mark);
+  const std::string_view rest = std::string_view(text).substr(mark + 3);
+  const std::string_view whole = rest.substr(0, rest.find_first_of("/?#"));
+  const std::string_view authority = withoutDefaultPort(scheme, whole.substr(whole.rfind('@') + 1));
+  const bool is_socket = equalsIgnoringCase(scheme, "ws") || equalsIgnoringCase(scheme, "wss");
+  if (!isAuthority(authority)) {
+    return wrongOrigin(text, std::string("its host or port is invalid; ") + kForm +
+                                 ", other letters than ASCII in the host as browsers send them (xn--…)");
+  }
+  const std::string meant = (is_socket ? equalsIgnoringCase(scheme, "ws") ? "http" : "https" : std::string(scheme)) +
+                            "://" + std::string(authority);
+  if (meant == text) return {};
+  return wrongOrigin(
+      text, "browsers send the scheme of the page, its host, and a port other than the scheme's own; write " + meant);
+}
 
 bool isOriginListed(std::string_view origin, std::span<const std::string> allowed) {
   return std::ranges::any_of(

@@ -137,6 +137,33 @@ core::Result<void> checkNetwork(const std::string& text) {
   return {};
 }
 
+core::Result<void> checkListenAddress(const std::string& text) {
+  constexpr const char* kForm = "write one such as 127.0.0.1, 0.0.0.0 (all of IPv4), :: (all) or ::1";
+  boost::system::error_code error;
+  const ip::address address = ip::make_address(text, error);
+  if (!error) {
+    const bool lacks_interface = address.is_v6() && address.to_v6().is_link_local() && address.to_v6().scope_id() == 0;
+    if (!lacks_interface) return {};
+    return invalid("'" + text + "' is a link-local address, which each interface has for itself: write the interface " +
+                   "behind it, such as " + text.substr(0, text.find('%')) + "%eth0");
+  }
+  // What was meant may be in it: a URL, an address with a port or in brackets.
+  std::string_view rest = text;
+  if (const std::size_t mark = rest.find("://"); mark != std::string_view::npos) rest.remove_prefix(mark + 3);
+  rest = rest.substr(0, rest.find('/'));
+  if (!entryOf(rest)) {
+    return invalid("'" + text + "' is not an IP address (" + kForm + "); names of hosts cannot be listened on");
+  }
+  const std::size_t bracket = rest.find(']');
+  const std::size_t colon = rest.find(':', bracket == std::string_view::npos ? 0 : bracket);
+  const bool has_port =
+      std::ranges::count(rest, ':') == 1 || (bracket != std::string_view::npos && colon != std::string_view::npos);
+  const std::string_view host =
+      bracket == std::string_view::npos ? rest.substr(0, has_port ? colon : rest.size()) : rest.substr(1, bracket - 1);
+  return invalid("'" + text + "' is more than an IP address: write --address " + std::string(host) +
+                 (has_port ? " --port " + std::string(rest.substr(colon + 1)) : ""));
+}
+
 core::Result<std::optional<ip::address>> forwardedClient(std::span<const std::string_view> lines,
                                                          const TrustedNetworks& trusted) {
   std::optional<ip::address> client;

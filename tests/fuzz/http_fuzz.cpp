@@ -126,7 +126,7 @@ bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Applicat
   const auto routed = net::routeRequest(net::headOf(request), site.files);
   if (const auto* target = std::get_if<net::RequestTarget>(&routed)) {
     must(target->path.starts_with('/'), "the application sees absolute paths");
-    must(net::bodyOf(request).size() <= kBodyMaxBytes, "the body keeps its bound");
+    must(net::questionOf(request, *target, "peer").body.size() <= kBodyMaxBytes, "the body keeps its bound");
     checkReply(net::applicationReply(target->path, std::nullopt));
   } else {
     checkReply(std::get<net::Reply>(routed));

@@ -241,6 +241,75 @@ TEST_F(ConnectionTest, ReadsABodyThatComesInPieces) {
   EXPECT_EQ(parseAnswer(tcp.receiveAll()).body, "POST p body");
 }
 
+TEST_F(ConnectionTest, ContinuesAClientThatWaitsBeforeItsBody) {
+  const TestServer served(options());
+  RawTcp tcp;
+  ASSERT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+  ASSERT_TRUE(
+      tcp.send("POST /api/echo?p HTTP/1.1\r\nHost: a\r\nConnection: close\r\nExpect: 100-Continue\r\nContent-Length: "
+               "4\r\n\r\n"));
+  constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  EXPECT_EQ(tcp.receive(kContinue.size()), kContinue);
+  ASSERT_TRUE(tcp.send("body"));
+  EXPECT_EQ(parseAnswer(tcp.receiveAll()).body, "POST p body");
+}
+
+TEST_F(ConnectionTest, AnswersAClientThatWaitsAtOnceWhereItRefusesTheHead) {
+  ServerOptions small = options();
+  small.request_body_max_bytes = 100;
+  const TestServer served(small);
+  const auto answerTo = [&](const std::string& headers) {
+    RawTcp tcp;
+    EXPECT_TRUE(tcp.connect("127.0.0.1", served.server->port()));
+    EXPECT_TRUE(tcp.send("POST /api/echo HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + headers + "\r\n"));
+    return parseAnswer(tcp.receiveAll()).status;
+  };
+  EXPECT_EQ(answerTo("Expect: 100-continue\r\nContent-Length: 101\r\n"), 413U);
+  EXPECT_EQ(answerTo("Expect: 100-continue\r\nContent-Length: 4\r\nOrigin: https://evil.example\r\n"), 403U);
+  EXPECT_EQ(answerTo("Expect: 100-continue\r\n"), 411U);
+  EXPECT_EQ(answerTo("Expect: the-unexpected\r\nContent-Length: 4\r\n"), 417U);
+}
+
+TEST_F(ConnectionTest, SendsNoContinueToClientsThatDoNotWait) {
+  const TestServer served(options());
+  const std::string with_body =
+      "POST /api/echo HTTP/1.1\r\nHost: a\r\nConnection: close\r\nExpect: 100-continue\r\nContent-Length: "
+      "4\r\n\r\nbody";
+  EXPECT_EQ(httpExchange(served.server->port(), with_body).status, 200U) << "the body came with the head";
+  const std::string empty =
+      "POST /api/echo HTTP/1.1\r\nHost: a\r\nConnection: close\r\nExpect: 100-continue\r\n"
+      "Content-Length: 0\r\n\r\n";
+  EXPECT_EQ(httpExchange(served.server->port(), empty).status, 200U);
+  const std::string old = "POST /api/echo HTTP/1.0\r\nContent-Length: 0\r\n\r\n";
+  EXPECT_EQ(httpExchange(served.server->port(), old).status, 200U);
+}
+
+TEST_F(ConnectionTest, AcceptsTargetsInAbsoluteForm) {
+  const TestServer served(options());
+  const auto port = served.server->port();
+  EXPECT_EQ(httpRequest(port, "GET", "http://localhost/api/echo?x").body, "GET x ");
+  EXPECT_EQ(httpRequest(port, "GET", "HTTPS://localhost:443/healthz").body, "ok\n");
+  EXPECT_EQ(httpRequest(port, "GET", "http://localhost").body, "<h1>water</h1>") << "an empty path is /";
+  EXPECT_EQ(httpRequest(port, "GET", "http://localhost?x").status, 200U);
+  EXPECT_EQ(httpRequest(port, "POST", "http://localhost/api/echo").status, 411U) << "the API's rules hold";
+  EXPECT_EQ(httpRequest(port, "GET", "http:///healthz").status, 400U) << "no host";
+  EXPECT_EQ(httpRequest(port, "GET", "http://user@localhost/healthz").status, 400U);
+  EXPECT_EQ(httpRequest(port, "GET", "ftp://localhost/healthz").status, 400U);
+  EXPECT_EQ(
+      httpRequest(port, "POST", "http://evil.example/api/echo", "Origin: http://localhost\r\nContent-Length: 0\r\n")
+          .status,
+      403U)
+      << "the target's host counts, not that of the header";
+}
+
+TEST_F(ConnectionTest, AnswersTheChecksOfLoadBalancers) {
+  const TestServer served(options());
+  const auto port = served.server->port();
+  EXPECT_EQ(httpExchange(port, "OPTIONS /healthz HTTP/1.0\r\n\r\n").status, 200U) << "as HAProxy asks";
+  EXPECT_EQ(httpExchange(port, "OPTIONS / HTTP/1.0\r\n\r\n").status, 204U);
+  EXPECT_EQ(httpRequest(port, "OPTIONS", "*").status, 204U);
+}
+
 TEST_F(ConnectionTest, RandomBytesDoNoHarm) {
   const TestServer served(options());
   std::mt19937 random(42);

@@ -77,12 +77,30 @@ TEST_F(HttpRoutesTest, FindsNothingByTraversal) {
 }
 
 TEST_F(HttpRoutesTest, AllowsOnlyReadingFiles) {
-  for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "BREW"}) {
+  for (const char* method : {"POST", "PUT", "DELETE", "TRACE", "BREW"}) {
     const Reply reply = route(method, "/");
     EXPECT_EQ(reply.status, 405U) << method;
-    EXPECT_EQ(header(reply, "Allow"), "GET, HEAD");
+    EXPECT_EQ(header(reply, "Allow"), "GET, HEAD, OPTIONS");
   }
   EXPECT_EQ(route("TRACE", "/api/echo").status, 405U);
+}
+
+TEST_F(HttpRoutesTest, AnswersOptionsWithTheMethodsThatAreAllowed) {
+  for (const char* target : {"/", "*", "/index.html"}) {
+    const Reply reply = route("OPTIONS", target);
+    EXPECT_EQ(reply.status, 204U) << target;
+    EXPECT_NE(header(reply, "Allow").find("OPTIONS"), std::string::npos) << target;
+  }
+}
+
+TEST_F(HttpRoutesTest, TakesOptionsOfAHealthPathAsGet) {
+  for (const char* path : {"/healthz", "/readyz"}) {
+    EXPECT_TRUE(target("OPTIONS", path)) << path;
+    EXPECT_EQ(methodToAnswer("OPTIONS", path), "GET") << path;
+  }
+  EXPECT_EQ(methodToAnswer("OPTIONS", "/api/v1/rooms"), "OPTIONS");
+  EXPECT_EQ(methodToAnswer("HEAD", "/metrics"), "GET");
+  EXPECT_EQ(methodToAnswer("POST", "/healthz"), "POST");
 }
 
 TEST_F(HttpRoutesTest, PassesItsPathsToTheApplication) {

@@ -1,4 +1,4 @@
-// Networks in text form, for options.
+// Networks, addresses and origins in text form, for options.
 #pragma once
 
 #include <string>
@@ -10,5 +10,14 @@ namespace spindrift::net {
 /// Checks ADDRESS/BITS ("10.0.0.0/8", "2001:db8::/32") or one ADDRESS. kInvalidInput says what is wrong: no address,
 /// more bits than the address has, or bits set behind the prefix.
 core::Result<void> checkNetwork(const std::string& text);
+
+/// Checks an address to listen on. kInvalidInput says what was meant: an address with a port or in a URL, a host's
+/// name, a link-local address without its interface.
+core::Result<void> checkListenAddress(const std::string& text);
+
+/// Checks an Origin to compare with those that browsers send (RFC 6454 section 6.2): SCHEME://HOST[:PORT] without the
+/// scheme's default port, "null", or "*" for any. kInvalidInput says what was meant: a URL with a path, a host without
+/// a scheme, a pattern.
+core::Result<void> checkOrigin(const std::string& text);
 
 }  // namespace spindrift::net
