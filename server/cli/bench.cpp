@@ -21,6 +21,7 @@
 #include <spindrift/scene/scene_loader.h>
 
 #include "commands.h"
+#include "forms.h"
 #include "output.h"
 
 namespace spindrift::cli {
@@ -119,31 +120,35 @@ ProgramCommand addBench(CLI::App& program) {
   command->add_option("--suite", options->suite, "What to time")
       ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "soak"}))
       ->capture_default_str();
-  command->add_option("--scene", options->scene, "Scene file or name of a shipped scene")->capture_default_str();
+  command->add_option("--scene", options->scene, "Scene file or name of a shipped scene")
+      ->check(isNotEmpty())
+      ->capture_default_str();
   addFidelity(*command, options->fidelity);
   addDevice(*command, options->device);
   command->add_option("--seconds", options->seconds, "Measured time per case")
-      ->check(CLI::Range(0.1, 86400.0))
+      ->check(numberIn(0.1, 86400.0))
       ->capture_default_str();
-  command->add_option("--url", options->load.urls,
-                      "For --suite load and soak: a server that runs, ws://HOST:PORT/ws/ROOM; may be repeated");
+  command
+      ->add_option("--url", options->load.urls,
+                   "For --suite load and soak: a server that runs, ws://HOST:PORT/ws/ROOM; may be repeated")
+      ->check(isUrl());
   command->add_option("--clients", options->load.client_count, "For --suite load and soak: number of clients")
-      ->check(CLI::Range(1, 20000))
+      ->check(integerIn(1, 20000))
       ->capture_default_str();
   command->add_option("--level", options->level, "For --suite load: level of detail that they watch")
       ->check(CLI::IsMember({"coarse", "medium", "fine", "full"}))
       ->capture_default_str();
   command->add_option("--commands-per-s", options->load.commands_per_s, "For --suite load: splashes of each client")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(numberIn(0.0, 100.0))
       ->capture_default_str();
   command->add_option("--warm-up-s", options->soak.warm_up_s, "For --suite soak: time at the start that does not count")
-      ->check(CLI::Range(0.0, 86400.0))
+      ->check(numberIn(0.0, 86400.0))
       ->capture_default_str();
   command->add_option("--interval-s", options->soak.interval_s, "For --suite soak: time between two rows")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(numberIn(1.0, 3600.0))
       ->capture_default_str();
   const auto addRate = [&](const char* name, double& rate, const char* help) {
-    command->add_option(name, rate, help)->check(CLI::Range(0.0, 100.0))->capture_default_str();
+    command->add_option(name, rate, help)->check(numberIn(0.0, 100.0))->capture_default_str();
   };
   addRate("--churn-per-s", options->soak.churn_per_s, "For --suite soak: connections that clients end, all together");
   addRate("--strokes-per-s", options->soak.strokes_per_s,
@@ -152,9 +157,12 @@ ProgramCommand addBench(CLI::App& program) {
   addRate("--level-changes-per-s", options->soak.level_changes_per_s,
           "For --suite soak: changes of a layer's level, rate and packing by each client");
   command->add_option("--seed", options->soak.seed, "For --suite soak: of what the clients do")->capture_default_str();
-  CLI::Option* const cert = command->add_option("--tls-cert", options->tls.certificate_file,
-                                                "For fanout over TLS: a PEM certificate for 127.0.0.1");
-  CLI::Option* const key = command->add_option("--tls-key", options->tls.key_file, "Its private key");
+  CLI::Option* const cert = command
+                                ->add_option("--tls-cert", options->tls.certificate_file,
+                                             "For fanout over TLS: a PEM certificate for 127.0.0.1")
+                                ->check(CLI::ExistingFile);
+  CLI::Option* const key =
+      command->add_option("--tls-key", options->tls.key_file, "Its private key")->check(CLI::ExistingFile);
   cert->needs(key);
   key->needs(cert);
   addJson(*command, options->json_file);

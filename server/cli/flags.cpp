@@ -1,9 +1,12 @@
 #include "commands.h"
+#include "forms.h"
 
 namespace spindrift::cli {
 
 void addDevice(CLI::App& command, std::string& device) {
-  command.add_option("--device", device, "auto, software, or a device number from `info`")->capture_default_str();
+  command.add_option("--device", device, "auto, software, or a device from `info`: its number, DRM file or UUID")
+      ->check(isText())
+      ->capture_default_str();
 }
 
 void addFidelity(CLI::App& command, std::string& fidelity) {
@@ -12,7 +15,7 @@ void addFidelity(CLI::App& command, std::string& fidelity) {
 }
 
 void addJson(CLI::App& command, std::string& file) {
-  command.add_option("--json", file, "Write JSON to this file, - = standard output");
+  command.add_option("--json", file, "Write JSON to this file, - = standard output")->check(isOutputFile());
 }
 
 }  // namespace spindrift::cli

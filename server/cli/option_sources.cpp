@@ -32,6 +32,11 @@ core::Result<void> give(CLI::Option& option, const std::vector<std::string>& val
   }
 }
 
+/// Kubernetes gives every pod variables with the URLs of the Services: SPINDRIFT_PORT for one named spindrift.
+bool isServiceLink(std::string_view text) {
+  return text.starts_with("tcp://") || text.starts_with("udp://") || text.starts_with("sctp://");
+}
+
 }  // namespace
 
 std::string fieldName(const CLI::Option& option) {
@@ -75,7 +80,14 @@ core::Result<void> OptionSources::takeEnvironment() {
     const std::vector<std::string> values = environmentValues(*entry.option);
     if (values.empty()) continue;
     const std::string variable = variableName(*entry.option);
-    if (auto given = give(*entry.option, values, variable); !given) return given;
+    if (auto given = give(*entry.option, values, variable); !given) {
+      if (!isServiceLink(values.front())) return given;
+      return core::Error{
+          core::ErrorCode::kInvalidInput,
+          variable + ": '" + values.front() +
+              "' was set by Kubernetes for a Service named spindrift: write enableServiceLinks: false in "
+              "the pod's spec, or give the Service another name"};
+    }
     entry.source = OptionSource::kEnvironment;
     entry.place = "environment: " + variable;
   }

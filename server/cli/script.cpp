@@ -8,6 +8,7 @@
 #include <spindrift/script/script_runner.h>
 
 #include "commands.h"
+#include "forms.h"
 #include "output.h"
 
 namespace spindrift::cli {
@@ -88,9 +89,13 @@ ProgramCommand addScript(CLI::App& program) {
   const auto options = std::make_shared<ScriptOptions>();
   CLI::App* command = program.add_subcommand("script", "Run scripted clients against a server and check what they see");
   command->add_option("file", options->file, "The script, a .textproto of spindrift.v1.Script")->required();
-  command->add_option("--url", options->url, "The server, ws://HOST:PORT or wss://HOST:PORT")->capture_default_str();
-  command->add_option("--tls-ca", options->ca_file,
-                      "For wss://: PEM file with authorities to trust beside those of the system");
+  command->add_option("--url", options->url, "The server, ws://HOST:PORT or wss://HOST:PORT")
+      ->check(isUrl())
+      ->capture_default_str();
+  command
+      ->add_option("--tls-ca", options->ca_file,
+                   "For wss://: PEM file with authorities to trust beside those of the system")
+      ->check(CLI::ExistingFile);
   addJson(*command, options->json_file);
   return {command, [options] { return script(*options); }};
 }

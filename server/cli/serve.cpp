@@ -46,8 +46,6 @@ core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& option
   rooms.push_back(*std::move(first));
   for (const std::string& text : options.rooms) {
     const auto equals = text.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      return Error{ErrorCode::kInvalidInput, "--room '" + text + "': write NAME=SCENE"};
     auto room = loadRoom(text.substr(0, equals), text.substr(equals + 1), options.fidelity, catalog);
     if (!room) return room.error();
     for (const rooms::RoomSetup& known : rooms) {

@@ -1,53 +1,15 @@
 #include "serve_options.h"
 
-#include <cmath>
 #include <cstdlib>
-
-#include <spindrift/net/client.h>
-#include <spindrift/net/network_text.h>
 
 #include "commands.h"
 #include "config_file.h"
+#include "forms.h"
 
 namespace spindrift::cli {
 namespace {
 
 constexpr const char* kTokensVariable = "SPINDRIFT_TOKENS";
-
-/// CLI::Range lets "nan" pass.
-CLI::Validator isNumber() {
-  return {[](std::string& text) {
-            double value = 0;
-            return CLI::detail::lexical_cast(text, value) && std::isfinite(value) ? std::string()
-                                                                                  : "Value " + text + " is no number";
-          },
-          ""};
-}
-
-/// An empty name would mean "no tokens": every client an operator.
-CLI::Validator isNotEmpty() {
-  return {[](std::string& text) {
-            return text.empty() ? std::string("Value is empty; leave the option out instead") : std::string();
-          },
-          ""};
-}
-
-CLI::Validator isServer() {
-  return {[](std::string& text) {
-            const auto url = net::ClientUrl::parse(text);
-            return url && url->path == "/" ? std::string()
-                                           : "Value " + text + " is no server: write ws://HOST:PORT or wss://HOST:PORT";
-          },
-          ""};
-}
-
-CLI::Validator isNetwork() {
-  return {[](std::string& text) {
-            const auto checked = net::checkNetwork(text);
-            return checked ? std::string() : "Value " + checked.error().message;
-          },
-          ""};
-}
 
 std::string variableOr(const char* name, const std::string& otherwise) {
   const char* const text = std::getenv(name);
@@ -56,12 +18,15 @@ std::string variableOr(const char* name, const std::string& otherwise) {
 
 /// Those of everything that serves clients.
 void addFrontOptions(CLI::App& command, FrontOptions& options) {
-  command.add_option("--address", options.address, "Address to listen on")->capture_default_str();
-  command.add_option("--port", options.port, "Port to listen on; 0 = any free one")
-      ->check(CLI::Range(0, 65535))
+  command.add_option("--address", options.address, "Address to listen on")
+      ->check(isListenAddress())
       ->capture_default_str();
-  command.add_option("--web-root", options.web_root, "Folder of the built web client (default: next to the program)");
-  command.add_option("--threads", options.thread_count, "I/O threads")->check(CLI::Range(1, 64))->capture_default_str();
+  command.add_option("--port", options.port, "Port to listen on; 0 = any free one")
+      ->check(integerIn(0, 65535))
+      ->capture_default_str();
+  command.add_option("--web-root", options.web_root, "Folder of the built web client (default: next to the program)")
+      ->check(CLI::ExistingDirectory);
+  command.add_option("--threads", options.thread_count, "I/O threads")->check(integerIn(1, 64))->capture_default_str();
   command
       .add_option("--tls-cert", options.tls_cert_file,
                   "Speak TLS on the port: PEM file with the server's certificate and its chain")
@@ -71,15 +36,15 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
   command
       .add_option("--trust-proxy", options.trusted_proxies,
                   "Network of a proxy, ADDRESS/BITS: what its X-Forwarded-For names is the client; may be repeated")
-      ->check(isNetwork());
+      ->transform(isNetwork())
+      ->delimiter(',');
   command.add_option("--max-sessions", options.max_session_count, "Maximum number of sessions at a time")
-      ->check(CLI::Range(1, 65536))
+      ->check(integerIn(1, 65536))
       ->capture_default_str();
   command
       .add_option("--address-share", options.address_session_share,
                   "Share of the sessions that one address may use; 1 behind a proxy that is not trusted")
-      ->check(isNumber())
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(numberIn(0.0, 1.0))
       ->capture_default_str();
   command
       .add_option("--tokens-file,--tokens", options.token_file,
@@ -96,21 +61,25 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
       ->check(isNotEmpty());
   command.add_option("--jwt-keys", options.jwt_key_set, "The same for the keys of a JWK set")->check(isNotEmpty());
   command.add_option("--jwt-issuer", options.jwt_issuer, "What iss of a JWT has to be (default: anything)")
-      ->check(isNotEmpty());
+      ->check(isText());
   command.add_option("--jwt-audience", options.jwt_audience, "What aud of a JWT has to contain (default: anything)")
-      ->check(isNotEmpty());
+      ->check(isText());
   command
       .add_option("--person-commands-per-s", options.person_commands_per_s,
                   "Commands a second of one person over all sessions and rooms; bursts of twice as many")
-      ->check(isNumber())
-      ->check(CLI::Range(1.0, 10'000.0))
+      ->check(numberIn(1.0, 10'000.0))
       ->capture_default_str();
   command
       .add_option("--audit-log", options.audit_file,
                   "Append what operators do, and who is refused, to this file: one JSON object per line")
       ->check(isNotEmpty());
-  command.add_option("--origin", options.origins,
-                     "Additional allowed Origin of pages, https://HOST; * = any; may be repeated");
+  command
+      .add_option(
+          "--origin", options.origins,
+          "Additional allowed Origin of pages, https://HOST; null = pages opened as files; * = any; several with "
+          "',', or repeated")
+      ->transform(isOrigin())
+      ->delimiter(',');
 }
 
 void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_required) {
@@ -120,15 +89,15 @@ void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_require
                       ? "NATS server of the cluster, nats://[USER:PASSWORD@]HOST:PORT or tls://…; several with ','"
                       : "Be a server of a cluster, over this NATS server, nats://[USER:PASSWORD@]HOST:PORT or "
                         "tls://…; several with ','")
-      ->check(isNotEmpty());
+      ->check(isNatsServers());
   command
       .add_option("--nats-ca", options.nats_ca_file, "Certificates that sign the NATS server's (default: the system's)")
       ->check(isNotEmpty());
   command
       .add_option("--node", options.node, "Name of this process in the cluster (default: the host's name and the port)")
-      ->check(isNotEmpty());
+      ->check(isText());
   command.add_option("--cluster", options.cluster, "Name of the cluster; several can share a NATS server")
-      ->check(isNotEmpty())
+      ->check(isText())
       ->capture_default_str();
 }
 
@@ -137,8 +106,7 @@ void addLastOptions(CLI::App& command, FrontOptions& options) {
   command
       .add_option("--drain-s,--drain", options.drain_s,
                   "Seconds between SIGTERM and the end of the sessions, in which clients learn where to go")
-      ->check(isNumber())
-      ->check(CLI::Range(0.0, 4.0))
+      ->check(numberIn(0.0, 4.0))
       ->capture_default_str();
   command
       .add_option("--drain-to", options.drain_to,
@@ -148,6 +116,7 @@ void addLastOptions(CLI::App& command, FrontOptions& options) {
       .add_option(
           "--config", options.config_file,
           "File with options, as --print-config writes them (default: the environment variable SPINDRIFT_CONFIG)")
+      ->check(isNotEmpty())
       ->configurable(false);
   command
       .add_flag("--print-config", options.prints_config,
@@ -165,31 +134,32 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
   command
       .add_option("--scene", options.scene,
                   "Scene of the room 'main': a .textproto file or the name of a shipped scene")
+      ->check(isNotEmpty())
       ->capture_default_str();
   addFidelity(command, options.fidelity);
   command.add_flag("--adapt", options.adapts,
                    "Lower a room's fidelity while this machine cannot keep up, and raise it again when it can");
-  command.add_option("--room", options.rooms, "An additional room, NAME=SCENE; may be repeated");
+  command.add_option("--room", options.rooms, "An additional room, NAME=SCENE; may be repeated")->check(isRoom());
   addDevice(command, options.device);
   command
       .add_option("--shader-dir", options.shader_folder,
                   "For shader development: read shaders from this folder (shaders/) and reload changed files")
       ->check(CLI::ExistingDirectory);
   command.add_option("--max-rooms", options.max_room_count, "Maximum number of rooms, including those opened later")
-      ->check(CLI::Range(1, 64))
+      ->check(integerIn(1, 64))
       ->capture_default_str();
   addFrontOptions(command, options);
   command
       .add_option("--grace-s,--grace", options.grace_s,
                   "Seconds for which a boat keeps its owner after the connection was lost")
-      ->check(isNumber())
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(numberIn(0.0, 3600.0))
       ->capture_default_str();
-  command.add_option("--record", options.record_folder, "Write the log of every room into this folder");
+  command.add_option("--record", options.record_folder, "Write the log of every room into this folder")
+      ->check(isNotEmpty());
   command
       .add_option("--hash-every-ticks,--hash-every", options.hash_interval_ticks,
                   "Interval of the state hashes in the log, in ticks")
-      ->check(CLI::Range(1, 36000))
+      ->check(integerIn(1, 36000))
       ->capture_default_str();
 
   command
@@ -199,8 +169,7 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
   command
       .add_option("--snapshot-every-s,--snapshot-every", options.snapshot_interval_s,
                   "Seconds between two snapshots of a room in --state-dir")
-      ->check(isNumber())
-      ->check(CLI::Range(0.5, 86400.0))
+      ->check(numberIn(0.5, 86400.0))
       ->capture_default_str();
   command
       .add_option("--sync", options.sync,

@@ -10,6 +10,7 @@
 #include <spindrift/study_suites/suites.h>
 
 #include "commands.h"
+#include "forms.h"
 #include "output.h"
 
 namespace spindrift::cli {
@@ -84,8 +85,10 @@ ProgramCommand addStudy(CLI::App& program) {
                       "this, or one scene of the trade suite");
   addDevice(*command, options->device);
   command->add_flag("--quick", options->quick, "Shorter runs, a few minutes in all");
-  command->add_option("--journal", options->journal_file,
-                      "Save finished cases in this file; an interrupted study continues from it");
+  command
+      ->add_option("--journal", options->journal_file,
+                   "Save finished cases in this file; an interrupted study continues from it")
+      ->check(isOutputFile());
   command->add_option("--plot", options->plot_folder,
                       "Write the results into this folder as SUITE.json, from which ./dev charts draws charts");
   addJson(*command, options->json_file);

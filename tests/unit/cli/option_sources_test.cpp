@@ -121,13 +121,30 @@ TEST_F(Sources, ABadVariableIsRefusedByNameWithTheBound) {
     return error;
   };
   EXPECT_EQ(refused("SPINDRIFT_PORT", "65536"), "SPINDRIFT_PORT: Value 65536 not in range 0 to 65535");
-  EXPECT_EQ(refused("SPINDRIFT_PORT", "http"), "SPINDRIFT_PORT: Value http not in range 0 to 65535");
+  EXPECT_EQ(refused("SPINDRIFT_PORT", "http"), "SPINDRIFT_PORT: Value http is not a whole number");
   EXPECT_EQ(refused("SPINDRIFT_ADAPT", "maybe"), "SPINDRIFT_ADAPT: 'maybe' cannot be used; write true or false");
   EXPECT_EQ(refused("SPINDRIFT_GUESTS", "king"), "SPINDRIFT_GUESTS: king not in {none,viewer,player,operator}");
-  EXPECT_EQ(refused("SPINDRIFT_GRACE_S", "nan"), "SPINDRIFT_GRACE_S: Value nan is no number");
+  EXPECT_EQ(refused("SPINDRIFT_GRACE_S", "nan"), "SPINDRIFT_GRACE_S: Value nan is not a number");
   EXPECT_THAT(refused("SPINDRIFT_SHADER_DIR", "/nonexistent"),
               AllOf(StartsWith("SPINDRIFT_SHADER_DIR: "), HasSubstr("/nonexistent")));
   EXPECT_THAT(refused("SPINDRIFT_LOG_FORMAT", "xml"), AllOf(StartsWith("SPINDRIFT_LOG_FORMAT: "), HasSubstr("json")));
+}
+
+TEST_F(Sources, AVariableThatKubernetesSetForAServiceIsNamedAsSuch) {
+  set("SPINDRIFT_PORT", "tcp://10.96.14.7:80");
+  EXPECT_THAT(CommandLine({}).error, AllOf(StartsWith("SPINDRIFT_PORT: 'tcp://10.96.14.7:80' was set by Kubernetes"),
+                                           HasSubstr("enableServiceLinks: false")));
+}
+
+TEST_F(Sources, ListsInVariablesAndFlagsAreSplit) {
+  set("SPINDRIFT_ORIGIN", "https://a.example, https://b.example;null");
+  set("SPINDRIFT_TRUST_PROXY", "10.0.0.0/8, 2001:db8::/32");
+  const CommandLine from_variables({});
+  EXPECT_EQ(from_variables.error, "");
+  EXPECT_THAT(from_variables.options.origins, ElementsAre("https://a.example", "https://b.example", "null"));
+  EXPECT_THAT(from_variables.options.trusted_proxies, ElementsAre("10.0.0.0/8", "2001:db8::/32"));
+  const CommandLine from_flags({"--origin", "https://a.example,https://b.example", "--origin", "https://c.example"});
+  EXPECT_THAT(from_flags.options.origins, ElementsAre("https://a.example", "https://b.example", "https://c.example"));
 }
 
 TEST_F(Sources, ABadVariableBehindAFlagIsNotRead) {
