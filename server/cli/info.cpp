@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -29,6 +30,8 @@ boost::json::object toJson(const gpu::DeviceInfo& d) {
           {"glsl_version", d.glsl_version},
           {"egl_driver", d.egl_driver},
           {"drm_file", d.drm_file},
+          {"render_file", d.render_file},
+          {"uuid", d.uuid},
           {"is_software", d.is_software},
           {"problem", d.problem},
           {"limits", boost::json::object{{"max_ssbo_bytes", l.max_ssbo_bytes},
@@ -61,6 +64,9 @@ int info(const InfoOptions& options) {
                wire::kWireMinor, gpu.shader_count, gpu.egl_client_version);
     for (const gpu::DeviceInfo& d : gpu.devices) {
       fmt::print("device {:>2} {}\n", d.is_software ? "sw" : std::to_string(d.index), d.name);
+      const auto names = {d.drm_file, d.render_file, d.uuid};
+      if (std::ranges::any_of(names, [](const std::string& name) { return !name.empty(); }))
+        fmt::print("          {}\n", fmt::join(names, " "));
       if (!d.problem.empty()) {
         fmt::print("          cannot be used: {}\n", d.problem);
         continue;
@@ -72,6 +78,7 @@ int info(const InfoOptions& options) {
           d.limits.max_shared_memory_bytes >> 10);
     }
     fmt::print("auto      {}\n", gpu.why);
+    if (gpu.chosen && !gpu.chosen->advice.empty()) fmt::print("          {}\n", gpu.chosen->advice);
   }
   if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
   return gpu.chosen ? 0 : core::exitCode(core::ErrorCode::kNoDevice);

@@ -86,7 +86,7 @@ core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choic
 }
 
 core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choice, const Checks& checks) {
-  core::Result<Selection> chosen = selectDevice(egl::candidates(), choice, openUsable, egl::close);
+  core::Result<Selection> chosen = selectDevice(egl::candidates(), choice, openUsable, egl::close, Machine::real());
   if (!chosen) return chosen.error();
   return std::unique_ptr<Context>(new Context(std::make_unique<Egl>(Egl{chosen->handles}), std::move(chosen->info),
                                               std::move(chosen->why), checks, choice.shader_folder));

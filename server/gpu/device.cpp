@@ -1,4 +1,7 @@
+#include <cctype>
 #include <charconv>
+#include <filesystem>
+#include <system_error>
 
 #include <spindrift/gpu/device.h>
 
@@ -7,6 +10,24 @@
 #include "egl_display.h"
 
 namespace spindrift::gpu {
+
+namespace {
+
+/// Returns the UUID in lower case, without the "GPU-" of nvidia-smi; empty if the text is none.
+std::string uuidOf(std::string_view text) {
+  if (text.starts_with("GPU-")) text.remove_prefix(4);
+  constexpr std::string_view kForm = "xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx";
+  if (text.size() != kForm.size()) return {};
+  std::string out;
+  for (std::size_t k = 0; k < kForm.size(); ++k) {
+    const auto c = static_cast<unsigned char>(text[k]);
+    if (kForm[k] == 'x' ? std::isxdigit(c) == 0 : c != '-') return {};
+    out += static_cast<char>(std::tolower(c));
+  }
+  return out;
+}
+
+}  // namespace
 
 core::Result<DeviceChoice> parseDeviceChoice(std::string_view text) {
   constexpr int kMaxIndex = 1023;
@@ -17,9 +38,17 @@ core::Result<DeviceChoice> parseDeviceChoice(std::string_view text) {
   if (error == std::errc() && end == text.data() + text.size() && index >= 0 && index <= kMaxIndex) {
     return DeviceChoice{DeviceChoice::Kind::kIndex, index};
   }
-  return core::Error{core::ErrorCode::kInvalidInput, "device \"" + std::string(text) +
-                                                         "\" is not auto, software or an index from 0 to " +
-                                                         std::to_string(kMaxIndex) + "; see `spindrift info`"};
+  if (text.starts_with('/')) {
+    // Links such as those in /dev/dri/by-path keep their names when devices are added.
+    std::error_code missing;
+    const std::filesystem::path file = std::filesystem::canonical(text, missing);
+    return DeviceChoice{.kind = DeviceChoice::Kind::kName, .name = missing ? std::string(text) : file.string()};
+  }
+  if (const std::string uuid = uuidOf(text); !uuid.empty())
+    return DeviceChoice{.kind = DeviceChoice::Kind::kName, .name = uuid};
+  return core::Error{core::ErrorCode::kInvalidInput,
+                     "device \"" + std::string(text) + "\" is not auto, software, an index from 0 to " +
+                         std::to_string(kMaxIndex) + ", a path or a UUID; see `spindrift info`"};
 }
 
 std::vector<DeviceInfo> listDevices() {

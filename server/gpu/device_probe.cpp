@@ -8,6 +8,7 @@
 
 #include <spindrift/gpu/embedded_shader.h>
 
+#include "device_advice.h"
 #include "device_needs.h"
 #include "gl_errors.h"
 
@@ -107,7 +108,12 @@ std::string runProbe() {
 
 egl::Attempt openUsable(const egl::Candidate& candidate) {
   egl::Attempt attempt = egl::open(candidate);
-  if (!attempt.handles) return attempt;
+  if (!attempt.handles) {
+    const std::string advice =
+        fileAdvice(candidate.render_file.empty() ? candidate.drm_file : candidate.render_file, Machine::real());
+    if (!advice.empty()) attempt.info.problem += "; " + advice;
+    return attempt;
+  }
   std::string problem = missingLimits(attempt.info.limits);
   if (problem.empty()) {
     problem = runProbe();

@@ -8,7 +8,7 @@
 namespace spindrift::gpu {
 
 /// Calls egl::open(), compares the device's limits with the program's needs, then compiles and runs a small program. On
-/// failure the context is closed and `info.problem` holds the reason.
+/// failure the context is closed and `info.problem` holds the reason, and what to do where that can be told.
 egl::Attempt openUsable(const egl::Candidate& candidate);
 
 /// Runs shaders/device/probe.comp in the current context and checks its result: storage and texel reads, a uniform

@@ -20,6 +20,8 @@ std::string whyChosen(const DeviceInfo& info, DeviceChoice::Kind kind, int hardw
   switch (kind) {
     case DeviceChoice::Kind::kIndex:
       return "asked for by index";
+    case DeviceChoice::Kind::kName:
+      return "asked for by name";
     case DeviceChoice::Kind::kSoftware:
       return "software asked for";
     case DeviceChoice::Kind::kAuto:
@@ -28,6 +30,41 @@ std::string whyChosen(const DeviceInfo& info, DeviceChoice::Kind kind, int hardw
   if (!info.is_software) return "first hardware device with OpenGL 4.5 core that runs the program's shaders";
   return hardware_count == 0 ? "software, because EGL lists no hardware device"
                              : "software, because no hardware device works";
+}
+
+/// Returns the index of the hardware with this DRM file or UUID; -1 if there is none.
+int indexOf(const std::vector<egl::Candidate>& candidates, const std::string& name) {
+  const auto found = std::ranges::find_if(candidates, [&](const egl::Candidate& candidate) {
+    return !candidate.is_software &&
+           (candidate.drm_file == name || candidate.render_file == name || candidate.uuid == name);
+  });
+  return found == candidates.end() ? -1 : found->index;
+}
+
+core::Error noSuchDevice(const std::string& asked, const std::vector<egl::Candidate>& candidates) {
+  std::string listed;
+  for (const egl::Candidate& candidate : candidates) {
+    if (candidate.is_software) continue;
+    listed += (listed.empty() ? "" : ", ") + std::to_string(candidate.index);
+    for (const std::string& name : {candidate.drm_file, candidate.render_file, candidate.uuid}) {
+      if (!name.empty()) listed += " " + name;
+    }
+  }
+  return {core::ErrorCode::kNoDevice, "device " + asked + " does not exist: EGL lists " +
+                                          (listed.empty() ? "no hardware devices" : "the hardware devices " + listed) +
+                                          "; use auto or software, see `spindrift info`"};
+}
+
+/// What to do where `auto` ended in software although there is, or may be, hardware; empty if there is none.
+std::string adviceAfter(const DeviceInfo& info, DeviceChoice::Kind kind, int hardware_count, const Machine& machine) {
+  if (kind != DeviceChoice::Kind::kAuto || !info.is_software) return "";
+  const std::string ending = "; --device software asks for software without this warning";
+  if (hardware_count == 0) {
+    const std::string unlisted = unlistedAdvice(machine);
+    return unlisted.empty() ? "" : unlisted + ending;
+  }
+  const std::string variables = variableAdvice(machine);
+  return (variables.empty() ? "make the hardware usable, or update its driver with EGL" : variables) + ending;
 }
 
 }  // namespace
@@ -43,18 +80,18 @@ void mergeDuplicates(std::vector<egl::Candidate>& candidates) {
 }
 
 core::Result<Selection> selectDevice(const std::vector<egl::Candidate>& candidates, const DeviceChoice& choice,
-                                     const OpenDevice& open, const CloseDevice& close) {
+                                     const OpenDevice& open, const CloseDevice& close, const Machine& machine) {
   using Kind = DeviceChoice::Kind;
   int hardware_count = 0;
   for (const egl::Candidate& candidate : candidates) hardware_count = std::max(hardware_count, candidate.index + 1);
-  if (choice.kind == Kind::kIndex && choice.index >= hardware_count) {
-    return core::Error{core::ErrorCode::kNoDevice, "device " + std::to_string(choice.index) +
-                                                       " does not exist: EGL lists " + std::to_string(hardware_count) +
-                                                       " hardware devices; use auto or software, see `spindrift info`"};
+  const bool is_one = choice.kind == Kind::kIndex || choice.kind == Kind::kName;
+  const int index = choice.kind == Kind::kName ? indexOf(candidates, choice.name) : choice.index;
+  if (is_one && (index < 0 || index >= hardware_count)) {
+    return noSuchDevice(choice.kind == Kind::kName ? choice.name : std::to_string(choice.index), candidates);
   }
   std::string failures;
   for (const egl::Candidate& candidate : candidates) {
-    if (choice.kind == Kind::kIndex && candidate.index != choice.index) continue;
+    if (is_one && candidate.index != index) continue;
     if (choice.kind == Kind::kSoftware && !candidate.is_software) continue;
     egl::Attempt attempt = open(candidate);
     DeviceInfo& info = attempt.info;
@@ -66,15 +103,18 @@ core::Result<Selection> selectDevice(const std::vector<egl::Candidate>& candidat
     if (attempt.handles) {
       std::string why = label(info) + ": " + whyChosen(info, choice.kind, hardware_count);
       if (!failures.empty()) why += "; not used: " + failures;
+      info.advice = adviceAfter(info, choice.kind, hardware_count, machine);
       return Selection{*attempt.handles, std::move(info), std::move(why)};
     }
     if (!failures.empty()) failures += ", ";
     failures += label(info) + ": " + info.problem;
   }
+  const std::string variables = variableAdvice(machine);
   return core::Error{core::ErrorCode::kNoDevice,
-                     "no usable EGL device with OpenGL 4.5 (" + failures +
-                         "); install your GPU's driver with EGL, or Mesa's software rasteriser: "
-                         "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"};
+                     "no usable EGL device with OpenGL 4.5 (" + failures + "); " +
+                         (variables.empty() ? "install your GPU's driver with EGL, or Mesa's software rasteriser: "
+                                              "apt install libegl1 libegl-mesa0 libgl1-mesa-dri"
+                                            : variables)};
 }
 
 std::vector<DeviceInfo> describeDevices(const std::vector<egl::Candidate>& candidates, const OpenDevice& open,

@@ -8,6 +8,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/device.h>
 
+#include "device_advice.h"
 #include "egl_display.h"
 
 namespace spindrift::gpu {
@@ -30,7 +31,7 @@ void mergeDuplicates(std::vector<egl::Candidate>& candidates);
 /// Tries the candidates that `choice` allows, in order, until one works. Error kNoDevice lists all that were tried and
 /// why each was not used.
 core::Result<Selection> selectDevice(const std::vector<egl::Candidate>& candidates, const DeviceChoice& choice,
-                                     const OpenDevice& open, const CloseDevice& close);
+                                     const OpenDevice& open, const CloseDevice& close, const Machine& machine);
 
 /// Returns one entry per piece of hardware, in the order of their indices: the candidate that works, otherwise the
 /// first one; then one entry for software.

@@ -116,7 +116,7 @@ void describeCurrent(DeviceInfo& info) {
   limits.max_combined_texture_units = limit(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS);
 }
 
-/// Returns the 16 bytes of EGL_EXT_device_persistent_id, or an empty string.
+/// Returns the UUID of EGL_EXT_device_persistent_id as DeviceInfo has it, or an empty string.
 std::string deviceUuid(EGLDeviceEXT device, const std::string& extensions) {
   // Values from the extension's specification; older headers do not have them.
   constexpr EGLint kDeviceUuid = 0x335C;  // EGL_DEVICE_UUID_EXT
@@ -126,7 +126,15 @@ std::string deviceUuid(EGLDeviceEXT device, const std::string& extensions) {
   std::array<char, 16> uuid{};
   EGLint size_bytes = 0;
   if (!query || !query(device, kDeviceUuid, uuid.size(), uuid.data(), &size_bytes)) return {};
-  return size_bytes == static_cast<EGLint>(uuid.size()) ? std::string(uuid.data(), uuid.size()) : std::string();
+  if (size_bytes != static_cast<EGLint>(uuid.size())) return {};
+  std::string out;
+  for (const char byte : uuid) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    if (out.size() == 8 || out.size() == 13 || out.size() == 18 || out.size() == 23) out += '-';
+    out += kDigits[static_cast<unsigned char>(byte) >> 4];
+    out += kDigits[static_cast<unsigned char>(byte) & 0xF];
+  }
+  return out;
 }
 
 /// Creates an OpenGL 4.5 core context that reports resets, or one that does not if the driver has no such feature.
@@ -151,6 +159,18 @@ EGLContext createContext(EGLDisplay display, bool& tells_of_resets) {
   return EGL_NO_CONTEXT;
 }
 
+/// Returns what the driver offers in place of OpenGL 4.5, or an empty string. Leaves no context current.
+std::string olderVersion(EGLDisplay display) {
+  const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
+  if (context == EGL_NO_CONTEXT) return {};
+  std::string out;
+  // Not from the loader: it would keep the functions of this version for the whole process.
+  const auto get = reinterpret_cast<const GLubyte* (*)(GLenum)>(eglGetProcAddress("glGetString"));
+  if (get && makeCurrent({display, context})) out = text(get(GL_VERSION)) + " of " + text(get(GL_RENDERER));
+  close({display, context});
+  return out;
+}
+
 }  // namespace
 
 std::vector<Candidate> candidates() {
@@ -171,6 +191,9 @@ std::vector<Candidate> candidates() {
       if (hasWord(extensions, "EGL_EXT_device_drm")) {
         candidate.drm_file = text(query_string(devices[i], EGL_DRM_DEVICE_FILE_EXT));
       }
+      if (hasWord(extensions, "EGL_EXT_device_drm_render_node")) {
+        candidate.render_file = text(query_string(devices[i], EGL_DRM_RENDER_NODE_FILE_EXT));
+      }
       candidate.uuid = deviceUuid(devices[i], extensions);
       (candidate.is_software ? software : hardware).push_back(candidate);
     }
@@ -189,6 +212,8 @@ Attempt open(const Candidate& candidate) {
   info.index = candidate.index;
   info.is_software = candidate.is_software;
   info.drm_file = candidate.drm_file;
+  info.render_file = candidate.render_file;
+  info.uuid = candidate.uuid;
   info.name = candidate.device ? "EGL device " + candidate.drm_file : "Mesa surfaceless platform";
   const auto fail = [&](const std::string& what) {
     info.problem = what;
@@ -207,7 +232,11 @@ Attempt open(const Candidate& candidate) {
   if (!eglBindAPI(EGL_OPENGL_API)) return fail("its EGL driver knows no desktop OpenGL");
 
   handles.context = createContext(handles.display, info.tells_of_resets);
-  if (handles.context == EGL_NO_CONTEXT) return fail("no OpenGL 4.5 core context (" + eglErrorText() + ")");
+  if (handles.context == EGL_NO_CONTEXT) {
+    const std::string error = eglErrorText();
+    const std::string older = olderVersion(handles.display);
+    return fail("no OpenGL 4.5 core context (" + error + (older.empty() ? ")" : "; it has " + older + ")"));
+  }
   if (!makeCurrent(handles)) {
     const std::string error = eglErrorText();
     close(handles);

@@ -15,9 +15,10 @@ namespace spindrift::gpu::egl {
 struct Candidate {
   void* device = nullptr;  ///< EGLDeviceEXT; null: Mesa's surfaceless platform, which picks a driver by itself
   bool is_software = false;
-  int index = -1;        ///< position among the hardware devices, -1 for software
-  std::string drm_file;  ///< empty when EGL does not report it
-  std::string uuid;      ///< 16 bytes that identify the hardware, with any driver; empty when not reported
+  int index = -1;           ///< position among the hardware devices, -1 for software
+  std::string drm_file;     ///< empty when EGL does not report it
+  std::string render_file;  ///< the same
+  std::string uuid;         ///< of the hardware, with any driver, as in DeviceInfo; empty when not reported
 };
 
 /// A context on an initialised display.

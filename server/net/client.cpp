@@ -10,6 +10,7 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -276,6 +277,10 @@ core::Result<ClientUrl> ClientUrl::parse(const std::string& url) {
   const bool is_port = !out.port.empty() && out.port.size() <= 5 &&
                        out.port.find_first_not_of("0123456789") == std::string::npos && std::stoi(out.port) <= 65535;
   if (out.host.empty() || !is_port) return refuse(kForm);
+  boost::system::error_code error;
+  const auto address = asio::ip::make_address(out.host, error);
+  if (!error && address.is_v6() && address.to_v6().is_link_local() && address.to_v6().scope_id() == 0)
+    return refuse("a link-local address needs its interface: write [" + out.host + "%eth0]");
   return out;
 }
 

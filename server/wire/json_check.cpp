@@ -75,8 +75,11 @@ class Checker {
     error_ = "line " + std::to_string(line) + ", column " + std::to_string(at_ - line_begin + 1) + ": " + what;
     if (at_ == text_.size()) {
       error_ += ", and the text ends";
-    } else if (const char c = text_[at_]; c > 0x20 && c < 0x7f) {
-      error_ += std::string(", not ") + c;
+    } else {
+      // One character, or one byte that belongs to none: a byte order mark is to be seen.
+      constexpr std::size_t kEscapeMaxBytes = 16;
+      const std::size_t length = std::max<std::size_t>(core::utf8SequenceLength(text_, at_), 1);
+      error_ += ", not " + core::quoteText(text_.substr(at_, length), kEscapeMaxBytes);
     }
     return false;
   }
@@ -142,6 +145,7 @@ class Checker {
     if (take('}')) return true;
     // The field set in each oneof (an optional field is a oneof of its own).
     std::vector<std::pair<const google::protobuf::OneofDescriptor*, std::string>> chosen;
+    std::vector<const FieldDescriptor*> known;
     while (true) {
       if (at_ == text_.size() || text_[at_] != '"') return fail("a name in double quotes is expected");
       std::string name;
@@ -154,10 +158,12 @@ class Checker {
       if (type != nullptr) {
         field = fieldOf(*type, name);
         if (field == nullptr) return failField(member_path, type->name() + " has no such field");
+        // Protobuf would take the last one.
+        if (std::ranges::find(known, field) != known.end()) return failField(member_path, "is given twice");
+        known.push_back(field);
         const bool is_null = kindHere() == Kind::kNull;
         if (const auto* choice = field->containing_oneof(); choice != nullptr && !is_null) {
           const auto other = std::ranges::find(chosen, choice, [](const auto& entry) { return entry.first; });
-          if (other != chosen.end() && other->second == field->name()) return failField(member_path, "is given twice");
           if (other != chosen.end()) return failField(member_path, "cannot be given together with " + other->second);
           chosen.emplace_back(choice, field->name());
         }

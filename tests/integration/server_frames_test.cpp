@@ -18,7 +18,7 @@ TEST_F(Frames, GreetingHasSceneLayersAndParameters) {
   const v1::Greeting& greeting = one.greeting();
   EXPECT_EQ(greeting.version().major(), 1u);
   EXPECT_EQ(greeting.room(), "main");
-  EXPECT_EQ(greeting.device(), server().deviceLine());
+  EXPECT_EQ(greeting.device(), server().simulation().deviceLine());
   EXPECT_THAT(greeting.layers(), ElementsAre(v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS));
   EXPECT_EQ(greeting.scene().wave().resolution_count(), 32u);
   EXPECT_EQ(greeting.scene().gravity_mps2(), core::Scene{}.gravity_mps2) << "a default that the scene leaves out";

@@ -170,10 +170,11 @@ TEST_F(Script, AddressesAreRead) {
   EXPECT_FALSE(parse("ws://localhost")->is_tls);
   EXPECT_TRUE(parse("wss://localhost:8080/ws")->is_tls);
   EXPECT_EQ(parse("wss://localhost")->port, "443");
-  for (const char* bad :
-       {"", "localhost:8080", "http://localhost", "https://localhost", "ws://", "wss://", "ws://h:99999", "ws://h:x"}) {
+  for (const char* bad : {"", "localhost:8080", "http://localhost", "https://localhost", "ws://", "wss://",
+                          "ws://h:99999", "ws://h:x", "ws://[fe80::1]:8080"}) {
     EXPECT_FALSE(parse(bad)) << bad;
   }
+  EXPECT_EQ(parse("ws://[fe80::1%lo]:8080")->host, "fe80::1%lo") << "a link-local address has an interface";
 }
 
 }  // namespace

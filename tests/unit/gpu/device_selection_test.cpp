@@ -1,6 +1,9 @@
 // Selection among imaginary devices.
 #include "device_selection.h"
 
+#include <cerrno>
+#include <map>
+
 #include <gmock/gmock.h>
 
 #include "device_needs.h"
@@ -48,8 +51,18 @@ class Selecting : public testing::Test {
     return attempt;
   }
   core::Result<Selection> select(const DeviceChoice& choice = {}) {
+    const Machine machine{.variable =
+                              [this](const std::string& name) {
+                                const auto found = variables.find(name);
+                                return found == variables.end() ? nullptr : found->second.c_str();
+                              },
+                          .opening_error =
+                              [this](const std::string& file) {
+                                const auto found = files.find(file);
+                                return found == files.end() ? ENOENT : found->second;
+                              }};
     return selectDevice(
-        candidates, choice, [this](const auto& c) { return open(c); }, [this](const auto&) { --open_count; });
+        candidates, choice, [this](const auto& c) { return open(c); }, [this](const auto&) { --open_count; }, machine);
   }
   std::vector<DeviceInfo> describe() {
     return describeDevices(
@@ -57,6 +70,8 @@ class Selecting : public testing::Test {
   }
 
   std::vector<egl::Candidate> candidates;
+  std::map<std::string, std::string> variables;  ///< of the environment
+  std::map<std::string, int> files;              ///< errno of opening; others do not exist
   std::vector<std::string> working;
   std::vector<std::string> tried;
   int open_count = 0;
@@ -83,6 +98,66 @@ TEST_F(Selecting, AutoEndsAtSoftwareAndSaysWhyNoHardware) {
   EXPECT_THAT(selected->why, HasSubstr("software, because no hardware device works; not used: device 0"));
 }
 
+TEST_F(Selecting, AutoAdvisesWhereHardwareIsNotUsed) {
+  candidates = {hardware(0, "card0"), software()};
+  working = {""};
+  EXPECT_THAT(select()->info.advice, AllOf(HasSubstr("make the hardware usable"), HasSubstr("--device software")));
+  variables["MESA_LOADER_DRIVER_OVERRIDE"] = "kms_swrast";
+  EXPECT_THAT(select()->info.advice, HasSubstr("(MESA_LOADER_DRIVER_OVERRIDE=kms_swrast): unset that"));
+  EXPECT_THAT(select({.kind = Kind::kSoftware})->info.advice, IsEmpty()) << "asked for";
+  working = {"card0", ""};
+  EXPECT_THAT(select()->info.advice, IsEmpty());
+}
+
+TEST_F(Selecting, AutoAdvisesWhereEglDoesNotListTheHardware) {
+  candidates = {software()};
+  working = {""};
+  EXPECT_THAT(select()->info.advice, IsEmpty()) << "there is none";
+  files["/dev/dri/renderD128"] = EACCES;
+  EXPECT_THAT(select()->info.advice, HasSubstr("this user may not open /dev/dri/renderD128: add it to the group"));
+  files["/dev/dri/renderD128"] = 0;
+  EXPECT_THAT(select()->info.advice, HasSubstr("there is a GPU (/dev/dri/renderD128): install its driver for EGL"));
+  files["/dev/nvidiactl"] = 0;
+  EXPECT_THAT(select()->info.advice, HasSubstr("NVIDIA_DRIVER_CAPABILITIES"));
+}
+
+TEST_F(Selecting, ADeviceIsFoundByItsFilesAndItsUuid) {
+  const std::string uuid = "01234567-89ab-cdef-0123-456789abcdef";
+  candidates = {hardware(0, "card0"), hardware(1, "card1", uuid), software()};
+  candidates[1].render_file = "renderD129";
+  working = {"card0", "card1", ""};
+  for (const std::string& name : {std::string("card1"), std::string("renderD129"), uuid}) {
+    const auto selected = select({.kind = Kind::kName, .name = name});
+    ASSERT_TRUE(selected) << name;
+    EXPECT_EQ(selected->info.index, 1) << name;
+  }
+  const auto unknown = select({.kind = Kind::kName, .name = "renderD130"});
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(
+      unknown.error().message,
+      HasSubstr("device renderD130 does not exist: EGL lists the hardware devices 0 card0, 1 card1 renderD129 " +
+                uuid));
+}
+
+TEST_F(Selecting, TheVariablesAreTheAdviceWhereNothingWorks) {
+  candidates = {software()};
+  variables["GALLIUM_DRIVER"] = "softpipe";
+  EXPECT_THAT(select().error().message,
+              AllOf(HasSubstr("(GALLIUM_DRIVER=softpipe): unset that"), Not(HasSubstr("apt"))));
+}
+
+TEST(DeviceAdvice, SaysWhyAFileCannotBeOpened) {
+  const auto adviceFor = [](int error) {
+    return fileAdvice("/dev/dri/renderD128",
+                      {.variable = {}, .opening_error = [error](const std::string&) { return error; }});
+  };
+  EXPECT_THAT(adviceFor(0), IsEmpty());
+  EXPECT_THAT(adviceFor(EACCES),
+              AllOf(HasSubstr("this user may not open /dev/dri/renderD128"), HasSubstr("--group-add")));
+  EXPECT_THAT(adviceFor(ENOENT), HasSubstr("--device /dev/dri/renderD128"));
+  EXPECT_THAT(fileAdvice("", {}), IsEmpty()) << "EGL does not name a file";
+}
+
 TEST_F(Selecting, WithoutAWorkingDeviceTheErrorListsEveryAttempt) {
   candidates = {hardware(0, "card0"), software()};
   const auto selected = select();
@@ -95,9 +170,9 @@ TEST_F(Selecting, WithoutAWorkingDeviceTheErrorListsEveryAttempt) {
 TEST_F(Selecting, AnIndexIsNotReplacedByAnotherDevice) {
   candidates = {hardware(0, "card0"), hardware(1, "card1"), software()};
   working = {"card1", ""};
-  EXPECT_FALSE(select({Kind::kIndex, 0}));
+  EXPECT_FALSE(select({.kind = Kind::kIndex, .index = 0}));
   EXPECT_THAT(tried, ElementsAre("card0"));
-  EXPECT_FALSE(select({Kind::kIndex, 2})) << "there are two";
+  EXPECT_FALSE(select({.kind = Kind::kIndex, .index = 2})) << "there are two";
 }
 
 TEST_F(Selecting, AGpuThatTwoVendorLibrariesListHasOneIndex) {
@@ -118,7 +193,7 @@ TEST_F(Selecting, TheSecondWayToAGpuIsTakenWhenTheFirstHasNoDriver) {
   candidates = {hardware(-1, "card0", "a"), hardware(-1, "nvidia0", "a"), software()};
   mergeDuplicates(candidates);
   working = {"nvidia0", ""};
-  const auto selected = select({Kind::kIndex, 0});
+  const auto selected = select({.kind = Kind::kIndex, .index = 0});
   ASSERT_TRUE(selected);
   EXPECT_EQ(selected->info.drm_file, "nvidia0");
 

@@ -14,13 +14,21 @@ void hideDrivers() {
   setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent", 1);
 }
 
-TEST(NoDevice, SaysWhatToInstall) {
+TEST(NoDevice, NamesTheVariablesThatHideTheDrivers) {
   hideDrivers();
   const auto none = Context::create({});
   if (none) GTEST_SKIP() << "this libEGL is not libglvnd: its drivers cannot be hidden";
   EXPECT_EQ(none.error().code, core::ErrorCode::kNoDevice);
-  EXPECT_THAT(none.error().message, testing::HasSubstr("apt install libegl1 libegl-mesa0 libgl1-mesa-dri"));
+  EXPECT_THAT(none.error().message, testing::HasSubstr("__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"));
   EXPECT_THAT(none.error().message, testing::Not(testing::HasSubstr("\n")));
+}
+
+TEST(NoDevice, SaysWhatTheDriverHasAndWhichVariableCausesIt) {
+  setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+  const auto none = Context::create({.kind = DeviceChoice::Kind::kSoftware});
+  if (none || none.error().message.find("it has 3.3") == std::string::npos) GTEST_SKIP() << "this driver is not Mesa's";
+  EXPECT_THAT(none.error().message, testing::AllOf(testing::HasSubstr("MESA_GL_VERSION_OVERRIDE=3.3): unset that"),
+                                                   testing::Not(testing::HasSubstr("apt install"))));
 }
 
 TEST(NoDevice, IsListedWithItsReason) {

@@ -156,6 +156,9 @@ TEST(ApiMessage, ReportsThePlaceAndWhatIsExpected) {
   EXPECT_EQ(whyNot(R"({"splosh":{}})"), "splosh: Command has no such field");
   EXPECT_EQ(whyNot(R"({"splash":{"X_m":1}})"), "splash.X_m: Splash has no such field");
   EXPECT_EQ(whyNot(R"({"splash":{"x_m":1,"xM":2}})"), "splash.xM: is given twice");
+  EXPECT_EQ(whyNot(R"({"command_id":1,"commandId":2,"reset":{}})"), "commandId: is given twice");
+  EXPECT_EQ(whyNot(R"({"reset":null,"reset":{}})"), "reset: is given twice");
+  EXPECT_EQ(whyNot("\xEF\xBB\xBF{}"), "line 1, column 1: a JSON object {...} is expected, not \\u{FEFF}");
   EXPECT_EQ(whyNot(R"({"splash":{},"reset":{}})"), "reset: cannot be given together with splash");
   EXPECT_EQ(whyNot(R"({"reset":5})"), "reset: has to be an object {...}");
   EXPECT_EQ(whyNot(R"({"splash":{"x_m":[1]}})"), "splash.x_m: has to be a number");

@@ -10,21 +10,24 @@
 
 namespace spindrift::gpu {
 
-/// The user's choice with `--device auto|software|N`.
+/// The user's choice with `--device auto|software|N|FILE|UUID`.
 struct DeviceChoice {
   enum class Kind {
     kAuto,      ///< the first hardware device that meets the program's needs and passes a probe, otherwise software
     kSoftware,  ///< Mesa's software rasteriser
     kIndex,     ///< the hardware device with this index in listDevices()
+    kName,      ///< the hardware device with this DRM file or UUID
   };
   Kind kind = Kind::kAuto;
-  int index = 0;  ///< for kIndex only
+  int index = 0;       ///< for kIndex only
+  std::string name{};  ///< for kName only: a path with links resolved, or a UUID as in DeviceInfo
   /// For shader development: the folder from which shaders are read; empty: the embedded shaders. See
   /// Context::reloadChangedShaders().
   std::string shader_folder{};
 };
 
-/// "auto", "software" or a device index (0…1023). Error kInvalidInput otherwise.
+/// "auto", "software", a device index (0…1023), a DRM file (/dev/dri/renderD128, or a link to it), or a UUID with or
+/// without "GPU-". Error kInvalidInput otherwise.
 core::Result<DeviceChoice> parseDeviceChoice(std::string_view text);
 
 /// Limits of a device's context; all zero for a device that does not work.
@@ -51,9 +54,12 @@ struct DeviceInfo {
   std::string glsl_version;  ///< GL_SHADING_LANGUAGE_VERSION
   std::string egl_driver;    ///< EGL_VENDOR and EGL_VERSION of the display, e.g. "Mesa Project 1.5"
   std::string drm_file;      ///< device file, empty when the device has none
+  std::string render_file;   ///< the file through which programs compute, empty when EGL does not report it
+  std::string uuid;          ///< "01234567-89ab-…" in lower case, empty when EGL does not report it
   bool is_software = false;
   bool tells_of_resets = false;  ///< the driver reports device resets; see Context::isLost()
   std::string problem;           ///< empty: the device works; otherwise the reason in one line
+  std::string advice;            ///< of the chosen device: why it is not the hardware, and what to do; else empty
   DeviceLimits limits;
 };
 

@@ -46,7 +46,6 @@ class WaterServer {
   void reloadCertificate() { network_->reloadCertificate(); }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  [[nodiscard]] std::string deviceLine() const { return simulation_->deviceLine(); }
   /// Real-time factor of the default room over the last second.
   [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
   [[nodiscard]] Gateway& gateway() { return *gateway_; }
