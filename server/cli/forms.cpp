@@ -25,11 +25,8 @@ void trim(std::string& text) {
   text.erase(text.find_last_not_of(kBlank) + 1);
 }
 
-template <typename Number>
-std::string notIn(const std::string& text, Number value, Number min, Number max) {
-  if (value >= min && value <= max) return "";
-  return "Value " + text + " not in range " + core::formatNumber(static_cast<double>(min)) + " to " +
-         core::formatNumber(static_cast<double>(max));
+std::string bounds(double min, double max) {
+  return core::formatNumber(min) + " to " + core::formatNumber(max);
 }
 
 /// The form in which CLI11 shows a range, and in which config_file.cpp finds it.
@@ -66,21 +63,25 @@ std::string faultOfNatsServer(std::string_view server) {
 }  // namespace
 
 CLI::Validator numberIn(double min, double max) {
-  return {[=](std::string& text) {
+  return {[=](std::string& text) -> std::string {
             double value = 0;
-            const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-            return is_number ? notIn(text, value, min, max) : "Value " + text + " is not a number";
+            if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value))
+              return "Value " + text + " is not a number from " + bounds(min, max);
+            return value >= min && value <= max ? "" : "Value " + text + " not in range " + bounds(min, max);
           },
           rangeText("FLOAT", min, max)};
 }
 
 CLI::Validator integerIn(std::int64_t min, std::int64_t max) {
-  return {[=](std::string& text) {
+  const auto first = static_cast<double>(min);
+  const auto last = static_cast<double>(max);
+  return {[=](std::string& text) -> std::string {
             std::int64_t value = 0;
-            return CLI::detail::lexical_cast(text, value) ? notIn(text, value, min, max)
-                                                          : "Value " + text + " is not a whole number";
+            if (!CLI::detail::lexical_cast(text, value))
+              return "Value " + text + " is not a whole number from " + bounds(first, last);
+            return value >= min && value <= max ? "" : "Value " + text + " not in range " + bounds(first, last);
           },
-          rangeText("INT", static_cast<double>(min), static_cast<double>(max))};
+          rangeText("INT", first, last)};
 }
 
 CLI::Validator isNotEmpty() {

@@ -126,7 +126,7 @@ TEST_F(Serve, NamesAnInvalidDevice) {
 TEST_F(Serve, WithoutAnyDeviceSaysWhatToInstall) {
   const Outcome probe = runProgram({"info"}, withoutDevices());
   if (probe.exit_code == 0) GTEST_SKIP() << "this libEGL is not libglvnd: its drivers cannot be hidden";
-  expectOneErrorLine(runProgram(arguments(), withoutDevices()), 3, {"no usable EGL device", "apt install"});
+  expectOneErrorLine(runProgram(arguments(), withoutDevices()), 3, {"no usable EGL device", "__EGL_VENDOR_LIBRARY_DIRS"});
 }
 
 TEST_F(Serve, NamesAMissingScene) {
@@ -140,12 +140,12 @@ TEST_F(Serve, ReportsABadSceneWithFileLineAndColumn) {
 }
 
 TEST_F(Serve, RoomWithoutASceneIsRefusedWithTheForm) {
-  expectOneErrorLine(runProgram(arguments({"--room", "pond"})), 2, {"--room 'pond'", "NAME=SCENE"});
-  expectOneErrorLine(runProgram(arguments({"--room", "pond="})), 2, {"--room 'pond='", "NAME=SCENE"});
+  expectOneErrorLine(runProgram(arguments({"--room", "pond"})), 2, {"--room", "pond is no room", "NAME=SCENE"});
+  expectOneErrorLine(runProgram(arguments({"--room", "pond="})), 2, {"--room", "pond= is no room", "NAME=SCENE"});
 }
 
 TEST_F(Serve, RoomWithoutANameIsRefusedWithTheForm) {
-  expectOneErrorLine(runProgram(arguments({"--room", "=default"})), 2, {"--room '=default'", "NAME=SCENE"});
+  expectOneErrorLine(runProgram(arguments({"--room", "=default"})), 2, {"--room", "=default is no room", "NAME=SCENE"});
 }
 
 TEST_F(Serve, NamesAnInvalidRoomName) {

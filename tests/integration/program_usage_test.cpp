@@ -232,7 +232,7 @@ TEST_F(Info, JsonGoesToAFileBesideTheText) {
 TEST_F(Info, NamesAJsonFileThatCannotBeWritten) {
   const Outcome outcome = runProgram({"info", "--json", "/nonexistent/info.json"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--json '/nonexistent/info.json': cannot be written"));
+  EXPECT_THAT(outcome.err, HasSubstr("--json: Value '/nonexistent/info.json' cannot be written: there is no folder /nonexistent"));
 }
 
 TEST_F(Info, WithoutADeviceIsStillPrintedAndEndsWithThree) {
@@ -243,7 +243,7 @@ TEST_F(Info, WithoutADeviceIsStillPrintedAndEndsWithThree) {
   const boost::json::value json = boost::json::parse(outcome.out, error);
   ASSERT_FALSE(error) << outcome.out;
   EXPECT_TRUE(json.at("chosen").is_null());
-  EXPECT_THAT(std::string(json.at("why").as_string()), HasSubstr("apt install"));
+  EXPECT_THAT(std::string(json.at("why").as_string()), HasSubstr("__EGL_VENDOR_LIBRARY_DIRS"));
 }
 
 TEST_F(Info, ParameterReferenceIsATable) {

@@ -43,7 +43,7 @@ TEST_F(ConfigFile, ErrorsNamePlaceFieldValueAndBound) {
   EXPECT_EQ(refused("port: -1\n"), "serve.textproto:1:1: port: Value -1 not in range 0 to 65535");
   EXPECT_EQ(refused("# a comment\n\tgrace_s: 3601\n"),
             "serve.textproto:2:9: grace_s: Value 3601 not in range 0 to 3600");
-  EXPECT_EQ(refused("grace_s: nan"), "serve.textproto:1:1: grace_s: Value nan is not a number");
+  EXPECT_EQ(refused("grace_s: nan"), "serve.textproto:1:1: grace_s: Value nan is not a number from 0 to 3600");
   EXPECT_EQ(refused("guests: \"king\""), "serve.textproto:1:1: guests: king not in {none,viewer,player,operator}");
   EXPECT_EQ(refused("tokens_file: \"\""),
             "serve.textproto:1:1: tokens_file: Value is empty; leave the option out instead");

@@ -83,12 +83,12 @@ TEST_F(Forms, AnAddressToListenOnIsAnIpAddress) {
 }
 
 TEST_F(Forms, WhatIsNoNumberIsNotCalledOutOfRange) {
-  EXPECT_EQ(fault("--port", "8080.0"), "--port: Value 8080.0 is not a whole number");
-  EXPECT_EQ(fault("--port", "http"), "--port: Value http is not a whole number");
+  EXPECT_EQ(fault("--port", "8080.0"), "--port: Value 8080.0 is not a whole number from 0 to 65535");
+  EXPECT_EQ(fault("--port", "http"), "--port: Value http is not a whole number from 0 to 65535");
   EXPECT_EQ(fault("--port", "65536"), "--port: Value 65536 not in range 0 to 65535");
   EXPECT_EQ(fault("--port", "-1"), "--port: Value -1 not in range 0 to 65535");
-  EXPECT_EQ(fault("--grace-s", "soon"), "--grace-s: Value soon is not a number");
-  EXPECT_EQ(fault("--grace-s", "inf"), "--grace-s: Value inf is not a number");
+  EXPECT_EQ(fault("--grace-s", "soon"), "--grace-s: Value soon is not a number from 0 to 3600");
+  EXPECT_EQ(fault("--grace-s", "inf"), "--grace-s: Value inf is not a number from 0 to 3600");
   EXPECT_EQ(fault("--grace-s", "3601"), "--grace-s: Value 3601 not in range 0 to 3600");
 }
 

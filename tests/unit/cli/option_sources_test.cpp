@@ -121,10 +121,10 @@ TEST_F(Sources, ABadVariableIsRefusedByNameWithTheBound) {
     return error;
   };
   EXPECT_EQ(refused("SPINDRIFT_PORT", "65536"), "SPINDRIFT_PORT: Value 65536 not in range 0 to 65535");
-  EXPECT_EQ(refused("SPINDRIFT_PORT", "http"), "SPINDRIFT_PORT: Value http is not a whole number");
+  EXPECT_EQ(refused("SPINDRIFT_PORT", "http"), "SPINDRIFT_PORT: Value http is not a whole number from 0 to 65535");
   EXPECT_EQ(refused("SPINDRIFT_ADAPT", "maybe"), "SPINDRIFT_ADAPT: 'maybe' cannot be used; write true or false");
   EXPECT_EQ(refused("SPINDRIFT_GUESTS", "king"), "SPINDRIFT_GUESTS: king not in {none,viewer,player,operator}");
-  EXPECT_EQ(refused("SPINDRIFT_GRACE_S", "nan"), "SPINDRIFT_GRACE_S: Value nan is not a number");
+  EXPECT_EQ(refused("SPINDRIFT_GRACE_S", "nan"), "SPINDRIFT_GRACE_S: Value nan is not a number from 0 to 3600");
   EXPECT_THAT(refused("SPINDRIFT_SHADER_DIR", "/nonexistent"),
               AllOf(StartsWith("SPINDRIFT_SHADER_DIR: "), HasSubstr("/nonexistent")));
   EXPECT_THAT(refused("SPINDRIFT_LOG_FORMAT", "xml"), AllOf(StartsWith("SPINDRIFT_LOG_FORMAT: "), HasSubstr("json")));
