@@ -121,9 +121,8 @@ void Sessions::displace(net::SessionId session) {
 }
 
 void Sessions::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {
-  constexpr std::size_t kReasonMaxBytes = 120;
   hub().sendAnswer(session, wire::refusal(why));
-  hub().close(session, code, why.substr(0, kReasonMaxBytes));
+  hub().close(session, code, why);
 }
 
 void Sessions::message(net::SessionId session, core::ByteView message) {

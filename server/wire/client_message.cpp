@@ -105,7 +105,7 @@ ClientMessage parseChecked(core::ByteView bytes) {
                    hello.token(),
                    core::cleanName(hello.name(), kPersonNameMaxBytes),
                    hello.color_rgb() & 0xFFFFFFu,
-                   hello.resume_key().substr(0, kResumeKeyMaxBytes)};
+                   hello.resume_key().size() <= kResumeKeyMaxBytes ? hello.resume_key() : std::string()};
     }
     case v1::ClientMessage::kSubscribe:
       return parseSubscribe(message.subscribe());

@@ -79,6 +79,17 @@ TEST(ClientMessages, HelloKeepsVersionAndName) {
   EXPECT_FALSE(checkVersion(hello));
 }
 
+TEST(ClientMessages, AHelloWithAResumeKeyThatIsTooLongHasNone) {
+  v1::ClientMessage message;
+  std::string key;
+  while (key.size() < kResumeKeyMaxBytes) key += "\xE2\x82\xAC";  // ends in the middle of a character at the limit
+  message.mutable_hello()->set_resume_key(key);
+  EXPECT_EQ(std::get<Hello>(parse(message)).resume_key, "") << "half a character would break messages of a cluster";
+  key.resize(255);
+  message.mutable_hello()->set_resume_key(key);
+  EXPECT_EQ(std::get<Hello>(parse(message)).resume_key, key);
+}
+
 TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedWithALineOfText) {
   const auto refusal = checkVersion(Hello{2, 3, "later"});
   ASSERT_TRUE(refusal);

@@ -27,7 +27,7 @@ inline constexpr std::uint32_t kDrainingMinor = 2;
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.
 inline constexpr std::size_t kPersonNameMaxBytes = 32;
-/// Hello.resume_key is cut to this length.
+/// A longer Hello.resume_key is none that a server gave out.
 inline constexpr std::size_t kResumeKeyMaxBytes = 256;
 
 struct Hello {
@@ -37,7 +37,7 @@ struct Hello {
   std::string token{};          ///< arbitrary bytes, as long as the message allows; empty: a client without a token
   std::string name{};           ///< at most kPersonNameMaxBytes, likewise; empty if it had no visible characters
   std::uint32_t color_rgb = 0;  ///< 24 bits; 0: the server chooses
-  std::string resume_key{};     ///< at most kResumeKeyMaxBytes of arbitrary bytes
+  std::string resume_key{};     ///< at most kResumeKeyMaxBytes of arbitrary UTF-8; empty for a longer one
 };
 
 struct Subscribe {
