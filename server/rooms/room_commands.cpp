@@ -35,7 +35,7 @@ wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::u
 }  // namespace
 
 /// A new command needs its message in wire.proto, a row here with a handler, and, if it has rules about the scene, a
-/// case in wire::checkAgainstScene(). A handler gets commands that wire::checkCommand() accepted.
+/// case in wire::checkAgainstScene(). A handler gets commands that wire::completeCommand() accepted.
 struct Room::CommandKind {
   v1::Command::ActionCase action;
   CommandTraits traits;
@@ -89,7 +89,7 @@ std::optional<wire::CommandRejection> Room::admit(Command command) {
         fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));
   } else {
     const auto now = snapshot();
-    refused = wire::checkAgainstScene(command.message, now->scene);
+    refused = wire::completeCommand(command.message, now->scene);
     command.scene_version = now->scene_version;
   }
   const std::uint64_t command_id = command.id();

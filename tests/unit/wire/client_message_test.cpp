@@ -232,16 +232,6 @@ TEST(ClientMessages, CommandsArriveWithTheirValues) {
   EXPECT_EQ(expectCommand([](v1::Command& c) { c.mutable_set_speed()->set_speed(0.5); }).set_speed().speed(), 0.5);
 }
 
-TEST(ClientMessages, CommandsLeftEmptyTakeTheDefaultsOfCore) {
-  const v1::Splash splash = expectCommand([](v1::Command& c) { c.mutable_splash(); }).splash();
-  EXPECT_EQ(splash.radius_m(), core::Splash{}.radius_m);
-  EXPECT_EQ(splash.depth_m(), core::Splash{}.depth_m);
-  const v1::BreakingWave wave = expectCommand([](v1::Command& c) { c.mutable_breaking_wave(); }).breaking_wave();
-  EXPECT_EQ(scene::toCore(wave).side, core::BreakingWave{}.side);
-  EXPECT_NE(wave.side(), v1::SIDE_UNSPECIFIED);
-  EXPECT_EQ(wave.amplitude_m(), core::BreakingWave{}.amplitude_m);
-}
-
 TEST(ClientMessages, CommandsOutOfRangeAreRejectedWithTheirFieldAndId) {
   const auto wide = expectRejection(parseCommand([](v1::Command& c) { c.mutable_splash()->set_radius_m(101); }));
   EXPECT_EQ(wide.command_id, 42u);
