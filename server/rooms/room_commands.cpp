@@ -96,6 +96,8 @@ std::optional<wire::CommandRejection> Room::admit(Command command) {
   if (!refused) {
     if (auto full = commands_.tryPush(std::move(command), std::chrono::steady_clock::now()))
       refused = rejection(v1::REJECT_REASON_BUSY, "", *std::move(full));
+    else
+      wake();
   }
   if (refused) refused->command_id = command_id;
   return refused;
@@ -162,8 +164,8 @@ void Room::recordCommand(const Command& command) {
 
 Room::Outcome Room::reset(const Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
-  next_frame_s_ = 0.0;
-  next_idle_frame_ = {};
+  frames_.restart();
+  frames_.setIdleDue({});
   pending_tick_count_ = 0;
   news_.reset = true;
   boatsChanged();

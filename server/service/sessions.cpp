@@ -256,6 +256,7 @@ void Sessions::arrived(net::SessionId session, const wire::Hello& hello, core::R
   // From here on the session gets the room's news, and the frames that it subscribes to. Send the changes since the
   // greeting.
   hub().join(session, venue->name());
+  venue->watchesChanged();
   if (const auto now_there = venue->view(); now_there && (!greeted || now_there->room != greeted->room)) {
     if (auto why = wire::checkWater(hello.minor, now_there->room->scene))
       return refuse(session, net::CloseCode::kPolicy, *why);
