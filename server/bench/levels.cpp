@@ -46,8 +46,11 @@ void LevelMeter::add(const core::FrameView& frame) {
   const std::uint32_t level_count = std::max(counts_.planes, counts_.particles);
   std::map<std::pair<v1::Layer, core::Level>, double> encoded_bytes;  // a level that downsamples nothing is not encoded
   for (const core::Level level : core::kLevels) {
-    if (!isSent(level, level_count) || frame_count_ % core::frameStride(level, frame_rate_hz_) != 0) continue;
     LevelCost& row = levels_[indexOf(level)];
+    if (!isSent(level, level_count)) continue;
+    const double since_last_s = static_cast<double>(frame_count_ - row.last_frame) / frame_rate_hz_;
+    if (row.frame_count > 0 && !core::takesFrameAfter(level, since_last_s)) continue;
+    row.last_frame = frame_count_;
     const auto begin = Clock::now();
     const auto bytes = [&](v1::Layer layer) {
       const core::Level effective = core::effectiveLevel(level, codec::reducedCountOf(layer, counts_));
@@ -112,7 +115,7 @@ boost::json::array LevelMeter::print(std::FILE* out) const {
     const LevelCost& row = levels_[k];
     if (row.frame_count == 0) continue;
     const auto frames = static_cast<double>(row.frame_count);
-    const double rate_hz = frame_rate_hz_ / core::frameStride(level, frame_rate_hz_);
+    const double rate_hz = frame_rate_hz_ * frames / static_cast<double>(frame_count_);
     const auto mbitps = [&](double bytes) { return bytes / frames * 8e-6 * rate_hz; };
     const double sum_mbitps = mbitps(row.surface_bytes + row.particle_bytes + row.foam_bytes);
     const double particle_count = row.particle_sum / frames;

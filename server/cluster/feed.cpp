@@ -160,6 +160,7 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
   link.heard = Clock::now();
   switch (message.message_case()) {
     case v1::ToRoom::kWatching: {
+      const bool is_first = link.session_count == 0;
       link.session_count = message.watching().session_count();
       link.unlisted_count = message.watching().unlisted_count();
       StreamTable watched{};
@@ -171,6 +172,8 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
         entry.watcher_count = stream.watcher_count();
         entry.wants_keyframe = stream.wants_keyframe() || (before.wants_keyframe && before.watcher_count > 0);
       }
+      // Told at every pulse, mostly without news.
+      if ((is_first && link.session_count > 0) || watched != link.watched) room.room->wake();
       link.watched = watched;
       return;
     }

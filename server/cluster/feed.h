@@ -79,6 +79,7 @@ class Feed final : public service::RemoteAudience {
   struct Watched {
     std::uint32_t watcher_count = 0;
     bool wants_keyframe = false;
+    friend bool operator==(const Watched&, const Watched&) = default;
   };
   using StreamTable = std::array<std::array<Watched, core::kLevelCount>, codec::kStreamCount>;
   /// One node that has attached to one room.

@@ -10,6 +10,8 @@
 #include <boost/beast/websocket.hpp>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/core/text.h>
+
 #include "http_routes.h"
 
 namespace spindrift::net {
@@ -36,11 +38,13 @@ constexpr const char* kInternalReason = "the server failed on this session; its 
 
 constexpr const char* kTooManyMessages = "too many messages for too long: keep to Greeting.limits.messages_per_s";
 
-/// A close reason is at most 123 bytes (RFC 6455 section 5.5).
+/// RFC 6455 section 5.5: the payload of a control frame is at most 125 bytes, of which two are the code.
+constexpr std::size_t kCloseReasonMaxBytes = 123;
+
+/// RFC 6455 section 5.5.1: the reason is valid UTF-8. A longer one is cut between two characters.
 websocket::close_reason closeFrame(const SessionEnd& end) {
-  constexpr std::size_t kMaxReasonBytes = 123;
   websocket::close_reason frame(static_cast<websocket::close_code>(end.code));
-  const std::string text = end.reason.substr(0, kMaxReasonBytes);
+  const std::string text = core::cleanText(end.reason, kCloseReasonMaxBytes);
   frame.reason.assign(text.data(), text.size());
   return frame;
 }
@@ -140,7 +144,7 @@ asio::awaitable<void> Session::readLoop() {
     const auto [error, bytes_count] = co_await ws_.async_read(read_buffer_, kToken);
     if (error) {
       if (error == websocket::error::closed) {
-        noteEnd(ws_.reason().code, ws_.reason().reason.c_str());
+        noteEnd(ws_.reason().code, core::cleanText(ws_.reason().reason.c_str(), kCloseReasonMaxBytes));
       } else if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow) {
         noteEnd(static_cast<std::uint16_t>(CloseCode::kTooBig), "a message over the limit");  // Beast has sent 1009
       } else if (error == beast::error::timeout) {

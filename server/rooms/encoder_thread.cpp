@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -16,21 +17,23 @@ void EncoderThread::submit(const std::string& room, core::FrameView frame) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) return;
-    auto [it, is_new] = waiting_.try_emplace(room);
-    if (!is_new) {
-      ++replaced_count_;
+    const auto waiting = std::ranges::find(waiting_, room, &Waiting::room);
+    if (waiting == waiting_.end()) {
+      waiting_.push_back({room, std::move(frame)});
+    } else {
+      ++rooms_[room].counts.replaced_count;
       // Keep the diagnostics of the replaced frame if the newer one has none: they are sent once only.
-      if (!frame.diagnostics) frame.diagnostics = std::move(it->second.diagnostics);
+      if (!frame.diagnostics) frame.diagnostics = std::move(waiting->frame.diagnostics);
+      waiting->frame = std::move(frame);
     }
-    it->second = std::move(frame);
   }
   wake_.notify_one();
 }
 
 void EncoderThread::forget(const std::string& room) {
   const std::lock_guard lock(mutex_);
-  waiting_.erase(room);
-  encoders_.erase(room);
+  std::erase_if(waiting_, [&](const Waiting& waiting) { return waiting.room == room; });
+  rooms_.erase(room);
 }
 
 EncoderThread::Costs EncoderThread::costs() const {
@@ -49,9 +52,10 @@ void EncoderThread::stop() {
   waiting_.clear();  // frames are read from the memory of their device, which is destroyed next
 }
 
-std::uint64_t EncoderThread::replacedCount() const {
+EncoderThread::FrameCounts EncoderThread::frameCounts(const std::string& room) const {
   const std::lock_guard lock(mutex_);
-  return replaced_count_;
+  const auto known = rooms_.find(room);
+  return known == rooms_.end() ? FrameCounts{} : known->second.counts;
 }
 
 void EncoderThread::loop() {
@@ -59,13 +63,15 @@ void EncoderThread::loop() {
   while (true) {
     wake_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });
     if (stopping_) return;
-    auto node = waiting_.extract(waiting_.begin());
-    auto& kept = encoders_[node.key()];
-    if (!kept) kept = std::make_shared<codec::FrameEncoder>();
-    const auto encoder = kept;  // the room may be forgotten while this runs
+    Waiting oldest = std::move(waiting_.front());
+    waiting_.pop_front();
+    KnownRoom& known = rooms_[oldest.room];
+    if (!known.encoder) known.encoder = std::make_shared<codec::FrameEncoder>();
+    ++known.counts.encoded_count;
+    const auto encoder = known.encoder;  // the room may be forgotten while this runs
     lock.unlock();
-    const Costs spent = encode(node.key(), node.mapped(), *encoder);
-    node.mapped() = {};  // releases the readback slot
+    const Costs spent = encode(oldest.room, oldest.frame, *encoder);
+    oldest.frame = {};  // releases the readback slot
     lock.lock();
     for (std::size_t k = 0; k < costs_.size(); ++k) {
       for (std::size_t level = 0; level < core::kLevelCount; ++level) {

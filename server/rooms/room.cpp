@@ -16,15 +16,14 @@ using std::chrono::duration;
 /// Share of the wall time that heavy commands may take, and how much of it at once: ticks come first.
 constexpr double kHeavyShare = 0.25;
 constexpr auto kHeavyBurst = 30ms;
-/// A paused room still shows newcomers its water.
-constexpr auto kPausedFrameInterval = 250ms;
-/// Frames follow simulated time. Where the machine cannot keep up they would become as rare as slow ticks make them:
-/// from this interval on they follow the wall's, at most as often as the scene says.
-constexpr auto kSlowFrameInterval = 200ms;
 /// A paused room's frame that found no free slot is asked for again.
 constexpr auto kDroppedFrameRetry = 10ms;
 /// While the device works on a frame, look for it this often.
 constexpr auto kReadbackPollInterval = 1ms;
+/// A room that stands still and has commands that cannot be carried out yet (heavy ones wait for their budget).
+constexpr auto kWaitingCommandInterval = 10ms;
+/// A room that stands still looks after its state on disk, its people and its metrics.
+constexpr auto kStandingInterval = 1s;
 /// Time from the last client's leaving until a room whose scene sleeps without clients stops.
 constexpr auto kSleepPatience = 2s;
 constexpr auto kVitalsInterval = 250ms;
@@ -44,7 +43,7 @@ Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, Room
       log_(std::move(log)),
       heavy_budget_(kHeavyShare, kHeavyBurst),
       chosen_fidelity_(water_->scene().fidelity()),
-      roster_(rules.grace),
+      roster_(rules.grace, [this] { wake(); }),
       clock_(water_->sim().derived().tick_s),
       boats_(water_->boats()) {
   recovery_news_.restart(water_->sim().recoveredCount());
@@ -117,6 +116,7 @@ void Room::publishSnapshot() {
 bool Room::askForSnapshot() {
   if (!keeper_) return false;
   keeper_->ask();
+  wake();
   return true;
 }
 
@@ -165,15 +165,31 @@ void Room::start(TimePoint now) {
   last_run_ = last_watched_ = now;
 }
 
-Room::TimePoint Room::due(TimePoint now) const {
-  if (is_lost_ || change_) return now + 10ms;
-  if (pending_tick_count_ > 0) return now;
-  const TimePoint next = paused_ || asleep_ ? now + 10ms : clock_.due();
-  return water_->sim().framesInFlight() > 0 ? std::min(next, now + kReadbackPollInterval) : next;
+Room::TimePoint Room::due() const {
+  const auto is_ready = [](const auto& work) { return work.wait_for(0s) == std::future_status::ready; };
+  if (change_ ? is_ready(change_->prepared) : build_ && is_ready(build_->water)) return ran_;
+  const bool is_stopped = is_lost_ || change_;
+  const bool stands_still = is_stopped || paused_ || asleep_;
+  TimePoint next = stands_still ? ran_ + kStandingInterval : clock_.due();
+  const auto no_later_than = [&next](TimePoint when) { next = std::min(next, when); };
+  if (!is_lost_ && water_->sim().framesInFlight() > 0) no_later_than(ran_ + kReadbackPollInterval);
+  if (!stands_still) return next;
+  if (is_woken_ || (pending_tick_count_ > 0 && !is_stopped)) return ran_;
+  if (commands_.size() > 0 || put_off_) no_later_than(ran_ + kWaitingCommandInterval);
+  if (is_lost_ && !build_) no_later_than(next_rebuild_);
+  if (has_people_news_) no_later_than(next_people_news_);
+  if (paused_ && !is_stopped && outlets_.sessionCount(*this) > 0) no_later_than(frames_.idleDue());
+  return next;
+}
+
+void Room::wake() {
+  if (!is_woken_.exchange(true) && on_wake_) on_wake_();
 }
 
 void Room::run(TimePoint now, double thread_load) {
   thread_load_ = thread_load;
+  is_woken_ = false;
+  ran_ = now;
   water_->bind();
   water_->reloadChangedShaders();
   session_count_ = outlets_.sessionCount();
@@ -217,12 +233,18 @@ void Room::watchOverSleep(TimePoint now) {
 }
 
 void Room::step(TimePoint now) {
+  const TimePoint scheduled = clock_.due();
   const TimePoint end = timedStep();
   run_s_ += water_->sim().derived().tick_s;
   unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
   last_run_ = end;
   clock_.ticked(end);
-  if (isFrameDue(end)) requestFrame(end);
+  const auto levels = frames_.afterTick({.time_s = water_->sim().time_s(),
+                                         .scheduled = scheduled,
+                                         .end = end,
+                                         .speed = clock_.speed(),
+                                         .frame_rate_hz = water_->scene().stream().frame_rate_hz()});
+  if (levels) requestFrame(end, *levels);
   watchRealTime(end);
   adaptFidelity(end);
 }
@@ -230,10 +252,12 @@ void Room::step(TimePoint now) {
 void Room::advancePaused(TimePoint now) {
   if (pending_tick_count_ > 0) {
     const TimePoint end = timedStep();
-    if (--pending_tick_count_ == 0) next_idle_frame_ = end;  // what was asked for is there to see at once
+    if (--pending_tick_count_ == 0) frames_.setIdleDue(end);  // what was asked for is there to see at once
     now = end;
   }
-  if (now >= next_idle_frame_) requestFrame(now);
+  if (now < frames_.idleDue()) return;
+  frames_.idleFrame(now);
+  requestFrame(now, core::LevelSet::all());
 }
 
 Room::TimePoint Room::timedStep() {
@@ -263,29 +287,8 @@ Room::TimePoint Room::timedStep() {
 
 // Frames
 
-bool Room::isFrameDue(TimePoint now) const {
-  if (water_->sim().time_s() + 1e-9 >= next_frame_s_) return true;
-  const duration<double> interval(1.0 / water_->scene().stream().frame_rate_hz());
-  return now - last_frame_ >= std::max<duration<double>>(interval, kSlowFrameInterval);
-}
-
-core::LevelSet Room::levelsDue() const {
-  core::LevelSet out;
-  for (const core::Level level : core::kLevels) {
-    if (paused_ || frame_count_ % core::frameStride(level, water_->scene().stream().frame_rate_hz()) == 0)
-      out.insert(level);
-  }
-  return out;
-}
-
-void Room::requestFrame(TimePoint now) {
-  const double interval_s =
-      clock_.speed() / water_->scene().stream().frame_rate_hz();  // frames keep their rate in wall time
-  if (!paused_) next_frame_s_ = std::max(next_frame_s_ + interval_s, water_->sim().time_s());
-  next_idle_frame_ = now + kPausedFrameInterval;
-  last_frame_ = now;
+void Room::requestFrame(TimePoint now, core::LevelSet due) {
   const v1::Scene& scene = water_->scene();
-  const core::LevelSet due = levelsDue();
   const WatchedLayers watched = outlets_.watched(*this, water_->sim().reducedCounts(), due);
   wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
   sim::FrameRequest request{.bodies = scene.has_boats() && watched.bodies,
@@ -298,12 +301,9 @@ void Room::requestFrame(TimePoint now) {
                          .particles = scene.has_particles() && layers.particles,
                          .foam = scene.foam().surface() && layers.foam};
   }
-  ++frame_count_;
-  if (request.isEmpty()) return;
-  if (!water_->sim().requestFrame(request)) {
-    ++dropped_frames_;
-    next_idle_frame_ = now + kDroppedFrameRetry;
-  }
+  if (request.isEmpty() || water_->sim().requestFrame(request)) return;
+  ++dropped_frames_;
+  frames_.setIdleDue(now + kDroppedFrameRetry);
 }
 
 void Room::handOverFrames() {

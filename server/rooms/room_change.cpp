@@ -115,7 +115,7 @@ Room::Outcome Room::refuseChange(const Command& command) const {
 
 void Room::parameterChanged(const v1::SetParameter& change) {
   tick_cost_.workChanged(water_->work());
-  next_frame_s_ = 0.0;  // the frame rate may have changed; by the old rate the next frame could be up to a second away
+  frames_.restart();  // the frame rate may have changed; by the old rate the next frame could be up to a second away
   news_.parameters[change.path()] = change.value();
 }
 

@@ -35,7 +35,7 @@ wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::u
 }  // namespace
 
 /// A new command needs its message in wire.proto, a row here with a handler, and, if it has rules about the scene, a
-/// case in wire::checkAgainstScene(). A handler gets commands that wire::checkCommand() accepted.
+/// case in wire::checkAgainstScene(). A handler gets commands that wire::completeCommand() accepted.
 struct Room::CommandKind {
   v1::Command::ActionCase action;
   CommandTraits traits;
@@ -89,13 +89,15 @@ std::optional<wire::CommandRejection> Room::admit(Command command) {
         fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));
   } else {
     const auto now = snapshot();
-    refused = wire::checkAgainstScene(command.message, now->scene);
+    refused = wire::completeCommand(command.message, now->scene);
     command.scene_version = now->scene_version;
   }
   const std::uint64_t command_id = command.id();
   if (!refused) {
     if (auto full = commands_.tryPush(std::move(command), std::chrono::steady_clock::now()))
       refused = rejection(v1::REJECT_REASON_BUSY, "", *std::move(full));
+    else
+      wake();
   }
   if (refused) refused->command_id = command_id;
   return refused;
@@ -162,8 +164,8 @@ void Room::recordCommand(const Command& command) {
 
 Room::Outcome Room::reset(const Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
-  next_frame_s_ = 0.0;
-  next_idle_frame_ = {};
+  frames_.restart();
+  frames_.setIdleDue({});
   pending_tick_count_ = 0;
   news_.reset = true;
   boatsChanged();

@@ -166,8 +166,8 @@ void Room::restartScene(bool goes_on) {
   last_run_ = last_watched_ = ready;
   asleep_ = false;
   next_scene_change_ = ready + kSceneChangeInterval;
-  next_frame_s_ = 0.0;
-  next_idle_frame_ = {};
+  frames_.restart();
+  frames_.setIdleDue({});
   if (!goes_on) pending_tick_count_ = 0;
   wants_diagnostics_ = false;
   step_ms_sum_ = last_step_ms_ = 0.0;

@@ -30,6 +30,7 @@ core::Role roleOf(v1::Role role) {
 }  // namespace
 
 Admission Roster::arrive(const Arrival& arrival) {
+  const News news{*this};
   const std::lock_guard lock(mutex_);
   changed();
   Admission out;
@@ -56,6 +57,7 @@ Admission Roster::arrive(const Arrival& arrival) {
 }
 
 void Roster::leave(core::SessionId session, Clock::time_point now) {
+  const News news{*this};
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find_if(people_, [&](const auto& entry) { return entry.second.session == session; });
   if (session == 0 || found == people_.end()) return;
@@ -136,6 +138,7 @@ v1::People Roster::people() const {
 }
 
 void Roster::setUnlistedCount(std::uint32_t count) {
+  const News news{*this};
   const std::lock_guard lock(mutex_);
   // News, but nothing that is kept on disk.
   is_news_ = is_news_ || count != unlisted_count_;

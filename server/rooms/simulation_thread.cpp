@@ -49,13 +49,7 @@ core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gp
   auto self = std::unique_ptr<SimulationThread>(new SimulationThread(outlets));
   self->rules_ = std::move(rules);
   self->max_room_count_ = std::max(max_room_count, setups.size());
-  self->builder_ = std::make_unique<WaterBuilder>(device, [raw = self.get()] {
-    {
-      const std::lock_guard lock(raw->mutex_);
-      raw->was_built_ = true;
-    }
-    raw->wake_.notify_one();
-  });
+  self->builder_ = std::make_unique<WaterBuilder>(device, [raw = self.get()] { raw->wake(); });
   std::promise<core::Result<void>> built;
   auto outcome = built.get_future();
   self->thread_ = std::thread([raw = self.get(), &built, setups = std::move(setups)]() mutable {
@@ -144,6 +138,14 @@ void SimulationThread::run() {
     const std::lock_guard lock(mutex_);
     running_ = true;
     last_round_ = std::chrono::steady_clock::now();  // the server is ready, even if the thread has not woken up yet
+  }
+  wake_.notify_one();
+}
+
+void SimulationThread::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_woken_ = true;
   }
   wake_.notify_one();
 }
@@ -277,7 +279,7 @@ core::Result<bool> SimulationThread::advance(Opening& opening) {
   // The rooms that run come first; the one that opens makes a tick between theirs at least.
   const auto now = std::chrono::steady_clock::now();
   auto deadline = now + kRestoringSlice;
-  for (const auto& room : rooms_) deadline = std::min(deadline, room->due(now));
+  for (const auto& room : rooms_) deadline = std::min(deadline, room->due());
   return opening.room->restoreUntil(deadline);
 }
 
@@ -301,6 +303,7 @@ core::Result<std::shared_ptr<Room>> SimulationThread::begin(std::string name, Wa
 
 void SimulationThread::add(std::shared_ptr<Room> room) {
   room->start(std::chrono::steady_clock::now());
+  room->onWake([this] { wake(); });
   const std::lock_guard lock(rooms_mutex_);
   rooms_.push_back(std::move(room));
 }
@@ -358,13 +361,12 @@ void SimulationThread::loop() {
     if (std::ranges::any_of(openings_, [](const Opening& opening) { return opening.room != nullptr; }))
       due = Clock::now() + std::chrono::milliseconds(1);
     for (const auto& room : rooms_) {
-      room->run(Clock::now(), busy.value());
+      if (const auto now = Clock::now(); room->due() <= now) room->run(now, busy.value());
     }
-    const auto now = Clock::now();
-    for (const auto& room : rooms_) due = std::min(due, room->due(now));
+    for (const auto& room : rooms_) due = std::min(due, room->due());
     lock.lock();
     const auto idle_since = Clock::now();
-    wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty() || std::exchange(was_built_, false); });
+    wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty() || std::exchange(is_woken_, false); });
     busy.waited(idle_since, Clock::now());
     busy_share_ = busy.value();
   }

@@ -30,7 +30,8 @@ void checkHeight(double value_m, double depth_m, const std::string& path, std::v
   if (value_m <= max_m) return;
   addRange(issues, path,
            metres(value_m) + " is above " + metres(max_m) + ", 0.9 of the water's depth of " + metres(depth_m) +
-               "; choose at most " + metres(max_m) + " or a deeper water");
+               "; choose at most " + metres(max_m) + " or a deeper water",
+           max_m);
 }
 
 void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
@@ -189,7 +190,8 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
     if (splash.radius_m > max_radius_m) {
       addRange(
           issues, "splash.radius_m",
-          metres(splash.radius_m) + " is more than half the side of the water; choose at most " + metres(max_radius_m));
+          metres(splash.radius_m) + " is more than half the side of the water; choose at most " + metres(max_radius_m),
+          max_radius_m);
     }
     checkHeight(splash.depth_m, depth_m, "splash.depth_m", issues);
   } else {
@@ -198,7 +200,7 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
     const double side_m = sideAlong(wave.side, water);
     if (wave.length_m > side_m) {
       addRange(issues, "breaking_wave.length_m",
-               metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m));
+               metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m), side_m);
     }
   }
   return issues;

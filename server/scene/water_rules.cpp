@@ -17,6 +17,8 @@ namespace {
 /// Maximum length of a boat over the water's longer and over its shorter side; a longer one would have no room to sail.
 constexpr double kMaxBoatSideRatio = 0.25;
 constexpr double kMaxBoatWidthRatio = 0.5;
+/// Draught over the water's depth of a boat whose height follows from the water.
+constexpr double kFittingDraughtRatio = 0.6;
 /// Allows for rounding of positions exactly on an edge.
 constexpr double kEdgeToleranceRatio = 1e-9;
 
@@ -189,18 +191,21 @@ void checkHull(const core::Boat& boat, const WaterExtents& water, const std::str
   if (boat.length_m > max_length_m) {
     addRange(issues, prefix + "length_m",
              metres(boat.length_m) + " is more than a quarter of the water's length or half of its width of " +
-                 metres(water.side_x_m) + " x " + metres(water.side_z_m) + "; choose at most " + metres(max_length_m));
+                 metres(water.side_x_m) + " x " + metres(water.side_z_m) + "; choose at most " + metres(max_length_m),
+             max_length_m);
   }
   if (boat.beam_m > boat.length_m) {
     addRange(issues, prefix + "beam_m",
-             metres(boat.beam_m) + " is more than the boat's length; choose at most " + metres(boat.length_m));
+             metres(boat.beam_m) + " is more than the boat's length; choose at most " + metres(boat.length_m),
+             boat.length_m);
   }
   const double draught_m = boat.density_ratio * boat.height_m;
   if (draught_m >= water.depth_m) {
     addRange(issues, prefix + "height_m",
              metres(boat.height_m) + " at a density of " + core::formatNumber(boat.density_ratio) + " draws " +
                  metres(draught_m) + ", and the water is " + metres(water.depth_m) + " deep; choose less than " +
-                 metres(water.depth_m / boat.density_ratio) + " or a lighter boat");
+                 metres(water.depth_m / boat.density_ratio) + " or a lighter boat",
+             kFittingDraughtRatio * water.depth_m / boat.density_ratio);
   }
 }
 

@@ -55,15 +55,18 @@ std::shared_ptr<const std::string> GroundAnswers::of(const std::shared_ptr<const
     const std::lock_guard lock(mutex_);
     const auto found = kept_.find(room->name());
     if (found != kept_.end() && found->second.room.lock() == room &&
-        found->second.scene_version == snapshot->scene_version && found->second.depth_m == depth_m)
+        found->second.scene_version == snapshot->scene_version && found->second.depth_m == depth_m) {
+      found->second.used = ++use_count_;
       return found->second.bytes;
+    }
   }
   v1::Ground ground = groundOf(scene::toCore(snapshot->scene));
   ground.set_scene_version(snapshot->scene_version);
   auto bytes = std::make_shared<const std::string>(ground.SerializeAsString());
   const std::lock_guard lock(mutex_);
-  if (kept_.size() >= kKeptMaxCount && !kept_.contains(room->name())) kept_.erase(kept_.begin());
-  kept_[room->name()] = {room, snapshot->scene_version, depth_m, bytes};
+  if (kept_.size() >= kKeptMaxCount && !kept_.contains(room->name()))
+    kept_.erase(std::ranges::min_element(kept_, {}, [](const auto& entry) { return entry.second.used; }));
+  kept_[room->name()] = {room, snapshot->scene_version, depth_m, bytes, ++use_count_};
   return bytes;
 }
 

@@ -23,7 +23,7 @@ class LocalRoom final : public Venue {
   [[nodiscard]] bool isOpen() const override { return rooms_.find(room_->name()) == room_; }
   void arrive(const rooms::Arrival& arrival, Arrived arrived) override { arrived(room_->roster().arrive(arrival)); }
   void leave(core::SessionId session) override { room_->roster().leave(session, rooms::Roster::Clock::now()); }
-  void watchesChanged() override {}  // rooms ask the hub before each frame
+  void watchesChanged() override { room_->wake(); }  // rooms ask the hub before each frame
   void command(const rooms::Command& command) override;
 
  private:

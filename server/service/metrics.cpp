@@ -47,6 +47,7 @@ struct RoomSample {
   int person_count;
   std::shared_ptr<const rooms::RoomSnapshot> snapshot;
   std::shared_ptr<const rooms::RoomVitals> vitals;
+  rooms::EncoderThread::FrameCounts frames;
 };
 
 void writeTickTimes(Page& page, const std::vector<RoomSample>& rooms) {
@@ -121,6 +122,10 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
        [](Sample r) { return r.vitals->waiting_command_count; });
   each("room_frames_dropped_total", "counter", "Frames not read back because earlier ones were still on their way.",
        [](Sample r) { return r.vitals->dropped_frame_count; });
+  each("room_frames_encoded_total", "counter", "Frames of the room that the encoder took.",
+       [](Sample r) { return r.frames.encoded_count; });
+  each("room_frames_replaced_total", "counter", "Frames that a newer one replaced before they were encoded.",
+       [](Sample r) { return r.frames.replaced_count; });
   each("room_recovered_total", "counter", "Times the watchdog put the water back to its last good state.",
        [](Sample r) { return r.vitals->diagnostics.recovered_count; });
   each("room_nonfinite_total", "counter", "Numbers that were not finite, seen by the watchdog.",
@@ -230,8 +235,6 @@ void writeEncoder(Page& page, const rooms::EncoderThread& encoder) {
        [](Cost c) { return c.frame_count; });
   each("encoded_bytes_total", "Bytes of encoded frames.", [](Cost c) { return c.bytes_count; });
   each("encode_seconds_total", "Time spent encoding.", [](Cost c) { return c.encode_s; });
-  page.head("encoder_replaced_total", "counter", "Frames that a newer one replaced before they were encoded.");
-  page.sample("", encoder.replacedCount());
 }
 
 void writeCommands(Page& page, const CommandCounters& commands) {
@@ -277,8 +280,10 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
                         const AccessControl& access, const MetricsSources& sources) {
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {
-    samples.push_back({fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
-                       room->roster().people().people_size(), room->snapshot(), room->vitals()});
+    samples.push_back(
+        {fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
+         room->roster().people().people_size(), room->snapshot(), room->vitals(),
+         sources.encoder ? sources.encoder->frameCounts(room->name()) : rooms::EncoderThread::FrameCounts{}});
   }
   Page page;
   writeRooms(page, samples);

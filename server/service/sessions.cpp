@@ -121,9 +121,8 @@ void Sessions::displace(net::SessionId session) {
 }
 
 void Sessions::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {
-  constexpr std::size_t kReasonMaxBytes = 120;
   hub().sendAnswer(session, wire::refusal(why));
-  hub().close(session, code, why.substr(0, kReasonMaxBytes));
+  hub().close(session, code, why);
 }
 
 void Sessions::message(net::SessionId session, core::ByteView message) {
@@ -257,6 +256,7 @@ void Sessions::arrived(net::SessionId session, const wire::Hello& hello, core::R
   // From here on the session gets the room's news, and the frames that it subscribes to. Send the changes since the
   // greeting.
   hub().join(session, venue->name());
+  venue->watchesChanged();
   if (const auto now_there = venue->view(); now_there && (!greeted || now_there->room != greeted->room)) {
     if (auto why = wire::checkWater(hello.minor, now_there->room->scene))
       return refuse(session, net::CloseCode::kPolicy, *why);

@@ -30,6 +30,8 @@ static_assert(sizeof(Partial) == 48);
 /// Slots for the ticks in flight, for the tick that is measured now, and for results that poll() has not yet returned.
 constexpr std::size_t kSlotCount = 8;
 static_assert(kSlotCount > TicksInFlight::kMaxCount + 1);
+/// Of water without particles.
+constexpr double kWaterDensity_kgpm3 = 1000.0;
 
 struct Total {
   double nonfinite = 0, escaped = 0, max_a = 0, max_b = 0, count_b = 0;
@@ -109,15 +111,23 @@ core::Result<void> Diagnostics::resize(const Derived& derived) {
   if (create.error()) return *create.error();
   particle_sums_ = std::move(sums);
   ring_ = std::move(ring);
+  in_flight_.clear();
   particle_shares_ = shares;
   particles_ = derived.particles ? derived.particles->count : 0;
   return {};
 }
 
-void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population,
-                          const NeighborGrid* grid, Wave* wave, Breakers* breakers, const Boats* boats) {
+void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const Derived& derived,
+                          const ParticleBuffers* particles, const Population* population, const NeighborGrid* grid,
+                          Wave* wave, Breakers* breakers, const Boats* boats) {
   auto slot = ring_->begin();
   if (!slot) return;
+  Scale scale{.tick = tick, .gravity_mps2 = scene.gravity_mps2, .density_kgpm3 = kWaterDensity_kgpm3};
+  if (scene.particles) scale.density_kgpm3 = scene.particles->rest_density_kgpm3;
+  if (derived.particles) scale.particle_mass_kg = derived.particles->mass_kg;
+  if (derived.wave) scale.cell_area_m2 = derived.wave->cell_m * derived.wave->cell_m;
+  scale.droplet_units = derived.uniforms.droplet_units;
+  if (wave) scale.resting_units = wave->restingUnits();
   bool copied = true;
   if (particles) {
     population->bind();
@@ -130,7 +140,6 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
     copied = slot->copyFrom(particle_sums_, 0, particle_sums_.sizeBytes(), 0);
   }
   if (wave) {
-    resting_units_ = wave->restingUnits();
     wave->elevation().bindTexel(ELEVATION);
     wave->flow().bindTexel(FLOW);
     wave->bindBasin();
@@ -150,23 +159,28 @@ void Diagnostics::measure(std::uint64_t tick, const ParticleBuffers* particles, 
   }
   // The next tick's passes write the buffers that were read here.
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
-  if (copied) slot->submit(tick);
+  if (!copied) return;
+  slot->submit(tick);
+  in_flight_.push_back(scale);
 }
 
-std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& derived) {
+std::vector<Health> Diagnostics::poll() {
   std::vector<Health> out;
   for (const auto& slot : ring_->poll()) {
+    // A slot whose fence failed is never returned: skip it.
+    while (in_flight_.front().tick != slot->tag()) in_flight_.pop_front();
+    const Scale scale = in_flight_.front();
+    in_flight_.pop_front();
     Health h;
     h.tick = slot->tag();
     const auto bytes = slot->bytes();
     const std::size_t split = particle_shares_ * sizeof(Partial);
     if (particles_) {
       const Total t = total(bytes.subspan(0, split));
-      const double rho_0 = scene.particles->rest_density_kgpm3;
       h.nonfinite_count += static_cast<std::uint64_t>(t.nonfinite);
       h.escaped_count = static_cast<std::uint64_t>(t.escaped);
       h.max_speed_mps = t.max_a;
-      h.max_density_ratio = t.max_b / rho_0;
+      h.max_density_ratio = t.max_b / scale.density_kgpm3;
       h.particle_count = particles_;
       Partial first;
       std::memcpy(&first, bytes.data(), sizeof first);
@@ -180,26 +194,25 @@ std::vector<Health> Diagnostics::poll(const core::Scene& scene, const Derived& d
         h.absorbed_count = pool[POOL_ABSORBED];
         h.pool_refused_count = pool[POOL_REFUSED];
       }
-      h.mean_density_ratio = h.particle_count > 0 ? t.sum[0] / h.particle_count / rho_0 : 0.0;
-      h.kinetic_energy_j = 0.5 * derived.particles->mass_kg * t.sum[1];
-      h.potential_energy_j = derived.particles->mass_kg * scene.gravity_mps2 * t.sum[2];
+      h.mean_density_ratio = h.particle_count > 0 ? t.sum[0] / h.particle_count / scale.density_kgpm3 : 0.0;
+      h.kinetic_energy_j = 0.5 * scale.particle_mass_kg * t.sum[1];
+      h.potential_energy_j = scale.particle_mass_kg * scale.gravity_mps2 * t.sum[2];
     }
     if (cells_) {
       const Total t = total(bytes.subspan(split, surface_shares_ * sizeof(Partial)));
-      const double area_m2 = derived.wave->cell_m * derived.wave->cell_m;
-      const double rho = scene.particles ? scene.particles->rest_density_kgpm3 : 1000.0;
+      const double area_m2 = scale.cell_area_m2;
       h.nonfinite_count += static_cast<std::uint64_t>(t.nonfinite);
       h.max_elevation_m = t.max_a;
       h.breaking_ratio = t.count_b / cells_;
-      h.surface_units = t.elevation_units - resting_units_;
+      h.surface_units = t.elevation_units - scale.resting_units;
       h.outflow_units = t.outflow_units;
       h.volume_error_units = h.surface_units + t.outflow_units;
-      const double droplet_m3 = derived.uniforms.droplet_units * double{ELEVATION_UNIT_M} * area_m2;
+      const double droplet_m3 = static_cast<double>(scale.droplet_units) * double{ELEVATION_UNIT_M} * area_m2;
       h.emitted_m3 = h.emitted_count * droplet_m3;
       h.absorbed_m3 = h.absorbed_count * droplet_m3;
-      if (is_pooled_) h.volume_error_units += std::int64_t{h.particle_count} * derived.uniforms.droplet_units;
+      if (is_pooled_) h.volume_error_units += std::int64_t{h.particle_count} * scale.droplet_units;
       h.wave_volume_m3 = static_cast<double>(h.surface_units) * ELEVATION_UNIT_M * area_m2;
-      h.wave_energy_j = 0.5 * rho * area_m2 * (scene.gravity_mps2 * t.sum[0] + t.sum[1]);
+      h.wave_energy_j = 0.5 * scale.density_kgpm3 * area_m2 * (scale.gravity_mps2 * t.sum[0] + t.sum[1]);
     }
     if (gauges_) h.gauges = Gauges::parse(bytes.subspan(gaugeOffset(), gauges_->readings().sizeBytes()));
     out.push_back(std::move(h));

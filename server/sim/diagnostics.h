@@ -2,6 +2,8 @@
 // for them.
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,14 +35,27 @@ class Diagnostics {
   /// changes nothing.
   core::Result<void> resize(const Derived& derived);
 
-  /// Measures the state after `tick`; absent parts are null. There is one slot per tick that may be in flight
-  /// (TicksInFlight), so every tick is measured if poll() is called before each call.
-  void measure(std::uint64_t tick, const ParticleBuffers* particles, const Population* population,
-               const NeighborGrid* grid, Wave* wave, Breakers* breakers, const Boats* boats);
+  /// Measures the state after `tick`; absent parts are null. What the sums mean is noted with them, because parameters
+  /// may change before poll() returns the result. There is one slot per tick that may be in flight (TicksInFlight), so
+  /// every tick is measured if poll() is called before each call.
+  void measure(std::uint64_t tick, const core::Scene& scene, const Derived& derived, const ParticleBuffers* particles,
+               const Population* population, const NeighborGrid* grid, Wave* wave, Breakers* breakers,
+               const Boats* boats);
   /// Returns the results that have arrived, oldest first.
-  std::vector<Health> poll(const core::Scene& scene, const Derived& derived);
+  std::vector<Health> poll();
 
  private:
+  /// What the sums of a tick in flight mean.
+  struct Scale {
+    std::uint64_t tick = 0;
+    double gravity_mps2 = 0.0;
+    double density_kgpm3 = 0.0;  ///< at rest
+    double particle_mass_kg = 0.0;
+    double cell_area_m2 = 0.0;
+    std::int64_t droplet_units = 0;
+    std::int64_t resting_units = 0;  ///< Wave::restingUnits()
+  };
+
   explicit Diagnostics(gpu::Context& ctx) : ctx_(ctx) {}
   /// Where the words of the pool, and then the readings of the gauges, begin in a slot.
   [[nodiscard]] std::size_t poolOffset() const;
@@ -52,7 +67,7 @@ class Diagnostics {
   std::uint32_t cells_ = 0;
   std::uint32_t particles_ = 0;
   bool is_pooled_ = false;
-  std::int64_t resting_units_ = 0;    ///< Wave::restingUnits()
+  std::deque<Scale> in_flight_;       ///< of the slots that poll() has not returned, oldest first
   std::uint32_t crowded_before_ = 0;  ///< NeighborGrid::crowded() of the last result
   gpu::Buffer particle_sums_, surface_sums_;
   gpu::Program particle_program_, surface_program_;

@@ -93,26 +93,27 @@ std::uint32_t FramePacker::particleBudget(core::Level level) const {
   return std::min(particles_, core::budgetOf(level).particle_count);
 }
 
-bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, const FrameRequest& request) {
+bool FramePacker::pack(std::uint64_t tick, double time_s, const core::Scene& scene, const Derived& derived,
+                       const Parts& parts, const FrameRequest& request) {
   auto slot = ring_->begin();
   if (!slot) return false;
   Pending pending;
-  pending.tick = tick;
-  pending.time_s = time_s;
-  pending.asked_s = request.asked_s;
-  pending.state_id = request.state_id;
-  pending.due = request.due;
+  core::FrameView& frame = pending.frame;
+  frame.tick = tick;
+  frame.time_s = time_s;
+  frame.asked_s = request.asked_s;
+  frame.state_id = request.state_id;
+  frame.due = request.due;
+  frame.reduced_counts = reduced_counts_;
   std::size_t at = 0;
   packed_.bindStorage(PACKED_WORDS);
-  for (const core::Level level : core::kLevels) {
-    pending.places[indexOf(level)] = packLevel(level, request.at(level), parts, at);
-  }
+  for (const core::Level level : core::kLevels) packLevel(level, request.at(level), scene, derived, parts, pending, at);
   if (parts.boats && request.bodies) {
     parts.boats->bind();
     pack_bodies_.setUniform("first_word", static_cast<std::uint32_t>(at));
     pack_bodies_.dispatchGroups(1);
     pending.bodies = at;
-    pending.boat_count = parts.boats->count();
+    frame.bodies = core::BodiesView{.count = parts.boats->count(), .words = {}};
     at += kBodyWords;
   }
   if (at == 0) return false;
@@ -120,28 +121,37 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const Parts& parts, co
   if (!slot->copyFrom(packed_, 0, at * 4, 0)) return false;
   pending.number = packed_count_++;
   slot->submit(pending.number);
-  pending_.push_back(pending);
+  pending_.push_back(std::move(pending));
   return true;
 }
 
-FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest& wanted, const Parts& parts,
-                                           std::size_t& at) {
-  Places places;
+void FramePacker::packLevel(core::Level level, const LayerRequest& wanted, const core::Scene& scene,
+                            const Derived& derived, const Parts& parts, Pending& pending, std::size_t& at) {
+  Places& places = pending.places[indexOf(level)];
+  core::LevelView& view = pending.frame.at(level);
   const auto take = [&at](std::size_t words) { return std::exchange(at, at + words); };
   const bool has_planes = isSent(level, reduced_counts_.planes);
   if (parts.wave && wanted.surface && has_planes) {
-    const std::size_t words = surfaceWords(surfaceCount(level));
-    places.surface = take(words);
+    const core::CellCounts count = surfaceCount(level);
+    view.surface = core::SurfaceView{.count = count,
+                                     .length_m = derived.wave->length_m,
+                                     .width_m = derived.wave->width_m,
+                                     .quantum_m = scene.stream.surface_quantum_m,
+                                     .words = {}};
+    places.surface = take(surfaceWords(count));
     parts.wave->elevation().bindTexel(ELEVATION);
-    packPlane(pack_surface_, *places.surface, surfaceCount(level), words);
+    packPlane(pack_surface_, *places.surface, count, surfaceWords(count));
   }
   if (parts.foam && wanted.foam && has_planes) {
-    const std::size_t words = foamWords(foamCount(level));
-    places.foam = take(words);
+    const core::CellCounts count = foamCount(level);
+    view.foam = core::FoamView{
+        .count = count, .length_m = derived.wave->length_m, .width_m = derived.wave->width_m, .words = {}};
+    places.foam = take(foamWords(count));
     parts.foam->field().bindTexel(FOAM_FIELD);
-    packPlane(pack_foam_, *places.foam, foamCount(level), words);
+    packPlane(pack_foam_, *places.foam, count, foamWords(count));
   }
   if (parts.particles && wanted.particles && isSent(level, reduced_counts_.particles)) {
+    view.particles = particleView(level, scene, derived);
     places.particles = take(particleWords(particleBudget(level)));
     packed_.clearRange(0, *places.particles * 4, kParticleHeaderWords * 4);
     parts.population->bind();
@@ -152,7 +162,6 @@ FramePacker::Places FramePacker::packLevel(core::Level level, const LayerRequest
     pack_particles_.setUniform("budget_count", particleBudget(level));
     parts.population->forParticles(pack_particles_);
   }
-  return places;
 }
 
 void FramePacker::packPlane(gpu::Program& program, std::size_t at, core::CellCounts count, std::size_t word_count) {
@@ -162,73 +171,55 @@ void FramePacker::packPlane(gpu::Program& program, std::size_t at, core::CellCou
   program.dispatch(static_cast<std::uint32_t>(word_count));
 }
 
-std::vector<core::FrameView> FramePacker::poll(const core::Scene& scene, const Derived& derived) {
-  std::vector<core::FrameView> out;
-  for (const auto& slot : ring_->poll()) {
-    // A slot whose fence failed is never returned: skip it.
-    while (pending_.front().number != slot->tag()) pending_.pop_front();
-    const Pending pending = pending_.front();
-    pending_.pop_front();
-    core::FrameView frame;
-    frame.tick = pending.tick;
-    frame.time_s = pending.time_s;
-    frame.asked_s = pending.asked_s;
-    frame.state_id = pending.state_id;
-    frame.due = pending.due;
-    frame.reduced_counts = reduced_counts_;
-    frame.lease = slot;
-    const auto words = slot->words();
-    for (const core::Level level : core::kLevels) {
-      const Places& places = pending.places[indexOf(level)];
-      core::LevelView& view = frame.at(level);
-      if (places.surface) view.surface = surfaceView(words.subspan(*places.surface), level, scene, derived);
-      if (places.particles) view.particles = particleView(words.subspan(*places.particles), level, scene, derived);
-      if (places.foam) view.foam = foamView(words.subspan(*places.foam), level, derived);
-    }
-    if (pending.bodies) {
-      frame.bodies = core::BodiesView{.count = pending.boat_count,
-                                      .words = words.subspan(*pending.bodies, pending.boat_count * kWordsPerBoat)};
-    }
-    out.push_back(std::move(frame));
-  }
-  return out;
-}
-
-core::SurfaceView FramePacker::surfaceView(std::span<const std::uint32_t> words, core::Level level,
-                                           const core::Scene& scene, const Derived& derived) const {
-  const core::CellCounts count = surfaceCount(level);
-  return {.count = count,
-          .length_m = derived.wave->length_m,
-          .width_m = derived.wave->width_m,
-          .quantum_m = scene.stream.surface_quantum_m,
-          .words = words.first(surfaceWords(count))};
-}
-
-core::FoamView FramePacker::foamView(std::span<const std::uint32_t> words, core::Level level,
-                                     const Derived& derived) const {
-  const core::CellCounts count = foamCount(level);
-  return {.count = count,
-          .length_m = derived.wave->length_m,
-          .width_m = derived.wave->width_m,
-          .words = words.first(foamWords(count))};
-}
-
-core::ParticleView FramePacker::particleView(std::span<const std::uint32_t> words, core::Level level,
-                                             const core::Scene& scene, const Derived& derived) const {
+core::ParticleView FramePacker::particleView(core::Level level, const core::Scene& scene,
+                                             const Derived& derived) const {
   core::ParticleView view;
-  view.count = std::min(words[0], particleBudget(level));
-  const std::uint32_t live_count = words[1];
+  view.count = particleBudget(level);
   const shared::SimUniforms& u = derived.uniforms;
   const double low[3] = {u.frame_min_x_m, u.min_y_m, u.frame_min_z_m};
   const double high[3] = {u.frame_max_x_m, u.max_y_m, u.frame_max_z_m};
   std::ranges::copy(low, view.min_m);
   std::ranges::copy(high, view.max_m);
   view.max_speed_mps = scene.particles->max_speed_mps;
+  view.radius_m = derived.particles->spacing_m / 2;
+  return view;
+}
+
+namespace {
+
+/// Adds what the packed words say: how many particles there are, and the words of these.
+void takeParticles(std::span<const std::uint32_t> words, core::ParticleView& view) {
+  view.count = std::min(words[0], view.count);
+  const std::uint32_t live_count = words[1];
   // The particles of a sample are drawn larger, so that together they fill the same volume.
   const double thinning = view.count > 0 ? std::max(1.0, static_cast<double>(live_count) / view.count) : 1.0;
-  view.radius_m = derived.particles->spacing_m / 2 * std::cbrt(thinning);
+  view.radius_m *= std::cbrt(thinning);
   view.words = words.subspan(kParticleHeaderWords, std::size_t{view.count} * kWordsPerParticle);
-  return view;
+}
+
+}  // namespace
+
+std::vector<core::FrameView> FramePacker::poll() {
+  std::vector<core::FrameView> out;
+  for (const auto& slot : ring_->poll()) {
+    // A slot whose fence failed is never returned: skip it.
+    while (pending_.front().number != slot->tag()) pending_.pop_front();
+    const Pending pending = std::move(pending_.front());
+    pending_.pop_front();
+    core::FrameView frame = pending.frame;
+    frame.lease = slot;
+    const auto words = slot->words();
+    for (const core::Level level : core::kLevels) {
+      const Places& places = pending.places[indexOf(level)];
+      core::LevelView& view = frame.at(level);
+      if (view.surface) view.surface->words = words.subspan(*places.surface, surfaceWords(view.surface->count));
+      if (view.particles) takeParticles(words.subspan(*places.particles), *view.particles);
+      if (view.foam) view.foam->words = words.subspan(*places.foam, foamWords(view.foam->count));
+    }
+    if (frame.bodies) frame.bodies->words = words.subspan(*pending.bodies, frame.bodies->count * kWordsPerBoat);
+    out.push_back(std::move(frame));
+  }
+  return out;
 }
 
 }  // namespace spindrift::sim

@@ -43,10 +43,13 @@ class FramePacker {
     SurfaceFoam* foam = nullptr;
     Boats* boats = nullptr;
   };
-  /// Returns false when there will be no frame: no requested layer exists, or all slots are in use.
-  bool pack(std::uint64_t tick, double time_s, const Parts& parts, const FrameRequest& request);
+  /// `scene` and `derived` are those of the uniforms that are bound: what the packed words mean is noted with the
+  /// frame, because parameters may change before poll() returns it. Returns false when there will be no frame: no
+  /// requested layer exists, or all slots are in use.
+  bool pack(std::uint64_t tick, double time_s, const core::Scene& scene, const Derived& derived, const Parts& parts,
+            const FrameRequest& request);
   /// Returns the frames whose copy has finished, oldest first.
-  std::vector<core::FrameView> poll(const core::Scene& scene, const Derived& derived);
+  std::vector<core::FrameView> poll();
   /// Number of packed frames that poll() has not yet returned.
   [[nodiscard]] std::size_t inFlightCount() const { return pending_.size(); }
 
@@ -60,27 +63,21 @@ class FramePacker {
   /// Contents of a submitted slot.
   struct Pending {
     std::uint64_t number = 0;  ///< the slot's tag; increases with each pack()
-    std::uint64_t tick = 0;
-    double time_s = 0.0;
-    double asked_s = 0.0;
-    std::uint64_t state_id = 0;
-    core::LevelSet due;
+    /// Without words and lease. The particles have the count of their budget and the radius of all particles.
+    core::FrameView frame;
     std::array<Places, core::kLevelCount> places{};
     std::optional<std::size_t> bodies;
-    std::uint32_t boat_count = 0;
   };
 
   [[nodiscard]] core::CellCounts surfaceCount(core::Level level) const;
   [[nodiscard]] core::CellCounts foamCount(core::Level level) const;
   [[nodiscard]] std::uint32_t particleBudget(core::Level level) const;
-  Places packLevel(core::Level level, const LayerRequest& wanted, const Parts& parts, std::size_t& at);
+  void packLevel(core::Level level, const LayerRequest& wanted, const core::Scene& scene, const Derived& derived,
+                 const Parts& parts, Pending& pending, std::size_t& at);
   void packPlane(gpu::Program& program, std::size_t at, core::CellCounts count, std::size_t word_count);
 
-  core::SurfaceView surfaceView(std::span<const std::uint32_t> words, core::Level level, const core::Scene& scene,
-                                const Derived& derived) const;
-  core::ParticleView particleView(std::span<const std::uint32_t> words, core::Level level, const core::Scene& scene,
-                                  const Derived& derived) const;
-  core::FoamView foamView(std::span<const std::uint32_t> words, core::Level level, const Derived& derived) const;
+  [[nodiscard]] core::ParticleView particleView(core::Level level, const core::Scene& scene,
+                                                const Derived& derived) const;
 
   gpu::Context& ctx_;
   core::CellCounts surface_;  ///< cells of the surface; 0 without one

@@ -161,7 +161,7 @@ void WaterSim::measure() {
   const auto timer = timers_.scope("diagnostics");
   std::optional<Population> population;
   if (parts_->particles) population = parts_->population(derived_);
-  parts_->diagnostics->measure(tick_, parts_->particlesOrNull(), population ? &*population : nullptr,
+  parts_->diagnostics->measure(tick_, scene_, derived_, parts_->particlesOrNull(), population ? &*population : nullptr,
                                parts_->grid.get(), parts_->wave.get(), parts_->breakers.get(), parts_->boats.get());
 }
 

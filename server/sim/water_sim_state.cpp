@@ -34,7 +34,7 @@ bool WaterSim::waitForDevice() {
 // Health
 
 void WaterSim::watchHealth() {
-  for (const Health& health : parts_->diagnostics->poll(scene_, derived_)) {
+  for (const Health& health : parts_->diagnostics->poll()) {
     if (health.tick <= abandoned_until_tick_) continue;
     health_ = health;
     if (gauges_) gauges_->add(static_cast<double>(health.tick - start_tick_) * derived_.tick_s, health.gauges);
@@ -114,7 +114,7 @@ bool WaterSim::requestFrame(const FrameRequest& request) {
                                  .boats = parts_->boats.get()};
   const auto timer = timers_.scope("stream");
   parts_->uniforms.bindUniform(SIM_UNIFORMS);
-  return parts_->frames->pack(tick_, time_s(), parts, request);
+  return parts_->frames->pack(tick_, time_s(), scene_, derived_, parts, request);
 }
 
 core::ReducedCounts WaterSim::reducedCounts() const {
@@ -127,7 +127,7 @@ std::size_t WaterSim::framesInFlight() const {
 }
 
 std::vector<core::FrameView> WaterSim::takeFrames() {
-  return parts_->frames->poll(scene_, derived_);
+  return parts_->frames->poll();
 }
 
 // State

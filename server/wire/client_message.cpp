@@ -55,9 +55,6 @@ std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command) {
                             "\"" + core::cleanText(command.change_scene().name(), kNameEchoMaxBytes) +
                                 "\" is no scene; the greeting lists what there is"};
   }
-  // A log keeps the values that were in force, whatever the defaults are when it is replayed.
-  if (command.has_spawn_boat()) command.mutable_spawn_boat()->mutable_boat();
-  scene::fillMessageDefaults(command);
   command.DiscardUnknownFields();
   return command;
 }
@@ -105,7 +102,7 @@ ClientMessage parseChecked(core::ByteView bytes) {
                    hello.token(),
                    core::cleanName(hello.name(), kPersonNameMaxBytes),
                    hello.color_rgb() & 0xFFFFFFu,
-                   hello.resume_key().substr(0, kResumeKeyMaxBytes)};
+                   hello.resume_key().size() <= kResumeKeyMaxBytes ? hello.resume_key() : std::string()};
     }
     case v1::ClientMessage::kSubscribe:
       return parseSubscribe(message.subscribe());
@@ -171,6 +168,17 @@ v1::Reject toWire(const CommandRejection& rejection) {
   out.set_field(rejection.field);
   out.set_message(rejection.message);
   return out;
+}
+
+std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::Scene& scene) {
+  if (command.has_splash()) scene::completeEffect(*command.mutable_splash(), scene);
+  if (command.has_breaking_wave()) scene::completeEffect(*command.mutable_breaking_wave(), scene);
+  if (command.has_spawn_boat()) {
+    v1::Boat& boat = *command.mutable_spawn_boat()->mutable_boat();
+    if (scene.has_boats()) scene::completeBoat(boat, scene);
+  }
+  scene::fillMessageDefaults(command);
+  return checkAgainstScene(command, scene);
 }
 
 std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, const v1::Scene& scene) {

@@ -21,8 +21,9 @@ v1::Scene sceneOf(const char* text) {
   return *scene;
 }
 
-void checkCommand(const v1::Command& command, const v1::Scene& scene) {
-  const auto rejection = wire::checkAgainstScene(command, scene);
+void checkCommand(v1::Command command, const v1::Scene& scene) {
+  const auto rejection = wire::completeCommand(command, scene);
+  must(test::isChecked(command), "defaults keep it finite and in range");
   if (rejection) {
     must(rejection->reason != v1::REJECT_REASON_UNSPECIFIED, "a rejection has a reason");
     must(!rejection->message.empty() && rejection->message.find('\n') == std::string::npos, "a rejection has one line");

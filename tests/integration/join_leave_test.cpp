@@ -113,7 +113,7 @@ TEST(JoinLeave, EveryFrameDecodesWhileClientsJoinAndLeave) {
   for (int look = 0; look < 20; ++look) {
     water.waitFrames(0, 2);
     frame_count =
-        water.server->stats().sent_frame_count + water.encoder->replacedCount() +
+        water.server->stats().sent_frame_count + water.encoder->frameCounts(FakeGateway::kRooms[0]).replaced_count +
         water.encoder->costs()[codec::indexOf({v1::LAYER_SURFACE})][core::indexOf(core::Level::kFull)].frame_count;
   }
   for (std::thread& one : people) one.join();

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include <spindrift/scene/fields.h>
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::test {
@@ -173,8 +174,9 @@ bool Player::sendOne(Ledger& ledger, std::mt19937& random) {
   v1::Command command = choose(random);
   command.set_command_id((std::uint64_t{number_} << 32) + ++command_count_);
   auto checked = wire::checkCommand(command);
-  const auto* kept = std::get_if<v1::Command>(&checked);
-  if (!kept) return true;  // the server would reject it, too
+  auto* kept = std::get_if<v1::Command>(&checked);
+  if (!kept) return true;             // the server would reject it, too
+  scene::fillMessageDefaults(*kept);  // the scenes of these tests have room for all defaults
   const std::size_t number =
       ledger.send({.room = room_, .opening = opening_, .person_id = person_id_, .command = *kept});
   v1::ClientMessage message;

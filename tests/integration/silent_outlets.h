@@ -5,7 +5,7 @@
 
 namespace spindrift::test {
 
-struct SilentOutlets final : rooms::RoomOutlets {
+struct SilentOutlets : rooms::RoomOutlets {
   void sceneChanged(const rooms::Room&) override {}
   void timeChanged(const rooms::Room&, bool, double) override {}
   void parameterChanged(const rooms::Room&, const std::string&, double) override {}

@@ -12,6 +12,7 @@
 #include <google/protobuf/message.h>
 
 #include <spindrift/codec/frame_decoder.h>
+#include <spindrift/scene/scene_rules.h>
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::test {
@@ -38,14 +39,15 @@ inline bool isChecked(const v1::Command& command) {
     case v1::Command::ACTION_NOT_SET:
       return false;
     case v1::Command::kSplash:
-      return command.splash().radius_m() > 0 && command.splash().duration_s() > 0;
+      return scene::toCore(command.splash()).radius_m > 0 && scene::toCore(command.splash()).duration_s > 0;
     case v1::Command::kControlBoat:
       return std::abs(command.control_boat().throttle_ratio()) <= 1 &&
              std::abs(command.control_boat().rudder_ratio()) <= 1;
     case v1::Command::kSpawnBoat:
-      return command.spawn_boat().boat().length_m() > 0;
+      return scene::toCore(command.spawn_boat().boat()).length_m > 0;
     case v1::Command::kStep:
-      return command.step().tick_count() >= 1 && command.step().tick_count() <= 600;
+      return !command.step().has_tick_count() ||
+             (command.step().tick_count() >= 1 && command.step().tick_count() <= 600);
     case v1::Command::kChangeScene: {
       const std::string& name = command.change_scene().name();
       return !name.empty() && name.size() <= 64 && name.find('/') == std::string::npos;

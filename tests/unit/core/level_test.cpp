@@ -26,6 +26,15 @@ TEST(LevelSet, KeepsItsBitsAndIgnoresThoseOfOtherLevels) {
   EXPECT_EQ(LevelSet::fromBits(0xFFFFFFFF), LevelSet::all());
 }
 
+TEST(Levels, TakeFramesWithinTheirRateAndAllOfASlowerRoom) {
+  EXPECT_FALSE(takesFrameAfter(Level::kCoarse, 1.0 / 30)) << "20 per second";
+  EXPECT_TRUE(takesFrameAfter(Level::kCoarse, 1.0 / 20 - 1e-9));
+  EXPECT_TRUE(takesFrameAfter(Level::kCoarse, 1.0 / 5));
+  EXPECT_FALSE(takesFrameAfter(Level::kMedium, 1.0 / 60)) << "30 per second";
+  EXPECT_TRUE(takesFrameAfter(Level::kMedium, 2.0 / 60));
+  EXPECT_TRUE(takesFrameAfter(Level::kFull, 1.0 / 240)) << "no limit";
+}
+
 TEST(DemandOfFrame, CountsLevelsThatLeaveNothingOutAsFull) {
   StreamDemand asked{};
   asked[indexOf(Level::kCoarse)] = {.watcher_count = 1};

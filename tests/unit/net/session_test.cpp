@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <spindrift/core/text.h>
+
 #include "test_application.h"
 
 namespace spindrift::net {
@@ -138,6 +140,28 @@ TEST(Session, SendsQueuedControlMessagesBeforeTheClose) {
   ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
   EXPECT_EQ(served.application.closed()[0].end.code, 1000);
   EXPECT_EQ(served.application.closed()[0].end.reason, "as you wish");
+}
+
+TEST(Session, CutsALongCloseReasonBetweenTwoCharacters) {
+  TestServer served;
+  // The limit of 123 bytes falls on each byte of a character of four, and one byte is no UTF-8 at all.
+  for (const char* begin : {"", "x", "xx", "xxx", "\xff"}) {
+    SCOPED_TRACE(begin);
+    WsClient client = served.client();
+    std::string reason = begin;
+    for (int k = 0; k < 50; ++k) reason += "\U0001F30A";
+    served.application.hub->close(served.application.opened().back(), CloseCode::kPolicy, reason);
+    EXPECT_TRUE(client.waitClosed());
+    EXPECT_EQ(client.closeCode(), 1008) << "a client closes with 1002 or without a code if the reason is no UTF-8";
+    const std::string sent = client.closeReason();
+    EXPECT_GE(sent.size(), 120U);
+    EXPECT_LE(sent.size(), 123U);
+    for (std::size_t at = 0; at < sent.size();) {
+      const std::size_t length = core::utf8SequenceLength(sent, at);
+      ASSERT_NE(length, 0U) << "at byte " << at;
+      at += length;
+    }
+  }
 }
 
 TEST(Session, RefusesTextMessages) {

@@ -79,6 +79,17 @@ TEST(ClientMessages, HelloKeepsVersionAndName) {
   EXPECT_FALSE(checkVersion(hello));
 }
 
+TEST(ClientMessages, AHelloWithAResumeKeyThatIsTooLongHasNone) {
+  v1::ClientMessage message;
+  std::string key;
+  while (key.size() < kResumeKeyMaxBytes) key += "\xE2\x82\xAC";  // ends in the middle of a character at the limit
+  message.mutable_hello()->set_resume_key(key);
+  EXPECT_EQ(std::get<Hello>(parse(message)).resume_key, "") << "half a character would break messages of a cluster";
+  key.resize(255);
+  message.mutable_hello()->set_resume_key(key);
+  EXPECT_EQ(std::get<Hello>(parse(message)).resume_key, key);
+}
+
 TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedWithALineOfText) {
   const auto refusal = checkVersion(Hello{2, 3, "later"});
   ASSERT_TRUE(refusal);
@@ -219,16 +230,6 @@ TEST(ClientMessages, CommandsArriveWithTheirValues) {
 
   EXPECT_TRUE(expectCommand([](v1::Command& c) { c.mutable_set_paused()->set_paused(true); }).set_paused().paused());
   EXPECT_EQ(expectCommand([](v1::Command& c) { c.mutable_set_speed()->set_speed(0.5); }).set_speed().speed(), 0.5);
-}
-
-TEST(ClientMessages, CommandsLeftEmptyTakeTheDefaultsOfCore) {
-  const v1::Splash splash = expectCommand([](v1::Command& c) { c.mutable_splash(); }).splash();
-  EXPECT_EQ(splash.radius_m(), core::Splash{}.radius_m);
-  EXPECT_EQ(splash.depth_m(), core::Splash{}.depth_m);
-  const v1::BreakingWave wave = expectCommand([](v1::Command& c) { c.mutable_breaking_wave(); }).breaking_wave();
-  EXPECT_EQ(scene::toCore(wave).side, core::BreakingWave{}.side);
-  EXPECT_NE(wave.side(), v1::SIDE_UNSPECIFIED);
-  EXPECT_EQ(wave.amplitude_m(), core::BreakingWave{}.amplitude_m);
 }
 
 TEST(ClientMessages, CommandsOutOfRangeAreRejectedWithTheirFieldAndId) {

@@ -125,8 +125,10 @@ TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndGetEveryKindOfResult) {
     ASSERT_TRUE(isHarmless(message)) << "case " << i;
     ++answer_counts[message.index()];
     if (const auto* command = std::get_if<v1::Command>(&message)) {
-      const auto rejection = checkAgainstScene(*command, scene);
+      v1::Command completed = *command;
+      const auto rejection = completeCommand(completed, scene);
       ASSERT_TRUE(!rejection || !rejection->message.empty()) << "case " << i;
+      ASSERT_TRUE(test::isChecked(completed)) << "case " << i;
     }
   }
   // Otherwise the damage would be too coarse to test the code after the parser.

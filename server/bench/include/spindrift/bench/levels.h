@@ -28,6 +28,7 @@ class LevelMeter {
  private:
   struct LevelCost {
     std::uint64_t frame_count = 0;
+    std::uint64_t last_frame = 0;  ///< number of the last frame that the level took
     double surface_bytes = 0.0, particle_bytes = 0.0, foam_bytes = 0.0;
     double encode_ms = 0.0;
     double particle_sum = 0.0;  ///< over all frames

@@ -103,19 +103,18 @@ constexpr bool isSent(Level level, std::uint32_t reduced_count) {
   return effectiveLevel(level, reduced_count) == level;
 }
 
-/// Returns n where the level takes every n-th frame of the room; 1 for a level without a limit of the rate.
-constexpr std::uint32_t frameStride(Level level, double frame_rate_hz) {
-  const double ratio = frame_rate_hz / budgetOf(level).rate_hz;
-  std::uint32_t stride = 1;
-  while (stride < ratio - 1e-9) ++stride;
-  return stride;
+/// Returns whether the rate of a level includes a frame that comes so long after the last one that the level took: the
+/// frames of a level keep their distance, and a room that makes fewer of them gives it all. Times may be rounded.
+constexpr bool takesFrameAfter(Level level, double since_last_s) {
+  constexpr double kTolerance = 0.05;
+  return since_last_s * budgetOf(level).rate_hz >= 1.0 - kTolerance;
 }
 
 /// Which data a frame of one layer has, and the sessions of which levels take it.
 struct FrameLevels {
   Level level = Level::kFull;       ///< of its data
   std::uint32_t reduced_count = 0;  ///< number of levels that downsample the layer; others equal kFull
-  LevelSet due = LevelSet::all();   ///< levels whose rate includes the frame: see frameStride()
+  LevelSet due = LevelSet::all();   ///< levels whose rate includes the frame: see takesFrameAfter()
 
   /// Returns whether the frame has the data of the level `wanted`.
   [[nodiscard]] constexpr bool isOf(Level wanted) const { return effectiveLevel(wanted, reduced_count) == level; }

@@ -5,6 +5,7 @@
 #include <array>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -17,7 +18,8 @@
 
 namespace spindrift::rooms {
 
-/// Holds at most one waiting frame per room; a newer one replaces it, and the loss is counted.
+/// Encodes frames in the order of their rooms' arrival. At most one frame waits per room: a newer one replaces it in
+/// its place of the queue, and the loss is counted. So no room waits for more than one frame of each other room.
 class EncoderThread {
  public:
   explicit EncoderThread(FrameOutlet& outlet);
@@ -32,7 +34,12 @@ class EncoderThread {
   /// Ends the thread. Waiting frames and those submitted later are dropped. Idempotent.
   void stop();
 
-  [[nodiscard]] std::uint64_t replacedCount() const;
+  struct FrameCounts {
+    std::uint64_t encoded_count = 0;
+    std::uint64_t replaced_count = 0;  ///< by a newer frame, before they were encoded
+  };
+  /// Returns the counts of a room since it opened; zeros for a room without frames.
+  [[nodiscard]] FrameCounts frameCounts(const std::string& room) const;
 
   /// Cost of one level of a stream, summed over all rooms since the start. Each frame counts once, for any number of
   /// clients.
@@ -46,6 +53,15 @@ class EncoderThread {
   [[nodiscard]] Costs costs() const;
 
  private:
+  struct Waiting {
+    std::string room;
+    core::FrameView frame;
+  };
+  struct KnownRoom {
+    std::shared_ptr<codec::FrameEncoder> encoder;  ///< used by the thread only
+    FrameCounts counts;
+  };
+
   void loop();
   /// Encodes the watched streams and levels of a frame and publishes them.
   Costs encode(const std::string& room, const core::FrameView& frame, codec::FrameEncoder& encoder);
@@ -53,11 +69,9 @@ class EncoderThread {
   FrameOutlet& outlet_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::map<std::string, core::FrameView> waiting_;
-  std::uint64_t replaced_count_ = 0;
+  std::deque<Waiting> waiting_;  ///< oldest first, at most one per room
+  std::map<std::string, KnownRoom> rooms_;
   bool stopping_ = false;
-  /// Changed under mutex_; the encoders are used by the thread.
-  std::map<std::string, std::shared_ptr<codec::FrameEncoder>> encoders_;
   Costs costs_{};
   std::thread thread_;
 };

@@ -2,9 +2,11 @@
 // functions marked "any thread".
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -19,6 +21,7 @@
 #include <spindrift/rooms/command_log.h>
 #include <spindrift/rooms/command_queue.h>
 #include <spindrift/rooms/fidelity_governor.h>
+#include <spindrift/rooms/frame_schedule.h>
 #include <spindrift/rooms/growth_news.h>
 #include <spindrift/rooms/real_time_clock.h>
 #include <spindrift/rooms/room_outlets.h>
@@ -120,11 +123,18 @@ class Room {
   bool askForSnapshot();
   /// nullopt if the room is not kept on disk.
   [[nodiscard]] std::optional<StateKeeper::Status> keptStatus() const;
+  /// Makes a room that stands still run soon: its sessions, or what they watch, have changed. Commands and people wake
+  /// it by themselves.
+  void wake();
 
   // Simulation thread.
   void start(TimePoint now);
-  /// Returns the time of the next needed run().
-  [[nodiscard]] TimePoint due(TimePoint now) const;
+  /// `on_wake` is called on any thread when due() has come nearer, at most once per run(). Set it before other threads
+  /// know the room.
+  void onWake(std::function<void()> on_wake) { on_wake_ = std::move(on_wake); }
+  /// Returns the time of the next needed run(): of the next tick, or for a room that stands still, of what it waits
+  /// for.
+  [[nodiscard]] TimePoint due() const;
   /// Takes commands, steps unless paused or asleep, requests a frame when one is due and watched, and passes on
   /// finished frames. At most one tick per call, so that rooms share the thread. `thread_load`: share of its time that
   /// the thread was busy lately, with all rooms.
@@ -325,11 +335,8 @@ class Room {
   /// Marks the device as failed in the vitals, without calling it.
   void publishLoss();
 
-  /// While the room runs.
-  [[nodiscard]] bool isFrameDue(TimePoint now) const;
-  void requestFrame(TimePoint now);
-  /// Returns the levels that take the next frame: all while paused, otherwise each takes every n-th frame.
-  [[nodiscard]] core::LevelSet levelsDue() const;
+  /// Requests what is watched of a frame that these levels take.
+  void requestFrame(TimePoint now, core::LevelSet due);
   void handOverFrames();
   core::DiagnosticsView diagnostics();
   void watchRealTime(TimePoint now);
@@ -380,10 +387,7 @@ class Room {
   TimePoint next_people_news_{};
   TimePoint next_vitals_{};
   TimePoint next_scene_change_{};
-  double next_frame_s_ = 0.0;      ///< simulation time
-  std::uint64_t frame_count_ = 0;  ///< frames that were due
-  TimePoint next_idle_frame_{};    ///< wall time, while paused
-  TimePoint last_frame_{};         ///< wall time of the last request
+  FrameSchedule frames_;
   bool wants_diagnostics_ = false;
   std::uint64_t dropped_frames_ = 0;
 
@@ -395,6 +399,9 @@ class Room {
   double run_s_ = 0.0;  ///< simulated seconds since the start; a reset does not subtract
   double unpaused_wall_s_ = 0.0;
   TimePoint last_run_{};
+  TimePoint ran_{};                    ///< begin of the last run()
+  std::atomic<bool> is_woken_{false};  ///< since the last run()
+  std::function<void()> on_wake_;
   TimePoint slow_since_{};
   TimePoint next_slow_warning_{};
 

@@ -34,7 +34,7 @@ class RoomWater {
 
   /// Returns whether the command changes the water and belongs to apply(). The room handles time, scenes and ownership.
   static bool takes(const v1::Command& command);
-  /// Applies a command that wire::checkCommand() accepted, between two ticks; a rejected one changes nothing.
+  /// Applies a command that wire::completeCommand() accepted, between two ticks; a rejected one changes nothing.
   Outcome apply(const v1::Command& command);
 
   // One per kind of command that changes the water, called by apply(); see the table in room_commands.cpp.

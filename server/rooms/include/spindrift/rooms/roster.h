@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -39,7 +40,9 @@ class Roster {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Roster(std::chrono::milliseconds grace) : grace_(grace) {}
+  /// `on_news` is called, on any thread, when people came or went: settle() has something to tell.
+  explicit Roster(std::chrono::milliseconds grace, std::function<void()> on_news = {})
+      : grace_(grace), on_news_(std::move(on_news)) {}
 
   Admission arrive(const Arrival& arrival);
   /// The connection ended. Ignored unless the session is the person's present one.
@@ -86,7 +89,16 @@ class Roster {
     bool waits = false;  ///< was here before a restart: kept for the grace time also without a boat
   };
 
+  /// Calls on_news at its end, after the lock that is taken later.
+  struct News {
+    const Roster& roster;
+    ~News() {
+      if (roster.on_news_) roster.on_news_();
+    }
+  };
+
   const std::chrono::milliseconds grace_;
+  const std::function<void()> on_news_;
   mutable std::mutex mutex_;
   std::map<std::uint32_t, Person> people_;
   std::uint32_t last_person_id_ = 0;

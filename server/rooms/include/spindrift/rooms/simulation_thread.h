@@ -86,6 +86,8 @@ class SimulationThread {
   explicit SimulationThread(RoomOutlets& outlets) : outlets_(outlets) {}
   core::Result<void> build(std::vector<RoomSetup> setups);
   void loop();
+  /// Ends the wait between two rounds. Any thread.
+  void wake();
   void carryOut(Change change, const Done& done);
   /// Starts opening a room; `done` may be called at once, with an error.
   void open(RoomSetup setup, Done done);
@@ -110,7 +112,7 @@ class SimulationThread {
   // Before the builder, whose thread uses them until it has ended.
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  bool was_built_ = false;  ///< the builder has finished a piece of work since the last round
+  bool is_woken_ = false;  ///< since the last round: a room may be due, or the builder has finished a piece of work
   std::unique_ptr<WaterBuilder> builder_;
   std::vector<Opening> openings_;  ///< used by the thread only
   mutable std::mutex rooms_mutex_;

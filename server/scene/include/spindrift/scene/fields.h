@@ -19,10 +19,13 @@ struct FieldIssue {
   v1::RejectReason reason = v1::REJECT_REASON_UNSPECIFIED;
   std::string path;     ///< relative to the message checked: "events[0].effect.splash.depth_m"
   std::string message;  ///< value, bound, what to do; without the path
+  /// The permitted value that is nearest to the refused one, where the rule knows it.
+  std::optional<double> nearest{};
 };
 
-inline void addRange(std::vector<FieldIssue>& issues, std::string path, std::string message) {
-  issues.push_back({v1::REJECT_REASON_OUT_OF_RANGE, std::move(path), std::move(message)});
+inline void addRange(std::vector<FieldIssue>& issues, std::string path, std::string message,
+                     std::optional<double> nearest = std::nullopt) {
+  issues.push_back({v1::REJECT_REASON_OUT_OF_RANGE, std::move(path), std::move(message), nearest});
 }
 
 inline void addAbsent(std::vector<FieldIssue>& issues, std::string path, std::string message) {

@@ -38,6 +38,13 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
 /// The scene has boats and a wave.
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix);
 
+/// Fill in the fields that were left out: with their defaults, or where the scene does not permit those, with the
+/// nearest values that it permits. Without a position, a boat is put at the free place nearest to the middle of the
+/// water. `scene` has its defaults filled in; with a boat it has boats and a wave.
+void completeEffect(v1::Splash& splash, const v1::Scene& scene);
+void completeEffect(v1::BreakingWave& wave, const v1::Scene& scene);
+void completeBoat(v1::Boat& boat, const v1::Scene& scene);
+
 /// Checks rules between the water and sides, sponge, obstacles, beaches, boats and wave-makers. They hold in a running
 /// scene too, so parameter changes are checked against them.
 std::vector<FieldIssue> checkWater(const v1::Scene& scene);

@@ -31,9 +31,11 @@ class GroundAnswers {
     std::uint64_t scene_version = 0;
     double depth_m = 0.0;  ///< of the wave: the parameter that moves the ground while a scene runs
     std::shared_ptr<const std::string> bytes;
+    std::uint64_t used = 0;  ///< use_count_ at the last answer
   };
   std::mutex mutex_;
-  std::map<std::string, Kept> kept_;  ///< by room; at most kKeptMaxCount
+  std::map<std::string, Kept> kept_;  ///< by room; at most kKeptMaxCount, those that were asked for last
+  std::uint64_t use_count_ = 0;
 };
 
 }  // namespace spindrift::service

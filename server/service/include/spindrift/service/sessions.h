@@ -48,7 +48,7 @@ class Sessions {
   void roomChanged(const Venue& venue);
   /// The same, and the session may now be another person, or have another key.
   void readmitted(net::SessionId session, const rooms::Admission& admission);
-  /// Closes all sessions of a room that is about to close. `why`: at most 120 characters.
+  /// Closes all sessions of a room that is about to close. `why`: one line.
   void dismiss(const std::string& room, net::CloseCode code = net::CloseCode::kRoomClosed,
                const std::string& why = "the room was closed");
   /// Sends the answer to the session that sent the command; counts and the audit log are the caller's.

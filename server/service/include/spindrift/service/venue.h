@@ -41,7 +41,7 @@ class Venue {
   virtual void arrive(const rooms::Arrival& arrival, Arrived arrived) = 0;
   /// The session ended. Ignored for sessions that never arrived.
   virtual void leave(core::SessionId session) = 0;
-  /// What the room's sessions watch has changed.
+  /// Sessions joined the room in the hub, or what they watch has changed.
   virtual void watchesChanged() = 0;
   /// The outcome goes to Sessions::commandApplied() or commandRejected().
   virtual void command(const rooms::Command& command) = 0;

@@ -27,7 +27,7 @@ inline constexpr std::uint32_t kDrainingMinor = 2;
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.
 inline constexpr std::size_t kPersonNameMaxBytes = 32;
-/// Hello.resume_key is cut to this length.
+/// A longer Hello.resume_key is none that a server gave out.
 inline constexpr std::size_t kResumeKeyMaxBytes = 256;
 
 struct Hello {
@@ -37,7 +37,7 @@ struct Hello {
   std::string token{};          ///< arbitrary bytes, as long as the message allows; empty: a client without a token
   std::string name{};           ///< at most kPersonNameMaxBytes, likewise; empty if it had no visible characters
   std::uint32_t color_rgb = 0;  ///< 24 bits; 0: the server chooses
-  std::string resume_key{};     ///< at most kResumeKeyMaxBytes of arbitrary bytes
+  std::string resume_key{};     ///< at most kResumeKeyMaxBytes of arbitrary UTF-8; empty for a longer one
 };
 
 struct Subscribe {
@@ -67,12 +67,11 @@ struct Malformed {
 
 using ClientMessage = std::variant<Hello, Subscribe, v1::Command, Ping, CommandRejection, Malformed>;
 
-/// Parses and checks one client message. Numbers in the result are finite and in range, fields left out have their
-/// defaults.
+/// Parses and checks one client message. Numbers in the result are finite and in range. Fields that a command leaves
+/// out stay empty: completeCommand() fills them in.
 ClientMessage parseClientMessage(core::ByteView bytes);
 
-/// Checks a command from any source, as parseClientMessage() does. Returns it with defaults in the fields left out and
-/// without unknown fields.
+/// Checks a command from any source, as parseClientMessage() does. Returns it without unknown fields.
 std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command);
 
 v1::Role toWire(core::Role role);
@@ -84,6 +83,10 @@ std::optional<std::string> checkVersion(const Hello& hello);
 /// Returns nullopt if a client of this minor version can show the scene's water, otherwise one line for a Refusal:
 /// clients of 1.0 take every plane for a square.
 std::optional<std::string> checkWater(std::uint32_t minor, const v1::Scene& scene);
+
+/// Fills in what a command that checkCommand() accepted leaves out, with defaults that the scene permits, and checks it
+/// by checkAgainstScene(). So a log keeps the values that were in force, whatever the defaults are when it is replayed.
+std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::Scene& scene);
 
 /// Checks a command that checkCommand() accepted against the scene: absent parts, splashes deeper or wider than the
 /// water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range, boats too

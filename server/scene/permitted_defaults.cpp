@@ -1,0 +1,65 @@
+// Defaults of effects and boats in commands, fitted to the water that they are for.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <google/protobuf/descriptor.h>
+
+#include <spindrift/scene/scene_rules.h>
+
+namespace spindrift::scene {
+namespace {
+
+/// Limits may follow from another field that was left out: that of a boat's beam from its length.
+constexpr int kPassCount = 2;
+/// Places that are tried for a boat.
+constexpr int kPlaceMaxCount = 400;
+
+/// `issues_of` returns the violations by the message; their paths end with the names of its fields.
+template <typename Message, typename IssuesOf>
+void complete(Message& message, const IssuesOf& issues_of) {
+  const Message sent = message;
+  fillMessageDefaults(message);
+  for (int pass = 0; pass < kPassCount; ++pass) {
+    for (const FieldIssue& issue : issues_of(message)) {
+      const auto* field = Message::descriptor()->FindFieldByName(issue.path.substr(issue.path.rfind('.') + 1));
+      if (!issue.nearest || Message::GetReflection()->HasField(sent, field)) continue;
+      const v1::ParameterOptions& options = *parameterOptions(*field);
+      setNumber(message, *field, std::clamp(*issue.nearest, options.min(), options.max()));
+    }
+  }
+}
+
+/// Moves the boat to the first permitted place on a spiral from the middle outward; leaves it where none is found.
+void findPlace(v1::Boat& boat, const v1::Scene& scene) {
+  const WaterExtents water = waterExtentsOf(scene);
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));  // fills the water evenly
+  core::Boat tried = toCore(boat);
+  for (int k = 0; k < kPlaceMaxCount; ++k) {
+    const double out = std::sqrt(static_cast<double>(k) / kPlaceMaxCount);
+    tried.x_m = 0.5 * water.side_x_m * out * std::cos(k * golden_angle);
+    tried.z_m = 0.5 * water.side_z_m * out * std::sin(k * golden_angle);
+    if (!checkBoat(tried, scene, "").empty()) continue;
+    boat.set_x_m(tried.x_m);
+    boat.set_z_m(tried.z_m);
+    return;
+  }
+}
+
+}  // namespace
+
+void completeEffect(v1::Splash& splash, const v1::Scene& scene) {
+  complete(splash, [&](const v1::Splash& filled) { return checkEffect(toCore(filled), scene); });
+}
+
+void completeEffect(v1::BreakingWave& wave, const v1::Scene& scene) {
+  complete(wave, [&](const v1::BreakingWave& filled) { return checkEffect(toCore(filled), scene); });
+}
+
+void completeBoat(v1::Boat& boat, const v1::Scene& scene) {
+  const bool has_place = boat.has_x_m() || boat.has_z_m();
+  complete(boat, [&](const v1::Boat& filled) { return checkBoat(toCore(filled), scene, ""); });
+  if (!has_place) findPlace(boat, scene);
+}
+
+}  // namespace spindrift::scene

@@ -1,0 +1,135 @@
+// Rooms in which nothing happens: how often the simulation thread runs them, and what wakes them.
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/wire/client_message.h>
+
+#include "commands.h"
+#include "silent_outlets.h"
+
+namespace spindrift::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 60s;
+constexpr const char* kStillPool = "wave { resolution_count: 32 side_m: 8 depth_m: 1 } unwatched: UNWATCHED_SLEEP";
+
+/// Counts the runs of all rooms: each asks once for the sessions of the whole server.
+struct CountingOutlets final : SilentOutlets {
+  mutable std::atomic<int> run_count{0};
+  std::atomic<int> answer_count{0};
+  std::atomic<std::size_t> session_count{0};
+
+  std::size_t sessionCount() const override {
+    ++run_count;
+    return session_count;
+  }
+  std::size_t sessionCount(const rooms::Room&) const override { return session_count; }
+  void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override { ++answer_count; }
+  void commandRejected(const rooms::Command&, const wire::CommandRejection&) override { ++answer_count; }
+};
+
+class IdleRooms : public testing::Test {
+ protected:
+  static constexpr int kRoomCount = 3;
+
+  void SetUp() override {
+    gpu::DeviceChoice device;
+    device.kind = gpu::DeviceChoice::Kind::kSoftware;
+    std::vector<rooms::RoomSetup> setups;
+    for (int k = 0; k < kRoomCount; ++k) {
+      auto scene = scene::parseSceneText(kStillPool, "pool");
+      ASSERT_TRUE(scene) << scene.error().message;
+      setups.push_back({.name = "room" + std::to_string(k), .scene = *std::move(scene)});
+    }
+    auto started = rooms::SimulationThread::start(device, std::move(setups), {}, kRoomCount, outlets_);
+    if (!started && started.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << started.error().message;
+    ASSERT_TRUE(started) << started.error().message;
+    simulation_ = *std::move(started);
+    simulation_->run();
+  }
+  void TearDown() override {
+    if (simulation_) simulation_->stop();
+  }
+
+  bool eventually(const std::function<bool()>& holds) const {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!holds()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(1ms);
+    }
+    return true;
+  }
+  bool allAreAsleep() const {
+    return std::ranges::all_of(simulation_->rooms(), [](const auto& room) { return room->vitals()->asleep; });
+  }
+  void send(rooms::Room& room, v1::Command command) {
+    command.set_command_id(++last_id_);
+    auto checked = wire::checkCommand(std::move(command));
+    ASSERT_TRUE(std::holds_alternative<v1::Command>(checked));
+    const int before = outlets_.answer_count;
+    ASSERT_FALSE(room.admit({.sender = {.session_id = 1, .role = core::Role::kOperator},
+                             .message = std::get<v1::Command>(std::move(checked))}));
+    ASSERT_TRUE(eventually([&] { return outlets_.answer_count > before; }));
+  }
+
+  CountingOutlets outlets_;
+  std::unique_ptr<rooms::SimulationThread> simulation_;
+  std::uint64_t last_id_ = 0;
+};
+
+TEST_F(IdleRooms, AreRunOncePerSecondWhileTheySleep) {
+  ASSERT_TRUE(eventually([&] { return allAreAsleep(); }));
+  const int before = outlets_.run_count;
+  std::this_thread::sleep_for(3s);
+  EXPECT_LE(outlets_.run_count - before, 4 * kRoomCount);
+}
+
+TEST_F(IdleRooms, AreRunOncePerSecondWhileTheyArePausedAndNobodyWatches) {
+  for (const auto& room : simulation_->rooms()) ASSERT_NO_FATAL_FAILURE(send(*room, setPaused(true)));
+  const int before = outlets_.run_count;
+  std::this_thread::sleep_for(3s);
+  EXPECT_LE(outlets_.run_count - before, 4 * kRoomCount);
+}
+
+TEST_F(IdleRooms, AnswerCommandsWithoutWaitingForTheirNextTurn) {
+  ASSERT_TRUE(eventually([&] { return allAreAsleep(); }));
+  // With a turn per second, 20 commands one after the other would take some 20 s.
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 0; k < 20; ++k) ASSERT_NO_FATAL_FAILURE(send(*simulation_->rooms()[1], splash()));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 8s);
+}
+
+TEST_F(IdleRooms, WakeUpWhenASessionComes) {
+  ASSERT_TRUE(eventually([&] { return allAreAsleep(); }));
+  const auto room = simulation_->rooms()[2];
+  const std::uint64_t tick = room->vitals()->tick;
+  outlets_.session_count = 1;
+  room->wake();
+  EXPECT_TRUE(eventually([&] { return room->vitals()->tick > tick; }));
+  EXPECT_FALSE(room->vitals()->asleep);
+}
+
+TEST_F(IdleRooms, TellAtOnceWhoCame) {
+  ASSERT_TRUE(eventually([&] { return allAreAsleep(); }));
+  const auto room = simulation_->rooms()[0];
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 1; k <= 10; ++k) {
+    const int before = outlets_.run_count;
+    room->roster().arrive({.session = static_cast<core::SessionId>(k)});
+    ASSERT_TRUE(eventually([&] { return outlets_.run_count > before; }));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 4s);
+}
+
+}  // namespace
+}  // namespace spindrift::test
